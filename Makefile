@@ -1,0 +1,31 @@
+# Thin front end: every target first makes sure that what it needs is installed and built.
+BUILD := build
+JOBS  ?= $(shell nproc)
+
+.PHONY: demo test bench build setup sanitize format clean
+demo: build
+	$(BUILD)/bin/statejump compare cases/table1.toml
+
+test: build
+	ctest --test-dir $(BUILD) --output-on-failure
+
+bench: build
+	cd bench && ./run.sh ../$(BUILD)
+
+build: setup
+	cmake --preset release
+	cmake --build $(BUILD) --parallel $(JOBS)
+
+setup:
+	./scripts/setup.sh
+
+sanitize: setup
+	cmake --preset sanitize
+	cmake --build build-sanitize --parallel $(JOBS)
+	ctest --test-dir build-sanitize --output-on-failure
+
+format:
+	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i
+
+clean:
+	rm -rf build build-debug build-sanitize
