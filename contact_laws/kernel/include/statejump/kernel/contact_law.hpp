@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "statejump/kernel/elastic_pair.hpp"
+#include "statejump/kernel/hertz.hpp"
+#include "statejump/kernel/mindlin.hpp"
+#include "statejump/kernel/require.hpp"
+#include "statejump/kernel/vector.hpp"
+
+namespace statejump::kernel {
+
+/// What the two bodies of a contact are, fixed over a run. Checked once by validate().
+struct ContactParameters {
+  ElasticPair elastic;                    ///< E*, G* [Pa], both > 0; see elastic_pair()
+  double friction_coefficient = 0.0;      ///< mu [-], >= 0; 0: frictionless (default)
+  double normal_damping_ratio = 0.0;      ///< zeta_n [-], >= 0; 0: undamped (default)
+  double tangential_damping_ratio = 0.0;  ///< zeta_t [-], >= 0; 0: undamped (default)
+  double effective_mass = 0.0;            ///< m [kg], >= 0, m1 m2/(m1 + m2); only damping uses it
+};
+
+/// Where the two bodies of a contact are at this step. Arguments are trusted: this is the inner
+/// loop.
+struct ContactKinematics {
+  Vector3 normal;             ///< unit, from body 1 (journal, slider) into body 2 (bearing, slot):
+                              ///< the direction in which 1 pushes 2
+  double penetration_depth;   ///< delta [m], > 0 overlap, <= 0 gap
+  double effective_radius;    ///< R [m], > 0, finite
+  Vector3 relative_velocity;  ///< v1 - v2 of the material at the one contact point [m/s]
+  double time_step;           ///< dt [s], >= 0
+};
+
+/// What the contact answers. Forces act on body 1; body 2 gets the opposite.
+struct ContactResponse {
+  double normal_force;               ///< F_N with damping [N], >= 0: clipped, no adhesion
+  double elastic_normal_force;       ///< Hertz part of it [N], >= 0
+  double normal_stiffness;           ///< dF/d(delta) of the Hertz part [N/m], >= 0
+  double tangential_stiffness;       ///< k_t = 8 G* a [N/m], >= 0
+  Vector3 tangential_force;          ///< friction on body 1, viscous part included [N]
+  Vector3 force_on_1;                ///< -F_N n + tangential_force [N]
+  double normal_elastic_energy;      ///< [J], >= 0
+  double tangential_elastic_energy;  ///< of the history spring [J], >= 0
+  double friction_dissipation;       ///< of this step [J], >= 0, see mindlin_step()
+  double damping_dissipation;        ///< of this step [J], >= 0
+};
+
+/// Checks a parameter set where it enters.
+/// @throws std::invalid_argument that names the field, its value and its range.
+inline void validate(const ContactParameters& parameters) {
+  const auto positive = [&](double value, const char* name, const char* range) {
+    require(std::isfinite(value) && value > 0.0, name, value, range);
+  };
+  const auto non_negative = [&](double value, const char* name, const char* range) {
+    require(std::isfinite(value) && value >= 0.0, name, value, range);
+  };
+  positive(parameters.elastic.effective_young_modulus, "effective_young_modulus", "(0, inf) Pa");
+  positive(parameters.elastic.effective_shear_modulus, "effective_shear_modulus", "(0, inf) Pa");
+  non_negative(parameters.friction_coefficient, "friction_coefficient", "[0, inf)");
+  non_negative(parameters.normal_damping_ratio, "normal_damping_ratio", "[0, inf)");
+  non_negative(parameters.tangential_damping_ratio, "tangential_damping_ratio", "[0, inf)");
+  non_negative(parameters.effective_mass, "effective_mass", "[0, inf) kg");
+}
+
+/// Hertz normal contact, Mindlin history friction under Coulomb's limit, viscous damping.
+///
+/// Normal: F_el = 4/3 E* sqrt(R) delta^1.5 and k_n = 2 E* a, a = sqrt(R delta), see hertz(). With
+/// the approach speed v_n = v . n (the rate of delta),
+///
+///     F_N = max(0, F_el + c_n v_n),   c_n = 2 zeta_n sqrt(m k_n):
+///
+/// the bodies never pull on each other. k_n is the tangent stiffness at this depth, so zeta_n is
+/// the damping ratio of a small oscillation there.
+///
+/// Tangential: history spring k_t = 8 G* a under the limit mu F_N, see mindlin_step(). F_N is the
+/// total clipped normal force, which is what presses the surfaces together. While the spring sticks
+/// the viscous force -c_t v_t, c_t = 2 zeta_t sqrt(m k_t), is added and the sum is projected onto
+/// the disc of radius mu F_N; a projection is monotone, so what is left of the viscous force still
+/// opposes v_t. While it slips there is no viscous force. |tangential_force| <= mu F_N always, and
+/// with mu = 0 it is exactly zero.
+///
+/// Energy: friction by the identity of mindlin_step(). Damping by (viscous force) . v dt with the
+/// velocity given; an integrator that does work with another velocity (leapfrog: the mean of two
+/// half steps) differs from that at first order in dt.
+///
+/// Costs one square root undamped in stick, one more in slip, one more per damping used.
+/// @param parameters see validate(); not checked here
+/// @param kinematics of this step
+/// @param history of this contact, rotated into the present tangent plane by the caller; updated. A
+///        gap clears it, and books the energy left in the spring as friction.
+/// Limits: those of hertz() and mindlin_step(); no rolling or twisting resistance.
+inline ContactResponse hertz_mindlin(const ContactParameters& parameters,
+                                     const ContactKinematics& kinematics, ContactHistory& history) {
+  const HertzState normal_state = hertz(parameters.elastic.effective_young_modulus,
+                                        kinematics.effective_radius, kinematics.penetration_depth);
+  const bool touching = kinematics.penetration_depth > 0.0;
+  const Vector3& n = kinematics.normal;
+  const double approach_speed = kinematics.relative_velocity.dot(n);
+
+  double normal_force = normal_state.force;
+  double damping_dissipation = 0.0;
+  if (touching && parameters.normal_damping_ratio > 0.0) {
+    const double damping = 2.0 * parameters.normal_damping_ratio *
+                           std::sqrt(parameters.effective_mass * normal_state.stiffness);
+    normal_force = std::max(0.0, normal_force + damping * approach_speed);
+    damping_dissipation =
+        (normal_force - normal_state.force) * approach_speed * kinematics.time_step;
+  }
+
+  const double tangential_stiffness =
+      mindlin_stiffness(parameters.elastic.effective_shear_modulus, normal_state.contact_radius);
+  const double limit = parameters.friction_coefficient * normal_force;
+  const Vector3 tangential_velocity = kinematics.relative_velocity - approach_speed * n;
+  const MindlinEnergy energy = mindlin_step(tangential_stiffness, limit,
+                                            tangential_velocity * kinematics.time_step, history);
+
+  Vector3 tangential_force = history.tangential_force;
+  if (parameters.tangential_damping_ratio > 0.0 && limit > 0.0 && !history.slipping) {
+    const double damping = 2.0 * parameters.tangential_damping_ratio *
+                           std::sqrt(parameters.effective_mass * tangential_stiffness);
+    tangential_force -= damping * tangential_velocity;
+    const double squared = tangential_force.squaredNorm();
+    if (squared > limit * limit) tangential_force *= limit / std::sqrt(squared);
+    damping_dissipation += (history.tangential_force - tangential_force).dot(tangential_velocity) *
+                           kinematics.time_step;
+  }
+
+  return {normal_force,
+          normal_state.force,
+          normal_state.stiffness,
+          tangential_stiffness,
+          tangential_force,
+          tangential_force - normal_force * n,
+          normal_state.elastic_energy,
+          energy.elastic,
+          energy.dissipation,
+          damping_dissipation};
+}
+
+/// Forces [N] and torques [N m] of one contact on the centres of its two bodies, world frame.
+struct Wrench {
+  Vector3 force_1;
+  Vector3 torque_1;
+  Vector3 force_2;
+  Vector3 torque_2;
+};
+
+/// Carries the contact force to the two body centres: torque = arm x force.
+///
+/// Both forces act at one point, so forces and moments about any point cancel exactly. (With the
+/// paper's two points of eq. 14, which are delta apart, a torque delta F_t would be left over.)
+/// @param force_on_1 [N]; body 2 gets the opposite
+/// @param arm_1, arm_2 contact point minus centre of the body [m]
+inline Wrench contact_wrench(const Vector3& force_on_1, const Vector3& arm_1,
+                             const Vector3& arm_2) {
+  return {force_on_1, cross(arm_1, force_on_1), -force_on_1, cross(force_on_1, arm_2)};
+}
+
+/// Largest stable time step [s] of the leapfrog (velocity Verlet) scheme for one spring–dashpot
+/// oscillator whose damping force uses the velocity of the last half step, as in YADE:
+///
+///     dt = 4 m / (c + sqrt(c^2 + 4 m k)).
+///
+/// The step multiplies (v, x) by a matrix of determinant 1 - c dt/m and trace 2 - c dt/m - k
+/// dt^2/m; both eigenvalues stay inside the unit circle while k dt^2 + 2 c dt < 4 m. Without
+/// damping this is omega dt < 2, dt = 2 sqrt(m/k); with damping alone dt = 2 m/c. Take a fraction
+/// of it: 0.1 to 0.3 resolves the oscillation.
+/// @param mass m [kg], > 0; for the relative motion of two bodies m1 m2/(m1 + m2). Where the bodies
+///        can turn, the tangential motion has the smaller mass 1/(1/m + arm_1^2/I1 + arm_2^2/I2).
+/// @param stiffness_sum k [N/m], >= 0, of every spring that acts on this motion
+/// @param damping_sum c [N s/m], >= 0, of every dashpot that acts on it
+/// @return +infinity when nothing acts
+inline double critical_time_step(double mass, double stiffness_sum, double damping_sum = 0.0) {
+  const double rate =
+      damping_sum + std::sqrt(damping_sum * damping_sum + 4.0 * mass * stiffness_sum);
+  return rate > 0.0 ? 4.0 * mass / rate : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace statejump::kernel

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cmath>
+
+#include "statejump/kernel/require.hpp"
+
+namespace statejump::kernel {
+
+/// Effective radius of an internal contact, a pin in a hole: R = R1 R2 / (R2 - R1) [m].
+///
+/// Curvatures add with sign (Johnson 1985, eq. 4.14): the journal is convex, +1/R1, the bearing
+/// concave, -1/R2. The paper's eq. (7) has R1 R2 / (R1 + R2), the external contact of two balls;
+/// the concave bearing makes the contact much stiffer.
+/// @param journal_radius R1 [m], > 0 and finite
+/// @param bearing_radius R2 [m], > R1; +infinity is a flat wall and gives R1
+/// @throws std::invalid_argument when not 0 < R1 < R2
+/// Limit: Hertz needs a contact radius a = sqrt(R delta) well below R1; as R2 tends to R1 the
+/// contact turns conformal and this radius grows without bound.
+inline double internal_effective_radius(double journal_radius, double bearing_radius) {
+  require(journal_radius > 0.0, "journal_radius", journal_radius, "(0, inf) m");
+  require(bearing_radius > journal_radius, "bearing_radius", bearing_radius,
+          "(journal_radius, inf] m");
+  if (std::isinf(bearing_radius)) return journal_radius;
+  return journal_radius * (bearing_radius / (bearing_radius - journal_radius));
+}
+
+/// Hertz stiffness K = 4/3 E* sqrt(R) [N/m^1.5] of F = K delta^1.5 (paper eq. 6; Johnson 1985,
+/// eq. 4.23).
+/// @param effective_young_modulus E* [Pa], @param effective_radius R [m]
+inline double hertz_stiffness(double effective_young_modulus, double effective_radius) {
+  return 4.0 / 3.0 * effective_young_modulus * std::sqrt(effective_radius);
+}
+
+/// Elastic normal contact at one penetration depth.
+struct HertzState {
+  double force;           ///< F [N], >= 0, compressive
+  double stiffness;       ///< dF/d(delta) [N/m], >= 0
+  double contact_radius;  ///< a [m], >= 0
+  double elastic_energy;  ///< integral of F over delta [J], >= 0
+};
+
+/// Hertz's point contact of two elastic bodies (Johnson 1985, eqs 4.22 and 4.23).
+///
+/// A pressure p0 sqrt(1 - r^2/a^2) on a circle of radius a indents the pair by
+/// delta = pi a p0 / (2 E*) and fits the undeformed gap r^2/(2R) when p0 = 2 a E* / (pi R); hence
+///
+///     a = sqrt(R delta)
+///     F = 2/3 pi a^2 p0 = 4/3 E* sqrt(R) delta^1.5 = 4/3 E* a delta
+///     dF/d(delta) = 2 E* a
+///     integral of F d(delta) = 2/5 F delta
+///
+/// One square root, no division.
+/// @param effective_young_modulus E* [Pa], > 0
+/// @param effective_radius R [m], > 0, finite
+/// @param penetration_depth delta [m], positive when the bodies overlap; <= 0 is a gap and gives
+///        zeros. Arguments are not checked: this is the inner loop.
+/// Limits: frictionless, a << R, quasi-static (no waves), no adhesion, no plasticity.
+inline HertzState hertz(double effective_young_modulus, double effective_radius,
+                        double penetration_depth) {
+  if (penetration_depth <= 0.0) return {0.0, 0.0, 0.0, 0.0};
+  const double contact_radius = std::sqrt(effective_radius * penetration_depth);
+  const double stiffness = 2.0 * effective_young_modulus * contact_radius;
+  const double force = 2.0 / 3.0 * stiffness * penetration_depth;
+  return {force, stiffness, contact_radius, 0.4 * force * penetration_depth};
+}
+
+}  // namespace statejump::kernel

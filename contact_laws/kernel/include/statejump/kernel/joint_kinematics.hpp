@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "statejump/kernel/contact_law.hpp"
+#include "statejump/kernel/hertz.hpp"
+#include "statejump/kernel/vector.hpp"
+
+namespace statejump::kernel {
+
+/// Motion of one rigid body, world frame.
+struct BodyMotion {
+  Vector3 position;          ///< of the centre [m]
+  Vector3 velocity;          ///< of the centre [m/s]
+  Vector3 angular_velocity;  ///< [rad/s]
+};
+
+/// Geometry of one contact point between body 1 (journal, slider) and body 2 (bearing, slot).
+/// Filled for a gap too; then the arms meet in the middle of the gap.
+struct JointContact {
+  double penetration_depth;   ///< delta [m]; negative: gap
+  Vector3 normal;             ///< unit, from body 1 into body 2
+  Vector3 arm_1;              ///< contact point minus centre of body 1 [m]
+  Vector3 arm_2;              ///< contact point minus centre of body 2 [m]
+  Vector3 relative_velocity;  ///< v1 - v2 of the material at the contact point [m/s]
+  double effective_radius;    ///< R [m] for hertz()
+  double eccentricity;        ///< offset of body 1 from body 2 along the normal [m]
+};
+using RevoluteContact = JointContact;  ///< of revolute_contact()
+using PlaneContact = JointContact;     ///< of plane_contact()
+
+/// What the law needs of a joint's geometry. @param time_step dt [s]
+inline ContactKinematics contact_kinematics(const JointContact& contact, double time_step) {
+  return {contact.normal, contact.penetration_depth, contact.effective_radius,
+          contact.relative_velocity, time_step};
+}
+
+/// Velocity [m/s] of the material of a body at centre + arm. @param arm [m]
+inline Vector3 material_velocity(const BodyMotion& body, const Vector3& arm) {
+  return body.velocity + cross(body.angular_velocity, arm);
+}
+
+/// Part of v perpendicular to a unit axis; same unit as v.
+inline Vector3 perpendicular_part(const Vector3& v, const Vector3& axis) {
+  return v - v.dot(axis) * axis;
+}
+
+/// Penetration depth of journal and bearing [m], eq. (12): delta = |d| - (R2 - R1), d being the
+/// offset of eq. (11) perpendicular to the axis. Negative: gap. One square root.
+/// @param journal_centre, bearing_centre [m]; @param journal_radius, bearing_radius [m]
+/// @param axis unit, the bearing's axis
+inline double revolute_penetration(const Vector3& journal_centre, double journal_radius,
+                                   const Vector3& bearing_centre, double bearing_radius,
+                                   const Vector3& axis) {
+  return perpendicular_part(journal_centre - bearing_centre, axis).norm() -
+         (bearing_radius - journal_radius);
+}
+
+/// Whether journal and bearing touch: revolute_penetration() > 0 decided on squares, without a
+/// square root. It may differ from that by rounding, at |delta| of some 1e-16 of the clearance. A
+/// bearing not larger than the journal counts as touching, so that revolute_contact() reports it.
+inline bool revolute_touches(const Vector3& journal_centre, double journal_radius,
+                             const Vector3& bearing_centre, double bearing_radius,
+                             const Vector3& axis) {
+  const double clearance = bearing_radius - journal_radius;
+  return !(clearance > 0.0) ||
+         perpendicular_part(journal_centre - bearing_centre, axis).squaredNorm() >
+             clearance * clearance;
+}
+
+/// Journal in a bearing with clearance c = R2 - R1, the paper's eqs (11) to (13):
+///
+///     d = r_C - r_D, perpendicular to the bearing's axis;   delta = |d| - c;   n = d/|d|.
+///
+/// The paper's two contact points of eq. (14), r_C + R1 n and r_D + R2 n, are delta apart. Here
+/// there is one, half-way between them and in the journal's mid-plane,
+///
+///     P = r_C + (R1 - delta/2) n = r_D + (axial offset) + (R2 + delta/2) n,
+///
+/// so that the moments of action and reaction balance. The velocities are those of the material at
+/// P, v + omega x arm; eqs (15) and (16) differentiate the geometric points instead, which leaves
+/// out the spin and with it the sliding of a turning journal.
+///
+/// One square root, two divisions. The axial offset does not change the depth: an infinitely long
+/// joint; tilt of the journal against the axis is not seen.
+/// @param journal_radius R1 [m], @param bearing_radius R2 [m], 0 < R1 < R2
+/// @param axis unit, the bearing's axis, either direction
+/// @return for concentric parts a gap of -c with some unit normal perpendicular to the axis
+/// @throws std::invalid_argument when not 0 < R1 < R2
+inline RevoluteContact revolute_contact(const BodyMotion& journal, double journal_radius,
+                                        const BodyMotion& bearing, double bearing_radius,
+                                        const Vector3& axis) {
+  RevoluteContact contact;
+  const Vector3 centres = journal.position - bearing.position;
+  const Vector3 offset = perpendicular_part(centres, axis);
+  const double offset_squared = offset.squaredNorm();
+  if (offset_squared > std::numeric_limits<double>::min()) {
+    contact.eccentricity = std::sqrt(offset_squared);
+    contact.normal = offset * (1.0 / contact.eccentricity);
+  } else {
+    contact.eccentricity = 0.0;
+    const Vector3 away = std::abs(axis.x()) < 0.6 ? Vector3::UnitX() : Vector3::UnitY();
+    contact.normal = perpendicular_part(away, axis).normalized();
+  }
+  contact.effective_radius = internal_effective_radius(journal_radius, bearing_radius);
+  contact.penetration_depth = contact.eccentricity - (bearing_radius - journal_radius);
+  contact.arm_1 = (journal_radius - 0.5 * contact.penetration_depth) * contact.normal;
+  contact.arm_2 = centres + contact.arm_1;
+  contact.relative_velocity =
+      material_velocity(journal, contact.arm_1) - material_velocity(bearing, contact.arm_2);
+  return contact;
+}
+
+/// Spherical pad of a slider against a flat end wall of its slot.
+///
+///     delta = R - (w - (r_1 - r_2) . n),   P = r_1 + (R - delta/2) n,
+///
+/// w being the distance of the wall from the slot's centre. Material velocities at P as in
+/// revolute_contact(). The effective radius is R: the wall is flat. No square root, no division.
+/// @param slider body 1, whose centre is the pad's centre of curvature
+/// @param pad_radius R [m], > 0
+/// @param slot body 2
+/// @param face_normal n, unit, world frame, from the slider into the wall
+/// @param face_distance w [m], wall minus slot centre along n
+inline PlaneContact plane_contact(const BodyMotion& slider, double pad_radius,
+                                  const BodyMotion& slot, const Vector3& face_normal,
+                                  double face_distance) {
+  PlaneContact contact;
+  const Vector3 centres = slider.position - slot.position;
+  contact.eccentricity = centres.dot(face_normal);
+  contact.penetration_depth = pad_radius - (face_distance - contact.eccentricity);
+  contact.normal = face_normal;
+  contact.arm_1 = (pad_radius - 0.5 * contact.penetration_depth) * face_normal;
+  contact.arm_2 = centres + contact.arm_1;
+  contact.relative_velocity =
+      material_velocity(slider, contact.arm_1) - material_velocity(slot, contact.arm_2);
+  contact.effective_radius = pad_radius;
+  return contact;
+}
+
+}  // namespace statejump::kernel

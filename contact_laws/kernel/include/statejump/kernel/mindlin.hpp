@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "statejump/kernel/vector.hpp"
+
+namespace statejump::kernel {
+
+/// What a contact remembers from one step to the next. The caller keeps it, rotates the force with
+/// the contact (transport() in frame.hpp) and starts a new contact with a default-made one.
+struct ContactHistory {
+  Vector3 tangential_force = Vector3::Zero();  ///< of the spring, on body 1 [N]; no viscous part
+  double tangential_stiffness = 0.0;  ///< k_t at which that force was stored [N/m]; 0: new contact
+  bool slipping = false;              ///< the last step ended at the Coulomb limit
+};
+
+/// Mindlin's tangential stiffness k_t = 8 G* a [N/m] of a circular contact without slip (Mindlin
+/// 1949; Johnson 1985, eq. 7.44).
+/// @param effective_shear_modulus G* [Pa], see ElasticPair; @param contact_radius a [m]
+inline double mindlin_stiffness(double effective_shear_modulus, double contact_radius) {
+  return 8.0 * effective_shear_modulus * contact_radius;
+}
+
+/// Energy account of one step of the tangential spring.
+struct MindlinEnergy {
+  double elastic;      ///< 1/2 F^2 / k_t after the step [J], >= 0
+  double dissipation;  ///< friction loss of this step [J], >= 0
+};
+
+/// One step of the tangential history spring with Coulomb's limit; updates the history.
+///
+/// The spring carries F = -k s on body 1, s being the elastic slide of 1 against 2. A step has
+/// three parts, F0 and k0 from the history, k the stiffness now, u the slide of this step:
+///
+///  1. The stiffness follows the normal load. Loading (k >= k0): the new ring of contact carries no
+///     traction yet, the force stays, F' = F0. Unloading (k < k0): the slide s stays,
+///     F' = F0 k/k0. The spring energy 1/2 F0^2/k0 - 1/2 F'^2/k >= 0 lost either way is micro-slip
+///     at the rim. Keeping F0 on unloading would create energy (Thornton, Cummins and Cleary,
+///     2013).
+///  2. Stick: trial force T = F' - k u.
+///  3. Coulomb: where |T| exceeds the limit, F1 = limit T/|T|; the excess
+///     slip = (|T| - limit)/k is plastic. Otherwise F1 = T.
+///
+/// Discrete energy identity. A leapfrog integrator does, with u = v(n-1/2) dt, the work
+/// -1/2 (F0 + F1) . u on the contact over a step (summation by parts of F . v dt). The dissipation
+/// D is defined by
+///
+///     -1/2 (F0 + F1) . u = (1/2 F1^2/k - 1/2 F0^2/k0) + D,
+///
+/// which the three parts turn into sums without cancellation:
+///
+///     loading       1/2 F0^2 (1/k0 - 1/k)
+///     unloading     1/2 (1 - k/k0) (F0^2/k0 - F0 . u)
+///     slip          1/2 (F' . T/|T| + limit) slip     (limit * slip in steady sliding)
+///
+/// So the account closes to rounding in every step. One exception: when the force turns round
+/// within one step while the normal load falls, the mean of the two end forces undercuts the true
+/// work and D would be negative by a term of second order in the step; D is then 0.
+///
+/// One square root and three divisions in a slip step, two divisions in a stick step.
+/// @param stiffness k [N/m]; <= 0: contact lost, all spring energy is released and booked
+/// @param limit mu F_N [N]; <= 0: no friction, the force is exactly zero
+/// @param slide u, tangential slide of 1 against 2 in this step [m]
+/// @param history in: F0 (already in the present tangent plane), k0; out: F1, k. A force stored
+/// with
+///        k0 = 0 is dropped.
+/// Limits: the spring of a full contact; Mindlin and Deresiewicz's partial-slip loops below the
+/// limit are not resolved. A cyclic normal load bleeds a stuck force: kept on loading, scaled down
+/// on unloading.
+inline MindlinEnergy mindlin_step(double stiffness, double limit, const Vector3& slide,
+                                  ContactHistory& history) {
+  const Vector3 old_force = history.tangential_force;
+  const double old_stiffness = history.tangential_stiffness;
+  const double old_compliance = old_stiffness > 0.0 ? 1.0 / old_stiffness : 0.0;
+  const double old_force_squared = old_force.squaredNorm();
+  const double old_work = old_force.dot(slide);
+
+  if (!(stiffness > 0.0) || !(limit > 0.0)) {
+    history = {Vector3::Zero(), std::max(stiffness, 0.0), stiffness > 0.0};
+    return {0.0, std::max(0.0, 0.5 * (old_force_squared * old_compliance - old_work))};
+  }
+
+  const double compliance = 1.0 / stiffness;
+  double kept = 1.0;  // F' / F0
+  double dissipation;
+  if (stiffness >= old_stiffness && old_stiffness > 0.0) {
+    dissipation = 0.5 * old_force_squared * (old_compliance - compliance);
+  } else {
+    kept = stiffness * old_compliance;
+    dissipation = 0.5 * (1.0 - kept) * (old_force_squared * old_compliance - old_work);
+  }
+
+  Vector3 force = kept * old_force - stiffness * slide;
+  double force_squared = force.squaredNorm();
+  const bool slipping = force_squared > limit * limit;
+  if (slipping) {
+    const double trial = std::sqrt(force_squared);
+    const Vector3 direction = force * (1.0 / trial);
+    const double slip = (trial - limit) * compliance;
+    dissipation += 0.5 * (kept * old_force.dot(direction) + limit) * slip;
+    force = limit * direction;
+    force_squared = limit * limit;
+  }
+  history = {force, stiffness, slipping};
+  return {0.5 * force_squared * compliance, std::max(0.0, dissipation)};
+}
+
+}  // namespace statejump::kernel
