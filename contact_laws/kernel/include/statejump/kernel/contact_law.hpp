@@ -122,9 +122,12 @@ inline ContactResponse hertz_mindlin(const ContactParameters& parameters,
                            std::sqrt(parameters.effective_mass * tangential_stiffness);
     tangential_force -= damping * tangential_velocity;
     const double squared = tangential_force.squaredNorm();
-    if (squared > limit * limit) tangential_force *= limit / std::sqrt(squared);
-    damping_dissipation += (history.tangential_force - tangential_force).dot(tangential_velocity) *
-                           kinematics.time_step;
+    double loss = damping * tangential_velocity.squaredNorm();
+    if (squared > limit * limit) {
+      tangential_force *= limit / std::sqrt(squared);
+      loss = std::max(0.0, (history.tangential_force - tangential_force).dot(tangential_velocity));
+    }
+    damping_dissipation += loss * kinematics.time_step;
   }
 
   return {normal_force,

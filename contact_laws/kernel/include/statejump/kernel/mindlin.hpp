@@ -63,9 +63,8 @@ struct MindlinEnergy {
 /// @param stiffness k [N/m]; <= 0: contact lost, all spring energy is released and booked
 /// @param limit mu F_N [N]; <= 0: no friction, the force is exactly zero
 /// @param slide u, tangential slide of 1 against 2 in this step [m]
-/// @param history in: F0 (already in the present tangent plane), k0; out: F1, k. A force stored
-/// with
-///        k0 = 0 is dropped.
+/// @param history in: F0 (already in the present tangent plane), k0; out: F1, k. A force
+///        stored with k0 = 0 is dropped.
 /// Limits: the spring of a full contact; Mindlin and Deresiewicz's partial-slip loops below the
 /// limit are not resolved. A cyclic normal load bleeds a stuck force: kept on loading, scaled down
 /// on unloading.
