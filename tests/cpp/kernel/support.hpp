@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+namespace statejump::kernel::testing {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Random inputs with a fixed seed: every run and every compiler sees the same.
+class Random {
+ public:
+  double uniform(double low, double high) {
+    // mt19937's raw output is fixed by the standard; distributions are not.
+    return low + (high - low) * (static_cast<double>(generator_()) / 4294967296.0);
+  }
+  Eigen::Vector3d vector(double size) {
+    const double x = uniform(-size, size);
+    const double y = uniform(-size, size);
+    const double z = uniform(-size, size);
+    return {x, y, z};
+  }
+  Eigen::Vector3d unit() {
+    Eigen::Vector3d v = vector(1.0);
+    while (v.norm() < 0.1) v = vector(1.0);
+    return v.normalized();
+  }
+  Eigen::Matrix3d rotation() {
+    const Eigen::Vector3d axis = unit();
+    return Eigen::AngleAxisd(uniform(-pi, pi), axis).toRotationMatrix();
+  }
+
+ private:
+  std::mt19937 generator_{20210110};
+};
+
+/// |a - b| relative to |b|, for vectors.
+inline void expect_vector_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double tolerance,
+                               const char* what) {
+  EXPECT_LE((a - b).norm(), tolerance)
+      << what << ": " << a.transpose() << " against " << b.transpose();
+}
+
+}  // namespace statejump::kernel::testing
