@@ -1,0 +1,227 @@
+#include "joint.hpp"
+
+#include <boost/make_shared.hpp>
+#include <cmath>
+#include <sstream>
+
+#include "failure.hpp"
+#include "ranges.hpp"
+#include "shapes.hpp"
+
+namespace statejump::dem {
+namespace {
+
+constexpr unsigned int all_translations_blocked = 7;
+
+kernel::BodyMotion motion(const yade::State& state) {
+  return {state.se3.position, state.vel, state.angVel};
+}
+
+std::string where(const yade::Scene& scene, int id1, int id2) {
+  std::ostringstream text;
+  text.precision(9);
+  text << " (contact of bodies " << id1 << " and " << id2 << ", time " << scene.time << " s)";
+  return text.str();
+}
+
+JointGeom& geometry_of(const yade::shared_ptr<yade::Interaction>& contact,
+                       const Vector3r& first_normal) {
+  if (!contact->geom) {
+    auto fresh = boost::make_shared<JointGeom>();
+    fresh->normal = first_normal;
+    contact->geom = fresh;
+  }
+  return static_cast<JointGeom&>(*contact->geom);
+}
+
+Real inverse_mass(const yade::Scene& scene, int id) {
+  const yade::State& state = *scene.bodies->body[static_cast<std::size_t>(id)]->state;
+  const bool fixed = (state.blockedDOFs & all_translations_blocked) == all_translations_blocked;
+  return fixed || !(state.mass > 0) ? 0 : 1 / state.mass;
+}
+
+}  // namespace
+
+void JointGeom::update(const kernel::JointContact& contact, const yade::State& state1,
+                       const yade::State& state2, Real time_step) {
+  previousNormal = normal;
+  normal = contact.normal;
+  penetrationDepth = contact.penetration_depth;
+  effectiveRadius = contact.effective_radius;
+  eccentricity = contact.eccentricity;
+  relativeVelocity = contact.relative_velocity;
+  arm1 = contact.arm_1;
+  arm2 = contact.arm_2;
+  contactPoint = state1.se3.position + arm1;
+  // The history turns with the mean spin of both bodies about the normal.
+  twistAngle = 0.5 * time_step * (state1.angVel + state2.angVel).dot(normal);
+}
+
+bool Ig2_Journal_Bearing_JointGeom::go(const yade::shared_ptr<yade::Shape>& shape1,
+                                       const yade::shared_ptr<yade::Shape>& shape2,
+                                       const yade::State& state1, const yade::State& state2,
+                                       const Vector3r& shift2, const bool& force,
+                                       const yade::shared_ptr<yade::Interaction>& contact) {
+  const auto& journal = static_cast<const Journal&>(*shape1);
+  const auto& bearing = static_cast<const Bearing&>(*shape2);
+  const Real journal_radius = journal.expanded(journal.radius);
+  const Real bearing_radius = bearing.expanded(bearing.radius);
+  const Vector3r axis = state2.se3.orientation * Vector3r::UnitZ();
+  kernel::BodyMotion bearing_motion = motion(state2);
+  bearing_motion.position += shift2;
+  if (!(journal_radius > 0 && bearing_radius > journal_radius)) {
+    std::ostringstream text;
+    text.precision(9);
+    text << "the clearance is closed: journal radius " << journal_radius << " m, bearing radius "
+         << bearing_radius << " m at the current temperature"
+         << where(*scene, contact->id1, contact->id2);
+    record_failure(text.str());
+    return false;
+  }
+  const bool keep = force || contact->isReal();
+  if (!keep && !kernel::revolute_touches(state1.se3.position, journal_radius,
+                                         bearing_motion.position, bearing_radius, axis)) {
+    return false;
+  }
+  const Vector3r journal_axis = state1.se3.orientation * Vector3r::UnitZ();
+  if (journal_axis.cross(axis).squaredNorm() > maxTilt * maxTilt) {
+    record_failure(
+        "the axes of journal and bearing are tilted by more than maxTilt, and contact "
+        "at the edges is not covered" +
+        where(*scene, contact->id1, contact->id2));
+    return false;
+  }
+  const kernel::JointContact found = kernel::revolute_contact(motion(state1), journal_radius,
+                                                              bearing_motion, bearing_radius, axis);
+  JointGeom& geometry = geometry_of(contact, found.normal);
+  geometry.refR1 = journal_radius;
+  geometry.refR2 = bearing_radius;
+  geometry.update(found, state1, state2, scene->dt);
+  return true;
+}
+
+bool Ig2_Slider_SlotFace_JointGeom::go(const yade::shared_ptr<yade::Shape>& shape1,
+                                       const yade::shared_ptr<yade::Shape>& shape2,
+                                       const yade::State& state1, const yade::State& state2,
+                                       const Vector3r& shift2, const bool& force,
+                                       const yade::shared_ptr<yade::Interaction>& contact) {
+  const auto& slider = static_cast<const Slider&>(*shape1);
+  const auto& face = static_cast<const SlotFace&>(*shape2);
+  const Real radius = slider.expanded(slider.radius);
+  const Vector3r normal = state2.se3.orientation * face.normal;
+  kernel::BodyMotion face_motion = motion(state2);
+  face_motion.position += shift2;
+  const kernel::JointContact found = kernel::plane_contact(motion(state1), radius, face_motion,
+                                                           normal, face.expanded(face.distance));
+  if (found.penetration_depth <= 0 && !force && !contact->isReal()) return false;
+  JointGeom& geometry = geometry_of(contact, found.normal);
+  geometry.refR1 = radius;
+  geometry.refR2 = radius;
+  geometry.update(found, state1, state2, scene->dt);
+  return true;
+}
+
+void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::check() const {
+  require_not_negative(class_name, "normalDampingRatio", normalDampingRatio, "[-]");
+  require_not_negative(class_name, "tangentialDampingRatio", tangentialDampingRatio, "[-]");
+}
+
+void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
+    const yade::shared_ptr<yade::Material>& material1,
+    const yade::shared_ptr<yade::Material>& material2,
+    const yade::shared_ptr<yade::Interaction>& contact) {
+  if (contact->phys) return;
+  const auto& first = static_cast<const ThermalFrictMat&>(*material1);
+  const auto& second = static_cast<const ThermalFrictMat&>(*material2);
+  auto physics = boost::make_shared<JointPhys>();
+  try {
+    const kernel::ElasticPair elastic =
+        kernel::elastic_pair(first.young, first.poisson, second.young, second.poisson);
+    physics->effectiveYoungModulus = elastic.effective_young_modulus;
+    physics->effectiveShearModulus = elastic.effective_shear_modulus;
+  } catch (const std::invalid_argument& error) {
+    record_failure(error.what() + where(*scene, contact->id1, contact->id2));
+  }
+  physics->tangensOfFrictionAngle = std::tan(std::min(first.frictionAngle, second.frictionAngle));
+  const Real inverse = inverse_mass(*scene, contact->id1) + inverse_mass(*scene, contact->id2);
+  physics->effectiveMass = inverse > 0 ? 1 / inverse : 0;
+  physics->normalDampingRatio = normalDampingRatio;
+  physics->tangentialDampingRatio = tangentialDampingRatio;
+  contact->phys = physics;
+}
+
+bool Law2_JointGeom_JointPhys_HertzMindlin::go(yade::shared_ptr<yade::IGeom>& geometry_pointer,
+                                               yade::shared_ptr<yade::IPhys>& physics_pointer,
+                                               yade::Interaction* contact) {
+  const auto& geometry = static_cast<const JointGeom&>(*geometry_pointer);
+  auto& physics = static_cast<JointPhys&>(*physics_pointer);
+  const Real dt = scene->dt;
+
+  const kernel::ContactParameters parameters{
+      {physics.effectiveYoungModulus, physics.effectiveShearModulus},
+      physics.tangensOfFrictionAngle,
+      physics.normalDampingRatio,
+      physics.tangentialDampingRatio,
+      physics.effectiveMass};
+  kernel::ContactHistory history;
+  history.tangential_force = kernel::transport(-physics.shearForce, geometry.previousNormal,
+                                               geometry.normal, geometry.twistAngle);
+  history.tangential_stiffness = physics.ks;
+  history.slipping = physics.slipping;
+  const kernel::ContactKinematics kinematics{geometry.normal, geometry.penetrationDepth,
+                                             geometry.effectiveRadius, geometry.relativeVelocity,
+                                             dt};
+  const kernel::ContactResponse response = kernel::hertz_mindlin(parameters, kinematics, history);
+  if (scene->trackEnergy) account(response, geometry, physics);
+  if (geometry.penetrationDepth <= 0) return false;
+
+  // Leapfrog is unstable beyond omega dt = 2 of the stiffest contact alone, whatever else acts.
+  if (dt * dt * response.normal_stiffness > 4 * physics.effectiveMass &&
+      physics.effectiveMass > 0) {
+    std::ostringstream text;
+    text.precision(6);
+    text << "the time step " << dt << " s is above the stable one, "
+         << kernel::critical_time_step(physics.effectiveMass, response.normal_stiffness) << " s"
+         << where(*scene, contact->id1, contact->id2);
+    record_failure(text.str());
+  }
+  physics.kn = response.normal_stiffness;
+  physics.ks = history.tangential_stiffness;
+  physics.slipping = history.slipping;
+  physics.normalForce = response.normal_force * geometry.normal;
+  physics.shearForce = -history.tangential_force;
+
+  const kernel::Wrench wrench =
+      kernel::contact_wrench(response.force_on_1, geometry.arm1, geometry.arm2);
+  scene->forces.addForce(contact->id1, wrench.force_1);
+  scene->forces.addTorque(contact->id1, wrench.torque_1);
+  scene->forces.addForce(contact->id2, wrench.force_2);
+  scene->forces.addTorque(contact->id2, wrench.torque_2);
+  return true;
+}
+
+// Expansion of journal or bearing works on the contact through the clearance c and the effective
+// radius R: with V(delta, R) and delta = eccentricity - c, the part of dV that no motion of the
+// bodies explains is -F dc + dV/dR dR, dV/dR = V / (2 R). Trapezoidal, as the motion is.
+void Law2_JointGeom_JointPhys_HertzMindlin::account(const kernel::ContactResponse& response,
+                                                    const JointGeom& geometry, JointPhys& physics) {
+  const Real clearance = geometry.eccentricity - geometry.penetrationDepth;
+  if (physics.previousRadius > 0) {
+    const Real force = 0.5 * (response.elastic_normal_force + physics.previousElasticForce);
+    const Real energy = 0.5 * (response.normal_elastic_energy + physics.previousElasticEnergy);
+    const Real radius = 0.5 * (geometry.effectiveRadius + physics.previousRadius);
+    const Real work = -force * (clearance - physics.previousClearance) +
+                      energy / (2 * radius) * (geometry.effectiveRadius - physics.previousRadius);
+    scene->energy->add(work, "jointThermalWork", energy_ids_[3], false);
+  }
+  physics.previousElasticForce = response.elastic_normal_force;
+  physics.previousElasticEnergy = response.normal_elastic_energy;
+  physics.previousClearance = clearance;
+  physics.previousRadius = geometry.effectiveRadius;
+  scene->energy->add(response.normal_elastic_energy + response.tangential_elastic_energy,
+                     "jointElastic", energy_ids_[0], true);
+  scene->energy->add(response.friction_dissipation, "jointFriction", energy_ids_[1], false);
+  scene->energy->add(response.damping_dissipation, "jointDamping", energy_ids_[2], false);
+}
+
+}  // namespace statejump::dem

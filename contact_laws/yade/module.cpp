@@ -1,0 +1,92 @@
+// The extension module: checks YADE's interface and registers the classes with the running YADE.
+// Adding a class is one entry in the list below.
+#include <boost/make_shared.hpp>
+
+#include "joint.hpp"
+#include "link_list.hpp"
+#include "shapes.hpp"
+#include "thermal.hpp"
+#ifndef STATEJUMP_REAL_YADE_HEADERS
+#include "statejump/yade_abi/guard.hpp"
+#endif
+
+namespace statejump::dem {
+namespace {
+
+template <class... Classes>
+struct ClassList {
+  static void register_all() {
+    (register_factory<Classes>(), ...);
+    // Also runs each class's pyRegisterClass, base classes first.
+    yade::Omega::instance().buildDynlibDatabase({Classes::class_name...});
+  }
+  static boost::python::list names() {
+    boost::python::list result;
+    (result.append(Classes::class_name), ...);
+    return result;
+  }
+};
+
+using OurClasses =
+    ClassList<ThermalFrictMat, ThermalShape, Journal, Bearing, Slider, SlotFace, Bo1<Journal>,
+              Bo1<Bearing>, Bo1<Slider>, Bo1<SlotFace>, JointGeom, JointPhys,
+              Ig2_Journal_Bearing_JointGeom, Ig2_Slider_SlotFace_JointGeom,
+              Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys, Law2_JointGeom_JointPhys_HertzMindlin,
+              ThermalProgram, ThermalExpansionEngine, ThermalLink, ThermalLinks>;
+
+// Empty on success, otherwise the sentence that the Python wrapper raises.
+std::string setup(const boost::python::object& wrapper) {
+#ifndef STATEJUMP_REAL_YADE_HEADERS
+  if (std::string difference = yade_abi::difference_from_running_yade(wrapper);
+      !difference.empty()) {
+    return difference;
+  }
+#else
+  (void)wrapper;
+#endif
+  register_link_list_converter();
+  OurClasses::register_all();
+  return "";
+}
+
+double stable_time_step_of_scene() {
+  return stable_time_step(*yade::Omega::instance().getScene());
+}
+
+}  // namespace
+}  // namespace statejump::dem
+
+// Names under which O.save writes the classes.
+#define STATEJUMP_EXPORT(Class) BOOST_CLASS_EXPORT_GUID(statejump::dem::Class, #Class)
+STATEJUMP_EXPORT(ThermalFrictMat)
+STATEJUMP_EXPORT(ThermalShape)
+STATEJUMP_EXPORT(Journal)
+STATEJUMP_EXPORT(Bearing)
+STATEJUMP_EXPORT(Slider)
+STATEJUMP_EXPORT(SlotFace)
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Journal>, "Bo1_Journal_Aabb")
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Bearing>, "Bo1_Bearing_Aabb")
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Slider>, "Bo1_Slider_Aabb")
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::SlotFace>, "Bo1_SlotFace_Aabb")
+STATEJUMP_EXPORT(JointGeom)
+STATEJUMP_EXPORT(JointPhys)
+STATEJUMP_EXPORT(Ig2_Journal_Bearing_JointGeom)
+STATEJUMP_EXPORT(Ig2_Slider_SlotFace_JointGeom)
+STATEJUMP_EXPORT(Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys)
+STATEJUMP_EXPORT(Law2_JointGeom_JointPhys_HertzMindlin)
+STATEJUMP_EXPORT(ThermalProgram)
+STATEJUMP_EXPORT(ThermalExpansionEngine)
+STATEJUMP_EXPORT(ThermalLink)
+STATEJUMP_EXPORT(ThermalLinks)
+#undef STATEJUMP_EXPORT
+
+BOOST_PYTHON_MODULE(_native) {
+  namespace py = boost::python;
+  py::def("setup", &statejump::dem::setup, py::arg("wrapper"));
+  py::def("class_names", &statejump::dem::OurClasses::names);
+  py::def("stable_time_step", &statejump::dem::stable_time_step_of_scene,
+          "Largest stable time step of the current scene [s]: smallest of 4 m / (c + sqrt(c^2 + "
+          "4 m k)) over the free bodies, k and c twice the sums of what touches the body (joint "
+          "contacts at their current stiffness, thermal links). Contacts that do not touch yet "
+          "count nothing. Infinity when nothing acts on a free body.");
+}

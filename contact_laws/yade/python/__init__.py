@@ -1,0 +1,39 @@
+"""State jump contact laws for YADE: clearance joints with dry friction under thermal expansion.
+
+Import it in an ordinary script run by ``yade``::
+
+    from statejump_yade import *
+
+which registers the classes with the running YADE and makes them importable from here.
+"""
+import sys as _sys
+
+if "yade.wrapper" not in _sys.modules:
+    raise ImportError(
+        "statejump_yade needs a running YADE: run the script as 'yade -n -x script.py' "
+        "instead of with python3"
+    )
+
+from yade import wrapper as _wrapper  # noqa: E402
+
+try:
+    from . import _native
+except ImportError as _error:
+    raise ImportError(
+        f"statejump_yade could not be loaded into this YADE ({_error}); it is built for YADE "
+        "2023.02a of Debian 12; build it against your YADE with -DYADE_SOURCE_DIR=<YADE sources>"
+    ) from None
+
+_difference = _native.setup(_wrapper)
+if _difference:
+    raise ImportError(
+        f"statejump_yade refuses to load: {_difference}; it is built for YADE 2023.02a of "
+        "Debian 12; build it against your YADE with -DYADE_SOURCE_DIR=<YADE sources>"
+    )
+
+stable_time_step = _native.stable_time_step
+__all__ = ["slot", "stable_time_step", *_native.class_names()]
+for _name in _native.class_names():
+    globals()[_name] = getattr(_wrapper, _name)
+
+from .slot import slot  # noqa: E402

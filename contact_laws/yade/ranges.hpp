@@ -1,0 +1,35 @@
+// Range checks of attributes: one sentence naming class, attribute, value and allowed range.
+#pragma once
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace statejump::dem {
+
+[[noreturn]] inline void refuse(const char* class_name, const char* attribute, double value,
+                                const char* allowed) {
+  std::ostringstream message;
+  message.precision(17);
+  message << class_name << "." << attribute << " = " << value << " is not allowed: must be "
+          << allowed;
+  throw std::invalid_argument(message.str());
+}
+
+// Written so that NaN fails, too.
+inline void require_positive(const char* class_name, const char* attribute, double value,
+                             const char* unit) {
+  if (!(value > 0 && std::isfinite(value))) {
+    refuse(class_name, attribute, value, (std::string("above 0 ") + unit).c_str());
+  }
+}
+
+inline void require_not_negative(const char* class_name, const char* attribute, double value,
+                                 const char* unit) {
+  if (!(value >= 0 && std::isfinite(value))) {
+    refuse(class_name, attribute, value, (std::string("0 or above ") + unit).c_str());
+  }
+}
+
+}  // namespace statejump::dem

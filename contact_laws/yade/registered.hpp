@@ -1,0 +1,211 @@
+// What YADE expects of every class beside its physics: a name, a documented attribute list, keyword
+// construction, dict(), serialization and a dispatch index.
+//
+// A class derives from Registered<Itself, Base> (or RegisteredIndexable, for Shape, Material, IGeom
+// and IPhys) and states its name, its documentation and its attributes once:
+//
+//   struct Journal : RegisteredIndexable<Journal, ThermalShape> {
+//     static constexpr const char* class_name = "Journal";
+//     static constexpr const char* base_name = "ThermalShape";
+//     static constexpr const char* doc = "...";
+//     double radius = 0;
+//     static auto attributes() {
+//       return std::make_tuple(attribute("radius", &Journal::radius, "Radius at T0 [m]"));
+//     }
+//   };
+//
+// Python access, O.save/O.load and dict() all follow from that one list.
+#pragma once
+
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+#include <boost/archive/xml_iarchive.hpp>
+#include <boost/archive/xml_oarchive.hpp>
+#include <boost/python/raw_function.hpp>
+#include <boost/serialization/export.hpp>
+#include <boost/serialization/nvp.hpp>
+#include <boost/serialization/shared_ptr.hpp>
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/vector.hpp>
+#include <tuple>
+#include <type_traits>
+
+#include "yade_api.hpp"
+
+namespace statejump::dem {
+
+using yade::Real;
+using yade::Vector3r;
+
+template <class Class, class Type>
+struct Attribute {
+  const char* name;
+  Type Class::*member;
+  const char* doc;
+  bool read_only;
+};
+
+template <class Class, class Type>
+constexpr Attribute<Class, Type> attribute(const char* name, Type Class::*member, const char* doc) {
+  return {name, member, doc, false};
+}
+
+// State that the simulation writes and a script only reads; saved all the same.
+template <class Class, class Type>
+constexpr Attribute<Class, Type> read_only(const char* name, Type Class::*member, const char* doc) {
+  return {name, member, doc, true};
+}
+
+namespace detail {
+
+template <class Archive, class Type>
+void archive_value(Archive& archive, const char* name, Type& value) {
+  archive& boost::serialization::make_nvp(name, value);
+}
+
+// Component by component: YADE's own serialization of vectors is not part of its interface.
+template <class Archive>
+void archive_value(Archive& archive, const char* name, Vector3r& value) {
+  static constexpr const char* components[3] = {"_x", "_y", "_z"};
+  for (int i = 0; i < 3; ++i) {
+    const std::string component = std::string(name) + components[i];
+    archive& boost::serialization::make_nvp(component.c_str(), value[i]);
+  }
+}
+
+template <class Class>
+boost::shared_ptr<Class> construct(boost::python::tuple& arguments, boost::python::dict& keywords) {
+  auto instance = boost::make_shared<Class>();
+  instance->pyHandleCustomCtorArgs(arguments, keywords);
+  if (boost::python::len(arguments) > 0) {
+    throw std::invalid_argument(std::string(Class::class_name) +
+                                ": give attributes as keywords, name=value");
+  }
+  if (boost::python::len(keywords) > 0) {
+    instance->pyUpdateAttrs(keywords);
+    instance->callPostLoad();
+  }
+  return instance;
+}
+
+template <class Class>
+boost::python::object keyword_constructor(boost::python::tuple arguments,
+                                          boost::python::dict keywords) {
+  namespace py = boost::python;
+  const py::object constructor = py::make_constructor(&construct<Class>);
+  return constructor(py::object(arguments[0]), py::tuple(arguments.slice(1, py::_)), keywords);
+}
+
+}  // namespace detail
+
+template <class Derived, class Base>
+class Registered : public Base {
+ public:
+  std::string getClassName() const override { return Derived::class_name; }
+  int getBaseClassNumber() const override { return 1; }
+  std::string getBaseClassName(unsigned int i = 0) const override {
+    return i == 0 ? Derived::base_name : "";
+  }
+
+  boost::python::dict pyDict() const override {
+    boost::python::dict result;
+    const Derived& self = static_cast<const Derived&>(*this);
+    for_each_attribute(
+        [&](const auto& a) { result[a.name] = boost::python::object(self.*a.member); });
+    result.update(Base::pyDict());
+    return result;
+  }
+
+  void pySetAttr(const std::string& key, const boost::python::object& value) override {
+    Derived& self = static_cast<Derived&>(*this);
+    bool known = false;
+    for_each_attribute([&](const auto& a) {
+      if (key != a.name) return;
+      known = true;
+      using Type = std::decay_t<decltype(self.*a.member)>;
+      self.*a.member = Type(boost::python::extract<Type>(value));
+    });
+    if (!known) Base::pySetAttr(key, value);
+  }
+
+  // Called after construction from keywords, after loading and by YADE itself.
+  void callPostLoad() override {
+    Base::callPostLoad();
+    static_cast<Derived&>(*this).check();
+  }
+
+  // Throws std::invalid_argument on values outside their range; classes with ranges hide it.
+  void check() const {}
+
+  void pyRegisterClass(boost::python::object scope) override {
+    namespace py = boost::python;
+    this->checkPyClassRegistersItself(Derived::class_name);
+    const py::scope inside(scope);
+    const py::docstring_options docs(true, true, false);
+    py::class_<Derived, boost::shared_ptr<Derived>, py::bases<Base>, boost::noncopyable> entry(
+        Derived::class_name, Derived::doc, py::no_init);
+    entry.def("__init__", py::raw_function(&detail::keyword_constructor<Derived>, 1));
+    for_each_attribute([&](const auto& a) {
+      using Member = std::decay_t<decltype(a.member)>;
+      const Member member = a.member;
+      const auto get = py::make_getter(member, py::return_value_policy<py::return_by_value>());
+      if (a.read_only) {
+        entry.add_property(a.name, get, a.doc);
+      } else {
+        entry.add_property(a.name, get, py::make_setter(member), a.doc);
+      }
+    });
+    Derived::register_methods(entry);
+  }
+
+  template <class PythonClass>
+  static void register_methods(PythonClass&) {}
+
+  template <class Archive>
+  void serialize(Archive& archive, unsigned int) {
+    Derived& self = static_cast<Derived&>(*this);
+    archive& boost::serialization::make_nvp(Derived::base_name,
+                                            boost::serialization::base_object<Base>(self));
+    for_each_attribute(
+        [&](const auto& a) { detail::archive_value(archive, a.name, self.*a.member); });
+    if constexpr (Archive::is_loading::value) self.callPostLoad();
+  }
+
+ private:
+  template <class Visitor>
+  static void for_each_attribute(Visitor&& visit) {
+    std::apply([&](const auto&... each) { (visit(each), ...); }, Derived::attributes());
+  }
+};
+
+// A class that takes part in YADE's multiple dispatch. Derived must call createIndex() in its
+// constructor.
+template <class Derived, class Base>
+class RegisteredIndexable : public Registered<Derived, Base> {
+ public:
+  static int& class_index() {
+    static int index = -1;
+    return index;
+  }
+  int& modifyClassIndex() override { return class_index(); }
+  const int& getClassIndex() const override { return class_index(); }
+  const int& getBaseClassIndex(int depth) const override {
+    static const Base base;
+    return depth == 1 ? static_cast<const yade::Indexable&>(base).getClassIndex()
+                      : static_cast<const yade::Indexable&>(base).getBaseClassIndex(depth - 1);
+  }
+};
+
+// Makes the class known to YADE's factory; its Python class follows in Omega::buildDynlibDatabase.
+template <class Class>
+void register_factory() {
+  const bool is_new = yade::ClassFactory::instance().registerFactorable(
+      Class::class_name, []() -> yade::Factorable* { return new Class; },
+      []() -> boost::shared_ptr<yade::Factorable> { return boost::make_shared<Class>(); },
+      []() -> void* { return new Class; });
+  if (!is_new) {
+    throw std::logic_error(std::string("YADE already has a class ") + Class::class_name);
+  }
+}
+
+}  // namespace statejump::dem

@@ -1,0 +1,170 @@
+// Temperature programs, the engine that imposes them on shapes, and links that expand.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "registered.hpp"
+#include "statejump/kernel/thermal_program.hpp"
+
+namespace statejump::dem {
+
+struct ThermalProgram : Registered<ThermalProgram, yade::Serializable> {
+  static constexpr const char* class_name = "ThermalProgram";
+  static constexpr const char* base_name = "Serializable";
+  static constexpr const char* doc =
+      "Temperature change against time: total change from the reference temperature, never an "
+      "increment. After the last cycle the value stays. Immutable: construct another one to change "
+      "it.";
+  std::string shape = "triangle";
+  Real temperatureChangeMax = 0;
+  Real period = 1;
+  int cycles = 1;
+  std::vector<Real> tableTimes;
+  std::vector<Real> tableTemperatureChanges;
+
+  void check();
+  Real temperature_change(Real time) const { return program().temperature_change(time); }
+  Real temperature_rate(Real time) const { return program().temperature_rate(time); }
+
+  static auto attributes() {
+    return std::make_tuple(
+        read_only("shape", &ThermalProgram::shape,
+                  "'triangle' (0, max, 0), 'half_sine' (0, max, 0), 'sine' (0, max, 0, -max, 0) or "
+                  "'table' [-]"),
+        read_only("temperatureChangeMax", &ThermalProgram::temperatureChangeMax,
+                  "Largest temperature change of the closed shapes [K]"),
+        read_only("period", &ThermalProgram::period, "Duration of one cycle [s]"),
+        read_only("cycles", &ThermalProgram::cycles, "Number of cycles [-]"),
+        read_only("tableTimes", &ThermalProgram::tableTimes,
+                  "Times of a table, from 0 to the period, rising [s]"),
+        read_only("tableTemperatureChanges", &ThermalProgram::tableTemperatureChanges,
+                  "Temperature changes of a table, linear in between [K]"));
+  }
+  template <class PythonClass>
+  static void register_methods(PythonClass& entry) {
+    entry.def("temperatureChange", &ThermalProgram::temperature_change, boost::python::arg("time"),
+              "Total temperature change at the given time [K]");
+  }
+
+ private:
+  const kernel::ThermalProgram& program() const;
+  std::optional<kernel::ThermalProgram> program_;  // built by check()
+};
+
+struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalEngine> {
+  static constexpr const char* class_name = "ThermalExpansionEngine";
+  static constexpr const char* base_name = "GlobalEngine";
+  static constexpr const char* doc =
+      "Sets the thermal strain of bodies with a ThermalShape to alpha times the total temperature "
+      "change at the current time, alpha from each body's ThermalFrictMat. Place it before the "
+      "InteractionLoop. It also raises errors that contacts met in the last step.";
+  yade::shared_ptr<ThermalProgram> program;
+  std::vector<int> ids;
+  Real temperatureChange = 0;
+
+  void action() override;
+  static auto attributes() {
+    return std::make_tuple(
+        attribute("program", &ThermalExpansionEngine::program, "Temperature program of these bodies"),
+        attribute("ids", &ThermalExpansionEngine::ids,
+                  "Bodies it acts on; empty: all with a ThermalShape and a ThermalFrictMat"),
+        read_only("temperatureChange", &ThermalExpansionEngine::temperatureChange,
+                  "Temperature change of the last step [K]"));
+  }
+
+ private:
+  struct Target {
+    Real* strain;
+    Real thermal_expansion;
+  };
+  void collect_targets();
+  std::vector<Target> targets_;
+  std::size_t number_of_bodies_ = 0;
+};
+
+struct ThermalLink : Registered<ThermalLink, yade::Serializable> {
+  static constexpr const char* class_name = "ThermalLink";
+  static constexpr const char* base_name = "Serializable";
+  static constexpr const char* doc =
+      "Straight link between the centres of two bodies: an axial spring k_T = E A / l_T about the "
+      "stress-free length l_T = l0 (1 + alpha dT), rigid in bending. A uniform rod of mass m "
+      "pinned "
+      "at a fixed point is exactly this spring with m/3 at its tip.";
+  int id1 = -1;
+  int id2 = -1;
+  Real youngModulus = 0;
+  Real crossSectionArea = 0;
+  Real stressFreeLength = 0;
+  Real thermalExpansion = 0;
+  Real dampingRatio = 0;
+  bool tipTurnsWithLink = false;
+  yade::shared_ptr<ThermalProgram> program;
+  Real axialForce = 0;
+  Real temperatureChange = 0;
+  Real previousTension = 0;
+  Real previousExtension = 0;
+  Real previousStressFreeLength = 0;
+  Vector3r tipDirection = Vector3r::Zero();
+
+  void check() const;
+  static auto attributes() {
+    return std::make_tuple(
+        attribute("id1", &ThermalLink::id1, "Body at the root"),
+        attribute("id2", &ThermalLink::id2, "Body at the tip"),
+        attribute("youngModulus", &ThermalLink::youngModulus, "Young's modulus E [Pa]"),
+        attribute("crossSectionArea", &ThermalLink::crossSectionArea, "Cross-section area A [m2]"),
+        attribute("stressFreeLength", &ThermalLink::stressFreeLength,
+                  "Stress-free length l0 at the reference temperature [m]"),
+        attribute("thermalExpansion", &ThermalLink::thermalExpansion,
+                  "Coefficient of linear thermal expansion alpha [1/K]"),
+        attribute("dampingRatio", &ThermalLink::dampingRatio,
+                  "Ratio of the viscous axial damping to the critical one [-]"),
+        attribute("tipTurnsWithLink", &ThermalLink::tipTurnsWithLink,
+                  "Whether the tip body is fixed to the link: it turns with it, and a moment on it "
+                  "becomes a couple of forces on the two ends. Its rotations must be blocked "
+                  "(blockedDOFs containing XYZ). Torsion about the link's axis is held by the "
+                  "root."),
+        attribute("program", &ThermalLink::program, "Temperature program of the link"),
+        read_only("axialForce", &ThermalLink::axialForce,
+                  "Axial force of the last step, compression positive [N]"),
+        read_only("temperatureChange", &ThermalLink::temperatureChange,
+                  "Temperature change of the last step [K]"),
+        read_only("previousTension", &ThermalLink::previousTension,
+                  "Tension of the last step [N], kept for the energy account"),
+        read_only("previousExtension", &ThermalLink::previousExtension,
+                  "Elastic extension of the last step [m], kept for the energy account"),
+        read_only("previousStressFreeLength", &ThermalLink::previousStressFreeLength,
+                  "Stress-free length of the last step [m], kept for the energy account; 0 before "
+                  "the first"),
+        read_only("tipDirection", &ThermalLink::tipDirection,
+                  "Direction of the link in the axes of the tip body [-]; zero before the first "
+                  "step"));
+  }
+};
+
+struct ThermalLinks : Registered<ThermalLinks, yade::GlobalEngine> {
+  static constexpr const char* class_name = "ThermalLinks";
+  static constexpr const char* base_name = "GlobalEngine";
+  static constexpr const char* doc =
+      "Applies the forces of ThermalLink objects. Place it after the InteractionLoop (it passes on "
+      "the contact moments of the step) and before the NewtonIntegrator. Entries in O.energy: "
+      "linkElastic, linkDamping, linkThermalWork.";
+  std::vector<yade::shared_ptr<ThermalLink>> links;
+
+  void action() override;
+  static auto attributes() {
+    return std::make_tuple(attribute("links", &ThermalLinks::links, "List of ThermalLink objects"));
+  }
+
+ private:
+  void act(ThermalLink& link);
+  std::array<int, 3> energy_ids_ = {-1, -1, -1};
+};
+
+// Largest stable time step of the current state [s]: the smallest 4 m / (c + sqrt(c^2 + 4 m k))
+// over the free bodies, with k twice the sum of the stiffnesses that touch a body and c likewise
+// (Gershgorin's bound on the largest frequency). Infinity when nothing acts on a free body.
+double stable_time_step(const yade::Scene& scene);
+
+}  // namespace statejump::dem

@@ -1,0 +1,103 @@
+// Declared interface of YADE 2023.02a (Debian 12, amd64, double): roots of its class hierarchy.
+//
+// Debian ships YADE's libraries without headers. This folder declares the part of the binary
+// interface that the plugin uses: names, order of virtual functions, order of members. Nothing here
+// was copied from YADE; the layouts were measured, layout_checks.hpp holds the measured sizes and
+// offsets, and guard.cpp compares the declarations with the running libraries before any object is
+// touched. Only this folder knows offsets.
+//
+// Virtual functions are declared and not defined: their definitions, the vtables and the type
+// information come from YADE's libraries. Constructors that YADE does not export are defined here
+// and give every member the default that a fresh object shows in Python.
+#pragma once
+
+#include <boost/enable_shared_from_this.hpp>
+#include <boost/python.hpp>
+#include <boost/shared_ptr.hpp>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+// YADE's Eigen settings: they decide the size and the alignment of every vector member.
+#ifndef EIGEN_DONT_ALIGN
+#error "compile with -DEIGEN_DONT_ALIGN -DEIGEN_DONT_VECTORIZE, as YADE was"
+#endif
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+// A class template of YADE that lives in the global namespace; instance() is exported.
+template <class T>
+class Singleton {
+ public:
+  static T& instance();
+};
+
+namespace yade {
+
+using Real = double;
+using boost::shared_ptr;
+using Vector3r = Eigen::Matrix<Real, 3, 1>;
+using Vector3i = Eigen::Matrix<int, 3, 1>;
+using Quaternionr = Eigen::Quaternion<Real>;
+
+template <class R>
+struct Se3 {
+  Eigen::Matrix<R, 3, 1> position;
+  Eigen::Quaternion<R> orientation;
+};
+using Se3r = Se3<Real>;
+
+class Scene;
+
+class Factorable : public boost::enable_shared_from_this<Factorable> {
+ public:
+  Factorable() {}
+  virtual ~Factorable();
+  virtual std::string getBaseClassName(unsigned int i = 0) const;
+  virtual int getBaseClassNumber() const;
+  virtual std::string getClassName() const;
+};
+
+class Serializable : public Factorable {
+ public:
+  Serializable() {}
+  ~Serializable() override;
+  std::string getBaseClassName(unsigned int i = 0) const override;
+  int getBaseClassNumber() const override;
+  std::string getClassName() const override;
+  virtual void pySetAttr(const std::string& key, const boost::python::object& value);
+  virtual boost::python::dict pyDict() const;
+  virtual boost::python::dict pyDictCustom() const;
+  virtual void callPostLoad();
+  virtual void checkPyClassRegistersItself(const std::string& class_name) const;
+  virtual void pyRegisterClass(boost::python::object scope);
+  virtual void pyHandleCustomCtorArgs(boost::python::tuple& args, boost::python::dict& kwargs);
+  void pyUpdateAttrs(const boost::python::dict& attributes);
+  template <class Archive>
+  void serialize(Archive& archive, unsigned int version);
+};
+
+// Multiple dispatch: each derived class owns a static index, taken once in its constructor.
+class Indexable {
+ public:
+  virtual void incrementMaxCurrentlyUsedClassIndexOfKin();
+  virtual int& modifyClassIndex();
+  virtual ~Indexable() {}
+  virtual const int& getClassIndex() const;
+  virtual const int& getBaseClassIndex(int depth) const;
+  virtual const int& getMaxCurrentlyUsedClassIndexOfKin() const;
+
+ protected:
+  Indexable() {}
+  void createIndex();
+};
+
+class ClassFactory : public Singleton<ClassFactory> {
+ public:
+  bool registerFactorable(std::string name, Factorable* (*create)(),
+                          shared_ptr<Factorable> (*create_shared)(), void* (*create_pure)());
+};
+
+}  // namespace yade

@@ -1,0 +1,392 @@
+// Declared interface of YADE: bodies, interactions, scene and containers.
+#pragma once
+
+#include <array>
+#include <list>
+
+#include "statejump/yade_abi/base.hpp"
+
+namespace yade {
+
+class BoundFunctor;
+class InternalForceFunctor;
+class IGeomFunctor;
+class IPhysFunctor;
+class LawFunctor;
+class TimingDeltas;
+class Engine;
+class Body;
+
+class Shape : public Serializable, public Indexable {
+ public:
+  shared_ptr<BoundFunctor> boundFunctor;
+  shared_ptr<InternalForceFunctor> internalforcefunctor;
+  Vector3r color = Vector3r(1, 1, 1);
+  bool wire = false;
+  bool highlight = false;
+
+  Shape() {}
+  ~Shape() override;
+  std::string getBaseClassName(unsigned int i = 0) const override;
+  int getBaseClassNumber() const override;
+  std::string getClassName() const override;
+  void pySetAttr(const std::string& key, const boost::python::object& value) override;
+  boost::python::dict pyDict() const override;
+  void callPostLoad() override;
+  void pyRegisterClass(boost::python::object scope) override;
+  int& modifyClassIndex() override;
+  const int& getClassIndex() const override;
+  const int& getBaseClassIndex(int depth) const override;
+  const int& getMaxCurrentlyUsedClassIndexOfKin() const override;
+  void incrementMaxCurrentlyUsedClassIndexOfKin() override;
+};
+
+class Bound : public Serializable, public Indexable {
+ public:
+  int lastUpdateIter;
+  Vector3r refPos;
+  Real sweepLength;
+  Vector3r color;
+  Vector3r min;
+  Vector3r max;
+
+  Bound();
+  ~Bound() override;
+  std::string getBaseClassName(unsigned int i = 0) const override;
+  int getBaseClassNumber() const override;
+  std::string getClassName() const override;
+  void pySetAttr(const std::string& key, const boost::python::object& value) override;
+  boost::python::dict pyDict() const override;
+  void callPostLoad() override;
+  void pyRegisterClass(boost::python::object scope) override;
+  int& modifyClassIndex() override;
+  const int& getClassIndex() const override;
+  const int& getBaseClassIndex(int depth) const override;
+  const int& getMaxCurrentlyUsedClassIndexOfKin() const override;
+  void incrementMaxCurrentlyUsedClassIndexOfKin() override;
+};
+
+class Aabb : public Bound {
+ public:
+  Aabb();
+  ~Aabb() override;
+  std::string getBaseClassName(unsigned int i = 0) const override;
+  int getBaseClassNumber() const override;
+  std::string getClassName() const override;
+  void pySetAttr(const std::string& key, const boost::python::object& value) override;
+  boost::python::dict pyDict() const override;
+  void callPostLoad() override;
+  void pyRegisterClass(boost::python::object scope) override;
+  int& modifyClassIndex() override;
+  const int& getClassIndex() const override;
+  const int& getBaseClassIndex(int depth) const override;
+};
+
+class State : public Serializable, public Indexable {
+ public:
+  Vector3r& pos;
+  Quaternionr& ori;
+  std::mutex updateMutex;
+  Se3r se3;
+  Vector3r vel;
+  Real mass;
+  Vector3r angVel;
+  Vector3r angMom;
+  Vector3r inertia;
+  Vector3r refPos;
+  Quaternionr refOri;
+  unsigned int blockedDOFs;
+  bool isDamped;
+  Real densityScaling;
+
+  State();
+  ~State() override;
+  std::string getBaseClassName(unsigned int i = 0) const override;
+  int getBaseClassNumber() const override;
+  std::string getClassName() const override;
+  void pySetAttr(const std::string& key, const boost::python::object& value) override;
+  boost::python::dict pyDict() const override;
+  void callPostLoad() override;
+  void pyRegisterClass(boost::python::object scope) override;
+  int& modifyClassIndex() override;
+  const int& getClassIndex() const override;
+  const int& getBaseClassIndex(int depth) const override;
+  const int& getMaxCurrentlyUsedClassIndexOfKin() const override;
+  void incrementMaxCurrentlyUsedClassIndexOfKin() override;
+};
+
+class Material : public Serializable, public Indexable {
+ public:
+  int id = -1;
+  std::string label;
+  Real density = 1000;
+
+  Material() {}
+  ~Material() override;
+  std::string getBaseClassName(unsigned int i = 0) const override;
+  int getBaseClassNumber() const override;
+  std::string getClassName() const override;
+  void pySetAttr(const std::string& key, const boost::python::object& value) override;
+  boost::python::dict pyDict() const override;
+  void callPostLoad() override;
+  void pyRegisterClass(boost::python::object scope) override;
+  virtual shared_ptr<State> newAssocState() const;
+  virtual bool stateTypeOk(State* state) const;
+  int& modifyClassIndex() override;
+  const int& getClassIndex() const override;
+  const int& getBaseClassIndex(int depth) const override;
+  const int& getMaxCurrentlyUsedClassIndexOfKin() const override;
+  void incrementMaxCurrentlyUsedClassIndexOfKin() override;
+};
+
+class ElastMat : public Material {
+ public:
+  Real young;
+  Real poisson;
+
+ protected:
+  // FrictMat's exported constructor builds this part; never built on its own here.
+  ElastMat();
+  ~ElastMat() override;
+};
+
+class FrictMat : public ElastMat {
+ public:
+  Real frictionAngle;
+
+  FrictMat();
+  ~FrictMat() override;
+  std::string getBaseClassName(unsigned int i = 0) const override;
+  int getBaseClassNumber() const override;
+  std::string getClassName() const override;
+  void pySetAttr(const std::string& key, const boost::python::object& value) override;
+  boost::python::dict pyDict() const override;
+  void callPostLoad() override;
+  void pyRegisterClass(boost::python::object scope) override;
+  int& modifyClassIndex() override;
+  const int& getClassIndex() const override;
+  const int& getBaseClassIndex(int depth) const override;
+};
+
+class IGeom : public Serializable, public Indexable {
+ public:
+  IGeom() {}
+  ~IGeom() override;
+  std::string getBaseClassName(unsigned int i = 0) const override;
+  int getBaseClassNumber() const override;
+  std::string getClassName() const override;
+  void pySetAttr(const std::string& key, const boost::python::object& value) override;
+  boost::python::dict pyDict() const override;
+  void callPostLoad() override;
+  void pyRegisterClass(boost::python::object scope) override;
+  int& modifyClassIndex() override;
+  const int& getClassIndex() const override;
+  const int& getBaseClassIndex(int depth) const override;
+  const int& getMaxCurrentlyUsedClassIndexOfKin() const override;
+  void incrementMaxCurrentlyUsedClassIndexOfKin() override;
+};
+
+// YADE's time stepper and its recorders read every interaction geometry through this type,
+// unchecked.
+class GenericSpheresContact : public IGeom {
+ public:
+  Vector3r normal = Vector3r::Zero();
+  Vector3r contactPoint = Vector3r::Zero();
+  Real refR1 = 0;
+  Real refR2 = 0;
+
+  GenericSpheresContact() { createIndex(); }
+  ~GenericSpheresContact() override;
+  std::string getBaseClassName(unsigned int i = 0) const override;
+  int getBaseClassNumber() const override;
+  std::string getClassName() const override;
+  void pySetAttr(const std::string& key, const boost::python::object& value) override;
+  boost::python::dict pyDict() const override;
+  void callPostLoad() override;
+  void pyRegisterClass(boost::python::object scope) override;
+  int& modifyClassIndex() override;
+  const int& getClassIndex() const override;
+  const int& getBaseClassIndex(int depth) const override;
+};
+
+class IPhys : public Serializable, public Indexable {
+ public:
+  ~IPhys() override;
+  std::string getBaseClassName(unsigned int i = 0) const override;
+  int getBaseClassNumber() const override;
+  std::string getClassName() const override;
+  void pySetAttr(const std::string& key, const boost::python::object& value) override;
+  boost::python::dict pyDict() const override;
+  void callPostLoad() override;
+  void pyRegisterClass(boost::python::object scope) override;
+  int& modifyClassIndex() override;
+  const int& getClassIndex() const override;
+  const int& getBaseClassIndex(int depth) const override;
+  const int& getMaxCurrentlyUsedClassIndexOfKin() const override;
+  void incrementMaxCurrentlyUsedClassIndexOfKin() override;
+
+ protected:
+  IPhys() {}
+};
+
+class NormPhys : public IPhys {
+ public:
+  Real kn;
+  Vector3r normalForce;
+
+ protected:
+  // FrictPhys's exported constructor builds this part and the next.
+  NormPhys();
+  ~NormPhys() override;
+};
+
+class NormShearPhys : public NormPhys {
+ public:
+  Real ks;
+  Vector3r shearForce;
+
+ protected:
+  NormShearPhys();
+  ~NormShearPhys() override;
+};
+
+class FrictPhys : public NormShearPhys {
+ public:
+  Real tangensOfFrictionAngle;
+
+  FrictPhys();
+  ~FrictPhys() override;
+  std::string getBaseClassName(unsigned int i = 0) const override;
+  int getBaseClassNumber() const override;
+  std::string getClassName() const override;
+  void pySetAttr(const std::string& key, const boost::python::object& value) override;
+  boost::python::dict pyDict() const override;
+  void callPostLoad() override;
+  void pyRegisterClass(boost::python::object scope) override;
+  int& modifyClassIndex() override;
+  const int& getClassIndex() const override;
+  const int& getBaseClassIndex(int depth) const override;
+};
+
+class Interaction : public Serializable {
+ public:
+  bool isActive;
+  struct FunctorCache {
+    bool geomExists;
+    shared_ptr<IGeomFunctor> geom;
+    shared_ptr<IPhysFunctor> phys;
+    shared_ptr<LawFunctor> constLaw;
+  } functorCache;
+  int id1;
+  int id2;
+  long iterMadeReal;
+  long iterLastSeen;
+  shared_ptr<IGeom> geom;
+  shared_ptr<IPhys> phys;
+  Vector3i cellDist;
+  int linIx;
+  long iterBorn;
+
+  bool isReal() const { return static_cast<bool>(geom) && static_cast<bool>(phys); }
+  Interaction(const Interaction&) = delete;
+  ~Interaction() override;
+};
+
+class Body : public Serializable {
+ public:
+  int id;
+  int groupMask;
+  int flags;
+  int subdomain;
+  shared_ptr<Material> material;
+  shared_ptr<State> state;
+  shared_ptr<Shape> shape;
+  shared_ptr<Bound> bound;
+  std::map<int, shared_ptr<Interaction>> intrs;
+  int clumpId;
+  long iterBorn;
+  Real timeBorn;
+
+  Body(const Body&) = delete;
+  ~Body() override;
+};
+
+// Opaque parts are kept as bytes: the plugin does not touch them.
+class ForceContainer {
+ public:
+  void addForce(int id, const Vector3r& force);
+  void addTorque(int id, const Vector3r& torque);
+  const Vector3r& getForce(int id);
+  const Vector3r& getTorque(int id);
+  void sync();
+  ForceContainer(const ForceContainer&) = delete;
+
+ private:
+  alignas(8) std::array<char, 304> opaque_;
+};
+
+class BodyContainer : public Serializable {
+ public:
+  std::vector<shared_ptr<Body>> body;
+  BodyContainer(const BodyContainer&) = delete;
+  ~BodyContainer() override;
+};
+
+class InteractionContainer : public Serializable {
+ public:
+  std::vector<shared_ptr<Interaction>> linIntrs;
+  std::vector<shared_ptr<Interaction>> sortedIntrs;
+  const std::vector<shared_ptr<Body>>* bodies;
+  std::size_t currSize;
+  InteractionContainer(const InteractionContainer&) = delete;
+  ~InteractionContainer() override;
+};
+
+class EnergyTracker : public Serializable {
+ public:
+  // id starts at -1; reset: the entry is set to zero at the start of every step.
+  void add(const Real& value, const std::string& name, int& id, bool reset);
+  EnergyTracker(const EnergyTracker&) = delete;
+  ~EnergyTracker() override;
+};
+
+class Scene : public Serializable {
+ public:
+  const unsigned int hostNameMax = 255;
+  ForceContainer forces;
+  Eigen::Matrix<double, 10, 1> speedElements;
+  shared_ptr<void> renderer;
+  long prevTime;
+  Real dt;
+  long iter;
+  bool subStepping;
+  int subStep;
+  Real time;
+  Real speed;
+  long stopAtIter;
+  Real stopAtTime;
+  bool isPeriodic;
+  bool trackEnergy;
+  bool doSort;
+  bool runInternalConsistencyChecks;
+  int selectedBody;
+  int subdomain;
+  shared_ptr<Shape> subD;
+  std::vector<std::string> tags;
+  std::vector<shared_ptr<Engine>> engines;
+  std::vector<shared_ptr<Engine>> nextEngines;
+  shared_ptr<BodyContainer> bodies;
+  shared_ptr<InteractionContainer> interactions;
+  shared_ptr<EnergyTracker> energy;
+
+  Scene(const Scene&) = delete;
+  ~Scene() override;
+};
+
+class Omega : public Singleton<Omega> {
+ public:
+  const shared_ptr<Scene>& getScene() const;
+  void buildDynlibDatabase(const std::vector<std::string>& class_names);
+};
+
+}  // namespace yade
