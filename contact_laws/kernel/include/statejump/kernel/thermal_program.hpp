@@ -32,8 +32,8 @@ inline const char* to_string(ThermalShape shape) {
 
 /// Shape of that name. Throws std::invalid_argument for any other text.
 inline ThermalShape thermal_shape(const std::string& name) {
-  for (const ThermalShape shape : {ThermalShape::triangle, ThermalShape::half_sine,
-                                   ThermalShape::sine, ThermalShape::table}) {
+  for (const ThermalShape shape :
+       {ThermalShape::triangle, ThermalShape::half_sine, ThermalShape::sine, ThermalShape::table}) {
     if (name == to_string(shape)) return shape;
   }
   throw std::invalid_argument("shape = '" + name +
@@ -69,8 +69,8 @@ struct ThermalProgram {
   int cycles = 1;
   /// Times of a table [s]: from 0, strictly increasing, to `period`. Empty for other shapes.
   std::vector<double> table_times;
-  /// Temperature changes of a table [K], one per time. The first is 0, because T0 is the temperature
-  /// of the stress-free start; the last is 0 as well if the cycle repeats.
+  /// Temperature changes of a table [K], one per time. The first is 0, because T0 is the
+  /// temperature of the stress-free start; the last is 0 as well if the cycle repeats.
   std::vector<double> table_temperature_changes;
 
   /// Throws std::invalid_argument that names the first field out of range, its value and the range.
@@ -106,9 +106,9 @@ struct ThermalBranch {
   double amplitude = 0.0;          ///< |ΔTmax| of the sine [K].
 };
 
-/// Time [s] at which the branch passes `temperature_change` [K]. A value beyond the branch gives the
-/// nearer end, a branch that holds its start. Near the crest of a sine the time is as ill-defined as
-/// the sine is flat: an error ε in ΔT moves it by sqrt(2 ε/amplitude)/ω.
+/// Time [s] at which the branch passes `temperature_change` [K]. A value beyond the branch gives
+/// the nearer end, a branch that holds its start. Near the crest of a sine the time is as
+/// ill-defined as the sine is flat: an error ε in ΔT moves it by sqrt(2 ε/amplitude)/ω.
 inline double time_at(const ThermalBranch& branch, double temperature_change) {
   const double span = branch.end - branch.start;
   const double passed = (temperature_change - branch.start) / (span == 0.0 ? 1.0 : span);
@@ -130,6 +130,11 @@ inline double time_at(const ThermalBranch& branch, double temperature_change) {
 namespace detail {
 
 constexpr double pi = 3.14159265358979323846;
+
+/// "name[index]", for messages.
+inline std::string entry(const char* name, std::size_t index) {
+  return std::string(name).append("[").append(std::to_string(index)).append("]");
+}
 
 /// Place of a time within its cycle, measured from both ends of the cycle.
 struct CyclePlace {
@@ -173,20 +178,19 @@ inline void ThermalProgram::validate() const {
   require(n_values == n, "length of table_temperature_changes", static_cast<double>(n_values),
           "the length of table_times");
   for (std::size_t i = 0; i < n; ++i) {
-    const std::string index = "[" + std::to_string(i) + "]";
     const double time = table_times[i];
     const bool in_order = i == 0 ? time == 0.0 : time > table_times[i - 1];
-    require(std::isfinite(time) && in_order, ("table_times" + index).c_str(), time,
+    require(std::isfinite(time) && in_order, detail::entry("table_times", i).c_str(), time,
             i == 0 ? "0 s" : "finite and > the time before it [s]");
     require(std::isfinite(table_temperature_changes[i]),
-            ("table_temperature_changes" + index).c_str(), table_temperature_changes[i],
+            detail::entry("table_temperature_changes", i).c_str(), table_temperature_changes[i],
             "finite [K]");
   }
   require(period == table_times.back(), "period", period, "the last of table_times [s]");
   require(table_temperature_changes.front() == 0.0, "table_temperature_changes[0]",
           table_temperature_changes.front(), "0 K, the stress-free start");
   require(cycles == 1 || table_temperature_changes.back() == 0.0,
-          ("table_temperature_changes[" + std::to_string(n - 1) + "]").c_str(),
+          detail::entry("table_temperature_changes", n - 1).c_str(),
           table_temperature_changes.back(), "0 K if cycles > 1, else the cycle is open");
 }
 
@@ -242,8 +246,8 @@ inline double ThermalProgram::temperature_rate(double t) const {
          (table_times[i + 1] - table_times[i]);
 }
 
-/// Calls `visit(const ThermalBranch&)` for every branch of cycle `cycle` (0, 1, …) in order, without
-/// allocating. A table gives one branch per piece, other shapes two or three.
+/// Calls `visit(const ThermalBranch&)` for every branch of cycle `cycle` (0, 1, …) in order,
+/// without allocating. A table gives one branch per piece, other shapes two or three.
 template <class Visit>
 void for_each_branch(const ThermalProgram& program, int cycle, Visit&& visit) {
   const double from = cycle * program.period;

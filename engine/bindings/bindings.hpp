@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace statejump::bindings {
+
+/// Adds ThermalProgram to the module.
+void bind_thermal_program(pybind11::module_& module);
+
+/// Adds SpringSlider, its Path and solve to the module. Call after bind_thermal_program.
+void bind_spring_slider(pybind11::module_& module);
+
+}  // namespace statejump::bindings

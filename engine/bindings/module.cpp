@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bindings.hpp"
+
+PYBIND11_MODULE(_engine, module) {
+  module.doc() =
+      "Reduced models of state jump in exact, closed or quasi-static form.\n\n"
+      "SI units everywhere; every name that carries a quantity ends with its unit. Arguments out "
+      "of\n"
+      "range raise ValueError with the name, the value and the range.";
+  statejump::bindings::bind_thermal_program(module);
+  statejump::bindings::bind_spring_slider(module);
+}

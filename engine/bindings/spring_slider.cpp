@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/spring_slider.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <limits>
+#include <string>
+
+#include "bindings.hpp"
+#include "statejump/spring_slider_history.hpp"
+#include "statejump/spring_slider_path.hpp"
+
+namespace py = pybind11;
+
+namespace statejump::bindings {
+
+namespace {
+
+void bind_model(py::module_& module) {
+  constexpr double no_stop = std::numeric_limits<double>::infinity();
+  py::class_<SpringSlider>(
+      module, "SpringSlider",
+      "A heated link that pushes a block with dry friction between two stops (paper, section "
+      "3).\n\n"
+      "Axial force F = k_T (x_T - x), positive in compression, k_T = E A/l_T,\n"
+      "l_T = l0 (1 + alpha dT), x_T = l_T - l0. Quasi-static and rate-independent.\n"
+      "Clearances are the distances to the stops, > 0, or infinity for no stop.\n"
+      "Raises ValueError for a value out of range.")
+      .def(py::init([](double young_modulus, double cross_section_area, double stress_free_length,
+                       double thermal_expansion, double friction_force, double clearance_minus,
+                       double clearance_plus, double preload_stiffness) {
+             const SpringSlider model{young_modulus,     cross_section_area, stress_free_length,
+                                      thermal_expansion, friction_force,     clearance_minus,
+                                      clearance_plus,    preload_stiffness};
+             model.validate();
+             return model;
+           }),
+           py::kw_only(), py::arg("young_modulus_Pa"), py::arg("cross_section_area_m2"),
+           py::arg("stress_free_length_m"), py::arg("thermal_expansion_per_K"),
+           py::arg("friction_force_N"), py::arg("clearance_minus_m") = no_stop,
+           py::arg("clearance_plus_m") = no_stop, py::arg("preload_stiffness_N_per_m") = 0.0)
+      .def_readonly("young_modulus_Pa", &SpringSlider::young_modulus)
+      .def_readonly("cross_section_area_m2", &SpringSlider::cross_section_area)
+      .def_readonly("stress_free_length_m", &SpringSlider::stress_free_length)
+      .def_readonly("thermal_expansion_per_K", &SpringSlider::thermal_expansion)
+      .def_readonly("friction_force_N", &SpringSlider::friction_force)
+      .def_readonly("clearance_minus_m", &SpringSlider::clearance_minus)
+      .def_readonly("clearance_plus_m", &SpringSlider::clearance_plus)
+      .def_readonly("preload_stiffness_N_per_m", &SpringSlider::preload_stiffness)
+      .def(
+          "link_stiffness_N_per_m",
+          [](const SpringSlider& self, double change) { return link_stiffness(self, change); },
+          py::arg("temperature_change_K") = 0.0, "k_T = E A/l_T [N/m] at dT [K].")
+      .def_property_readonly(
+          "state_jump_m", [](const SpringSlider& self) { return state_jump(self); },
+          "f/(k + k_p) [m]: what one closed cycle leaves if it ends sliding at dT = 0.")
+      .def(
+          "euler_load_N",
+          [](const SpringSlider& self, const std::string& ends, double second_moment_of_area) {
+            if (ends == "clamped_clamped") {
+              return euler_load(self, EndCondition::clamped_clamped, second_moment_of_area);
+            }
+            if (ends == "pinned_pinned") {
+              return euler_load(self, EndCondition::pinned_pinned, second_moment_of_area);
+            }
+            throw py::value_error("ends = '" + ends +
+                                  "', allowed is clamped_clamped or pinned_pinned");
+          },
+          py::arg("ends") = "clamped_clamped",
+          py::arg("second_moment_of_area_m4") = std::numeric_limits<double>::quiet_NaN(),
+          "Buckling load [N] of the unguided link. ends: 'clamped_clamped' or 'pinned_pinned';\n"
+          "without a second moment of area the section is a square.");
+}
+
+void bind_path_parts(py::module_& module) {
+  py::class_<Event>(module, "Event",
+                    "An instant at which the stage changes or a cycle ends.\n\n"
+                    "kind: 'first_slip', 'slip', 'stop_reached', 'stop_unloaded', 'stop_left',\n"
+                    "'reversal', 'force_sign_change' or 'cycle_end'.")
+      .def_property_readonly("kind", [](const Event& self) { return to_string(self.kind); })
+      .def_property_readonly("stage_before",
+                             [](const Event& self) { return to_string(self.stage_before); })
+      .def_property_readonly("stage_after",
+                             [](const Event& self) { return to_string(self.stage_after); })
+      .def_readonly("time_s", &Event::time)
+      .def_readonly("temperature_change_K", &Event::temperature_change)
+      .def_readonly("displacement_m", &Event::displacement)
+      .def_readonly("axial_force_N", &Event::axial_force, "Positive in compression.")
+      .def("__repr__", [](const Event& self) {
+        return "<Event " + std::string(to_string(self.kind)) +
+               " at dT = " + std::string(py::repr(py::float_(self.temperature_change))) + " K, " +
+               to_string(self.stage_before) + " -> " + to_string(self.stage_after) + ">";
+      });
+  py::class_<Segment>(module, "Segment",
+                      "Part of a path without an event inside; the temperature rises, falls or\n"
+                      "holds over it.\n\n"
+                      "stage: 'S1' to 'S5', 'at_stop_plus', 'at_stop_minus'; motion: 'stick',\n"
+                      "'slide', 'stop'; direction: sense of a slide or side of a stop, +1 or -1,\n"
+                      "0 for a stick; cycle: 0, 1, ...")
+      .def_property_readonly("stage", [](const Segment& self) { return to_string(self.stage); })
+      .def_property_readonly("motion", [](const Segment& self) { return to_string(self.motion); })
+      .def_readonly("direction", &Segment::direction)
+      .def_readonly("cycle", &Segment::cycle)
+      .def_readonly("start_time_s", &Segment::start_time)
+      .def_readonly("end_time_s", &Segment::end_time)
+      .def_readonly("start_temperature_change_K", &Segment::start_temperature_change)
+      .def_readonly("end_temperature_change_K", &Segment::end_temperature_change)
+      .def_readonly("start_displacement_m", &Segment::start_displacement)
+      .def_readonly("end_displacement_m", &Segment::end_displacement);
+}
+
+py::dict to_dict(const History& history) {
+  py::list stage;
+  for (const Stage entry : history.stage) stage.append(to_string(entry));
+  py::dict result;
+  result["time_s"] = history.time;
+  result["temperature_change_K"] = history.temperature_change;
+  result["displacement_m"] = history.displacement;
+  result["axial_force_N"] = history.axial_force;
+  result["friction_force_N"] = history.friction_force;
+  result["stop_force_N"] = history.stop_force;
+  result["elastic_energy_J"] = history.elastic_energy;
+  result["preload_energy_J"] = history.preload_energy;
+  result["friction_dissipation_J"] = history.friction_dissipation;
+  result["thermal_work_J"] = history.thermal_work;
+  result["stage"] = stage;
+  return result;
+}
+
+void bind_path(py::module_& module) {
+  py::class_<Path>(module, "Path", "Exact quasi-static path, the result of solve().")
+      .def_readonly("model", &Path::model)
+      .def_readonly("program", &Path::program)
+      .def_readonly("events", &Path::events, "List of Event, in order of time.")
+      .def_readonly("segments", &Path::segments, "List of Segment, without gaps in time.")
+      .def_property_readonly("state_jump_m", &Path::state_jump,
+                             "Displacement at the end minus that at the start [m].")
+      .def("jump_after_cycle", &Path::jump_after_cycle, py::arg("cycle"),
+           "Displacement [m] at the end of a cycle, counted from 1, minus that at the start.")
+      .def_property_readonly("warnings", &warnings,
+                             "Sentences on the limits of the model that this path leaves.")
+      .def(
+          "sample",
+          [](const Path& self, const Eigen::VectorXd& time_s) {
+            return to_dict(sample(self, time_s));
+          },
+          py::arg("time_s"),
+          "The path at the times [s], in any order, >= 0: a dict of arrays time_s,\n"
+          "temperature_change_K, displacement_m, axial_force_N (positive in compression),\n"
+          "friction_force_N and stop_force_N (on the block, positive towards +x),\n"
+          "elastic_energy_J (of the link), preload_energy_J, friction_dissipation_J,\n"
+          "thermal_work_J, and `stage`, a list of names. Every entry is exact: it does not\n"
+          "depend on the other times.");
+  module.def(
+      "solve",
+      [](const SpringSlider& model, const kernel::ThermalProgram& program) {
+        return solve(model, program);
+      },
+      py::arg("model"), py::arg("program"),
+      "Exact path of a SpringSlider under a ThermalProgram, from rest at x = 0 and dT = 0.\n"
+      "Raises ValueError if the program takes the link to a length <= 0.");
+}
+
+}  // namespace
+
+void bind_spring_slider(py::module_& module) {
+  bind_model(module);
+  bind_path_parts(module);
+  bind_path(module);
+}
+
+}  // namespace statejump::bindings
