@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""State jump of deployable structures: case files, reduced model, DEM runs and their comparison.
+
+The command line is :mod:`statejump.cli`; everything that it does can be called from Python::
+
+    from statejump.case import load_case
+    from statejump.reduced import run_reduced
+    history = run_reduced(load_case("cases/table1.toml"))
+"""

@@ -1,0 +1,196 @@
+"""The ``statejump`` command. Exit status: 0 done, 1 a tolerance is missed, 2 bad input or a failed
+run, 130 interrupted."""
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any, Callable
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Table
+
+from . import __version__, compare, convergence, dem, plot, reduced
+from .case import Case, load_case
+from .errors import InputError, Interrupted, TolerancesMissed
+from .output import results_folder
+
+CASE = click.argument("case_file", metavar="CASE", type=click.Path(path_type=Path))
+RESULTS = click.option(
+    "--results", default="results", show_default=True, type=click.Path(path_type=Path),
+    help="Folder that gets one folder per case.",
+)
+QUIET = click.option("--quiet", is_flag=True, help="Print errors only.")
+
+
+def _console(quiet: bool) -> Console:
+    return Console(quiet=quiet, highlight=False, soft_wrap=True)
+
+
+def _run_dem(case: Case, folder: Path, console: Console, label: str = "DEM") -> Any:
+    """Run the DEM with a progress bar on a terminal, with a line every 10 % elsewhere."""
+    if console.is_terminal:
+        columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"),
+                   TimeElapsedColumn(), TimeRemainingColumn())
+        with Progress(*columns, console=console) as bar:
+            task = bar.add_task(f"{label}, {case.steps:,} steps", total=1.0)
+            return dem.run(case, folder, lambda fraction: bar.update(task, completed=fraction))
+    told = [-1]
+
+    def line(fraction: float) -> None:
+        if int(10 * fraction) > told[0]:
+            told[0] = int(10 * fraction)
+            console.print(f"{label}: {100 * fraction:.0f} % of {case.steps:,} steps")
+
+    return dem.run(case, folder, line)
+
+
+def _number(value: float | None) -> str:
+    return "none" if value is None else f"{value:.7g}"
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="statejump")
+def cli() -> None:
+    """State jump of deployable structures: an exact reduced model and a DEM model in YADE.
+
+    \b
+    Example:
+      statejump compare cases/table1.toml
+    """
+
+
+@cli.command("reduced")
+@CASE
+@RESULTS
+@QUIET
+def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
+    """Exact reduced model of CASE: events, state jump, history.
+
+    \b
+    Example:
+      statejump reduced cases/table1.toml
+    """
+    console = _console(quiet)
+    case = load_case(case_file)
+    path = reduced.solve(case)
+    folder = results_folder(results, case.name)
+    reduced.sample(path, reduced.sample_times(case)).write_csv(folder / "reduced_history.csv")
+    table = Table(title=f"{case.case.title or case.name}: events of the first cycle")
+    for heading in ("event", "stage", "ΔT [K]", "time [s]", "displacement [m]", "axial force [N]"):
+        table.add_column(heading, justify="left" if heading in ("event", "stage") else "right")
+    for event in path.events:
+        if event.time_s <= case.dem.period_s:
+            table.add_row(event.kind, f"{event.stage_before} → {event.stage_after}",
+                          f"{event.temperature_change_K:.6f}", f"{event.time_s:.6f}",
+                          f"{event.displacement_m:.6e}", f"{event.axial_force_N:.4f}")
+    console.print(table)
+    console.print(f"state jump: {path.state_jump_m:.6e} m after {case.thermal.cycles} cycle(s)")
+    _warn(path, console)
+    console.print(f"history: {folder / 'reduced_history.csv'}")
+
+
+def _warn(path: Any, console: Console) -> None:
+    for warning in path.warnings:
+        console.print(f"warning: {warning}")
+
+
+@cli.command("dem")
+@CASE
+@RESULTS
+@QUIET
+def dem_command(case_file: Path, results: Path, quiet: bool) -> None:
+    """DEM run of CASE in YADE: history.
+
+    \b
+    Example:
+      statejump dem cases/table1.toml
+    """
+    console = _console(quiet)
+    case = load_case(case_file)
+    folder = results_folder(results, case.name)
+    history = _run_dem(case, folder, console)
+    jump = history["displacement_m"][-1] - history["displacement_m"][0]
+    console.print(f"state jump: {jump:.6e} m after {case.thermal.cycles} cycle(s)")
+    console.print(f"history: {folder / 'dem_history.csv'}")
+
+
+@cli.command("compare")
+@CASE
+@RESULTS
+@QUIET
+def compare_command(case_file: Path, results: Path, quiet: bool) -> None:
+    """Both models of CASE side by side; exit status 1 when a tolerance is missed.
+
+    \b
+    Example:
+      statejump compare cases/table1.toml
+    """
+    console = _console(quiet)
+    case = load_case(case_file)
+    path = reduced.solve(case)
+    folder = results_folder(results, case.name)
+    history = _run_dem(case, folder, console)
+    reduced.sample(path, history["time_s"]).write_csv(folder / "reduced_history.csv")
+    rows = compare.compare(case, path, history)
+    compare.write_comparison(case, rows, folder)
+    figures = plot.figure(case, path, history, folder)
+    table = Table(title=case.case.title or case.name)
+    for heading in ("quantity", "unit", "reduced", "DEM", "difference", "tolerance", ""):
+        table.add_column(heading, justify="left" if heading in ("quantity", "unit", "") else "right")
+    for row in rows:
+        table.add_row(row.name, row.unit, _number(row.reduced), _number(row.dem),
+                      _number(row.difference), _number(row.tolerance), "pass" if row.passed else "MISSED")
+    console.print(table)
+    _warn(path, console)
+    console.print(f"results: {folder / 'comparison.json'}, {', '.join(str(name) for name in figures)}")
+    missed = [row.name for row in rows if not row.passed]
+    if missed:
+        raise TolerancesMissed(f"{case_file}: tolerance missed: {', '.join(missed)}")
+
+
+@cli.command("convergence")
+@CASE
+@RESULTS
+@QUIET
+def convergence_command(case_file: Path, results: Path, quiet: bool) -> None:
+    """DEM error of CASE against the duration of the cycle and the time step, as a table.
+
+    \b
+    Example:
+      statejump convergence cases/table1.toml
+    """
+    console = _console(quiet)
+    case = load_case(case_file)
+    folder = results_folder(results, case.name)
+    variants = convergence.variants(case)
+    rows = []
+    for number, variant in enumerate(variants, start=1):
+        scratch = results_folder(folder, ".convergence.partial")
+        history = _run_dem(variant, scratch, console, f"{number}/{len(variants)}")
+        rows.append(convergence.row(variant, history))
+    convergence.write(case, rows, folder)
+    console.print((folder / "convergence.md").read_text(encoding="utf-8"))
+
+
+def _end(function: Callable[[], None]) -> int:
+    try:
+        function()
+    except (InputError, Interrupted, TolerancesMissed) as error:
+        click.echo(f"error: {error}" if isinstance(error, InputError) else str(error), err=True)
+        return {InputError: 2, Interrupted: 130, TolerancesMissed: 1}[type(error)]
+    except click.exceptions.Exit as error:
+        return int(error.exit_code)
+    except click.ClickException as error:
+        click.echo(f"error: {error.format_message()}", err=True)
+        return 2
+    except (click.exceptions.Abort, KeyboardInterrupt):
+        click.echo("interrupted", err=True)
+        return 130
+    return 0
+
+
+def main() -> None:
+    """Entry point of the launcher."""
+    sys.exit(_end(lambda: cli.main(standalone_mode=False)))

@@ -1,0 +1,138 @@
+"""Comparison of the DEM history with the reduced model, quantity by quantity."""
+from __future__ import annotations
+
+import csv
+import json
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Optional
+
+import numpy as np
+
+from . import _engine, reduced
+from .case import Case
+from .history import History
+from .output import write_atomically
+
+COMPARED_EVENTS = ("first_slip", "stop_reached", "stop_left")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One compared number. ``difference`` is DEM minus reduced; None: the model has no such value."""
+
+    name: str
+    unit: str
+    reduced: Optional[float]
+    dem: Optional[float]
+    difference: Optional[float]
+    tolerance: float
+    passed: bool
+
+
+def _quantity(name: str, unit: str, exact: Optional[float], dem: Optional[float], tolerance: float) -> Quantity:
+    if exact is None or dem is None:
+        return Quantity(name, unit, exact, dem, None, tolerance, passed=exact is None and dem is None)
+    difference = dem - exact
+    # Written so that NaN fails.
+    return Quantity(name, unit, exact, dem, difference, tolerance, passed=bool(abs(difference) <= tolerance))
+
+
+def dem_event_temperatures(dem: History, samples_per_cycle: int) -> dict[str, Optional[float]]:
+    """Temperature changes [K] of the events of the first cycle, each half-way between two samples."""
+    first = slice(0, samples_per_cycle + 1)
+    change = dem["temperature_change_K"][first]
+
+    def between(index: int) -> float:
+        return float(0.5 * (change[index - 1] + change[index])) if index > 0 else float(change[0])
+
+    def starts(column: str) -> np.ndarray:
+        flags = dem[column][first] > 0.5
+        return np.flatnonzero(flags & ~np.concatenate(([False], flags[:-1])))
+
+    slips = starts("slipping")
+    touching = np.flatnonzero(dem["stop_contact"][first] > 0.5)
+    reached = starts("stop_contact")
+    left = touching[-1] + 1 if len(touching) else None
+    return {
+        "first_slip": between(slips[0]) if len(slips) else None,
+        "stop_reached": between(reached[0]) if len(reached) else None,
+        "stop_left": between(left) if left is not None and left < len(change) else None,
+    }
+
+
+def energy_residual(dem: History) -> float:
+    """Supplied minus stored minus dissipated energy over the whole DEM run [J]."""
+
+    def change(name: str) -> float:
+        return float(dem[name][-1] - dem[name][0]) if name in dem else 0.0
+
+    supplied = change("thermal_work_J") + change("external_work_J")
+    stored = sum(change(f"{name}_energy_J") for name in ("elastic", "preload", "contact", "kinetic"))
+    dissipated = change("friction_dissipation_J") + change("damping_dissipation_J")
+    return supplied - stored - dissipated
+
+
+def loop_drift(dem: History, samples_per_cycle: int, cycles: int) -> float:
+    """Largest distance of any later loop from the second one at the same phase [m]."""
+    x = dem["displacement_m"]
+    loops = [x[k * samples_per_cycle : (k + 1) * samples_per_cycle + 1] for k in range(1, cycles)]
+    return float(max(np.max(np.abs(loop - loops[0])) for loop in loops))
+
+
+def compare(case: Case, path: _engine.Path, dem: History) -> list[Quantity]:
+    """Compare a DEM history with the exact path of the same case."""
+    tolerance = case.tolerance
+    samples = case.dem.samples_per_cycle
+    exact = reduced.sample(path, dem["time_s"])
+    exact_jump = path.state_jump_m
+    jump = float(dem["displacement_m"][-1] - dem["displacement_m"][0])
+    jump_tolerance = max(tolerance.state_jump_relative * abs(exact_jump), tolerance.state_jump_absolute_m)
+    rows = [_quantity("state_jump", "m", exact_jump, jump, jump_tolerance)]
+
+    if case.friction_force_N > 0:
+        exact_events: dict[str, float] = {}
+        for event in path.events:
+            if event.time_s <= case.dem.period_s:
+                exact_events.setdefault(event.kind, event.temperature_change_K)
+        dem_events = dem_event_temperatures(dem, samples)
+        rows += [
+            _quantity(f"{kind}_temperature_change", "K", exact_events.get(kind), dem_events[kind],
+                      tolerance.event_temperature_K)
+            for kind in COMPARED_EVENTS
+        ]
+
+    largest = float(np.max(np.abs(exact["displacement_m"])))
+    rms = float(np.sqrt(np.mean((dem["displacement_m"] - exact["displacement_m"]) ** 2)))
+    rows.append(_quantity("displacement_rms_over_largest", "-", 0.0,
+                          rms / largest if largest > 0 else math.nan, tolerance.displacement_rms_relative))
+
+    reference = float(dem["friction_dissipation_J"][-1] - dem["friction_dissipation_J"][0])
+    name = "energy_residual_over_friction_work"
+    if not reference > 0:  # without friction the stored energy is the scale
+        reference = float(np.max(dem["elastic_energy_J"] + dem["contact_energy_J"]))
+        name = "energy_residual_over_largest_stored"
+    rows.append(_quantity(name, "-", 0.0, energy_residual(dem) / reference if reference > 0 else math.nan,
+                          tolerance.energy_balance_relative))
+    if case.thermal.cycles > 2:
+        drift = loop_drift(dem, samples, case.thermal.cycles)
+        rows.append(_quantity("loop_drift_over_largest_displacement", "-", 0.0, drift / largest,
+                              tolerance.drift_relative))
+    return rows
+
+
+def write_comparison(case: Case, rows: list[Quantity], folder: Path) -> None:
+    """Write ``comparison.json`` and ``comparison.csv``."""
+    entries = []
+    for row in rows:
+        entry = asdict(row)
+        entry["pass"] = entry.pop("passed")
+        entries.append({k: None if isinstance(v, float) and math.isnan(v) else v for k, v in entry.items()})
+    document = {"case": case.name, "pass": all(row.passed for row in rows), "quantities": entries}
+    with write_atomically(folder / "comparison.json") as stream:
+        stream.write(json.dumps(document, indent=2) + "\n")
+    with write_atomically(folder / "comparison.csv") as stream:
+        writer = csv.DictWriter(stream, fieldnames=list(entries[0]))
+        writer.writeheader()
+        writer.writerows(entries)

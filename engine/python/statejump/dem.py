@@ -1,0 +1,118 @@
+"""DEM run of a case: starts YADE, shows progress, keeps what was computed."""
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+from typing import Callable
+
+from . import _paths
+from .case import Case
+from .errors import InputError, Interrupted
+from .history import History
+
+INTERRUPTED = "dem_history.interrupted.csv"
+
+
+def find_yade() -> str:
+    """Return the yade command: STATEJUMP_YADE if set, otherwise from PATH."""
+    wanted = os.environ.get("STATEJUMP_YADE", "yade")
+    found = shutil.which(wanted)
+    if found is None:
+        raise InputError(
+            f"YADE is missing: no command {wanted!r} found; install Debian's package 'yade' or set "
+            "STATEJUMP_YADE to the command"
+        )
+    return found
+
+
+def run(case: Case, folder: Path, progress: Callable[[float], None]) -> History:
+    """Run the case in YADE and return its history, also written to ``folder/dem_history.csv``.
+
+    :param case: validated case
+    :param folder: results folder, exists
+    :param progress: called with the finished fraction, 0 to 1
+    :raises InputError: YADE is missing, failed or was killed; nothing half-written is left
+    :raises Interrupted: Ctrl-C; the samples so far are kept in ``dem_history.interrupted.csv``
+    """
+    command = [find_yade(), "-n", "-x", f"-j{case.dem.threads}", str(_paths.YADE_SCRIPTS / "run_case.py")]
+    with tempfile.TemporaryDirectory(prefix="statejump-") as scratch:
+        input_file, output = Path(scratch) / "case.json", Path(scratch) / "dem_history.csv"
+        input_file.write_text(json.dumps(case.resolved()), encoding="utf-8")
+        modules = str(Path(__file__).resolve().parents[1])
+        environment = dict(
+            os.environ,
+            STATEJUMP_CASE_JSON=str(input_file),
+            STATEJUMP_OUTPUT=str(output),
+            PYTHONPATH=os.pathsep.join(filter(None, [modules, os.environ.get("PYTHONPATH")])),
+            OMP_NUM_THREADS=str(case.dem.threads),
+        )
+        try:
+            problem = _watch(command, environment, progress)
+        except KeyboardInterrupt:
+            raise Interrupted(_keep_partial(output, folder)) from None
+        if problem:
+            raise InputError(f"case {case.name}: {problem}")
+        history = History.read_csv(output)
+        history.write_csv(folder / "dem_history.csv")
+        _move(output.with_name(output.name + ".json"), folder / "dem_run.json")
+    return history
+
+
+def _watch(command: list[str], environment: dict[str, str], progress: Callable[[float], None]) -> str:
+    """Run the command, pass progress on, return what went wrong or an empty string."""
+    sentence, finished, last = "", False, ""
+    with subprocess.Popen(
+        command,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        start_new_session=True,  # Ctrl-C reaches us alone; we end YADE in order
+    ) as process:
+        try:
+            for line in process.stdout or []:
+                word, _, rest = line.strip().partition(" ")
+                if word == "PROGRESS":
+                    fraction = float(rest)
+                    finished = fraction >= 1
+                    progress(fraction)
+                elif word == "ERROR":
+                    sentence = rest
+                elif line.strip():
+                    last = line.strip()
+        except BaseException:
+            process.kill()
+            raise
+    if sentence:
+        return f"the DEM run failed: {sentence}"
+    if process.returncode < 0:
+        return f"the DEM run was killed by signal {-process.returncode}; nothing was written"
+    if process.returncode != 0 or not finished:
+        detail = f": {last}" if last else ""
+        return f"YADE ended with status {process.returncode} before the run was finished{detail}"
+    return ""
+
+
+def _move(source: Path, target: Path) -> None:
+    aside = target.with_name(f".{target.name}.partial")
+    shutil.copyfile(source, aside)
+    os.replace(aside, target)
+
+
+def _keep_partial(output: Path, folder: Path) -> str:
+    partial = output.with_name(output.name + ".partial")
+    if not partial.exists():
+        return "interrupted before the first sample; nothing was written"
+    lines = partial.read_text(encoding="utf-8").splitlines(keepends=True)
+    if lines and not lines[-1].endswith("\n"):
+        lines.pop()  # a row cut in the middle
+    aside = folder / f".{INTERRUPTED}.partial"
+    aside.write_text("".join(lines), encoding="utf-8")
+    os.replace(aside, folder / INTERRUPTED)
+    return f"interrupted; the {max(0, len(lines) - 1)} samples so far are in {folder / INTERRUPTED}"

@@ -1,0 +1,107 @@
+"""Figure of a comparison: the two models on top of each other, stages marked."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+from . import _engine, reduced  # noqa: E402
+from .case import Case  # noqa: E402
+from .history import History  # noqa: E402
+from .output import replacing  # noqa: E402
+
+# Okabe-Ito colours, far apart in lightness as well: thick light line under a thin dark dashed one.
+REDUCED = dict(color="#E69F00", linewidth=4.0, solid_capstyle="round", label="reduced model (exact)")
+DEM = dict(color="#000000", linewidth=1.2, linestyle=(0, (5, 2)), label="DEM (YADE)")
+STAGE_NAMES = {"at_stop_plus": "stop", "at_stop_minus": "stop"}
+STAGE_SHADES = {"S1": "0.94", "S2": "1.0", "S3": "0.94", "S4": "0.90", "S5": "1.0"}
+STOP_SHADE = "0.82"
+
+
+def figure(case: Case, path: _engine.Path, dem: History, folder: Path) -> list[Path]:
+    """Write ``<case>.png`` and ``<case>.svg`` into the folder and return their paths."""
+    dense = np.linspace(0, dem["time_s"][-1], 4001)
+    event_times = [event.time_s for event in path.events]
+    exact = reduced.sample(path, np.unique(np.concatenate((dense, event_times))))
+    quantities = (("displacement_m", 1e3, "Displacement of the slider [mm]"),
+                  ("axial_force_N", 1.0, "Axial force, compression positive [N]"))
+    axes_of = (("temperature_change_K", "Temperature change [K]"), ("time_s", "Time [s]"))
+    with plt.rc_context({"svg.hashsalt": "statejump", "font.size": 9, "axes.grid": True,
+                         "grid.color": "0.88", "axes.axisbelow": True, "svg.fonttype": "none"}):
+        drawing, panels = plt.subplots(2, 2, figsize=(9.5, 6.8), constrained_layout=True)
+        for row, (column, scale, label) in enumerate(quantities):
+            for side, (abscissa, abscissa_label) in enumerate(axes_of):
+                panel = panels[row, side]
+                panel.plot(exact[abscissa], exact[column] * scale, **REDUCED)
+                panel.plot(dem[abscissa], dem[column] * scale, **DEM)
+                panel.set_xlabel(abscissa_label)
+                panel.set_ylabel(label)
+        _mark_stages(panels[:, 1], path)
+        _mark_events(panels[0, 0], path)
+        _mark_jump(panels[0, 0], path)
+        panels[0, 0].legend(loc="upper left", framealpha=1)
+        drawing.suptitle(case.case.title or case.name, fontsize=11)
+        written = []
+        for suffix, extra in ((".png", {"dpi": 160}), (".svg", {"metadata": {"Date": None}})):
+            target = folder / f"{case.name}{suffix}"
+            with replacing(target) as aside:
+                drawing.savefig(aside, **extra)
+            written.append(target)
+        plt.close(drawing)
+    return written
+
+
+def _mark_stages(panels: np.ndarray, path: _engine.Path) -> None:
+    """Shade the stages over time; name them in the first cycle when they are wide enough."""
+    end = path.segments[-1].end_time_s
+    spans: list[list] = []
+    for segment in path.segments:
+        name = STAGE_NAMES.get(segment.stage, segment.stage)
+        if spans and spans[-1][0] == name and segment.start_time_s <= spans[-1][2]:
+            spans[-1][2] = segment.end_time_s
+        else:
+            spans.append([name, segment.start_time_s, segment.end_time_s])
+    for panel in panels:
+        for name, start, stop in spans:
+            shade = STOP_SHADE if name == "stop" else STAGE_SHADES[name]
+            panel.axvspan(start, stop, color=shade, zorder=0, linewidth=0)
+        level = 0
+        for name, start, stop in spans:
+            if start >= path.program.period_s:
+                break
+            narrow = stop - start < 0.05 * end
+            level = (level + 1) % 2 if narrow else 0
+            panel.annotate(name, ((start + stop) / 2, 0.015 + 0.05 * level),
+                           xycoords=("data", "axes fraction"), ha="center", fontsize=8)
+        panel.set_xlim(0, end)
+
+
+def _mark_events(panel: plt.Axes, path: _engine.Path) -> None:
+    """Points at the first cycle's events on the loop, with their temperatures."""
+    labels = {"first_slip": ("first slip", (12, -14)), "stop_reached": ("stop reached", (-12, 8)),
+              "stop_left": ("stop left", (10, -16))}
+    seen = set()
+    for event in path.events:
+        if event.kind in labels and event.kind not in seen:
+            seen.add(event.kind)
+            text, offset = labels[event.kind]
+            point = (event.temperature_change_K, event.displacement_m * 1e3)
+            panel.plot(*point, "o", color="#0072B2", markersize=5, zorder=5)
+            panel.annotate(f"{text}\n{event.temperature_change_K:.2f} K", point, xytext=offset,
+                           textcoords="offset points", fontsize=8,
+                           ha="right" if offset[0] < 0 else "left",
+                           va="bottom" if offset[1] > 0 else "top")
+
+
+def _mark_jump(panel: plt.Axes, path: _engine.Path) -> None:
+    jump = path.state_jump_m
+    if jump:
+        last = path.segments[-1].end_displacement_m * 1e3
+        panel.plot(0, last, "s", color="#D55E00", markersize=5, zorder=6)
+        panel.annotate(f"state jump {jump * 1e6:.2f} µm", (0, last), xytext=(28, 46),
+                       textcoords="offset points", fontsize=8, color="#A04000",
+                       arrowprops={"arrowstyle": "->", "color": "#A04000"})
