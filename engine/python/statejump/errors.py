@@ -1,15 +1,14 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
-"""The one exception that the command line turns into one sentence and an exit status."""
+"""What can end a command: each has its exit status, see :mod:`statejump.cli`."""
 from __future__ import annotations
 
 
-class StatejumpError(Exception):
-    """Something the user can put right: one sentence, no traceback.
+class InputError(Exception):
+    """Bad input or a run that could not be finished: one sentence, exit status 2."""
 
-    :param message: one sentence without the leading ``error:``
-    :param exit_status: 2 for bad input or a failed run, 130 for Ctrl-C
-    """
 
-    def __init__(self, message: str, exit_status: int = 2) -> None:
-        super().__init__(message)
-        self.exit_status = exit_status
+class TolerancesMissed(Exception):
+    """The comparison ran and a tolerance of the case file is missed: exit status 1."""
+
+
+class Interrupted(Exception):
+    """The user stopped a run; the sentence says what was kept. Exit status 130."""
