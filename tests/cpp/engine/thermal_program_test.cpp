@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/kernel/thermal_program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+
+#include "table1.hpp"
+
+namespace statejump::testing {
+namespace {
+
+using kernel::ThermalProgram;
+using kernel::ThermalShape;
+
+constexpr ThermalShape analytic_shapes[] = {ThermalShape::triangle, ThermalShape::half_sine,
+                                            ThermalShape::sine};
+
+TEST(ThermalProgram, FollowsItsFormulaInEveryCycle) {
+  const ThermalProgram triangle = cycle(ThermalShape::triangle, 3, 0.7);
+  const ThermalProgram half_sine = cycle(ThermalShape::half_sine, 3, 0.7);
+  const ThermalProgram sine = cycle(ThermalShape::sine, 3, 0.7);
+  for (int k = 0; k < 3; ++k) {
+    for (double phase = 0.01; phase < 1.0; phase += 0.07) {
+      const double t = (k + phase) * 0.7;
+      const double pi = std::numbers::pi;
+      // The phase carries the rounding of t, a few ulps of 3 cycles, times the steepest slope.
+      EXPECT_NEAR(triangle.temperature_change(t), 100.0 * (1.0 - std::abs(2.0 * phase - 1.0)),
+                  1e-12);
+      EXPECT_NEAR(half_sine.temperature_change(t), 100.0 * std::sin(pi * phase), 1e-12);
+      EXPECT_NEAR(sine.temperature_change(t), 100.0 * std::sin(2.0 * pi * phase), 2e-12);
+    }
+  }
+}
+
+TEST(ThermalProgram, ReturnsToExactlyZeroAfterEveryCycle) {
+  for (const ThermalShape shape : analytic_shapes) {
+    for (const double period : {1.0, 0.1, 0.7, 5400.0 / 7.0}) {
+      const ThermalProgram program = cycle(shape, 1000, period);
+      for (int k = 0; k <= 1000; ++k) {
+        ASSERT_EQ(program.temperature_change(k * period), 0.0) << to_string(shape) << k;
+      }
+      EXPECT_EQ(program.temperature_change(1001.5 * period), 0.0);
+      EXPECT_EQ(program.temperature_change(-period), 0.0);
+    }
+  }
+}
+
+TEST(ThermalProgram, ReachesItsMaximumExactly) {
+  EXPECT_EQ(cycle(ThermalShape::triangle).temperature_change(0.5), 100.0);
+  EXPECT_EQ(cycle(ThermalShape::half_sine).temperature_change(0.5), 100.0);
+  EXPECT_EQ(cycle(ThermalShape::sine).temperature_change(0.25), 100.0);
+  EXPECT_EQ(cycle(ThermalShape::sine).temperature_change(0.5), 0.0);
+  EXPECT_EQ(cycle(ThermalShape::sine).temperature_change(0.75), -100.0);
+}
+
+TEST(ThermalProgram, RateIsTheSlopeOfTheChange) {
+  const ThermalProgram points = table({0.0, 0.3, 0.5, 1.0}, {0.0, 40.0, 40.0, -10.0});
+  // Central differences: error h² dddT/6 <= 1e-10·100(2π)³/6 plus rounding 1e-14/h.
+  const double h = 1e-5;
+  for (const ThermalProgram& program :
+       {cycle(ThermalShape::triangle), cycle(), cycle(ThermalShape::sine), points}) {
+    for (double t = 0.011; t < 1.0; t += 0.03) {
+      const double slope =
+          (program.temperature_change(t + h) - program.temperature_change(t - h)) / (2.0 * h);
+      EXPECT_NEAR(program.temperature_rate(t), slope, 1e-6) << to_string(program.shape) << t;
+    }
+    EXPECT_EQ(program.temperature_rate(-0.1), 0.0);
+    EXPECT_EQ(program.temperature_rate(1.0), 0.0);
+  }
+}
+
+TEST(ThermalProgram, TableHoldsItsLastValue) {
+  const ThermalProgram points = table({0.0, 1.0, 3.0}, {0.0, 40.0, 10.0});
+  EXPECT_EQ(points.temperature_change(1.0), 40.0);
+  EXPECT_EQ(points.temperature_change(2.0), 25.0);
+  EXPECT_EQ(points.temperature_change(3.0), 10.0);
+  EXPECT_EQ(points.temperature_change(7.0), 10.0);
+}
+
+TEST(ThermalProgram, BranchesJoinAndInvert) {
+  const ThermalProgram points = table({0.0, 0.3, 0.5, 1.0}, {0.0, 40.0, 40.0, 0.0});
+  for (const ThermalProgram& program :
+       {cycle(ThermalShape::triangle, 3, 0.7), cycle(ThermalShape::half_sine, 3, 0.7),
+        cycle(ThermalShape::sine, 3, 0.7), points}) {
+    double time = 0.0;
+    double change = 0.0;
+    for (const kernel::ThermalBranch& branch : monotone_branches(program)) {
+      EXPECT_EQ(branch.start_time, time);
+      EXPECT_EQ(branch.start, change);
+      EXPECT_EQ(time_at(branch, branch.start), branch.start_time);
+      for (double part = 0.02; part < 1.0; part += 0.06) {
+        const double wanted = branch.start + part * (branch.end - branch.start);
+        const double at = time_at(branch, wanted);
+        EXPECT_GE(at, branch.start_time);
+        EXPECT_LE(at, branch.end_time);
+        // dT/dt <= 900 K/s times the rounding of t.
+        EXPECT_NEAR(program.temperature_change(at), wanted, 1e-12);
+      }
+      if (branch.end != branch.start) {
+        EXPECT_EQ(time_at(branch, branch.end), branch.end_time);
+      }
+      time = branch.end_time;
+      change = branch.end;
+    }
+    EXPECT_EQ(time, program.duration());
+  }
+}
+
+TEST(ThermalProgram, LengthComesFromTheTotalChange) {
+  EXPECT_EQ(kernel::thermal_length(0.5, 2.3e-5, 0.0), 0.5);
+  EXPECT_DOUBLE_EQ(kernel::thermal_length(0.5, 2.3e-5, -200.0), 0.4977);
+}
+
+TEST(ThermalProgram, RefusesWhatIsOutOfRange) {
+  const auto message = [](auto change) {
+    ThermalProgram program = cycle();
+    change(program);
+    return refusal([&program] { program.validate(); });
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(message([](ThermalProgram&) {}), "");
+  EXPECT_EQ(message([](ThermalProgram& p) { p.period = -1.0; }),
+            "period = -1, allowed is finite, > 0 s");
+  EXPECT_NE(message([&](ThermalProgram& p) { p.period = nan; }), "");
+  EXPECT_EQ(message([](ThermalProgram& p) { p.cycles = 0; }), "cycles = 0, allowed is >= 1");
+  EXPECT_NE(message([&](ThermalProgram& p) { p.temperature_change_max = nan; }), "");
+  EXPECT_NE(message([](ThermalProgram& p) { p.table_times = {0.0, 1.0}; }), "");
+  const auto refused = [](const ThermalProgram& program) {
+    return refusal([&program] { program.validate(); });
+  };
+  EXPECT_EQ(refused(table({0.0, 1.0}, {0.0, 5.0})), "");
+  EXPECT_EQ(refused(table({0.0, 1.0, 1.0}, {0.0, 5.0, 0.0})).substr(0, 18), "table_times[2] = 1");
+  EXPECT_NE(refused(table({0.5, 1.0}, {0.0, 5.0})), "");
+  EXPECT_NE(refused(table({0.0, 1.0}, {0.0, nan})), "");
+  EXPECT_NE(refused(table({0.0, 1.0}, {1.0, 5.0})), "");
+  EXPECT_NE(refused(table({0.0, 1.0}, {0.0})), "");
+  EXPECT_NE(refused(table({0.0}, {0.0})), "");
+  ThermalProgram open = table({0.0, 1.0}, {0.0, 5.0});
+  open.cycles = 2;
+  EXPECT_NE(refused(open), "");
+  ThermalProgram late = table({0.0, 1.0}, {0.0, 5.0});
+  late.period = 2.0;
+  EXPECT_NE(refused(late), "");
+  EXPECT_NE(refusal([] { kernel::thermal_shape("square"); }), "");
+  EXPECT_EQ(kernel::thermal_shape("half_sine"), ThermalShape::half_sine);
+}
+
+}  // namespace
+}  // namespace statejump::testing
