@@ -21,6 +21,7 @@
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/archive/xml_iarchive.hpp>
 #include <boost/archive/xml_oarchive.hpp>
+#include <boost/mpl/vector.hpp>
 #include <boost/python/raw_function.hpp>
 #include <boost/serialization/export.hpp>
 #include <boost/serialization/nvp.hpp>
@@ -29,6 +30,7 @@
 #include <boost/serialization/vector.hpp>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include "yade_api.hpp"
 
@@ -152,7 +154,22 @@ class Registered : public Base {
       if (a.read_only) {
         entry.add_property(a.name, get, a.doc);
       } else {
-        entry.add_property(a.name, get, py::make_setter(member), a.doc);
+        using Type = std::decay_t<decltype(std::declval<Derived&>().*member)>;
+        // Checked as on construction; a refused value leaves the old one in place.
+        const auto set = [member](Derived& self, const Type& value) {
+          const Type old = self.*member;
+          self.*member = value;
+          try {
+            self.callPostLoad();
+          } catch (...) {
+            self.*member = old;
+            throw;
+          }
+        };
+        entry.add_property(a.name, get,
+                           py::make_function(set, py::default_call_policies(),
+                                             boost::mpl::vector<void, Derived&, const Type&>()),
+                           a.doc);
       }
     });
     Derived::register_methods(entry);

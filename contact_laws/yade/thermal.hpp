@@ -68,7 +68,7 @@ struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalE
     return std::make_tuple(
         attribute("program", &ThermalExpansionEngine::program, "Temperature program of these bodies"),
         attribute("ids", &ThermalExpansionEngine::ids,
-                  "Bodies it acts on; empty: all with a ThermalShape and a ThermalFrictMat"),
+                  "Bodies it acts on; empty: all with a ThermalShape and a ThermalFrictMat [-]"),
         read_only("temperatureChange", &ThermalExpansionEngine::temperatureChange,
                   "Temperature change of the last step [K]"));
   }
@@ -110,8 +110,8 @@ struct ThermalLink : Registered<ThermalLink, yade::Serializable> {
   void check() const;
   static auto attributes() {
     return std::make_tuple(
-        attribute("id1", &ThermalLink::id1, "Body at the root"),
-        attribute("id2", &ThermalLink::id2, "Body at the tip"),
+        attribute("id1", &ThermalLink::id1, "Body at the root [-]"),
+        attribute("id2", &ThermalLink::id2, "Body at the tip [-]"),
         attribute("youngModulus", &ThermalLink::youngModulus, "Young's modulus E [Pa]"),
         attribute("crossSectionArea", &ThermalLink::crossSectionArea, "Cross-section area A [m2]"),
         attribute("stressFreeLength", &ThermalLink::stressFreeLength,
@@ -124,7 +124,7 @@ struct ThermalLink : Registered<ThermalLink, yade::Serializable> {
                   "Whether the tip body is fixed to the link: it turns with it, and a moment on it "
                   "becomes a couple of forces on the two ends. Its rotations must be blocked "
                   "(blockedDOFs containing XYZ). Torsion about the link's axis is held by the "
-                  "root."),
+                  "root. [-]"),
         attribute("program", &ThermalLink::program, "Temperature program of the link"),
         read_only("axialForce", &ThermalLink::axialForce,
                   "Axial force of the last step, compression positive [N]"),
