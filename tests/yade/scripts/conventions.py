@@ -1,0 +1,101 @@
+"""What YADE users expect of classes: constructors, dict(), documentation, ranges."""
+import statejump_yade as sj
+from yade import wrapper
+
+from parts import finish
+
+
+def own_attributes(cls):
+    return {
+        name: entry.__doc__ or "" for name, entry in vars(cls).items() if isinstance(entry, property)
+    }
+
+
+def sentence_of(call):
+    try:
+        call()
+    except Exception as error:
+        return [type(error).__name__, str(error)]
+    return ["none", ""]
+
+
+classes = {}
+for name in sj.__all__:
+    cls = getattr(sj, name)
+    if not isinstance(cls, type):
+        continue
+    made = cls()
+    values = made.dict()
+    classes[name] = {
+        "doc": cls.__doc__,
+        "attributes": own_attributes(cls),
+        "kinds": {key: type(values.get(key)).__name__ for key in own_attributes(cls)},
+        "dict": sorted(values),
+        "base": cls.__mro__[1].__name__,
+        "hierarchy": list(made.dispHierarchy()) if hasattr(made, "dispHierarchy") else None,
+        "in_wrapper": getattr(wrapper, name) is cls,
+    }
+
+journal = sj.Journal(radius=0.005, halfLength=0.01, color=(1, 0, 0))
+link = sj.ThermalLink(id1=3, youngModulus=70e9, stressFreeLength=0.5)
+table = dict(
+    shape="table", period=2.0, tableTimes=[0, 0.5, 2], tableTemperatureChanges=[0, 40, 0], cycles=3
+)
+program = sj.ThermalProgram(**table)
+engine = sj.ThermalExpansionEngine(program=program, ids=[1, 2], label="heater")
+law = sj.Law2_JointGeom_JointPhys_HertzMindlin(label="law")
+links = sj.ThermalLinks(links=[link])
+
+
+def set_radius(value):
+    journal.radius = value
+
+
+ranges = {
+    "Journal.radius": lambda: sj.Journal(radius=-1.0),
+    "Journal.halfLength": lambda: sj.Journal(halfLength=float("nan")),
+    "Bearing.radius": lambda: sj.Bearing(radius=float("inf")),
+    "Bearing.halfLength": lambda: sj.Bearing(halfLength=-1e-9),
+    "Slider.radius": lambda: sj.Slider(radius=float("nan")),
+    "SlotFace.distance": lambda: sj.SlotFace(distance=-1.0),
+    "SlotFace.halfSize": lambda: sj.SlotFace(halfSize=-1.0),
+    "SlotFace.normal": lambda: sj.SlotFace(normal=(1, 1, 0)),
+    "normalDampingRatio": lambda: sj.Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys(
+        normalDampingRatio=-0.1
+    ),
+    "tangentialDampingRatio": lambda: sj.Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys(
+        tangentialDampingRatio=float("nan")
+    ),
+    "ThermalLink.youngModulus": lambda: sj.ThermalLink(youngModulus=-1.0),
+    "ThermalLink.crossSectionArea": lambda: sj.ThermalLink(crossSectionArea=-1.0),
+    "ThermalLink.stressFreeLength": lambda: sj.ThermalLink(stressFreeLength=float("nan")),
+    "ThermalLink.dampingRatio": lambda: sj.ThermalLink(dampingRatio=-1.0),
+    "period": lambda: sj.ThermalProgram(period=0.0),
+    "cycles": lambda: sj.ThermalProgram(cycles=0),
+    "shape": lambda: sj.ThermalProgram(shape="square"),
+    "table_times": lambda: sj.ThermalProgram(**{**table, "tableTimes": [0, 0, 2]}),
+    "table_temperature_changes": lambda: sj.ThermalProgram(
+        **{**table, "tableTemperatureChanges": [0, 1]}
+    ),
+}
+finish(
+    {
+        "classes": classes,
+        "journal": [journal.radius, journal.halfLength, list(journal.color)],
+        "link": [link.id1, link.id2, link.youngModulus, link.stressFreeLength],
+        "program": [program.shape, program.period, list(program.tableTimes), program.cycles],
+        "engine": [engine.label, list(engine.ids), engine.program is not None, law.label],
+        "links": [len(links.links), links.links[0].id1],
+        "unknown": {
+            name: sentence_of(lambda cls=getattr(sj, name): cls(noSuchAttribute=1))
+            for name in classes
+        },
+        "positional": sentence_of(lambda: sj.Journal(0.005)),
+        "wrong_type": sentence_of(lambda: sj.Journal(radius="large")),
+        "ranges": {name: sentence_of(call) for name, call in ranges.items()},
+        "by_assignment": {str(v): sentence_of(lambda v=v: set_radius(v)) for v in (-1.0, float("nan"))},
+        "kept": journal.radius,
+        "read_only": sentence_of(lambda: setattr(link, "axialForce", 1.0)),
+        "slot": [b.shape.__class__.__name__ for b in sj.slot((0, 0, 0), 1, 1, 1, sj.ThermalFrictMat(), ceiling=True)],
+    }
+)

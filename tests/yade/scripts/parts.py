@@ -1,0 +1,152 @@
+"""Bodies, engines and readings that the scripts of these tests share. Runs under ``yade``."""
+from __future__ import annotations
+
+import json
+from math import atan
+
+import statejump_yade as sj
+from yade import wrapper
+from yade.minieigenHP import Quaternion, Vector3
+
+O = wrapper.Omega()
+
+# Table 2 of the paper.
+YOUNG, POISSON, FRICTION = 70e9, 0.3, 0.3
+R1, CLEARANCE = 5e-3, 1e-4
+R2 = R1 + CLEARANCE
+PLANAR = "zXY"
+
+
+def finish(result: dict) -> None:
+    """Print the result in one line."""
+    print("\nRESULT " + json.dumps(result), flush=True)
+
+
+def reset() -> None:
+    """Start an empty scene that tracks energy."""
+    O.reset()
+    O.trackEnergy = True
+
+
+def material(friction: float = FRICTION, expansion: float = 0.0, **keywords) -> wrapper.Material:
+    """Append an aluminium that expands."""
+    made = sj.ThermalFrictMat(
+        young=keywords.pop("young", YOUNG),
+        poisson=keywords.pop("poisson", POISSON),
+        frictionAngle=atan(friction),
+        thermalExpansion=expansion,
+        **keywords,
+    )
+    O.materials.append(made)
+    return made
+
+
+def body(
+    position=(0, 0, 0),
+    shape=None,
+    made_of=None,
+    mass: float = 0.0,
+    inertia: float = 0.0,
+    blocked: str = "xyzXYZ",
+    orientation=Quaternion((0, 0, 1), 0),
+    velocity=(0, 0, 0),
+    spin=(0, 0, 0),
+) -> int:
+    """Append a body and return its id."""
+    new = wrapper.Body()
+    if shape is not None:
+        new.shape, new.material, new.bound = shape, made_of, wrapper.Aabb()
+    new.state.pos = new.state.refPos = position
+    new.state.ori = orientation
+    new.state.mass = mass
+    new.state.inertia = (inertia, inertia, inertia)
+    new.state.blockedDOFs = blocked
+    new.state.vel, new.state.angVel = velocity, spin
+    return O.bodies.append(new)
+
+
+def constant(change: float = 0.0) -> sj.ThermalProgram:
+    """Temperature change that holds from the second step on (the first is at time 0)."""
+    return sj.ThermalProgram(
+        shape="table", period=1e-15, tableTimes=[0, 1e-15], tableTemperatureChanges=[0, change]
+    )
+
+
+def engines(
+    program=None, links=(), normal_damping=0.0, tangential_damping=0.0, reader=None, thermal=None
+) -> None:
+    """Set the engines of a scene of joints and links; the reader sees one consistent time."""
+    O.engines = [
+        wrapper.ForceResetter(),
+        *(thermal or [sj.ThermalExpansionEngine(program=program or constant())]),
+        wrapper.InsertionSortCollider(
+            [sj.Bo1_Journal_Aabb(), sj.Bo1_Bearing_Aabb(), sj.Bo1_Slider_Aabb(), sj.Bo1_SlotFace_Aabb()],
+            verletDist=1e-4,
+        ),
+        wrapper.InteractionLoop(
+            [sj.Ig2_Journal_Bearing_JointGeom(), sj.Ig2_Slider_SlotFace_JointGeom()],
+            [
+                sj.Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys(
+                    normalDampingRatio=normal_damping, tangentialDampingRatio=tangential_damping
+                )
+            ],
+            [sj.Law2_JointGeom_JointPhys_HertzMindlin()],
+        ),
+        sj.ThermalLinks(links=list(links)),
+        *([wrapper.PyRunner(command=reader, iterPeriod=1, initRun=True)] if reader else []),
+        wrapper.NewtonIntegrator(damping=0),
+    ]
+
+
+def energies() -> dict[str, float]:
+    """Return O.energy as a dict."""
+    return {name: O.energy[name] for name in O.energy.keys()}
+
+
+def stored_minus_supplied() -> float:
+    """Elastic energy + losses - thermal work of the current step [J]."""
+    e = energies()
+    return (
+        sum(e.get(name, 0.0) for name in ("jointElastic", "jointFriction", "jointDamping"))
+        + sum(e.get(name, 0.0) for name in ("linkElastic", "linkDamping"))
+        - e.get("jointThermalWork", 0.0)
+        - e.get("linkThermalWork", 0.0)
+    )
+
+
+class Balance:
+    """Energy balance of the scene, read before the motion of each step.
+
+    Leapfrog: m v(n-1/2).v(n+1/2)/2 is the kinetic energy whose change is exactly the trapezoidal
+    work of the forces. v(n+1/2) follows from the forces of this step.
+    """
+
+    def __init__(self, ids, permanent=None) -> None:
+        self.ids, self.permanent = list(ids), permanent or {}
+        self.values: list[float] = []
+        self.kinetic: list[float] = []
+
+    def read(self) -> None:
+        kinetic, potential = 0.0, 0.0
+        for i in self.ids:
+            state = O.bodies[i].state
+            free = [0.0 if axis in state.blockedDOFs else 1.0 for axis in "xyz"]
+            turns = 0.0 if "Z" in state.blockedDOFs else 1.0
+            force = O.forces.f(i)
+            after = [state.vel[k] + O.dt * free[k] * force[k] / state.mass for k in range(3)]
+            kinetic += 0.5 * state.mass * sum(state.vel[k] * after[k] for k in range(3))
+            if turns:
+                spin = state.angVel[2] + O.dt * O.forces.t(i)[2] / state.inertia[2]
+                kinetic += 0.5 * state.inertia[2] * state.angVel[2] * spin
+            if i in self.permanent:
+                potential -= Vector3(*self.permanent[i]).dot(state.pos)
+        self.kinetic.append(kinetic)
+        self.values.append(kinetic + potential + stored_minus_supplied())
+
+
+def contact(first: int, second: int):
+    """Return the contact of two bodies or None."""
+    if not O.interactions.has(first, second):
+        return None
+    found = O.interactions[first, second]
+    return found if found.isReal else None
