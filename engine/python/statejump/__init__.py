@@ -4,6 +4,9 @@
 The command line is :mod:`statejump.cli`; everything that it does can be called from Python::
 
     from statejump.case import load_case
-    from statejump.reduced import run_reduced
-    history = run_reduced(load_case("cases/table1.toml"))
+    from statejump import reduced
+    path = reduced.solve(load_case("cases/table1.toml"))
+    print(path.state_jump_m)
 """
+
+__version__ = "0.1.0"

@@ -169,6 +169,7 @@ class Tolerance(Section):
     displacement_rms_relative: float = parameter(0.01, "-", 0, 1, CHOICE, above=True)
     energy_balance_relative: float = parameter(0.001, "-", 0, 1, CHOICE, above=True)
     state_jump_absolute_m: float = parameter(1e-9, "m", 0, 1, CHOICE + "; no friction", above=True)
+    drift_relative: float = parameter(0.001, "-", 0, 1, CHOICE + "; several cycles", above=True)
 
 
 class Case(Section):

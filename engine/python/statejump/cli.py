@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The ``statejump`` command. Exit status: 0 done, 1 a tolerance is missed, 2 bad input or a failed
 run, 130 interrupted."""
 from __future__ import annotations
@@ -13,7 +14,7 @@ from rich.table import Table
 
 from . import __version__, compare, convergence, dem, plot, reduced
 from .case import Case, load_case
-from .errors import InputError, Interrupted, TolerancesMissed
+from .errors import StatejumpError, Interrupted, TolerancesMissed
 from .output import results_folder
 
 CASE = click.argument("case_file", metavar="CASE", type=click.Path(path_type=Path))
@@ -25,7 +26,10 @@ QUIET = click.option("--quiet", is_flag=True, help="Print errors only.")
 
 
 def _console(quiet: bool) -> Console:
-    return Console(quiet=quiet, highlight=False, soft_wrap=True)
+    console = Console(quiet=quiet, highlight=False, soft_wrap=True)
+    if not console.is_terminal:  # a pipe or a log has no width: do not cut numbers short
+        console.width = 160
+    return console
 
 
 def _run_dem(case: Case, folder: Path, console: Console, label: str = "DEM") -> Any:
@@ -34,20 +38,20 @@ def _run_dem(case: Case, folder: Path, console: Console, label: str = "DEM") -> 
         columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"),
                    TimeElapsedColumn(), TimeRemainingColumn())
         with Progress(*columns, console=console) as bar:
-            task = bar.add_task(f"{label}, {case.steps:,} steps", total=1.0)
+            task = bar.add_task(f"{label}, {dem.number_of_steps(case):,} steps", total=1.0)
             return dem.run(case, folder, lambda fraction: bar.update(task, completed=fraction))
     told = [-1]
 
     def line(fraction: float) -> None:
         if int(10 * fraction) > told[0]:
             told[0] = int(10 * fraction)
-            console.print(f"{label}: {100 * fraction:.0f} % of {case.steps:,} steps")
+            console.print(f"{label}: {100 * fraction:.0f} % of {dem.number_of_steps(case):,} steps")
 
     return dem.run(case, folder, line)
 
 
 def _number(value: float | None) -> str:
-    return "none" if value is None else f"{value:.7g}"
+    return "none" if value is None else f"{value:.6g}"
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -87,12 +91,12 @@ def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
                           f"{event.displacement_m:.6e}", f"{event.axial_force_N:.4f}")
     console.print(table)
     console.print(f"state jump: {path.state_jump_m:.6e} m after {case.thermal.cycles} cycle(s)")
-    _warn(path, console)
+    _warn(case, path, console)
     console.print(f"history: {folder / 'reduced_history.csv'}")
 
 
-def _warn(path: Any, console: Console) -> None:
-    for warning in path.warnings:
+def _warn(case: Case, path: Any, console: Console) -> None:
+    for warning in (*path.warnings, *reduced.warnings(case)):
         console.print(f"warning: {warning}")
 
 
@@ -143,7 +147,7 @@ def compare_command(case_file: Path, results: Path, quiet: bool) -> None:
         table.add_row(row.name, row.unit, _number(row.reduced), _number(row.dem),
                       _number(row.difference), _number(row.tolerance), "pass" if row.passed else "MISSED")
     console.print(table)
-    _warn(path, console)
+    _warn(case, path, console)
     console.print(f"results: {folder / 'comparison.json'}, {', '.join(str(name) for name in figures)}")
     missed = [row.name for row in rows if not row.passed]
     if missed:
@@ -177,9 +181,12 @@ def convergence_command(case_file: Path, results: Path, quiet: bool) -> None:
 def _end(function: Callable[[], None]) -> int:
     try:
         function()
-    except (InputError, Interrupted, TolerancesMissed) as error:
-        click.echo(f"error: {error}" if isinstance(error, InputError) else str(error), err=True)
-        return {InputError: 2, Interrupted: 130, TolerancesMissed: 1}[type(error)]
+    except (TolerancesMissed, Interrupted) as error:
+        click.echo(str(error), err=True)
+        return error.exit_status
+    except StatejumpError as error:
+        click.echo(f"error: {error}", err=True)
+        return error.exit_status
     except click.exceptions.Exit as error:
         return int(error.exit_code)
     except click.ClickException as error:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Comparison of the DEM history with the reduced model, quantity by quantity."""
 from __future__ import annotations
 

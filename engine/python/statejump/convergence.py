@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """How the DEM approaches the reduced model: slower cycles, shorter time steps."""
 from __future__ import annotations
 
@@ -6,8 +7,9 @@ import math
 import shutil
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
-from . import compare, reduced
+from . import compare, dem, reduced, stable_step
 from .case import Case
 from .history import History
 from .output import write_atomically
@@ -42,32 +44,36 @@ class Row:
     energy_residual_over_friction_work: float
 
 
+def _with_dem(case: Case, **changes: Any) -> Case:
+    return case.copy(update={"dem": case.dem.copy(update=changes)})
+
+
 def variants(case: Case) -> list[Case]:
     """Cases to run: each period at the case's own step, then each step at the case's period."""
     period, fraction = case.dem.period_s, case.dem.time_step_fraction
-    periods = [case.with_dem(period_s=period * factor, time_step_s=None) for factor in PERIOD_FACTORS]
+    periods = [_with_dem(case, period_s=period * factor, time_step_s=None) for factor in PERIOD_FACTORS]
     steps = [
-        case.with_dem(time_step_s=None, time_step_fraction=fraction * factor)
+        _with_dem(case, time_step_s=None, time_step_fraction=fraction * factor)
         for factor in STEP_FACTORS
         if fraction * factor < 1 and factor != 1
     ]
     return periods + steps
 
 
-def row(case: Case, dem: History) -> Row:
+def row(case: Case, history: History) -> Row:
     """Errors of one run."""
-    rows = {entry.name: entry for entry in compare.compare(case, reduced.solve(case), dem)}
+    rows = {entry.name: entry for entry in compare.compare(case, reduced.solve(case), history)}
 
     def difference(name: str) -> float:
         entry = rows.get(name)
         return math.nan if entry is None or entry.difference is None else entry.difference
 
     jump = rows["state_jump"]
-    step = case.resolved()["dem"]["time_step_s"]
+    step = dem.time_step(case)
     return Row(
         period_s=case.dem.period_s,
         time_step_s=step,
-        time_step_over_stable=step / case.stable_time_step_s,
+        time_step_over_stable=step / stable_step.stable_time_step(case),
         state_jump_m=jump.dem or 0.0,
         state_jump_error_relative=jump.difference / jump.reduced if jump.reduced else math.nan,
         first_slip_error_K=difference("first_slip_temperature_change"),

@@ -1,20 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """DEM run of a case: starts YADE, shows progress, keeps what was computed."""
 from __future__ import annotations
 
 import json
+import math
 import os
 import shutil
 import subprocess
 import tempfile
 from pathlib import Path
-from typing import Callable
+from typing import Any, Callable
 
-from . import _paths
+from . import _paths, stable_step
 from .case import Case
-from .errors import InputError, Interrupted
+from .errors import StatejumpError, Interrupted
 from .history import History
 
 INTERRUPTED = "dem_history.interrupted.csv"
+
+
+def number_of_steps(case: Case) -> int:
+    """Steps of the whole run: a multiple of the samples, so that the last sample is the end."""
+    wanted = case.dem.time_step_s
+    if wanted is None:
+        wanted = case.dem.time_step_fraction * stable_step.stable_time_step(case)
+    samples = case.dem.samples_per_cycle
+    return math.ceil(case.dem.period_s / wanted / samples) * samples * case.thermal.cycles
+
+
+def time_step(case: Case) -> float:
+    """Time step [s]: the wanted one or a little less, so that steps fill the program exactly."""
+    return case.duration_s / number_of_steps(case)
+
+
+def resolved(case: Case) -> dict[str, Any]:
+    """Everything that the YADE script needs, as plain values; keys as in the case file."""
+    values = case.dict()
+    if case.thermal.shape == "table":
+        values["thermal"]["table_time_s"] = case.table_time_s
+    values["dem"].update(
+        number_of_steps=number_of_steps(case),
+        time_step_s=time_step(case),
+        tip_mass_kg=stable_step.tip_mass(case),
+    )
+    return values
 
 
 def find_yade() -> str:
@@ -22,7 +51,7 @@ def find_yade() -> str:
     wanted = os.environ.get("STATEJUMP_YADE", "yade")
     found = shutil.which(wanted)
     if found is None:
-        raise InputError(
+        raise StatejumpError(
             f"YADE is missing: no command {wanted!r} found; install Debian's package 'yade' or set "
             "STATEJUMP_YADE to the command"
         )
@@ -35,13 +64,13 @@ def run(case: Case, folder: Path, progress: Callable[[float], None]) -> History:
     :param case: validated case
     :param folder: results folder, exists
     :param progress: called with the finished fraction, 0 to 1
-    :raises InputError: YADE is missing, failed or was killed; nothing half-written is left
+    :raises StatejumpError: YADE is missing, failed or was killed; nothing half-written is left
     :raises Interrupted: Ctrl-C; the samples so far are kept in ``dem_history.interrupted.csv``
     """
     command = [find_yade(), "-n", "-x", f"-j{case.dem.threads}", str(_paths.YADE_SCRIPTS / "run_case.py")]
     with tempfile.TemporaryDirectory(prefix="statejump-") as scratch:
         input_file, output = Path(scratch) / "case.json", Path(scratch) / "dem_history.csv"
-        input_file.write_text(json.dumps(case.resolved()), encoding="utf-8")
+        input_file.write_text(json.dumps(resolved(case)), encoding="utf-8")
         modules = str(Path(__file__).resolve().parents[1])
         environment = dict(
             os.environ,
@@ -55,7 +84,7 @@ def run(case: Case, folder: Path, progress: Callable[[float], None]) -> History:
         except KeyboardInterrupt:
             raise Interrupted(_keep_partial(output, folder)) from None
         if problem:
-            raise InputError(f"case {case.name}: {problem}")
+            raise StatejumpError(f"case {case.name}: {problem}")
         history = History.read_csv(output)
         history.write_csv(folder / "dem_history.csv")
         _move(output.with_name(output.name + ".json"), folder / "dem_run.json")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What both models produce: columns over time, written as CSV with units in the headers."""
 from __future__ import annotations
 
@@ -7,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .errors import InputError
+from .errors import StatejumpError
 from .output import write_atomically
 
 # Same names for both models; a model writes the columns that it has.
@@ -63,11 +64,11 @@ class History:
         with path.open(newline="", encoding="utf-8") as stream:
             rows = list(csv.reader(stream))
         if len(rows) < 2:
-            raise InputError(f"{path}: holds no samples")
+            raise StatejumpError(f"{path}: holds no samples")
         names, body = rows[0], rows[1:]
         unknown = [name for name in names if name not in COLUMNS]
         if unknown:
-            raise InputError(f"{path}: unknown column {unknown[0]}")
+            raise StatejumpError(f"{path}: unknown column {unknown[0]}")
         columns = {}
         for i, name in enumerate(names):
             cells = [row[i] for row in body]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Files appear whole or not at all: written aside, then renamed."""
 from __future__ import annotations
 
@@ -6,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Iterator
 
-from .errors import InputError
+from .errors import StatejumpError
 
 
 @contextmanager
@@ -17,7 +18,7 @@ def replacing(path: Path) -> Iterator[Path]:
         yield aside
         os.replace(aside, path)
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+        raise StatejumpError(f"{path}: cannot be written: {error.strerror or error}") from None
     finally:
         aside.unlink(missing_ok=True)
 
@@ -31,7 +32,7 @@ def write_atomically(path: Path) -> Iterator[IO[str]]:
 
 
 def results_folder(root: Path, name: str) -> Path:
-    """Make (if needed) and return ``root/name``; InputError if it cannot be written to."""
+    """Make (if needed) and return ``root/name``; StatejumpError if it cannot be written to."""
     folder = root / name
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -39,7 +40,7 @@ def results_folder(root: Path, name: str) -> Path:
         probe.touch()
         probe.unlink()
     except OSError as error:
-        raise InputError(
+        raise StatejumpError(
             f"results folder {folder}: cannot be written: {error.strerror or error}; "
             "choose another with --results"
         ) from None

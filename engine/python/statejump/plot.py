@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Figure of a comparison: the two models on top of each other, stages marked."""
 from __future__ import annotations
 
