@@ -70,32 +70,33 @@ def _mark_stages(panels: np.ndarray, path: _engine.Path) -> None:
         for name, start, stop in spans:
             shade = STOP_SHADE if name == "stop" else STAGE_SHADES[name]
             panel.axvspan(start, stop, color=shade, zorder=0, linewidth=0)
-        level = 0
+        crowded = -1.0
         for name, start, stop in spans:
             if start >= path.program.period_s:
                 break
-            narrow = stop - start < 0.05 * end
-            level = (level + 1) % 2 if narrow else 0
-            panel.annotate(name, ((start + stop) / 2, 0.015 + 0.05 * level),
+            middle = (start + stop) / 2
+            raised = middle - crowded < 0.04 * end  # names above the axes, in two rows when close
+            crowded = -1.0 if raised else middle
+            panel.annotate(name, (middle, 1.06 if raised else 1.015),
                            xycoords=("data", "axes fraction"), ha="center", fontsize=8)
         panel.set_xlim(0, end)
 
 
 def _mark_events(panel: plt.Axes, path: _engine.Path) -> None:
     """Points at the first cycle's events on the loop, with their temperatures."""
-    labels = {"first_slip": ("first slip", (12, -14)), "stop_reached": ("stop reached", (-12, 8)),
-              "stop_left": ("stop left", (10, -16))}
+    labels = {"first_slip": ("first slip", (14, 0), "left"),
+              "stop_reached": ("stop reached", (38, -34), "right"),
+              "stop_left": ("stop left", (-12, 2), "right")}
     seen = set()
     for event in path.events:
         if event.kind in labels and event.kind not in seen:
             seen.add(event.kind)
-            text, offset = labels[event.kind]
+            text, offset, side = labels[event.kind]
             point = (event.temperature_change_K, event.displacement_m * 1e3)
             panel.plot(*point, "o", color="#0072B2", markersize=5, zorder=5)
             panel.annotate(f"{text}\n{event.temperature_change_K:.2f} K", point, xytext=offset,
                            textcoords="offset points", fontsize=8,
-                           ha="right" if offset[0] < 0 else "left",
-                           va="bottom" if offset[1] > 0 else "top")
+                           ha=side, va="center")
 
 
 def _mark_jump(panel: plt.Axes, path: _engine.Path) -> None:
@@ -103,6 +104,7 @@ def _mark_jump(panel: plt.Axes, path: _engine.Path) -> None:
     if jump:
         last = path.segments[-1].end_displacement_m * 1e3
         panel.plot(0, last, "s", color="#D55E00", markersize=5, zorder=6)
-        panel.annotate(f"state jump {jump * 1e6:.2f} µm", (0, last), xytext=(28, 46),
-                       textcoords="offset points", fontsize=8, color="#A04000",
-                       arrowprops={"arrowstyle": "->", "color": "#A04000"})
+        panel.annotate(f"state jump {jump * 1e6:.2f} µm", (0, last), xytext=(0.42, 0.3),
+                       textcoords="axes fraction", fontsize=8, color="#A04000",
+                       arrowprops={"arrowstyle": "->", "color": "#A04000", "shrinkB": 4,
+                                   "connectionstyle": "arc3,rad=0.15"})
