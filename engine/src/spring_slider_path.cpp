@@ -99,7 +99,6 @@ class Follower {
   void load_stop() {
     // Snapped, so that x is the clearance itself and leaving the stop can be told by equality.
     open_.end_displacement = drive_ * model_.clearance(drive_);
-    last_slide_ = drive_;
     enter(EventKind::stop_reached, drive_ > 0 ? Stage::at_stop_plus : Stage::at_stop_minus,
           Motion::stop, drive_);
   }

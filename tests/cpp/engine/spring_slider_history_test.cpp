@@ -114,6 +114,20 @@ TEST(SpringSliderHistory, DoesNotDependOnTheGrid) {
   }
 }
 
+TEST(SpringSliderHistory, StaysWithinTheSegmentAtAnEvent) {
+  // The time of an event is rounded; the state at that time must not be one from before the event.
+  for (const Path& path : paths()) {
+    for (const Segment& segment : path.segments) {
+      const History h = sample(path, Eigen::VectorXd::Constant(1, segment.start_time));
+      const auto [lowest, highest] =
+          std::minmax(segment.start_temperature_change, segment.end_temperature_change);
+      EXPECT_EQ(h.stage[0], segment.stage);
+      EXPECT_GE(h.temperature_change[0], lowest);
+      EXPECT_LE(h.temperature_change[0], highest);
+    }
+  }
+}
+
 TEST(SpringSliderHistory, EndsExactlyAndHolds) {
   const Path path = solve(table1(), cycle(ThermalShape::half_sine, 3, 0.7));
   const Eigen::Vector3d times(path.program.duration(), 100.0, 0.0);

@@ -47,6 +47,23 @@ TEST(ThermalProgram, ReturnsToExactlyZeroAfterEveryCycle) {
   }
 }
 
+TEST(ThermalProgram, TellsTheCyclesApartOnEitherSideOfTheirEnd) {
+  // t/period rounds over the boundary for some of these times; a wrong cycle shows as a temperature
+  // below the start or as the rate of the wrong flank.
+  for (const double period : {0.1, 0.7, 1.1, 5400.0 / 7.0, 1.0 / 49.0, 93.3}) {
+    const ThermalProgram triangle = cycle(ThermalShape::triangle, 5000, period);
+    const ThermalProgram half_sine = cycle(ThermalShape::half_sine, 5000, period);
+    for (int k = 1; k < 5000; ++k) {
+      const double end = k * period;
+      const double before = std::nextafter(end, 0.0);
+      ASSERT_GT(half_sine.temperature_change(before), 0.0) << period << " " << k;
+      ASSERT_GT(triangle.temperature_change(before), 0.0) << period << " " << k;
+      ASSERT_LT(triangle.temperature_rate(before), 0.0) << period << " " << k;
+      ASSERT_GT(triangle.temperature_rate(end), 0.0) << period << " " << k;
+    }
+  }
+}
+
 TEST(ThermalProgram, ReachesItsMaximumExactly) {
   EXPECT_EQ(cycle(ThermalShape::triangle).temperature_change(0.5), 100.0);
   EXPECT_EQ(cycle(ThermalShape::half_sine).temperature_change(0.5), 100.0);
