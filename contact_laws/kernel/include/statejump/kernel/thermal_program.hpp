@@ -37,7 +37,7 @@ inline ThermalShape thermal_shape(const std::string& name) {
     if (name == to_string(shape)) return shape;
   }
   throw std::invalid_argument("shape = '" + name +
-                              "': must be one of triangle, half_sine, sine, table");
+                              "', allowed is one of triangle, half_sine, sine, table");
 }
 
 /// Temperature of a part over time, as its change from the stress-free reference temperature.
