@@ -35,7 +35,7 @@ JointGeom& geometry_of(const yade::shared_ptr<yade::Interaction>& contact,
 }
 
 Real inverse_mass(const yade::Scene& scene, int id) {
-  const yade::State& state = *scene.bodies->body[static_cast<std::size_t>(id)]->state;
+  const yade::State& state = *body_at(scene, static_cast<std::size_t>(id))->state;
   const bool fixed = (state.blockedDOFs & all_translations_blocked) == all_translations_blocked;
   return fixed || !(state.mass > 0) ? 0 : 1 / state.mass;
 }

@@ -18,7 +18,7 @@ struct ClassList {
   static void register_all() {
     (register_factory<Classes>(), ...);
     // Also runs each class's pyRegisterClass, base classes first.
-    yade::Omega::instance().buildDynlibDatabase({Classes::class_name...});
+    register_python_classes({Classes::class_name...});
   }
   static boost::python::list names() {
     boost::python::list result;

@@ -16,12 +16,10 @@ constexpr unsigned int all_translations_blocked = 7;
 constexpr unsigned int all_rotations_blocked = 56;
 
 yade::Body& body_of(const yade::Scene& scene, int id, const char* who) {
-  const auto& bodies = scene.bodies->body;
-  if (id < 0 || static_cast<std::size_t>(id) >= bodies.size() ||
-      !bodies[static_cast<std::size_t>(id)]) {
+  if (!scene.bodies->exists(id)) {
     throw std::invalid_argument(std::string(who) + ": there is no body " + std::to_string(id));
   }
-  return *bodies[static_cast<std::size_t>(id)];
+  return *body_at(scene, static_cast<std::size_t>(id));
 }
 
 bool fixed(const yade::State& state) {
@@ -72,19 +70,19 @@ void ThermalExpansionEngine::collect_targets() {
     }
   };
   if (ids.empty()) {
-    for (const auto& body : scene->bodies->body) {
-      if (body) add(*body, false);
+    for (std::size_t i = 0; i < number_of_bodies(*scene); ++i) {
+      if (const auto& body = body_at(*scene, i)) add(*body, false);
     }
   } else {
     for (const int id : ids) add(body_of(*scene, id, "ThermalExpansionEngine.ids"), true);
   }
-  number_of_bodies_ = scene->bodies->body.size();
+  number_of_bodies_ = number_of_bodies(*scene);
 }
 
 void ThermalExpansionEngine::action() {
   throw_recorded_failure();
   if (!program) throw std::invalid_argument("ThermalExpansionEngine.program is missing");
-  if (number_of_bodies_ != scene->bodies->body.size()) collect_targets();
+  if (number_of_bodies_ != number_of_bodies(*scene)) collect_targets();
   temperatureChange = program->temperature_change(scene->time);
   for (const Target& target : targets_) {
     *target.strain = target.thermal_expansion * temperatureChange;
@@ -189,7 +187,7 @@ void ThermalLinks::act(ThermalLink& link) {
 }
 
 double stable_time_step(const yade::Scene& scene) {
-  const std::size_t count = scene.bodies->body.size();
+  const std::size_t count = number_of_bodies(scene);
   std::vector<Real> stiffness(count, 0);
   std::vector<Real> damping(count, 0);
   const auto touch = [&](int id1, int id2, Real k, Real c) {
@@ -198,9 +196,8 @@ double stable_time_step(const yade::Scene& scene) {
       damping[static_cast<std::size_t>(id)] += c;
     }
   };
-  const auto& interactions = *scene.interactions;
-  for (std::size_t i = 0; i < interactions.currSize; ++i) {
-    const yade::Interaction& contact = *interactions.linIntrs[i];
+  for (std::size_t i = 0; i < number_of_interactions(scene); ++i) {
+    const yade::Interaction& contact = interaction_at(scene, i);
     if (!contact.isReal()) continue;
     const auto* physics = dynamic_cast<const JointPhys*>(contact.phys.get());
     if (!physics) continue;
@@ -224,8 +221,9 @@ double stable_time_step(const yade::Scene& scene) {
   }
   double smallest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < count; ++i) {
-    if (!scene.bodies->body[i]) continue;
-    const yade::State& state = *scene.bodies->body[i]->state;
+    const auto& body = body_at(scene, i);
+    if (!body) continue;
+    const yade::State& state = *body->state;
     if (!(inverse_mass(state) > 0)) continue;
     // Against a fixed body the row sum is exact; between free bodies it doubles.
     smallest = std::min(smallest,

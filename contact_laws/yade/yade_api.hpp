@@ -4,16 +4,53 @@
 #pragma once
 
 #ifdef STATEJUMP_REAL_YADE_HEADERS
+#include <core/Aabb.hpp>
 #include <core/Body.hpp>
 #include <core/Dispatching.hpp>
 #include <core/GlobalEngine.hpp>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
-#include <pkg/common/Aabb.hpp>
 #include <pkg/common/ElastMat.hpp>
 #include <pkg/common/NormShearPhys.hpp>
+#include <pkg/dem/FrictPhys.hpp>
 #include <pkg/dem/ScGeom.hpp>
 #else
 #include "statejump/yade_abi/dispatch.hpp"
 #include "statejump/yade_abi/serialization.hpp"
 #endif
+
+#include <string>
+#include <vector>
+
+namespace statejump::dem {
+
+// What the two interfaces offer under different names or access rights. The pointer to a body is
+// null where the body was erased.
+inline std::size_t number_of_bodies(const yade::Scene& scene) {
+  return scene.bodies->size();
+}
+inline const yade::shared_ptr<yade::Body>& body_at(const yade::Scene& scene, std::size_t id) {
+  return (*scene.bodies)[static_cast<unsigned int>(id)];
+}
+inline std::size_t number_of_interactions(const yade::Scene& scene) {
+  return scene.interactions->size();
+}
+inline const yade::Interaction& interaction_at(const yade::Scene& scene, std::size_t i) {
+  return *(*scene.interactions)[i];
+}
+
+// Makes the Python classes of factory classes, base classes first.
+inline void register_python_classes(const std::vector<std::string>& class_names) {
+#ifdef STATEJUMP_REAL_YADE_HEADERS
+  // The function of the other branch is private; YADE's loader of plugins calls it with this list.
+  auto& pending = yade::ClassFactory::instance().pluginClasses;
+  const auto kept = pending;
+  pending.assign(class_names.begin(), class_names.end());
+  yade::Omega::instance().loadPlugins({});
+  pending = kept;
+#else
+  yade::Omega::instance().buildDynlibDatabase(class_names);
+#endif
+}
+
+}  // namespace statejump::dem

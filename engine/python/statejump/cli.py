@@ -169,12 +169,12 @@ def convergence_command(case_file: Path, results: Path, quiet: bool) -> None:
     case = load_case(case_file)
     folder = results_folder(results, case.name)
     variants = convergence.variants(case)
-    rows = []
-    for number, variant in enumerate(variants, start=1):
-        scratch = results_folder(folder, ".convergence.partial")
-        history = _run_dem(variant, scratch, console, f"{number}/{len(variants)}")
-        rows.append(convergence.row(variant, history))
-    convergence.write(case, rows, folder)
+    scratch = results_folder(folder, ".convergence.partial")
+    histories = [
+        _run_dem(variant, scratch, console, f"{number}/{len(variants)}")
+        for number, variant in enumerate(variants, start=1)
+    ]
+    convergence.write(case, convergence.rows(variants, histories), folder)
     console.print((folder / "convergence.md").read_text(encoding="utf-8"))
 
 

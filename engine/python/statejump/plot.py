@@ -21,6 +21,7 @@ DEM = dict(color="#000000", linewidth=1.2, linestyle=(0, (5, 2)), label="DEM (YA
 STAGE_NAMES = {"at_stop_plus": "stop", "at_stop_minus": "stop"}
 STAGE_SHADES = {"S1": "0.94", "S2": "1.0", "S3": "0.94", "S4": "0.90", "S5": "1.0"}
 STOP_SHADE = "0.82"
+MOST_NAMED_CYCLES = 3  # beyond it names of stages would cover each other
 
 
 def figure(case: Case, path: _engine.Path, dem: History, folder: Path) -> list[Path]:
@@ -72,7 +73,7 @@ def _mark_stages(panels: np.ndarray, path: _engine.Path) -> None:
             panel.axvspan(start, stop, color=shade, zorder=0, linewidth=0)
         crowded = -1.0
         for name, start, stop in spans:
-            if start >= path.program.period_s:
+            if start >= path.program.period_s or path.program.cycles > MOST_NAMED_CYCLES:
                 break
             middle = (start + stop) / 2
             raised = middle - crowded < 0.04 * end  # names above the axes, in two rows when close

@@ -16,6 +16,8 @@ class LawFunctor;
 class TimingDeltas;
 class Engine;
 class Body;
+class Cell;
+class DisplayParameters;
 
 class Shape : public Serializable, public Indexable {
  public:
@@ -50,7 +52,6 @@ class Bound : public Serializable, public Indexable {
   Vector3r min;
   Vector3r max;
 
-  Bound();
   ~Bound() override;
   std::string getBaseClassName(unsigned int i = 0) const override;
   int getBaseClassNumber() const override;
@@ -66,6 +67,7 @@ class Bound : public Serializable, public Indexable {
   void incrementMaxCurrentlyUsedClassIndexOfKin() override;
 };
 
+// Built through Aabb's exported constructor only; YADE exports none of Bound.
 class Aabb : public Bound {
  public:
   Aabb();
@@ -288,6 +290,7 @@ class Interaction : public Serializable {
   long iterBorn;
 
   bool isReal() const { return static_cast<bool>(geom) && static_cast<bool>(phys); }
+  Interaction();
   Interaction(const Interaction&) = delete;
   ~Interaction() override;
 };
@@ -328,6 +331,23 @@ class ForceContainer {
 class BodyContainer : public Serializable {
  public:
   std::vector<shared_ptr<Body>> body;
+  bool dirty;
+  bool checkedByCollider;
+  std::vector<int> insertedBodies;
+  std::vector<int> erasedBodies;
+  std::vector<int> realBodies;
+  bool useRedirection;
+  bool enableRedirection;
+  std::vector<int> subdomainBodies;
+  std::mutex drawloopmutex;
+
+  // Null pointers are the places of erased bodies.
+  std::size_t size() const { return body.size(); }
+  const shared_ptr<Body>& operator[](unsigned int id) const { return body[id]; }
+  bool exists(int id) const {
+    return id >= 0 && static_cast<std::size_t>(id) < body.size() &&
+           static_cast<bool>(body[static_cast<std::size_t>(id)]);
+  }
   BodyContainer(const BodyContainer&) = delete;
   ~BodyContainer() override;
 };
@@ -338,6 +358,17 @@ class InteractionContainer : public Serializable {
   std::vector<shared_ptr<Interaction>> sortedIntrs;
   const std::vector<shared_ptr<Body>>* bodies;
   std::size_t currSize;
+  shared_ptr<Interaction> empty;
+  std::vector<shared_ptr<Interaction>> interaction;
+  bool dirty;
+  std::mutex drawloopmutex;
+  bool serializeSorted;
+  long iterColliderLastRun;
+
+  std::size_t size() const { return currSize; }
+  const shared_ptr<Interaction>& operator[](std::size_t i) const { return linIntrs[i]; }
+  bool insert(int id1, int id2);
+  void clear();
   InteractionContainer(const InteractionContainer&) = delete;
   ~InteractionContainer() override;
 };
@@ -348,6 +379,9 @@ class EnergyTracker : public Serializable {
   void add(const Real& value, const std::string& name, int& id, bool reset);
   EnergyTracker(const EnergyTracker&) = delete;
   ~EnergyTracker() override;
+
+ private:
+  alignas(8) std::array<char, 152> opaque_;
 };
 
 class Scene : public Serializable {
@@ -378,7 +412,13 @@ class Scene : public Serializable {
   shared_ptr<BodyContainer> bodies;
   shared_ptr<InteractionContainer> interactions;
   shared_ptr<EnergyTracker> energy;
+  std::vector<shared_ptr<Material>> materials;
+  shared_ptr<Bound> bound;
+  shared_ptr<Cell> cell;
+  std::vector<shared_ptr<Serializable>> miscParams;
+  std::vector<shared_ptr<DisplayParameters>> dispParams;
 
+  Scene();
   Scene(const Scene&) = delete;
   ~Scene() override;
 };
