@@ -60,10 +60,10 @@ const kernel::ThermalProgram& ThermalProgram::program() const {
 void ThermalExpansionEngine::collect_targets() {
   targets_.clear();
   const auto add = [&](yade::Body& body, bool required) {
-    auto* shape = dynamic_cast<ThermalShape*>(body.shape.get());
-    const auto* material = dynamic_cast<const ThermalFrictMat*>(body.material.get());
+    auto shape = boost::dynamic_pointer_cast<ThermalShape>(body.shape);
+    auto material = boost::dynamic_pointer_cast<ThermalFrictMat>(body.material);
     if (shape && material) {
-      targets_.push_back({&shape->thermalStrain, material->thermalExpansion});
+      targets_.push_back({static_cast<std::size_t>(body.id), shape, material});
     } else if (required) {
       throw std::invalid_argument("ThermalExpansionEngine.ids: body " + std::to_string(body.id) +
                                   " needs a ThermalShape and a ThermalFrictMat");
@@ -76,16 +76,26 @@ void ThermalExpansionEngine::collect_targets() {
   } else {
     for (const int id : ids) add(body_of(*scene, id, "ThermalExpansionEngine.ids"), true);
   }
+  collected_ids_ = ids;
   number_of_bodies_ = number_of_bodies(*scene);
+}
+
+bool ThermalExpansionEngine::collected() const {
+  if (number_of_bodies_ != number_of_bodies(*scene) || collected_ids_ != ids) return false;
+  for (const Target& target : targets_) {
+    const auto& body = body_at(*scene, target.id);
+    if (!body || body->shape != target.shape || body->material != target.material) return false;
+  }
+  return true;
 }
 
 void ThermalExpansionEngine::action() {
   throw_recorded_failure();
   if (!program) throw std::invalid_argument("ThermalExpansionEngine.program is missing");
-  if (number_of_bodies_ != number_of_bodies(*scene)) collect_targets();
+  if (!collected()) collect_targets();
   temperatureChange = program->temperature_change(scene->time);
   for (const Target& target : targets_) {
-    *target.strain = target.thermal_expansion * temperatureChange;
+    target.shape->thermalStrain = target.material->thermalExpansion * temperatureChange;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "registered.hpp"
+#include "shapes.hpp"
 #include "statejump/kernel/thermal_program.hpp"
 
 namespace statejump::dem {
@@ -74,12 +75,17 @@ struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalE
   }
 
  private:
+  // A body as it was when it was collected. Held, so that a body erased or given another shape by a
+  // script is noticed instead of written to after it is gone.
   struct Target {
-    Real* strain;
-    Real thermal_expansion;
+    std::size_t id;
+    yade::shared_ptr<ThermalShape> shape;
+    yade::shared_ptr<ThermalFrictMat> material;
   };
   void collect_targets();
+  bool collected() const;
   std::vector<Target> targets_;
+  std::vector<int> collected_ids_;
   std::size_t number_of_bodies_ = 0;
 };
 
