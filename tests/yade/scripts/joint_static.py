@@ -158,7 +158,7 @@ def balance(rotation, offset):
     def read():
         force, moment, scale, largest = Vector3.Zero, Vector3.Zero, 0.0, 0.0
         for i in (pin, hole):
-            f, t = O.forces.f(i), O.forces.t(i)
+            f, t = O.forces.f(i, True), O.forces.t(i, True)
             arm = O.bodies[i].state.pos - point
             force += f
             moment += t + arm.cross(f)

@@ -132,11 +132,11 @@ class Balance:
             state = O.bodies[i].state
             free = [0.0 if axis in state.blockedDOFs else 1.0 for axis in "xyz"]
             turns = 0.0 if "Z" in state.blockedDOFs else 1.0
-            force = O.forces.f(i)
+            force = O.forces.f(i, True)
             after = [state.vel[k] + O.dt * free[k] * force[k] / state.mass for k in range(3)]
             kinetic += 0.5 * state.mass * sum(state.vel[k] * after[k] for k in range(3))
             if turns:
-                spin = state.angVel[2] + O.dt * O.forces.t(i)[2] / state.inertia[2]
+                spin = state.angVel[2] + O.dt * O.forces.t(i, True)[2] / state.inertia[2]
                 kinetic += 0.5 * state.inertia[2] * state.angVel[2] * spin
             if i in self.permanent:
                 potential -= Vector3(*self.permanent[i]).dot(state.pos)
