@@ -24,6 +24,43 @@ std::string where(const yade::Scene& scene, int id1, int id2) {
   return text.str();
 }
 
+// Failures apart from the path of every step, which stays short and free of text.
+[[gnu::cold, gnu::noinline]] void fail_closed(Real journal_radius, Real bearing_radius,
+                                              const yade::Scene& scene,
+                                              const yade::Interaction& contact) {
+  std::ostringstream text;
+  text.precision(9);
+  text << "the clearance is closed: journal radius " << journal_radius << " m, bearing radius "
+       << bearing_radius << " m at the current temperature"
+       << where(scene, contact.id1, contact.id2);
+  record_failure(text.str());
+}
+
+[[gnu::cold, gnu::noinline]] void fail_tilted(const yade::Scene& scene,
+                                              const yade::Interaction& contact) {
+  record_failure(
+      "the axes of journal and bearing are tilted by more than maxTilt, and contact "
+      "at the edges is not covered" +
+      where(scene, contact.id1, contact.id2));
+}
+
+[[gnu::cold, gnu::noinline]] void fail_unstable(Real effective_mass, Real stiffness,
+                                                const yade::Scene& scene,
+                                                const yade::Interaction& contact) {
+  std::ostringstream text;
+  text.precision(6);
+  text << "the time step " << scene.dt << " s is above the stable one, "
+       << kernel::critical_time_step(effective_mass, stiffness) << " s"
+       << where(scene, contact.id1, contact.id2);
+  record_failure(text.str());
+}
+
+// Local z axis in the world: orientation * (0, 0, 1) without the products with zero.
+Vector3r axis_of(const yade::Quaternionr& q) {
+  return {2 * (q.x() * q.z() + q.w() * q.y()), 2 * (q.y() * q.z() - q.w() * q.x()),
+          1 - 2 * (q.x() * q.x() + q.y() * q.y())};
+}
+
 JointGeom& geometry_of(const yade::shared_ptr<yade::Interaction>& contact,
                        const Vector3r& first_normal) {
   if (!contact->geom) {
@@ -42,8 +79,8 @@ Real inverse_mass(const yade::Scene& scene, int id) {
 
 }  // namespace
 
-void JointGeom::update(const kernel::JointContact& contact, const yade::State& state1,
-                       const yade::State& state2, Real time_step) {
+inline void JointGeom::update(const kernel::JointContact& contact, const yade::State& state1,
+                              const yade::State& state2, Real time_step) {
   previousNormal = normal;
   normal = contact.normal;
   penetrationDepth = contact.penetration_depth;
@@ -57,25 +94,19 @@ void JointGeom::update(const kernel::JointContact& contact, const yade::State& s
   twistAngle = 0.5 * time_step * (state1.angVel + state2.angVel).dot(normal);
 }
 
-bool Ig2_Journal_Bearing_JointGeom::go(const yade::shared_ptr<yade::Shape>& shape1,
-                                       const yade::shared_ptr<yade::Shape>& shape2,
-                                       const yade::State& state1, const yade::State& state2,
-                                       const Vector3r& shift2, const bool& force,
-                                       const yade::shared_ptr<yade::Interaction>& contact) {
+[[gnu::flatten]] bool Ig2_Journal_Bearing_JointGeom::go(
+    const yade::shared_ptr<yade::Shape>& shape1, const yade::shared_ptr<yade::Shape>& shape2,
+    const yade::State& state1, const yade::State& state2, const Vector3r& shift2, const bool& force,
+    const yade::shared_ptr<yade::Interaction>& contact) {
   const auto& journal = static_cast<const Journal&>(*shape1);
   const auto& bearing = static_cast<const Bearing&>(*shape2);
   const Real journal_radius = journal.expanded(journal.radius);
   const Real bearing_radius = bearing.expanded(bearing.radius);
-  const Vector3r axis = state2.se3.orientation * Vector3r::UnitZ();
+  const Vector3r axis = axis_of(state2.se3.orientation);
   kernel::BodyMotion bearing_motion = motion(state2);
   bearing_motion.position += shift2;
   if (!(journal_radius > 0 && bearing_radius > journal_radius)) {
-    std::ostringstream text;
-    text.precision(9);
-    text << "the clearance is closed: journal radius " << journal_radius << " m, bearing radius "
-         << bearing_radius << " m at the current temperature"
-         << where(*scene, contact->id1, contact->id2);
-    record_failure(text.str());
+    fail_closed(journal_radius, bearing_radius, *scene, *contact);
     return false;
   }
   const bool keep = force || contact->isReal();
@@ -83,12 +114,9 @@ bool Ig2_Journal_Bearing_JointGeom::go(const yade::shared_ptr<yade::Shape>& shap
                                          bearing_motion.position, bearing_radius, axis)) {
     return false;
   }
-  const Vector3r journal_axis = state1.se3.orientation * Vector3r::UnitZ();
+  const Vector3r journal_axis = axis_of(state1.se3.orientation);
   if (journal_axis.cross(axis).squaredNorm() > maxTilt * maxTilt) {
-    record_failure(
-        "the axes of journal and bearing are tilted by more than maxTilt, and contact "
-        "at the edges is not covered" +
-        where(*scene, contact->id1, contact->id2));
+    fail_tilted(*scene, *contact);
     return false;
   }
   const kernel::JointContact found = kernel::revolute_contact(motion(state1), journal_radius,
@@ -100,11 +128,10 @@ bool Ig2_Journal_Bearing_JointGeom::go(const yade::shared_ptr<yade::Shape>& shap
   return true;
 }
 
-bool Ig2_Slider_SlotFace_JointGeom::go(const yade::shared_ptr<yade::Shape>& shape1,
-                                       const yade::shared_ptr<yade::Shape>& shape2,
-                                       const yade::State& state1, const yade::State& state2,
-                                       const Vector3r& shift2, const bool& force,
-                                       const yade::shared_ptr<yade::Interaction>& contact) {
+[[gnu::flatten]] bool Ig2_Slider_SlotFace_JointGeom::go(
+    const yade::shared_ptr<yade::Shape>& shape1, const yade::shared_ptr<yade::Shape>& shape2,
+    const yade::State& state1, const yade::State& state2, const Vector3r& shift2, const bool& force,
+    const yade::shared_ptr<yade::Interaction>& contact) {
   const auto& slider = static_cast<const Slider&>(*shape1);
   const auto& face = static_cast<const SlotFace&>(*shape2);
   const Real radius = slider.expanded(slider.radius);
@@ -150,9 +177,9 @@ void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
   contact->phys = physics;
 }
 
-bool Law2_JointGeom_JointPhys_HertzMindlin::go(yade::shared_ptr<yade::IGeom>& geometry_pointer,
-                                               yade::shared_ptr<yade::IPhys>& physics_pointer,
-                                               yade::Interaction* contact) {
+[[gnu::flatten]] bool Law2_JointGeom_JointPhys_HertzMindlin::go(
+    yade::shared_ptr<yade::IGeom>& geometry_pointer, yade::shared_ptr<yade::IPhys>& physics_pointer,
+    yade::Interaction* contact) {
   const auto& geometry = static_cast<const JointGeom&>(*geometry_pointer);
   auto& physics = static_cast<JointPhys&>(*physics_pointer);
   const Real dt = scene->dt;
@@ -178,12 +205,7 @@ bool Law2_JointGeom_JointPhys_HertzMindlin::go(yade::shared_ptr<yade::IGeom>& ge
   // Leapfrog is unstable beyond omega dt = 2 of the stiffest contact alone, whatever else acts.
   if (dt * dt * response.normal_stiffness > 4 * physics.effectiveMass &&
       physics.effectiveMass > 0) {
-    std::ostringstream text;
-    text.precision(6);
-    text << "the time step " << dt << " s is above the stable one, "
-         << kernel::critical_time_step(physics.effectiveMass, response.normal_stiffness) << " s"
-         << where(*scene, contact->id1, contact->id2);
-    record_failure(text.str());
+    fail_unstable(physics.effectiveMass, response.normal_stiffness, *scene, *contact);
   }
   physics.kn = response.normal_stiffness;
   physics.ks = history.tangential_stiffness;
