@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The whole way through YADE: what the project promises about Table 1."""
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from conftest import REPOSITORY
+
+CASES = ("table1", "table1_wide", "table1_frictionless", "table1_ten_cycles")
+
+
+def quantities(folder: Path) -> dict[str, dict]:
+    document = json.loads((folder / "comparison.json").read_text())
+    return {entry["name"]: entry for entry in document["quantities"]}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_compare(statejump, cases: Path, tmp_path: Path, name: str) -> None:
+    outcome = statejump("compare", cases / f"{name}.toml")
+    assert outcome.status == 0, outcome.output + outcome.errors
+    folder = tmp_path / "results" / name
+    found = quantities(folder)
+    assert {entry.name for entry in folder.iterdir()} == {
+        "comparison.csv", "comparison.json", "dem_history.csv", "dem_run.json", "reduced_history.csv",
+        f"{name}.png", f"{name}.svg"}
+    jump = found["state_jump"]
+    if name == "table1_frictionless":
+        assert abs(jump["dem"]) < 1e-9
+    else:
+        assert jump["dem"] == pytest.approx(2.380952e-5, rel=0.005)
+        assert abs(found["first_slip_temperature_change"]["difference"]) < 0.5
+        assert abs(found["energy_residual_over_friction_work"]["dem"]) < 0.001
+    if name in ("table1", "table1_ten_cycles"):
+        assert found["stop_reached_temperature_change"]["dem"] == pytest.approx(87.509255, abs=0.5)
+        assert found["stop_left_temperature_change"]["dem"] == pytest.approx(83.431111, abs=0.5)
+    if name == "table1_wide":
+        assert found["stop_reached_temperature_change"]["dem"] is None
+    assert found["displacement_rms_over_largest"]["dem"] < 0.01
+    if name == "table1_ten_cycles":
+        assert found["loop_drift_over_largest_displacement"]["dem"] < 1e-4
+
+
+def test_a_missed_tolerance_is_named(statejump, edited) -> None:
+    # The pads of the stop sink in by micrometres, so an RMS tolerance of 1e-4 cannot be met.
+    path = edited(("displacement_rms_relative = 0.01", "displacement_rms_relative = 1e-4"),
+                  ("period_s = 1.0", "period_s = 0.1"))
+    outcome = statejump("compare", path)
+    assert outcome.status == 1
+    assert "tolerance missed: displacement_rms_over_largest" in outcome.errors
+
+
+def test_preload_spring_in_the_dem(statejump, edited, tmp_path: Path) -> None:
+    path = edited(("clearance_plus_m = 1e-3", "clearance_plus_m = 1e-3\npreload_stiffness_N_per_m = 1e6"),
+                  ("period_s = 1.0", "period_s = 0.25"))
+    outcome = statejump("compare", path)
+    assert outcome.status == 0, outcome.output + outcome.errors
+    jump = quantities(tmp_path / "results" / "table1")["state_jump"]
+    assert jump["reduced"] == pytest.approx(30 / (1.26e6 + 1e6), rel=1e-12)
+    assert jump["dem"] == pytest.approx(jump["reduced"], rel=0.005)
+
+
+def test_table_program_in_the_dem(statejump, edited, tmp_path: Path) -> None:
+    path = edited(('"half_sine"', '"table"'), ("temperature_change_max_K = 100",
+                  "table_time_s = [0, 3000, 5400]\ntable_temperature_change_K = [0, 100, 0]"),
+                  ("period_s = 1.0", "period_s = 0.25"))
+    outcome = statejump("compare", path)
+    assert outcome.status == 0, outcome.output + outcome.errors
+
+
+def test_tutorial_script_runs_by_itself() -> None:
+    environment = {**os.environ, "PYTHONPATH": os.environ["STATEJUMP_PYTHON_DIR"]}
+    done = subprocess.run(["yade", "-n", "-x", str(REPOSITORY / "yade_scripts" / "table1.py")],
+                          capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120, env=environment)
+    line = next(line for line in done.stdout.splitlines() if line.startswith("state jump: "))
+    assert float(line.split()[2]) == pytest.approx(23.80952, rel=0.005)
+
+
+def test_readme_script_runs(tmp_path: Path) -> None:
+    text = (REPOSITORY / "README.md").read_text()
+    script = tmp_path / "hold.py"
+    script.write_text(text.split("```python\n", 1)[1].split("```", 1)[0])
+    environment = {**os.environ, "PYTHONPATH": os.environ["STATEJUMP_PYTHON_DIR"]}
+    done = subprocess.run(["yade", "-n", "-x", str(script)], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, timeout=120, env=environment)
+    last = done.stdout.strip().splitlines()[-1]
+    assert last.startswith("journal at Vector3(0.000102"), done.stdout + done.stderr
+    assert float(last.split("moving at ")[1].split()[0]) < 1e-9
