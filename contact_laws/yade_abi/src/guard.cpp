@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <elf.h>
 #include <link.h>
+#include <omp.h>
 
 #include <array>
 #include <cstdint>
@@ -123,16 +124,32 @@ std::string size_difference(const char* name) {
 std::string size_differences() {
   using namespace yade;
   for (const std::string& difference :
-       {size_difference<Shape>("Shape"), size_difference<Bound>("Bound"),
-        size_difference<Aabb>("Aabb"), size_difference<State>("State"),
-        size_difference<Material>("Material"), size_difference<ElastMat>("ElastMat"),
-        size_difference<FrictMat>("FrictMat"), size_difference<Body>("Body"),
-        size_difference<IGeom>("IGeom"), size_difference<IPhys>("IPhys"),
+       {size_difference<Shape>("Shape"),
+        size_difference<Bound>("Bound"),
+        size_difference<Aabb>("Aabb"),
+        size_difference<State>("State"),
+        size_difference<Material>("Material"),
+        size_difference<ElastMat>("ElastMat"),
+        size_difference<FrictMat>("FrictMat"),
+        size_difference<Body>("Body"),
+        size_difference<IGeom>("IGeom"),
+        size_difference<IPhys>("IPhys"),
         size_difference<GenericSpheresContact>("GenericSpheresContact"),
-        size_difference<NormPhys>("NormPhys"), size_difference<NormShearPhys>("NormShearPhys"),
-        size_difference<FrictPhys>("FrictPhys"), size_difference<Interaction>("Interaction"),
-        size_difference<Functor>("Functor"), size_difference<Engine>("Engine"),
-        size_difference<GlobalEngine>("GlobalEngine")}) {
+        size_difference<NormPhys>("NormPhys"),
+        size_difference<NormShearPhys>("NormShearPhys"),
+        size_difference<FrictPhys>("FrictPhys"),
+        size_difference<Interaction>("Interaction"),
+        size_difference<Functor>("Functor"),
+        size_difference<BoundFunctor>("BoundFunctor"),
+        size_difference<IGeomFunctor>("IGeomFunctor"),
+        size_difference<IPhysFunctor>("IPhysFunctor"),
+        size_difference<LawFunctor>("LawFunctor"),
+        size_difference<Engine>("Engine"),
+        size_difference<GlobalEngine>("GlobalEngine"),
+        size_difference<Scene>("Scene"),
+        size_difference<BodyContainer>("BodyContainer"),
+        size_difference<InteractionContainer>("InteractionContainer"),
+        size_difference<EnergyTracker>("EnergyTracker")}) {
     if (!difference.empty()) return difference;
   }
   return "";
@@ -153,12 +170,14 @@ Slots table_of(const void* address) {
   return {static_cast<void* const*>(info.dli_saddr), symbol->st_size / sizeof(void*)};
 }
 
-bool is_destructor(const void* function) {
+// Entries that a child has of its own: type information and destructors. Numbers (offsets to the
+// top) have no symbol and must agree.
+bool belongs_to_each_class(const void* entry) {
   Dl_info info;
-  if (!dladdr(function, &info) || !info.dli_sname) return true;  // local: ours
+  if (!dladdr(entry, &info) || !info.dli_sname) return false;
   const std::string name = info.dli_sname;
-  return name.find("D0Ev") != std::string::npos || name.find("D1Ev") != std::string::npos ||
-         name.find("D2Ev") != std::string::npos;
+  return name.rfind("_ZTI", 0) == 0 || name.find("D0Ev") != std::string::npos ||
+         name.find("D1Ev") != std::string::npos || name.find("D2Ev") != std::string::npos;
 }
 
 template <class Base>
@@ -180,11 +199,7 @@ std::string vtable_difference(const char* name) {
   for (std::size_t i = 0; i < library.second; ++i) {
     const void* expected = library.first[i];
     const void* found = ours.first[i];
-    if (expected == found) continue;
-    Dl_info info;
-    const bool typeinfo =
-        dladdr(expected, &info) && info.dli_sname && std::strncmp(info.dli_sname, "_ZTI", 4) == 0;
-    if (typeinfo || is_destructor(expected)) continue;
+    if (expected == found || belongs_to_each_class(expected)) continue;
     std::ostringstream text;
     text << "entry " << i << " of the vtable of " << name << " differs from the declared one";
     return text.str();
@@ -195,7 +210,10 @@ std::string vtable_difference(const char* name) {
 std::string vtable_differences() {
   using namespace yade;
   for (const std::string& difference :
-       {vtable_difference<Shape>("Shape"), vtable_difference<IGeom>("IGeom"),
+       {vtable_difference<Serializable>("Serializable"), vtable_difference<Shape>("Shape"),
+        vtable_difference<IGeom>("IGeom"), vtable_difference<IPhys>("IPhys"),
+        vtable_difference<Material>("Material"), vtable_difference<Functor>("Functor"),
+        vtable_difference<Engine>("Engine"),
         vtable_difference<GenericSpheresContact>("GenericSpheresContact"),
         vtable_difference<FrictMat>("FrictMat"), vtable_difference<FrictPhys>("FrictPhys"),
         vtable_difference<Aabb>("Aabb"), vtable_difference<State>("State"),
@@ -211,8 +229,40 @@ std::string vtable_differences() {
 
 // ---- 4. sentinels ------------------------------------------------------------------------------
 
-// Sets attributes of a fresh Python object to values that occur nowhere else and reads the declared
-// members of the same object.
+// Whether an object begins with the vtable of the named class. Reads one pointer.
+bool is_of_class(const void* object, const char* vtable_symbol) {
+  const auto* table = static_cast<const char*>(dlsym(RTLD_DEFAULT, vtable_symbol));
+  if (!table || !object || reinterpret_cast<std::uintptr_t>(object) % alignof(void*) != 0) {
+    return false;
+  }
+  const void* first;
+  std::memcpy(&first, object, sizeof first);
+  return first == table + 2 * sizeof(void*);
+}
+
+// Gives a member of an object of ours the bits of a value and takes them away again. The library
+// may read the member meanwhile, at the place where it believes it to be.
+template <class Type>
+class Lent {
+ public:
+  Lent(Type& member, const Type& value) : place_(&member) {
+    std::memcpy(kept_.data(), place_, sizeof(Type));
+    std::memcpy(place_, static_cast<const void*>(&value), sizeof(Type));
+  }
+  ~Lent() { std::memcpy(place_, kept_.data(), sizeof(Type)); }
+  Lent(const Lent&) = delete;
+  Lent& operator=(const Lent&) = delete;
+  // An empty vector or pointer is a row of zeros.
+  bool was_empty() const { return kept_ == std::array<char, sizeof(Type)>{}; }
+
+ private:
+  void* place_;
+  std::array<char, sizeof(Type)> kept_;
+};
+
+// Works on a fresh Python object: sets an attribute through Python and reads the declared member,
+// or the other way round. Values occur nowhere else. After the first difference nothing is touched
+// any more.
 class Probe {
  public:
   explicit Probe(const py::object& wrapper) : wrapper_(wrapper) {}
@@ -220,6 +270,7 @@ class Probe {
   py::object make(const char* class_name) {
     class_name_ = class_name;
     object_ = wrapper_.attr(class_name)();
+    // The abstract bases of interaction physics have no attributes; none of them is probed.
     if (py::len(object_.attr("dict")()) == 0) report("dict()", "empty");
     return object_;
   }
@@ -228,43 +279,72 @@ class Probe {
     return py::extract<Class&>(object_);
   }
   yade::Real number() { return next_ += 1.0078125; }
+  int integer() { return static_cast<int>(1024 * number()); }
   yade::Vector3r vector() { return {number(), number(), number()}; }
 
+  // Python writes, the declared member shows it.
   void number_at(const char* attribute, const yade::Real& member) {
-    const yade::Real value = number();
-    object_.attr(attribute) = value;
-    if (!(member == value)) report(attribute, "not at the declared place");
+    written(attribute, member, number());
   }
   void vector_at(const char* attribute, const yade::Vector3r& member) {
-    const yade::Vector3r value = vector();
-    object_.attr(attribute) = value;
-    if (!(member == value)) report(attribute, "not at the declared place");
+    written(attribute, member, vector());
   }
   void flag_at(const char* attribute, const bool& member) {
-    for (const bool value : {true, false, true}) {
-      object_.attr(attribute) = value;
-      if (member != value) report(attribute, "not at the declared place");
-    }
+    for (const bool value : {true, false, true}) written(attribute, member, value);
   }
   void integer_at(const char* attribute, const int& member) {
-    const int value = static_cast<int>(1000 * number());
-    object_.attr(attribute) = value;
-    if (member != value) report(attribute, "not at the declared place");
+    written(attribute, member, integer());
   }
   void text_at(const char* attribute, const std::string& member) {
-    const std::string value = "sentinel" + std::to_string(static_cast<int>(number()));
-    object_.attr(attribute) = value;
-    // A wrong place need not hold a string: compare sizes and bytes without trusting it.
-    if (member.size() != value.size() || member != value) {
-      report(attribute, "not at the declared place");
-    }
+    // A wrong place need not hold a string; its size is compared before its text is looked at.
+    written(attribute, member, "sentinel" + std::to_string(integer()));
   }
-  void report(const std::string& attribute, const char* what) {
-    if (difference_.empty()) difference_ = class_name_ + "." + attribute + " is " + what;
+  template <class Pointer>
+  void pointer_at(const char* attribute, const Pointer& member, const char* class_name) {
+    if (differs()) return;
+    object_.attr(attribute) = wrapper_.attr(class_name)();
+    using Pointee = typename Pointer::element_type;
+    expect(member.get() == py::extract<Pointee*>(object_.attr(attribute))(), attribute);
   }
+  // The declared member is lent a value, Python shows it: for attributes that Python cannot write.
+  template <class Type>
+  void shown(const char* attribute, Type& member, const Type& value) {
+    if (differs()) return;
+    const Lent<Type> lent(member, value);
+    const py::extract<Type> seen(object_.attr(attribute));
+    expect(seen.check() && Type(seen()) == value, attribute);
+  }
+  void number_shown(const char* attribute, yade::Real& member) {
+    shown(attribute, member, number());
+  }
+  void vector_shown(const char* attribute, yade::Vector3r& member) {
+    shown(attribute, member, vector());
+  }
+  void flag_shown(const char* attribute, bool& member) {
+    for (const bool value : {true, false, true}) shown(attribute, member, value);
+  }
+  template <class Integer>
+  void integer_shown(const char* attribute, Integer& member) {
+    shown(attribute, member, static_cast<Integer>(integer()));
+  }
+
+  void expect(bool holds, const std::string& attribute) {
+    if (!holds) report(attribute, "not at the declared place");
+  }
+  bool differs() const { return !difference_.empty(); }
   const std::string& difference() const { return difference_; }
 
  private:
+  void report(const std::string& attribute, const char* what) {
+    if (!differs()) difference_ = class_name_ + "." + attribute + " is " + what;
+  }
+  template <class Type>
+  void written(const char* attribute, const Type& member, const Type& value) {
+    if (differs()) return;
+    object_.attr(attribute) = value;
+    expect(member == value, attribute);
+  }
+
   py::object wrapper_;
   py::object object_;
   std::string class_name_;
@@ -272,28 +352,77 @@ class Probe {
   yade::Real next_ = 100;
 };
 
-std::string sentinel_differences(const py::object& wrapper) {
-  Probe probe(wrapper);
-
+void probe_shape_and_bound(Probe& probe) {
   probe.make("Sphere");
   auto& shape = probe.as<yade::Shape>();
   probe.vector_at("color", shape.color);
   probe.flag_at("wire", shape.wire);
   probe.flag_at("highlight", shape.highlight);
 
+  probe.make("Aabb");
+  auto& bound = probe.as<yade::Bound>();
+  probe.integer_shown("lastUpdateIter", bound.lastUpdateIter);
+  probe.vector_shown("refPos", bound.refPos);
+  probe.number_shown("sweepLength", bound.sweepLength);
+  probe.vector_at("color", bound.color);
+  probe.vector_shown("min", bound.min);
+  probe.vector_shown("max", bound.max);
+}
+
+void probe_material(Probe& probe) {
   probe.make("FrictMat");
   auto& material = probe.as<yade::FrictMat>();
+  probe.integer_shown("id", material.id);
+  probe.text_at("label", material.label);
   probe.number_at("density", material.density);
   probe.number_at("young", material.young);
   probe.number_at("poisson", material.poisson);
   probe.number_at("frictionAngle", material.frictionAngle);
-  probe.text_at("label", material.label);
+}
 
+void probe_state(Probe& probe) {
+  py::object object = probe.make("State");
+  auto& state = probe.as<yade::State>();
+  probe.expect(static_cast<const void*>(&state.pos) == &state.se3.position, "pos");
+  probe.expect(static_cast<const void*>(&state.ori) == &state.se3.orientation, "ori");
+  probe.vector_at("pos", state.se3.position);
+  probe.shown("ori", state.se3.orientation, yade::Quaternionr(0.5, -0.5, 0.5, 0.5));
+  probe.vector_at("vel", state.vel);
+  probe.number_at("mass", state.mass);
+  probe.vector_at("angVel", state.angVel);
+  probe.vector_at("angMom", state.angMom);
+  probe.vector_at("inertia", state.inertia);
+  probe.vector_at("refPos", state.refPos);
+  probe.shown("refOri", state.refOri, yade::Quaternionr(0.5, 0.5, -0.5, 0.5));
+  probe.flag_at("isDamped", state.isDamped);
+  probe.number_at("densityScaling", state.densityScaling);
+  if (probe.differs()) return;
+  object.attr("blockedDOFs") = "xZ";
+  probe.expect(state.blockedDOFs == 33, "blockedDOFs");
+}
+
+void probe_body(Probe& probe) {
+  probe.make("Body");
+  auto& body = probe.as<yade::Body>();
+  probe.integer_shown("id", body.id);
+  probe.integer_shown("groupMask", body.groupMask);
+  probe.integer_shown("flags", body.flags);
+  probe.integer_shown("subdomain", body.subdomain);
+  probe.pointer_at("material", body.material, "FrictMat");
+  probe.pointer_at("state", body.state, "State");
+  probe.pointer_at("shape", body.shape, "Sphere");
+  probe.pointer_at("bound", body.bound, "Aabb");
+  probe.integer_shown("clumpId", body.clumpId);
+  probe.integer_shown("iterBorn", body.iterBorn);
+  probe.number_shown("timeBorn", body.timeBorn);
+}
+
+void probe_interaction(Probe& probe) {
   probe.make("FrictPhys");
   auto& physics = probe.as<yade::FrictPhys>();
   probe.number_at("kn", physics.kn);
-  probe.number_at("ks", physics.ks);
   probe.vector_at("normalForce", physics.normalForce);
+  probe.number_at("ks", physics.ks);
   probe.vector_at("shearForce", physics.shearForce);
   probe.number_at("tangensOfFrictionAngle", physics.tangensOfFrictionAngle);
 
@@ -304,72 +433,125 @@ std::string sentinel_differences(const py::object& wrapper) {
   probe.number_at("refR1", geometry.refR1);
   probe.number_at("refR2", geometry.refR2);
 
-  py::object state_object = probe.make("State");
-  auto& state = probe.as<yade::State>();
-  probe.vector_at("vel", state.vel);
-  probe.vector_at("angVel", state.angVel);
-  probe.vector_at("inertia", state.inertia);
-  probe.number_at("mass", state.mass);
-  probe.number_at("densityScaling", state.densityScaling);
-  probe.flag_at("isDamped", state.isDamped);
-  probe.vector_at("pos", state.se3.position);
-  state_object.attr("blockedDOFs") = "xZ";
-  if (state.blockedDOFs != 33) probe.report("blockedDOFs", "not at the declared place");
+  probe.make("Interaction");
+  auto& contact = probe.as<yade::Interaction>();
+  probe.flag_at("isActive", contact.isActive);
+  probe.integer_shown("id1", contact.id1);
+  probe.integer_shown("id2", contact.id2);
+  probe.integer_shown("iterMadeReal", contact.iterMadeReal);
+  probe.pointer_at("geom", contact.geom, "ScGeom");
+  probe.pointer_at("phys", contact.phys, "FrictPhys");
+  probe.shown("cellDist", contact.cellDist,
+              yade::Vector3i(probe.integer(), probe.integer(), probe.integer()));
+  probe.integer_shown("iterBorn", contact.iterBorn);
+}
 
+void probe_engine_and_functor(Probe& probe) {
   probe.make("NewtonIntegrator");
   auto& engine = probe.as<yade::Engine>();
+  probe.expect(engine.scene == yade::Omega::instance().getScene().get(), "scene");
+  probe.integer_shown("execCount", engine.timingInfo.nExec);
   probe.flag_at("dead", engine.dead);
   probe.integer_at("ompThreads", engine.ompThreads);
   probe.text_at("label", engine.label);
 
   probe.make("Bo1_Sphere_Aabb");
   probe.text_at("label", probe.as<yade::Functor>().label);
+}
 
-  probe.make("Aabb");
-  probe.vector_at("color", probe.as<yade::Bound>().color);
+// Two bodies and an interaction between them in a scene of our own. The library puts the
+// interaction where it believes the containers to be.
+void probe_containers(Probe& probe, const py::object& wrapper, yade::Scene& scene) {
+  yade::InteractionContainer& interactions = *scene.interactions;
+  probe.expect(interactions.bodies == &scene.bodies->body, "interactions (their bodies)");
+  if (probe.differs()) return;
 
-  py::object body_object = probe.make("Body");
-  auto& body = probe.as<yade::Body>();
-  body_object.attr("material") = wrapper.attr("FrictMat")();
-  body_object.attr("shape") = wrapper.attr("Sphere")();
-  if (body.material.get() != py::extract<yade::Material*>(body_object.attr("material"))()) {
-    probe.report("material", "not at the declared place");
-  }
-  if (body.shape.get() != py::extract<yade::Shape*>(body_object.attr("shape"))()) {
-    probe.report("shape", "not at the declared place");
-  }
-  if (body.state.get() != py::extract<yade::State*>(body_object.attr("state"))()) {
-    probe.report("state", "not at the declared place");
-  }
-  if (!probe.difference().empty()) return probe.difference();
+  const std::array<py::object, 2> made = {wrapper.attr("Body")(), wrapper.attr("Body")()};
+  std::vector<yade::shared_ptr<yade::Body>> bodies;
+  for (const auto& body : made) bodies.push_back(py::extract<yade::shared_ptr<yade::Body>>(body));
+  bodies[0]->id = 0;
+  bodies[1]->id = 1;
+  const Lent<std::vector<yade::shared_ptr<yade::Body>>> lent(scene.bodies->body, bodies);
+  probe.expect(lent.was_empty(), "bodies (their list)");
+  if (probe.differs()) return;
+  using Size = std::size_t (*)(const void*);
+  const auto size = reinterpret_cast<Size>(dlsym(RTLD_DEFAULT, "_ZNK4yade13BodyContainer4sizeEv"));
+  probe.expect(size && size(scene.bodies.get()) == 2, "bodies (their list)");
+  if (probe.differs()) return;
 
-  // The scene: written at the declared place, read through Python, restored.
+  interactions.insert(0, 1);
+  probe.expect(interactions.currSize == 1, "interactions (their number)");
+  const yade::Interaction* found = nullptr;
+  if (!probe.differs()) {
+    // An empty list has no first element: one that is not where it was declared, either.
+    const auto& list = interactions.linIntrs;
+    found = list.empty() || list.size() > 1000000 ? nullptr : list.front().get();
+    probe.expect(is_of_class(found, "_ZTVN4yade11InteractionE"), "interactions (their list)");
+  }
+  if (!probe.differs()) {
+    probe.expect(found->id1 == 0 && found->id2 == 1 && found->linIx == 0,
+                 "interactions (ids of an interaction)");
+    probe.expect(found->functorCache.geomExists && !found->functorCache.geom,
+                 "interactions (functorCache)");
+    probe.expect(bodies[0]->intrs.size() == 1 && bodies[0]->intrs.begin()->first == 1,
+                 "bodies (their intrs)");
+  }
+  interactions.clear();
+}
+
+void probe_scene(Probe& probe, const py::object& wrapper) {
+  probe.make("Scene");
+  auto& scene = probe.as<yade::Scene>();
+  probe.expect(is_of_class(&scene, "_ZTVN4yade5SceneE"), "its table");
+  probe.expect(scene.hostNameMax == 255, "hostNameMax");
+  probe.number_at("dt", scene.dt);
+  probe.integer_shown("iter", scene.iter);
+  probe.flag_shown("subStepping", scene.subStepping);
+  probe.integer_shown("subStep", scene.subStep);
+  probe.number_shown("time", scene.time);
+  probe.number_shown("speed", scene.speed);
+  probe.integer_shown("stopAtIter", scene.stopAtIter);
+  probe.number_shown("stopAtTime", scene.stopAtTime);
+  probe.flag_shown("isPeriodic", scene.isPeriodic);
+  probe.flag_shown("trackEnergy", scene.trackEnergy);
+  probe.flag_shown("doSort", scene.doSort);
+  probe.integer_shown("selectedBody", scene.selectedBody);
+  probe.integer_shown("subdomain", scene.subdomain);
+  probe.expect(scene.forces.getNumAllocatedThreads() == omp_get_max_threads(), "forces");
+  probe.expect(is_of_class(scene.bodies.get(), "_ZTVN4yade13BodyContainerE"), "bodies");
+  probe.expect(is_of_class(scene.interactions.get(), "_ZTVN4yade20InteractionContainerE"),
+               "interactions");
+  probe.expect(is_of_class(scene.energy.get(), "_ZTVN4yade13EnergyTrackerE"), "energy");
+  if (probe.differs()) return;
+
+  // engineByName goes through the list of engines and compares class names.
+  const py::object made = wrapper.attr("NewtonIntegrator")();
+  const std::vector<yade::shared_ptr<yade::Engine>> engines = {
+      py::extract<yade::shared_ptr<yade::Engine>>(made)};
+  {
+    const Lent<std::vector<yade::shared_ptr<yade::Engine>>> lent(scene.engines, engines);
+    probe.expect(lent.was_empty() && scene.engineByName("NewtonIntegrator") == engines.front(),
+                 "engines");
+  }
+  if (!probe.differs()) probe_containers(probe, wrapper, scene);
+}
+
+std::string sentinel_differences(const py::object& wrapper) {
+  Probe probe(wrapper);
+  for (const auto part : {probe_shape_and_bound, probe_material, probe_state, probe_body,
+                          probe_interaction, probe_engine_and_functor}) {
+    part(probe);
+    if (probe.differs()) return probe.difference();
+  }
+  probe_scene(probe, wrapper);
+  if (probe.differs()) return probe.difference();
+  // The user's scene is only looked at.
+  const auto& scene = yade::Omega::instance().getScene();
   const py::object omega = wrapper.attr("Omega")();
-  yade::Scene& scene = *yade::Omega::instance().getScene();
-  const auto kept_dt = scene.dt;
-  const auto kept_iter = scene.iter;
-  const auto kept_time = scene.time;
-  const auto kept_flag = scene.trackEnergy;
-  scene.dt = probe.number();
-  scene.iter = 123457;
-  scene.time = probe.number();
-  scene.trackEnergy = !kept_flag;
-  std::string difference;
-  if (py::extract<double>(omega.attr("dt"))() != scene.dt) difference = "O.dt";
-  if (py::extract<long>(omega.attr("iter"))() != scene.iter) difference = "O.iter";
-  if (py::extract<double>(omega.attr("time"))() != scene.time) difference = "O.time";
-  if (py::extract<bool>(omega.attr("trackEnergy"))() != scene.trackEnergy) {
-    difference = "O.trackEnergy";
+  if (!is_of_class(scene.get(), "_ZTVN4yade5SceneE") ||
+      scene.get() != py::extract<yade::Scene*>(omega.attr("_sceneObj"))()) {
+    return "O._sceneObj is not what Omega::getScene gives";
   }
-  scene.dt = kept_dt;
-  scene.iter = kept_iter;
-  scene.time = kept_time;
-  scene.trackEnergy = kept_flag;
-  if (!difference.empty()) return difference + " is not at the declared place";
-  const auto bodies = static_cast<std::size_t>(py::len(omega.attr("bodies")));
-  std::size_t counted = 0;
-  for (const auto& entry : scene.bodies->body) counted += entry ? 1 : 0;
-  if (counted != bodies) return "O.bodies is not at the declared place";
   return "";
 }
 

@@ -290,7 +290,6 @@ class Interaction : public Serializable {
   long iterBorn;
 
   bool isReal() const { return static_cast<bool>(geom) && static_cast<bool>(phys); }
-  Interaction();
   Interaction(const Interaction&) = delete;
   ~Interaction() override;
 };
@@ -322,6 +321,7 @@ class ForceContainer {
   const Vector3r& getForce(int id);
   const Vector3r& getTorque(int id);
   void sync();
+  int getNumAllocatedThreads() const;
   ForceContainer(const ForceContainer&) = delete;
 
  private:
@@ -418,7 +418,7 @@ class Scene : public Serializable {
   std::vector<shared_ptr<Serializable>> miscParams;
   std::vector<shared_ptr<DisplayParameters>> dispParams;
 
-  Scene();
+  shared_ptr<Engine> engineByName(const std::string& class_name);
   Scene(const Scene&) = delete;
   ~Scene() override;
 };

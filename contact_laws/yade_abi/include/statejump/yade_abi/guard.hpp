@@ -18,7 +18,8 @@ struct GuardOptions {
 //   3. length and entries of the vtable of a do-nothing child against the library's own vtable;
 //   4. sentinels written through Python and read at the declared places, and the other way round.
 // Otherwise one sentence that says what differs. Objects are touched in 4 only.
-// wrapper: the module yade.wrapper. Restores all that it changes.
+// wrapper: the module yade.wrapper. Works on fresh objects and a scene of its own; the user's scene
+// is only looked at.
 std::string difference_from_running_yade(const boost::python::object& wrapper,
                                          const GuardOptions& options = {});
 
