@@ -32,6 +32,8 @@ def yade(
             **os.environ,
             "PYTHONPATH": os.pathsep.join(paths),
             "PYTHONDONTWRITEBYTECODE": "1",
+            # Waiting threads sleep: on a busy machine spinning ones cost ten times the run.
+            "OMP_WAIT_POLICY": "PASSIVE",
             **(environment or {}),
         },
         check=False,
