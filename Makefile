@@ -10,7 +10,7 @@ test: build
 	ctest --test-dir $(BUILD) --output-on-failure
 
 bench: build
-	cd bench && ./run.sh ../$(BUILD)
+	PYTHONPATH=$(BUILD)/python /usr/bin/python3 bench/run.py --build $(BUILD)
 
 build: setup
 	cmake --preset release
