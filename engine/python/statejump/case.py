@@ -56,7 +56,7 @@ def check_number(value: Any, extra: dict[str, Any], integer: bool) -> float | in
     kind = "a whole number" if integer else "a number"
     if isinstance(value, bool) or not isinstance(value, int if integer else (int, float)):
         raise ValueError(f"must be {kind}, " + allowed_range(extra).removeprefix("must be "))
-    if not math.isfinite(value):
+    if isinstance(value, float) and not math.isfinite(value):
         raise ValueError("must be finite, " + allowed_range(extra).removeprefix("must be "))
     too_low = value <= extra["low"] if extra["above"] else value < extra["low"]
     if too_low or value > extra["high"]:
@@ -81,7 +81,7 @@ class Section(BaseModel):
     def _strict(cls, value: Any, field: ModelField) -> Any:
         extra = field.field_info.extra
         if "low" not in extra:
-            if field.type_ is str and not isinstance(value, str):
+            if not isinstance(value, (str, dict)):
                 raise ValueError("must be a text in quotes")
             return value
         if extra.get("listed"):

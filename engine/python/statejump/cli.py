@@ -3,8 +3,10 @@
 run, 130 interrupted."""
 from __future__ import annotations
 
+import signal
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Callable
 
 import click
@@ -169,11 +171,15 @@ def convergence_command(case_file: Path, results: Path, quiet: bool) -> None:
     case = load_case(case_file)
     folder = results_folder(results, case.name)
     variants = convergence.variants(case)
-    scratch = results_folder(folder, ".convergence.partial")
-    histories = [
-        _run_dem(variant, scratch, console, f"{number}/{len(variants)}")
-        for number, variant in enumerate(variants, start=1)
-    ]
+    # Only the table is a result: the histories of the runs go where they vanish.
+    with TemporaryDirectory(prefix="statejump-") as scratch:
+        try:
+            histories = [
+                _run_dem(variant, Path(scratch), console, f"{number}/{len(variants)}")
+                for number, variant in enumerate(variants, start=1)
+            ]
+        except Interrupted:
+            raise Interrupted("interrupted; no table was written") from None
     convergence.write(case, convergence.rows(variants, histories), folder)
     console.print((folder / "convergence.md").read_text(encoding="utf-8"))
 
@@ -200,4 +206,6 @@ def _end(function: Callable[[], None]) -> int:
 
 def main() -> None:
     """Entry point of the launcher."""
+    # Ended from outside, it ends YADE and cleans up as on Ctrl-C.
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
     sys.exit(_end(lambda: cli.main(standalone_mode=False)))

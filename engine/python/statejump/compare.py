@@ -53,9 +53,13 @@ def dem_event_temperatures(dem: History, samples_per_cycle: int) -> dict[str, Op
         return np.flatnonzero(flags & ~np.concatenate(([False], flags[:-1])))
 
     slips = starts("slipping")
-    touching = np.flatnonzero(dem["stop_contact"][first] > 0.5)
     reached = starts("stop_contact")
-    left = touching[-1] + 1 if len(touching) else None
+    left = None
+    if len(reached):  # a cycle may reach both stops: the one left is the one reached first
+        push = dem["stop_force_N"][first]
+        others = np.flatnonzero(push * push[reached[0]] < 0)
+        end = others[0] if len(others) else len(push)
+        left = np.flatnonzero(dem["stop_contact"][first][:end] > 0.5)[-1] + 1
     return {
         "first_slip": between(slips[0]) if len(slips) else None,
         "stop_reached": between(reached[0]) if len(reached) else None,

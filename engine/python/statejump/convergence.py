@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import math
-import shutil
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -120,7 +119,7 @@ def _row(case: Case, history: History) -> Row:
 
 
 def write(case: Case, rows: list[Row], folder: Path) -> None:
-    """Write ``convergence.csv`` and ``convergence.md`` and remove the scratch folder."""
+    """Write ``convergence.csv`` and ``convergence.md``."""
     entries = [asdict(entry) for entry in rows]
     names = list(entries[0])
     with write_atomically(folder / "convergence.csv") as stream:
@@ -140,4 +139,3 @@ def write(case: Case, rows: list[Row], folder: Path) -> None:
     ]
     with write_atomically(folder / "convergence.md") as stream:
         stream.write("\n".join(lines))
-    shutil.rmtree(folder / ".convergence.partial", ignore_errors=True)

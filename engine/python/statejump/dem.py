@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 import shutil
+import signal
 import subprocess
 import tempfile
 from pathlib import Path
@@ -15,6 +17,7 @@ from . import _paths, stable_step
 from .case import Case
 from .errors import StatejumpError, Interrupted
 from .history import History
+from .output import write_atomically
 
 INTERRUPTED = "dem_history.interrupted.csv"
 
@@ -83,11 +86,18 @@ def run(case: Case, folder: Path, progress: Callable[[float], None]) -> History:
             problem = _watch(command, environment, progress)
         except KeyboardInterrupt:
             raise Interrupted(_keep_partial(output, folder)) from None
+        except OSError as error:
+            raise StatejumpError(f"YADE cannot be started: {command[0]}: {error.strerror}") from None
         if problem:
             raise StatejumpError(f"case {case.name}: {problem}")
-        history = History.read_csv(output)
+        try:
+            history = History.read_csv(output)
+            summary = output.with_name(output.name + ".json").read_text(encoding="utf-8")
+        except (OSError, ValueError, IndexError) as error:
+            raise StatejumpError(f"case {case.name}: the DEM run left no complete result: {error}") from None
         history.write_csv(folder / "dem_history.csv")
-        _move(output.with_name(output.name + ".json"), folder / "dem_run.json")
+        with write_atomically(folder / "dem_run.json") as stream:
+            stream.write(summary)
     return history
 
 
@@ -107,7 +117,7 @@ def _watch(command: list[str], environment: dict[str, str], progress: Callable[[
         try:
             for line in process.stdout or []:
                 word, _, rest = line.strip().partition(" ")
-                if word == "PROGRESS":
+                if word == "PROGRESS" and re.fullmatch(r"\d+(\.\d*)?", rest):
                     fraction = float(rest)
                     finished = fraction >= 1
                     progress(fraction)
@@ -116,7 +126,7 @@ def _watch(command: list[str], environment: dict[str, str], progress: Callable[[
                 elif line.strip():
                     last = line.strip()
         except BaseException:
-            process.kill()
+            os.killpg(process.pid, signal.SIGKILL)  # YADE and whatever it has started
             raise
     if sentence:
         return f"the DEM run failed: {sentence}"
@@ -128,12 +138,6 @@ def _watch(command: list[str], environment: dict[str, str], progress: Callable[[
     return ""
 
 
-def _move(source: Path, target: Path) -> None:
-    aside = target.with_name(f".{target.name}.partial")
-    shutil.copyfile(source, aside)
-    os.replace(aside, target)
-
-
 def _keep_partial(output: Path, folder: Path) -> str:
     partial = output.with_name(output.name + ".partial")
     if not partial.exists():
@@ -141,7 +145,6 @@ def _keep_partial(output: Path, folder: Path) -> str:
     lines = partial.read_text(encoding="utf-8").splitlines(keepends=True)
     if lines and not lines[-1].endswith("\n"):
         lines.pop()  # a row cut in the middle
-    aside = folder / f".{INTERRUPTED}.partial"
-    aside.write_text("".join(lines), encoding="utf-8")
-    os.replace(aside, folder / INTERRUPTED)
+    with write_atomically(folder / INTERRUPTED) as stream:
+        stream.writelines(lines)
     return f"interrupted; the {max(0, len(lines) - 1)} samples so far are in {folder / INTERRUPTED}"

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rarer ways to go wrong: odd values, odd YADEs, signals, both stops in one cycle."""
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import time
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from conftest import COMMAND
+from statejump import compare, reduced
+from statejump.case import Case, check_radii, load_case, parse_case
+from statejump.errors import StatejumpError
+from statejump.history import History
+
+HUGE = 10**400
+FRICTION = "friction_coefficient = 0.3"
+ODD_VALUES = {
+    "a whole number beyond floating point": (
+        (FRICTION, f"friction_coefficient = {HUGE}"),
+        f"joint.friction_coefficient = {HUGE} is not allowed: must be between 0 and 10 [-]",
+    ),
+    "a list for a text": (
+        ('shape = "half_sine"', "shape = [1]"),
+        "thermal.shape = [1] is not allowed: must be a text in quotes",
+    ),
+    "a number outside of the sections": (
+        ("[case]", "links = 3\n[case]"),
+        "section [links] is unknown: did you mean [link]?",
+    ),
+    "a name that leaves the results folder": (
+        ('name = "table1"', 'name = "../table1"'),
+        "case.name = '../table1' is not allowed: must consist of letters, digits, '_' and '-'",
+    ),
+    "a table that does not rise": (
+        ("temperature_change_max_K = 100", "table_time_s = [0, 2, 1]\ntable_temperature_change_K = [0, 1, 0]"),
+        "thermal.table_time_s = [0.0, 2.0, 1.0] is not allowed: must be at least two times [s] that start at 0 "
+        "and rise",
+    ),
+    "a bar that shrinks to nothing": (
+        ("temperature_change_max_K = 100", "temperature_change_max_K = -9000"),
+        "link.thermal_expansion_per_K = 0.0005 is not allowed: the link has no length left at a temperature "
+        "change of -9000 K",
+    ),
+    "friction beyond the bar's rigidity": (
+        ("normal_force_N = 100", "normal_force_N = 1e9"),
+        "joint.friction_coefficient = 0.3 is not allowed: the friction force 3e+08 N must be below E A = 630000 N",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ODD_VALUES)
+def test_odd_value_is_one_sentence(edited, name: str) -> None:
+    replacement, sentence = ODD_VALUES[name]
+    more = {
+        "a bar that shrinks to nothing": [("23.4e-6", "5e-4")],
+        "a table that does not rise": [('"half_sine"', '"table"')],
+    }
+    path = edited(replacement, *more.get(name, []))
+    with pytest.raises(StatejumpError) as raised:
+        load_case(path)
+    assert str(raised.value) == f"{path}: {sentence}"
+
+
+def test_damaged_files_never_end_in_another_error(cases: Path) -> None:
+    """Whatever stands in a file: the case loads and solves, or one StatejumpError says why not."""
+    text = (cases / "table1.toml").read_text()
+    original = tomllib.loads(text)
+    values = [0, 1, -1, 1e-300, 1e300, -1e300, float("nan"), float("inf"), HUGE, True, "", "x", [], [1], {},
+              {"a": 1}, 3.5, 1e-3, 1e3, [0, 1], ["0"], tomllib.loads("d = 2021-01-01")["d"]]
+    rng = random.Random(1)
+    sentences = 0
+    for _ in range(4000):
+        data = {section: dict(keys) for section, keys in original.items()}
+        for _ in range(rng.choice((1, 1, 2, 3))):
+            section = rng.choice(list(data))
+            if not isinstance(data[section], dict) or not data[section]:
+                continue
+            action, key = rng.random(), rng.choice(list(data[section]))
+            if action < 0.8:
+                data[section][key] = rng.choice(values)
+            elif action < 0.9:
+                del data[section][key]
+            else:
+                data[section] = rng.choice(values)
+        try:
+            reduced.solve(parse_case(data, "damaged.toml"))
+        except StatejumpError as error:
+            sentences += 1
+            assert "\n" not in str(error)
+    assert 2000 < sentences < 4000  # some damage is harmless
+
+
+def test_bearing_must_be_larger_than_its_journal() -> None:
+    check_radii(bearing_radius=5.1e-3, journal_radius=5e-3)
+    for bearing in (5e-3, 4.9e-3, float("nan")):
+        with pytest.raises(ValueError, match="must be above journal_radius_m = 0.005"):
+            check_radii(bearing_radius=bearing, journal_radius=5e-3)
+
+
+HEADER = "time_s,displacement_m\\n"
+ODD_YADES = {
+    "no history": "echo PROGRESS 1.0000\n",
+    "an empty history": 'touch "$STATEJUMP_OUTPUT"\necho PROGRESS 1.0000\n',
+    "a row cut short": f'printf "{HEADER}0,0\\n1" > "$STATEJUMP_OUTPUT"\necho PROGRESS 1.0000\n',
+    "a word for a number": f'printf "{HEADER}0,zero\\n" > "$STATEJUMP_OUTPUT"\necho PROGRESS 1.0000\n',
+    "no summary": f'printf "{HEADER}0,0\\n" > "$STATEJUMP_OUTPUT"\necho PROGRESS 1.0000\n',
+    "progress without a number": "echo PROGRESS soon\nexit 4\n",
+}
+
+
+@pytest.mark.parametrize("name", ODD_YADES)
+def test_run_without_a_complete_result(statejump, cases: Path, fake_yade, tmp_path: Path, name: str) -> None:
+    outcome = statejump("compare", cases / "table1.toml", STATEJUMP_YADE=fake_yade(ODD_YADES[name]))
+    assert outcome.status == 2 and outcome.errors.startswith("error: "), outcome.errors
+    assert outcome.errors.count("\n") == 1 and "Traceback" not in outcome.errors
+    assert not any(entry.is_file() for entry in (tmp_path / "results").rglob("*"))
+
+
+def test_yade_that_is_no_program(statejump, cases: Path, fake_yade) -> None:
+    yade = Path(fake_yade(""))
+    yade.write_bytes(b"\x00 neither a script nor a program")
+    outcome = statejump("dem", cases / "table1.toml", STATEJUMP_YADE=str(yade))
+    assert outcome.status == 2
+    assert outcome.errors == f"error: YADE cannot be started: {yade}: Exec format error\n"
+
+
+def _running(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+@pytest.mark.parametrize("command, number, status", [
+    ("dem", signal.SIGTERM, 143), ("convergence", signal.SIGINT, 130), ("convergence", signal.SIGTERM, 143),
+])
+def test_signal_ends_yade_and_its_children(
+    cases: Path, fake_yade, tmp_path: Path, command: str, number: int, status: int
+) -> None:
+    yade = fake_yade(
+        'printf "time_s,displacement_m\\n0,0\\n" > "$STATEJUMP_OUTPUT.partial"\n'
+        f'sleep 60 &\necho "$$ $!" > {tmp_path}/pids\necho PROGRESS 0.5\nwait\n'
+    )
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    process = subprocess.Popen(
+        [COMMAND, command, str(cases / "table1.toml")], cwd=tmp_path, text=True, stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        env={**os.environ, "STATEJUMP_YADE": yade, "PYTHONUNBUFFERED": "1", "TMPDIR": str(scratch)},
+    )
+    assert process.stdout is not None and "50 %" in process.stdout.readline()
+    process.send_signal(number)
+    _, errors = process.communicate(timeout=20)
+    assert process.returncode == status and "Traceback" not in errors
+    pids = [int(word) for word in (tmp_path / "pids").read_text().split()]
+    deadline = time.monotonic() + 5
+    while any(map(_running, pids)) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert not any(map(_running, pids))
+    assert list(scratch.iterdir()) == []
+    assert not any(entry.is_file() for entry in (tmp_path / "results").rglob("*"))
+
+
+def test_wrong_python_has_status_2() -> None:
+    changed = Path(COMMAND).read_text().replace("WANTED = (3, ", "WANTED = (2, ")
+    done = subprocess.run(["/usr/bin/python3", "-c", changed], capture_output=True, text=True)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and done.stderr.startswith("error: wrong Python")
+
+
+def test_stop_left_is_the_one_reached_first(cases: Path) -> None:
+    """A sine reaches both stops in one cycle; both models must name the same one."""
+    case: Case = load_case(cases / "table1.toml")
+    case = case.copy(update={"thermal": case.thermal.copy(update={"shape": "sine"})})
+    path = reduced.solve(case)
+    columns = dict(reduced.sample(path, reduced.sample_times(case)).columns)
+    assert columns["stop_force_N"].min() < -100 and columns["stop_force_N"].max() > 100
+    stage = columns.pop("stage")
+    columns["slipping"] = np.isin(stage, ("S2", "S5")).astype(float)
+    # The stop is left where the block slides away from it, as in the DEM with its elastic stops.
+    left = [e.temperature_change_K for e in path.events if e.kind == "stop_left"]
+    contact = np.abs(columns["displacement_m"]) > 1e-3 - 1e-12
+    columns["stop_contact"] = contact.astype(float)
+    columns["stop_force_N"] = np.where(contact, -np.sign(columns["displacement_m"]), 0.0)
+    for name in ("contact_energy_J", "kinetic_energy_J", "damping_dissipation_J", "external_work_J"):
+        columns[name] = np.zeros(len(contact))
+    found = compare.dem_event_temperatures(History(columns), case.dem.samples_per_cycle)
+    assert left[0] > 0 > left[1]
+    assert found["stop_left"] == pytest.approx(left[0], abs=0.5)
+    assert [row.name for row in compare.compare(case, path, History(columns)) if not row.passed] == []
