@@ -6,9 +6,9 @@
 // offsets, and guard.cpp compares the declarations with the running libraries before any object is
 // touched. Only this folder knows offsets.
 //
-// Virtual functions are declared and not defined: their definitions, the vtables and the type
-// information come from YADE's libraries. Constructors that YADE does not export are defined here
-// and give every member the default that a fresh object shows in Python.
+// Virtual functions that YADE exports are declared and not defined: their definitions, the vtables
+// and the type information come from YADE's libraries. Constructors that YADE does not export are
+// defined here and give every member the default that a fresh object shows in Python.
 #pragma once
 
 #include <boost/enable_shared_from_this.hpp>
@@ -79,15 +79,21 @@ class Serializable : public Factorable {
   void serialize(Archive& archive, unsigned int version);
 };
 
-// Multiple dispatch: each derived class owns a static index, taken once in its constructor.
+// Multiple dispatch: each derived class owns a static index, taken once in its constructor. YADE
+// does not export the table of this class, so its functions are defined here; every class below
+// overrides them.
 class Indexable {
+  [[noreturn]] static void no_dispatch_index() {
+    throw std::logic_error("class without a dispatch index");
+  }
+
  public:
-  virtual void incrementMaxCurrentlyUsedClassIndexOfKin();
-  virtual int& modifyClassIndex();
+  virtual void incrementMaxCurrentlyUsedClassIndexOfKin() { no_dispatch_index(); }
+  virtual int& modifyClassIndex() { no_dispatch_index(); }
   virtual ~Indexable() {}
-  virtual const int& getClassIndex() const;
-  virtual const int& getBaseClassIndex(int depth) const;
-  virtual const int& getMaxCurrentlyUsedClassIndexOfKin() const;
+  virtual const int& getClassIndex() const { no_dispatch_index(); }
+  virtual const int& getBaseClassIndex(int) const { no_dispatch_index(); }
+  virtual const int& getMaxCurrentlyUsedClassIndexOfKin() const { no_dispatch_index(); }
 
  protected:
   Indexable() {}
