@@ -312,7 +312,8 @@ class Probe {
   void shown(const char* attribute, Type& member, const Type& value) {
     if (differs()) return;
     const Lent<Type> lent(member, value);
-    const py::extract<Type> seen(object_.attr(attribute));
+    const py::object value_seen = object_.attr(attribute);  // extract does not hold it
+    const py::extract<Type> seen(value_seen);
     expect(seen.check() && Type(seen()) == value, attribute);
   }
   void number_shown(const char* attribute, yade::Real& member) {
