@@ -1,10 +1,12 @@
 #include "failure.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <iostream>
 #include <mutex>
 #include <stdexcept>
 
-#include "yade_api.hpp"
+#include "thermal.hpp"
 
 namespace statejump::dem {
 namespace {
@@ -15,15 +17,27 @@ std::string first_message;
 const yade::Scene* failed_scene = nullptr;
 long failed_iteration = 0;
 
+bool raised_by_an_engine(const yade::Scene& scene) {
+  return std::any_of(scene.engines.begin(), scene.engines.end(), [](const auto& engine) {
+    return dynamic_cast<const ThermalExpansionEngine*>(engine.get()) ||
+           dynamic_cast<const ThermalLinks*>(engine.get());
+  });
+}
+
 }  // namespace
 
 void record_failure(const std::string& message) {
   const std::lock_guard<std::mutex> lock(message_mutex);
-  if (failed) return;
+  yade::Scene* scene = yade::Omega::instance().getScene().get();
+  if (failed && failed_scene == scene && failed_iteration == scene->iter) return;
   first_message = message;
-  failed_scene = yade::Omega::instance().getScene().get();
-  failed_iteration = failed_scene->iter;
+  failed_scene = scene;
+  failed_iteration = scene->iter;
   failed = true;
+  if (raised_by_an_engine(*scene)) return;
+  // Nobody will raise it: say it and end the run.
+  std::cerr << "statejump_yade: " << message << std::endl;
+  scene->stopAtIter = scene->iter + 1;
 }
 
 void throw_recorded_failure() {

@@ -170,6 +170,12 @@ void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
     record_failure(error.what() + where(*scene, contact->id1, contact->id2));
   }
   physics->tangensOfFrictionAngle = std::tan(std::min(first.frictionAngle, second.frictionAngle));
+  if (!(physics->tangensOfFrictionAngle >= 0)) {
+    std::ostringstream text;
+    text << "frictionAngle = " << std::min(first.frictionAngle, second.frictionAngle)
+         << ", allowed is [0, pi/2) rad" << where(*scene, contact->id1, contact->id2);
+    record_failure(text.str());
+  }
   const Real inverse = inverse_mass(*scene, contact->id1) + inverse_mass(*scene, contact->id2);
   physics->effectiveMass = inverse > 0 ? 1 / inverse : 0;
   physics->normalDampingRatio = normalDampingRatio;

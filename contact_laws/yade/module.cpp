@@ -85,8 +85,9 @@ BOOST_PYTHON_MODULE(_native) {
   py::def("setup", &statejump::dem::setup, py::arg("wrapper"));
   py::def("class_names", &statejump::dem::OurClasses::names);
   py::def("stable_time_step", &statejump::dem::stable_time_step_of_scene,
-          "Largest stable time step of the current scene [s]: smallest of 4 m / (c + sqrt(c^2 + "
-          "4 m k)) over the free bodies, k and c twice the sums of what touches the body (joint "
+          "Stable time step of the current scene [s], on the safe side: smallest of "
+          "4 / (c + sqrt(c^2 + 4 k)) over the bodies, k and c twice the sums of stiffness and "
+          "damping times 1/m (plus arm^2/I where the body may turn) of what touches it (joint "
           "contacts at their current stiffness, thermal links). Contacts that do not touch yet "
           "count nothing. Infinity when nothing acts on a free body.");
 }

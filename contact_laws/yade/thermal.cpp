@@ -60,8 +60,8 @@ const kernel::ThermalProgram& ThermalProgram::program() const {
 void ThermalExpansionEngine::collect_targets() {
   targets_.clear();
   const auto add = [&](yade::Body& body, bool required) {
-    auto shape = boost::dynamic_pointer_cast<ThermalShape>(body.shape);
-    auto material = boost::dynamic_pointer_cast<ThermalFrictMat>(body.material);
+    auto* shape = dynamic_cast<ThermalShape*>(body.shape.get());
+    const auto* material = dynamic_cast<const ThermalFrictMat*>(body.material.get());
     if (shape && material) {
       targets_.push_back({static_cast<std::size_t>(body.id), shape, material});
     } else if (required) {
@@ -84,7 +84,9 @@ bool ThermalExpansionEngine::collected() const {
   if (number_of_bodies_ != number_of_bodies(*scene) || collected_ids_ != ids) return false;
   for (const Target& target : targets_) {
     const auto& body = body_at(*scene, target.id);
-    if (!body || body->shape != target.shape || body->material != target.material) return false;
+    if (!body || body->shape.get() != target.shape || body->material.get() != target.material) {
+      return false;
+    }
   }
   return true;
 }
@@ -196,26 +198,52 @@ void ThermalLinks::act(ThermalLink& link) {
   link.previousStressFreeLength = stress_free_length;
 }
 
+namespace {
+
+// How much a unit force with the given arm moves a body, per unit time squared [1/kg]: along the
+// force itself, and through the rotation when the body may turn. Arms that do not turn it are 0.
+Real mobility(const yade::State& state, Real arm_squared) {
+  Real smallest_inertia = 0;
+  for (int i = 0; i < 3; ++i) {
+    const bool free = !(state.blockedDOFs & (8u << i));
+    if (free && state.inertia[i] > 0 &&
+        (smallest_inertia == 0 || state.inertia[i] < smallest_inertia)) {
+      smallest_inertia = state.inertia[i];
+    }
+  }
+  return inverse_mass(state) + (smallest_inertia > 0 ? arm_squared / smallest_inertia : 0);
+}
+
+}  // namespace
+
+// With s the stretch of a spring of stiffness k between two bodies, s^2 <= 2 (s1^2 + s2^2) and
+// s_i^2 <= mobility_i * 2 * (kinetic energy per unit rate squared): the largest eigenvalue is at
+// most the largest sum of 2 k mobility over what touches one body.
 double stable_time_step(const yade::Scene& scene) {
   const std::size_t count = number_of_bodies(scene);
-  std::vector<Real> stiffness(count, 0);
-  std::vector<Real> damping(count, 0);
-  const auto touch = [&](int id1, int id2, Real k, Real c) {
-    for (const int id : {id1, id2}) {
-      stiffness[static_cast<std::size_t>(id)] += k;
-      damping[static_cast<std::size_t>(id)] += c;
-    }
+  std::vector<Real> stiffness(count, 0);  // per mass
+  std::vector<Real> damping(count, 0);    // per mass
+  const auto touch = [&](int id, Real mobility_of_body, Real k, Real c) {
+    stiffness[static_cast<std::size_t>(id)] += mobility_of_body * k;
+    damping[static_cast<std::size_t>(id)] += mobility_of_body * c;
   };
   for (std::size_t i = 0; i < number_of_interactions(scene); ++i) {
     const yade::Interaction& contact = interaction_at(scene, i);
     if (!contact.isReal()) continue;
     const auto* physics = dynamic_cast<const JointPhys*>(contact.phys.get());
-    if (!physics) continue;
+    const auto* geometry = dynamic_cast<const JointGeom*>(contact.geom.get());
+    if (!physics || !geometry) continue;
     const Real normal_damping =
         2 * physics->normalDampingRatio * std::sqrt(physics->effectiveMass * physics->kn);
     const Real tangential_damping =
         2 * physics->tangentialDampingRatio * std::sqrt(physics->effectiveMass * physics->ks);
-    touch(contact.id1, contact.id2, physics->kn + physics->ks, normal_damping + tangential_damping);
+    for (const int id : {contact.id1, contact.id2}) {
+      const yade::State& state = *body_of(scene, id, "stable_time_step").state;
+      const Vector3r arm = geometry->contactPoint - state.se3.position;
+      touch(id, mobility(state, arm.cross(geometry->normal).squaredNorm()), physics->kn,
+            normal_damping);
+      touch(id, mobility(state, arm.squaredNorm()), physics->ks, tangential_damping);
+    }
   }
   for (const auto& engine : scene.engines) {
     const auto* group = dynamic_cast<const ThermalLinks*>(engine.get());
@@ -224,20 +252,15 @@ double stable_time_step(const yade::Scene& scene) {
       if (!link) continue;
       const yade::State& root = *body_of(scene, link->id1, "ThermalLink.id1").state;
       const yade::State& tip = *body_of(scene, link->id2, "ThermalLink.id2").state;
-      touch(link->id1, link->id2,
-            link->youngModulus * link->crossSectionArea / link->stressFreeLength,
-            damping_coefficient(*link, root, tip));
+      const Real k = link->youngModulus * link->crossSectionArea / link->stressFreeLength;
+      const Real c = damping_coefficient(*link, root, tip);
+      touch(link->id1, inverse_mass(root), k, c);
+      touch(link->id2, inverse_mass(tip), k, c);
     }
   }
   double smallest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < count; ++i) {
-    const auto& body = body_at(scene, i);
-    if (!body) continue;
-    const yade::State& state = *body->state;
-    if (!(inverse_mass(state) > 0)) continue;
-    // Against a fixed body the row sum is exact; between free bodies it doubles.
-    smallest = std::min(smallest,
-                        kernel::critical_time_step(state.mass, 2 * stiffness[i], 2 * damping[i]));
+    smallest = std::min(smallest, kernel::critical_time_step(1, 2 * stiffness[i], 2 * damping[i]));
   }
   return smallest;
 }

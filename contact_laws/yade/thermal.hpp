@@ -75,12 +75,13 @@ struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalE
   }
 
  private:
-  // A body as it was when it was collected. Held, so that a body erased or given another shape by a
-  // script is noticed instead of written to after it is gone.
+  // A body as it was when it was collected: compared before use, so that a body erased or given
+  // another shape by a script is noticed. Not owned: Python objects may only be released under the
+  // interpreter's lock, which a running simulation does not hold.
   struct Target {
     std::size_t id;
-    yade::shared_ptr<ThermalShape> shape;
-    yade::shared_ptr<ThermalFrictMat> material;
+    ThermalShape* shape;
+    const ThermalFrictMat* material;
   };
   void collect_targets();
   bool collected() const;
@@ -168,9 +169,10 @@ struct ThermalLinks : Registered<ThermalLinks, yade::GlobalEngine> {
   std::array<int, 3> energy_ids_ = {-1, -1, -1};
 };
 
-// Largest stable time step of the current state [s]: the smallest 4 m / (c + sqrt(c^2 + 4 m k))
-// over the free bodies, with k twice the sum of the stiffnesses that touch a body and c likewise
-// (Gershgorin's bound on the largest frequency). Infinity when nothing acts on a free body.
+// Stable time step of the current state [s], on the safe side: the smallest 4 / (c + sqrt(c^2 + 4 k))
+// over the bodies, with k twice the sum of stiffness times mobility (1/m, and arm^2/I where the body
+// may turn) of what touches the body and c likewise for damping. Exact for a spring between equal
+// masses, by a factor of up to sqrt(2) small otherwise. Infinity when nothing acts on a free body.
 double stable_time_step(const yade::Scene& scene);
 
 }  // namespace statejump::dem
