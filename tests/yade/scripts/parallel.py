@@ -17,7 +17,7 @@ def many(count):
         hole = body((x, y, 0), sj.Bearing(radius=R2), other)
         pin = body(
             (x + 1.0e-4, y + 0.3e-4 + 1e-7 * i, 0), sj.Journal(radius=R1), metal, mass=0.02,
-            inertia=3e-7, blocked=PLANAR, velocity=(0.2, 0.3, 0), spin=(0, 0, 10 + 0.1 * i),
+            inertia=3e-7, blocked=PLANAR, velocity=(0.02, 0.03, 0), spin=(0, 0, 10 + 0.1 * i),
         )
         pins.append(pin)
         root = body((x + 0.05, y, 0))
