@@ -228,11 +228,25 @@ void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
   return true;
 }
 
+// YADE enlarges its list of energies without a lock, and what another thread adds meanwhile is lost:
+// all names are entered by one thread before any thread adds.
+void Law2_JointGeom_JointPhys_HertzMindlin::name_energies() {
+  if (energies_named_.load(std::memory_order_acquire)) return;
+  const std::lock_guard<std::mutex> lock(naming_);
+  if (energies_named_.load(std::memory_order_relaxed)) return;
+  scene->energy->add(0, "jointElastic", energy_ids_[0], true);
+  scene->energy->add(0, "jointFriction", energy_ids_[1], false);
+  scene->energy->add(0, "jointDamping", energy_ids_[2], false);
+  scene->energy->add(0, "jointThermalWork", energy_ids_[3], false);
+  energies_named_.store(true, std::memory_order_release);
+}
+
 // Expansion of journal or bearing works on the contact through the clearance c and the effective
 // radius R: with V(delta, R) and delta = eccentricity - c, the part of dV that no motion of the
 // bodies explains is -F dc + dV/dR dR, dV/dR = V / (2 R). Trapezoidal, as the motion is.
 void Law2_JointGeom_JointPhys_HertzMindlin::account(const kernel::ContactResponse& response,
                                                     const JointGeom& geometry, JointPhys& physics) {
+  name_energies();
   const Real clearance = geometry.eccentricity - geometry.penetrationDepth;
   if (physics.previousRadius > 0) {
     const Real force = 0.5 * (response.elastic_normal_force + physics.previousElasticForce);

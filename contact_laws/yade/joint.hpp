@@ -179,7 +179,10 @@ struct Law2_JointGeom_JointPhys_HertzMindlin
  private:
   void account(const kernel::ContactResponse& response, const JointGeom& geometry,
                JointPhys& physics);
+  void name_energies();
   std::array<int, 4> energy_ids_ = {-1, -1, -1, -1};
+  std::atomic<bool> energies_named_{false};
+  std::mutex naming_;
 };
 
 }  // namespace statejump::dem
