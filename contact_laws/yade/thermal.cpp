@@ -110,11 +110,15 @@ void ThermalLink::check() const {
 
 void ThermalLinks::action() {
   throw_recorded_failure();
-  scene->forces.sync();
+  // Only a tip that turns with its link asks for the moments of the step; summing the threads' parts
+  // for nothing would cost as much as all the rest of this engine.
+  bool needs_moments = false;
   for (const auto& link : links) {
     if (!link) throw std::invalid_argument("ThermalLinks.links holds None");
-    act(*link);
+    needs_moments = needs_moments || link->tipTurnsWithLink;
   }
+  if (needs_moments) scene->forces.sync();
+  for (const auto& link : links) act(*link);
 }
 
 // With extension e = L - l_T the tension is N = k_T e + c (L' - l_T'), k_T = E A / l_T, and
