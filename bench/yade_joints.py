@@ -37,6 +37,7 @@ size = setting("SIZE", 1)
 steps = setting("STEPS", 1000)
 warm_up = setting("WARM_UP", 300)
 timing = bool(setting("TIMING", 0))
+bystanders = setting("BYSTANDERS", 0)  # 0 to 3 for each pair of spheres
 
 # Table 2 of Chen et al. (2021): radius and clearance of the joint, material.
 young, poisson, friction = 70e9, 0.3, 0.3  # Pa, -, -
@@ -123,6 +124,10 @@ def spheres():
         body(Sphere(radius=radius), material, centre, True)
         free = body(Sphere(radius=radius), material, centre + Vector3(offset, 0, 0), False)
         O.forces.setPermF(free, Vector3(-1, inclination, 0) * load)
+        # Fixed bodies that the free one could touch next, as a slider its stops: boxes overlap.
+        near = 2 * radius + 0.4 * verlet_distance
+        for direction in (Vector3(0, -1, 0), Vector3(0, 1, 0), Vector3(1, 0, 0))[:bystanders]:
+            body(Sphere(radius=radius), material, centre + Vector3(offset, 0, 0) + near * direction, True)
     O.engines = engines(
         [Bo1_Sphere_Aabb()],
         Ig2_Sphere_Sphere_ScGeom(),

@@ -11,6 +11,12 @@
 namespace statejump::dem {
 namespace {
 
+// Entries of O.energy; kept as strings, because the tracker takes strings and is asked every step.
+const std::string joint_elastic = "jointElastic";
+const std::string joint_friction = "jointFriction";
+const std::string joint_damping = "jointDamping";
+const std::string joint_thermal_work = "jointThermalWork";
+
 constexpr unsigned int all_translations_blocked = 7;
 
 kernel::BodyMotion motion(const yade::State& state) {
@@ -228,16 +234,16 @@ void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
   return true;
 }
 
-// YADE enlarges its list of energies without a lock, and what another thread adds meanwhile is lost:
-// all names are entered by one thread before any thread adds.
+// YADE enlarges its list of energies without a lock, and what another thread adds meanwhile is
+// lost: all names are entered by one thread before any thread adds.
 void Law2_JointGeom_JointPhys_HertzMindlin::name_energies() {
   if (energies_named_.load(std::memory_order_acquire)) return;
   const std::lock_guard<std::mutex> lock(naming_);
   if (energies_named_.load(std::memory_order_relaxed)) return;
-  scene->energy->add(0, "jointElastic", energy_ids_[0], true);
-  scene->energy->add(0, "jointFriction", energy_ids_[1], false);
-  scene->energy->add(0, "jointDamping", energy_ids_[2], false);
-  scene->energy->add(0, "jointThermalWork", energy_ids_[3], false);
+  scene->energy->add(0, joint_elastic, energy_ids_[0], true);
+  scene->energy->add(0, joint_friction, energy_ids_[1], false);
+  scene->energy->add(0, joint_damping, energy_ids_[2], false);
+  scene->energy->add(0, joint_thermal_work, energy_ids_[3], false);
   energies_named_.store(true, std::memory_order_release);
 }
 
@@ -254,16 +260,16 @@ void Law2_JointGeom_JointPhys_HertzMindlin::account(const kernel::ContactRespons
     const Real radius = 0.5 * (geometry.effectiveRadius + physics.previousRadius);
     const Real work = -force * (clearance - physics.previousClearance) +
                       energy / (2 * radius) * (geometry.effectiveRadius - physics.previousRadius);
-    scene->energy->add(work, "jointThermalWork", energy_ids_[3], false);
+    scene->energy->add(work, joint_thermal_work, energy_ids_[3], false);
   }
   physics.previousElasticForce = response.elastic_normal_force;
   physics.previousElasticEnergy = response.normal_elastic_energy;
   physics.previousClearance = clearance;
   physics.previousRadius = geometry.effectiveRadius;
   scene->energy->add(response.normal_elastic_energy + response.tangential_elastic_energy,
-                     "jointElastic", energy_ids_[0], true);
-  scene->energy->add(response.friction_dissipation, "jointFriction", energy_ids_[1], false);
-  scene->energy->add(response.damping_dissipation, "jointDamping", energy_ids_[2], false);
+                     joint_elastic, energy_ids_[0], true);
+  scene->energy->add(response.friction_dissipation, joint_friction, energy_ids_[1], false);
+  scene->energy->add(response.damping_dissipation, joint_damping, energy_ids_[2], false);
 }
 
 }  // namespace statejump::dem

@@ -12,6 +12,11 @@
 namespace statejump::dem {
 namespace {
 
+// Entries of O.energy; kept as strings, because the tracker takes strings and is asked every step.
+const std::string link_elastic = "linkElastic";
+const std::string link_damping = "linkDamping";
+const std::string link_thermal_work = "linkThermalWork";
+
 constexpr unsigned int all_translations_blocked = 7;
 constexpr unsigned int all_rotations_blocked = 56;
 
@@ -110,8 +115,8 @@ void ThermalLink::check() const {
 
 void ThermalLinks::action() {
   throw_recorded_failure();
-  // Only a tip that turns with its link asks for the moments of the step; summing the threads' parts
-  // for nothing would cost as much as all the rest of this engine.
+  // Only a tip that turns with its link asks for the moments of the step; summing the threads'
+  // parts for nothing would cost as much as all the rest of this engine.
   bool needs_moments = false;
   for (const auto& link : links) {
     if (!link) throw std::invalid_argument("ThermalLinks.links holds None");
@@ -182,8 +187,8 @@ void ThermalLinks::act(ThermalLink& link) {
 
   if (scene->trackEnergy) {
     const Real elastic = 0.5 * stiffness * extension * extension;
-    scene->energy->add(elastic, "linkElastic", energy_ids_[0], true);
-    scene->energy->add(damping * extension_rate * extension_rate * scene->dt, "linkDamping",
+    scene->energy->add(elastic, link_elastic, energy_ids_[0], true);
+    scene->energy->add(damping * extension_rate * extension_rate * scene->dt, link_damping,
                        energy_ids_[1], false);
     if (link.previousStressFreeLength > 0) {
       const Real previous_elastic = 0.5 * link.youngModulus * link.crossSectionArea /
@@ -194,7 +199,7 @@ void ThermalLinks::act(ThermalLink& link) {
           0.5 * (elastic / stress_free_length + previous_elastic / link.previousStressFreeLength);
       scene->energy->add(
           -(mean_tension + mean_softening) * (stress_free_length - link.previousStressFreeLength),
-          "linkThermalWork", energy_ids_[2], false);
+          link_thermal_work, energy_ids_[2], false);
     }
   }
   link.previousTension = tension;
