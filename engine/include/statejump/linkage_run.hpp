@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "statejump/linkage.hpp"
+
+namespace statejump {
+
+/// How a run is stepped and recorded.
+struct LinkageRunOptions {
+  int steps = 100000;    ///< Steps over the whole program, >= 1; the paper's number
+  int sample_every = 0;  ///< Steps between samples, >= 0; 0: only the start and the end
+};
+
+/// Work and heat since the start [J]: thermal_work = change of LinkageEnergy + the three others.
+struct LinkageAccount {
+  double thermal_work = 0.0;
+  double axial_dissipation = 0.0;
+  double pin_dissipation = 0.0;
+  double friction_dissipation = 0.0;
+};
+
+struct LinkageSample {
+  double time;                ///< [s]
+  double temperature_change;  ///< ΔT [K]
+  LinkageState state;
+  LinkageAccount account;
+};
+
+/// Instant at which the clearance is first used up, on the RK4 solution within its step.
+struct FirstContact {
+  double time;                ///< [s]
+  double temperature_change;  ///< ΔT [K]
+};
+
+struct LinkageRun {
+  std::vector<LinkageSample> samples;  ///< The first is the start, the last the end
+  std::optional<FirstContact> first_contact;
+  int contacts = 0;  ///< Number of steps that end in contact after one that did not
+  /// thermal work − change of energy − dissipation at the end [J]; see simulate().
+  double energy_residue = 0.0;
+};
+
+/// Integrates a Linkage over a thermal program by the classical Runge-Kutta method with fixed
+/// steps, corners of the program always on a step.
+///
+/// Thermal work and dissipation are further components of the same ODE. The thermal power is
+/// ∂V/∂l_T l̇_T = −(N + N²/(2 E A)) l̇_T with N = k_T (L − l_T), less the dashpot's c (L̇ − l̇_T) l̇_T,
+/// and F_N times the rate of −c_T plus ∂V/∂R Ṙ where radii expand.
+///
+/// Order: 4 while the force is smooth, 5 for the energy of the ringing links. Hertz's δ^1.5 has no
+/// second derivative at δ = 0, so a step over the edge of contact leaves an error of order h^2.5.
+/// Friction: the slide ∫ v_t dt is a component of the ODE; a stage applies kernel::mindlin_step()
+/// to a copy of the history at the step's start with the slide so far, the accepted step updates
+/// the history once. That is of order 4 in stick at constant normal load, of order 1 while the load
+/// changes, since the step's slide is taken at the stiffness of its end. The friction heat is that
+/// of mindlin_step(), whose work is the trapezium's: a further O(h²) in the account.
+/// Throws std::invalid_argument for a model, program or option out of range, std::domain_error with
+/// time, temperature and value if the state ceases to be finite.
+LinkageRun simulate(const Linkage& model, const kernel::ThermalProgram& program,
+                    const LinkageState& start, const LinkageRunOptions& options = {});
+
+}  // namespace statejump

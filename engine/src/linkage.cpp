@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/linkage.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "statejump/kernel/elastic_pair.hpp"
+#include "statejump/kernel/hertz.hpp"
+#include "statejump/kernel/require.hpp"
+
+namespace statejump {
+
+using Eigen::Vector2d;
+using kernel::require;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+double cross(const Vector2d& a, const Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+void validate(const ThermalLink& link, const std::string& name) {
+  const auto positive = [&name](double value, const char* field, const char* range) {
+    require(std::isfinite(value) && value > 0.0, (name + field).c_str(), value, range);
+  };
+  positive(link.stress_free_length, ".stress_free_length", "finite, > 0 m");
+  positive(link.mass, ".mass", "finite, > 0 kg");
+  positive(link.young_modulus, ".young_modulus", "finite, > 0 Pa");
+  positive(link.cross_section_area, ".cross_section_area", "finite, > 0 m^2");
+  require(std::isfinite(link.thermal_expansion), (name + ".thermal_expansion").c_str(),
+          link.thermal_expansion, "finite [1/K]");
+  require(link.poisson_ratio > -1.0 && link.poisson_ratio <= 0.5, (name + ".poisson_ratio").c_str(),
+          link.poisson_ratio, "(-1, 0.5]");
+}
+
+double axial_energy(const ThermalLink& link, double length, double temperature_change) {
+  const double free =
+      kernel::thermal_length(link.stress_free_length, link.thermal_expansion, temperature_change);
+  const double stretch = length - free;
+  return 0.5 * link.young_modulus * link.cross_section_area / free * stretch * stretch;
+}
+
+}  // namespace
+
+void Linkage::validate() const {
+  const auto non_negative = [](double value, const char* name, const char* range) {
+    require(std::isfinite(value) && value >= 0.0, name, value, range);
+  };
+  require(std::isfinite(frame_length) && frame_length > 0.0, "frame_length", frame_length,
+          "finite, > 0 m");
+  statejump::validate(link_ab, "link_ab");
+  statejump::validate(link_bc, "link_bc");
+  const double sum = link_ab.stress_free_length + link_bc.stress_free_length;
+  const double difference = std::abs(link_ab.stress_free_length - link_bc.stress_free_length);
+  require(frame_length < sum && frame_length > difference, "frame_length", frame_length,
+          "between the difference and the sum of the two link lengths [m], else the links cannot "
+          "meet");
+  require(std::isfinite(journal_radius) && journal_radius > 0.0, "journal_radius", journal_radius,
+          "finite, > 0 m");
+  require(std::isfinite(bearing_radius) && bearing_radius > journal_radius, "bearing_radius",
+          bearing_radius, "finite, > journal_radius [m]");
+  require(std::isfinite(journal_thermal_expansion), "journal_thermal_expansion",
+          journal_thermal_expansion, "finite [1/K]");
+  require(std::isfinite(bearing_thermal_expansion), "bearing_thermal_expansion",
+          bearing_thermal_expansion, "finite [1/K]");
+  non_negative(friction_coefficient, "friction_coefficient", "finite, >= 0");
+  non_negative(axial_damping_ratio, "axial_damping_ratio", "finite, >= 0");
+  non_negative(pin_damping, "pin_damping", "finite, >= 0 N m s/rad");
+  non_negative(torsion_stiffness, "torsion_stiffness", "finite, >= 0 N m/rad");
+  require(std::isnan(torsion_free_angle) || (torsion_free_angle > 0.0 && torsion_free_angle < pi),
+          "torsion_free_angle", torsion_free_angle, "(0, pi) rad, or NaN for the ideal position");
+}
+
+double Linkage::free_angle() const {
+  if (!std::isnan(torsion_free_angle)) return torsion_free_angle;
+  const double l1 = link_ab.stress_free_length;
+  const double l2 = link_bc.stress_free_length;
+  return std::acos((l1 * l1 + l2 * l2 - frame_length * frame_length) / (2.0 * l1 * l2));
+}
+
+LinkageCoordinates coordinates(const Linkage& model, const LinkageState& state) {
+  const Vector2d c(model.frame_length, 0.0);
+  const Vector2d& ab = state.bearing_centre;
+  const Vector2d bc = state.journal_centre - c;
+  return {0.5 * ab,
+          c + 0.5 * bc,
+          std::atan2(ab.y(), ab.x()),
+          std::atan2(bc.y(), bc.x()),
+          ab.norm(),
+          bc.norm(),
+          state.journal_centre - state.bearing_centre};
+}
+
+LinkageState initial_state(const Linkage& model, LinkageStart start, double temperature_rate) {
+  model.validate();
+  const double a = model.frame_length;
+  const double l1 = model.link_ab.stress_free_length;
+  const double l2 = model.link_bc.stress_free_length;
+  const double x = (a * a + (l1 - l2) * (l1 + l2)) / (2.0 * a);
+  LinkageState state;
+  state.bearing_centre = {x, std::sqrt((l1 - x) * (l1 + x))};
+  state.journal_centre = state.bearing_centre;
+  if (start == LinkageStart::matched) {
+    const Vector2d c(a, 0.0);
+    state.bearing_velocity =
+        model.link_ab.thermal_expansion * temperature_rate * state.bearing_centre;
+    state.journal_velocity =
+        model.link_bc.thermal_expansion * temperature_rate * (state.journal_centre - c);
+  }
+  return state;
+}
+
+LinkageEnergy energy(const Linkage& model, const LinkageState& state, double temperature_change) {
+  const LinkageCoordinates q = coordinates(model, state);
+  const double r1 = kernel::thermal_length(model.journal_radius, model.journal_thermal_expansion,
+                                           temperature_change);
+  const double r2 = kernel::thermal_length(model.bearing_radius, model.bearing_thermal_expansion,
+                                           temperature_change);
+  const bool internal = model.contact_radius == ContactRadius::internal;
+  const double radius = r1 * r2 / (internal ? r2 - r1 : r2 + r1);
+  const kernel::ElasticPair pair =
+      kernel::elastic_pair(model.link_bc.young_modulus, model.link_bc.poisson_ratio,
+                           model.link_ab.young_modulus, model.link_ab.poisson_ratio);
+  const double depth = q.eccentricity.norm() - (r2 - r1);
+  const double bend =
+      std::atan2(
+          cross(state.bearing_centre, state.journal_centre - Vector2d(model.frame_length, 0.0)),
+          state.bearing_centre.dot(state.journal_centre - Vector2d(model.frame_length, 0.0))) -
+      model.free_angle();
+  const kernel::ContactHistory& spring = state.contact;
+  return {model.link_ab.mass / 6.0 * state.bearing_velocity.squaredNorm() +
+              model.link_bc.mass / 6.0 * state.journal_velocity.squaredNorm(),
+          axial_energy(model.link_ab, q.length_ab, temperature_change) +
+              axial_energy(model.link_bc, q.length_bc, temperature_change),
+          kernel::hertz(pair.effective_young_modulus, radius, depth).elastic_energy,
+          spring.tangential_stiffness > 0.0
+              ? 0.5 * spring.tangential_force.squaredNorm() / spring.tangential_stiffness
+              : 0.0,
+          0.5 * model.torsion_stiffness * bend * bend};
+}
+
+double first_contact_temperature(const Linkage& model) {
+  model.validate();
+  const double alpha = model.link_ab.thermal_expansion;
+  require(model.link_bc.thermal_expansion == alpha, "link_bc.thermal_expansion",
+          model.link_bc.thermal_expansion, "that of link_ab [1/K]");
+  const double rate =
+      alpha * model.frame_length - (model.bearing_radius * model.bearing_thermal_expansion -
+                                    model.journal_radius * model.journal_thermal_expansion);
+  return rate > 0.0 ? model.radial_clearance() / rate : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace statejump

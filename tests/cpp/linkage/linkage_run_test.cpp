@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/linkage_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "umbrella.hpp"
+
+namespace statejump::testing {
+namespace {
+
+LinkageRun matched(const Linkage& model, const kernel::ThermalProgram& program, int steps,
+                   int sample_every = 0) {
+  return simulate(model, program,
+                  initial_state(model, LinkageStart::matched, program.temperature_rate(0.0)),
+                  {steps, sample_every});
+}
+
+TEST(LinkageRun, MatchedStartMeetsFirstContact) {
+  for (const double c : {0.05e-3, 0.10e-3, 0.15e-3, 0.20e-3}) {
+    const LinkageRun run = matched(umbrella(c), heating(), 20000);
+    ASSERT_TRUE(run.first_contact);
+    EXPECT_NEAR(run.first_contact->temperature_change, c / (alpha * frame), 1e-6) << c;
+    EXPECT_NEAR(run.first_contact->time, 0.005 * c / (alpha * frame), 1e-8) << c;
+  }
+  EXPECT_FALSE(matched(umbrella(0.30e-3), heating(), 20000).first_contact);
+}
+
+TEST(LinkageRun, ExpandingRadiiMoveFirstContact) {
+  Linkage model = umbrella();
+  model.journal_thermal_expansion = alpha;
+  model.bearing_thermal_expansion = 2.0 * alpha;
+  const LinkageRun run = matched(model, heating(), 20000);
+  ASSERT_TRUE(run.first_contact);
+  EXPECT_NEAR(run.first_contact->temperature_change, first_contact_temperature(model), 1e-6);
+}
+
+TEST(LinkageRun, StartFromRestRingsAsTheClosedFormSays) {
+  // x'' = −ω² (x − v t) from rest: x = v t − v/ω sin ω t along each link, so the centres part along
+  // AC by less or more than the thermal part, at most a few v/ω.
+  const Linkage model = umbrella();
+  const LinkageRun run = simulate(model, heating(), initial_state(model, LinkageStart::rest, 0.0));
+  ASSERT_TRUE(run.first_contact);
+  const double shift = run.first_contact->temperature_change - first_contact_temperature(model);
+  EXPECT_NE(shift, 0.0);
+  EXPECT_LT(std::abs(shift), 0.03);
+}
+
+double residue(const Linkage& model, double peak, int steps) {
+  const LinkageRun run = simulate(model, heating(0.02, peak),
+                                  initial_state(model, LinkageStart::rest, 0.0), {steps, 0});
+  return std::abs(run.energy_residue);
+}
+
+TEST(LinkageRun, EnergyResidueOutOfContactIsOfFifthOrder) {
+  // The error of one RK4 step of a linear oscillator is a phase at (ω h)^5 and an amplitude at
+  // (ω h)^6: its energy drifts as h^5, one order better than its position.
+  const double coarse = residue(umbrella(), 20.0, 1000);
+  const double fine = residue(umbrella(), 20.0, 2000);
+  const double order = std::log2(coarse / fine);
+  std::printf("residue %.3g %.3g J, order %.2f\n", coarse, fine, order);
+  EXPECT_GT(order, 4.8);
+  EXPECT_LT(fine, 1e-6);
+}
+
+TEST(LinkageRun, EnergyResidueThroughContact) {
+  // A step over the edge of contact leaves h^2.5, where it falls in the step being random: at least
+  // second order over a factor 4.
+  const double coarse = residue(umbrella(), 60.0, 8000);
+  const double fine = residue(umbrella(), 60.0, 32000);
+  const double order = 0.5 * std::log2(coarse / fine);
+  std::printf("residue %.3g %.3g J, order %.2f\n", coarse, fine, order);
+  EXPECT_GT(order, 2.0);
+}
+
+TEST(LinkageRun, AccountClosesWithEveryTerm) {
+  Linkage model = umbrella();
+  model.friction = JointFriction::mindlin;
+  model.friction_coefficient = 0.3;
+  model.axial_damping_ratio = 0.1;
+  model.pin_damping = 0.01;
+  model.torsion_stiffness = 1.0;
+  model.journal_thermal_expansion = 0.5 * alpha;
+  model.bearing_thermal_expansion = 0.6 * alpha;
+  double previous = 0.0;
+  for (const int steps : {10000, 40000}) {
+    const LinkageRun run =
+        simulate(model, heating(0.05), initial_state(model, LinkageStart::rest, 0.0), {steps, 0});
+    const LinkageAccount& account = run.samples.back().account;
+    std::printf("steps %d: work %.4g axial %.3g pin %.3g friction %.3g residue %.3g J\n", steps,
+                account.thermal_work, account.axial_dissipation, account.pin_dissipation,
+                account.friction_dissipation, run.energy_residue);
+    EXPECT_GT(account.axial_dissipation, 0.0);
+    EXPECT_GT(account.pin_dissipation, 0.0);
+    EXPECT_GT(account.friction_dissipation, 0.0);
+    EXPECT_GT(run.contacts, 0);
+    // First order at least: four times the steps leave at most half of the residue.
+    if (previous > 0.0) {
+      EXPECT_LT(std::abs(run.energy_residue), 0.5 * previous);
+    }
+    previous = std::abs(run.energy_residue);
+  }
+}
+
+TEST(LinkageRun, RepeatsBitForBitAndStopsWhenUnstable) {
+  const LinkageRun first = matched(umbrella(), heating(), 20000, 100);
+  const LinkageRun second = matched(umbrella(), heating(), 20000, 100);
+  ASSERT_EQ(first.samples.size(), 201u);
+  EXPECT_EQ(first.samples.back().state.journal_centre, second.samples.back().state.journal_centre);
+  EXPECT_THROW(
+      simulate(umbrella(), heating(), initial_state(umbrella(), LinkageStart::rest, 0.0), {500, 0}),
+      std::domain_error);
+  EXPECT_THROW(matched(umbrella(), heating(), 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace statejump::testing

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "statejump/linkage.hpp"
+
+namespace statejump::testing {
+
+inline constexpr double frame = 0.120;
+inline constexpr double alpha = 23.75e-6;
+
+/// Tables 2 and 3 of the paper; the section of the links is that of its Table 1.
+inline Linkage umbrella(double clearance = 1e-4) {
+  Linkage model;
+  model.frame_length = frame;
+  model.link_ab = {0.050, 0.5, 70e9, 9e-6, alpha, 0.3};
+  model.link_bc = {0.100, 1.0, 70e9, 9e-6, alpha, 0.3};
+  model.journal_radius = 0.005;
+  model.bearing_radius = 0.005 + clearance;
+  return model;
+}
+
+/// 0 → 100 K → 0 within `duration` [s].
+inline kernel::ThermalProgram heating(double duration = 1.0, double peak = 100.0) {
+  kernel::ThermalProgram program;
+  program.shape = kernel::ThermalShape::triangle;
+  program.temperature_change_max = peak;
+  program.period = duration;
+  return program;
+}
+
+}  // namespace statejump::testing
