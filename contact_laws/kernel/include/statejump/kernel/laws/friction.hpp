@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "statejump/kernel/laws/law_info.hpp"
+#include "statejump/kernel/mindlin.hpp"
+#include "statejump/kernel/require.hpp"
+#include "statejump/kernel/vector.hpp"
+
+namespace statejump::kernel::laws {
+
+/// Parameters of the friction laws; each reads what it needs.
+struct FrictionParameters {
+  double friction_coefficient = 0.0;  ///< mu [-], >= 0
+  double v0 = 0.0;                    ///< [m/s], 0 <= v0 < v1; ambrosio: no friction up to here
+  double v1 = 1e-3;                   ///< [m/s], ambrosio: full friction from here
+};
+
+/// Checks friction parameters where they enter.
+/// @throws std::invalid_argument that names the field, its value and its range
+inline void validate(const FrictionParameters& parameters) {
+  const double mu = parameters.friction_coefficient;
+  require(std::isfinite(mu) && mu >= 0.0, "friction_coefficient", mu, "[0, inf)");
+  require(parameters.v0 >= 0.0 && parameters.v0 < parameters.v1, "v0", parameters.v0,
+          "[0, v1) m/s");
+  require(std::isfinite(parameters.v1), "v1", parameters.v1, "(v0, inf) m/s");
+}
+
+/// What a friction law sees of the contact at this step.
+struct FrictionKinematics {
+  double normal_force;          ///< F_N [N], >= 0
+  double tangential_stiffness;  ///< k_t [N/m]; mindlin only
+  Vector3 tangential_velocity;  ///< v_t of 1 against 2 [m/s], see tangential_velocity.hpp
+  double time_step;             ///< dt [s], >= 0
+};
+
+/// What a friction law answers.
+struct FrictionResponse {
+  Vector3 force_on_1;     ///< [N], at most mu F_N; body 2 gets the opposite
+  double elastic_energy;  ///< stored by the law [J], >= 0
+  double dissipation;     ///< of this step [J], >= 0
+};
+
+/// No friction; the force is exactly zero.
+struct NoFriction {
+  static constexpr LawInfo info{"none", "F_T = 0", "-", "frictionless", false};
+  FrictionResponse operator()(const FrictionParameters&, const FrictionKinematics&,
+                              ContactHistory& history) const {
+    history = {};
+    return {Vector3::Zero(), 0.0, 0.0};
+  }
+};
+
+/// Ambrosio's regularised Coulomb friction, the paper's eqs (9) and (10):
+///
+///     F_T = mu mu_d F_N,   mu_d = 0 (v <= v0), (v - v0)/(v1 - v0) between, 1 (v >= v1),
+///
+/// directed against v_t, which the paper leaves unsaid. Dissipation F_T v dt of the step [J].
+/// Limits: zero up to v0, so it cannot hold a static load: a joint left alone creeps, at
+/// v0 + (v1 - v0) T/(mu F_N) under a tangential load T. Stores no energy, has no history.
+struct AmbrosioFriction {
+  static constexpr LawInfo info{
+      "ambrosio", "F_T = mu F_N min(1, max(0, (v - v0)/(v1 - v0))), against v",
+      "Ambrosio, 2003; Chen, Li, Tang, Wang, Mech. Sci. 12, 2021, eqs 9-10",
+      "0 <= v0 < v1; cannot hold a static load: creeps", false};
+  FrictionResponse operator()(const FrictionParameters& parameters,
+                              const FrictionKinematics& kinematics, ContactHistory& history) const {
+    history = {};
+    const double speed = kinematics.tangential_velocity.norm();
+    if (!(speed > parameters.v0)) return {Vector3::Zero(), 0.0, 0.0};
+    const double correction =
+        std::min(1.0, (speed - parameters.v0) / (parameters.v1 - parameters.v0));
+    const double size =
+        parameters.friction_coefficient * correction * std::max(0.0, kinematics.normal_force);
+    return {kinematics.tangential_velocity * (-size / speed), 0.0,
+            size * speed * kinematics.time_step};
+  }
+};
+
+/// Mindlin's history spring under Coulomb's limit: mindlin_step() with limit mu F_N. The caller
+/// rotates the history with the contact, see transport(). Holds a static load up to mu F_N. Its
+/// k_t = 8 G* a is that of a circular contact; for a line contact the caller says what k_t is.
+struct MindlinFriction {
+  static constexpr LawInfo info{"mindlin", "dF_T = -k_t ds, |F_T| <= mu F_N, k_t = 8 G* a",
+                                "Mindlin, J. Appl. Mech. 16, 1949; Johnson 1985, eq. 7.44",
+                                "any load; no partial slip below the limit", true};
+  FrictionResponse operator()(const FrictionParameters& parameters,
+                              const FrictionKinematics& kinematics, ContactHistory& history) const {
+    const MindlinEnergy energy = mindlin_step(
+        kinematics.tangential_stiffness, parameters.friction_coefficient * kinematics.normal_force,
+        kinematics.tangential_velocity * kinematics.time_step, history);
+    return {history.tangential_force, energy.elastic, energy.dissipation};
+  }
+};
+
+}  // namespace statejump::kernel::laws

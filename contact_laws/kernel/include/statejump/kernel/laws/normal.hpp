@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <boost/math/special_functions/lambert_w.hpp>
+#include <boost/math/special_functions/log1p.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "statejump/kernel/hertz.hpp"
+#include "statejump/kernel/laws/law_info.hpp"
+#include "statejump/kernel/require.hpp"
+
+namespace statejump::kernel::laws {
+
+/// Geometry of journal and bearing.
+struct NormalGeometry {
+  double journal_radius;  ///< R1 [m], > 0
+  double bearing_radius;  ///< R2 [m], > R1, finite; clearance dR = R2 - R1
+  double length;          ///< L [m], > 0, axial length of a line contact; point laws ignore it
+  double clearance() const { return bearing_radius - journal_radius; }
+};
+
+/// Material of the pair; see elastic_pair().
+struct NormalMaterial {
+  double effective_young_modulus;  ///< E* [Pa], > 0
+};
+
+/// What a normal law answers at one penetration depth.
+struct NormalState {
+  double force;           ///< F [N], >= 0, compressive
+  double stiffness;       ///< dF/d(delta) [N/m], >= 0
+  double contact_width;   ///< contact radius (point) or half width (line) a [m], >= 0
+  double elastic_energy;  ///< integral of F over delta [J], >= 0
+};
+
+/// Checks geometry and material where they enter; the laws trust them.
+/// @throws std::invalid_argument that names the field, its value and its range
+inline void validate(const NormalGeometry& geometry, const NormalMaterial& material) {
+  const auto positive = [](double value, const char* name, const char* range) {
+    require(std::isfinite(value) && value > 0.0, name, value, range);
+  };
+  positive(geometry.journal_radius, "journal_radius", "(0, inf) m");
+  require(std::isfinite(geometry.bearing_radius) && geometry.clearance() > 0.0, "bearing_radius",
+          geometry.bearing_radius, "(journal_radius, inf) m");
+  positive(geometry.length, "length", "(0, inf) m");
+  positive(material.effective_young_modulus, "effective_young_modulus", "(0, inf) Pa");
+}
+
+namespace detail {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Refuses a depth outside a law's range, NaN included.
+/// @throws std::domain_error that names law, value and limit
+inline void require_depth(double depth, double limit, const char* law) {
+  if (depth < limit) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "%s: penetration_depth = %.9g m, allowed is below %.9g m", law,
+                depth, limit);
+  throw std::domain_error(text);
+}
+
+inline NormalState from_hertz(const HertzState& state) {
+  return {state.force, state.stiffness, state.contact_radius, state.elastic_energy};
+}
+
+/// Line contact with delta = f/(pi E*) u, u = s + ln(4 pi E* dR/f), f = F/L; s = -1 is Johnson's
+/// formula, s = +1 ESDU's.
+///
+/// With y = delta/(4 dR) the relation is u e^-u = y e^-s, so u = -W(-y e^-s) on the lower branch of
+/// Lambert's W, where u > 1: closed form, no iteration of ours. Then
+///
+///     dF/d(delta) = pi E* L/(u - 1)
+///     integral of F d(delta) = F f/(4 pi E*) (2u - 1)
+///
+/// At u = 1 (delta = 4 dR e^(s-1)) the stiffness is infinite and F(delta) turns over.
+inline NormalState logarithmic_line_contact(double depth, const NormalGeometry& geometry,
+                                            const NormalMaterial& material, double scaled_limit) {
+  const double modulus = pi * material.effective_young_modulus;
+  // scaled_limit = 4 dR e^s, so that depth/scaled_limit < 1/e inside the range.
+  const double argument = std::max(depth / scaled_limit, std::numeric_limits<double>::min());
+  const double u = -boost::math::lambert_wm1(-argument);
+  const double line_force = modulus * depth / u;
+  const double force = line_force * geometry.length;
+  const double radius = geometry.journal_radius * (geometry.bearing_radius / geometry.clearance());
+  return {force, modulus * geometry.length / (u - 1.0),
+          std::sqrt(4.0 * line_force * radius / modulus),
+          0.25 * force * (line_force / modulus) * (2.0 * u - 1.0)};
+}
+
+}  // namespace detail
+
+/// Hertz as the paper prints it, eqs (6) to (8): F = 4/3 E* sqrt(R) delta^1.5 with
+/// R = R1 R2/(R1 + R2) [m], the radius of two balls outside each other. For a pin in a hole the
+/// sign is wrong and the joint ten times too soft at Table 2; kept to compare with the paper.
+/// Limits: see hertz().
+struct HertzPaper {
+  static constexpr LawInfo info{
+      "hertz_paper", "F = 4/3 E* sqrt(R1 R2/(R1 + R2)) delta^1.5",
+      "Chen, Li, Tang, Wang, Mech. Sci. 12, 2021, eqs 6-8",
+      "delta >= 0; a << R1; external radius, too soft for a pin in a hole", true};
+  static double largest_depth(const NormalGeometry&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  NormalState operator()(double depth, const NormalGeometry& geometry,
+                         const NormalMaterial& material) const {
+    detail::require_depth(depth, largest_depth(geometry), info.name);
+    const double radius =
+        geometry.journal_radius / (1.0 + geometry.journal_radius / geometry.bearing_radius);
+    return detail::from_hertz(hertz(material.effective_young_modulus, radius, depth));
+  }
+};
+
+/// Hertz with the curvature of a pin in a hole, R = R1 R2/(R2 - R1) [m]: F = 4/3 E* sqrt(R)
+/// delta^1.5 (Johnson 1985, eqs 4.14, 4.22, 4.23). See hertz(), internal_effective_radius().
+/// Limits: a point contact, a = sqrt(R delta) << R1; a real cylinder in a bore touches on a line.
+struct HertzInternal {
+  static constexpr LawInfo info{"hertz_internal", "F = 4/3 E* sqrt(R1 R2/(R2 - R1)) delta^1.5",
+                                "Johnson, Contact Mechanics, 1985, eqs 4.14, 4.22, 4.23",
+                                "delta >= 0; a << R1; point contact", true};
+  static double largest_depth(const NormalGeometry&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  NormalState operator()(double depth, const NormalGeometry& geometry,
+                         const NormalMaterial& material) const {
+    detail::require_depth(depth, largest_depth(geometry), info.name);
+    const double radius =
+        geometry.journal_radius * (geometry.bearing_radius / geometry.clearance());
+    return detail::from_hertz(hertz(material.effective_young_modulus, radius, depth));
+  }
+};
+
+/// Johnson's line contact of a cylinder in a bore, length L, f = F/L:
+///
+///     delta = f/(pi E*) (ln(4 pi E* dR/f) - 1).
+///
+/// Each body contributes f (1 - nu^2)/(pi E) (2 ln(4 R_i/a) - 1), depths being measured from its
+/// centre (Johnson 1985, eq. 5.57); with the half width of the Hertz line contact
+/// a^2 = 4 f R/(pi E*), R = R1 R2/dR, (eq. 4.43) the sum is the formula; so used by Pereira,
+/// Ramalho and Ambrosio, Nonlinear Dyn. 63, 2011. Units: m, N, Pa. Limits: F(delta) turns over at f
+/// = 4 pi E* dR/e^2, delta = 4 dR/e^2: at and beyond that depth an error. The half-plane behind it
+/// ends earlier: at the turning point a is 1.47 R1. Trust it for a << R1, delta << dR; beyond use
+/// persson.
+struct Johnson {
+  static constexpr LawInfo info{
+      "johnson", "delta = f/(pi E*) (ln(4 pi E* dR/f) - 1), f = F/L",
+      "Johnson, Contact Mechanics, 1985, eqs 4.43, 5.57; Pereira, Ramalho, Ambrosio, Nonlinear "
+      "Dyn. "
+      "63, 2011",
+      "0 <= delta < 4 dR/e^2 = 0.541 dR, error beyond; accurate for a << R1", true};
+  static double largest_depth(const NormalGeometry& geometry) {
+    return 4.0 * std::exp(-2.0) * geometry.clearance();
+  }
+  NormalState operator()(double depth, const NormalGeometry& geometry,
+                         const NormalMaterial& material) const {
+    if (depth <= 0.0) return {0.0, 0.0, 0.0, 0.0};
+    detail::require_depth(depth, largest_depth(geometry), info.name);
+    return detail::logarithmic_line_contact(depth, geometry, material,
+                                            4.0 * std::exp(-1.0) * geometry.clearance());
+  }
+};
+
+/// Line contact after ESDU 78035 (Engineering Sciences Data Unit, 1978), as quoted by Flores,
+/// Ambrosio, Claro and Lankarani, 2006, with sigma_i = (1 - nu_i^2)/(pi E_i):
+///
+///     delta = f (sigma1 + sigma2) (ln(4 dR/(f (sigma1 + sigma2))) + 1),   f = F/L,
+///
+/// that is delta = f/(pi E*) (ln(4 pi E* dR/f) + 1): Johnson's logarithm with another reference
+/// depth, a softer contact. Units: m, N, Pa. (Texts that define sigma without 1/pi print other
+/// factors; the coefficient 1/(pi E*) of f ln f follows from elasticity and decides.)
+/// Limits: turns over at f = 4 pi E* dR, delta = 4 dR: at and beyond that depth an error. The half
+/// width is 4 R1 there, so the half-plane ends long before: a < R1 needs f < pi E* dR/4.
+struct Esdu78035 {
+  static constexpr LawInfo info{
+      "esdu_78035", "delta = f/(pi E*) (ln(4 pi E* dR/f) + 1), f = F/L",
+      "ESDU 78035, 1978, quoted by Flores, Ambrosio, Claro, Lankarani, 2006",
+      "0 <= delta < 4 dR, error beyond; accurate for a << R1", true};
+  static double largest_depth(const NormalGeometry& geometry) { return 4.0 * geometry.clearance(); }
+  NormalState operator()(double depth, const NormalGeometry& geometry,
+                         const NormalMaterial& material) const {
+    if (depth <= 0.0) return {0.0, 0.0, 0.0, 0.0};
+    detail::require_depth(depth, largest_depth(geometry), info.name);
+    return detail::logarithmic_line_contact(depth, geometry, material,
+                                            4.0 * std::exp(1.0) * geometry.clearance());
+  }
+};
+
+namespace detail {
+
+/// Persson's contact at t = tan(epsilon/2)^2, in units E* dR (line force) and dR (depth).
+struct PerssonPoint {
+  double load_divisor;  ///< X; f = 2 pi t (1 + t)/X
+  double compliance;    ///< C = pi d(delta)/df
+  double offset;        ///< omega - 1; delta = C f/pi + omega - 1
+};
+
+/// X = 0: an arc that an infinite load, or no clearance, reaches; epsilon = 84.83 degrees.
+constexpr double persson_largest_t = 0.83461524547765723156;
+
+inline PerssonPoint persson_point(double t) {
+  const double l = boost::math::log1p(t);
+  const double b2 = 1.0 + t;
+  const double s = 1.0 + 2.0 * t;
+  const double x = 2.0 - l - 2.0 * t * t;
+  const double n = 2.0 + 5.0 * t + 2.0 * t * t - s * l;
+  const double offset = (3.0 * t - 2.0 * t / b2 - 2.0 * t * t + s * l) / n;
+  const double c = std::log(4.0 * b2 / t) - 2.0 - 0.5 * offset +
+                   t * (2.0 + 2.5 * t + s * x / n) / (b2 * b2) + s * s * l / (b2 * n);
+  return {x, c, offset};
+}
+
+}  // namespace detail
+
+/// Persson's conformal contact of a disc in a hole of nearly its radius, plane strain, without the
+/// half-plane: the contact may cover a large arc, half angle epsilon, t = tan(epsilon/2)^2.
+///
+/// Gap with the journal moved by dR + delta: dR - (dR + delta) cos phi + u(phi), where a pressure
+/// sum p_n cos(n phi) opens u_n = (2R/E*) n/(n^2 - 1) p_n, n >= 2, and u_0 = (R/E*) p_0 (Michell's
+/// series for disc and hole, equal materials). Zero gap on the arc, d^2/dphi^2 + 1 applied, is a
+/// Cauchy singular equation in tan(phi/2) whose bounded solution gives Persson's load (1964;
+/// Ciavarella and Decuzzi, Int. J. Solids Struct. 38, 2001, elastic similarity)
+///
+///     f/(E* dR) = 2 pi t (1 + t)/X,   X = 2 - ln(1 + t) - 2 t^2,   f = F/L.
+///
+/// Depth: the first harmonic is a rigid translation, which a plane problem leaves undetermined
+/// (a point load sinks without end in an infinite plane). It is fixed here so that a light load
+/// sinks as Johnson's formula, delta -> f/(pi E*) (ln(4 pi E* dR/f) - 1); this is a choice.
+/// The reciprocal theorem between the contact and its increment then gives, in units of dR,
+///
+///     delta = C f/(pi E* dR) + omega - 1,   C = pi E* d(delta)/df, where
+///     N = 2 + 5t + 2t^2 - (1 + 2t) ln(1 + t)
+///     omega - 1 = (3t - 2t/(1 + t) - 2t^2 + (1 + 2t) ln(1 + t))/N
+///     C = ln(4(1 + t)/t) - 2 - (omega - 1)/2 + t (2 + 5t/2 + (1 + 2t) X/N)/(1 + t)^2
+///         + (1 + 2t)^2 ln(1 + t)/((1 + t) N).
+///
+/// t(delta) is solved by Boost's toms748; no constant is fitted. Energy 1/2 integral of p u:
+/// 1/2 f (delta - dR (ln(1 + t) - t + t^2)/(t (1 + t))) L. The contact width is the arc R1 epsilon.
+/// Units: m, N, Pa.
+/// Limits: delta < R1, error beyond; small strain; equal elastic constants of both parts (E* is all
+/// it sees of unequal ones); bearing much thicker than R2; the arc stays below 84.83 degrees.
+struct Persson {
+  static constexpr LawInfo info{
+      "persson",
+      "f = 2 pi E* dR t (1 + t)/(2 - ln(1 + t) - 2 t^2), t = tan(eps/2)^2, f = F/L; depth fixed to "
+      "johnson at light load",
+      "Persson, 1964; Ciavarella, Decuzzi, Int. J. Solids Struct. 38, 2001; depth derived here",
+      "0 <= delta < R1, error beyond; equal materials, thick bearing, plane strain", true};
+  static double largest_depth(const NormalGeometry& geometry) { return geometry.journal_radius; }
+  NormalState operator()(double depth, const NormalGeometry& geometry,
+                         const NormalMaterial& material) const {
+    if (depth <= 0.0) return {0.0, 0.0, 0.0, 0.0};
+    detail::require_depth(depth, largest_depth(geometry), info.name);
+    const double clearance = geometry.clearance();
+    const double scaled = std::max(depth / clearance, 1e-290);
+    // (C f/pi + omega - 1 - delta) X: smooth and of one sign change up to the largest arc
+    const auto residue = [scaled](double t) {
+      const detail::PerssonPoint p = detail::persson_point(t);
+      return 2.0 * t * (1.0 + t) * p.compliance + p.load_divisor * (p.offset - scaled);
+    };
+    // t = delta/u with 1 < u < 800 while delta is small; the upper end holds for any depth
+    std::uintmax_t iterations = 200;
+    const auto bracket = boost::math::tools::toms748_solve(
+        residue, std::min(scaled, 0.1) / 800.0, std::min(scaled, detail::persson_largest_t),
+        boost::math::tools::eps_tolerance<double>(52), iterations);
+    const double t = 0.5 * (bracket.first + bracket.second);
+    const detail::PerssonPoint p = detail::persson_point(t);
+    // from the depth, not from t: well conditioned where X tends to zero
+    const double line_force = detail::pi * material.effective_young_modulus * clearance *
+                              (scaled - p.offset) / p.compliance;
+    const double force = line_force * geometry.length;
+    const double spread = (boost::math::log1pmx(t) + t * t) / (t * (1.0 + t));
+    return {force, detail::pi * material.effective_young_modulus * geometry.length / p.compliance,
+            geometry.journal_radius * 2.0 * std::atan(std::sqrt(t)),
+            0.5 * force * clearance * (scaled - spread)};
+  }
+};
+
+}  // namespace statejump::kernel::laws

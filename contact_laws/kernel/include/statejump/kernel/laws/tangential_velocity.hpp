@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "statejump/kernel/contact_law.hpp"
+#include "statejump/kernel/joint_kinematics.hpp"
+#include "statejump/kernel/laws/law_info.hpp"
+#include "statejump/kernel/vector.hpp"
+
+namespace statejump::kernel::laws {
+
+/// A tangential velocity law is a pair: the relative velocity v of 1 (journal) against 2 (bearing)
+/// [m/s] that friction sees, and the forces and moments on the two centres that a contact force F
+/// causes. They are transposes of each other: for all motions
+///
+///     F . v = force_1 . v_C + torque_1 . omega_1 + force_2 . v_D + torque_2 . omega_2,
+///
+/// so a friction force against v can only take power from the bodies. Never mix the two laws.
+
+/// Velocity of the material at the one contact point, v_C + omega_1 x arm_1 - v_D - omega_2 x
+/// arm_2, and moments arm x F: what two rough surfaces do. See revolute_contact(),
+/// contact_wrench(). Forces and moments balance.
+struct MaterialVelocity {
+  static constexpr LawInfo info{"material", "v = v_C + w1 x r1 - v_D - w2 x r2, moments r x F",
+                                "rigid-body kinematics", "any motion", true};
+  Vector3 velocity(const JointContact& contact, const BodyMotion&, const BodyMotion&,
+                   const Vector3&) const {
+    return contact.relative_velocity;
+  }
+  Wrench wrench(const JointContact& contact, const Vector3& force_on_1, const Vector3&) const {
+    return contact_wrench(force_on_1, contact.arm_1, contact.arm_2);
+  }
+};
+
+/// The paper's eqs (14) to (16) as printed: time derivatives of the geometric points C1 = r_C + R1
+/// n and D1 = r_D + R2 n. With d = r_C - r_D across the bearing's axis and dn/dt = (d' - (d'.n)
+/// n)/|d| the difference is, c = R2 - R1,
+///
+///     v = d' - c dn/dt = (d'.n) n + (delta/|d|) d'_t.
+///
+/// The spins are absent: a journal that turns in place slides without friction; and the tangential
+/// part is smaller than that of the centres by delta/|d|, a few hundredths in a joint with play.
+/// The transpose, by virtual power: force_1 = F_n n + (delta/|d|) F_t on C, the opposite on D, and
+/// no moment on either body. (Putting F_t and R x F_t on the bodies with this velocity instead
+/// would produce power from nothing.)
+/// Limits: the two forces are |d| apart and leave a moment delta n x F_t unbalanced, the same as
+/// the two points of eq. (14), which are delta apart; v is not zero when the whole joint turns as
+/// one body. Axial motion is not seen. Concentric parts have no tangential part.
+struct PaperVelocity {
+  static constexpr LawInfo info{
+      "paper", "v = d/dt(r_C + R1 n) - d/dt(r_D + R2 n) = d'_n + (delta/|d|) d'_t, no moments",
+      "Chen, Li, Tang, Wang, Mech. Sci. 12, 2021, eqs 14-16; forces by virtual power",
+      "spins are not seen; leaves a moment delta F_t unbalanced", true};
+  Vector3 velocity(const JointContact& contact, const BodyMotion& journal,
+                   const BodyMotion& bearing, const Vector3& axis) const {
+    return across(contact, perpendicular_part(journal.velocity - bearing.velocity, axis));
+  }
+  Wrench wrench(const JointContact& contact, const Vector3& force_on_1, const Vector3& axis) const {
+    const Vector3 force = across(contact, perpendicular_part(force_on_1, axis));
+    return {force, Vector3::Zero(), -force, Vector3::Zero()};
+  }
+
+ private:
+  /// n n^T + (delta/|d|) (1 - n n^T), symmetric: its own transpose.
+  static Vector3 across(const JointContact& contact, const Vector3& v) {
+    const double share =
+        contact.eccentricity > 0.0 ? contact.penetration_depth / contact.eccentricity : 0.0;
+    const Vector3 along = v.dot(contact.normal) * contact.normal;
+    return along + share * (v - along);
+  }
+};
+
+}  // namespace statejump::kernel::laws
