@@ -48,7 +48,8 @@ def failing():
     engines()
     O.dt = 1e-7
     try:
-        O.run(10, True)
+        for _ in range(10):
+            O.step()
     except RuntimeError as error:
         return str(error)
     return "nothing"
