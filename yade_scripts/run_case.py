@@ -99,6 +99,8 @@ def run(case, output):
         started = time.perf_counter()
         O.run(steps + 1, True)  # the recorder sees the end of the program one step later
         elapsed = time.perf_counter() - started
+        if O.iter != steps + 1:  # an error in the first steps can end the run without a word
+            raise RuntimeError(f"YADE stopped after {O.iter} of {steps + 1} steps")
     os.replace(partial, output)
     summary = {
         "steps": O.iter,

@@ -20,8 +20,8 @@ try:
     from . import _native
 except ImportError as _error:
     raise ImportError(
-        f"statejump_yade could not be loaded into this YADE ({_error}); it is built for YADE "
-        "2023.02a of Debian 12; build it against your YADE with -DYADE_SOURCE_DIR=<YADE sources>"
+        f"statejump_yade could not be loaded into this YADE ({_error}): it was built for another "
+        "one; build it against this YADE with -DYADE_SOURCE_DIR=<YADE sources>"
     ) from None
 
 _difference = _native.setup(_wrapper)
