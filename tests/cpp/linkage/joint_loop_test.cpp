@@ -50,6 +50,11 @@ TEST(JointLoop, EnoughFrictionRollsAndLeavesNoJump) {
     EXPECT_EQ(point.motion, JointMotion::roll);
     // s is a difference of terms of 1e-2 m, φ is solved to rounding.
     EXPECT_NEAR(rolling_arc(model, point), arc, 2e-17);
+    // The arcs on journal (5 mm) and bearing (5.1 mm) since the start, from the angle of n.
+    const JointPoint& start = loop.points.front();
+    const double turn = point.contact_angle - start.contact_angle;
+    EXPECT_NEAR(0.005 * (turn - (point.theta4 - start.theta4)),
+                0.0051 * (turn - (point.theta2 - start.theta2)), 2e-17);
     largest = std::max(largest, std::abs(point.contact_angle));
   }
   EXPECT_GT(largest, 0.1);
