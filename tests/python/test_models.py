@@ -187,3 +187,9 @@ def test_figure_shows_both_models_and_repeats_bit_for_bit(table1: Case, tmp_path
     before = text
     plot.figure(table1, path, history, tmp_path)
     assert svg.read_text() == before
+
+
+def test_units_are_shown_on_screen(statejump, cases: Path) -> None:
+    shown = statejump("reduced", cases / "table1.toml").output
+    for heading in ("ΔT [K]", "time [s]", "displacement [m]", "axial force [N]"):
+        assert heading in shown

@@ -28,7 +28,8 @@ QUIET = click.option("--quiet", is_flag=True, help="Print errors only.")
 
 
 def _console(quiet: bool) -> Console:
-    console = Console(quiet=quiet, highlight=False, soft_wrap=True)
+    # Units stand in square brackets, which rich would take for styles.
+    console = Console(quiet=quiet, highlight=False, soft_wrap=True, markup=False)
     if not console.is_terminal:  # a pipe or a log has no width: do not cut numbers short
         console.width = 160
     return console
