@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "blocked_motion.hpp"
 #include "failure.hpp"
 #include "ranges.hpp"
 #include "shapes.hpp"
@@ -16,8 +17,6 @@ const std::string joint_elastic = "jointElastic";
 const std::string joint_friction = "jointFriction";
 const std::string joint_damping = "jointDamping";
 const std::string joint_thermal_work = "jointThermalWork";
-
-constexpr unsigned int all_translations_blocked = 7;
 
 kernel::BodyMotion motion(const yade::State& state) {
   return {state.se3.position, state.vel, state.angVel};
@@ -77,10 +76,8 @@ JointGeom& geometry_of(const yade::shared_ptr<yade::Interaction>& contact,
   return static_cast<JointGeom&>(*contact->geom);
 }
 
-Real inverse_mass(const yade::Scene& scene, int id) {
-  const yade::State& state = *body_at(scene, static_cast<std::size_t>(id))->state;
-  const bool fixed = (state.blockedDOFs & all_translations_blocked) == all_translations_blocked;
-  return fixed || !(state.mass > 0) ? 0 : 1 / state.mass;
+Real inverse_mass_of(const yade::Scene& scene, int id) {
+  return inverse_mass(*body_at(scene, static_cast<std::size_t>(id))->state);
 }
 
 }  // namespace
@@ -182,7 +179,8 @@ void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
          << ", allowed is [0, pi/2) rad" << where(*scene, contact->id1, contact->id2);
     record_failure(text.str());
   }
-  const Real inverse = inverse_mass(*scene, contact->id1) + inverse_mass(*scene, contact->id2);
+  const Real inverse =
+      inverse_mass_of(*scene, contact->id1) + inverse_mass_of(*scene, contact->id2);
   physics->effectiveMass = inverse > 0 ? 1 / inverse : 0;
   physics->normalDampingRatio = normalDampingRatio;
   physics->tangentialDampingRatio = tangentialDampingRatio;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <sstream>
 
+#include "blocked_motion.hpp"
 #include "failure.hpp"
 #include "joint.hpp"
 #include "ranges.hpp"
@@ -17,22 +18,11 @@ const std::string link_elastic = "linkElastic";
 const std::string link_damping = "linkDamping";
 const std::string link_thermal_work = "linkThermalWork";
 
-constexpr unsigned int all_translations_blocked = 7;
-constexpr unsigned int all_rotations_blocked = 56;
-
 yade::Body& body_of(const yade::Scene& scene, int id, const char* who) {
   if (!scene.bodies->exists(id)) {
     throw std::invalid_argument(std::string(who) + ": there is no body " + std::to_string(id));
   }
   return *body_at(scene, static_cast<std::size_t>(id));
-}
-
-bool fixed(const yade::State& state) {
-  return (state.blockedDOFs & all_translations_blocked) == all_translations_blocked;
-}
-
-Real inverse_mass(const yade::State& state) {
-  return fixed(state) || !(state.mass > 0) ? 0 : 1 / state.mass;
 }
 
 // c = 2 zeta sqrt(k m) with the spring at the reference temperature.

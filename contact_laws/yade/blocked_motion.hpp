@@ -1,0 +1,18 @@
+// Which motions of a body are blocked, and what its mass then counts for.
+#pragma once
+
+#include "yade_api.hpp"
+
+namespace statejump::dem {
+
+// Bits of State::blockedDOFs: three translations, then three rotations.
+constexpr unsigned int all_translations_blocked = 7;
+constexpr unsigned int all_rotations_blocked = 56;
+
+// 1/m [1/kg]; 0 for a body that cannot move and for one without mass, both as infinitely heavy.
+inline yade::Real inverse_mass(const yade::State& state) {
+  const bool fixed = (state.blockedDOFs & all_translations_blocked) == all_translations_blocked;
+  return fixed || !(state.mass > 0) ? 0 : 1 / state.mass;
+}
+
+}  // namespace statejump::dem
