@@ -88,7 +88,7 @@ inline NormalState logarithmic_line_contact(double depth, const NormalGeometry& 
   const double u = -boost::math::lambert_wm1(-argument);
   const double line_force = modulus * depth / u;
   const double force = line_force * geometry.length;
-  const double radius = geometry.journal_radius * (geometry.bearing_radius / geometry.clearance());
+  const double radius = internal_effective_radius(geometry.journal_radius, geometry.bearing_radius);
   return {force, modulus * geometry.length / (u - 1.0),
           std::sqrt(4.0 * line_force * radius / modulus),
           0.25 * force * (line_force / modulus) * (2.0 * u - 1.0)};
@@ -131,7 +131,7 @@ struct HertzInternal {
                          const NormalMaterial& material) const {
     detail::require_depth(depth, largest_depth(geometry), info.name);
     const double radius =
-        geometry.journal_radius * (geometry.bearing_radius / geometry.clearance());
+        internal_effective_radius(geometry.journal_radius, geometry.bearing_radius);
     return detail::from_hertz(hertz(material.effective_young_modulus, radius, depth));
   }
 };
