@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "statejump/kernel/elastic_pair.hpp"
+#include "statejump/kernel/laws/registry.hpp"
+#include "statejump/kernel/require.hpp"
+
+namespace statejump::kernel::laws {
+
+/// The four laws of one clearance joint and their parameters. A plain value: validate() once.
+struct JointLaw {
+  NormalLaw normal = HertzInternal{};
+  DissipationLaw dissipation = NoDissipation{};
+  FrictionLaw friction = NoFriction{};
+  TangentialVelocityLaw tangential_velocity = MaterialVelocity{};
+  FrictionParameters friction_parameters;  ///< mu, v0, v1
+  double restitution = 1.0;                ///< e [-], in (0, 1]; dissipation laws
+  /// Floor of the impact speed that scales dissipation [m/s], > 0. A contact that begins slower, as
+  /// one that a slow expansion closes does, would otherwise be damped without bound.
+  double smallest_impact_speed = 1e-6;
+  double contact_length = 1e-2;  ///< axial length of a line contact [m], > 0; point laws ignore it
+};
+
+/// Names of the four laws, as case files spell them.
+struct JointLawNames {
+  std::string normal = HertzInternal::info.name;
+  std::string dissipation = NoDissipation::info.name;
+  std::string friction = NoFriction::info.name;
+  std::string tangential_velocity = MaterialVelocity::info.name;
+};
+
+/// The laws of these names with default parameters.
+/// @throws std::invalid_argument that lists the known names
+inline JointLaw joint_law(const JointLawNames& names) {
+  JointLaw law;
+  law.normal = normal_law(names.normal);
+  law.dissipation = dissipation_law(names.dissipation);
+  law.friction = friction_law(names.friction);
+  law.tangential_velocity = tangential_velocity_law(names.tangential_velocity);
+  return law;
+}
+
+/// Checks the parameters where they enter.
+/// @throws std::invalid_argument that names the field, its value and its range
+inline void validate(const JointLaw& law) {
+  validate(law.friction_parameters);
+  require(std::isfinite(law.smallest_impact_speed) && law.smallest_impact_speed > 0.0,
+          "smallest_impact_speed", law.smallest_impact_speed, "(0, inf) m/s");
+  validate(ImpactParameters{law.restitution, law.smallest_impact_speed});
+  require(std::isfinite(law.contact_length) && law.contact_length > 0.0, "contact_length",
+          law.contact_length, "(0, inf) m");
+}
+
+/// Tangential stiffness of any normal law, k_t = 4 (G*/E*) k_n [N/m]: Mindlin's ratio of the two
+/// stiffnesses of a circular contact, where it is 8 G* a exactly (k_n = 2 E* a). For a line contact
+/// it is a choice: the tangential compliance of an infinite cylinder has the same logarithm as the
+/// normal one.
+/// @param normal_stiffness dF_N/d(delta) [N/m], elastic
+inline double tangential_stiffness(const ElasticPair& elastic, double normal_stiffness) {
+  return 4.0 * elastic.effective_shear_modulus / elastic.effective_young_modulus * normal_stiffness;
+}
+
+/// chi/K [s/m] of a contact that began at this approach speed [m/s]; see damped_force().
+inline double damping_ratio(const JointLaw& law, double impact_speed) {
+  return damping_ratio(law.dissipation,
+                       {law.restitution, std::max(impact_speed, law.smallest_impact_speed)});
+}
+
+}  // namespace statejump::kernel::laws
