@@ -28,7 +28,7 @@ double bisect(double before, double after, IsBeyond&& is_beyond) {
 class Walk {
  public:
   Walk(const Linkage& model, int side, double contact_angle)
-      : model_(model), side_(side), limit_(std::atan(model.friction_coefficient)) {
+      : model_(model), side_(side), limit_(std::atan(model.friction_coefficient())) {
     now_ = joint_point(model_, 0.0, side_, contact_angle);
     arc_ = rolling_arc(model_, now_);
   }
@@ -135,7 +135,7 @@ JointLoop joint_loop(const Linkage& model, const kernel::ThermalProgram& program
   require(model.bearing_thermal_expansion == 0.0, "bearing_thermal_expansion",
           model.bearing_thermal_expansion, "0 here");
   require(samples >= 1, "samples", samples, ">= 1");
-  const double limit = std::atan(model.friction_coefficient);
+  const double limit = std::atan(model.friction_coefficient());
   require(std::abs(contact_angle) <= limit, "contact_angle", contact_angle,
           "[-atan(mu), atan(mu)] rad");
   // The sense of M must be that of the side assumed; between the two the contact is not loaded.

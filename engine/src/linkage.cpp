@@ -5,8 +5,9 @@
 #include <string>
 
 #include "statejump/kernel/elastic_pair.hpp"
-#include "statejump/kernel/hertz.hpp"
 #include "statejump/kernel/require.hpp"
+
+#include "linkage_rates.hpp"
 
 namespace statejump {
 
@@ -65,12 +66,17 @@ void Linkage::validate() const {
           journal_thermal_expansion, "finite [1/K]");
   require(std::isfinite(bearing_thermal_expansion), "bearing_thermal_expansion",
           bearing_thermal_expansion, "finite [1/K]");
-  non_negative(friction_coefficient, "friction_coefficient", "finite, >= 0");
+  kernel::laws::validate(law);
   non_negative(axial_damping_ratio, "axial_damping_ratio", "finite, >= 0");
   non_negative(pin_damping, "pin_damping", "finite, >= 0 N m s/rad");
   non_negative(torsion_stiffness, "torsion_stiffness", "finite, >= 0 N m/rad");
   require(std::isnan(torsion_free_angle) || (torsion_free_angle > 0.0 && torsion_free_angle < pi),
           "torsion_free_angle", torsion_free_angle, "(0, pi) rad, or NaN for the ideal position");
+}
+
+double Linkage::friction_coefficient() const {
+  const bool none = std::holds_alternative<kernel::laws::NoFriction>(law.friction);
+  return none ? 0.0 : law.friction_parameters.friction_coefficient;
 }
 
 double Linkage::free_angle() const {
@@ -93,17 +99,24 @@ LinkageCoordinates coordinates(const Linkage& model, const LinkageState& state) 
           state.journal_centre - state.bearing_centre};
 }
 
-LinkageState initial_state(const Linkage& model, LinkageStart start, double temperature_rate) {
+LinkageState initial_state(const Linkage& model, LinkageStart start, double temperature_rate,
+                           const Vector2d& eccentricity) {
   model.validate();
-  const double a = model.frame_length;
+  require(eccentricity.norm() <= model.radial_clearance(), "eccentricity", eccentricity.norm(),
+          "0 to the clearance [m]: no penetration at the start");
   const double l1 = model.link_ab.stress_free_length;
   const double l2 = model.link_bc.stress_free_length;
-  const double x = (a * a + (l1 - l2) * (l1 + l2)) / (2.0 * a);
+  // The triangle of the links and w = AC − d; see joint_point() in joint_loop.hpp.
+  const Vector2d w = Vector2d(model.frame_length, 0.0) - eccentricity;
+  const double length = w.norm();
+  const double x = (length * length + (l1 - l2) * (l1 + l2)) / (2.0 * length);
+  const double y = std::sqrt((l1 - x) * (l1 + x));
+  const Vector2d along = w / length;
   LinkageState state;
-  state.bearing_centre = {x, std::sqrt((l1 - x) * (l1 + x))};
-  state.journal_centre = state.bearing_centre;
+  state.bearing_centre = x * along + y * Vector2d(-along.y(), along.x());
+  state.journal_centre = state.bearing_centre + eccentricity;
   if (start == LinkageStart::matched) {
-    const Vector2d c(a, 0.0);
+    const Vector2d c(model.frame_length, 0.0);
     state.bearing_velocity =
         model.link_ab.thermal_expansion * temperature_rate * state.bearing_centre;
     state.journal_velocity =
@@ -112,29 +125,45 @@ LinkageState initial_state(const Linkage& model, LinkageStart start, double temp
   return state;
 }
 
+LinkageJoint joint_state(const Linkage& model, const LinkageState& state, double temperature_change,
+                         double temperature_rate) {
+  using namespace detail;
+  const Constants k = constants(model);
+  const Rich::Vector y = pack<Rich>(state);
+  const Temperature heat{temperature_change, temperature_rate};
+  const Radii radii = radii_at(k, temperature_change);
+  const ContactPoint at = contact_point<Rich>(k, y, heat, radii);
+  LinkageJoint joint{at.depth, at.approach_speed, 0.0, 0.0, false};
+  if (at.depth > 0.0) {
+    const NormalForce normal = normal_force(k, at, radii, state.impact_speed);
+    joint.normal_force = normal.force;
+    if (k.friction_has_memory) {
+      joint.tangential_force = state.contact.tangential_force.x();
+      joint.slipping = state.contact.slipping;
+    } else {
+      kernel::ContactHistory none;
+      const SpatialContact<Rich> spatial(y, at, radii, turn_rates<Rich>(k, y));
+      const double speed = sliding_speed(k, spatial, at);
+      joint.tangential_force = friction(k, normal, speed, none).force_on_1.x();
+    }
+  }
+  return joint;
+}
+
 LinkageEnergy energy(const Linkage& model, const LinkageState& state, double temperature_change) {
   const LinkageCoordinates q = coordinates(model, state);
-  const double r1 = kernel::thermal_length(model.journal_radius, model.journal_thermal_expansion,
-                                           temperature_change);
-  const double r2 = kernel::thermal_length(model.bearing_radius, model.bearing_thermal_expansion,
-                                           temperature_change);
-  const bool internal = model.contact_radius == ContactRadius::internal;
-  const double radius = r1 * r2 / (internal ? r2 - r1 : r2 + r1);
-  const kernel::ElasticPair pair =
-      kernel::elastic_pair(model.link_bc.young_modulus, model.link_bc.poisson_ratio,
-                           model.link_ab.young_modulus, model.link_ab.poisson_ratio);
-  const double depth = q.eccentricity.norm() - (r2 - r1);
+  const detail::Constants k = detail::constants(model);
+  const detail::Radii radii = detail::radii_at(k, temperature_change);
+  const double depth = q.eccentricity.norm() - radii.clearance();
+  const Vector2d bc = state.journal_centre - Vector2d(model.frame_length, 0.0);
   const double bend =
-      std::atan2(
-          cross(state.bearing_centre, state.journal_centre - Vector2d(model.frame_length, 0.0)),
-          state.bearing_centre.dot(state.journal_centre - Vector2d(model.frame_length, 0.0))) -
-      model.free_angle();
+      std::atan2(cross(state.bearing_centre, bc), state.bearing_centre.dot(bc)) - k.free_angle;
   const kernel::ContactHistory& spring = state.contact;
   return {model.link_ab.mass / 6.0 * state.bearing_velocity.squaredNorm() +
               model.link_bc.mass / 6.0 * state.journal_velocity.squaredNorm(),
           axial_energy(model.link_ab, q.length_ab, temperature_change) +
               axial_energy(model.link_bc, q.length_bc, temperature_change),
-          kernel::hertz(pair.effective_young_modulus, radius, depth).elastic_energy,
+          depth > 0.0 ? detail::normal_state(k, depth, radii).elastic_energy : 0.0,
           spring.tangential_stiffness > 0.0
               ? 0.5 * spring.tangential_force.squaredNorm() / spring.tangential_stiffness
               : 0.0,

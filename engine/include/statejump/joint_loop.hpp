@@ -67,7 +67,7 @@ double rolling_arc(const Linkage& model, const JointPoint& point);
 
 /// Path through the program from equilibrium at φ = `contact_angle`, ΔT = 0. Friction is Coulomb's,
 /// exact: roll while |φ| < atan μ, slip at |φ| = atan μ as long as rolling would leave that range.
-/// JointFriction is not consulted; μ = 0 slips at φ = 0 throughout and leaves no jump.
+/// Of the friction law only μ counts; μ = 0 slips at φ = 0 throughout and leaves no jump.
 /// Slip and separation are roots in ΔT, found by bisection to rounding; the corners of the program
 /// are exact. `samples` points per monotone branch (>= 1) fill the path; events are sought between
 /// neighbouring ones.

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <limits>
 
+#include "statejump/kernel/laws/joint_law.hpp"
 #include "statejump/kernel/mindlin.hpp"
 #include "statejump/kernel/thermal_program.hpp"
 
@@ -20,29 +21,24 @@ struct ThermalLink {
   double poisson_ratio = 0.3;       ///< ν [-], in (-1, 0.5]; of the joint's half that it carries
 };
 
-/// Radius of curvature of the Hertz contact. `internal`: R1 R2/(R2 − R1), a pin in a hole.
-/// `external`: R1 R2/(R1 + R2), eq. (7) as printed, two balls.
-enum class ContactRadius : unsigned char { internal, external };
-
-/// `mindlin`: history spring under Coulomb's limit, kernel::mindlin_step().
-enum class JointFriction : unsigned char { none, mindlin };
-
 /// One rib of the umbrella antenna, deployed: the paper's section 4 (Figs 10 and 11).
 ///
 /// Links AB and BC are pinned to the frame at A = (0, 0) and C = (a, 0), ideal pins. At B the
 /// journal (radius R1) of BC plays in the bearing (radius R2) of AB: with d = r_journal − r_bearing
-/// (11), δ = |d| − (R2 − R1) (12), n = d/|d| (13), Hertz's force F_N = K δ^1.5 (6) to (8) pushes
-/// the bearing along +n. Coordinates are the two tip positions (Cartesian: no trigonometry), which
-/// with m/3 at each tip is the same ODE as (5) in the paper's six coordinates.
+/// (11), δ = |d| − (R2 − R1) (12), n = d/|d| (13), the normal force of the chosen law, as
+/// F_N = K δ^1.5 (6) to (8), pushes the bearing along +n. Coordinates are the two tip positions
+/// (Cartesian: no trigonometry), which with m/3 at each tip is the same ODE as (5) in the paper's
+/// six coordinates.
 ///
 /// Each link pulls its tip towards its pin with k_T (L − l_T) + c (L̇ − l̇_T), c = 2 ζ sqrt(k m/3)
 /// with k at ΔT = 0. A couple M on a link acts on its tip as M/L across the link: the pins'
 /// −c_p θ̇, the torsion spring's ±K_M (α − α0) (17) with the flare angle α = θ4 − θ2, and the moment
-/// (arm × F) of friction at the one contact point half-way between the two of eq. (14). Velocities
-/// there are those of the material.
+/// (arm × F) of friction at the one contact point half-way between the two of eq. (14), with the
+/// velocity of the material there; with the tangential velocity law `paper` there is no such
+/// moment, see kernel::laws::PaperVelocity.
 ///
 /// Angles: θ2 of AB from A to B, θ4 of BC from C to B, anticlockwise from AC.
-/// Limits: planar, small strain, no bending; B above AC; no restitution law. A plain value:
+/// Limits: planar, small strain, no bending; B above AC; those of the laws. A plain value:
 /// validate() once.
 struct Linkage {
   double frame_length = 0.0;               ///< a = |AC| [m], > 0; the frame does not expand
@@ -52,12 +48,10 @@ struct Linkage {
   double bearing_radius = 0.0;             ///< R2 at ΔT = 0 [m], > R1
   double journal_thermal_expansion = 0.0;  ///< [1/K], any finite value; 0: R1 constant
   double bearing_thermal_expansion = 0.0;  ///< [1/K], any finite value; 0: R2 constant
-  ContactRadius contact_radius = ContactRadius::internal;
-  JointFriction friction = JointFriction::none;
-  double friction_coefficient = 0.0;  ///< μ [-], >= 0; used by JointFriction::mindlin
-  double axial_damping_ratio = 0.0;   ///< ζ of both links [-], >= 0
-  double pin_damping = 0.0;           ///< c_p at A and at C [N m s/rad], >= 0
-  double torsion_stiffness = 0.0;     ///< K_M [N m/rad], >= 0
+  kernel::laws::JointLaw law;              ///< by default hertz_internal without friction
+  double axial_damping_ratio = 0.0;        ///< ζ of both links [-], >= 0
+  double pin_damping = 0.0;                ///< c_p at A and at C [N m s/rad], >= 0
+  double torsion_stiffness = 0.0;          ///< K_M [N m/rad], >= 0
   /// α0 [rad], in (0, π); NaN, the default, stands for the flare angle of the ideal position.
   double torsion_free_angle = std::numeric_limits<double>::quiet_NaN();
 
@@ -65,6 +59,8 @@ struct Linkage {
   void validate() const;
 
   double radial_clearance() const { return bearing_radius - journal_radius; }  ///< c [m]
+  /// μ [-]; 0 without a friction law.
+  double friction_coefficient() const;
   /// α0 with the default resolved [rad].
   double free_angle() const;
 };
@@ -75,9 +71,10 @@ struct LinkageState {
   Eigen::Vector2d journal_centre = Eigen::Vector2d::Zero();    ///< tip of BC [m]
   Eigen::Vector2d bearing_velocity = Eigen::Vector2d::Zero();  ///< [m/s]
   Eigen::Vector2d journal_velocity = Eigen::Vector2d::Zero();  ///< [m/s]
-  /// Its tangential_force is (force on the journal along (−n_y, n_x), 0, 0) [N]: a planar force
-  /// turns with the contact by itself.
+  /// Of a friction law that remembers. Its tangential_force is (force on the journal along
+  /// (−n_y, n_x), 0, 0) [N]: a planar force turns with the contact by itself.
   kernel::ContactHistory contact;
+  double impact_speed = 0.0;  ///< approach speed when the contact began [m/s]; 0: out of contact
 };
 
 /// Angles, lengths and the paper's six coordinates of one state.
@@ -97,15 +94,31 @@ LinkageCoordinates coordinates(const Linkage& model, const LinkageState& state);
 /// `matched`: L̇ = l̇_T, no ringing.
 enum class LinkageStart : unsigned char { rest, matched };
 
-/// Concentric journal and bearing at ΔT = 0, where the unstrained links meet. `temperature_rate`
-/// [K/s] is used by `matched`. Throws std::invalid_argument if the model is out of range.
-LinkageState initial_state(const Linkage& model, LinkageStart start, double temperature_rate);
+/// Unstrained links at ΔT = 0 with the journal at `eccentricity` d [m] from the bearing's centre;
+/// concentric by default. `temperature_rate` [K/s] is used by `matched`. Throws
+/// std::invalid_argument if the model is out of range or |d| above the clearance.
+LinkageState initial_state(const Linkage& model, LinkageStart start, double temperature_rate,
+                           const Eigen::Vector2d& eccentricity = Eigen::Vector2d::Zero());
+
+/// What the joint does in one state.
+struct LinkageJoint {
+  double penetration_depth;  ///< δ [m]; negative: gap
+  double approach_speed;     ///< δ̇ [m/s]
+  double normal_force;       ///< F_N with dissipation [N], >= 0
+  double tangential_force;   ///< friction on the journal along (−n_y, n_x) [N]
+  bool slipping;             ///< at Coulomb's limit; false for a law without memory
+};
+
+/// `temperature_rate` [K/s] matters for laws that see velocities, if the radii expand. Throws
+/// std::domain_error if the depth is outside the normal law's range.
+LinkageJoint joint_state(const Linkage& model, const LinkageState& state, double temperature_change,
+                         double temperature_rate);
 
 /// Stored energy by term [J].
 struct LinkageEnergy {
   double kinetic;
   double axial;       ///< 1/2 k_T (L − l_T)² of both links
-  double contact;     ///< Hertz
+  double contact;     ///< of the normal law
   double tangential;  ///< spring of the friction history
   double torsion;
   double sum() const { return kinetic + axial + contact + tangential + torsion; }

@@ -15,8 +15,8 @@ namespace {
 /// A spring whose free angle is 0.05 rad above the ideal flare angle loads the joint throughout.
 Linkage biased(double mu, double bias = 0.05) {
   Linkage model = umbrella();
-  model.friction = mu > 0.0 ? JointFriction::mindlin : JointFriction::none;
-  model.friction_coefficient = mu;
+  model.law.friction = kernel::laws::friction_law(mu > 0.0 ? "mindlin" : "none");
+  model.law.friction_parameters.friction_coefficient = mu;
   model.torsion_stiffness = 1.0;
   model.torsion_free_angle = umbrella().free_angle() + bias;
   return model;

@@ -78,8 +78,8 @@ TEST(LinkageRun, EnergyResidueThroughContact) {
 
 TEST(LinkageRun, AccountClosesWithEveryTerm) {
   Linkage model = umbrella();
-  model.friction = JointFriction::mindlin;
-  model.friction_coefficient = 0.3;
+  model.law.friction = kernel::laws::MindlinFriction{};
+  model.law.friction_parameters.friction_coefficient = 0.3;
   model.axial_damping_ratio = 0.1;
   model.pin_damping = 0.01;
   model.torsion_stiffness = 1.0;

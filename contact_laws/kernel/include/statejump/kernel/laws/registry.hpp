@@ -81,6 +81,11 @@ const LawInfo& law_info(const std::variant<Types...>& law) {
   return std::visit([](const auto& l) -> const LawInfo& { return l.info; }, law);
 }
 
+/// Whether a friction law remembers; see friction.hpp.
+inline bool has_memory(const FrictionLaw& law) {
+  return std::visit([](const auto& l) { return l.has_memory; }, law);
+}
+
 /// Normal contact by any law. @param depth delta [m], <= 0 gives zeros
 /// @throws std::domain_error outside the law's range
 inline NormalState evaluate(const NormalLaw& law, double depth, const NormalGeometry& geometry,
