@@ -11,4 +11,7 @@ void bind_thermal_program(pybind11::module_& module);
 /// Adds SpringSlider, its Path and solve to the module. Call after bind_thermal_program.
 void bind_spring_slider(pybind11::module_& module);
 
+/// Adds the catalogue of contact laws to the module.
+void bind_laws(pybind11::module_& module);
+
 }  // namespace statejump::bindings

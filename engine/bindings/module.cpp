@@ -9,4 +9,5 @@ PYBIND11_MODULE(_engine, module) {
       "range raise ValueError with the name, the value and the range.";
   statejump::bindings::bind_thermal_program(module);
   statejump::bindings::bind_spring_slider(module);
+  statejump::bindings::bind_laws(module);
 }
