@@ -7,7 +7,7 @@ import signal
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Callable
+from typing import Any, Callable, TypeVar
 
 import click
 from rich.console import Console
@@ -15,7 +15,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 from rich.table import Table
 
 from . import __version__, compare, convergence, dem, plot, reduced
-from .case import Case, load_case
+from .case import Case, SpringSliderCase, load_case
 from .errors import StatejumpError, Interrupted, TolerancesMissed
 from .output import results_folder
 
@@ -35,7 +35,7 @@ def _console(quiet: bool) -> Console:
     return console
 
 
-def _run_dem(case: Case, folder: Path, console: Console, label: str = "DEM") -> Any:
+def _run_dem(case: SpringSliderCase, folder: Path, console: Console, label: str = "DEM") -> Any:
     """Run the DEM with a progress bar on a terminal, with a line every 10 % elsewhere."""
     if console.is_terminal:
         columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"),
@@ -51,6 +51,21 @@ def _run_dem(case: Case, folder: Path, console: Console, label: str = "DEM") -> 
             console.print(f"{label}: {100 * fraction:.0f} % of {dem.number_of_steps(case):,} steps")
 
     return dem.run(case, folder, line)
+
+
+CaseType = TypeVar("CaseType", bound=Case)
+
+
+def _load(case_file: Path, kind: type[CaseType]) -> CaseType:
+    """Load a case of the kind that the command is for; StatejumpError for any other."""
+    case = load_case(case_file)
+    if not isinstance(case, kind):
+        command = click.get_current_context().info_name
+        raise StatejumpError(
+            f"{case_file}: case.kind = {case.kind!r} is not allowed: 'statejump {command}' is for "
+            f"{kind.KIND!r}"
+        )
+    return case
 
 
 def _number(value: float | None) -> str:
@@ -80,11 +95,11 @@ def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
       statejump reduced cases/table1.toml
     """
     console = _console(quiet)
-    case = load_case(case_file)
+    case = _load(case_file, SpringSliderCase)
     path = reduced.solve(case)
     folder = results_folder(results, case.name)
     reduced.sample(path, reduced.sample_times(case)).write_csv(folder / "reduced_history.csv")
-    table = Table(title=f"{case.case.title or case.name}: events of the first cycle")
+    table = Table(title=f"{case.title}: events of the first cycle")
     for heading in ("event", "stage", "ΔT [K]", "time [s]", "displacement [m]", "axial force [N]"):
         table.add_column(heading, justify="left" if heading in ("event", "stage") else "right")
     for event in path.events:
@@ -98,7 +113,7 @@ def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
     console.print(f"history: {folder / 'reduced_history.csv'}")
 
 
-def _warn(case: Case, path: Any, console: Console) -> None:
+def _warn(case: SpringSliderCase, path: Any, console: Console) -> None:
     for warning in (*path.warnings, *reduced.warnings(case)):
         console.print(f"warning: {warning}")
 
@@ -115,7 +130,7 @@ def dem_command(case_file: Path, results: Path, quiet: bool) -> None:
       statejump dem cases/table1.toml
     """
     console = _console(quiet)
-    case = load_case(case_file)
+    case = _load(case_file, SpringSliderCase)
     folder = results_folder(results, case.name)
     history = _run_dem(case, folder, console)
     jump = history["displacement_m"][-1] - history["displacement_m"][0]
@@ -135,7 +150,7 @@ def compare_command(case_file: Path, results: Path, quiet: bool) -> None:
       statejump compare cases/table1.toml
     """
     console = _console(quiet)
-    case = load_case(case_file)
+    case = _load(case_file, SpringSliderCase)
     path = reduced.solve(case)
     folder = results_folder(results, case.name)
     history = _run_dem(case, folder, console)
@@ -143,7 +158,7 @@ def compare_command(case_file: Path, results: Path, quiet: bool) -> None:
     rows = compare.compare(case, path, history)
     compare.write_comparison(case, rows, folder)
     figures = plot.figure(case, path, history, folder)
-    table = Table(title=case.case.title or case.name)
+    table = Table(title=case.title)
     for heading in ("quantity", "unit", "reduced", "DEM", "difference", "tolerance", ""):
         table.add_column(heading, justify="left" if heading in ("quantity", "unit", "") else "right")
     for row in rows:
@@ -169,7 +184,7 @@ def convergence_command(case_file: Path, results: Path, quiet: bool) -> None:
       statejump convergence cases/table1.toml
     """
     console = _console(quiet)
-    case = load_case(case_file)
+    case = _load(case_file, SpringSliderCase)
     folder = results_folder(results, case.name)
     variants = convergence.variants(case)
     # Only the table is a result: the histories of the runs go where they vanish.

@@ -12,7 +12,7 @@ from typing import Optional
 import numpy as np
 
 from . import _engine, reduced
-from .case import Case
+from .case_spring_slider import SpringSliderCase
 from .history import History
 from .output import write_atomically
 
@@ -86,7 +86,7 @@ def loop_drift(dem: History, samples_per_cycle: int, cycles: int) -> float:
     return float(max(np.max(np.abs(loop - loops[0])) for loop in loops))
 
 
-def compare(case: Case, path: _engine.Path, dem: History) -> list[Quantity]:
+def compare(case: SpringSliderCase, path: _engine.Path, dem: History) -> list[Quantity]:
     """Compare a DEM history with the exact path of the same case."""
     tolerance = case.tolerance
     samples = case.dem.samples_per_cycle
@@ -127,7 +127,7 @@ def compare(case: Case, path: _engine.Path, dem: History) -> list[Quantity]:
     return rows
 
 
-def write_comparison(case: Case, rows: list[Quantity], folder: Path) -> None:
+def write_comparison(case: SpringSliderCase, rows: list[Quantity], folder: Path) -> None:
     """Write ``comparison.json`` and ``comparison.csv``."""
     entries = []
     for row in rows:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from . import compare, dem, reduced, stable_step
-from .case import Case
+from .case_spring_slider import SpringSliderCase
 from .history import History
 from .output import write_atomically
 
@@ -59,11 +59,11 @@ class Row:
     displacement_rms_from_finest_step_m: float = math.nan
 
 
-def _with_dem(case: Case, **changes: Any) -> Case:
+def _with_dem(case: SpringSliderCase, **changes: Any) -> SpringSliderCase:
     return case.copy(update={"dem": case.dem.copy(update=changes)})
 
 
-def variants(case: Case) -> list[Case]:
+def variants(case: SpringSliderCase) -> list[SpringSliderCase]:
     """Cases to run: each period at the case's own step, then each step on a fast cycle."""
     period = case.dem.period_s
     periods = [_with_dem(case, period_s=period * factor, time_step_s=None) for factor in PERIOD_FACTORS]
@@ -74,7 +74,7 @@ def variants(case: Case) -> list[Case]:
     return periods + steps
 
 
-def rows(cases: list[Case], histories: list[History]) -> list[Row]:
+def rows(cases: list[SpringSliderCase], histories: list[History]) -> list[Row]:
     """Errors of all runs of :func:`variants`, in its order; the last has the finest time step."""
     result = [_row(case, history) for case, history in zip(cases, histories)]
     first_step_run = len(PERIOD_FACTORS)
@@ -94,7 +94,7 @@ def rows(cases: list[Case], histories: list[History]) -> list[Row]:
     return result
 
 
-def _row(case: Case, history: History) -> Row:
+def _row(case: SpringSliderCase, history: History) -> Row:
     """Errors of one run."""
     compared = {entry.name: entry for entry in compare.compare(case, reduced.solve(case), history)}
 
@@ -118,7 +118,7 @@ def _row(case: Case, history: History) -> Row:
     )
 
 
-def write(case: Case, rows: list[Row], folder: Path) -> None:
+def write(case: SpringSliderCase, rows: list[Row], folder: Path) -> None:
     """Write ``convergence.csv`` and ``convergence.md``."""
     entries = [asdict(entry) for entry in rows]
     names = list(entries[0])

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Callable
 
 from . import _paths, stable_step
-from .case import Case
+from .case_spring_slider import SpringSliderCase
 from .errors import StatejumpError, Interrupted
 from .history import History
 from .output import write_atomically
@@ -22,7 +22,7 @@ from .output import write_atomically
 INTERRUPTED = "dem_history.interrupted.csv"
 
 
-def number_of_steps(case: Case) -> int:
+def number_of_steps(case: SpringSliderCase) -> int:
     """Steps of the whole run: a multiple of the samples, so that the last sample is the end."""
     wanted = case.dem.time_step_s
     if wanted is None:
@@ -31,12 +31,12 @@ def number_of_steps(case: Case) -> int:
     return math.ceil(case.dem.period_s / wanted / samples) * samples * case.thermal.cycles
 
 
-def time_step(case: Case) -> float:
+def time_step(case: SpringSliderCase) -> float:
     """Time step [s]: the wanted one or a little less, so that steps fill the program exactly."""
     return case.duration_s / number_of_steps(case)
 
 
-def resolved(case: Case) -> dict[str, Any]:
+def resolved(case: SpringSliderCase) -> dict[str, Any]:
     """Everything that the YADE script needs, as plain values; keys as in the case file."""
     values = case.dict()
     if case.thermal.shape == "table":
@@ -61,7 +61,7 @@ def find_yade() -> str:
     return found
 
 
-def run(case: Case, folder: Path, progress: Callable[[float], None]) -> History:
+def run(case: SpringSliderCase, folder: Path, progress: Callable[[float], None]) -> History:
     """Run the case in YADE and return its history, also written to ``folder/dem_history.csv``.
 
     :param case: validated case

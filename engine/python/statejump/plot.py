@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 from . import _engine, reduced  # noqa: E402
-from .case import Case  # noqa: E402
+from .case_spring_slider import SpringSliderCase  # noqa: E402
 from .history import History  # noqa: E402
 from .output import replacing  # noqa: E402
 
@@ -24,7 +24,7 @@ STOP_SHADE = "0.82"
 MOST_NAMED_CYCLES = 3  # beyond it names of stages would cover each other
 
 
-def figure(case: Case, path: _engine.Path, dem: History, folder: Path) -> list[Path]:
+def figure(case: SpringSliderCase, path: _engine.Path, dem: History, folder: Path) -> list[Path]:
     """Write ``<case>.png`` and ``<case>.svg`` into the folder and return their paths."""
     dense = np.linspace(0, dem["time_s"][-1], 4001)
     event_times = [event.time_s for event in path.events]

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from . import _engine
-from .case import Case
+from .case_schema import Case
+from .case_spring_slider import SpringSliderCase
 from .history import History
 
 
 def thermal_program(case: Case) -> _engine.ThermalProgram:
-    """Temperature program of a case. The reduced model does not depend on its pace."""
+    """Temperature program of a case of any kind."""
     thermal = case.thermal
     if thermal.shape == "table":
         return _engine.ThermalProgram(
@@ -22,12 +23,12 @@ def thermal_program(case: Case) -> _engine.ThermalProgram:
     return _engine.ThermalProgram(
         shape=thermal.shape,
         temperature_change_max_K=thermal.temperature_change_max_K,
-        period_s=case.dem.period_s,
+        period_s=case.period_s,
         cycles=thermal.cycles,
     )
 
 
-def spring_slider(case: Case) -> _engine.SpringSlider:
+def spring_slider(case: SpringSliderCase) -> _engine.SpringSlider:
     """Reduced model of a ``spring_slider`` case."""
     return _engine.SpringSlider(
         young_modulus_Pa=case.link.young_modulus_Pa,
@@ -41,7 +42,7 @@ def spring_slider(case: Case) -> _engine.SpringSlider:
     )
 
 
-def warnings(case: Case) -> list[str]:
+def warnings(case: SpringSliderCase) -> list[str]:
     """What the case asks for and the reduced model leaves out, as sentences."""
     changes = [
         abs(case.clearance_m(side, change) - case.clearance_m(side, 0.0))
@@ -56,7 +57,7 @@ def warnings(case: Case) -> list[str]:
     ]
 
 
-def solve(case: Case) -> _engine.Path:
+def solve(case: SpringSliderCase) -> _engine.Path:
     """Exact path of a case: segments, events, state jump."""
     return _engine.solve(spring_slider(case), thermal_program(case))
 
@@ -67,7 +68,7 @@ def sample(path: _engine.Path, times_s: np.ndarray) -> History:
     return History({name: np.asarray(values) for name, values in columns.items()})
 
 
-def sample_times(case: Case) -> np.ndarray:
+def sample_times(case: SpringSliderCase) -> np.ndarray:
     """As many evenly spaced times as the DEM run has samples [s]."""
     cycles = case.thermal.cycles
     return np.linspace(0, case.dem.period_s * cycles, case.dem.samples_per_cycle * cycles + 1)

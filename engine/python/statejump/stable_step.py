@@ -18,17 +18,17 @@ from math import sqrt
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .case import Case
+    from .case_spring_slider import SpringSliderCase
 
 
-def tip_mass(case: Case) -> float:
+def tip_mass(case: SpringSliderCase) -> float:
     """Mass at the tip [kg]: a third of the bar's (exact for a uniform rod) and the slider's."""
     link = case.link
     bar = link.density_kg_per_m3 * link.cross_section_area_m2 * link.stress_free_length_m
     return bar / 3 + case.dem.slider_mass_kg
 
 
-def largest_stop_force(case: Case) -> float:
+def largest_stop_force(case: SpringSliderCase) -> float:
     """Force [N] that would hold the thermal overlap with a rigid stop."""
     link = case.link
     stiffness = link.young_modulus_Pa * link.cross_section_area_m2 / link.stress_free_length_m
@@ -39,7 +39,7 @@ def largest_stop_force(case: Case) -> float:
     return stiffness * overlap
 
 
-def contact_stiffness(case: Case, force_N: float) -> tuple[float, float]:
+def contact_stiffness(case: SpringSliderCase, force_N: float) -> tuple[float, float]:
     """Tangent stiffnesses k_n, k_t [N/m] of one pad under a force [N]."""
     joint = case.joint
     nu = joint.poisson_ratio
@@ -51,7 +51,7 @@ def contact_stiffness(case: Case, force_N: float) -> tuple[float, float]:
     return 2 * effective_modulus * contact_radius, 8 * effective_shear * contact_radius
 
 
-def stable_time_step(case: Case) -> float:
+def stable_time_step(case: SpringSliderCase) -> float:
     """Largest stable time step [s] of the DEM run of a case."""
     floor_normal, floor_tangential = contact_stiffness(case, 2 * case.joint.normal_force_N)
     stop_normal, stop_tangential = contact_stiffness(case, 2 * largest_stop_force(case))

@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What every kind of case is made of: parameters with unit and range, sections, sentences.
+
+Every field carries default (or none: required), unit, allowed range and source. Only this module
+knows pydantic. A kind of case is one module beside this one; :mod:`statejump.case` registers it.
+"""
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from typing import Any, ClassVar, Optional, Sequence, TypeVar
+
+from pydantic import BaseModel, Extra, Field, ValidationError, validator
+from pydantic.fields import ModelField
+
+from .errors import StatejumpError
+
+CHOICE = "choice, the paper is silent"
+
+SectionType = TypeVar("SectionType", bound="Section")
+
+
+def parameter(
+    default: Any,
+    unit: str,
+    low: float,
+    high: float,
+    source: str,
+    *,
+    above: bool = False,
+) -> Any:
+    """Return the pydantic field of a number.
+
+    :param default: default value; ``...`` for a required key
+    :param unit: unit, ``-`` for none
+    :param low: lower end of the allowed range
+    :param high: upper end, itself allowed
+    :param source: where the default comes from
+    :param above: whether ``low`` itself is excluded
+    """
+    return Field(default, unit=unit, low=low, high=high, above=above, description=source)
+
+
+def allowed_range(extra: dict[str, Any]) -> str:
+    """Return the sentence part that states the allowed range of a parameter."""
+    if extra["above"]:
+        return f"must be above {extra['low']:g} and at most {extra['high']:g} [{extra['unit']}]"
+    return f"must be between {extra['low']:g} and {extra['high']:g} [{extra['unit']}]"
+
+
+def choice(default: Any, names: Sequence[str], source: str) -> Any:
+    """Return the pydantic field of one name out of several.
+
+    :param default: default value; ``...`` for a required key
+    :param names: the names
+    :param source: where the default comes from
+    """
+    return Field(default, names=tuple(names), description=source)
+
+
+def check_number(value: Any, extra: dict[str, Any], integer: bool) -> float | int:
+    """Return the value if it is a number in range, else raise ValueError with the reason."""
+    kind = "a whole number" if integer else "a number"
+    if isinstance(value, bool) or not isinstance(value, int if integer else (int, float)):
+        raise ValueError(f"must be {kind}, " + allowed_range(extra).removeprefix("must be "))
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError("must be finite, " + allowed_range(extra).removeprefix("must be "))
+    too_low = value <= extra["low"] if extra["above"] else value < extra["low"]
+    if too_low or value > extra["high"]:
+        raise ValueError(allowed_range(extra))
+    return value
+
+
+def check_name(value: str, names: Sequence[str]) -> str:
+    """Return the value if it is one of the names, else raise ValueError that suggests the nearest."""
+    if value in names:
+        return value
+    listed = "must be " + " or ".join(repr(name) for name in names)
+    nearest = difflib.get_close_matches(value, names, n=1, cutoff=0.5)
+    raise ValueError(listed + (f"; did you mean {nearest[0]!r}?" if nearest else ""))
+
+
+def check_radii(bearing_radius: float, journal_radius: float) -> None:
+    """Raise ValueError unless a journal fits into its bearing; for cases with a revolute joint."""
+    if not bearing_radius > journal_radius:
+        raise ValueError(f"must be above journal_radius_m = {journal_radius!r} [m]")
+
+
+class Section(BaseModel):
+    """A table of the case file: unknown keys are refused, numbers are strict and in range."""
+
+    class Config:
+        extra = Extra.forbid
+        allow_mutation = False
+
+    @validator("*", pre=True)
+    def _strict(cls, value: Any, field: ModelField) -> Any:
+        extra = field.field_info.extra
+        if "low" not in extra:
+            if not isinstance(value, str if field.type_ is str else (str, dict)):
+                raise ValueError("must be a text in quotes")
+            return check_name(value, extra["names"]) if "names" in extra else value
+        if extra.get("listed"):
+            if not isinstance(value, list):
+                raise ValueError(f"must be a list of numbers [{extra['unit']}]")
+            return [float(check_number(item, extra, integer=False)) for item in value]
+        return check_number(value, extra, integer=field.type_ is int)
+
+
+class CaseHeader(Section):
+    """What the case is."""
+
+    name: str = Field(..., description="name of the results folder")
+    kind: str = Field(..., description="which experiment")
+    title: str = Field("", description="one line for figures")
+    source: str = Field("", description="where the numbers come from")
+
+    @validator("name")
+    def _name(cls, value: str) -> str:
+        if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", value):
+            raise ValueError("must consist of letters, digits, '_' and '-'")
+        return value
+
+
+class Thermal(Section):
+    """The temperature program, one cycle repeated."""
+
+    shape: str = choice(..., ("triangle", "half_sine", "sine", "table"), CHOICE)
+    temperature_change_max_K: Optional[float] = parameter(None, "K", -1e4, 1e4, "Chen et al. (2021), sections 3.3 and 4.3")
+    cycles: int = parameter(1, "-", 1, 100_000, "the paper runs one")
+    table_time_s: Optional[list[float]] = Field(
+        None, unit="s", low=0, high=1e12, above=False, listed=True, description="measured data"
+    )
+    table_temperature_change_K: Optional[list[float]] = Field(
+        None, unit="K", low=-1e4, high=1e4, above=False, listed=True, description="measured data"
+    )
+
+
+class Case(Section):
+    """What all kinds have in common. A whole case file in SI units, immutable.
+
+    A kind adds its sections, ``KIND``, ``period_s`` and ``problem``.
+    """
+
+    KIND: ClassVar[str]
+
+    case: CaseHeader
+    thermal: Thermal
+
+    @property
+    def name(self) -> str:
+        """Name of the case and of its results folder."""
+        return self.case.name
+
+    @property
+    def kind(self) -> str:
+        """Which experiment."""
+        return self.KIND
+
+    @property
+    def title(self) -> str:
+        """One line for figures and tables."""
+        return self.case.title or self.case.name
+
+    @property
+    def period_s(self) -> float:
+        """Length of one cycle [s]."""
+        raise NotImplementedError
+
+    @property
+    def duration_s(self) -> float:
+        """Length of all cycles [s]."""
+        return self.period_s * self.thermal.cycles
+
+    @property
+    def table_time_s(self) -> list[float]:
+        """Times of the table, stretched so that one cycle lasts ``period_s``; else empty."""
+        times = self.thermal.table_time_s or []
+        return [self.period_s * (time / times[-1]) for time in times]
+
+    @property
+    def temperature_range_K(self) -> tuple[float, float]:
+        """Smallest and largest ΔT [K] of the program."""
+        if self.thermal.shape == "table":
+            changes = self.thermal.table_temperature_change_K or [0.0]
+            return min(changes), max(changes)
+        peak = self.thermal.temperature_change_max_K or 0.0
+        if self.thermal.shape == "sine":
+            return -abs(peak), abs(peak)
+        return min(0.0, peak), max(0.0, peak)
+
+    def problem(self) -> str | None:
+        """Return what is wrong between several keys, without the file's name."""
+        raise NotImplementedError
+
+
+def thermal_problem(thermal: Thermal) -> str | None:
+    """Return what is wrong with the program as a whole, without the file's name."""
+    if thermal.shape != "table":
+        if thermal.temperature_change_max_K is None:
+            extra = Thermal.__fields__["temperature_change_max_K"].field_info.extra
+            return f"thermal.temperature_change_max_K is missing: {allowed_range(extra)}"
+        for key in ("table_time_s", "table_temperature_change_K"):
+            if getattr(thermal, key) is not None:
+                return f"thermal.{key} is not allowed: only with thermal.shape = 'table'"
+        return None
+    if thermal.temperature_change_max_K is not None:
+        return "thermal.temperature_change_max_K is not allowed with thermal.shape = 'table'"
+    times, changes = thermal.table_time_s, thermal.table_temperature_change_K
+    if times is None:
+        return "thermal.table_time_s is missing: a list of times [s] is needed for a table"
+    if changes is None:
+        return "thermal.table_temperature_change_K is missing: one value [K] per time is needed"
+    if len(times) < 2 or times[0] != 0 or any(b <= a for a, b in zip(times, times[1:])):
+        return (
+            f"thermal.table_time_s = {times} is not allowed: must be at least two times [s] "
+            "that start at 0 and rise"
+        )
+    if len(changes) != len(times):
+        return (
+            f"thermal.table_temperature_change_K has {len(changes)} values: "
+            f"must be {len(times)}, one per time"
+        )
+    if changes[0] != 0 or (thermal.cycles > 1 and changes[-1] != 0):
+        return (
+            f"thermal.table_temperature_change_K = {changes} is not allowed: must start at 0 [K]"
+            " and, with several cycles, end at 0 [K]"
+        )
+    return None
+
+
+def no_length_left(key: str, thermal_expansion_per_K: float, case: Case) -> str | None:
+    """Return the sentence for a link that the program shrinks to nothing."""
+    for change in case.temperature_range_K:
+        if 1 + thermal_expansion_per_K * change <= 0:
+            return (
+                f"{key} = {thermal_expansion_per_K!r} is not allowed: the link has no length left "
+                f"at a temperature change of {change:g} K"
+            )
+    return None
+
+
+def _shown(value: Any) -> str:
+    """Return a value as one would write it in the file."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(value)
+
+
+def _suggestion(word: str, known: list[str], before: str, after: str) -> str:
+    match = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
+    if match:
+        return f"did you mean {before}{match[0]}{after}?"
+    return "known are " + ", ".join(known)
+
+
+def _sentence(error: dict[str, Any], data: dict[str, Any], sections: type[Section]) -> str:
+    """Return one pydantic error as one sentence."""
+    location = error["loc"]
+    section = str(location[0])
+    if len(location) == 1:
+        if error["type"] == "value_error.extra":
+            known = list(sections.__fields__)
+            return f"section [{section}] is unknown: {_suggestion(section, known, '[', ']')}"
+        if error["type"] == "value_error.missing":
+            return f"section [{section}] is missing"
+        return f"{section} = {_shown(data[section])} is not allowed: must be a section [{section}]"
+    key = str(location[1])
+    model = sections.__fields__[section].type_
+    if error["type"] == "value_error.extra":
+        known = list(model.__fields__)
+        return f"{section}.{key} is unknown: {_suggestion(key, known, section + '.', '')}"
+    info = model.__fields__[key].field_info
+    if error["type"] == "value_error.missing":
+        rule = "a text in quotes is needed"
+        if "low" in info.extra:
+            rule = allowed_range(info.extra)
+        elif "names" in info.extra:
+            rule = "must be " + " or ".join(repr(name) for name in info.extra["names"])
+        return f"{section}.{key} is missing: {rule}"
+    return f"{section}.{key} = {_shown(data[section][key])} is not allowed: {error['msg']}"
+
+
+_ORDER = {"value_error.extra": 0, "value_error.missing": 1}
+
+
+def parsed(model: type[SectionType], data: dict[str, Any], name: str) -> SectionType:
+    """Return what a parsed TOML document holds, else raise one sentence.
+
+    :param model: the sections that are allowed
+    :param data: what tomllib returned
+    :param name: name of the file, for messages
+    """
+    try:
+        return model.parse_obj(data)
+    except ValidationError as failure:
+        # An unknown key is reported first: a misspelt key is missing as well.
+        first = min(failure.errors(), key=lambda error: _ORDER.get(error["type"], 2))
+        raise StatejumpError(f"{name}: {_sentence(first, data, model)}") from None
