@@ -64,6 +64,33 @@ inline void validate(const ContactParameters& parameters) {
   non_negative(parameters.effective_mass, "effective_mass", "[0, inf) kg");
 }
 
+/// Viscous damping c = 2 zeta sqrt(m k) [N s/m] of a contact spring at its present stiffness.
+/// @param damping_ratio zeta [-], @param mass m [kg], @param stiffness k [N/m]
+inline double viscous_damping(double damping_ratio, double mass, double stiffness) {
+  return 2.0 * damping_ratio * std::sqrt(mass * stiffness);
+}
+
+/// Normal force with its viscous part [N], clipped at 0: the bodies never pull on each other.
+/// @param force F [N] without that part, @param damping c [N s/m], @param approach_speed [m/s]
+inline double damped_normal_force(double force, double damping, double approach_speed) {
+  return std::max(0.0, force + damping * approach_speed);
+}
+
+/// Adds the viscous force -c v_t of a spring that sticks and projects the sum onto the disc of
+/// radius mu F_N; a projection is monotone, so what is left of the viscous force still opposes v_t.
+/// @param damping c [N s/m], @param limit mu F_N [N], @param velocity v_t [m/s]
+/// @param force in: of the spring [N], within the limit; out: with the viscous part
+/// @return power lost by the viscous part [W], >= 0
+inline double add_tangential_damping(double damping, double limit, const Vector3& velocity,
+                                     Vector3& force) {
+  const Vector3 spring = force;
+  force -= damping * velocity;
+  const double squared = force.squaredNorm();
+  if (!(squared > limit * limit)) return damping * velocity.squaredNorm();
+  force *= limit / std::sqrt(squared);
+  return std::max(0.0, (spring - force).dot(velocity));
+}
+
 /// Hertz normal contact, Mindlin history friction under Coulomb's limit, viscous damping.
 ///
 /// Normal: F_el = 4/3 E* sqrt(R) delta^1.5 and k_n = 2 E* a, a = sqrt(R delta), see hertz(). With
@@ -102,9 +129,11 @@ inline ContactResponse hertz_mindlin(const ContactParameters& parameters,
   double normal_force = normal_state.force;
   double damping_dissipation = 0.0;
   if (touching && parameters.normal_damping_ratio > 0.0) {
-    const double damping = 2.0 * parameters.normal_damping_ratio *
-                           std::sqrt(parameters.effective_mass * normal_state.stiffness);
-    normal_force = std::max(0.0, normal_force + damping * approach_speed);
+    normal_force =
+        damped_normal_force(normal_force,
+                            viscous_damping(parameters.normal_damping_ratio,
+                                            parameters.effective_mass, normal_state.stiffness),
+                            approach_speed);
     damping_dissipation =
         (normal_force - normal_state.force) * approach_speed * kinematics.time_step;
   }
@@ -118,16 +147,11 @@ inline ContactResponse hertz_mindlin(const ContactParameters& parameters,
 
   Vector3 tangential_force = history.tangential_force;
   if (parameters.tangential_damping_ratio > 0.0 && limit > 0.0 && !history.slipping) {
-    const double damping = 2.0 * parameters.tangential_damping_ratio *
-                           std::sqrt(parameters.effective_mass * tangential_stiffness);
-    tangential_force -= damping * tangential_velocity;
-    const double squared = tangential_force.squaredNorm();
-    double loss = damping * tangential_velocity.squaredNorm();
-    if (squared > limit * limit) {
-      tangential_force *= limit / std::sqrt(squared);
-      loss = std::max(0.0, (history.tangential_force - tangential_force).dot(tangential_velocity));
-    }
-    damping_dissipation += loss * kinematics.time_step;
+    const double damping = viscous_damping(parameters.tangential_damping_ratio,
+                                           parameters.effective_mass, tangential_stiffness);
+    damping_dissipation +=
+        add_tangential_damping(damping, limit, tangential_velocity, tangential_force) *
+        kinematics.time_step;
   }
 
   return {normal_force,
