@@ -10,4 +10,5 @@ PYBIND11_MODULE(_engine, module) {
   statejump::bindings::bind_thermal_program(module);
   statejump::bindings::bind_spring_slider(module);
   statejump::bindings::bind_laws(module);
+  statejump::bindings::bind_linkage(module);
 }

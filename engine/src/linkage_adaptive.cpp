@@ -60,8 +60,9 @@ class AdaptiveRun {
 
  private:
   void integrate(const ThermalBranch& branch) {
+    const Course course(branch);
     const auto system = [&](const Vector& scaled, Vector& rate, double time) {
-      rates<Rich>(k_, physical(scaled), temperature(branch, time), memory_, rate);
+      rates<Rich>(k_, physical(scaled), course(time), memory_, rate);
       for (std::size_t i = 0; i < rate.size(); ++i) rate[i] /= scales_[i];
     };
     auto stepper = odeint::make_dense_output(tolerance_, 0.0, largest_step_,
@@ -72,7 +73,7 @@ class AdaptiveRun {
       try {
         stepper.do_step(system);
       } catch (const std::domain_error& error) {
-        throw std::domain_error(at_instant(error.what(), time_, temperature(branch, time_).change));
+        throw std::domain_error(at_instant(error.what(), time_, course(time_).change));
       }
       ++run_.steps;
       const double begin = time_;
@@ -83,12 +84,11 @@ class AdaptiveRun {
         return physical(state);
       };
       const auto beyond = [&](double time, const Vector& y) {
-        return overlap<Rich>(k_, y, temperature(branch, time).change);
+        return overlap<Rich>(k_, y, course(time).change);
       };
       Vector y = at(end);
       if (!std::isfinite(beyond(end, y))) {
-        throw std::domain_error(
-            at_instant("the state is not finite", begin, temperature(branch, begin).change));
+        throw std::domain_error(at_instant("the state is not finite", begin, course(begin).change));
       }
       bool touches = beyond(end, y) > 0.0;
       const bool changes = touches != touching_;
@@ -100,22 +100,22 @@ class AdaptiveRun {
         }
         y = at(end);
       }
-      sample(branch, at, end);
-      if (changes) change(branch, end, y, touches);
+      sample(course, at, end);
+      if (changes) change(course, end, y, touches);
       y_ = y;
       time_ = end;
-      heat_ = end == branch.end_time ? branch.end : temperature(branch, end).change;
+      heat_ = end == branch.end_time ? branch.end : course(end).change;
       if (changes) {
         stepper.initialize(scaled(y_), time_, std::min(largest_step_, stepper.current_time_step()));
       }
     }
   }
 
-  void change(const ThermalBranch& branch, double time, const Vector& y, bool touches) {
+  void change(const Course& course, double time, const Vector& y, bool touches) {
     touching_ = touches;
     memory_.impact_speed = 0.0;
     if (!touches) return;
-    const Temperature heat = temperature(branch, time);
+    const Temperature heat = course(time);
     ++run_.contacts;
     if (!run_.first_contact) run_.first_contact = FirstContact{time, heat.change};
     memory_.impact_speed =
@@ -124,11 +124,11 @@ class AdaptiveRun {
   }
 
   template <class State>
-  void sample(const ThermalBranch& branch, const State& at, double end) {
+  void sample(const Course& course, const State& at, double end) {
     for (;;) {
       const double time = static_cast<double>(run_.samples.size()) * interval_;
-      if (time > end || time > branch.end_time) return;
-      record(time, temperature(branch, time).change, at(time));
+      if (time > end || time > course.branch.end_time) return;
+      record(time, course(time).change, at(time));
     }
   }
 

@@ -26,10 +26,10 @@ enum Component : std::size_t {
   slide = 13,  ///< of journal against bearing in this step; for a friction law that remembers
 };
 
-/// Elastic contact without friction: the account has no more than three terms.
+/// Links and elastic contact alone, no couple on a link: the case that runs most often.
 struct Plain {
   static constexpr bool rich = false;
-  using Vector = std::array<double, 11>;
+  using Vector = std::array<double, 10>;
 };
 
 /// Everything.
@@ -50,7 +50,7 @@ struct Constants {
   kernel::laws::JointLaw law;
   double pin_damping, torsion, free_angle;
   bool friction, friction_has_memory, dissipation, couples, expanding;
-  bool rich() const { return friction || dissipation; }
+  bool rich() const { return couples || dissipation; }
 };
 
 /// Checks nothing.
@@ -60,15 +60,23 @@ struct Temperature {
   double change, rate;
 };
 
-inline Temperature temperature(const kernel::ThermalBranch& branch, double time) {
-  if (branch.angular_frequency == 0.0) {
-    const double rate = (branch.end - branch.start) / (branch.end_time - branch.start_time);
-    return {branch.start + rate * (time - branch.start_time), rate};
+/// A branch of the program with its slope at hand.
+struct Course {
+  const kernel::ThermalBranch& branch;
+  double slope;  // [K/s] of a straight branch
+
+  explicit Course(const kernel::ThermalBranch& b)
+      : branch(b), slope((b.end - b.start) / (b.end_time - b.start_time)) {}
+
+  Temperature operator()(double time) const {
+    if (branch.angular_frequency == 0.0) {
+      return {branch.start + slope * (time - branch.start_time), slope};
+    }
+    const double size = std::copysign(branch.amplitude, branch.end - branch.start);
+    const double angle = branch.angular_frequency * (time - branch.zero_time);
+    return {size * std::sin(angle), size * branch.angular_frequency * std::cos(angle)};
   }
-  const double size = std::copysign(branch.amplitude, branch.end - branch.start);
-  const double angle = branch.angular_frequency * (time - branch.zero_time);
-  return {size * std::sin(angle), size * branch.angular_frequency * std::cos(angle)};
-}
+};
 
 struct Radii {
   double journal, bearing;
@@ -190,7 +198,7 @@ inline kernel::laws::FrictionResponse friction(const Constants& k, const NormalF
 
 /// Direction, length and axial force of one link.
 struct LinkForces {
-  double ux, uy, inverse_length, fx, fy, turn_rate;
+  double ux, uy, inverse_length, fx, fy;
 };
 
 template <class Vector>
@@ -209,12 +217,58 @@ LinkForces link_forces(const LinkConstants& k, double x, double y, double vx, do
   const double pull = tension + dashpot;
   rate[thermal_work] -= (pull + 0.5 * tension * tension * k.inverse_rigidity) * free_rate;
   rate[axial_heat] += dashpot * strain_rate;
-  return {ux, uy, inverse, -pull * ux, -pull * uy, (ux * vy - uy * vx) * inverse};
+  return {ux, uy, inverse, -pull * ux, -pull * uy};
 }
 
 /// ∂V/∂ΔT [J/K] of the normal law at fixed depth, through the radii: central difference over a
 /// hundredth of a kelvin. Its error, 1e-9 of V per kelvin, enters the energy account alone.
 double radii_energy_rate(const Constants& k, double depth, double temperature_change);
+
+/// What the contact does to the two links.
+struct ContactEffect {
+  double fx = 0.0, fy = 0.0;                ///< on the bearing [N]; the journal gets the opposite
+  double couple_ab = 0.0, couple_bc = 0.0;  ///< [N m]
+};
+
+/// Apart from rates(), which is short while the joint is open. Adds to the account's rates.
+template <class Kind>
+[[gnu::noinline]] ContactEffect contact_effect(const Constants& k, const typename Kind::Vector& y,
+                                               const Temperature& heat, const LinkageState& memory,
+                                               const TurnRates& turn, typename Kind::Vector& rate) {
+  const Radii radii = radii_at(k, heat.change);
+  const ContactPoint at = contact_point<Kind>(k, y, heat, radii);
+  const NormalForce normal = normal_force(k, at, radii, memory.impact_speed);
+  ContactEffect effect;
+  effect.fx = normal.force * at.nx;
+  effect.fy = normal.force * at.ny;
+  if (k.expanding) {
+    rate[thermal_work] +=
+        (radii_energy_rate(k, at.depth, heat.change) - normal.force * (k.r2_rate - k.r1_rate)) *
+        heat.rate;
+  }
+  if constexpr (Kind::rich) {
+    rate[impact_heat] = (normal.force - normal.elastic.force) * at.approach_speed;
+    if (k.friction) {
+      const SpatialContact<Kind> spatial(y, at, radii, turn);
+      const double speed = sliding_speed(k, spatial, at);
+      rate[slide] = speed;
+      kernel::ContactHistory trial = memory.contact;
+      const kernel::laws::FrictionResponse answer =
+          friction(k, normal, k.friction_has_memory ? y[slide] : speed, trial);
+      if (!k.friction_has_memory) rate[friction_heat] = answer.dissipation;
+      const double force = answer.force_on_1.x();
+      const kernel::Vector3 on_journal(-at.ny * force, at.nx * force, 0.0);
+      const kernel::Wrench wrench = std::visit(
+          [&](const auto& law) { return law.wrench(spatial.contact, on_journal, joint_axis()); },
+          k.law.tangential_velocity);
+      effect.fx -= wrench.force_1.x();
+      effect.fy -= wrench.force_1.y();
+      effect.couple_bc = wrench.torque_1.z();
+      effect.couple_ab = wrench.torque_2.z();
+    }
+  }
+  return effect;
+}
 
 template <class Kind>
 void rates(const Constants& k, const typename Kind::Vector& y, const Temperature& heat,
@@ -222,58 +276,31 @@ void rates(const Constants& k, const typename Kind::Vector& y, const Temperature
   for (std::size_t i = thermal_work; i < rate.size(); ++i) rate[i] = 0.0;
   LinkForces ab = link_forces(k.ab, y[0], y[1], y[4], y[5], heat, rate);
   LinkForces bc = link_forces(k.bc, y[2], y[3], y[6], y[7], heat, rate);
-  double couple_ab = 0.0;
-  double couple_bc = 0.0;
-  if (overlap<Kind>(k, y, heat.change) > 0.0) {
-    const Radii radii = radii_at(k, heat.change);
-    const ContactPoint at = contact_point<Kind>(k, y, heat, radii);
-    const NormalForce normal = normal_force(k, at, radii, memory.impact_speed);
-    double fx = normal.force * at.nx;  // on the bearing
-    double fy = normal.force * at.ny;
-    if (k.expanding) {
-      rate[thermal_work] +=
-          (radii_energy_rate(k, at.depth, heat.change) - normal.force * (k.r2_rate - k.r1_rate)) *
-          heat.rate;
-    }
-    if constexpr (Kind::rich) {
-      rate[impact_heat] = (normal.force - normal.elastic.force) * at.approach_speed;
-      if (k.friction) {
-        const SpatialContact<Kind> spatial(y, at, radii, {ab.turn_rate, bc.turn_rate});
-        const double speed = sliding_speed(k, spatial, at);
-        rate[slide] = speed;
-        kernel::ContactHistory trial = memory.contact;
-        const kernel::laws::FrictionResponse answer =
-            friction(k, normal, k.friction_has_memory ? y[slide] : speed, trial);
-        if (!k.friction_has_memory) rate[friction_heat] = answer.dissipation;
-        const double force = answer.force_on_1.x();
-        const kernel::Vector3 on_journal(-at.ny * force, at.nx * force, 0.0);
-        const kernel::Wrench wrench = std::visit(
-            [&](const auto& law) { return law.wrench(spatial.contact, on_journal, joint_axis()); },
-            k.law.tangential_velocity);
-        fx -= wrench.force_1.x();
-        fy -= wrench.force_1.y();
-        couple_bc = wrench.torque_1.z();
-        couple_ab = wrench.torque_2.z();
-      }
-    }
-    ab.fx += fx;
-    ab.fy += fy;
-    bc.fx -= fx;
-    bc.fy -= fy;
+  TurnRates turn{};
+  if constexpr (Kind::rich) {
+    turn = {(ab.ux * y[5] - ab.uy * y[4]) * ab.inverse_length,
+            (bc.ux * y[7] - bc.uy * y[6]) * bc.inverse_length};
   }
-  if (k.couples) {
+  ContactEffect joint;
+  if (overlap<Kind>(k, y, heat.change) > 0.0) {
+    joint = contact_effect<Kind>(k, y, heat, memory, turn, rate);
+    ab.fx += joint.fx;
+    ab.fy += joint.fy;
+    bc.fx -= joint.fx;
+    bc.fy -= joint.fy;
+  }
+  if constexpr (Kind::rich) {
+    double moment = 0.0;
     if (k.torsion > 0.0) {
-      const double moment =
+      moment =
           k.torsion *
           (std::atan2(ab.ux * bc.uy - ab.uy * bc.ux, ab.ux * bc.ux + ab.uy * bc.uy) - k.free_angle);
-      couple_ab += moment;
-      couple_bc -= moment;
     }
-    couple_ab -= k.pin_damping * ab.turn_rate;
-    couple_bc -= k.pin_damping * bc.turn_rate;
-    rate[pin_heat] = k.pin_damping * (ab.turn_rate * ab.turn_rate + bc.turn_rate * bc.turn_rate);
-    const double across_ab = couple_ab * ab.inverse_length;
-    const double across_bc = couple_bc * bc.inverse_length;
+    rate[pin_heat] = k.pin_damping * (turn.ab * turn.ab + turn.bc * turn.bc);
+    const double across_ab =
+        (joint.couple_ab + moment - k.pin_damping * turn.ab) * ab.inverse_length;
+    const double across_bc =
+        (joint.couple_bc - moment - k.pin_damping * turn.bc) * bc.inverse_length;
     ab.fx -= across_ab * ab.uy;
     ab.fy += across_ab * ab.ux;
     bc.fx -= across_bc * bc.uy;
@@ -313,8 +340,9 @@ void unpack(const Vector& y, LinkageState& state) {
 
 template <class Kind>
 LinkageAccount account(const typename Kind::Vector& y, double remembered_friction_heat) {
-  LinkageAccount result{y[thermal_work], y[axial_heat], y[pin_heat], remembered_friction_heat, 0.0};
+  LinkageAccount result{y[thermal_work], y[axial_heat], 0.0, remembered_friction_heat, 0.0};
   if constexpr (Kind::rich) {
+    result.pin_dissipation = y[pin_heat];
     result.friction_dissipation += y[friction_heat];
     result.impact_dissipation = y[impact_heat];
   }

@@ -18,17 +18,17 @@ namespace detail {
 namespace {
 
 template <class Kind>
-typename Kind::Vector step(const Constants& k, const ThermalBranch& branch, double t, double h,
+typename Kind::Vector step(const Constants& k, const Course& course, double t, double h,
                            const typename Kind::Vector& y, const LinkageState& memory) {
   typename Kind::Vector k1, k2, k3, k4, stage;
-  const Temperature middle = temperature(branch, t + 0.5 * h);
-  rates<Kind>(k, y, temperature(branch, t), memory, k1);
+  const Temperature middle = course(t + 0.5 * h);
+  rates<Kind>(k, y, course(t), memory, k1);
   for (std::size_t i = 0; i < y.size(); ++i) stage[i] = y[i] + 0.5 * h * k1[i];
   rates<Kind>(k, stage, middle, memory, k2);
   for (std::size_t i = 0; i < y.size(); ++i) stage[i] = y[i] + 0.5 * h * k2[i];
   rates<Kind>(k, stage, middle, memory, k3);
   for (std::size_t i = 0; i < y.size(); ++i) stage[i] = y[i] + h * k3[i];
-  rates<Kind>(k, stage, temperature(branch, t + h), memory, k4);
+  rates<Kind>(k, stage, course(t + h), memory, k4);
   for (std::size_t i = 0; i < y.size(); ++i) {
     stage[i] = y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
   }
@@ -37,17 +37,17 @@ typename Kind::Vector step(const Constants& k, const ThermalBranch& branch, doub
 
 /// Root of |d| = c within a step that starts out of contact, by bisection on its length.
 template <class Kind>
-FirstContact locate(const Constants& k, const ThermalBranch& branch, double t, double h,
+FirstContact locate(const Constants& k, const Course& course, double t, double h,
                     const typename Kind::Vector& y) {
   double before = 0.0;
   double after = h;
   for (int i = 0; i < 60; ++i) {
     const double tau = 0.5 * (before + after);
-    const auto at = step<Kind>(k, branch, t, tau, y, {});
-    const bool touches = overlap<Kind>(k, at, temperature(branch, t + tau).change) > 0.0;
+    const auto at = step<Kind>(k, course, t, tau, y, {});
+    const bool touches = overlap<Kind>(k, at, course(t + tau).change) > 0.0;
     (touches ? after : before) = tau;
   }
-  return {t + after, temperature(branch, t + after).change};
+  return {t + after, course(t + after).change};
 }
 
 template <class Kind>
@@ -67,12 +67,13 @@ class Run {
     long done = 0;
     try {
       for (const ThermalBranch& branch : kernel::monotone_branches(program)) {
+        const Course course(branch);
         const double length = branch.end_time - branch.start_time;
         const long steps = std::max(1L, std::lround(options.steps * (length / program.duration())));
         const double h = length / static_cast<double>(steps);
         run_.steps += steps;
         for (long i = 0; i < steps; ++i) {
-          advance(branch, branch.start_time + static_cast<double>(i) * h, h, i + 1 == steps);
+          advance(course, branch.start_time + static_cast<double>(i) * h, h, i + 1 == steps);
           ++done;
           if (options.sample_every > 0 && done % options.sample_every == 0) record();
         }
@@ -86,11 +87,11 @@ class Run {
   }
 
  private:
-  void advance(const ThermalBranch& branch, double from, double h, bool last) {
-    const auto next = step<Kind>(k_, branch, from, h, y_, memory_);
-    const Temperature before = temperature(branch, from);
-    time_ = last ? branch.end_time : from + h;
-    heat_ = last ? branch.end : temperature(branch, time_).change;
+  void advance(const Course& course, double from, double h, bool last) {
+    const auto next = step<Kind>(k_, course, from, h, y_, memory_);
+    const Temperature before = course(from);
+    time_ = last ? course.branch.end_time : from + h;
+    heat_ = last ? course.branch.end : course(time_).change;
     const double beyond = overlap<Kind>(k_, next, heat_);
     if (!std::isfinite(beyond)) {
       throw std::domain_error("the state is not finite, take more steps");
@@ -98,7 +99,7 @@ class Run {
     const bool touches = beyond > 0.0;
     if (touches && !touching_) {
       ++run_.contacts;
-      if (!run_.first_contact) run_.first_contact = locate<Kind>(k_, branch, from, h, y_);
+      if (!run_.first_contact) run_.first_contact = locate<Kind>(k_, course, from, h, y_);
       memory_.impact_speed =
           std::max(contact_point<Kind>(k_, y_, before, radii_at(k_, before.change)).approach_speed,
                    k_.law.smallest_impact_speed);

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/linkage.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bindings.hpp"
+#include "statejump/joint_loop.hpp"
+#include "statejump/linkage_run.hpp"
+
+namespace py = pybind11;
+
+namespace statejump::bindings {
+
+using Eigen::Vector2d;
+using kernel::ThermalProgram;
+
+namespace {
+
+using Row = std::vector<std::pair<const char*, double>>;
+
+/// Arrays by column name. @param row_of row i as (name, value) pairs, the same names in every row
+template <class RowOf>
+py::dict columns(std::size_t rows, RowOf&& row_of) {
+  std::vector<std::pair<const char*, py::array_t<double>>> arrays;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const Row row = row_of(i);
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      if (i == 0) arrays.emplace_back(row[j].first, static_cast<py::ssize_t>(rows));
+      arrays[j].second.mutable_data()[i] = row[j].second;
+    }
+  }
+  py::dict result;
+  for (const auto& [name, values] : arrays) result[name] = values;
+  return result;
+}
+
+/// A run together with what its samples mean.
+struct BoundRun {
+  Linkage model;
+  ThermalProgram program;
+  LinkageRun run;
+
+  py::dict columns() const {
+    return bindings::columns(run.samples.size(), [this](std::size_t i) -> Row {
+      const LinkageSample& s = run.samples[i];
+      const LinkageCoordinates q = coordinates(model, s.state);
+      const LinkageEnergy e = energy(model, s.state, s.temperature_change);
+      const LinkageJoint j =
+          joint_state(model, s.state, s.temperature_change, program.temperature_rate(s.time));
+      return {
+          {"time_s", s.time},
+          {"temperature_change_K", s.temperature_change},
+          {"theta2_rad", q.theta2},
+          {"theta4_rad", q.theta4},
+          {"length_ab_m", q.length_ab},
+          {"length_bc_m", q.length_bc},
+          {"centroid_ab_x_m", q.centroid_ab.x()},
+          {"centroid_ab_y_m", q.centroid_ab.y()},
+          {"centroid_bc_x_m", q.centroid_bc.x()},
+          {"centroid_bc_y_m", q.centroid_bc.y()},
+          {"bearing_x_m", s.state.bearing_centre.x()},
+          {"bearing_y_m", s.state.bearing_centre.y()},
+          {"journal_x_m", s.state.journal_centre.x()},
+          {"journal_y_m", s.state.journal_centre.y()},
+          {"eccentricity_x_m", q.eccentricity.x()},
+          {"eccentricity_y_m", q.eccentricity.y()},
+          {"penetration_depth_m", j.penetration_depth},
+          {"normal_force_N", j.normal_force},
+          {"tangential_force_N", j.tangential_force},
+          {"slipping", j.slipping ? 1.0 : 0.0},
+          {"kinetic_energy_J", e.kinetic},
+          {"axial_energy_J", e.axial},
+          {"contact_energy_J", e.contact + e.tangential},
+          {"torsion_energy_J", e.torsion},
+          {"axial_dissipation_J", s.account.axial_dissipation},
+          {"pin_dissipation_J", s.account.pin_dissipation},
+          {"friction_dissipation_J", s.account.friction_dissipation},
+          {"impact_dissipation_J", s.account.impact_dissipation},
+          {"thermal_work_J", s.account.thermal_work},
+      };
+    });
+  }
+};
+
+Linkage make_linkage(double frame_length, const ThermalLink& link_ab, const ThermalLink& link_bc,
+                     double journal_radius, double bearing_radius, double journal_expansion,
+                     double bearing_expansion, const std::string& normal_law,
+                     const std::string& dissipation_law, const std::string& friction_law,
+                     const std::string& tangential_velocity, double friction_coefficient, double v0,
+                     double v1, double restitution, double smallest_impact_speed,
+                     double contact_length, double axial_damping_ratio, double pin_damping,
+                     double torsion_stiffness, double torsion_free_angle) {
+  Linkage model;
+  model.frame_length = frame_length;
+  model.link_ab = link_ab;
+  model.link_bc = link_bc;
+  model.journal_radius = journal_radius;
+  model.bearing_radius = bearing_radius;
+  model.journal_thermal_expansion = journal_expansion;
+  model.bearing_thermal_expansion = bearing_expansion;
+  model.law =
+      kernel::laws::joint_law({normal_law, dissipation_law, friction_law, tangential_velocity});
+  model.law.friction_parameters = {friction_coefficient, v0, v1};
+  model.law.restitution = restitution;
+  model.law.smallest_impact_speed = smallest_impact_speed;
+  model.law.contact_length = contact_length;
+  model.axial_damping_ratio = axial_damping_ratio;
+  model.pin_damping = pin_damping;
+  model.torsion_stiffness = torsion_stiffness;
+  model.torsion_free_angle = torsion_free_angle;
+  model.validate();
+  return model;
+}
+
+LinkageStart start_mode(const std::string& mode) {
+  if (mode == "rest") return LinkageStart::rest;
+  if (mode == "matched") return LinkageStart::matched;
+  throw std::invalid_argument("mode = '" + mode + "', allowed is one of rest, matched");
+}
+
+py::dict event(const JointPoint& point) {
+  py::dict result;
+  result["motion"] = to_string(point.motion);
+  result["temperature_change_K"] = point.temperature_change;
+  result["contact_angle_rad"] = point.contact_angle;
+  result["theta2_rad"] = point.theta2;
+  result["theta4_rad"] = point.theta4;
+  return result;
+}
+
+void bind_models(py::module_& module) {
+  const Linkage standard;
+  py::class_<ThermalLink>(module, "ThermalLink",
+                          "A uniform link pinned to the frame; a third of its mass at its tip.")
+      .def(py::init([](double length, double mass, double young_modulus, double area,
+                       double expansion, double poisson_ratio) {
+             return ThermalLink{length, mass, young_modulus, area, expansion, poisson_ratio};
+           }),
+           py::kw_only(), py::arg("stress_free_length_m"), py::arg("mass_kg"),
+           py::arg("young_modulus_Pa"), py::arg("cross_section_area_m2"),
+           py::arg("thermal_expansion_per_K"), py::arg("poisson_ratio") = 0.3);
+
+  py::class_<Linkage>(module, "Linkage",
+                      "One deployed rib of the umbrella antenna: links AB and BC on pins of the "
+                      "frame, a clearance\njoint between them at B, a torsion spring on the flare "
+                      "angle theta4 - theta2. Immutable.\nRaises ValueError for a value out of "
+                      "range.")
+      .def(py::init(&make_linkage), py::kw_only(), py::arg("frame_length_m"), py::arg("link_ab"),
+           py::arg("link_bc"), py::arg("journal_radius_m"), py::arg("bearing_radius_m"),
+           py::arg("journal_thermal_expansion_per_K") = 0.0,
+           py::arg("bearing_thermal_expansion_per_K") = 0.0,
+           py::arg("normal_law") = law_info(standard.law.normal).name,
+           py::arg("dissipation_law") = law_info(standard.law.dissipation).name,
+           py::arg("friction_law") = law_info(standard.law.friction).name,
+           py::arg("tangential_velocity") = law_info(standard.law.tangential_velocity).name,
+           py::arg("friction_coefficient") = 0.0,
+           py::arg("friction_v0_m_per_s") = standard.law.friction_parameters.v0,
+           py::arg("friction_v1_m_per_s") = standard.law.friction_parameters.v1,
+           py::arg("restitution") = standard.law.restitution,
+           py::arg("smallest_impact_speed_m_per_s") = standard.law.smallest_impact_speed,
+           py::arg("contact_length_m") = standard.law.contact_length,
+           py::arg("axial_damping_ratio") = 0.0, py::arg("pin_damping_N_m_s_per_rad") = 0.0,
+           py::arg("torsion_stiffness_N_m_per_rad") = 0.0,
+           py::arg("torsion_free_angle_rad") = standard.torsion_free_angle)
+      .def_property_readonly("radial_clearance_m", &Linkage::radial_clearance)
+      .def_property_readonly("friction_coefficient", &Linkage::friction_coefficient,
+                             "mu [-]; 0 without a friction law.")
+      .def_property_readonly("torsion_free_angle_rad", &Linkage::free_angle)
+      .def("first_contact_temperature_change", &first_contact_temperature,
+           "Closed form of first contact on heating [K]; inf if there is none.");
+
+  py::class_<LinkageState>(module, "LinkageState", "Positions and velocities of the two tips.")
+      .def_property_readonly("bearing_centre_m",
+                             [](const LinkageState& s) { return Vector2d(s.bearing_centre); })
+      .def_property_readonly("journal_centre_m",
+                             [](const LinkageState& s) { return Vector2d(s.journal_centre); })
+      .def_property_readonly("bearing_velocity_m_per_s",
+                             [](const LinkageState& s) { return Vector2d(s.bearing_velocity); })
+      .def_property_readonly("journal_velocity_m_per_s",
+                             [](const LinkageState& s) { return Vector2d(s.journal_velocity); })
+      .def_property_readonly(
+          "tangential_force_N",
+          [](const LinkageState& s) { return s.contact.tangential_force.x(); },
+          "Remembered friction on the journal along (-n_y, n_x) [N].")
+      .def_property_readonly("tangential_stiffness_N_per_m",
+                             [](const LinkageState& s) { return s.contact.tangential_stiffness; });
+}
+
+void bind_runs(py::module_& module) {
+  py::class_<BoundRun>(module, "LinkageRun", "Result of simulate().")
+      .def("columns", &BoundRun::columns,
+           "Samples as arrays by column name; forces on the journal, energies since the start.")
+      .def_property_readonly("first_contact_time_s",
+                             [](const BoundRun& self) -> py::object {
+                               if (!self.run.first_contact) return py::none();
+                               return py::float_(self.run.first_contact->time);
+                             })
+      .def_property_readonly(
+          "first_contact_temperature_change_K",
+          [](const BoundRun& self) -> py::object {
+            if (!self.run.first_contact) return py::none();
+            return py::float_(self.run.first_contact->temperature_change);
+          },
+          "None if journal and bearing never touch.")
+      .def_property_readonly("contacts", [](const BoundRun& self) { return self.run.contacts; })
+      .def_property_readonly("steps", [](const BoundRun& self) { return self.run.steps; })
+      .def_property_readonly("energy_residue_J",
+                             [](const BoundRun& self) { return self.run.energy_residue; });
+
+  module.def(
+      "initial_state",
+      [](const Linkage& model, const std::string& mode, double rate, const Vector2d& eccentricity) {
+        return initial_state(model, start_mode(mode), rate, eccentricity);
+      },
+      py::arg("model"), py::arg("mode"), py::arg("temperature_rate_K_per_s") = 0.0,
+      py::arg("eccentricity_m") = Vector2d(0.0, 0.0),
+      "Unstrained links with the journal at the given place in the play; mode 'rest' or "
+      "'matched'.");
+  module.def(
+      "simulate",
+      [](const Linkage& model, const ThermalProgram& program, const LinkageState& start, int steps,
+         int sample_every) {
+        const py::gil_scoped_release free;
+        return BoundRun{model, program, simulate(model, program, start, {steps, sample_every})};
+      },
+      py::arg("model"), py::arg("program"), py::arg("start"), py::arg("steps") = 100000,
+      py::arg("sample_every") = 0,
+      "Classical Runge-Kutta with fixed steps over the whole program. Raises ValueError with time, "
+      "temperature\nand value when a law leaves its range or the state ceases to be finite.");
+  module.def(
+      "simulate_adaptive",
+      [](const Linkage& model, const ThermalProgram& program, const LinkageState& start,
+         double tolerance, int samples) {
+        const py::gil_scoped_release free;
+        return BoundRun{model, program,
+                        simulate_adaptive(model, program, start, {tolerance, samples})};
+      },
+      py::arg("model"), py::arg("program"), py::arg("start"),
+      py::arg("relative_tolerance") = AdaptiveRunOptions{}.relative_tolerance,
+      py::arg("samples") = 0, "Dormand-Prince with error control, for laws without memory.");
+}
+
+void bind_loop(py::module_& module) {
+  py::class_<JointLoop>(module, "JointLoop",
+                        "Quasi-static path of the loaded joint, rigid links, exact Coulomb.")
+      .def("columns",
+           [](const JointLoop& self) {
+             return columns(self.points.size(), [&self](std::size_t i) -> Row {
+               const JointPoint& p = self.points[i];
+               return {
+                   {"temperature_change_K", p.temperature_change},
+                   {"contact_angle_rad", p.contact_angle},
+                   {"theta2_rad", p.theta2},
+                   {"theta4_rad", p.theta4},
+                   {"eccentricity_x_m", p.eccentricity.x()},
+                   {"eccentricity_y_m", p.eccentricity.y()},
+                   {"bearing_x_m", p.bearing_centre.x()},
+                   {"bearing_y_m", p.bearing_centre.y()},
+                   {"journal_x_m", p.journal_centre.x()},
+                   {"journal_y_m", p.journal_centre.y()},
+                   {"spring_moment_N_m", p.spring_moment},
+               };
+             });
+           })
+      .def_property_readonly("events",
+                             [](const JointLoop& self) {
+                               py::list result;
+                               for (const JointPoint& point : self.events) {
+                                 result.append(event(point));
+                               }
+                               return result;
+                             })
+      .def_readonly("separated", &JointLoop::separated)
+      .def_property_readonly("theta2_jump_rad", &JointLoop::theta2_jump)
+      .def_property_readonly("theta4_jump_rad", &JointLoop::theta4_jump)
+      .def_property_readonly("bearing_jump_m",
+                             [](const JointLoop& self) { return Vector2d(self.bearing_jump()); })
+      .def_property_readonly("journal_jump_m",
+                             [](const JointLoop& self) { return Vector2d(self.journal_jump()); });
+  module.def(
+      "joint_loop", &joint_loop, py::arg("model"), py::arg("program"),
+      py::arg("contact_angle_rad") = 0.0, py::arg("samples") = 200,
+      "Quasi-static path from equilibrium at the given contact angle. Needs a torsion spring "
+      "that loads the\njoint; raises ValueError otherwise.");
+}
+
+}  // namespace
+
+void bind_linkage(py::module_& module) {
+  bind_models(module);
+  bind_runs(module);
+  bind_loop(module);
+}
+
+}  // namespace statejump::bindings
