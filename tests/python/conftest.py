@@ -48,10 +48,10 @@ def cases() -> Path:
 
 @pytest.fixture
 def edited(tmp_path: Path, cases: Path) -> Callable[..., Path]:
-    """Write cases/table1.toml with replacements to bad.toml. Each text must be there."""
+    """Write a case file with replacements to bad.toml. Each text must be there."""
 
-    def write(*replacements: tuple[str, str]) -> Path:
-        text = (cases / "table1.toml").read_text()
+    def write(*replacements: tuple[str, str], case: str = "table1") -> Path:
+        text = (cases / f"{case}.toml").read_text()
         for old, new in replacements:
             assert old in text, old
             text = text.replace(old, new, 1)
