@@ -14,8 +14,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
 
-from . import __version__, compare, convergence, dem, plot, reduced
-from .case import Case, SpringSliderCase, load_case
+from . import __version__, _engine, compare, convergence, dem, laws, plot, reduced
+from .case import Case, SpringSliderCase, UmbrellaCase, load_case
 from .errors import StatejumpError, Interrupted, TolerancesMissed
 from .output import results_folder
 
@@ -198,6 +198,35 @@ def convergence_command(case_file: Path, results: Path, quiet: bool) -> None:
             raise Interrupted("interrupted; no table was written") from None
     convergence.write(case, convergence.rows(variants, histories), folder)
     console.print((folder / "convergence.md").read_text(encoding="utf-8"))
+
+
+@cli.command("laws")
+@click.argument("case_file", metavar="[CASE]", required=False, type=click.Path(path_type=Path))
+@RESULTS
+@QUIET
+def laws_command(case_file: Path | None, results: Path, quiet: bool) -> None:
+    """Catalogue of contact laws, and their curves for the joint of CASE (the paper's without).
+
+    \b
+    Example:
+      statejump laws
+    """
+    console = _console(quiet)
+    case = _load(case_file, UmbrellaCase) if case_file is not None else None
+    folder = results_folder(results, "laws")
+    for kind in laws.KINDS:
+        table = Table(title=f"{kind} laws", show_lines=True)
+        for heading in ("name", "formula", "range", "source", "holds a static load"):
+            table.add_column(heading, overflow="fold")
+        for law in _engine.laws(kind):
+            table.add_row(law["name"], law["formula"], law["range"], law["source"],
+                          "yes" if law["holds_static_load"] else "no")
+        console.print(table)
+    if case is None:
+        written = laws.figure(laws.paper_joint(), folder, "laws")
+    else:
+        written = laws.figure(laws.joint_of(case), folder, f"laws_{case.name}")
+    console.print(f"curves: {', '.join(str(name) for name in written)}")
 
 
 def _end(function: Callable[[], None]) -> int:

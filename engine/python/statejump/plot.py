@@ -21,6 +21,8 @@ DEM = dict(color="#000000", linewidth=1.2, linestyle=(0, (5, 2)), label="DEM (YA
 STAGE_NAMES = {"at_stop_plus": "stop", "at_stop_minus": "stop"}
 STAGE_SHADES = {"S1": "0.94", "S2": "1.0", "S3": "0.94", "S4": "0.90", "S5": "1.0"}
 STOP_SHADE = "0.82"
+STYLE = {"svg.hashsalt": "statejump", "font.size": 9, "axes.grid": True, "grid.color": "0.88",
+         "axes.axisbelow": True, "svg.fonttype": "none"}
 MOST_NAMED_CYCLES = 3  # beyond it names of stages would cover each other
 
 
@@ -32,8 +34,7 @@ def figure(case: SpringSliderCase, path: _engine.Path, dem: History, folder: Pat
     quantities = (("displacement_m", 1e3, "Displacement of the slider [mm]"),
                   ("axial_force_N", 1.0, "Axial force, compression positive [N]"))
     axes_of = (("temperature_change_K", "Temperature change [K]"), ("time_s", "Time [s]"))
-    with plt.rc_context({"svg.hashsalt": "statejump", "font.size": 9, "axes.grid": True,
-                         "grid.color": "0.88", "axes.axisbelow": True, "svg.fonttype": "none"}):
+    with plt.rc_context(STYLE):
         drawing, panels = plt.subplots(2, 2, figsize=(9.5, 6.8), constrained_layout=True)
         for row, (column, scale, label) in enumerate(quantities):
             for side, (abscissa, abscissa_label) in enumerate(axes_of):
@@ -46,14 +47,19 @@ def figure(case: SpringSliderCase, path: _engine.Path, dem: History, folder: Pat
         _mark_events(panels[0, 0], path)
         _mark_jump(panels[0, 0], path)
         panels[0, 0].legend(loc="upper left", framealpha=1)
-        drawing.suptitle(case.case.title or case.name, fontsize=11)
-        written = []
-        for suffix, extra in ((".png", {"dpi": 160}), (".svg", {"metadata": {"Date": None}})):
-            target = folder / f"{case.name}{suffix}"
-            with replacing(target) as aside:
-                drawing.savefig(aside, **extra)
-            written.append(target)
-        plt.close(drawing)
+        drawing.suptitle(case.title, fontsize=11)
+        return save(drawing, folder, case.name)
+
+
+def save(drawing: plt.Figure, folder: Path, name: str) -> list[Path]:
+    """Write ``<name>.png`` and ``<name>.svg``, the same bytes every time; close the drawing."""
+    written = []
+    for suffix, extra in ((".png", {"dpi": 160}), (".svg", {"metadata": {"Date": None}})):
+        target = folder / f"{name}{suffix}"
+        with replacing(target) as aside:
+            drawing.savefig(aside, **extra)
+        written.append(target)
+    plt.close(drawing)
     return written
 
 

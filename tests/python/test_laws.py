@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The catalogue through Python: names, forces against formulas written down again, the figures."""
+from __future__ import annotations
+
+from math import inf, log1p, pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from statejump import _engine, laws
+from statejump.case import load_case
+
+R1, R2, LENGTH, MODULUS = 5e-3, 5.1e-3, 0.01, 70e9 / (2 * (1 - 0.3**2))
+CLEARANCE = R2 - R1
+LINE_CONTACTS = ("johnson", "esdu_78035", "persson")
+
+
+def table(name: str, depth: np.ndarray) -> dict[str, np.ndarray]:
+    return _engine.normal_force(name, depth, R1, R2, LENGTH, MODULUS)
+
+
+def test_names() -> None:
+    names = {kind: _engine.law_names(kind) for kind in laws.KINDS}
+    assert names == {
+        "normal": ["hertz_paper", "hertz_internal", "johnson", "esdu_78035", "persson"],
+        "dissipation": ["none", "lankarani_nikravesh", "hunt_crossley", "flores"],
+        "friction": ["none", "ambrosio", "mindlin"],
+        "tangential_velocity": ["material", "paper"],
+    }
+    for kind, listed in names.items():
+        infos = _engine.laws(kind)
+        assert [info["name"] for info in infos] == listed
+        assert {tuple(info) for info in infos} == {("name", "formula", "source", "range", "holds_static_load")}
+    assert [info["holds_static_load"] for info in _engine.laws("friction")] == [False, False, True]
+    with pytest.raises(ValueError, match="kind = 'rolling', allowed is one of normal, dissipation, friction"):
+        _engine.law_names("rolling")
+
+
+@pytest.mark.parametrize("name, radius", [("hertz_paper", R1 * R2 / (R1 + R2)), ("hertz_internal", R1 * R2 / (R2 - R1))])
+def test_hertz(name: str, radius: float) -> None:
+    depth = np.geomspace(1e-9, 1e-4, 50)
+    found = table(name, depth)
+    stiffness = 4 / 3 * MODULUS * np.sqrt(radius)
+    np.testing.assert_allclose(found["force_N"], stiffness * depth**1.5, rtol=1e-13)
+    np.testing.assert_allclose(found["stiffness_N_per_m"], 1.5 * stiffness * depth**0.5, rtol=1e-13)
+    np.testing.assert_allclose(found["contact_width_m"], np.sqrt(radius * depth), rtol=1e-13)
+    np.testing.assert_allclose(found["elastic_energy_J"], 0.4 * stiffness * depth**2.5, rtol=1e-13)
+
+
+@pytest.mark.parametrize("name, shift", [("johnson", -1.0), ("esdu_78035", 1.0)])
+def test_logarithmic_line_contact(name: str, shift: float) -> None:
+    """The laws give force from depth; the literature prints depth from force."""
+    limit = _engine.largest_depth_m(name, R1, R2)
+    assert limit == pytest.approx(4 * CLEARANCE * np.exp(shift - 1), rel=1e-12)
+    depth = np.geomspace(1e-9, limit * (1 - 1e-6), 50)
+    found = table(name, depth)
+    line = found["force_N"] / LENGTH
+    printed = line / (pi * MODULUS) * (np.log(4 * pi * MODULUS * CLEARANCE / line) + shift)
+    np.testing.assert_allclose(printed, depth, rtol=1e-12)
+    width = np.sqrt(4 * line * R1 * R2 / CLEARANCE / (pi * MODULUS))
+    np.testing.assert_allclose(found["contact_width_m"], width, rtol=1e-12)
+
+
+def test_persson() -> None:
+    depth = np.geomspace(1e-7, 0.99 * R1, 50)
+    found = table("persson", depth)
+    t = np.tan(found["contact_width_m"] / R1 / 2) ** 2
+    line = 2 * pi * MODULUS * CLEARANCE * t * (1 + t) / (2 - np.log1p(t) - 2 * t**2)
+    # near the largest arc the divisor tends to zero and loses digits
+    np.testing.assert_allclose(found["force_N"], line * LENGTH, rtol=1e-6)
+    light = np.array([1e-9])
+    assert table("persson", light)["force_N"] == pytest.approx(table("johnson", light)["force_N"], rel=1e-3)
+
+
+@pytest.mark.parametrize("name", _engine.law_names("normal"))
+def test_stiffness_and_energy_belong_to_the_force(name: str) -> None:
+    depth = np.linspace(1e-5, 5e-5, 4001)
+    found = table(name, depth)
+    force, step = found["force_N"], depth[1] - depth[0]
+    inner = slice(1, -1)
+    np.testing.assert_allclose(np.gradient(force, step)[inner], found["stiffness_N_per_m"][inner], rtol=1e-6)
+    work = np.sum((force[1:] + force[:-1]) / 2) * step
+    assert np.diff(found["elastic_energy_J"][[0, -1]])[0] == pytest.approx(work, rel=1e-6)
+    apart = table(name, np.array([-1e-5, 0.0]))
+    assert all(np.array_equal(column, [0.0, 0.0]) for column in apart.values())
+
+
+@pytest.mark.parametrize("name", LINE_CONTACTS)
+def test_depth_beyond_the_range(name: str) -> None:
+    limit = _engine.largest_depth_m(name, R1, R2)
+    with pytest.raises(ValueError, match=f"^{name}: penetration_depth = .* m, allowed is below .* m$"):
+        table(name, np.array([limit]))
+
+
+def test_wrong_use() -> None:
+    assert _engine.largest_depth_m("hertz_internal", R1, R2) == inf
+    with pytest.raises(ValueError, match="normal_law = 'herz', allowed is one of hertz_paper, "):
+        table("herz", np.array([0.0]))
+    with pytest.raises(ValueError, match="bearing_radius"):
+        _engine.normal_force("johnson", [0.0], R2, R1, LENGTH, MODULUS)
+    with pytest.raises(ValueError, match="restitution"):
+        _engine.damping_ratio_s_per_m("flores", 0.0, 0.1)
+    with pytest.raises(ValueError, match="penetration_depth = nan"):
+        table("hertz_internal", np.array([np.nan]))
+
+
+@pytest.mark.parametrize("name, ratio", [
+    ("none", 0.0), ("lankarani_nikravesh", 0.75 * (1 - 0.64)), ("hunt_crossley", 1.5 * 0.2),
+    ("flores", 1.6 * 0.2 / 0.8),
+])
+def test_impact(name: str, ratio: float) -> None:
+    """a - ln(1 + a) = -a e' - ln(1 - a e') whatever the elastic law; a = chi/K times the speed."""
+    joint = laws.paper_joint()
+    assert _engine.damping_ratio_s_per_m(name, 0.8, 0.1) * 0.1 == pytest.approx(ratio, rel=1e-14)
+    found = laws.impact(name, joint)
+    if ratio == 0:
+        assert found.restitution == pytest.approx(1.0, abs=1e-6)
+        energy = 0.5 * joint.reduced_mass_kg * 0.1**2
+        deepest = table("hertz_internal", np.array([found.depth_m.max()]))["elastic_energy_J"][0]
+        assert deepest == pytest.approx(energy, rel=1e-5)
+    else:
+        low, high = 0.0, 1.0
+        for _ in range(60):
+            middle = (low + high) / 2
+            rest = -ratio * middle - log1p(-ratio * middle)
+            low, high = (middle, high) if rest < ratio - log1p(ratio) else (low, middle)
+        assert found.restitution == pytest.approx(low, abs=1e-5)
+    assert found.force_N.min() >= 0 and found.depth_m[-1] == 0
+
+
+def test_paper_joint_is_that_of_the_case(cases: Path) -> None:
+    paper, case = laws.paper_joint(), laws.joint_of(load_case(cases / "umbrella.toml"))
+    for field in ("journal_radius_m", "bearing_radius_m", "contact_length_m", "effective_young_modulus_Pa",
+                  "reduced_mass_kg"):
+        assert getattr(paper, field) == pytest.approx(getattr(case, field), rel=1e-14)
+
+
+def test_figure_repeats_bit_for_bit(tmp_path: Path) -> None:
+    png, svg = laws.figure(laws.paper_joint(), tmp_path, "laws")
+    before = svg.read_text()
+    for text in (*_engine.law_names("normal"), *_engine.law_names("dissipation"), "Penetration depth [mm]",
+                 "Penetration depth [µm]", "Normal force [N]", "range ends: error beyond"):
+        assert text in before, text
+    assert png.stat().st_size > 20_000
+    laws.figure(laws.paper_joint(), tmp_path, "laws")
+    assert svg.read_text() == before
+
+
+@pytest.mark.parametrize("radius, clearance", [(1e-3, 50.0), (50.0, 1e-6), (1e-9, 1e-12)])
+def test_figure_of_odd_joints(tmp_path: Path, radius: float, clearance: float) -> None:
+    laws.figure(laws.Joint("odd", radius, radius + clearance, 1.0, 1e3, 1e-6), tmp_path, "odd")
+
+
+def test_command(statejump, cases: Path, tmp_path: Path) -> None:
+    outcome = statejump("laws")
+    assert outcome.status == 0, outcome.errors
+    for kind in laws.KINDS:
+        assert f"{kind} laws" in outcome.output
+        for name in _engine.law_names(kind):
+            assert f"│ {name} " in outcome.output
+    outcome = statejump("laws", cases / "umbrella_bias.toml", "--quiet")
+    assert (outcome.status, outcome.output, outcome.errors) == (0, "", "")
+    assert sorted(entry.name for entry in (tmp_path / "results" / "laws").iterdir()) == [
+        "laws.png", "laws.svg", "laws_umbrella_bias.png", "laws_umbrella_bias.svg"]
+
+
+def test_command_with_a_case_without_laws(statejump, cases: Path, tmp_path: Path) -> None:
+    path = cases / "table1.toml"
+    outcome = statejump("laws", path)
+    assert outcome.status == 2
+    assert outcome.errors == (
+        f"error: {path}: case.kind = 'spring_slider' is not allowed: 'statejump laws' is for 'umbrella'\n")
+    assert list(tmp_path.iterdir()) == []
