@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from conftest import REPOSITORY
 from statejump import _engine, laws
 from statejump.case import load_case
 
@@ -134,6 +135,13 @@ def test_paper_joint_is_that_of_the_case(cases: Path) -> None:
     for field in ("journal_radius_m", "bearing_radius_m", "contact_length_m", "effective_young_modulus_Pa",
                   "reduced_mass_kg"):
         assert getattr(paper, field) == pytest.approx(getattr(case, field), rel=1e-14)
+
+
+def test_readme_lists_every_law() -> None:
+    text = (REPOSITORY / "README.md").read_text()
+    listed = text.split("| key | law |", 1)[1].split("\n\n", 1)[0].splitlines()[2:]
+    names = [row.split("|")[2].strip(" `") for row in listed]
+    assert names == [name for kind in laws.KINDS for name in _engine.law_names(kind)]
 
 
 def test_figure_repeats_bit_for_bit(tmp_path: Path) -> None:
