@@ -2,9 +2,9 @@
 //
 // The loop runs the functors in an OpenMP parallel region, which an exception may not leave: it
 // would end the process. A functor therefore records the first failure here, and the next engine of
-// ours that runs outside of the region (ThermalExpansionEngine, ThermalLinks) throws it, within the same or
-// the next step. It is the one piece of shared state of the plugin, because functors know no
-// engine.
+// ours that runs outside of the region (ThermalExpansionEngine, ThermalLinks, TorsionSprings)
+// throws it, within the same or the next step. It is the one piece of shared state of the plugin,
+// because functors know no engine.
 #pragma once
 
 #include <string>

@@ -2,13 +2,13 @@
 // kernel's (statejump/kernel); these classes move numbers between YADE's objects and it.
 #pragma once
 
-#include <array>
-#include <atomic>
 #include <mutex>
 
+#include "joint_energies.hpp"
 #include "registered.hpp"
 #include "statejump/kernel/frame.hpp"
 #include "statejump/kernel/joint_kinematics.hpp"
+#include "statejump/kernel/laws/joint_law.hpp"
 
 namespace statejump::dem {
 
@@ -22,11 +22,15 @@ struct JointGeom : RegisteredIndexable<JointGeom, yade::GenericSpheresContact> {
   Real effectiveRadius = 0;
   Real eccentricity = 0;
   Vector3r relativeVelocity = Vector3r::Zero();
+  Real journalRadius = 0;
+  Real bearingRadius = 0;
   // Recomputed in every step before it is used, so not saved.
   Vector3r arm1 = Vector3r::Zero();
   Vector3r arm2 = Vector3r::Zero();
   Vector3r previousNormal = Vector3r::Zero();
   Real twistAngle = 0;
+  Vector3r axis = Vector3r::Zero();
+  Real clearanceRate = 0;
 
   JointGeom() { createIndex(); }
   void update(const kernel::JointContact& contact, const yade::State& state1,
@@ -42,7 +46,11 @@ struct JointGeom : RegisteredIndexable<JointGeom, yade::GenericSpheresContact> {
                   "penetrationDepth is the clearance at the current temperature"),
         read_only("relativeVelocity", &JointGeom::relativeVelocity,
                   "Velocity of body 1 relative to body 2, of the material at the contact point "
-                  "[m/s]"));
+                  "[m/s]"),
+        read_only("journalRadius", &JointGeom::journalRadius,
+                  "Radius of the journal (of the slider's pads) at the current temperature [m]"),
+        read_only("bearingRadius", &JointGeom::bearingRadius,
+                  "Radius of the bearing at the current temperature [m]; 0: a flat SlotFace"));
   }
 };
 
@@ -60,12 +68,17 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
   Real normalDampingRatio = 0;
   Real tangentialDampingRatio = 0;
   bool slipping = false;
+  Real impactSpeed = -1;
+  Real dissipationSlope = 0;
+  Real frictionSlope = 0;
   // Last step's values, for the trapezoidal rule of the thermal work; kept only while
   // O.trackEnergy is on.
   Real previousElasticForce = 0;
   Real previousElasticEnergy = 0;
   Real previousClearance = 0;
   Real previousRadius = 0;
+  Real previousBearingRadius = 0;
+  Real previousDepth = 0;
 
   JointPhys() { createIndex(); }
   static auto attributes() {
@@ -81,6 +94,16 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
             "tangentialDampingRatio", &JointPhys::tangentialDampingRatio,
             "Ratio of the viscous tangential damping to the critical one, while sticking [-]"),
         read_only("slipping", &JointPhys::slipping, "Whether friction was at its limit [-]"),
+        read_only("impactSpeed", &JointPhys::impactSpeed,
+                  "Approach speed of the bodies when this contact began [m/s], negative when it "
+                  "began while they parted (the clearance closed on them); -1 before the law has "
+                  "seen it. Kept by Law2_JointGeom_JointPhys_JointLaw"),
+        read_only("dissipationSlope", &JointPhys::dissipationSlope,
+                  "Slope of the dissipation law against the approach speed at the last step "
+                  "[N s/m], for stable_time_step()"),
+        read_only("frictionSlope", &JointPhys::frictionSlope,
+                  "Largest slope of friction against sliding speed at the last step, mu F_N / (v1 "
+                  "- v0) for 'ambrosio' [N s/m], for stable_time_step()"),
         read_only("previousElasticForce", &JointPhys::previousElasticForce,
                   "Elastic normal force of the last step [N], kept for the energy account"),
         read_only("previousElasticEnergy", &JointPhys::previousElasticEnergy,
@@ -88,7 +111,12 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
         read_only("previousClearance", &JointPhys::previousClearance,
                   "Clearance of the last step [m], kept for the energy account"),
         read_only("previousRadius", &JointPhys::previousRadius,
-                  "Effective radius of the last step [m], kept for the energy account"));
+                  "Effective radius (with JointLaw: of the journal) of the last step [m], kept for "
+                  "the energy account"),
+        read_only("previousBearingRadius", &JointPhys::previousBearingRadius,
+                  "Radius of the bearing of the last step [m], kept for the energy account"),
+        read_only("previousDepth", &JointPhys::previousDepth,
+                  "Penetration depth of the last step [m], kept for the energy account"));
   }
 };
 
@@ -179,10 +207,76 @@ struct Law2_JointGeom_JointPhys_HertzMindlin
  private:
   void account(const kernel::ContactResponse& response, const JointGeom& geometry,
                JointPhys& physics);
-  void name_energies();
-  std::array<int, 4> energy_ids_ = {-1, -1, -1, -1};
-  std::atomic<bool> energies_named_{false};
-  std::mutex naming_;
+  JointEnergies energies_;
+};
+
+struct Law2_JointGeom_JointPhys_JointLaw
+    : Registered<Law2_JointGeom_JointPhys_JointLaw, yade::LawFunctor> {
+  static constexpr const char* class_name = "Law2_JointGeom_JointPhys_JointLaw";
+  static constexpr const char* base_name = "LawFunctor";
+  static constexpr const char* doc =
+      "Joint contact by laws chosen by name: normal force, impact dissipation, friction and the "
+      "velocity that friction sees. The defaults are Law2_JointGeom_JointPhys_HertzMindlin. The "
+      "damping ratios of JointPhys act beside the dissipation law; the tangential one belongs to "
+      "the spring of 'mindlin'. A Slider on a SlotFace takes 'hertz_paper' or 'hertz_internal' "
+      "(both with the radius of the pads) and 'material' only. A depth outside the range of the "
+      "normal law stops the run. Entries in O.energy: jointElastic, jointFriction, jointDamping, "
+      "jointThermalWork.";
+  std::string normalLaw = kernel::laws::HertzInternal::info.name;
+  std::string dissipationLaw = kernel::laws::NoDissipation::info.name;
+  std::string frictionLaw = kernel::laws::MindlinFriction::info.name;
+  std::string tangentialVelocity = kernel::laws::MaterialVelocity::info.name;
+  Real restitution = 1;
+  Real smallestImpactSpeed = 1e-6;
+  Real contactLength = 0.01;
+  Real v0 = 0;
+  Real v1 = 1e-3;
+  Real firstContactTime = -1;
+  int contacts = 0;
+
+  Law2_JointGeom_JointPhys_JointLaw() { check(); }
+  using yade::LawFunctor::go;
+  bool go(yade::shared_ptr<yade::IGeom>& geometry, yade::shared_ptr<yade::IPhys>& physics,
+          yade::Interaction* contact) override;
+  std::string get2DFunctorType1() const override { return "JointGeom"; }
+  std::string get2DFunctorType2() const override { return "JointPhys"; }
+  void check();
+  static auto attributes() {
+    using Self = Law2_JointGeom_JointPhys_JointLaw;
+    return std::make_tuple(
+        attribute("normalLaw", &Self::normalLaw,
+                  "'hertz_paper', 'hertz_internal', 'johnson', 'esdu_78035' or 'persson' [-]"),
+        attribute("dissipationLaw", &Self::dissipationLaw,
+                  "'none', 'lankarani_nikravesh', 'hunt_crossley' or 'flores' [-]"),
+        attribute("frictionLaw", &Self::frictionLaw,
+                  "'none', 'ambrosio' (holds no static load) or 'mindlin' [-]"),
+        attribute("tangentialVelocity", &Self::tangentialVelocity,
+                  "'material' (of the material at the contact point) or 'paper' (of the geometric "
+                  "points of eqs 14-16, without the spins) [-]"),
+        attribute("restitution", &Self::restitution,
+                  "Restitution of the dissipation laws, in (0, 1] [-]"),
+        attribute("smallestImpactSpeed", &Self::smallestImpactSpeed,
+                  "Floor of the impact speed in the dissipation laws [m/s]: a contact that begins "
+                  "slower would be damped without bound"),
+        attribute("contactLength", &Self::contactLength,
+                  "Axial length of the line contacts johnson, esdu_78035 and persson [m]"),
+        attribute("v0", &Self::v0, "ambrosio: no friction up to this sliding speed [m/s]"),
+        attribute("v1", &Self::v1, "ambrosio: full friction from this sliding speed on [m/s]"),
+        read_only("firstContactTime", &Self::firstContactTime,
+                  "Time of the first touching [s], located linearly within its step (second order "
+                  "in O.dt); -1 before. Bodies that already touch in the very first step count "
+                  "from its time"),
+        read_only("contacts", &Self::contacts, "Number of contacts that have begun [-]"));
+  }
+
+ private:
+  void begin(const JointGeom& geometry, JointPhys& physics);
+  void account(const kernel::ContactResponse& response, const kernel::laws::NormalGeometry& radii,
+               const JointGeom& geometry, JointPhys& physics);
+  kernel::laws::JointLaw law_;  // built by check()
+  bool needs_bearing_ = false;  // some of the laws have no meaning at a flat face
+  std::mutex beginning_;        // of firstContactTime and contacts
+  JointEnergies energies_;
 };
 
 }  // namespace statejump::dem

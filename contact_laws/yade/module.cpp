@@ -3,9 +3,10 @@
 #include <boost/make_shared.hpp>
 
 #include "joint.hpp"
-#include "link_list.hpp"
+#include "object_list.hpp"
 #include "shapes.hpp"
 #include "thermal.hpp"
+#include "torsion.hpp"
 #ifndef STATEJUMP_REAL_YADE_HEADERS
 #include "statejump/yade_abi/guard.hpp"
 #endif
@@ -32,7 +33,8 @@ using OurClasses =
               Bo1<Bearing>, Bo1<Slider>, Bo1<SlotFace>, JointGeom, JointPhys,
               Ig2_Journal_Bearing_JointGeom, Ig2_Slider_SlotFace_JointGeom,
               Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys, Law2_JointGeom_JointPhys_HertzMindlin,
-              ThermalProgram, ThermalExpansionEngine, ThermalLink, ThermalLinks>;
+              Law2_JointGeom_JointPhys_JointLaw, ThermalProgram, ThermalExpansionEngine,
+              ThermalLink, ThermalLinks, TorsionSpring, TorsionSprings>;
 
 // Empty on success, otherwise the sentence that the Python wrapper raises.
 std::string setup(const boost::python::object& wrapper) {
@@ -44,7 +46,8 @@ std::string setup(const boost::python::object& wrapper) {
 #else
   (void)wrapper;
 #endif
-  register_link_list_converter();
+  register_list_converter<ThermalLink>();
+  register_list_converter<TorsionSpring>();
   OurClasses::register_all();
   return "";
 }
@@ -74,10 +77,13 @@ STATEJUMP_EXPORT(Ig2_Journal_Bearing_JointGeom)
 STATEJUMP_EXPORT(Ig2_Slider_SlotFace_JointGeom)
 STATEJUMP_EXPORT(Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys)
 STATEJUMP_EXPORT(Law2_JointGeom_JointPhys_HertzMindlin)
+STATEJUMP_EXPORT(Law2_JointGeom_JointPhys_JointLaw)
 STATEJUMP_EXPORT(ThermalProgram)
 STATEJUMP_EXPORT(ThermalExpansionEngine)
 STATEJUMP_EXPORT(ThermalLink)
 STATEJUMP_EXPORT(ThermalLinks)
+STATEJUMP_EXPORT(TorsionSpring)
+STATEJUMP_EXPORT(TorsionSprings)
 #undef STATEJUMP_EXPORT
 
 BOOST_PYTHON_MODULE(_native) {
@@ -88,6 +94,7 @@ BOOST_PYTHON_MODULE(_native) {
           "Stable time step of the current scene [s], on the safe side: smallest of "
           "4 / (c + sqrt(c^2 + 4 k)) over the bodies, k and c twice the sums of stiffness and "
           "damping times 1/m (plus arm^2/I where the body may turn) of what touches it (joint "
-          "contacts at their current stiffness, thermal links). Contacts that do not touch yet "
+          "contacts at their current stiffness, thermal links, torsion springs). Contacts that do "
+          "not touch yet "
           "count nothing. Infinity when nothing acts on a free body.");
 }

@@ -17,6 +17,12 @@ namespace statejump::dem {
   throw std::invalid_argument(message.str());
 }
 
+[[noreturn]] inline void refuse(const char* class_name, const char* attribute,
+                                const std::string& value, const std::string& allowed) {
+  throw std::invalid_argument(std::string(class_name) + "." + attribute + " = '" + value +
+                              "' is not allowed: must be " + allowed);
+}
+
 // Written so that NaN fails, too.
 inline void require_positive(const char* class_name, const char* attribute, double value,
                              const char* unit) {

@@ -27,9 +27,13 @@ struct ThermalShape : RegisteredIndexable<ThermalShape, yade::Shape> {
   static constexpr const char* doc =
       "Shape whose lengths follow the temperature. Lengths are given at the reference temperature "
       "and never changed; the current ones are length * (1 + thermalStrain), with the strain from "
-      "the total temperature change (set by ThermalExpansionEngine), so that a closed cycle leaves no "
+      "the total temperature change (set by ThermalExpansionEngine), so that a closed cycle leaves "
+      "no "
       "residue.";
   Real thermalStrain = 0;
+  // Of the last step [1/s], by the engine in every step, so not saved: it tells when within the
+  // step an expanding joint closed.
+  Real thermalStrainRate = 0;
   ThermalShape() { createIndex(); }
   Real expanded(Real length) const { return length * (1 + thermalStrain); }
   static auto attributes() {

@@ -1,5 +1,7 @@
 #include "thermal.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -9,6 +11,7 @@
 #include "joint.hpp"
 #include "ranges.hpp"
 #include "shapes.hpp"
+#include "torsion.hpp"
 
 namespace statejump::dem {
 namespace {
@@ -17,13 +20,7 @@ namespace {
 const std::string link_elastic = "linkElastic";
 const std::string link_damping = "linkDamping";
 const std::string link_thermal_work = "linkThermalWork";
-
-yade::Body& body_of(const yade::Scene& scene, int id, const char* who) {
-  if (!scene.bodies->exists(id)) {
-    throw std::invalid_argument(std::string(who) + ": there is no body " + std::to_string(id));
-  }
-  return *body_at(scene, static_cast<std::size_t>(id));
-}
+const std::string pin_damping = "pinDamping";
 
 // c = 2 zeta sqrt(k m) with the spring at the reference temperature.
 Real damping_coefficient(const ThermalLink& link, const yade::State& root, const yade::State& tip) {
@@ -33,7 +30,33 @@ Real damping_coefficient(const ThermalLink& link, const yade::State& root, const
   return 2 * link.dampingRatio * std::sqrt(stiffness / inverse);
 }
 
+[[gnu::cold, gnu::noinline]] void refuse_time_step(const yade::Scene& scene,
+                                                   const ThermalLink& link, Real stable) {
+  std::ostringstream text;
+  text.precision(6);
+  text << "the time step " << scene.dt << " s is above the stable one of the link between bodies "
+       << link.id1 << " and " << link.id2 << ", " << stable << " s";
+  throw std::runtime_error(text.str());
+}
+
 }  // namespace
+
+yade::Body& body_of(const yade::Scene& scene, int id, const char* who) {
+  if (!scene.bodies->exists(id)) {
+    throw std::invalid_argument(std::string(who) + ": there is no body " + std::to_string(id));
+  }
+  return *body_at(scene, static_cast<std::size_t>(id));
+}
+
+LinkEnds ends_of(const yade::Scene& scene, const ThermalLink& link) {
+  LinkEnds ends{*body_of(scene, link.id1, "ThermalLink.id1").state,
+                *body_of(scene, link.id2, "ThermalLink.id2").state, Vector3r::Zero(), 0};
+  ends.direction = ends.tip.se3.position - ends.root.se3.position;
+  ends.length = ends.direction.norm();
+  if (!(ends.length > 0)) throw std::runtime_error("ThermalLink: the two ends coincide");
+  ends.direction /= ends.length;
+  return ends;
+}
 
 void ThermalProgram::check() {
   kernel::ThermalProgram program;
@@ -92,7 +115,10 @@ void ThermalExpansionEngine::action() {
   if (!collected()) collect_targets();
   temperatureChange = program->temperature_change(scene->time);
   for (const Target& target : targets_) {
-    target.shape->thermalStrain = target.material->thermalExpansion * temperatureChange;
+    const Real strain = target.material->thermalExpansion * temperatureChange;
+    target.shape->thermalStrainRate =
+        scene->dt > 0 ? (strain - target.shape->thermalStrain) / scene->dt : 0;
+    target.shape->thermalStrain = strain;
   }
 }
 
@@ -101,6 +127,7 @@ void ThermalLink::check() const {
   require_not_negative(class_name, "crossSectionArea", crossSectionArea, "[m2]");
   require_not_negative(class_name, "stressFreeLength", stressFreeLength, "[m]");
   require_not_negative(class_name, "dampingRatio", dampingRatio, "[-]");
+  require_not_negative(class_name, "pinDamping", pinDamping, "[N m s/rad]");
 }
 
 void ThermalLinks::action() {
@@ -120,15 +147,9 @@ void ThermalLinks::action() {
 //   N L' = d(k_T e^2 / 2)/dt + c (L' - l_T')^2 + [N + k_T e^2 / (2 l_T)] l_T',
 // so the thermal work on the link is -integral of [N + k_T e^2 / (2 l_T)] dl_T.
 void ThermalLinks::act(ThermalLink& link) {
-  yade::State& root = *body_of(*scene, link.id1, "ThermalLink.id1").state;
-  yade::State& tip = *body_of(*scene, link.id2, "ThermalLink.id2").state;
   if (!link.program) throw std::invalid_argument("ThermalLink.program is missing");
   require_positive("ThermalLink", "stressFreeLength", link.stressFreeLength, "[m]");
-
-  const Vector3r between = tip.se3.position - root.se3.position;
-  const Real length = between.norm();
-  if (!(length > 0)) throw std::runtime_error("ThermalLink: the two ends coincide");
-  const Vector3r direction = between / length;
+  const auto& [root, tip, direction, length] = ends_of(*scene, link);
   const Vector3r relative_velocity = tip.vel - root.vel;
   const Real length_rate = relative_velocity.dot(direction);
 
@@ -145,16 +166,16 @@ void ThermalLinks::act(ThermalLink& link) {
   link.axialForce = -tension;
 
   const Real inverse = inverse_mass(root) + inverse_mass(tip);
-  if (inverse > 0 && scene->dt > kernel::critical_time_step(1 / inverse, stiffness, damping)) {
-    std::ostringstream text;
-    text.precision(6);
-    text << "the time step " << scene->dt << " s is above the stable one of the link between "
-         << "bodies " << link.id1 << " and " << link.id2 << ", "
-         << kernel::critical_time_step(1 / inverse, stiffness, damping) << " s";
-    throw std::runtime_error(text.str());
+  // A moment on the link as a force across its tip, and the opposite at its root.
+  const Real damping_across = link.pinDamping / (length * length);
+  if (inverse > 0) {
+    const Real stable = std::min(kernel::critical_time_step(1 / inverse, stiffness, damping),
+                                 kernel::critical_time_step(1 / inverse, 0, damping_across));
+    if (scene->dt > stable) refuse_time_step(*scene, link, stable);
   }
 
-  Vector3r force_on_tip = -tension * direction;
+  const Vector3r velocity_across = relative_velocity - length_rate * direction;
+  Vector3r force_on_tip = -tension * direction - damping_across * velocity_across;
   if (link.tipTurnsWithLink) {
     if ((tip.blockedDOFs & all_rotations_blocked) != all_rotations_blocked) {
       throw std::invalid_argument("ThermalLink.tipTurnsWithLink: block the rotations of body " +
@@ -180,6 +201,8 @@ void ThermalLinks::act(ThermalLink& link) {
     scene->energy->add(elastic, link_elastic, energy_ids_[0], true);
     scene->energy->add(damping * extension_rate * extension_rate * scene->dt, link_damping,
                        energy_ids_[1], false);
+    scene->energy->add(damping_across * velocity_across.squaredNorm() * scene->dt, pin_damping,
+                       energy_ids_[3], false);
     if (link.previousStressFreeLength > 0) {
       const Real previous_elastic = 0.5 * link.youngModulus * link.crossSectionArea /
                                     link.previousStressFreeLength * link.previousExtension *
@@ -233,9 +256,11 @@ double stable_time_step(const yade::Scene& scene) {
     const auto* geometry = dynamic_cast<const JointGeom*>(contact.geom.get());
     if (!physics || !geometry) continue;
     const Real normal_damping =
-        2 * physics->normalDampingRatio * std::sqrt(physics->effectiveMass * physics->kn);
-    const Real tangential_damping =
-        2 * physics->tangentialDampingRatio * std::sqrt(physics->effectiveMass * physics->ks);
+        kernel::viscous_damping(physics->normalDampingRatio, physics->effectiveMass, physics->kn) +
+        physics->dissipationSlope;
+    const Real tangential_damping = kernel::viscous_damping(physics->tangentialDampingRatio,
+                                                            physics->effectiveMass, physics->ks) +
+                                    physics->frictionSlope;
     for (const int id : {contact.id1, contact.id2}) {
       const yade::State& state = *body_of(scene, id, "stable_time_step").state;
       const Vector3r arm = geometry->contactPoint - state.se3.position;
@@ -245,16 +270,35 @@ double stable_time_step(const yade::Scene& scene) {
     }
   }
   for (const auto& engine : scene.engines) {
-    const auto* group = dynamic_cast<const ThermalLinks*>(engine.get());
-    if (!group) continue;
-    for (const auto& link : group->links) {
-      if (!link) continue;
-      const yade::State& root = *body_of(scene, link->id1, "ThermalLink.id1").state;
-      const yade::State& tip = *body_of(scene, link->id2, "ThermalLink.id2").state;
-      const Real k = link->youngModulus * link->crossSectionArea / link->stressFreeLength;
-      const Real c = damping_coefficient(*link, root, tip);
-      touch(link->id1, inverse_mass(root), k, c);
-      touch(link->id2, inverse_mass(tip), k, c);
+    if (const auto* group = dynamic_cast<const ThermalLinks*>(engine.get())) {
+      for (const auto& link : group->links) {
+        if (!link) continue;
+        const yade::State& root = *body_of(scene, link->id1, "ThermalLink.id1").state;
+        const yade::State& tip = *body_of(scene, link->id2, "ThermalLink.id2").state;
+        const Real length = link->stressFreeLength;
+        const Real k = link->youngModulus * link->crossSectionArea / length;
+        const Real c = damping_coefficient(*link, root, tip) + link->pinDamping / (length * length);
+        touch(link->id1, inverse_mass(root), k, c);
+        touch(link->id2, inverse_mass(tip), k, c);
+      }
+    } else if (const auto* springs = dynamic_cast<const TorsionSprings*>(engine.get())) {
+      for (const auto& spring : springs->springs) {
+        if (!spring || !spring->link1 || !spring->link2) continue;
+        // The angle is the sum of up to four displacements over their lengths, so its square is at
+        // most that number of ends that move times the sum of the squares; 2 of it follow below.
+        const std::array<LinkEnds, 2> links = {ends_of(scene, *spring->link1),
+                                               ends_of(scene, *spring->link2)};
+        int moving = 0;
+        for (const LinkEnds& ends : links) {
+          moving += (inverse_mass(ends.root) > 0) + (inverse_mass(ends.tip) > 0);
+        }
+        for (int i = 0; i < 2; ++i) {
+          const ThermalLink& link = i == 0 ? *spring->link1 : *spring->link2;
+          const Real k = 0.5 * moving * spring->stiffness / (links[i].length * links[i].length);
+          touch(link.id1, inverse_mass(links[i].root), k, 0);
+          touch(link.id2, inverse_mass(links[i].tip), k, 0);
+        }
+      }
     }
   }
   double smallest = std::numeric_limits<double>::infinity();

@@ -67,7 +67,8 @@ struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalE
   void action() override;
   static auto attributes() {
     return std::make_tuple(
-        attribute("program", &ThermalExpansionEngine::program, "Temperature program of these bodies"),
+        attribute("program", &ThermalExpansionEngine::program,
+                  "Temperature program of these bodies"),
         attribute("ids", &ThermalExpansionEngine::ids,
                   "Bodies it acts on; empty: all with a ThermalShape and a ThermalFrictMat [-]"),
         read_only("temperatureChange", &ThermalExpansionEngine::temperatureChange,
@@ -105,6 +106,7 @@ struct ThermalLink : Registered<ThermalLink, yade::Serializable> {
   Real stressFreeLength = 0;
   Real thermalExpansion = 0;
   Real dampingRatio = 0;
+  Real pinDamping = 0;
   bool tipTurnsWithLink = false;
   yade::shared_ptr<ThermalProgram> program;
   Real axialForce = 0;
@@ -127,6 +129,9 @@ struct ThermalLink : Registered<ThermalLink, yade::Serializable> {
                   "Coefficient of linear thermal expansion alpha [1/K]"),
         attribute("dampingRatio", &ThermalLink::dampingRatio,
                   "Ratio of the viscous axial damping to the critical one [-]"),
+        attribute("pinDamping", &ThermalLink::pinDamping,
+                  "Viscous damping c_p of the pin at the root: moment -c_p times the angular "
+                  "velocity of the link, as a couple of forces on its two ends [N m s/rad]"),
         attribute("tipTurnsWithLink", &ThermalLink::tipTurnsWithLink,
                   "Whether the tip body is fixed to the link: it turns with it, and a moment on it "
                   "becomes a couple of forces on the two ends. Its rotations must be blocked "
@@ -150,13 +155,23 @@ struct ThermalLink : Registered<ThermalLink, yade::Serializable> {
   }
 };
 
+// The two ends of a link as they are now. Throws when a body is missing or the ends coincide.
+struct LinkEnds {
+  yade::State& root;
+  yade::State& tip;
+  Vector3r direction;  // unit, from root to tip
+  Real length;         // [m]
+};
+LinkEnds ends_of(const yade::Scene& scene, const ThermalLink& link);
+yade::Body& body_of(const yade::Scene& scene, int id, const char* who);
+
 struct ThermalLinks : Registered<ThermalLinks, yade::GlobalEngine> {
   static constexpr const char* class_name = "ThermalLinks";
   static constexpr const char* base_name = "GlobalEngine";
   static constexpr const char* doc =
       "Applies the forces of ThermalLink objects. Place it after the InteractionLoop (it passes on "
       "the contact moments of the step) and before the NewtonIntegrator. Entries in O.energy: "
-      "linkElastic, linkDamping, linkThermalWork.";
+      "linkElastic, linkDamping, pinDamping, linkThermalWork.";
   std::vector<yade::shared_ptr<ThermalLink>> links;
 
   void action() override;
@@ -166,13 +181,14 @@ struct ThermalLinks : Registered<ThermalLinks, yade::GlobalEngine> {
 
  private:
   void act(ThermalLink& link);
-  std::array<int, 3> energy_ids_ = {-1, -1, -1};
+  std::array<int, 4> energy_ids_ = {-1, -1, -1, -1};
 };
 
-// Stable time step of the current state [s], on the safe side: the smallest 4 / (c + sqrt(c^2 + 4 k))
-// over the bodies, with k twice the sum of stiffness times mobility (1/m, and arm^2/I where the body
-// may turn) of what touches the body and c likewise for damping. Exact for a spring between equal
-// masses, by a factor of up to sqrt(2) small otherwise. Infinity when nothing acts on a free body.
+// Stable time step of the current state [s], on the safe side: the smallest 4 / (c + sqrt(c^2 + 4
+// k)) over the bodies, with k twice the sum of stiffness times mobility (1/m, and arm^2/I where the
+// body may turn) of what touches the body and c likewise for damping. Exact for a spring between
+// equal masses, by a factor of up to sqrt(2) small otherwise. Infinity when nothing acts on a free
+// body.
 double stable_time_step(const yade::Scene& scene);
 
 }  // namespace statejump::dem

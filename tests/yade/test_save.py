@@ -4,19 +4,23 @@ import pytest
 FILES = ["scene.yade", "scene.yade.gz", "scene.yade.bz2", "scene.xml", "scene.xml.gz"]
 
 
+LAWS = ["hertz_mindlin", "by_name"]
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("saved")
+    return {law: tmp_path_factory.mktemp(law) for law in LAWS}
 
 
 @pytest.fixture(scope="module")
 def written(run_script, folder):
-    return run_script("save.py", "write", str(folder))
+    return {law: run_script("save.py", "write", str(folder[law]), law) for law in LAWS}
 
 
-def test_saved_state_is_worth_saving(written):
+@pytest.mark.parametrize("law", LAWS)
+def test_saved_state_is_worth_saving(written, law):
     # Mid-contact, sticking and slipping, with history and energy.
-    saved, straight = written["saved"], written["straight"]
+    saved, straight = written[law]["saved"], written[law]["straight"]
     contacts = [c for c in saved["contacts"] if len(c) == 9]
     assert len(contacts) >= 3
     assert all(c[4] > 0 for c in contacts)
@@ -27,15 +31,26 @@ def test_saved_state_is_worth_saving(written):
     assert straight["energy"]["jointThermalWork"] != saved["energy"]["jointThermalWork"]
 
 
+def test_saved_state_of_the_new_classes(written):
+    saved, straight = written["by_name"]["saved"], written["by_name"]["straight"]
+    assert "hertz_paper" in saved["law"] and "hunt_crossley" in saved["law"]
+    for name in ("pinDamping", "torsionElastic", "jointDamping"):
+        assert straight["energy"][name] > 0, name
+    assert straight["energy"]["pinDamping"] > saved["energy"]["pinDamping"]
+    assert straight["law"] != saved["law"]  # contacts have begun meanwhile
+
+
+@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("name", [*FILES, "saveTmp"])
-def test_resume_in_the_same_process(written, name):
-    assert written["resumed"][name] == written["straight"]
+def test_resume_in_the_same_process(written, law, name):
+    assert written[law]["resumed"][name] == written[law]["straight"]
 
 
+@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("name", ["scene.yade.gz", "scene.yade", "scene.xml"])
-def test_resume_in_a_new_process(run_script, written, folder, name):
-    found = run_script("save.py", "read", str(folder / name))
-    assert found["state"] == written["straight"]
+def test_resume_in_a_new_process(run_script, written, folder, law, name):
+    found = run_script("save.py", "read", str(folder[law] / name))
+    assert found["state"] == written[law]["straight"]
     assert found["loaded"]["material"] == 2.3e-5
     assert found["loaded"]["shape"] == "Journal"
     assert found["loaded"]["engines"].count("ThermalExpansionEngine") == 2

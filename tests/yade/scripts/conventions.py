@@ -2,21 +2,13 @@
 import statejump_yade as sj
 from yade import wrapper
 
-from parts import finish
+from parts import finish, sentence_of
 
 
 def own_attributes(cls):
     return {
         name: entry.__doc__ or "" for name, entry in vars(cls).items() if isinstance(entry, property)
     }
-
-
-def sentence_of(call):
-    try:
-        call()
-    except Exception as error:
-        return [type(error).__name__, str(error)]
-    return ["none", ""]
 
 
 classes = {}
@@ -45,6 +37,9 @@ program = sj.ThermalProgram(**table)
 engine = sj.ThermalExpansionEngine(program=program, ids=[1, 2], label="heater")
 law = sj.Law2_JointGeom_JointPhys_HertzMindlin(label="law")
 links = sj.ThermalLinks(links=[link])
+springs = sj.TorsionSprings(
+    springs=[sj.TorsionSpring(link1=link, stiffness=0.5), sj.TorsionSpring()], label="springs"
+)
 
 
 def set_radius(value):
@@ -70,6 +65,9 @@ ranges = {
     "ThermalLink.crossSectionArea": lambda: sj.ThermalLink(crossSectionArea=-1.0),
     "ThermalLink.stressFreeLength": lambda: sj.ThermalLink(stressFreeLength=float("nan")),
     "ThermalLink.dampingRatio": lambda: sj.ThermalLink(dampingRatio=-1.0),
+    "ThermalLink.pinDamping": lambda: sj.ThermalLink(pinDamping=-1.0),
+    "TorsionSpring.stiffness": lambda: sj.TorsionSpring(stiffness=float("inf")),
+    "TorsionSpring.freeAngle": lambda: sj.TorsionSpring(freeAngle=-3.2),
     "period": lambda: sj.ThermalProgram(period=0.0),
     "cycles": lambda: sj.ThermalProgram(cycles=0),
     "shape": lambda: sj.ThermalProgram(shape="square"),
@@ -85,6 +83,10 @@ finish(
         "link": [link.id1, link.id2, link.youngModulus, link.stressFreeLength],
         "program": [program.shape, program.period, list(program.tableTimes), program.cycles],
         "engine": [engine.label, list(engine.ids), engine.program is not None, law.label],
+        "springs": [
+            len(springs.springs), springs.springs[0].stiffness, springs.springs[0].link1.id1,
+            springs.springs[1].link1,
+        ],
         "links": [len(links.links), links.links[0].id1],
         "unknown": {
             name: sentence_of(lambda cls=getattr(sj, name): cls(noSuchAttribute=1))

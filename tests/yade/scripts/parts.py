@@ -73,7 +73,8 @@ def constant(change: float = 0.0) -> sj.ThermalProgram:
 
 
 def engines(
-    program=None, links=(), normal_damping=0.0, tangential_damping=0.0, reader=None, thermal=None
+    program=None, links=(), normal_damping=0.0, tangential_damping=0.0, reader=None, thermal=None,
+    law=None, springs=(),
 ) -> None:
     """Set the engines of a scene of joints and links; the reader sees one consistent time."""
     O.engines = [
@@ -90,9 +91,10 @@ def engines(
                     normalDampingRatio=normal_damping, tangentialDampingRatio=tangential_damping
                 )
             ],
-            [sj.Law2_JointGeom_JointPhys_HertzMindlin()],
+            [law or sj.Law2_JointGeom_JointPhys_HertzMindlin()],
         ),
         sj.ThermalLinks(links=list(links)),
+        *([sj.TorsionSprings(springs=list(springs))] if springs else []),
         *([wrapper.PyRunner(command=reader, iterPeriod=1, initRun=True)] if reader else []),
         wrapper.NewtonIntegrator(damping=0),
     ]
@@ -108,10 +110,20 @@ def stored_minus_supplied() -> float:
     e = energies()
     return (
         sum(e.get(name, 0.0) for name in ("jointElastic", "jointFriction", "jointDamping"))
-        + sum(e.get(name, 0.0) for name in ("linkElastic", "linkDamping"))
+        + sum(e.get(name, 0.0) for name in ("linkElastic", "linkDamping", "pinDamping"))
+        + e.get("torsionElastic", 0.0)
         - e.get("jointThermalWork", 0.0)
         - e.get("linkThermalWork", 0.0)
     )
+
+
+def sentence_of(call) -> list[str]:
+    """Return class and text of the error that a call raises, or 'none' and ''."""
+    try:
+        call()
+    except BaseException as error:
+        return [type(error).__name__, str(error)]
+    return ["none", ""]
 
 
 class Balance:

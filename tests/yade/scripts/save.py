@@ -1,4 +1,5 @@
-"""Resume: `save.py write DIR` saves in mid-contact and goes on; `save.py read FILE` loads and goes on."""
+"""Resume: `save.py write DIR LAW` saves in mid-contact and goes on; `save.py read FILE` loads and goes
+on. LAW: hertz_mindlin, or by_name for laws by name, torsion spring and pin damping."""
 import sys
 from pathlib import Path
 
@@ -9,7 +10,7 @@ from parts import *  # noqa: F403
 STEPS = 700
 
 
-def scene():
+def scene(by_name):
     """Journal on a hot link in a bearing on another, and a slider with two contacts."""
     reset()
     program = sj.ThermalProgram(shape="half_sine", temperatureChangeMax=70, period=2e-3, cycles=2)
@@ -45,7 +46,18 @@ def scene():
         ),
         sj.ThermalLink(id1=roots[1], id2=hole, stressFreeLength=0.05, program=table, **common),
     ]
+    more = {}
+    if by_name:
+        links[0].pinDamping = 1e-4
+        more["law"] = sj.Law2_JointGeom_JointPhys_JointLaw(
+            normalLaw="hertz_paper", dissipationLaw="hunt_crossley", restitution=0.95,
+            smallestImpactSpeed=1e-4, label="law",
+        )
+        more["springs"] = [
+            sj.TorsionSpring(link1=links[1], link2=links[0], stiffness=0.05, freeAngle=-2.0)
+        ]
     engines(
+        **more,
         links=links, normal_damping=0.02, tangential_damping=0.02,
         thermal=[
             sj.ThermalExpansionEngine(program=program, ids=[pin, slider]),
@@ -72,6 +84,13 @@ def state():
                  i.phys.ks, i.phys.slipping, i.geom.penetrationDepth, list(i.geom.normal)]
             )
     for engine in O.engines:
+        for spring in getattr(engine, "springs", []):
+            out["contacts"].append([spring.angle, spring.moment])
+            # One and the same object as in ThermalLinks, not a copy.
+            out["contacts"].append([spring.link2.axialForce, spring.link2.pinDamping])
+        for functor in getattr(getattr(engine, "lawDispatcher", None), "functors", []):
+            found = functor.dict()
+            out["law"] = [found[k] for k in sorted(found) if k not in ("label", "timingDeltas")]
         for link in getattr(engine, "links", []):
             out["contacts"].append(
                 [link.axialForce, link.previousTension, list(link.tipDirection), link.temperatureChange]
@@ -87,7 +106,7 @@ def steps(count):
 if sys.argv[1] == "write":
     folder = Path(sys.argv[2])
     files = ["scene.yade", "scene.yade.gz", "scene.yade.bz2", "scene.xml", "scene.xml.gz"]
-    scene()
+    scene(sys.argv[3] == "by_name")
     steps(STEPS)
     saved = state()
     for name in files:

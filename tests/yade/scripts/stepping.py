@@ -7,14 +7,6 @@ from yade.minieigenHP import Quaternion, Vector3
 from parts import *  # noqa: F403
 
 
-def sentence_of(call):
-    try:
-        call()
-    except BaseException as error:
-        return [type(error).__name__, str(error)]
-    return ["none", ""]
-
-
 def run(steps):
     """Like O.run(steps, True), which may return without the error when it comes at once: YADE only
     reports what happens after it has begun to wait."""

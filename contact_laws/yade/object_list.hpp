@@ -1,20 +1,22 @@
-// Conversion between a Python list of ThermalLink objects and the C++ vector of pointers.
+// Conversion between a Python list of objects and the C++ vector of pointers to them.
 #pragma once
 
 #include <boost/python.hpp>
 #include <new>
+#include <utility>
 #include <vector>
 
-#include "thermal.hpp"
+#include "yade_api.hpp"
 
 namespace statejump::dem {
 
-struct LinkListConverter {
-  using List = std::vector<yade::shared_ptr<ThermalLink>>;
+template <class Class>
+struct ListConverter {
+  using List = std::vector<yade::shared_ptr<Class>>;
 
   static PyObject* convert(const List& list) {
     boost::python::list result;
-    for (const auto& link : list) result.append(link);
+    for (const auto& entry : list) result.append(entry);
     return boost::python::incref(result.ptr());
   }
   static void* accepts(PyObject* object) {
@@ -28,17 +30,19 @@ struct LinkListConverter {
     const py::object sequence{py::handle<>(py::borrowed(object))};
     List list;
     for (py::ssize_t i = 0; i < py::len(sequence); ++i) {
-      list.push_back(py::extract<yade::shared_ptr<ThermalLink>>(sequence[i]));
+      list.push_back(py::extract<yade::shared_ptr<Class>>(sequence[i]));
     }
     data->convertible = new (storage) List(std::move(list));
   }
 };
 
-inline void register_link_list_converter() {
+template <class Class>
+void register_list_converter() {
   namespace py = boost::python;
-  py::to_python_converter<LinkListConverter::List, LinkListConverter>();
-  py::converter::registry::push_back(&LinkListConverter::accepts, &LinkListConverter::construct,
-                                     py::type_id<LinkListConverter::List>());
+  using Converter = ListConverter<Class>;
+  py::to_python_converter<typename Converter::List, Converter>();
+  py::converter::registry::push_back(&Converter::accepts, &Converter::construct,
+                                     py::type_id<typename Converter::List>());
 }
 
 }  // namespace statejump::dem

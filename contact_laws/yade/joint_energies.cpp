@@ -1,0 +1,37 @@
+#include "joint_energies.hpp"
+
+#include <string>
+
+namespace statejump::dem {
+namespace {
+
+// Kept as strings, because the tracker takes strings and is asked every step.
+const std::string joint_elastic = "jointElastic";
+const std::string joint_friction = "jointFriction";
+const std::string joint_damping = "jointDamping";
+const std::string joint_thermal_work = "jointThermalWork";
+
+}  // namespace
+
+// YADE enlarges its list of energies without a lock, and what another thread adds meanwhile is
+// lost: all names are entered by one thread before any thread adds.
+void JointEnergies::name(const yade::Scene& scene) {
+  if (named_.load(std::memory_order_acquire)) return;
+  const std::lock_guard<std::mutex> lock(naming_);
+  if (named_.load(std::memory_order_relaxed)) return;
+  scene.energy->add(0, joint_elastic, ids_[0], true);
+  scene.energy->add(0, joint_friction, ids_[1], false);
+  scene.energy->add(0, joint_damping, ids_[2], false);
+  scene.energy->add(0, joint_thermal_work, ids_[3], false);
+  named_.store(true, std::memory_order_release);
+}
+
+void JointEnergies::add(const yade::Scene& scene, const Step& step) {
+  name(scene);
+  scene.energy->add(step.elastic, joint_elastic, ids_[0], true);
+  scene.energy->add(step.friction, joint_friction, ids_[1], false);
+  scene.energy->add(step.damping, joint_damping, ids_[2], false);
+  scene.energy->add(step.thermal_work, joint_thermal_work, ids_[3], false);
+}
+
+}  // namespace statejump::dem

@@ -1,0 +1,92 @@
+#include "torsion.hpp"
+
+#include <cmath>
+#include <sstream>
+
+#include "blocked_motion.hpp"
+#include "failure.hpp"
+#include "ranges.hpp"
+#include "statejump/kernel/contact_law.hpp"
+
+namespace statejump::dem {
+namespace {
+
+const std::string torsion_elastic = "torsionElastic";
+constexpr Real pi = 3.14159265358979323846;
+// Largest z component of a link's direction: rounding of a scene laid out in a turned plane is far
+// below it, and what it neglects is the square of it.
+constexpr Real largest_tilt = 1e-6;
+
+void require_planar(const ThermalLink& link, const Vector3r& direction) {
+  if (std::abs(direction.z()) <= largest_tilt) return;
+  std::ostringstream text;
+  text.precision(9);
+  text << "TorsionSpring: the link between bodies " << link.id1 << " and " << link.id2
+       << " leaves the x-y plane, z component of its direction " << direction.z()
+       << ", allowed is at most " << largest_tilt;
+  throw std::invalid_argument(text.str());
+}
+
+// 1/I of turning the link by a couple on its two ends [1/(kg m2)].
+Real inverse_inertia(const LinkEnds& ends) {
+  return (inverse_mass(ends.root) + inverse_mass(ends.tip)) / (ends.length * ends.length);
+}
+
+}  // namespace
+
+void TorsionSpring::check() const {
+  require_not_negative(class_name, "stiffness", stiffness, "[N m/rad]");
+  if (!(freeAngle > -pi && freeAngle <= pi)) {
+    refuse(class_name, "freeAngle", freeAngle, "in (-pi, pi] [rad]");
+  }
+}
+
+void TorsionSprings::action() {
+  throw_recorded_failure();
+  for (const auto& spring : springs) {
+    if (!spring) throw std::invalid_argument("TorsionSprings.springs holds None");
+    act(*spring);
+  }
+}
+
+void TorsionSprings::act(TorsionSpring& spring) {
+  if (!spring.link1) throw std::invalid_argument("TorsionSpring.link1 is missing");
+  if (!spring.link2) throw std::invalid_argument("TorsionSpring.link2 is missing");
+  const LinkEnds first = ends_of(*scene, *spring.link1);
+  const LinkEnds second = ends_of(*scene, *spring.link2);
+  require_planar(*spring.link1, first.direction);
+  require_planar(*spring.link2, second.direction);
+
+  const Vector3r turn = first.direction.cross(second.direction);
+  spring.angle = std::atan2(turn.z(), first.direction.dot(second.direction));
+  const Real stretch = spring.angle - spring.freeAngle;
+  spring.moment = spring.stiffness * stretch;
+
+  const Real inverse = inverse_inertia(first) + inverse_inertia(second);
+  if (inverse > 0) {
+    const Real stable = kernel::critical_time_step(1 / inverse, spring.stiffness);
+    if (scene->dt > stable) {
+      std::ostringstream text;
+      text.precision(6);
+      text << "the time step " << scene->dt << " s is above the stable one of the torsion spring "
+           << "between the links of bodies " << spring.link1->id2 << " and " << spring.link2->id2
+           << ", " << stable << " s";
+      throw std::runtime_error(text.str());
+    }
+  }
+
+  const auto add_couple = [&](const ThermalLink& link, const LinkEnds& ends, Real moment) {
+    const Vector3r across(-ends.direction.y(), ends.direction.x(), 0);
+    const Vector3r force = moment / ends.length * across;
+    scene->forces.addForce(link.id2, force);
+    scene->forces.addForce(link.id1, -force);
+  };
+  add_couple(*spring.link1, first, spring.moment);
+  add_couple(*spring.link2, second, -spring.moment);
+
+  if (scene->trackEnergy) {
+    scene->energy->add(0.5 * spring.moment * stretch, torsion_elastic, energy_id_, true);
+  }
+}
+
+}  // namespace statejump::dem

@@ -1,0 +1,60 @@
+// Torsion springs between the two links of a joint.
+#pragma once
+
+#include <vector>
+
+#include "registered.hpp"
+#include "thermal.hpp"
+
+namespace statejump::dem {
+
+struct TorsionSpring : Registered<TorsionSpring, yade::Serializable> {
+  static constexpr const char* class_name = "TorsionSpring";
+  static constexpr const char* base_name = "Serializable";
+  static constexpr const char* doc =
+      "Torsion spring between two links that share a joint, in the x-y plane. Its flare angle "
+      "alpha is the angle from the direction of link1 (root to tip) to that of link2, "
+      "anticlockwise "
+      "about +z, in (-pi, pi]. The moment M = K_M (alpha - alpha0) (equation 17 of Chen et al. "
+      "2021) acts on link1, its opposite on link2.";
+  yade::shared_ptr<ThermalLink> link1;
+  yade::shared_ptr<ThermalLink> link2;
+  Real stiffness = 0;
+  Real freeAngle = 0;
+  Real angle = 0;
+  Real moment = 0;
+
+  void check() const;
+  static auto attributes() {
+    return std::make_tuple(
+        attribute("link1", &TorsionSpring::link1, "ThermalLink that takes the moment +M"),
+        attribute("link2", &TorsionSpring::link2, "ThermalLink that takes the moment -M"),
+        attribute("stiffness", &TorsionSpring::stiffness, "Torsion stiffness K_M [N m/rad]"),
+        attribute("freeAngle", &TorsionSpring::freeAngle,
+                  "Flare angle alpha0 without moment, in (-pi, pi] [rad]"),
+        read_only("angle", &TorsionSpring::angle, "Flare angle alpha of the last step [rad]"),
+        read_only("moment", &TorsionSpring::moment, "Moment M of the last step [N m]"));
+  }
+};
+
+struct TorsionSprings : Registered<TorsionSprings, yade::GlobalEngine> {
+  static constexpr const char* class_name = "TorsionSprings";
+  static constexpr const char* base_name = "GlobalEngine";
+  static constexpr const char* doc =
+      "Applies the moments of TorsionSpring objects, each as a couple of forces across its two "
+      "links. Place it after the InteractionLoop and before the NewtonIntegrator. Entry in "
+      "O.energy: torsionElastic.";
+  std::vector<yade::shared_ptr<TorsionSpring>> springs;
+
+  void action() override;
+  static auto attributes() {
+    return std::make_tuple(
+        attribute("springs", &TorsionSprings::springs, "List of TorsionSpring objects"));
+  }
+
+ private:
+  void act(TorsionSpring& spring);
+  int energy_id_ = -1;
+};
+
+}  // namespace statejump::dem

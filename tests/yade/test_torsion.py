@@ -1,0 +1,119 @@
+"""Torsion springs between two links and viscous pins, against closed forms."""
+from math import pi
+
+import pytest
+
+from conftest import EPS
+
+
+@pytest.fixture(scope="module")
+def seen(run_script):
+    return run_script("torsion.py")
+
+
+@pytest.mark.parametrize("case", range(6))
+def test_angle_moment_and_couples(seen, case):
+    row = seen["angles"][case]
+    first, second = row["directions"]
+    angle = second - first
+    angle += 2 * pi * ((angle <= -pi) - (angle > pi))
+    assert row["angle"] == pytest.approx(angle, abs=8 * EPS)
+    moment = 3.0 * (angle - row["free"])
+    # K_M = 3 N m/rad times the rounding of the angle; the axial springs pull by the rounding of
+    # their lengths, 1.75e5 N/m times 1e-16 m, on arms of 1 m.
+    tolerance = 30 * EPS + 1.75e5 * 2 * EPS
+    assert row["moment"] == pytest.approx(moment, abs=30 * EPS)
+    assert row["energy"] == pytest.approx(moment**2 / 6, rel=40 * EPS)
+    assert row["on_links"] == [
+        pytest.approx(moment, abs=tolerance), pytest.approx(-moment, abs=tolerance)
+    ]
+    assert row["force"] == pytest.approx([0, 0, 0], abs=tolerance)
+    assert row["total"] == pytest.approx(0, abs=tolerance)
+    assert row["along"] == pytest.approx([0, 0], abs=tolerance)
+
+
+def test_static_balance(seen):
+    found = seen["balance"]
+    assert max(found["speeds"]) < 1e-10
+    spring, other = found["moments"]
+    assert spring == pytest.approx(2.0 * (found["angles"][0] - 1.2), rel=1e-12)
+    assert other == pytest.approx(5.0 * (found["angles"][1] - 0.3), rel=1e-12)
+    pulled = [a[0] * f[1] - a[1] * f[0] for a, f in zip(found["arms"], found["pulls"])]
+    # Link 1 carries +M of its own spring and -M of the other; link 2 carries -M. At rest to the
+    # rounding of the axial springs, 1.75e5 N/m times 1e-16 m.
+    assert spring - other + pulled[0] == pytest.approx(0, abs=1e-9)
+    assert -spring + pulled[1] == pytest.approx(0, abs=1e-9)
+    assert abs(spring) > 0.2 and abs(other) > 0.02
+    energy = spring**2 / 4 + other**2 / 10
+    assert found["energy"] == pytest.approx(energy, rel=1e-12)
+
+
+def test_energy_of_a_free_oscillation_closes_to_second_order(seen):
+    runs = seen["oscillation"]
+    for coarse, fine in zip(runs, runs[1:]):
+        assert coarse["first"] == pytest.approx(0.5 * 2.0 * 0.3**2, rel=1e-12)
+        assert 3.6 < coarse["worst"] / fine["worst"] < 4.4
+    assert runs[-1]["worst"] < 1e-8 * runs[-1]["first"]
+    for run in runs:
+        # Equal and opposite couples: the moments of momentum of both links, each about its own
+        # root, stay opposite. One rounding per step of the couple's impulse, and of the axial force
+        # of rounding, 1.75e5 N/m * 1e-16 m, on an arm of 0.5 m times dt.
+        first, second = run["momentum"]
+        assert abs(first) > 1e-2
+        assert first + second == pytest.approx(0, abs=run["steps"] * 4e-5 * 2e-11)
+        assert run["promised"] > 1e-4
+
+
+def test_stable_up_to_the_limit_and_refused_beyond(seen):
+    inside, beyond = seen["limit"]["0.95"], seen["limit"]["1.05"]
+    # Leapfrog at omega dt = 1.9 keeps the amplitude, 1e-6 rad, / sqrt(1 - 0.95^2).
+    assert inside["error"][0] == "none"
+    assert inside["largest"] < 1e-6 / (1 - 0.95**2) ** 0.5 * 1.01
+    assert beyond["error"][0] == "RuntimeError"
+    assert "stable one of the torsion spring between the links of bodies 2 and 3" in beyond["error"][1]
+    # One end of four moves: the promise is the limit itself, less the soft axial spring.
+    assert 0.99 * inside["true"] < inside["promised"] <= inside["true"]
+
+
+@pytest.mark.parametrize("both_free", [0, 1])
+def test_pin_damping_decays_the_turn(seen, both_free):
+    for run in seen["decay"][both_free]:
+        # Rate c_p/(m L^2) of the tip's mass m, a third of a rod's: 3 c_p/(m_rod L^2). Leapfrog
+        # takes the damper's velocity of the last half step: factor 1 - rate dt of each step, which
+        # the integration of a turning vector repeats to second order in the turn of a step, and
+        # the link is stretched by 1e-8 of its length.
+        for steps, spin in run["rows"]:
+            expected = run["spin"] * (1 - run["rate"] * run["dt"]) ** steps
+            turn = 3.0 * run["dt"]
+            assert spin == pytest.approx(expected, rel=steps * run["rate"] * run["dt"] * turn + 1e-6)
+        assert run["rows"][-1][1] < 0.15 * run["spin"]
+        assert run["momentum"] == pytest.approx(0, abs=run["rows"][-1][0] * EPS * 0.1)
+    coarse, fine = seen["decay"][both_free]
+    last = fine["rows"][-1][1] / fine["spin"]
+    assert fine["energy"] == pytest.approx(fine["kinetic"] * (1 - last**2), rel=1e-4)
+    # First order: the damper does its work with the velocity half a step late.
+    assert 1.8 < coarse["worst"] / fine["worst"] < 2.2
+
+
+def test_a_stiff_pin_decides_the_time_step(seen):
+    inside, beyond = seen["pin_limit"]["0.95"], seen["pin_limit"]["1.05"]
+    assert inside["error"][0] == "none" and inside["speed"] < 1e-12
+    assert beyond["error"][0] == "RuntimeError" and "above the stable one" in beyond["error"][1]
+    # 2 m L^2/c_p; half of it is promised, because any damper could pull at both ends of a link.
+    assert 0.45 * inside["true"] < inside["promised"] <= inside["true"]
+
+
+@pytest.mark.parametrize(
+    ("case", "sentence"),
+    [
+        ("link1", "TorsionSpring.link1 is missing"),
+        ("link2", "TorsionSpring.link2 is missing"),
+        ("None", "TorsionSprings.springs holds None"),
+        ("plane", "the link between bodies 0 and 2 leaves the x-y plane"),
+        ("body", "ThermalLink.id2: there is no body 3"),
+    ],
+)
+def test_wrong_use_is_said(seen, case, sentence):
+    kind, text = seen["wrong"][case]
+    assert kind in ("ValueError", "RuntimeError") and sentence in text
+    assert seen["wrong"]["nothing"] == ["none", ""]
