@@ -8,7 +8,8 @@ packages=(
   yade
   libboost-dev libboost-python-dev libboost-serialization-dev libboost-math-dev libboost-system-dev
   libeigen3-dev pybind11-dev python3-dev
-  python3-click python3-rich python3-pydantic python3-numpy python3-matplotlib python3-pytest
+  python3-click python3-rich python3-pydantic python3-numpy python3-scipy python3-matplotlib
+  python3-pytest
   libgtest-dev libbenchmark-dev
 )
 

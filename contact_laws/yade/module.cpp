@@ -7,6 +7,7 @@
 #include "shapes.hpp"
 #include "thermal.hpp"
 #include "torsion.hpp"
+#include "view.hpp"
 #ifndef STATEJUMP_REAL_YADE_HEADERS
 #include "statejump/yade_abi/guard.hpp"
 #endif
@@ -34,7 +35,12 @@ using OurClasses =
               Ig2_Journal_Bearing_JointGeom, Ig2_Slider_SlotFace_JointGeom,
               Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys, Law2_JointGeom_JointPhys_HertzMindlin,
               Law2_JointGeom_JointPhys_JointLaw, ThermalProgram, ThermalExpansionEngine,
-              ThermalLink, ThermalLinks, TorsionSpring, TorsionSprings>;
+              ThermalLink, ThermalLinks, TorsionSpring, TorsionSprings
+#ifdef STATEJUMP_HAS_VIEW
+              ,
+              Gl1<Journal>, Gl1<Bearing>, Gl1<Slider>, Gl1<SlotFace>
+#endif
+              >;
 
 // Empty on success, otherwise the sentence that the Python wrapper raises.
 std::string setup(const boost::python::object& wrapper) {
@@ -71,6 +77,12 @@ BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Journal>, "Bo1_Journ
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Bearing>, "Bo1_Bearing_Aabb")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Slider>, "Bo1_Slider_Aabb")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::SlotFace>, "Bo1_SlotFace_Aabb")
+#ifdef STATEJUMP_HAS_VIEW
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Journal>, "Gl1_Journal")
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Bearing>, "Gl1_Bearing")
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Slider>, "Gl1_Slider")
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::SlotFace>, "Gl1_SlotFace")
+#endif
 STATEJUMP_EXPORT(JointGeom)
 STATEJUMP_EXPORT(JointPhys)
 STATEJUMP_EXPORT(Ig2_Journal_Bearing_JointGeom)

@@ -45,6 +45,7 @@ struct ThermalShape : RegisteredIndexable<ThermalShape, yade::Shape> {
 struct Journal : RegisteredIndexable<Journal, ThermalShape> {
   static constexpr const char* class_name = "Journal";
   static constexpr const char* bound_functor_name = "Bo1_Journal_Aabb";
+  static constexpr const char* view_functor_name = "Gl1_Journal";
   static constexpr const char* base_name = "ThermalShape";
   static constexpr const char* doc =
       "Pin of a revolute joint: a cylinder about the local z axis, inside a Bearing.";
@@ -64,6 +65,7 @@ struct Journal : RegisteredIndexable<Journal, ThermalShape> {
 struct Bearing : RegisteredIndexable<Bearing, ThermalShape> {
   static constexpr const char* class_name = "Bearing";
   static constexpr const char* bound_functor_name = "Bo1_Bearing_Aabb";
+  static constexpr const char* view_functor_name = "Gl1_Bearing";
   static constexpr const char* base_name = "ThermalShape";
   static constexpr const char* doc =
       "Hole of a revolute joint: the inside of a cylinder about the local z axis. The radial "
@@ -84,6 +86,7 @@ struct Bearing : RegisteredIndexable<Bearing, ThermalShape> {
 struct Slider : RegisteredIndexable<Slider, ThermalShape> {
   static constexpr const char* class_name = "Slider";
   static constexpr const char* bound_functor_name = "Bo1_Slider_Aabb";
+  static constexpr const char* view_functor_name = "Gl1_Slider";
   static constexpr const char* base_name = "ThermalShape";
   static constexpr const char* doc =
       "Block of a one-dimensional clearance joint. It touches the faces of its slot with crowned "
@@ -102,6 +105,7 @@ struct Slider : RegisteredIndexable<Slider, ThermalShape> {
 struct SlotFace : RegisteredIndexable<SlotFace, ThermalShape> {
   static constexpr const char* class_name = "SlotFace";
   static constexpr const char* bound_functor_name = "Bo1_SlotFace_Aabb";
+  static constexpr const char* view_functor_name = "Gl1_SlotFace";
   static constexpr const char* base_name = "ThermalShape";
   static constexpr const char* doc =
       "Plane face of a slot (floor, ceiling or end stop) that holds a Slider. A slot is a group of "

@@ -139,14 +139,21 @@ void ThermalLinks::action() {
     if (!link) throw std::invalid_argument("ThermalLinks.links holds None");
     needs_moments = needs_moments || link->tipTurnsWithLink;
   }
-  if (needs_moments) scene->forces.sync();
-  for (const auto& link : links) act(*link);
+  // All moments before the first force: adding one makes YADE ask for another sum.
+  moments_.assign(links.size(), Vector3r::Zero());
+  if (needs_moments) {
+    scene->forces.sync();
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      if (links[i]->tipTurnsWithLink) moments_[i] = scene->forces.getTorque(links[i]->id2);
+    }
+  }
+  for (std::size_t i = 0; i < links.size(); ++i) act(*links[i], moments_[i]);
 }
 
 // With extension e = L - l_T the tension is N = k_T e + c (L' - l_T'), k_T = E A / l_T, and
 //   N L' = d(k_T e^2 / 2)/dt + c (L' - l_T')^2 + [N + k_T e^2 / (2 l_T)] l_T',
 // so the thermal work on the link is -integral of [N + k_T e^2 / (2 l_T)] dl_T.
-void ThermalLinks::act(ThermalLink& link) {
+void ThermalLinks::act(ThermalLink& link, const Vector3r& moment) {
   if (!link.program) throw std::invalid_argument("ThermalLink.program is missing");
   require_positive("ThermalLink", "stressFreeLength", link.stressFreeLength, "[m]");
   const auto& [root, tip, direction, length] = ends_of(*scene, link);
@@ -183,7 +190,6 @@ void ThermalLinks::act(ThermalLink& link) {
     }
     // A couple of forces +-(M x u) / L carries the moment M of the step's contacts, its part along
     // the link excepted: u L x (M x u) / L = M - (M.u) u.
-    const Vector3r moment = scene->forces.getTorque(link.id2);
     force_on_tip += moment.cross(direction) / length;
     if (link.tipDirection.isZero()) {
       link.tipDirection = tip.se3.orientation.conjugate() * direction;

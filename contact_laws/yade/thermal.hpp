@@ -180,7 +180,9 @@ struct ThermalLinks : Registered<ThermalLinks, yade::GlobalEngine> {
   }
 
  private:
-  void act(ThermalLink& link);
+  // moment: of the contacts of the step on the tip [N m]; zero unless the tip turns with the link
+  void act(ThermalLink& link, const Vector3r& moment);
+  std::vector<Vector3r> moments_;
   std::array<int, 4> energy_ids_ = {-1, -1, -1, -1};
 };
 

@@ -14,9 +14,14 @@
 #include <pkg/common/NormShearPhys.hpp>
 #include <pkg/dem/FrictPhys.hpp>
 #include <pkg/dem/ScGeom.hpp>
+#ifdef YADE_OPENGL
+#include <pkg/common/GLDrawFunctors.hpp>
+#define STATEJUMP_HAS_VIEW
+#endif
 #else
 #include "statejump/yade_abi/dispatch.hpp"
 #include "statejump/yade_abi/serialization.hpp"
+#define STATEJUMP_HAS_VIEW  // Debian's YADE has its 3-D view
 #endif
 
 #include <string>

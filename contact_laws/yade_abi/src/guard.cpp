@@ -144,6 +144,7 @@ std::string size_differences() {
         size_difference<IGeomFunctor>("IGeomFunctor"),
         size_difference<IPhysFunctor>("IPhysFunctor"),
         size_difference<LawFunctor>("LawFunctor"),
+        size_difference<GlShapeFunctor>("GlShapeFunctor"),
         size_difference<Engine>("Engine"),
         size_difference<GlobalEngine>("GlobalEngine"),
         size_difference<Scene>("Scene"),
@@ -222,6 +223,7 @@ std::string vtable_differences() {
         vtable_difference<IGeomFunctor>("IGeomFunctor"),
         vtable_difference<IPhysFunctor>("IPhysFunctor"),
         vtable_difference<LawFunctor>("LawFunctor"),
+        vtable_difference<GlShapeFunctor>("GlShapeFunctor"),
         vtable_difference<GlobalEngine>("GlobalEngine")}) {
     if (!difference.empty()) return difference;
   }

@@ -140,7 +140,7 @@ class Thermal(Section):
 class Case(Section):
     """What all kinds have in common. A whole case file in SI units, immutable.
 
-    A kind adds its sections, ``KIND``, ``period_s`` and ``problem``.
+    A kind adds its sections, ``KIND``, ``period_s``, ``samples_per_cycle`` and ``problem``.
     """
 
     KIND: ClassVar[str]
@@ -166,6 +166,11 @@ class Case(Section):
     @property
     def period_s(self) -> float:
         """Length of one cycle [s]."""
+        raise NotImplementedError
+
+    @property
+    def samples_per_cycle(self) -> int:
+        """Samples per cycle of both models."""
         raise NotImplementedError
 
     @property

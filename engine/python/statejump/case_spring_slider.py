@@ -80,6 +80,11 @@ class SpringSliderCase(Case):
         return self.dem.period_s
 
     @property
+    def samples_per_cycle(self) -> int:
+        """Samples per cycle of both models."""
+        return self.dem.samples_per_cycle
+
+    @property
     def friction_force_N(self) -> float:
         """Friction limit f = μ N [N]."""
         return self.joint.friction_coefficient * self.joint.normal_force_N

@@ -163,6 +163,11 @@ class UmbrellaCase(Case):
         return self.thermal.period_s
 
     @property
+    def samples_per_cycle(self) -> int:
+        """Samples per cycle of both models."""
+        return self.output.samples_per_cycle
+
+    @property
     def bearing_radius_m(self) -> float:
         """Radius R2 of the bearing at ΔT = 0 [m]."""
         return self.joint.journal_radius_m + self.joint.radial_clearance_m

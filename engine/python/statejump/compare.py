@@ -12,6 +12,7 @@ from typing import Optional
 import numpy as np
 
 from . import _engine, reduced
+from .case_schema import Case
 from .case_spring_slider import SpringSliderCase
 from .history import History
 from .output import write_atomically
@@ -32,7 +33,8 @@ class Quantity:
     passed: bool
 
 
-def _quantity(name: str, unit: str, exact: Optional[float], dem: Optional[float], tolerance: float) -> Quantity:
+def quantity(name: str, unit: str, exact: Optional[float], dem: Optional[float], tolerance: float) -> Quantity:
+    """Return one row; a value that one model lacks fails, one that both lack passes."""
     if exact is None or dem is None:
         return Quantity(name, unit, exact, dem, None, tolerance, passed=exact is None and dem is None)
     difference = dem - exact
@@ -94,7 +96,7 @@ def compare(case: SpringSliderCase, path: _engine.Path, dem: History) -> list[Qu
     exact_jump = path.state_jump_m
     jump = float(dem["displacement_m"][-1] - dem["displacement_m"][0])
     jump_tolerance = max(tolerance.state_jump_relative * abs(exact_jump), tolerance.state_jump_absolute_m)
-    rows = [_quantity("state_jump", "m", exact_jump, jump, jump_tolerance)]
+    rows = [quantity("state_jump", "m", exact_jump, jump, jump_tolerance)]
 
     if case.friction_force_N > 0:
         exact_events: dict[str, float] = {}
@@ -103,14 +105,14 @@ def compare(case: SpringSliderCase, path: _engine.Path, dem: History) -> list[Qu
                 exact_events.setdefault(event.kind, event.temperature_change_K)
         dem_events = dem_event_temperatures(dem, samples)
         rows += [
-            _quantity(f"{kind}_temperature_change", "K", exact_events.get(kind), dem_events[kind],
+            quantity(f"{kind}_temperature_change", "K", exact_events.get(kind), dem_events[kind],
                       tolerance.event_temperature_K)
             for kind in COMPARED_EVENTS
         ]
 
     largest = float(np.max(np.abs(exact["displacement_m"])))
     rms = float(np.sqrt(np.mean((dem["displacement_m"] - exact["displacement_m"]) ** 2)))
-    rows.append(_quantity("displacement_rms_over_largest", "-", 0.0,
+    rows.append(quantity("displacement_rms_over_largest", "-", 0.0,
                           rms / largest if largest > 0 else math.nan, tolerance.displacement_rms_relative))
 
     reference = float(dem["friction_dissipation_J"][-1] - dem["friction_dissipation_J"][0])
@@ -118,16 +120,16 @@ def compare(case: SpringSliderCase, path: _engine.Path, dem: History) -> list[Qu
     if not reference > 0:  # without friction the stored energy is the scale
         reference = float(np.max(dem["elastic_energy_J"] + dem["contact_energy_J"]))
         name = "energy_residual_over_largest_stored"
-    rows.append(_quantity(name, "-", 0.0, energy_residual(dem) / reference if reference > 0 else math.nan,
+    rows.append(quantity(name, "-", 0.0, energy_residual(dem) / reference if reference > 0 else math.nan,
                           tolerance.energy_balance_relative))
     if case.thermal.cycles > 2:
         drift = loop_drift(dem, samples, case.thermal.cycles)
-        rows.append(_quantity("loop_drift_over_largest_displacement", "-", 0.0, drift / largest,
+        rows.append(quantity("loop_drift_over_largest_displacement", "-", 0.0, drift / largest,
                               tolerance.drift_relative))
     return rows
 
 
-def write_comparison(case: SpringSliderCase, rows: list[Quantity], folder: Path) -> None:
+def write_comparison(case: Case, rows: list[Quantity], folder: Path) -> None:
     """Write ``comparison.json`` and ``comparison.csv``."""
     entries = []
     for row in rows:

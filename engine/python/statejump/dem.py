@@ -10,10 +10,12 @@ import shutil
 import signal
 import subprocess
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable
 
 from . import _paths, stable_step
+from .case_schema import Case
 from .case_spring_slider import SpringSliderCase
 from .errors import StatejumpError, Interrupted
 from .history import History
@@ -36,16 +38,23 @@ def time_step(case: SpringSliderCase) -> float:
     return case.duration_s / number_of_steps(case)
 
 
-def resolved(case: SpringSliderCase) -> dict[str, Any]:
-    """Everything that the YADE script needs, as plain values; keys as in the case file."""
+def common_values(case: Case, number_of_steps: int) -> dict[str, Any]:
+    """What the YADE script needs of a case of any kind, as plain values; keys as in the case file."""
     values = case.dict()
     if case.thermal.shape == "table":
         values["thermal"]["table_time_s"] = case.table_time_s
+    values["period_s"] = case.period_s
+    values["number_of_samples"] = case.samples_per_cycle * case.thermal.cycles
     values["dem"].update(
-        number_of_steps=number_of_steps(case),
-        time_step_s=time_step(case),
-        tip_mass_kg=stable_step.tip_mass(case),
+        number_of_steps=number_of_steps, time_step_s=case.duration_s / number_of_steps
     )
+    return values
+
+
+def resolved(case: SpringSliderCase) -> dict[str, Any]:
+    """Everything that the YADE script needs of a ``spring_slider`` case."""
+    values = common_values(case, number_of_steps(case))
+    values["dem"].update(tip_mass_kg=stable_step.tip_mass(case))
     return values
 
 
@@ -62,43 +71,68 @@ def find_yade() -> str:
 
 
 def run(case: SpringSliderCase, folder: Path, progress: Callable[[float], None]) -> History:
-    """Run the case in YADE and return its history, also written to ``folder/dem_history.csv``.
+    """Run a ``spring_slider`` case in YADE; see :func:`run_resolved`."""
+    return run_resolved(resolved(case), folder, progress).history
 
-    :param case: validated case
+
+@dataclass(frozen=True)
+class DemRun:
+    """A finished run: its samples, and what else it has to say (``dem_run.json``)."""
+
+    history: History
+    summary: dict[str, Any]
+
+
+def run_resolved(values: dict[str, Any], folder: Path, progress: Callable[[float], None]) -> DemRun:
+    """Run a resolved case in YADE and write ``dem_history.csv`` and ``dem_run.json``.
+
+    :param values: resolved case, see :func:`common_values`
     :param folder: results folder, exists
     :param progress: called with the finished fraction, 0 to 1
     :raises StatejumpError: YADE is missing, failed or was killed; nothing half-written is left
     :raises Interrupted: Ctrl-C; the samples so far are kept in ``dem_history.interrupted.csv``
     """
-    command = [find_yade(), "-n", "-x", f"-j{case.dem.threads}", str(_paths.YADE_SCRIPTS / "run_case.py")]
+    done = execute(values, progress, keep_in=folder)
+    done.history.write_csv(folder / "dem_history.csv")
+    with write_atomically(folder / "dem_run.json") as stream:
+        stream.write(json.dumps(done.summary, indent=2) + "\n")
+    return done
+
+
+def execute(
+    values: dict[str, Any], progress: Callable[[float], None], keep_in: Path | None = None
+) -> DemRun:
+    """Run a resolved case in YADE without writing results.
+
+    :param keep_in: folder that gets the samples of an interrupted run; None: they are dropped
+    """
+    name, threads = values["case"]["name"], values["dem"]["threads"]
+    command = [find_yade(), "-n", "-x", f"-j{threads}", str(_paths.YADE_SCRIPTS / "run_case.py")]
     with tempfile.TemporaryDirectory(prefix="statejump-") as scratch:
         input_file, output = Path(scratch) / "case.json", Path(scratch) / "dem_history.csv"
-        input_file.write_text(json.dumps(resolved(case)), encoding="utf-8")
+        input_file.write_text(json.dumps(values), encoding="utf-8")
         modules = str(Path(__file__).resolve().parents[1])
         environment = dict(
             os.environ,
             STATEJUMP_CASE_JSON=str(input_file),
             STATEJUMP_OUTPUT=str(output),
             PYTHONPATH=os.pathsep.join(filter(None, [modules, os.environ.get("PYTHONPATH")])),
-            OMP_NUM_THREADS=str(case.dem.threads),
+            OMP_NUM_THREADS=str(threads),
         )
         try:
             problem = _watch(command, environment, progress)
         except KeyboardInterrupt:
-            raise Interrupted(_keep_partial(output, folder)) from None
+            raise Interrupted(_keep_partial(output, keep_in)) from None
         except OSError as error:
             raise StatejumpError(f"YADE cannot be started: {command[0]}: {error.strerror}") from None
         if problem:
-            raise StatejumpError(f"case {case.name}: {problem}")
+            raise StatejumpError(f"case {name}: {problem}")
         try:
             history = History.read_csv(output)
-            summary = output.with_name(output.name + ".json").read_text(encoding="utf-8")
+            summary = json.loads(output.with_name(output.name + ".json").read_text(encoding="utf-8"))
         except (OSError, ValueError, IndexError) as error:
-            raise StatejumpError(f"case {case.name}: the DEM run left no complete result: {error}") from None
-        history.write_csv(folder / "dem_history.csv")
-        with write_atomically(folder / "dem_run.json") as stream:
-            stream.write(summary)
-    return history
+            raise StatejumpError(f"case {name}: the DEM run left no complete result: {error}") from None
+    return DemRun(history, summary)
 
 
 def _watch(command: list[str], environment: dict[str, str], progress: Callable[[float], None]) -> str:
@@ -138,7 +172,9 @@ def _watch(command: list[str], environment: dict[str, str], progress: Callable[[
     return ""
 
 
-def _keep_partial(output: Path, folder: Path) -> str:
+def _keep_partial(output: Path, folder: Path | None) -> str:
+    if folder is None:
+        return "interrupted; nothing was written"
     partial = output.with_name(output.name + ".partial")
     if not partial.exists():
         return "interrupted before the first sample; nothing was written"

@@ -5,14 +5,15 @@ from __future__ import annotations
 import csv
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Iterable
 
 import numpy as np
 
 from .errors import StatejumpError
 from .output import write_atomically
 
-# Same names for both models; a model writes the columns that it has.
-COLUMNS = (
+# Same names for both models; a model writes the columns that it has, in this order.
+SPRING_SLIDER_COLUMNS = (
     "time_s",
     "temperature_change_K",
     "displacement_m",
@@ -33,6 +34,47 @@ COLUMNS = (
     "stage",
 )
 
+UMBRELLA_COLUMNS = (
+    "time_s",
+    "temperature_change_K",
+    "theta2_rad",  # of AB, from A to B, anticlockwise from AC
+    "theta4_rad",  # of BC, from C to B
+    "length_ab_m",
+    "length_bc_m",
+    "centroid_ab_x_m",  # the paper's X_G1, and so on
+    "centroid_ab_y_m",
+    "centroid_bc_x_m",
+    "centroid_bc_y_m",
+    "bearing_x_m",
+    "bearing_y_m",
+    "journal_x_m",
+    "journal_y_m",
+    "eccentricity_x_m",  # journal minus bearing centre
+    "eccentricity_y_m",
+    "penetration_depth_m",  # negative: gap
+    "normal_force_N",
+    "tangential_force_N",  # friction on the journal, along the normal turned by +90 degrees
+    "slipping",
+    "kinetic_energy_J",
+    "axial_energy_J",
+    "contact_energy_J",
+    "torsion_energy_J",
+    "axial_dissipation_J",
+    "pin_dissipation_J",
+    "friction_dissipation_J",
+    "impact_dissipation_J",
+    "thermal_work_J",
+)
+
+
+def _order(names: Iterable[str]) -> list[str]:
+    """Return the names in their common order; ValueError if one is unknown."""
+    names = set(names)
+    order = UMBRELLA_COLUMNS if "theta2_rad" in names else SPRING_SLIDER_COLUMNS
+    for name in sorted(names.difference(order)):
+        raise ValueError(f"unknown column {name}")
+    return [name for name in order if name in names]
+
 
 @dataclass(frozen=True)
 class History:
@@ -51,7 +93,7 @@ class History:
 
     def write_csv(self, path: Path) -> None:
         """Write the columns in the common order; full precision, so nothing is lost."""
-        names = [name for name in COLUMNS if name in self.columns]
+        names = _order(self.columns)
         rows = zip(*(self.columns[name].tolist() for name in names))
         with write_atomically(path) as stream:
             writer = csv.writer(stream)
@@ -66,9 +108,10 @@ class History:
         if len(rows) < 2:
             raise StatejumpError(f"{path}: holds no samples")
         names, body = rows[0], rows[1:]
-        unknown = [name for name in names if name not in COLUMNS]
-        if unknown:
-            raise StatejumpError(f"{path}: unknown column {unknown[0]}")
+        try:
+            _order(names)
+        except ValueError as problem:
+            raise StatejumpError(f"{path}: {problem}") from None
         columns = {}
         for i, name in enumerate(names):
             cells = [row[i] for row in body]

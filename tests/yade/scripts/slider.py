@@ -1,5 +1,5 @@
 """Table 1 through scene.py: a short version of the orbit."""
-import scene
+import scene_spring_slider
 import statejump_yade as sj
 from yade import wrapper
 
@@ -19,8 +19,9 @@ def case(friction, period, steps):
             "friction_coefficient": friction, "normal_force_N": 100.0, "clearance_minus_m": 1e-3,
             "clearance_plus_m": 1e-3, "preload_stiffness_N_per_m": 0.0,
         },
+        "period_s": period,
         "dem": {
-            "period_s": period, "tip_mass_kg": 0.004, "link_damping_ratio": 0.2,
+            "tip_mass_kg": 0.004, "link_damping_ratio": 0.2,
             "contact_damping_ratio": 0.2, "time_step_s": period / steps,
         },
     }
@@ -30,7 +31,7 @@ def orbit(friction, period, steps):
     O.reset()
     resolved = case(friction, period, steps)
     recorder = wrapper.PyRunner(command="read()", iterPeriod=250, initRun=True)
-    built = scene.spring_slider(resolved, [recorder])
+    built = scene_spring_slider.build(resolved, [recorder])
     rows = []
 
     def read():

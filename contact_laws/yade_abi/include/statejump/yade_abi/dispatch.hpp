@@ -137,6 +137,28 @@ class LawFunctor
   void pyRegisterClass(boost::python::object scope) override;
 };
 
+// Passed on by the renderer; the plugin does not look into it.
+class GLViewInfo;
+
+// Draws a shape, already moved to its body's place, in YADE's 3-D view.
+class GlShapeFunctor
+    : public Functor1D<Shape, void,
+                       boost::mpl::vector<const shared_ptr<Shape>&, const shared_ptr<State>&, bool,
+                                          const GLViewInfo&>> {
+ public:
+  GlShapeFunctor() {}
+  ~GlShapeFunctor() override;
+  std::string getBaseClassName(unsigned int i = 0) const override;
+  int getBaseClassNumber() const override;
+  std::string getClassName() const override;
+  void pySetAttr(const std::string& key, const boost::python::object& value) override;
+  boost::python::dict pyDict() const override;
+  void callPostLoad() override;
+  void pyRegisterClass(boost::python::object scope) override;
+  virtual std::string renders() const;
+  virtual void initgl();
+};
+
 struct TimingInfo {
   long nExec = 0;
   unsigned long nsec = 0;

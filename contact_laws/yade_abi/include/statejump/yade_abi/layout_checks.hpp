@@ -192,6 +192,8 @@ static_assert(sizeof(yade::IPhysFunctor) == 88);
 
 static_assert(sizeof(yade::LawFunctor) == 88);
 
+static_assert(sizeof(yade::GlShapeFunctor) == 88);
+
 static_assert(sizeof(yade::TimingInfo) == 16);
 STATEJUMP_MEMBER(TimingInfo, nExec, 0, 8)
 STATEJUMP_MEMBER(TimingInfo, nsec, 8, 8)

@@ -14,7 +14,7 @@
 namespace boost::archive::detail {
 
 // A list of explicit instantiations cannot be written as a template.
-#define STATEJUMP_SERIALIZED_BY_YADE(Class)                                 \
+#define STATEJUMP_SERIALIZED_BY_YADE(Class)                                  \
   extern template class iserializer<boost::archive::binary_iarchive, Class>; \
   extern template class oserializer<boost::archive::binary_oarchive, Class>; \
   extern template class iserializer<boost::archive::xml_iarchive, Class>;    \
@@ -28,6 +28,7 @@ STATEJUMP_SERIALIZED_BY_YADE(yade::BoundFunctor)
 STATEJUMP_SERIALIZED_BY_YADE(yade::IGeomFunctor)
 STATEJUMP_SERIALIZED_BY_YADE(yade::IPhysFunctor)
 STATEJUMP_SERIALIZED_BY_YADE(yade::LawFunctor)
+STATEJUMP_SERIALIZED_BY_YADE(yade::GlShapeFunctor)
 STATEJUMP_SERIALIZED_BY_YADE(yade::GlobalEngine)
 #undef STATEJUMP_SERIALIZED_BY_YADE
 

@@ -1,0 +1,235 @@
+#include "view.hpp"
+
+#ifdef STATEJUMP_HAS_VIEW
+#include <GL/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "ranges.hpp"
+
+namespace statejump::dem {
+namespace {
+
+constexpr int sides = 96;
+constexpr Real pi = 3.14159265358979323846;
+
+// Leaves YADE's drawing state as it was found.
+class Painter {
+ public:
+  explicit Painter(const Vector3r& color, Real opacity) {
+    glPushAttrib(GL_ENABLE_BIT | GL_CURRENT_BIT | GL_LINE_BIT | GL_POLYGON_BIT |
+                 GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_LIGHTING_BIT);
+    glPushMatrix();
+    glDisable(GL_CULL_FACE);
+    if (opacity < 1) {
+      glEnable(GL_BLEND);
+      glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+      glDepthMask(GL_FALSE);
+    }
+    glColor4d(color.x(), color.y(), color.z(), opacity);
+  }
+  ~Painter() {
+    glPopMatrix();
+    glPopAttrib();
+  }
+  Painter(const Painter&) = delete;
+  Painter& operator=(const Painter&) = delete;
+};
+
+std::array<Real, 2> on_circle(int i) {
+  const Real angle = 2 * pi * i / sides;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+void circle(Real radius, Real z) {
+  glBegin(GL_LINE_LOOP);
+  for (int i = 0; i < sides; ++i) {
+    const auto [c, s] = on_circle(i);
+    glVertex3d(radius * c, radius * s, z);
+  }
+  glEnd();
+}
+
+// Lines along the axis; few, so that one sees how the body turns.
+void generators(Real radius, Real half_length, int count) {
+  glBegin(GL_LINES);
+  for (int i = 0; i < count; ++i) {
+    const auto [c, s] = on_circle(i * sides / count);
+    glVertex3d(radius * c, radius * s, -half_length);
+    glVertex3d(radius * c, radius * s, half_length);
+  }
+  glEnd();
+}
+
+// sign: 1 outside, -1 inside of the cylinder, for the light.
+void wall(Real radius, Real half_length, Real sign) {
+  glBegin(GL_QUAD_STRIP);
+  for (int i = 0; i <= sides; ++i) {
+    const auto [c, s] = on_circle(i);
+    glNormal3d(sign * c, sign * s, 0);
+    glVertex3d(radius * c, radius * s, -half_length);
+    glVertex3d(radius * c, radius * s, half_length);
+  }
+  glEnd();
+}
+
+// A ring across the axis; a disc for inner radius 0.
+void ring(Real inner, Real outer, Real z) {
+  glBegin(GL_QUAD_STRIP);
+  glNormal3d(0, 0, z < 0 ? -1 : 1);
+  for (int i = 0; i <= sides; ++i) {
+    const auto [c, s] = on_circle(i);
+    glVertex3d(inner * c, inner * s, z);
+    glVertex3d(outer * c, outer * s, z);
+  }
+  glEnd();
+}
+
+// Radius and place of a journal with its play drawn larger.
+struct Drawn {
+  Real radius;
+  Vector3r shift;  // in the axes of the journal
+};
+
+Drawn magnified(const Journal& journal, const yade::State& state) {
+  Drawn drawn{journal.expanded(journal.radius), Vector3r::Zero()};
+  Real scale = ViewSettings::clearance_scale();
+  const auto& scene = yade::Omega::instance().getScene();
+  if (scale == 1 || !scene) return drawn;
+  const Bearing* nearest = nullptr;
+  const yade::State* place = nullptr;
+  Real least = std::numeric_limits<Real>::infinity();
+  for (std::size_t i = 0; i < number_of_bodies(*scene); ++i) {
+    const auto& body = body_at(*scene, i);
+    const auto* bearing = body ? dynamic_cast<const Bearing*>(body->shape.get()) : nullptr;
+    if (!bearing) continue;
+    const Real distance = (body->state->se3.position - state.se3.position).squaredNorm();
+    if (distance >= least) continue;
+    least = distance;
+    nearest = bearing;
+    place = body->state.get();
+  }
+  if (!nearest) return drawn;
+  const Real bearing_radius = nearest->expanded(nearest->radius);
+  const Real clearance = bearing_radius - drawn.radius;
+  const Vector3r axis = place->se3.orientation * Vector3r::UnitZ();
+  const Vector3r centres = state.se3.position - place->se3.position;
+  const Vector3r offset = centres - centres.dot(axis) * axis;
+  // A journal that is nowhere near a bearing belongs to none.
+  if (!(clearance > 0) || offset.norm() > bearing_radius) return drawn;
+  scale = std::min(scale, std::max<Real>(1, 0.7 * bearing_radius / clearance));
+  drawn.radius = bearing_radius - scale * clearance;
+  drawn.shift = state.se3.orientation.conjugate() * Vector3r((scale - 1) * offset);
+  return drawn;
+}
+
+Real half_length_of(Real half_length, Real radius) {
+  return half_length > 0 ? half_length : radius;
+}
+
+}  // namespace
+
+Real ViewSettings::clearance_scale_ = 1;
+
+void ViewSettings::set_clearance_scale(Real scale) {
+  if (!(scale >= 1 && std::isfinite(scale))) {
+    refuse("Gl1_Journal", "clearanceScale", scale, "1 or above [-]");
+  }
+  clearance_scale_ = scale;
+}
+
+void draw(const Journal& journal, const yade::State& state, bool wire) {
+  const Drawn drawn = magnified(journal, state);
+  const Real half = half_length_of(journal.expanded(journal.halfLength), drawn.radius);
+  const Painter painter(journal.color, 1);
+  glTranslated(drawn.shift.x(), drawn.shift.y(), drawn.shift.z());
+  if (!wire) {
+    wall(drawn.radius, half, 1);
+    ring(0, drawn.radius, half);
+    ring(0, drawn.radius, -half);
+  }
+  glDisable(GL_LIGHTING);
+  if (!wire) glColor3d(0, 0, 0);  // edges, and a mark that turns with the journal
+  for (const Real z : {-half, half}) circle(drawn.radius, 1.001 * z);
+  if (wire) generators(drawn.radius, half, 12);
+  glBegin(GL_LINES);
+  for (const Real z : {-half, half}) {
+    glVertex3d(0, 0, 1.001 * z);
+    glVertex3d(drawn.radius, 0, 1.001 * z);
+  }
+  glEnd();
+}
+
+void draw(const Bearing& bearing, const yade::State&, bool wire) {
+  const Real inner = bearing.expanded(bearing.radius);
+  const Real outer = 1.3 * inner;  // the wall has no thickness of its own
+  const Real half = half_length_of(bearing.expanded(bearing.halfLength), inner);
+  {
+    const Painter painter(bearing.color, 1);
+    glDisable(GL_LIGHTING);
+    for (const Real z : {-half, half}) {
+      circle(inner, z);
+      circle(outer, z);
+    }
+    generators(outer, half, 12);
+  }
+  if (wire) return;
+  const Painter painter(bearing.color, 0.35);
+  ring(inner, outer, -half);
+  wall(outer, half, 1);
+  ring(inner, outer, half);
+}
+
+void draw(const Slider& slider, const yade::State&, bool wire) {
+  // The pads are parts of one sphere; the block between them is drawn as the box around it.
+  const Real half = slider.expanded(slider.radius);
+  const Painter painter(slider.color, 1);
+  if (wire) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const Real side : {-1.0, 1.0}) {
+      Vector3r normal = Vector3r::Zero();
+      normal[axis] = side;
+      glBegin(GL_QUADS);
+      glNormal3d(normal.x(), normal.y(), normal.z());
+      for (const auto& [u, v] : {std::array<Real, 2>{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+        Vector3r corner = normal;
+        corner[(axis + 1) % 3] = u;
+        corner[(axis + 2) % 3] = v;
+        corner *= half;
+        glVertex3d(corner.x(), corner.y(), corner.z());
+      }
+      glEnd();
+    }
+  }
+}
+
+void draw(const SlotFace& face, const yade::State&, bool wire) {
+  const Vector3r center = face.expanded(face.distance) * face.normal;
+  const Real half = face.halfSize > 0 ? face.halfSize : face.distance;
+  const Vector3r other = std::abs(face.normal.x()) < 0.6 ? Vector3r::UnitX() : Vector3r::UnitY();
+  const Vector3r u = half * face.normal.cross(other).normalized();
+  const Vector3r v = face.normal.cross(u);
+  const auto square = [&](GLenum mode) {
+    glBegin(mode);
+    glNormal3d(-face.normal.x(), -face.normal.y(), -face.normal.z());
+    for (const Vector3r& corner : {Vector3r(center - u - v), Vector3r(center + u - v),
+                                   Vector3r(center + u + v), Vector3r(center - u + v)}) {
+      glVertex3d(corner.x(), corner.y(), corner.z());
+    }
+    glEnd();
+  };
+  {
+    const Painter painter(face.color, 1);
+    glDisable(GL_LIGHTING);
+    square(GL_LINE_LOOP);
+  }
+  if (wire) return;
+  const Painter painter(face.color, 0.35);
+  square(GL_QUADS);
+}
+
+}  // namespace statejump::dem
+#endif

@@ -1,0 +1,166 @@
+"""YADE scene of ``spring_slider`` cases: a bar with a slider at its tip, in a slot."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan, sqrt
+from typing import Any
+
+import statejump_yade as sj
+from scene import O, fixed_point, joint_engines, thermal_program
+from yade import wrapper
+
+COLUMNS = (
+    "time_s", "temperature_change_K", "displacement_m", "axial_force_N", "friction_force_N",
+    "stop_force_N", "elastic_energy_J", "friction_dissipation_J", "damping_dissipation_J",
+    "kinetic_energy_J", "thermal_work_J", "external_work_J", "contact_energy_J",
+    "preload_energy_J", "slipping", "stop_contact", "floor_normal_force_N",
+)
+
+
+@dataclass(frozen=True)
+class SpringSliderScene:
+    """What a script reads from the scene of a ``spring_slider`` case: body ids, links, program."""
+
+    program: sj.ThermalProgram
+    slider: int
+    floor: int
+    stop_minus: int
+    stop_plus: int
+    link: sj.ThermalLink
+    preload_link: sj.ThermalLink | None
+    start_height_m: float  # y of the slider at the start, where the floor carries the normal force
+
+
+def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSliderScene:
+    """Build the scene of a bar with a slider at its tip, in a slot (1-D clearance joint).
+
+    The bar lies along x with its root at -l0, the slider starts at the slot's centre, pressed on
+    the floor by the normal force at the depth at which the floor carries it.
+
+    :param case: resolved case, sections and keys as in the case file
+    :param recorders: engines that read the state, run before the motion of each step
+    """
+    link, joint, dem = case["link"], case["joint"], case["dem"]
+    program = thermal_program(case)
+    radius = joint["pad_radius_m"]
+    expansions = {"pad": joint["pad_thermal_expansion_per_K"], "slot": joint["slot_thermal_expansion_per_K"]}
+    materials = {
+        part: sj.ThermalFrictMat(
+            young=joint["young_modulus_Pa"],
+            poisson=joint["poisson_ratio"],
+            frictionAngle=atan(joint["friction_coefficient"]),
+            thermalExpansion=expansion,
+            label=part,
+        )
+        for part, expansion in expansions.items()
+    }
+    for material in materials.values():
+        O.materials.append(material)
+
+    root = fixed_point((-link["stress_free_length_m"], 0, 0))
+    effective_modulus = joint["young_modulus_Pa"] / (2 * (1 - joint["poisson_ratio"] ** 2))
+    depth = (joint["normal_force_N"] / (4 / 3 * effective_modulus * sqrt(radius))) ** (2 / 3)
+    body = wrapper.Body()
+    body.shape = sj.Slider(radius=radius)
+    body.material = materials["pad"]
+    body.bound = wrapper.Aabb()
+    body.state.mass = dem["tip_mass_kg"]
+    body.state.pos = body.state.refPos = (0, -depth, 0)
+    body.state.blockedDOFs = "zXYZ"
+    slider = O.bodies.append(body)
+    O.forces.setPermF(slider, (0, -joint["normal_force_N"], 0))
+    floor, stop_minus, stop_plus = O.bodies.append(
+        sj.slot(
+            (0, 0, 0),
+            stopMinus=radius + joint["clearance_minus_m"],
+            stopPlus=radius + joint["clearance_plus_m"],
+            halfHeight=radius,
+            material=materials["slot"],
+        )
+    )
+    bar = sj.ThermalLink(
+        id1=root,
+        id2=slider,
+        youngModulus=link["young_modulus_Pa"],
+        crossSectionArea=link["cross_section_area_m2"],
+        stressFreeLength=link["stress_free_length_m"],
+        thermalExpansion=link["thermal_expansion_per_K"],
+        dampingRatio=dem["link_damping_ratio"],
+        program=program,
+    )
+    links, preload = [bar], None
+    if joint["preload_stiffness_N_per_m"] > 0:
+        # A spring to ground that does not expand, with its far end as far away as the root.
+        far = link["stress_free_length_m"]
+        preload = sj.ThermalLink(
+            id1=fixed_point((far, 0, 0)),
+            id2=slider,
+            youngModulus=joint["preload_stiffness_N_per_m"],
+            crossSectionArea=far,
+            stressFreeLength=far,
+            program=program,
+        )
+        links.append(preload)
+    O.engines = joint_engines(
+        links,
+        program,
+        sj.Law2_JointGeom_JointPhys_HertzMindlin(),
+        dem["contact_damping_ratio"],
+        verletDist=0.1 * radius,
+        recorders=recorders,
+    )
+    O.trackEnergy = True
+    O.dt = dem["time_step_s"]
+    return SpringSliderScene(
+        program, slider, floor, stop_minus, stop_plus, bar, preload, start_height_m=-depth
+    )
+
+
+def sample(case: dict[str, Any], built: SpringSliderScene) -> tuple:
+    """Return one row: the state of the current step. Forces on the block, axial force in
+    compression positive; the contact's stored forces act on the face."""
+    state = O.bodies[built.slider].state
+    contacts = {}
+    for face in (built.floor, built.stop_minus, built.stop_plus):
+        if O.interactions.has(built.slider, face):
+            contact = O.interactions[built.slider, face]
+            if contact.isReal:
+                contacts[face] = contact.phys
+    floor = contacts.get(built.floor)
+    if floor is None:
+        raise RuntimeError(
+            f"the slider has left the floor of its slot at {O.time:.6g} s, temperature change "
+            f"{built.link.temperatureChange:.6g} K: the contact is lost"
+        )
+    stops = [contacts[face] for face in (built.stop_minus, built.stop_plus) if face in contacts]
+    energy = {name: O.energy[name] for name in O.energy.keys()}
+    bar, preload = built.link, built.preload_link
+    stiffness = bar.youngModulus * bar.crossSectionArea / bar.previousStressFreeLength
+    elastic = 0.5 * stiffness * bar.previousExtension**2
+    preload_energy = 0.0
+    if preload is not None:
+        preload_energy = 0.5 * case["joint"]["preload_stiffness_N_per_m"] * preload.previousExtension**2
+    return (
+        O.time,
+        bar.temperatureChange,
+        state.pos[0],
+        bar.axialForce,
+        -floor.shearForce[0],
+        -sum(stop.normalForce[0] for stop in stops),
+        elastic,
+        energy["jointFriction"],
+        energy["jointDamping"] + energy["linkDamping"],
+        0.5 * state.mass * (state.vel[0] ** 2 + state.vel[1] ** 2),
+        energy.get("linkThermalWork", 0.0) + energy.get("jointThermalWork", 0.0),
+        -case["joint"]["normal_force_N"] * (state.pos[1] - built.start_height_m),
+        energy["jointElastic"],
+        preload_energy,
+        int(floor.slipping),
+        int(bool(stops)),
+        floor.normalForce.norm(),
+    )
+
+
+def summary(case: dict[str, Any], built: SpringSliderScene) -> dict[str, Any]:
+    """Return what else the run has to say, as plain values."""
+    return {}

@@ -1,0 +1,180 @@
+"""YADE scene of ``umbrella`` cases: two links on pins of a frame, a clearance joint between them."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan, atan2, hypot
+from typing import Any
+
+import statejump_yade as sj
+from scene import O, fixed_point, joint_engines, thermal_program
+from yade import wrapper
+from yade.minieigenHP import Vector3
+
+COLUMNS = (
+    "time_s", "temperature_change_K", "theta2_rad", "theta4_rad", "length_ab_m", "length_bc_m",
+    "centroid_ab_x_m", "centroid_ab_y_m", "centroid_bc_x_m", "centroid_bc_y_m",
+    "bearing_x_m", "bearing_y_m", "journal_x_m", "journal_y_m",
+    "eccentricity_x_m", "eccentricity_y_m", "penetration_depth_m", "normal_force_N",
+    "tangential_force_N", "slipping", "kinetic_energy_J", "axial_energy_J", "contact_energy_J",
+    "torsion_energy_J", "axial_dissipation_J", "pin_dissipation_J", "friction_dissipation_J",
+    "impact_dissipation_J", "thermal_work_J",
+)
+
+
+@dataclass(frozen=True)
+class UmbrellaScene:
+    """What a script reads from the scene: body ids of the two tips, links, law, program."""
+
+    program: sj.ThermalProgram
+    bearing: int  # tip of AB
+    journal: int  # tip of BC
+    link_ab: sj.ThermalLink
+    link_bc: sj.ThermalLink
+    law: sj.Law2_JointGeom_JointPhys_JointLaw
+
+
+def joint_law(joint: dict[str, Any]) -> sj.Law2_JointGeom_JointPhys_JointLaw:
+    """Return the contact law that the [joint] section names."""
+    return sj.Law2_JointGeom_JointPhys_JointLaw(
+        normalLaw=joint["normal_law"],
+        dissipationLaw=joint["dissipation_law"],
+        frictionLaw=joint["friction_law"],
+        tangentialVelocity=joint["tangential_velocity"],
+        restitution=joint["restitution"],
+        smallestImpactSpeed=joint["smallest_impact_speed_m_per_s"],
+        contactLength=joint["contact_length_m"],
+        v0=joint["friction_v0_m_per_s"],
+        v1=joint["friction_v1_m_per_s"],
+    )
+
+
+def tip(shape, link: dict[str, Any], joint: dict[str, Any], expansion: float, start, velocity) -> int:
+    """Append the body at the tip of a link and return its id. A uniform rod on a fixed pin is
+    exactly a spring with a third of its mass at the tip; the tip turns with its link."""
+    body = wrapper.Body()
+    body.shape = shape
+    body.material = sj.ThermalFrictMat(
+        young=link["young_modulus_Pa"],
+        poisson=link["poisson_ratio"],
+        frictionAngle=atan(joint["friction_coefficient"]),
+        thermalExpansion=expansion,
+    )
+    body.bound = wrapper.Aabb()
+    body.state.mass = link["mass_kg"] / 3
+    body.state.pos = body.state.refPos = (*start, 0)
+    body.state.vel = (*velocity, 0)
+    body.state.blockedDOFs = "zXYZ"
+    return O.bodies.append(body)
+
+
+def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> UmbrellaScene:
+    """Build the scene: A at the origin, C on the x axis, journal of BC in the bearing of AB.
+
+    :param case: resolved case, sections and keys as in the case file; ``start`` also holds
+        positions [m] and velocities [m/s] of both tips
+    :param recorders: engines that read the state, run before the motion of each step
+    """
+    joint, start, damping = case["joint"], case["start"], case["damping"]
+    program = thermal_program(case)
+    bearing = tip(
+        sj.Bearing(radius=joint["journal_radius_m"] + joint["radial_clearance_m"]),
+        case["link_ab"], joint, joint["bearing_thermal_expansion_per_K"],
+        start["bearing_m"], start["bearing_velocity_m_per_s"],
+    )
+    journal = tip(
+        sj.Journal(radius=joint["journal_radius_m"]),
+        case["link_bc"], joint, joint["journal_thermal_expansion_per_K"],
+        start["journal_m"], start["journal_velocity_m_per_s"],
+    )
+    links = [
+        sj.ThermalLink(
+            id1=fixed_point((pin, 0, 0)),
+            id2=end,
+            youngModulus=link["young_modulus_Pa"],
+            crossSectionArea=link["cross_section_area_m2"],
+            stressFreeLength=link["stress_free_length_m"],
+            thermalExpansion=link["thermal_expansion_per_K"],
+            dampingRatio=damping["axial_damping_ratio"],
+            pinDamping=damping["pin_damping_N_m_s_per_rad"],
+            tipTurnsWithLink=True,
+            program=program,
+        )
+        for pin, end, link in (
+            (0.0, bearing, case["link_ab"]),
+            (case["frame"]["length_m"], journal, case["link_bc"]),
+        )
+    ]
+    springs = []
+    if case["torsion_spring"]["stiffness_N_m_per_rad"] > 0:
+        springs.append(
+            sj.TorsionSpring(
+                link1=links[0],
+                link2=links[1],
+                stiffness=case["torsion_spring"]["stiffness_N_m_per_rad"],
+                freeAngle=case["torsion_spring"]["free_angle_rad"],
+            )
+        )
+    law = joint_law(joint)
+    O.engines = joint_engines(
+        links, program, law, 0.0, verletDist=joint["journal_radius_m"], recorders=recorders,
+        springs=springs,
+    )
+    O.trackEnergy = True
+    O.dt = case["dem"]["time_step_s"]
+    return UmbrellaScene(program, bearing, journal, *links, law)
+
+
+def velocity_now(body: int):
+    """Velocity at the time of the positions [m/s]: YADE keeps that of half a step before."""
+    state = O.bodies[body].state
+    return state.vel + 0.5 * O.dt / state.mass * O.forces.f(body, sync=True)
+
+
+def sample(case: dict[str, Any], built: UmbrellaScene) -> tuple:
+    """Return one row: the state of the current step. Forces on the journal, the tangential one
+    along (-n_y, n_x)."""
+    bearing, journal = O.bodies[built.bearing].state, O.bodies[built.journal].state
+    ab, bc = bearing.pos, journal.pos - Vector3(case["frame"]["length_m"], 0, 0)
+    eccentricity = journal.pos - bearing.pos
+    change = built.link_ab.temperatureChange
+    joint = case["joint"]
+    clearance = (joint["journal_radius_m"] + joint["radial_clearance_m"]) * (
+        1 + joint["bearing_thermal_expansion_per_K"] * change
+    ) - joint["journal_radius_m"] * (1 + joint["journal_thermal_expansion_per_K"] * change)
+    distance = hypot(eccentricity[0], eccentricity[1])
+    normal_force = tangential_force = 0.0
+    slipping = 0
+    if O.interactions.has(built.journal, built.bearing):
+        contact = O.interactions[built.journal, built.bearing]
+        if contact.isReal:
+            normal = contact.geom.normal
+            normal_force = contact.phys.normalForce.dot(normal)
+            tangential_force = -contact.phys.shearForce.dot(Vector3(-normal[1], normal[0], 0))
+            slipping = int(contact.phys.slipping)
+    energy = {name: O.energy[name] for name in O.energy.keys()}
+    kinetic = sum(
+        0.5 * O.bodies[body].state.mass * velocity_now(body).squaredNorm()
+        for body in (built.bearing, built.journal)
+    )
+    return (
+        O.time, change, atan2(ab[1], ab[0]), atan2(bc[1], bc[0]), ab.norm(), bc.norm(),
+        0.5 * ab[0], 0.5 * ab[1], case["frame"]["length_m"] + 0.5 * bc[0], 0.5 * bc[1],
+        bearing.pos[0], bearing.pos[1], journal.pos[0], journal.pos[1],
+        eccentricity[0], eccentricity[1], distance - clearance, normal_force, tangential_force,
+        slipping, kinetic, energy["linkElastic"], energy.get("jointElastic", 0.0),
+        energy.get("torsionElastic", 0.0), energy["linkDamping"], energy.get("pinDamping", 0.0),
+        energy.get("jointFriction", 0.0), energy.get("jointDamping", 0.0),
+        energy.get("linkThermalWork", 0.0) + energy.get("jointThermalWork", 0.0),
+    )
+
+
+def summary(case: dict[str, Any], built: UmbrellaScene) -> dict[str, Any]:
+    """Return what else the run has to say, as plain values."""
+    first = built.law.firstContactTime
+    return {
+        "contacts": built.law.contacts,
+        "first_contact_time_s": first if first >= 0 else None,
+        "first_contact_temperature_change_K": (
+            built.program.temperatureChange(first) if first >= 0 else None
+        ),
+    }
