@@ -124,6 +124,10 @@ class Ensemble(Section):
 
     reduced_runs: int = parameter(100, "-", 1, 1_000_000, CHOICE)
     dem_runs: int = parameter(30, "-", 1, 1_000_000, CHOICE)
+    reduced_steps_per_cycle: int = parameter(100_000, "-", 10, 1_000_000_000, "the paper's number")
+    dem_steps_per_cycle: int = parameter(
+        400_000, "-", 10, 1_000_000_000, CHOICE + ": leapfrog keeps the links' phase less well"
+    )
     start_spread_m: float = parameter(1e-9, "m", 0, 1e2, CHOICE + ": around the start", above=True)
     seed: int = parameter(1, "-", 0, 2**31 - 1, CHOICE)
 
@@ -339,11 +343,16 @@ class UmbrellaCase(Case):
                 "memory is not smooth, use 'rk4'"
             )
         samples = self.output.samples_per_cycle
-        for section in ("reduced", "dem"):
-            steps = getattr(self, section).steps_per_cycle
+        for section, key in (
+            ("reduced", "steps_per_cycle"),
+            ("dem", "steps_per_cycle"),
+            ("ensemble", "reduced_steps_per_cycle"),
+            ("ensemble", "dem_steps_per_cycle"),
+        ):
+            steps = getattr(getattr(self, section), key)
             if steps % samples != 0:
                 return (
-                    f"{section}.steps_per_cycle = {steps} is not allowed: must be a multiple of "
+                    f"{section}.{key} = {steps} is not allowed: must be a multiple of "
                     f"output.samples_per_cycle = {samples}"
                 )
         return None

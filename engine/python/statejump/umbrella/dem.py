@@ -59,6 +59,7 @@ def ensemble(
 ) -> model.EnsembleOfRuns:
     """Run the case from ``runs`` starts (default: as the case says), as many as cores at a time."""
     offsets = list(model.start_offsets(case, runs or case.ensemble.dem_runs))
+    case = model.for_ensemble(case)
 
     def one(offset: np.ndarray) -> Any:
         done = execute(case, offset)

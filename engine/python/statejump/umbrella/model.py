@@ -155,6 +155,17 @@ class EnsembleOfRuns:
         return self.deflection_rad[:, -1]
 
 
+def for_ensemble(case: UmbrellaCase) -> UmbrellaCase:
+    """Return the case with the steps of its ensemble in both models."""
+    return changed(
+        case,
+        {
+            "reduced.steps_per_cycle": case.ensemble.reduced_steps_per_cycle,
+            "dem.steps_per_cycle": case.ensemble.dem_steps_per_cycle,
+        },
+    )
+
+
 def gather(histories: list[History]) -> EnsembleOfRuns:
     """Stack the runs of an ensemble."""
     first = histories[0]
@@ -174,6 +185,7 @@ def ensemble(
     The result does not depend on the number of cores.
     """
     offsets = list(start_offsets(case, runs or case.ensemble.reduced_runs))
+    case = for_ensemble(case)
 
     def one(offset: np.ndarray) -> History:
         history = run(case, offset).history
