@@ -5,12 +5,13 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include <array>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "bindings.hpp"
+#include "statejump/elastic_loop.hpp"
 #include "statejump/joint_loop.hpp"
 #include "statejump/linkage_run.hpp"
 
@@ -125,14 +126,74 @@ LinkageStart start_mode(const std::string& mode) {
   throw std::invalid_argument("mode = '" + mode + "', allowed is one of rest, matched");
 }
 
-py::dict event(const JointPoint& point) {
+/// One point of a quasi-static path, rigid or elastic.
+template <class Point>
+Row point_row(const Point& p) {
+  const Vector2d d = p.journal_centre - p.bearing_centre;
+  Row row = {
+      {"temperature_change_K", p.temperature_change},
+      {"contact_angle_rad", p.contact_angle},
+      {"theta2_rad", p.theta2},
+      {"theta4_rad", p.theta4},
+      {"eccentricity_x_m", d.x()},
+      {"eccentricity_y_m", d.y()},
+      {"bearing_x_m", p.bearing_centre.x()},
+      {"bearing_y_m", p.bearing_centre.y()},
+      {"journal_x_m", p.journal_centre.x()},
+      {"journal_y_m", p.journal_centre.y()},
+      {"spring_moment_N_m", p.spring_moment},
+  };
+  if constexpr (std::is_same_v<Point, ElasticJointPoint>) {
+    row.emplace_back("penetration_depth_m", p.depth);
+    row.emplace_back("normal_force_N", p.normal_force);
+    row.emplace_back("tangential_force_N", p.tangential_force);
+    row.emplace_back("slipping", p.slipping() ? 1.0 : 0.0);
+  }
+  return row;
+}
+
+template <class Point>
+py::dict point_dict(const Point& point) {
   py::dict result;
   result["motion"] = to_string(point.motion);
-  result["temperature_change_K"] = point.temperature_change;
-  result["contact_angle_rad"] = point.contact_angle;
-  result["theta2_rad"] = point.theta2;
-  result["theta4_rad"] = point.theta4;
+  for (const auto& [name, value] : point_row(point)) result[name] = value;
   return result;
+}
+
+/// What a rigid and an elastic loop have in common.
+template <class Loop>
+py::class_<Loop> bind_path(py::module_& module, const char* name, const char* doc) {
+  return py::class_<Loop>(module, name, doc)
+      .def(
+          "columns",
+          [](const Loop& self) {
+            return columns(self.points.size(),
+                           [&self](std::size_t i) { return point_row(self.points[i]); });
+          },
+          "Points of the path as arrays by column name.")
+      .def_property_readonly(
+          "events",
+          [](const Loop& self) {
+            py::list result;
+            for (const auto& point : self.events) result.append(point_dict(point));
+            return result;
+          },
+          "First, last, changes of motion and corners of the program, as dicts.")
+      .def_readonly("separated", &Loop::separated,
+                    "The contact force vanished: the path ends there.")
+      .def_property_readonly("theta2_jump_rad", &Loop::theta2_jump)
+      .def_property_readonly("theta4_jump_rad", &Loop::theta4_jump)
+      .def_property_readonly("bearing_jump_m",
+                             [](const Loop& self) { return Vector2d(self.bearing_jump()); })
+      .def_property_readonly("journal_jump_m",
+                             [](const Loop& self) { return Vector2d(self.journal_jump()); });
+}
+
+TangentialCompliance tangential_compliance(const std::string& name) {
+  if (name == "rigid") return TangentialCompliance::rigid;
+  if (name == "mindlin") return TangentialCompliance::mindlin;
+  throw std::invalid_argument("tangential_compliance = '" + name +
+                              "', allowed is one of rigid, mindlin");
 }
 
 void bind_models(py::module_& module) {
@@ -247,48 +308,40 @@ void bind_runs(py::module_& module) {
       py::arg("samples") = 0, "Dormand-Prince with error control, for laws without memory.");
 }
 
-void bind_loop(py::module_& module) {
-  py::class_<JointLoop>(module, "JointLoop",
-                        "Quasi-static path of the loaded joint, rigid links, exact Coulomb.")
-      .def("columns",
-           [](const JointLoop& self) {
-             return columns(self.points.size(), [&self](std::size_t i) -> Row {
-               const JointPoint& p = self.points[i];
-               return {
-                   {"temperature_change_K", p.temperature_change},
-                   {"contact_angle_rad", p.contact_angle},
-                   {"theta2_rad", p.theta2},
-                   {"theta4_rad", p.theta4},
-                   {"eccentricity_x_m", p.eccentricity.x()},
-                   {"eccentricity_y_m", p.eccentricity.y()},
-                   {"bearing_x_m", p.bearing_centre.x()},
-                   {"bearing_y_m", p.bearing_centre.y()},
-                   {"journal_x_m", p.journal_centre.x()},
-                   {"journal_y_m", p.journal_centre.y()},
-                   {"spring_moment_N_m", p.spring_moment},
-               };
-             });
-           })
-      .def_property_readonly("events",
-                             [](const JointLoop& self) {
-                               py::list result;
-                               for (const JointPoint& point : self.events) {
-                                 result.append(event(point));
-                               }
-                               return result;
-                             })
-      .def_readonly("separated", &JointLoop::separated)
-      .def_property_readonly("theta2_jump_rad", &JointLoop::theta2_jump)
-      .def_property_readonly("theta4_jump_rad", &JointLoop::theta4_jump)
-      .def_property_readonly("bearing_jump_m",
-                             [](const JointLoop& self) { return Vector2d(self.bearing_jump()); })
-      .def_property_readonly("journal_jump_m",
-                             [](const JointLoop& self) { return Vector2d(self.journal_jump()); });
+void bind_loops(py::module_& module) {
+  bind_path<JointLoop>(module, "JointLoop",
+                       "Quasi-static path of the loaded joint, rigid links, exact Coulomb.");
+  bind_path<ElasticLoop>(module, "ElasticLoop",
+                         "Quasi-static path of the loaded joint, elastic links and Hertz contact.")
+      .def_readonly("largest_force_residual", &ElasticLoop::largest_force_residual);
+  module.def(
+      "joint_point",
+      [](const Linkage& model, double change, int side, double contact_angle) {
+        return point_dict(joint_point(model, change, side, contact_angle));
+      },
+      py::arg("model"), py::arg("temperature_change_K"), py::arg("side"),
+      py::arg("contact_angle_rad"),
+      "Equilibrium of rigid links in contact; side -1 when the spring closes the flare angle.");
   module.def(
       "joint_loop", &joint_loop, py::arg("model"), py::arg("program"),
       py::arg("contact_angle_rad") = 0.0, py::arg("samples") = 200,
       "Quasi-static path from equilibrium at the given contact angle. Needs a torsion spring "
       "that loads the\njoint; raises ValueError otherwise.");
+  module.def(
+      "elastic_loop",
+      [](const Linkage& model, const ThermalProgram& program, double contact_angle, int samples,
+         const std::string& compliance) {
+        const ElasticLoopOptions options{samples, tangential_compliance(compliance)};
+        const py::gil_scoped_release free;
+        return elastic_loop(model, program, options, contact_angle);
+      },
+      py::arg("model"), py::arg("program"), py::arg("contact_angle_rad") = 0.0,
+      py::arg("samples") = ElasticLoopOptions{}.samples, py::arg("tangential_compliance") = "rigid",
+      "As joint_loop() with elastic links and Hertz contact; 'mindlin' is what slow dynamics and "
+      "the DEM tend to.\nRaises ValueError as joint_loop(), RuntimeError if equilibrium is not "
+      "found.");
+  module.def("loaded_state", &loaded_state, py::arg("model"), py::arg("contact_angle_rad") = 0.0,
+             "Equilibrium at dT = 0 in contact, at rest; a start for simulate().");
 }
 
 }  // namespace
@@ -296,7 +349,7 @@ void bind_loop(py::module_& module) {
 void bind_linkage(py::module_& module) {
   bind_models(module);
   bind_runs(module);
-  bind_loop(module);
+  bind_loops(module);
 }
 
 }  // namespace statejump::bindings
