@@ -458,7 +458,8 @@ class Walk {
   /// Settles which way the joint goes when ΔT starts to change towards `to`.
   void turn(double to) {
     heading_ = to > now_.p.temperature_change ? 1.0 : -1.0;
-    if (slips_ && mu_ > 0.0 && !(slip_rate(now_) < 0.0)) set_motion(false);
+    if (slips_ && mu_ > 0.0 && !(slip_rate(now_) < 0.0)) slips_ = false;
+    loop_.points.back() = point();
     event();
   }
 
@@ -482,9 +483,13 @@ class Walk {
       if (outcome == Outcome::separates) loop_.separated = true;
       if (outcome == Outcome::turns) {
         if (++failures > halving_limit) fail(next);  // turns on the spot
-        set_motion(!slips_);
+        slips_ = !slips_;
       }
-      if (next.p.temperature_change != from) sample();
+      if (next.p.temperature_change != from) {
+        sample();
+      } else {
+        loop_.points.back() = point();
+      }
       event();
       if (loop_.separated) return false;
     }
@@ -609,11 +614,6 @@ class Walk {
   void stick_from_here() {
     arc_ = equations_.slide().arc(now_.z);
     past_ = 0.0;
-  }
-
-  void set_motion(bool slips) {
-    slips_ = slips;
-    loop_.points.back().motion = slips ? JointMotion::slip : JointMotion::roll;
   }
 
   void note(const Equilibrium& at) {

@@ -203,6 +203,13 @@ TEST(ElasticLoop, JumpThatEndsInSlipIsThatBetweenTwoEquilibria) {
       EXPECT_EQ(loop.events[1].motion, JointMotion::slip);
       EXPECT_EQ(loop.events[2].motion, JointMotion::roll);
       EXPECT_EQ(loop.events[3].motion, JointMotion::slip);
+      for (const ElasticJointPoint& point : loop.points) {
+        const double limit = 0.15 * point.normal_force;
+        const bool corner = point.temperature_change == 100.0;
+        EXPECT_EQ(point.slipping(),
+                  !corner && std::abs(std::abs(point.tangential_force) - limit) < 1e-9 * limit)
+            << point.temperature_change;
+      }
       if (samples < 2000) continue;
       for (const ElasticJointPoint& event : loop.events) {
         std::printf("%-5s %13.9f K  phi %9.6f  depth %.6g m  F_N %.6f N  F_t %9.6f N\n",
