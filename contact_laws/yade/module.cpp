@@ -55,6 +55,7 @@ std::string setup(const boost::python::object& wrapper) {
   register_list_converter<ThermalLink>();
   register_list_converter<TorsionSpring>();
   OurClasses::register_all();
+  refresh_view();
   return "";
 }
 

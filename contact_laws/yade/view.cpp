@@ -16,14 +16,19 @@ namespace {
 constexpr int sides = 96;
 constexpr Real pi = 3.14159265358979323846;
 
-// Leaves YADE's drawing state as it was found.
+// Leaves YADE's drawing state as it was found. The matrix is not saved: YADE does so around each
+// body, and after some thirty pictures its own use of OpenGL's short stack leaves room for that one
+// only.
 class Painter {
  public:
-  explicit Painter(const Vector3r& color, Real opacity) {
+  Painter(const Vector3r& color, Real opacity) {
     glPushAttrib(GL_ENABLE_BIT | GL_CURRENT_BIT | GL_LINE_BIT | GL_POLYGON_BIT |
                  GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_LIGHTING_BIT);
-    glPushMatrix();
     glDisable(GL_CULL_FACE);
+    // Both sides of a face look the same and are lit by the normal that is given.
+    glLightModeli(GL_LIGHT_MODEL_TWO_SIDE, GL_FALSE);
+    glColorMaterial(GL_FRONT_AND_BACK, GL_AMBIENT_AND_DIFFUSE);
+    glEnable(GL_COLOR_MATERIAL);
     if (opacity < 1) {
       glEnable(GL_BLEND);
       glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
@@ -31,10 +36,7 @@ class Painter {
     }
     glColor4d(color.x(), color.y(), color.z(), opacity);
   }
-  ~Painter() {
-    glPopMatrix();
-    glPopAttrib();
-  }
+  ~Painter() { glPopAttrib(); }
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
 };

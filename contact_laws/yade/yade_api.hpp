@@ -44,6 +44,15 @@ inline const yade::Interaction& interaction_at(const yade::Scene& scene, std::si
   return *(*scene.interactions)[i];
 }
 
+// Makes a 3-D view that was started before our classes were known draw them, too. Without it YADE
+// ends with a failed assertion when such a view meets a shape of ours.
+inline void refresh_view() {
+#ifndef STATEJUMP_REAL_YADE_HEADERS
+  // Private in YADE's own headers; there, import the plugin before yade.qt.
+  yade::OpenGLRenderer::initDone = false;
+#endif
+}
+
 // Makes the Python classes of factory classes, base classes first.
 inline void register_python_classes(const std::vector<std::string>& class_names) {
 #ifdef STATEJUMP_REAL_YADE_HEADERS

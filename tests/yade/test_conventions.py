@@ -23,7 +23,7 @@ def seen(run_script):
 
 
 def test_every_class_is_documented_and_in_yade(seen):
-    assert len(seen["classes"]) >= 23
+    assert len(seen["classes"]) >= 27
     for name, found in seen["classes"].items():
         assert found["in_wrapper"], name
         assert found["doc"] and len(found["doc"]) > 20, name
@@ -61,6 +61,9 @@ def test_dispatch_hierarchy_and_bases(seen):
     assert bases["Law2_JointGeom_JointPhys_JointLaw"] == "LawFunctor"
     assert bases["TorsionSprings"] == "GlobalEngine"
     assert bases["TorsionSpring"] == "Serializable"
+    for shape in ("Journal", "Bearing", "Slider", "SlotFace"):
+        assert bases[f"Gl1_{shape}"] == "GlShapeFunctor"
+        assert "clearanceScale" in seen["classes"][f"Gl1_{shape}"]["doc"]
 
 
 def test_keyword_constructors(seen):

@@ -182,6 +182,18 @@ bool belongs_to_each_class(const void* entry, const std::string& mangled_class) 
   return entry == dlsym(RTLD_DEFAULT, ("_ZTIN" + mangled_class + "E").c_str());
 }
 
+// A static member has a size of its own in the symbol table.
+std::string flag_difference() {
+  const auto* flag = &yade::OpenGLRenderer::initDone;
+  Dl_info info;
+  ElfW(Sym)* symbol = nullptr;
+  if (dladdr1(flag, &info, reinterpret_cast<void**>(&symbol), RTLD_DL_SYMENT) && symbol &&
+      info.dli_saddr == flag && symbol->st_size == sizeof *flag) {
+    return "";
+  }
+  return "OpenGLRenderer.initDone is not the flag that is declared";
+}
+
 template <class Base>
 std::string vtable_difference(const char* name) {
   const std::string mangled = "4yade" + std::to_string(std::strlen(name)) + name;
@@ -567,6 +579,7 @@ std::string difference_from_running_yade(const py::object& wrapper, const GuardO
   }
   if (std::string difference = size_differences(); !difference.empty()) return difference;
   if (std::string difference = vtable_differences(); !difference.empty()) return difference;
+  if (std::string difference = flag_difference(); !difference.empty()) return difference;
   return sentinel_differences(wrapper);
 }
 

@@ -6,8 +6,11 @@ from parts import finish, sentence_of
 
 
 def own_attributes(cls):
+    # Properties of the class itself, which the view needs, are told of in its documentation.
     return {
-        name: entry.__doc__ or "" for name, entry in vars(cls).items() if isinstance(entry, property)
+        name: entry.__doc__ or ""
+        for name, entry in vars(cls).items()
+        if isinstance(entry, property) and type(entry).__name__ != "StaticProperty"
     }
 
 
@@ -42,6 +45,10 @@ springs = sj.TorsionSprings(
 )
 
 
+def set_scale(value):
+    sj.Gl1_Journal.clearanceScale = value
+
+
 def set_radius(value):
     journal.radius = value
 
@@ -68,6 +75,7 @@ ranges = {
     "ThermalLink.pinDamping": lambda: sj.ThermalLink(pinDamping=-1.0),
     "TorsionSpring.stiffness": lambda: sj.TorsionSpring(stiffness=float("inf")),
     "TorsionSpring.freeAngle": lambda: sj.TorsionSpring(freeAngle=-3.2),
+    "Gl1_Journal.clearanceScale": lambda: set_scale(0.99),
     "period": lambda: sj.ThermalProgram(period=0.0),
     "cycles": lambda: sj.ThermalProgram(cycles=0),
     "shape": lambda: sj.ThermalProgram(shape="square"),

@@ -159,6 +159,13 @@ class GlShapeFunctor
   virtual void initgl();
 };
 
+// The 3-D view. It looks for classes that draw once, when YADE's user interface starts; with the
+// flag down it looks again before it draws the next picture.
+class OpenGLRenderer {
+ public:
+  static bool initDone;
+};
+
 struct TimingInfo {
   long nExec = 0;
   unsigned long nsec = 0;

@@ -1,0 +1,70 @@
+"""3-D view of a joint and of a slot, under an X server without a screen: `view.py FOLDER`.
+
+YADE's user interface is there before this script imports the plugin.
+"""
+import os
+import sys
+
+import statejump_yade as sj
+from PyQt5.QtCore import QTimer
+from PyQt5.QtWidgets import QApplication
+from yade import qt
+
+from parts import *  # noqa: F403
+
+ORANGE, BLUE, GREEN = (0.9, 0.6, 0.2), (0.3, 0.5, 0.9), (0.2, 0.8, 0.3)
+reset()
+metal = material(expansion=1e-5)
+pin = body(
+    (1.005e-4, 0, 0), sj.Journal(radius=R1, halfLength=7e-3, color=ORANGE), metal, mass=0.02,
+    blocked="zXYZ",
+)
+body((0, 0, 0), sj.Bearing(radius=R2, color=BLUE), metal)
+engines()
+O.dt = 1e-7
+# What the scene shows in turn; the slot is wider than the joint.
+pictures = ["plain", "magnified", "slider"]
+view = qt.View()
+view.axes, view.grid = False, (False, False, False)
+view.screenSize = (600, 600)
+
+
+def look(distance):
+    # A wide scene keeps the near plane away from the joint.
+    view.sceneRadius = 0.05
+    view.upVector = (0, 1, 0)
+    view.viewDir = (0, 0, -1)
+    view.eyePosition = (0, 0, distance)
+
+
+def picture(index):
+    name = pictures[index]
+    if name == "magnified":
+        sj.Gl1_Journal.clearanceScale = 10
+    if name == "slider":
+        # Face on to the block; the floor and both stops are seen from their edges.
+        O.bodies.erase(pin)
+        O.bodies.erase(pin + 1)
+        body((0, 0, 0), sj.Slider(radius=R1, color=GREEN), metal)
+        O.bodies.append(sj.slot((0, 0, 0), 2 * R1, 2 * R1, R1, metal))
+    look(0.06)
+    O.step()
+    QTimer.singleShot(700, lambda: save(index))
+
+
+def save(index):
+    view.saveSnapshot(os.path.join(sys.argv[1], pictures[index] + ".jpg"))  # of the next frame
+    QTimer.singleShot(700, lambda: go_on(index + 1))
+
+
+def go_on(index):
+    if index < len(pictures):
+        picture(index)
+    else:
+        O.run(50, True)
+        finish({"pictures": pictures, "iteration": O.iter, "scale": sj.Gl1_Journal.clearanceScale})
+        os._exit(0)
+
+
+QTimer.singleShot(1500, lambda: picture(0))
+QApplication.instance().exec_()
