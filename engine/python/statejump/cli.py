@@ -7,69 +7,36 @@ import signal
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Callable, TypeVar
+from typing import Any, Callable
 
 import click
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
 
 from . import __version__, _engine, compare, convergence, dem, laws, plot, reduced
-from .case import Case, SpringSliderCase, UmbrellaCase, load_case
+from .case import SpringSliderCase, UmbrellaCase, load_case
 from .errors import StatejumpError, Interrupted, TolerancesMissed
+from .history import History
 from .output import results_folder
-
-CASE = click.argument("case_file", metavar="CASE", type=click.Path(path_type=Path))
-RESULTS = click.option(
-    "--results", default="results", show_default=True, type=click.Path(path_type=Path),
-    help="Folder that gets one folder per case.",
-)
-QUIET = click.option("--quiet", is_flag=True, help="Print errors only.")
+from .terminal import CASE, QUIET, RESULTS, load_kind, make_console, number, progress
+from .umbrella import compare as umbrella_compare
+from .umbrella import dem as umbrella_dem
+from .umbrella import model as umbrella
+from .umbrella import plot as umbrella_plot
 
 
-def _console(quiet: bool) -> Console:
-    # Units stand in square brackets, which rich would take for styles.
-    console = Console(quiet=quiet, highlight=False, soft_wrap=True, markup=False)
-    if not console.is_terminal:  # a pipe or a log has no width: do not cut numbers short
-        console.width = 160
-    return console
+def _dem_label(steps: int, label: str = "DEM") -> str:
+    return f"{label}, {steps:,} steps"
 
 
-def _run_dem(case: SpringSliderCase, folder: Path, console: Console, label: str = "DEM") -> Any:
-    """Run the DEM with a progress bar on a terminal, with a line every 10 % elsewhere."""
-    if console.is_terminal:
-        columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"),
-                   TimeElapsedColumn(), TimeRemainingColumn())
-        with Progress(*columns, console=console) as bar:
-            task = bar.add_task(f"{label}, {dem.number_of_steps(case):,} steps", total=1.0)
-            return dem.run(case, folder, lambda fraction: bar.update(task, completed=fraction))
-    told = [-1]
-
-    def line(fraction: float) -> None:
-        if int(10 * fraction) > told[0]:
-            told[0] = int(10 * fraction)
-            console.print(f"{label}: {100 * fraction:.0f} % of {dem.number_of_steps(case):,} steps")
-
-    return dem.run(case, folder, line)
-
-
-CaseType = TypeVar("CaseType", bound=Case)
-
-
-def _load(case_file: Path, kind: type[CaseType]) -> CaseType:
-    """Load a case of the kind that the command is for; StatejumpError for any other."""
-    case = load_case(case_file)
-    if not isinstance(case, kind):
-        command = click.get_current_context().info_name
-        raise StatejumpError(
-            f"{case_file}: case.kind = {case.kind!r} is not allowed: 'statejump {command}' is for "
-            f"{kind.KIND!r}"
-        )
-    return case
-
-
-def _number(value: float | None) -> str:
-    return "none" if value is None else f"{value:.6g}"
+def _print_comparison(title: str, rows: list[compare.Quantity], console: Console) -> None:
+    table = Table(title=title)
+    for heading in ("quantity", "unit", "reduced", "DEM", "difference", "tolerance", ""):
+        table.add_column(heading, justify="left" if heading in ("quantity", "unit", "") else "right")
+    for row in rows:
+        table.add_row(row.name, row.unit, number(row.reduced), number(row.dem), number(row.difference),
+                      number(row.tolerance), "pass" if row.passed else "MISSED")
+    console.print(table)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -88,16 +55,24 @@ def cli() -> None:
 @RESULTS
 @QUIET
 def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
-    """Exact reduced model of CASE: events, state jump, history.
+    """Reduced model of CASE: events, state jump, history.
 
     \b
     Example:
       statejump reduced cases/table1.toml
     """
-    console = _console(quiet)
-    case = _load(case_file, SpringSliderCase)
-    path = reduced.solve(case)
+    console = make_console(quiet)
+    case = load_case(case_file)
     folder = results_folder(results, case.name)
+    if isinstance(case, UmbrellaCase):
+        _reduced_umbrella(case, folder, console)
+    else:
+        _reduced_spring_slider(case, folder, console)
+    console.print(f"history: {folder / 'reduced_history.csv'}")
+
+
+def _reduced_spring_slider(case: SpringSliderCase, folder: Path, console: Console) -> None:
+    path = reduced.solve(case)
     reduced.sample(path, reduced.sample_times(case)).write_csv(folder / "reduced_history.csv")
     table = Table(title=f"{case.title}: events of the first cycle")
     for heading in ("event", "stage", "ΔT [K]", "time [s]", "displacement [m]", "axial force [N]"):
@@ -110,7 +85,35 @@ def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
     console.print(table)
     console.print(f"state jump: {path.state_jump_m:.6e} m after {case.thermal.cycles} cycle(s)")
     _warn(case, path, console)
-    console.print(f"history: {folder / 'reduced_history.csv'}")
+
+
+def _reduced_umbrella(case: UmbrellaCase, folder: Path, console: Console) -> None:
+    run = umbrella.run(case)
+    run.history.write_csv(folder / "reduced_history.csv")
+    _print_first_contact(run.first_contact_temperature_change_K, run.first_contact_time_s, console)
+    _print_umbrella_jump(case, run.history, console)
+    console.print(
+        f"{run.steps:,} steps, {run.contacts} contacts, energy residue {run.energy_residue_J:.3g} J"
+    )
+
+
+def _print_first_contact(change: float | None, time: float | None, console: Console) -> None:
+    if change is None:
+        console.print("first contact: none, the play is never used up")
+    else:
+        console.print(f"first contact: ΔT = {change:.6f} K at {time:.6f} s")
+
+
+def _print_umbrella_jump(case: UmbrellaCase, history: History, console: Console) -> None:
+    jumps = [float(history[f"{angle}_rad"][-1] - history[f"{angle}_rad"][0]) for angle in ("theta2", "theta4")]
+    console.print(
+        f"state jump: θ2 {jumps[0]:.6e} rad, θ4 {jumps[1]:.6e} rad after {case.thermal.cycles} cycle(s)"
+    )
+    if not umbrella.is_reproducible(case):
+        console.print(
+            "warning: without damping of links and pins the motion after contact is chaotic: one run's jump "
+            "is one of many, see 'statejump figures'"
+        )
 
 
 def _warn(case: SpringSliderCase, path: Any, console: Console) -> None:
@@ -129,13 +132,26 @@ def dem_command(case_file: Path, results: Path, quiet: bool) -> None:
     Example:
       statejump dem cases/table1.toml
     """
-    console = _console(quiet)
-    case = _load(case_file, SpringSliderCase)
+    console = make_console(quiet)
+    case = load_case(case_file)
     folder = results_folder(results, case.name)
-    history = _run_dem(case, folder, console)
-    jump = history["displacement_m"][-1] - history["displacement_m"][0]
-    console.print(f"state jump: {jump:.6e} m after {case.thermal.cycles} cycle(s)")
+    if isinstance(case, UmbrellaCase):
+        with progress(console, _dem_label(umbrella_dem.number_of_steps(case))) as report:
+            done = umbrella_dem.run(case, folder, report)
+        _print_first_contact(
+            done.summary["first_contact_temperature_change_K"], done.summary["first_contact_time_s"], console
+        )
+        _print_umbrella_jump(case, done.history, console)
+    else:
+        history = _run_spring_slider(case, folder, console)
+        jump = history["displacement_m"][-1] - history["displacement_m"][0]
+        console.print(f"state jump: {jump:.6e} m after {case.thermal.cycles} cycle(s)")
     console.print(f"history: {folder / 'dem_history.csv'}")
+
+
+def _run_spring_slider(case: SpringSliderCase, folder: Path, console: Console, label: str = "DEM") -> History:
+    with progress(console, _dem_label(dem.number_of_steps(case), label)) as report:
+        return dem.run(case, folder, report)
 
 
 @cli.command("compare")
@@ -149,27 +165,49 @@ def compare_command(case_file: Path, results: Path, quiet: bool) -> None:
     Example:
       statejump compare cases/table1.toml
     """
-    console = _console(quiet)
-    case = _load(case_file, SpringSliderCase)
-    path = reduced.solve(case)
+    console = make_console(quiet)
+    case = load_case(case_file)
     folder = results_folder(results, case.name)
-    history = _run_dem(case, folder, console)
-    reduced.sample(path, history["time_s"]).write_csv(folder / "reduced_history.csv")
-    rows = compare.compare(case, path, history)
+    if isinstance(case, UmbrellaCase):
+        rows, figures = _compare_umbrella(case, folder, console)
+    else:
+        rows, figures = _compare_spring_slider(case, folder, console)
     compare.write_comparison(case, rows, folder)
-    figures = plot.figure(case, path, history, folder)
-    table = Table(title=case.title)
-    for heading in ("quantity", "unit", "reduced", "DEM", "difference", "tolerance", ""):
-        table.add_column(heading, justify="left" if heading in ("quantity", "unit", "") else "right")
-    for row in rows:
-        table.add_row(row.name, row.unit, _number(row.reduced), _number(row.dem),
-                      _number(row.difference), _number(row.tolerance), "pass" if row.passed else "MISSED")
-    console.print(table)
-    _warn(case, path, console)
     console.print(f"results: {folder / 'comparison.json'}, {', '.join(str(name) for name in figures)}")
     missed = [row.name for row in rows if not row.passed]
     if missed:
         raise TolerancesMissed(f"{case_file}: tolerance missed: {', '.join(missed)}")
+
+
+def _compare_spring_slider(
+    case: SpringSliderCase, folder: Path, console: Console
+) -> tuple[list[compare.Quantity], list[Path]]:
+    path = reduced.solve(case)
+    history = _run_spring_slider(case, folder, console)
+    reduced.sample(path, history["time_s"]).write_csv(folder / "reduced_history.csv")
+    rows = compare.compare(case, path, history)
+    figures = plot.figure(case, path, history, folder)
+    _print_comparison(case.title, rows, console)
+    _warn(case, path, console)
+    return rows, figures
+
+
+def _compare_umbrella(
+    case: UmbrellaCase, folder: Path, console: Console
+) -> tuple[list[compare.Quantity], list[Path]]:
+    run = umbrella.run(case)
+    with progress(console, _dem_label(umbrella_dem.number_of_steps(case))) as report:
+        done = umbrella_dem.run(case, folder, report)
+    run.history.write_csv(folder / "reduced_history.csv")
+    rows = umbrella_compare.compare(case, run, done)
+    figures = umbrella_plot.figure(case, run.history, done.history, folder)
+    _print_comparison(case.title, rows, console)
+    if not umbrella.is_reproducible(case):
+        console.print(
+            "without damping of links and pins the motion after contact is chaotic: compared point by point "
+            "until the largest temperature; for the rest see 'statejump figures'"
+        )
+    return rows, figures
 
 
 @cli.command("convergence")
@@ -183,15 +221,15 @@ def convergence_command(case_file: Path, results: Path, quiet: bool) -> None:
     Example:
       statejump convergence cases/table1.toml
     """
-    console = _console(quiet)
-    case = _load(case_file, SpringSliderCase)
+    console = make_console(quiet)
+    case = load_kind(case_file, SpringSliderCase)
     folder = results_folder(results, case.name)
     variants = convergence.variants(case)
     # Only the table is a result: the histories of the runs go where they vanish.
     with TemporaryDirectory(prefix="statejump-") as scratch:
         try:
             histories = [
-                _run_dem(variant, Path(scratch), console, f"{number}/{len(variants)}")
+                _run_spring_slider(variant, Path(scratch), console, f"{number}/{len(variants)}")
                 for number, variant in enumerate(variants, start=1)
             ]
         except Interrupted:
@@ -211,8 +249,8 @@ def laws_command(case_file: Path | None, results: Path, quiet: bool) -> None:
     Example:
       statejump laws
     """
-    console = _console(quiet)
-    case = _load(case_file, UmbrellaCase) if case_file is not None else None
+    console = make_console(quiet)
+    case = load_kind(case_file, UmbrellaCase) if case_file is not None else None
     folder = results_folder(results, "laws")
     for kind in laws.KINDS:
         table = Table(title=f"{kind} laws", show_lines=True)

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What commands share on the terminal: console, options, progress."""
+from __future__ import annotations
+
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Callable, Iterator, Optional, TypeVar
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from .case import Case, load_case
+from .errors import StatejumpError
+
+CASE = click.argument("case_file", metavar="CASE", type=click.Path(path_type=Path))
+RESULTS = click.option(
+    "--results", default="results", show_default=True, type=click.Path(path_type=Path),
+    help="Folder that gets one folder per case.",
+)
+QUIET = click.option("--quiet", is_flag=True, help="Print errors only.")
+
+CaseType = TypeVar("CaseType", bound=Case)
+
+
+def make_console(quiet: bool) -> Console:
+    """Return the console of a command."""
+    # Units stand in square brackets, which rich would take for styles.
+    console = Console(quiet=quiet, highlight=False, soft_wrap=True, markup=False)
+    if not console.is_terminal:  # a pipe or a log has no width: do not cut numbers short
+        console.width = 160
+    return console
+
+
+def load_kind(case_file: Path, kind: type[CaseType]) -> CaseType:
+    """Load a case of the kind that the command is for; StatejumpError for any other."""
+    case = load_case(case_file)
+    if not isinstance(case, kind):
+        command = click.get_current_context().info_name
+        raise StatejumpError(
+            f"{case_file}: case.kind = {case.kind!r} is not allowed: 'statejump {command}' is for "
+            f"{kind.KIND!r}"
+        )
+    return case
+
+
+def number(value: Optional[float]) -> str:
+    """Return a number for a table."""
+    return "none" if value is None else f"{value:.6g}"
+
+
+@contextmanager
+def progress(console: Console, label: str) -> Iterator[Callable[[float], None]]:
+    """Yield a function that takes the finished fraction: a bar on a terminal, with a line every
+    10 % elsewhere."""
+    if console.is_terminal:
+        columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"),
+                   TimeElapsedColumn(), TimeRemainingColumn())
+        with Progress(*columns, console=console) as bar:
+            task = bar.add_task(label, total=1.0)
+            yield lambda fraction: bar.update(task, completed=fraction)
+        return
+    told = [-1]
+
+    def line(fraction: float) -> None:
+        if int(10 * fraction) > told[0]:
+            told[0] = int(10 * fraction)
+            console.print(f"{label}: {100 * fraction:.0f} %")
+
+    yield line
