@@ -8,7 +8,7 @@ packages=(
   yade
   libboost-dev libboost-python-dev libboost-serialization-dev libboost-math-dev libboost-system-dev
   libeigen3-dev libgl-dev pybind11-dev python3-dev
-  python3-click python3-rich python3-pydantic python3-numpy python3-scipy python3-matplotlib
+  python3-click python3-rich python3-pydantic python3-numpy python3-scipy python3-matplotlib python3-vtk9
   python3-pytest
   libgtest-dev libbenchmark-dev xvfb xauth
 )

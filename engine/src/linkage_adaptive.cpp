@@ -33,10 +33,7 @@ class AdaptiveRun {
  public:
   AdaptiveRun(const Linkage& model, const LinkageState& start, double tolerance)
       : model_(model), k_(constants(model)), memory_(start), tolerance_(tolerance) {
-    const auto frequency = [](const LinkConstants& link) {
-      return std::sqrt(link.rigidity / link.length * link.inverse_mass);
-    };
-    const double fastest = std::max(frequency(k_.ab), frequency(k_.bc));
+    const double fastest = std::max(angular_frequency(k_.ab), angular_frequency(k_.bc));
     scales_ = scales(k_, model.radial_clearance(), fastest);
     largest_step_ = 0.5 / fastest;
     y_ = pack<Rich>(start);
@@ -88,7 +85,7 @@ class AdaptiveRun {
       };
       Vector y = at(end);
       if (!std::isfinite(beyond(end, y))) {
-        throw std::domain_error(at_instant("the state is not finite", begin, course(begin).change));
+        throw std::domain_error(at_instant(not_finite, begin, course(begin).change));
       }
       bool touches = beyond(end, y) > 0.0;
       const bool changes = touches != touching_;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <variant>
 
@@ -41,6 +42,11 @@ struct Rich {
 struct LinkConstants {
   double pin_x, length, expansion, rigidity, inverse_rigidity, inverse_mass, damping;
 };
+
+/// Of the axial motion at ΔT = 0 [rad/s].
+inline double angular_frequency(const LinkConstants& link) {
+  return std::sqrt(link.rigidity / link.length * link.inverse_mass);
+}
 
 /// A Linkage with everything computed that does not change during a run.
 struct Constants {
@@ -78,6 +84,8 @@ struct Course {
   }
 };
 
+inline constexpr const char* not_finite = "the state is not finite, take more steps";
+
 struct Radii {
   double journal, bearing;
   double clearance() const { return bearing - journal; }
@@ -89,6 +97,7 @@ inline Radii radii_at(const Constants& k, double temperature_change) {
 
 inline kernel::laws::NormalState normal_state(const Constants& k, double depth,
                                               const Radii& radii) {
+  if (!std::isfinite(depth)) throw std::domain_error(not_finite);
   return kernel::laws::evaluate(k.law.normal, depth,
                                 {radii.journal, radii.bearing, k.law.contact_length},
                                 {k.pair.effective_young_modulus});

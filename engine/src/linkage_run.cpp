@@ -94,7 +94,7 @@ class Run {
     heat_ = last ? course.branch.end : course(time_).change;
     const double beyond = overlap<Kind>(k_, next, heat_);
     if (!std::isfinite(beyond)) {
-      throw std::domain_error("the state is not finite, take more steps");
+      throw std::domain_error(not_finite);
     }
     const bool touches = beyond > 0.0;
     if (touches && !touching_) {
@@ -144,6 +144,15 @@ class Run {
 
 }  // namespace
 
+/// Largest step [s] at which the method does not amplify the links' axial motion: |λ| h <= 2.78, a
+/// little inside its bounds on the real (2.785) and the imaginary axis (2.828).
+double stable_step(const Linkage& model) {
+  const Constants k = constants(model);
+  const double zeta = model.axial_damping_ratio;
+  const double faster = zeta > 1.0 ? zeta + std::sqrt(zeta * zeta - 1.0) : 1.0;
+  return 2.78 / (faster * std::max(angular_frequency(k.ab), angular_frequency(k.bc)));
+}
+
 std::string at_instant(const std::string& what, double time, double temperature_change) {
   char text[96];
   std::snprintf(text, sizeof text, " at time = %.9g s, temperature_change = %.9g K", time,
@@ -165,6 +174,10 @@ LinkageRun simulate(const Linkage& model, const kernel::ThermalProgram& program,
   program.validate();
   require(options.steps >= 1, "steps", options.steps, ">= 1");
   require(options.sample_every >= 0, "sample_every", options.sample_every, ">= 0");
+  const double needed = std::ceil(program.duration() / detail::stable_step(model));
+  char range[64];
+  std::snprintf(range, sizeof range, "at least %.0f, or the links' ringing is unstable", needed);
+  require(options.steps >= needed, "steps", options.steps, range);
   if (detail::constants(model).rich()) {
     return detail::Run<detail::Rich>(model, start).integrate(program, options);
   }

@@ -10,7 +10,7 @@ namespace statejump {
 
 /// How a run is stepped and recorded.
 struct LinkageRunOptions {
-  int steps = 100000;    ///< Steps over the whole program, >= 1; the paper's number
+  int steps = 100000;    ///< Steps over the whole program; the paper's number. See simulate()
   int sample_every = 0;  ///< Steps between samples, >= 0; 0: only the start and the end
 };
 

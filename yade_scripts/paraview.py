@@ -1,0 +1,136 @@
+"""Recording of joints and links for ParaView. Imported by scripts that run under ``yade``.
+
+    from paraview import ParaViewRecorder
+    recorder = ParaViewRecorder("out/umbrella-", program=orbit)
+    O.engines = [..., PyRunner(command="recorder.write()", iterPeriod=1000), NewtonIntegrator(...)]
+
+Files are named as those of YADE's VTKRecorder, ``<prefix>joints.<iteration>.vtp``, with one
+``<prefix>joints.vtp.series`` each that gives ParaView the true times:
+
+- joints: outline of every Journal, Bearing, Slider and SlotFace at the current temperature
+- links: every ThermalLink as a line, with its axial force
+- contacts: a point per contact, with normal and shear force as vectors on body 1, the gap or
+  penetration depth and whether it slips
+"""
+from __future__ import annotations
+
+import json
+import os
+from math import cos, pi, sin
+from pathlib import Path
+
+import statejump_yade as sj
+from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+from yade.minieigenHP import Vector3
+from yade.wrapper import Omega
+
+O = Omega()
+SIDES = 96  # of a circle; its sagitta is 5e-4 of the radius
+KINDS = {"Journal": 1, "Bearing": 2, "Slider": 3, "SlotFace": 4}
+
+
+class _Data:
+    """Polylines or points with arrays, filled one by one. The arrays are there even when no cell
+    is: ParaView wants the same ones at all times."""
+
+    def __init__(self, components: dict[str, int]) -> None:
+        self.points, self.lines, self.vertices = vtkPoints(), vtkCellArray(), vtkCellArray()
+        self.points.SetDataTypeToDouble()
+        self.arrays: dict[str, vtkDoubleArray] = {}
+        for name, count in components.items():
+            self.arrays[name] = vtkDoubleArray()
+            self.arrays[name].SetName(name)
+            self.arrays[name].SetNumberOfComponents(count)
+
+    def add(self, points: list[Vector3], *values: float | Vector3) -> None:
+        """Add one cell: a polyline, or a vertex if it is one point; values in the arrays' order."""
+        cells = self.lines if len(points) > 1 else self.vertices
+        cells.InsertNextCell(len(points))
+        for point in points:
+            cells.InsertCellPoint(self.points.InsertNextPoint(*point))
+        for array, value in zip(self.arrays.values(), values, strict=True):
+            array.InsertNextTuple(tuple(value) if isinstance(value, Vector3) else (float(value),))
+
+    def write(self, path: Path) -> None:
+        """Write the file aside, then rename it."""
+        data = vtkPolyData()
+        data.SetPoints(self.points)
+        data.SetLines(self.lines)
+        data.SetVerts(self.vertices)
+        for array in self.arrays.values():
+            data.GetCellData().AddArray(array)
+        aside = path.with_name(f".{path.stem}.partial{path.suffix}")
+        writer = vtkXMLPolyDataWriter()
+        writer.SetFileName(str(aside))
+        writer.SetInputData(data)
+        if not writer.Write():
+            raise OSError(f"{path}: cannot be written")
+        os.replace(aside, path)
+
+
+def _outline(body) -> list[Vector3]:
+    """Return the outline of a body of ours, closed, in the world [m]."""
+    shape, state = body.shape, body.state
+    kind = type(shape).__name__
+    grown = 1 + shape.thermalStrain
+    if kind == "SlotFace":
+        normal = shape.normal
+        across = normal.cross(Vector3(0, 0, 1))
+        half = shape.distance * grown if shape.distance > 0 else 1.0
+        corners = [normal * shape.distance * grown + across * s for s in (-half, half)]
+        return [state.pos + state.ori * corner for corner in corners]
+    radius = shape.radius * grown
+    turn = [2 * pi * i / SIDES for i in range(SIDES + 1)]
+    return [state.pos + state.ori * Vector3(radius * cos(a), radius * sin(a), 0) for a in turn]
+
+
+class ParaViewRecorder:
+    """Writes the scene as it is now; see the module's description.
+
+    :param prefix: start of all file names, a folder before it is made
+    :param program: a ThermalProgram whose temperature change is written as well, or None
+    """
+
+    def __init__(self, prefix: str, program: sj.ThermalProgram | None = None) -> None:
+        self.prefix, self.program = Path(prefix), program
+        self.prefix.parent.mkdir(parents=True, exist_ok=True)
+        self.series: dict[str, list[dict[str, object]]] = {}
+
+    def write(self) -> None:
+        """Write one file of each sort for the current step, and the series so far."""
+        change = self.program.temperatureChange(O.time) if self.program else 0.0
+        joints = _Data({"body": 1, "kind": 1, "temperature_change_K": 1, "velocity_m_per_s": 3})
+        for body in O.bodies:
+            kind = KINDS.get(type(body.shape).__name__) if body.shape else None
+            if kind:
+                joints.add(_outline(body), body.id, kind, change, body.state.vel)
+        links = _Data({"axial_force_N": 1, "temperature_change_K": 1})
+        for engine in O.engines:
+            for link in engine.links if isinstance(engine, sj.ThermalLinks) else ():
+                ends = [O.bodies[link.id1].state.pos, O.bodies[link.id2].state.pos]
+                links.add(ends, link.axialForce, link.temperatureChange)
+        contacts = _Data({
+            "normal_force_N": 3, "shear_force_N": 3, "penetration_depth_m": 1, "slipping": 1,
+            "body_1": 1, "body_2": 1,
+        })
+        for contact in O.interactions:
+            if contact.isReal and isinstance(contact.geom, sj.JointGeom):
+                geom, phys = contact.geom, contact.phys
+                contacts.add(  # YADE stores the forces on body 2
+                    [geom.contactPoint], -phys.normalForce, -phys.shearForce,
+                    geom.penetrationDepth, phys.slipping, contact.id1, contact.id2,
+                )
+        for name, data in (("joints", joints), ("links", links), ("contacts", contacts)):
+            self._write(name, data)
+
+    def _write(self, name: str, data: _Data) -> None:
+        path = self.prefix.with_name(f"{self.prefix.name}{name}.{O.iter}.vtp")
+        data.write(path)
+        entries = self.series.setdefault(name, [])
+        entries.append({"name": path.name, "time": O.time})
+        target = self.prefix.with_name(f"{self.prefix.name}{name}.vtp.series")
+        aside = target.with_name(f".{target.name}.partial")
+        aside.write_text(json.dumps({"file-series-version": "1.0", "files": entries}, indent=1) + "\n")
+        os.replace(aside, target)
