@@ -9,7 +9,6 @@
 #include "failure.hpp"
 #include "ranges.hpp"
 #include "shapes.hpp"
-#include "statejump/kernel/laws/joint_response.hpp"
 #include "thermal.hpp"
 
 namespace statejump::dem {
@@ -380,11 +379,12 @@ bool Law2_JointGeom_JointPhys_JointLaw::go(yade::shared_ptr<yade::IGeom>& geomet
       motion(state2),
       geometry.axis,
       physics.impactSpeed,
+      geometry.clearanceRate,
       dt};
   try {
     const laws::JointResponse response =
         laws::joint_response(law_, parameters, kinematics, history);
-    if (scene->trackEnergy) account(response.contact, kinematics.geometry, geometry, physics);
+    if (scene->trackEnergy) account(response, kinematics.geometry, geometry, physics);
     if (!touching) return false;
 
     const Real normal_stiffness = response.contact.normal_stiffness;
@@ -412,14 +412,16 @@ bool Law2_JointGeom_JointPhys_JointLaw::go(yade::shared_ptr<yade::IGeom>& geomet
 }
 
 // As Hertz and Mindlin's, but dV/dR by the law itself: V(delta, R1, R2) is known by value only.
-void Law2_JointGeom_JointPhys_JointLaw::account(const kernel::ContactResponse& response,
+void Law2_JointGeom_JointPhys_JointLaw::account(const laws::JointResponse& joint,
                                                 const laws::NormalGeometry& radii,
                                                 const JointGeom& geometry, JointPhys& physics) {
+  const kernel::ContactResponse& response = joint.contact;
   const Real clearance = geometry.eccentricity - geometry.penetrationDepth;
   Real thermal_work = 0;
   if (physics.previousRadius > 0) {
     const Real force = 0.5 * (response.elastic_normal_force + physics.previousElasticForce);
-    thermal_work = -force * (clearance - physics.previousClearance);
+    thermal_work = -force * (clearance - physics.previousClearance) -
+                   joint.dissipation_force * geometry.clearanceRate * scene->dt;
     laws::NormalGeometry before = radii;
     before.journal_radius = physics.previousRadius;
     if (physics.previousBearingRadius > 0) before.bearing_radius = physics.previousBearingRadius;

@@ -8,7 +8,7 @@
 #include "registered.hpp"
 #include "statejump/kernel/frame.hpp"
 #include "statejump/kernel/joint_kinematics.hpp"
-#include "statejump/kernel/laws/joint_law.hpp"
+#include "statejump/kernel/laws/joint_response.hpp"
 
 namespace statejump::dem {
 
@@ -271,7 +271,7 @@ struct Law2_JointGeom_JointPhys_JointLaw
 
  private:
   void begin(const JointGeom& geometry, JointPhys& physics);
-  void account(const kernel::ContactResponse& response, const kernel::laws::NormalGeometry& radii,
+  void account(const kernel::laws::JointResponse& joint, const kernel::laws::NormalGeometry& radii,
                const JointGeom& geometry, JointPhys& physics);
   kernel::laws::JointLaw law_;  // built by check()
   bool needs_bearing_ = false;  // some of the laws have no meaning at a flat face

@@ -74,11 +74,12 @@ def test_expanding_radii_move_first_contact(cases: Path) -> None:
     assert dem.execute(case).summary["first_contact_temperature_change_K"] == pytest.approx(closed, abs=1e-3)
 
 
+# Laws, and expansion of the journal [1/K], which the normal and dissipation laws see.
 LAWS = [
-    ("hertz_paper", "lankarani_nikravesh", "ambrosio", "material"),
-    ("johnson", "hunt_crossley", "ambrosio", "paper"),
-    ("esdu_78035", "flores", "none", "material"),
-    ("persson", "none", "mindlin", "material"),
+    ("hertz_paper", "lankarani_nikravesh", "ambrosio", "material", 0.0),
+    ("johnson", "hunt_crossley", "ambrosio", "paper", 23.75e-6),
+    ("esdu_78035", "flores", "none", "material", 0.0),
+    ("persson", "none", "mindlin", "material", 23.75e-6),
 ]
 
 
@@ -87,7 +88,7 @@ def test_laws_by_name_are_the_same_in_both_models(cases: Path, names: tuple[str,
     keys = ("normal_law", "dissipation_law", "friction_law", "tangential_velocity")
     changes = {f"joint.{key}": name for key, name in zip(keys, names)}
     case = model.changed(load_case(cases / "umbrella_damped.toml"), {
-        **changes, "joint.restitution": 0.8, "thermal.period_s": 0.2, "thermal.temperature_change_max_K": 60.0,
+        **changes, "joint.journal_thermal_expansion_per_K": names[-1], "joint.restitution": 0.8, "thermal.period_s": 0.2, "thermal.temperature_change_max_K": 60.0,
         "joint.friction_v1_m_per_s": 1e-4, "reduced.steps_per_cycle": 200_000, "dem.steps_per_cycle": 200_000,
     })
     ours, other = model.run(case).history, dem.execute(case).history

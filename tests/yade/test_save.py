@@ -1,5 +1,7 @@
-"""O.save and O.load: a resumed run is the same run, bit for bit."""
+"""O.save and O.load: a resumed run is the same run, bit for bit; energies, which are sums over
+contacts in the order of YADE's container, to the rounding of another order."""
 import pytest
+from conftest import EPS
 
 FILES = ["scene.yade", "scene.yade.gz", "scene.yade.bz2", "scene.xml", "scene.xml.gz"]
 
@@ -40,17 +42,26 @@ def test_saved_state_of_the_new_classes(written):
     assert straight["law"] != saved["law"]  # contacts have begun meanwhile
 
 
+def assert_same(found, expected):
+    """Loading may order the contacts anew: 5 of them in each of 700 steps, added up otherwise."""
+    rounding = 5 * 700 * EPS
+    assert found["energy"].keys() == expected["energy"].keys()
+    for name, energy in expected["energy"].items():
+        assert found["energy"][name] == pytest.approx(energy, rel=rounding, abs=0), name
+    assert {**found, "energy": None} == {**expected, "energy": None}
+
+
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("name", [*FILES, "saveTmp"])
 def test_resume_in_the_same_process(written, law, name):
-    assert written[law]["resumed"][name] == written[law]["straight"]
+    assert_same(written[law]["resumed"][name], written[law]["straight"])
 
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("name", ["scene.yade.gz", "scene.yade", "scene.xml"])
 def test_resume_in_a_new_process(run_script, written, folder, law, name):
     found = run_script("save.py", "read", str(folder[law] / name))
-    assert found["state"] == written[law]["straight"]
+    assert_same(found["state"], written[law]["straight"])
     assert found["loaded"]["material"] == 2.3e-5
     assert found["loaded"]["shape"] == "Journal"
     assert found["loaded"]["engines"].count("ThermalExpansionEngine") == 2

@@ -37,6 +37,7 @@ struct RandomJoint {
             bearing,
             axis,
             uniform(1e-3, 0.1),
+            0.0,
             1e-6};
   }
 };
@@ -223,6 +224,33 @@ TEST(RadiusEnergyChange, ClosesAFiniteChangeForEveryLaw) {
     // Trapezoidal rule: V''' h^3/12 per step, h/delta = 0.3/200; (h/delta)^2/12 of the whole.
     EXPECT_NEAR(work, expected, 1e-6 * expected) << name;
   }
+}
+
+// A hole that shrinks on a pin at rest is an impact like any other: the depth grows at -dc/dt.
+TEST(JointResponse, DissipationSeesTheRateOfTheDepth) {
+  const JointLaw law = law_of("hertz_internal", "hunt_crossley", "none", "material");
+  RandomJoint joint;
+  JointKinematics moving = joint.next();
+  while (moving.contact.penetration_depth <= 0.0) moving = joint.next();
+  const double closing = 0.02;
+  const auto with = [&](double approach, double clearance_rate) {
+    JointKinematics at = moving;
+    at.motion_1.velocity = approach * at.contact.normal;
+    at.motion_2.velocity = Vector3::Zero();
+    at.motion_1.angular_velocity = at.motion_2.angular_velocity = Vector3::Zero();
+    at.contact.relative_velocity = at.motion_1.velocity;
+    at.clearance_rate = clearance_rate;
+    ContactHistory history;
+    return joint_response(law, aluminium(0.0, 0.0), at, history);
+  };
+  const JointResponse bodies = with(closing, 0.0);
+  const JointResponse hole = with(0.0, -closing);
+  EXPECT_DOUBLE_EQ(hole.contact.normal_force, bodies.contact.normal_force);
+  EXPECT_DOUBLE_EQ(hole.contact.damping_dissipation, bodies.contact.damping_dissipation);
+  EXPECT_GT(hole.dissipation_force, 0.0);
+  // Neither: the hole grows as fast as the pin comes.
+  EXPECT_NEAR(with(closing, closing).contact.normal_force, bodies.contact.elastic_normal_force,
+              1e-12 * bodies.contact.normal_force);
 }
 
 }  // namespace

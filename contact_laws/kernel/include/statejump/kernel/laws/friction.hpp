@@ -45,11 +45,13 @@ struct FrictionResponse {
 
 /// A friction law either remembers (`has_memory`: it is given the slide of the step, as velocity
 /// times step) or is a function of the velocity at one instant, smooth enough for an adaptive
-/// integrator.
+/// integrator. `largest_slope()` is that of the force against the velocity [N s/m]: a viscous
+/// damper that an explicit integrator has to resolve.
 
 /// No friction; the force is exactly zero.
 struct NoFriction {
   static constexpr bool has_memory = false;
+  static double largest_slope(const FrictionParameters&, double) { return 0.0; }
   static constexpr LawInfo info{"none", "F_T = 0", "-", "frictionless", false};
   FrictionResponse operator()(const FrictionParameters&, const FrictionKinematics&,
                               ContactHistory& history) const {
@@ -67,6 +69,9 @@ struct NoFriction {
 /// v0 + (v1 - v0) T/(mu F_N) under a tangential load T. Stores no energy, has no history.
 struct AmbrosioFriction {
   static constexpr bool has_memory = false;
+  static double largest_slope(const FrictionParameters& parameters, double normal_force) {
+    return parameters.friction_coefficient * normal_force / (parameters.v1 - parameters.v0);
+  }
   static constexpr LawInfo info{
       "ambrosio", "F_T = mu F_N min(1, max(0, (v - v0)/(v1 - v0))), against v",
       "Ambrosio, 2003; Chen, Li, Tang, Wang, Mech. Sci. 12, 2021, eqs 9-10",
@@ -90,6 +95,7 @@ struct AmbrosioFriction {
 /// k_t = 8 G* a is that of a circular contact; for a line contact the caller says what k_t is.
 struct MindlinFriction {
   static constexpr bool has_memory = true;
+  static double largest_slope(const FrictionParameters&, double) { return 0.0; }
   static constexpr LawInfo info{"mindlin", "dF_T = -k_t ds, |F_T| <= mu F_N, k_t = 8 G* a",
                                 "Mindlin, J. Appl. Mech. 16, 1949; Johnson 1985, eq. 7.44",
                                 "any load; no partial slip below the limit", true};

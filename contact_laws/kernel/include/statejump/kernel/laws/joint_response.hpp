@@ -21,33 +21,29 @@ struct JointKinematics {
   BodyMotion motion_2;      ///< of the bearing (slot)
   Vector3 axis;             ///< unit, of the bearing; read by the velocity law 'paper' only
   double impact_speed;      ///< approach speed when this contact began [m/s]
-  double time_step;         ///< dt [s], >= 0
+  double clearance_rate;  ///< dc/dt by expansion [m/s]; delta_dot = approach speed - clearance_rate
+  double time_step;       ///< dt [s], >= 0
 };
 
 /// What the contact answers, and what of it the two bodies feel.
 struct JointResponse {
   ContactResponse contact;   ///< forces at the contact, energies of this step
   Wrench wrench;             ///< by the same tangential velocity law as the velocity of friction
+  double dissipation_force;  ///< of the dissipation law alone [N]; times clearance_rate it is work
+                             ///< of the expansion
   double dissipation_slope;  ///< dF/d(approach speed) of the dissipation law [N s/m], >= 0
   double friction_slope;     ///< largest dF_T/dv of the friction law [N s/m], >= 0; with ambrosio a
                              ///< viscous damper that an explicit integrator has to resolve
 };
 
-/// Largest slope of friction force against velocity [N s/m]: mu F_N/(v1 - v0) for ambrosio.
-inline double friction_slope(const FrictionLaw& law, const FrictionParameters& parameters,
-                             double normal_force) {
-  if (!std::holds_alternative<AmbrosioFriction>(law)) return 0.0;
-  return parameters.friction_coefficient * normal_force / (parameters.v1 - parameters.v0);
-}
-
 /// Any joint law with the viscous contact damping of hertz_mindlin(). Normal:
 ///
-///     F_N = max(0, F_el (1 + (chi/K) v_n) + c_n v_n),   c_n = 2 zeta_n sqrt(m k_n),
+///     F_N = max(0, F_el max(0, 1 + (chi/K) delta_dot) + c_n v_n),   c_n = 2 zeta_n sqrt(m k_n),
 ///
-/// v_n = v . n being the approach speed of the bodies, see damped_force(). Tangential: the friction
-/// law with k_t = tangential_stiffness(); the viscous part c_t belongs to the history spring, so
-/// friction laws without one (none, ambrosio) have none. hertz_internal + none + mindlin + material
-/// is hertz_mindlin() up to rounding of k_t.
+/// v_n = v . n being the approach speed of the bodies, delta_dot = v_n - dc/dt the rate of the
+/// depth, see damped_force(). Tangential: the friction law with k_t = tangential_stiffness(); the
+/// viscous part c_t belongs to the history spring, so friction laws without one (none, ambrosio)
+/// have none. hertz_internal + none + mindlin + material is hertz_mindlin() up to rounding of k_t.
 ///
 /// Velocity and wrench come from one tangential velocity law, never mixed. Energy: as there.
 /// @param law its friction coefficient is not read: that of the contact pair counts
@@ -67,15 +63,21 @@ inline JointResponse joint_response(const JointLaw& law, const ContactParameters
 
   double normal_force = normal.force;
   double damping_dissipation = 0.0;
+  double dissipation_force = 0.0;
   double dissipation_slope = 0.0;
   if (contact.penetration_depth > 0.0) {
     const double ratio = damping_ratio(law, at.impact_speed);
     dissipation_slope = ratio * normal.force;
-    normal_force = damped_normal_force(damped_force(normal.force, ratio, approach_speed),
+    const double penetration_rate = approach_speed - at.clearance_rate;
+    const double by_law = damped_force(normal.force, ratio, penetration_rate);
+    dissipation_force = by_law - normal.force;
+    normal_force = damped_normal_force(by_law,
                                        viscous_damping(parameters.normal_damping_ratio,
                                                        parameters.effective_mass, normal.stiffness),
                                        approach_speed);
-    damping_dissipation = (normal_force - normal.force) * approach_speed * at.time_step;
+    damping_dissipation =
+        (dissipation_force * penetration_rate + (normal_force - by_law) * approach_speed) *
+        at.time_step;
   }
 
   FrictionParameters friction_parameters = law.friction_parameters;
@@ -105,8 +107,9 @@ inline JointResponse joint_response(const JointLaw& law, const ContactParameters
            tangential_force, force_on_1, normal.elastic_energy, friction.elastic_energy,
            friction.dissipation, damping_dissipation},
           wrench,
+          dissipation_force,
           dissipation_slope,
-          friction_slope(law.friction, friction_parameters, normal_force)};
+          largest_slope(law.friction, friction_parameters, normal_force)};
 }
 
 /// Change of the potential V(delta, R1, R2) of the normal law when only the radii change, at fixed

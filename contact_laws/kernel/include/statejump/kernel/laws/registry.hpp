@@ -86,6 +86,12 @@ inline bool has_memory(const FrictionLaw& law) {
   return std::visit([](const auto& l) { return l.has_memory; }, law);
 }
 
+/// Largest slope of friction against velocity [N s/m]; see friction.hpp.
+inline double largest_slope(const FrictionLaw& law, const FrictionParameters& parameters,
+                            double normal_force) {
+  return std::visit([&](const auto& l) { return l.largest_slope(parameters, normal_force); }, law);
+}
+
 /// Normal contact by any law. @param depth delta [m], <= 0 gives zeros
 /// @throws std::domain_error outside the law's range
 inline NormalState evaluate(const NormalLaw& law, double depth, const NormalGeometry& geometry,
