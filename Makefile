@@ -11,6 +11,7 @@ test: build
 
 bench: build
 	PYTHONPATH=$(BUILD)/python /usr/bin/python3 bench/run.py --build $(BUILD)
+	PYTHONPATH=$(BUILD)/python /usr/bin/python3 bench/umbrella.py --build $(BUILD)
 
 build: setup
 	cmake --preset release
