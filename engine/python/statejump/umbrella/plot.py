@@ -35,7 +35,7 @@ def figure(case: UmbrellaCase, reduced: History, dem: History, folder: Path) -> 
         _mark_quasi_static(panels[0, 1], case)
         _mark_play(panels[1, 0], case)
         panels[1, 1].set_xlabel("Time [s]")
-        panels[1, 1].set_ylabel("Normal force in the joint [N]")
+        panels[1, 1].set_ylabel("Normal force at the samples [N]")
         panels[0, 0].legend(loc="best", framealpha=1)
         drawing.suptitle(case.title, fontsize=11)
         return save(drawing, folder, case.name)
