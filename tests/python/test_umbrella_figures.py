@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figures 13 to 16: the rules of the verdicts, geometry and statics drawn, files of the command."""
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from math import inf, nan
+from pathlib import Path
+from typing import Any, Callable
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from statejump import _engine
+from statejump.case import load_case
+from statejump.dem import DemRun
+from statejump.errors import Interrupted, StatejumpError
+from statejump.umbrella import claims, dem, figures, model
+
+RANDOM = np.random.default_rng(7)
+NOISE = RANDOM.normal(size=(8, 200))
+HOLDS, IN_THE_MEAN, IN_PART, FAILS = claims.HOLDS, claims.IN_THE_MEAN, claims.IN_PART, claims.FAILS
+
+
+def groups(means: list[float], spread: float, values: tuple[float, ...] = (0.0, 0.1, 0.3, 0.5)) -> claims.Groups:
+    """Runs about given means; always the same noise, without a mean of its own."""
+    noise = NOISE - NOISE.mean(axis=1, keepdims=True)
+    return claims.Groups(values, tuple(mean + spread * row for mean, row in zip(means, noise)))
+
+
+@pytest.mark.parametrize(
+    "means, spread, rising, verdict",
+    [
+        ([1, 2, 3, 4], 0.1, True, HOLDS),
+        ([1, 2, 3, 4], 0.1, False, FAILS),
+        ([1.0, 1.3, 1.6, 1.9], 1.0, True, IN_THE_MEAN),
+        ([1.9, 1.6, 1.3, 1.0], 1.0, False, IN_THE_MEAN),
+        ([1, 1, 1, 1], 1.0, True, FAILS),  # no effect
+        ([1, 2, 3, 2], 0.1, True, FAILS),  # rises on the whole, but its last step falls
+        ([1, 1, 1, 1], 0.0, True, FAILS),
+    ],
+)
+def test_trend(means: list[float], spread: float, rising: bool, verdict: str) -> None:
+    found = claims.trend(groups(means, spread), rising)
+    assert found.verdict == verdict
+    assert len(found.against) == (1 if means == [1, 2, 3, 2] else 3 if verdict == FAILS and spread == 0.1 else 0)
+
+
+@pytest.mark.parametrize(
+    "means, without, larger, verdict",
+    [
+        ([3, 2, 1, 0.5], 0.0, True, HOLDS),
+        ([3, 3, 1, 2], 0.0, True, IN_PART),
+        ([3, 4, 1, 2], 0.0, True, FAILS),  # larger at one value
+        ([3, 3, 3, 3], 0.0, True, FAILS),
+        ([1, 2, 3, 9], 0.3, False, HOLDS),  # values on the other side do not count
+        ([1, 2, 3, 0], 0.5, True, claims.UNTESTED),
+    ],
+)
+def test_measure(means: list[float], without: float, larger: bool, verdict: str) -> None:
+    assert claims.measure(groups(means, 0.3), without, larger) == verdict
+
+
+def test_two_samples() -> None:
+    first, second = NOISE[0], NOISE[1]
+    assert claims.two_sample_test("same", first, second).agree
+    shifted = claims.two_sample_test("shifted", first, second + 1)
+    assert shifted.p_mean < 1e-6 and shifted.p_spread > 0.01 and not shifted.agree
+    wider = claims.two_sample_test("wider", first, 3 * (second - second.mean()) + first.mean())
+    assert wider.p_spread < 1e-6 and wider.p_mean > 0.01 and not wider.agree
+    assert claims.two_sample_test("one run", first, first[:1]).p_mean == 1
+
+
+def all_true() -> claims.Findings:
+    """Findings under which every statement holds."""
+    limit = 2.85e-4
+    clearances = (5e-5, 1e-4, 3e-4)
+    springs = (0.0, 1.0, 100.0)
+    contacts = tuple(
+        claims.FirstContact(c, *(3 * [c / 2.85e-6] if c < limit else 3 * [None])) for c in clearances
+    )
+    return claims.Findings(
+        start_spread_m=1e-6,
+        end_shift_reduced_m=np.full(5, 5e-5),
+        end_shift_dem_m=np.full(5, 5e-5),
+        first_contacts=contacts,
+        tolerance_reduced_K=1e-6,
+        tolerance_dem_K=1e-3,
+        onset_K=claims.Groups(clearances, tuple(np.array(3 * [17.6 if c < 9e-5 else 35.2 if c < limit else inf])
+                                                for c in clearances)),
+        onset_dem_K=(17.6, 35.2, inf),
+        clearance_limit_m=limit,
+        range_by_friction=groups([1, 2, 3, 4], 0.1),
+        jump_by_friction=groups([0, 1, 3, 4], 0.01),
+        friction_coefficient=0.3,
+        largest_by_spring=groups([6e-3, 5e-3, 3.5e-3], 1e-5, springs),
+        jump_by_spring=groups([3, 2, 1], 0.1, springs),
+        static_rigid_rad=3.43e-3,
+        static_elastic_rad=(None, 3.42e-3, 3.4e-3),
+        jump_by_stiffness=groups([3, 2, 1], 0.1, (0.25, 1.0, 4.0)),
+        free_turn_rad=8.3e-4,
+        spring_bias_rad=0.0,
+        tests=(claims.two_sample_test("range of θ2", NOISE[0], NOISE[1]),),
+        envelopes=(claims.Envelope("fig14, reduced, single", 5, -1e-6, 1e-6, 0),),
+        amplification=claims.Amplification(1e-12, 1e-8, 1e-3),
+    )
+
+
+def test_true_claims_hold() -> None:
+    verdicts = [claim.verdict for claim in claims.all_claims(all_true())]
+    assert verdicts == [HOLDS] * 10 + [claims.UNTESTED]
+
+
+@pytest.mark.parametrize(
+    "claim, change, verdict",
+    [
+        (claims.state_jump_occurs, {"end_shift_dem_m": np.array([5e-5, 1e-7])}, IN_THE_MEAN),
+        (claims.state_jump_occurs, {"end_shift_reduced_m": np.full(9, 1e-8)}, FAILS),
+        (claims.smaller_clearance_earlier, {"onset_dem_K": (35.2, 17.6, inf)}, FAILS),
+        (claims.smaller_clearance_earlier, {"tolerance_reduced_K": -1.0}, IN_THE_MEAN),  # off the closed form
+        (claims.large_clearance_never_touches, {"clearance_limit_m": 2e-5}, FAILS),
+        (claims.large_clearance_never_touches, {"onset_dem_K": (17.6, 35.2, 90.0)}, FAILS),
+        (claims.large_clearance_never_touches, {"clearance_limit_m": 1.0}, claims.UNTESTED),
+        (claims.large_clearance_never_touches, {"clearance_limit_m": nan}, claims.UNTESTED),
+        (claims.more_friction_larger_range, {"range_by_friction": groups([4, 3, 2, 1], 0.1)}, FAILS),
+        (claims.friction_is_the_reason, {"jump_by_friction": groups([2, 2, 3, 3], 0.1)}, IN_THE_MEAN),
+        (claims.friction_is_the_reason, {"jump_by_friction": groups([4, 3, 3, 3], 0.1)}, FAILS),
+        (claims.spring_reduces_deflection, {"largest_by_spring": groups([1, 2, 3], 0.1, (0.0, 1.0, 9.0))}, FAILS),
+        (claims.spring_ends_at_static, {"static_rigid_rad": 3.0e-3}, FAILS),
+        (claims.spring_ends_at_static, {"static_rigid_rad": None}, claims.UNTESTED),
+    ],
+)
+def test_false_claims_come_out_false(
+    claim: Callable[[claims.Findings], claims.Claim], change: dict[str, Any], verdict: str
+) -> None:
+    assert claim(replace(all_true(), **change)).verdict == verdict
+
+
+def test_text_follows_the_verdicts() -> None:
+    text = claims.readme("A case", "statejump figures a.toml", all_true())
+    assert text.count("**holds**") == 10 and "Chaotic" in text
+    calm = replace(
+        all_true(), amplification=claims.Amplification(1e-12, 1e-12, 1e-12), range_by_friction=groups([1] * 4, 1.0)
+    )
+    text = claims.readme("A case", "statejump figures a.toml", calm)
+    assert text.count("**holds**") == 9 and "**does not hold**" in text and "Chaotic" not in text
+
+
+def test_envelope(cases: Path) -> None:
+    case = load_case(cases / "umbrella.toml")
+    rigid = model.linkage(case)
+    for change in (0.0, 37.0, 100.0):
+        low, high = (side[0] for side in figures.envelope(case, np.array([change])))
+        rim = [_engine.joint_point(rigid, change, 1, phi)["theta2_rad"] for phi in np.linspace(0, 2 * np.pi, 1000)]
+        assert low == pytest.approx(min(rim), abs=1e-7) and high == pytest.approx(max(rim), abs=1e-7)
+        wider = figures.envelope(case, np.array([change]), 1e-6)
+        assert wider[0] < low - 1e-5 and wider[1] > high + 1e-5
+
+
+def test_static_deflection(cases: Path) -> None:
+    """Damped slow runs without friction end where statics says; rigid links are the soft spring's limit."""
+    case = model.changed(load_case(cases / "umbrella.toml"), {
+        "joint.friction_coefficient": 0.0, "start.mode": "matched", "damping.axial_damping_ratio": 0.1,
+        "damping.pin_damping_N_m_s_per_rad": 0.05, "reduced.steps_per_cycle": 100_000, "thermal.period_s": 2.0,
+    })
+    assert figures.static_deflection(case, 35.0) is None
+    rigid = figures.static_deflection(case, 100.0)
+    for stiffness in (1.0, 100.0):
+        sprung = model.changed(case, {"torsion_spring.stiffness_N_m_per_rad": stiffness})
+        elastic = figures.static_deflection_elastic(sprung, 100.0)
+        assert 0 < rigid - elastic < 1e-6 * stiffness
+        history = model.run(sprung).history
+        warmest = int(np.argmax(history["temperature_change_K"]))
+        deflection = history["theta2_rad"][warmest] - history["theta2_rad"][0]
+        assert deflection == pytest.approx(elastic, abs=0.3 * (rigid - elastic) if stiffness > 1 else 2e-5)
+
+
+@pytest.fixture
+def tiny(edited: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A case of few runs and steps; the reduced model with other steps stands for YADE."""
+
+    def execute(case: Any, offset_m: np.ndarray | None = None) -> DemRun:
+        done = model.run(model.changed(case, {"reduced.steps_per_cycle": case.dem.steps_per_cycle}), offset_m)
+        return DemRun(
+            done.history, {"first_contact_temperature_change_K": done.first_contact_temperature_change_K}
+        )
+
+    monkeypatch.setattr(dem, "execute", execute)
+    return edited(
+        ("reduced_steps_per_cycle = 100000", "reduced_steps_per_cycle = 20000"),
+        ("dem_steps_per_cycle = 400000", "dem_steps_per_cycle = 24000"),
+        ("reduced_runs = 100", "reduced_runs = 4"),
+        ("dem_runs = 30", "dem_runs = 3"),
+        ("[start]", "[output]\nsamples_per_cycle = 200\n\n[start]"),
+        case="umbrella",
+    )
+
+
+def invoke(case_file: Path, results: Path) -> Any:
+    return CliRunner().invoke(figures.figures_command, [str(case_file), "--results", str(results)])
+
+
+def test_command(tiny: Path, tmp_path: Path) -> None:
+    outcome = invoke(tiny, tmp_path / "out")
+    assert outcome.exception is None, outcome.exception
+    folder = tmp_path / "out" / "umbrella"
+    drawn = {f"fig{number}.{suffix}" for number in (13, 14, 15, 16) for suffix in ("png", "svg")}
+    tables = {"README.md", "ensembles.csv", "ensembles.json", "curves.csv"}
+    assert {path.name for path in folder.iterdir()} == drawn | tables
+    assert "fig14, reduced: 20 runs" in outcome.output  # the case itself is not run again
+
+    with (folder / "ensembles.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    for figure, values in (("fig14", 5), ("fig15", 4), ("fig16", 6)):
+        kinds = [row["model"] for row in rows if row["figure"] == figure]
+        assert kinds.count("reduced ensemble") == 4 * values
+        assert kinds.count("reduced single") == kinds.count("dem single") == values
+    assert [row["model"] for row in rows if row["figure"] == "fig13"].count("dem ensemble") == 3
+
+    with (folder / "curves.csv").open() as stream:
+        curves = list(csv.DictReader(stream))
+    base = [row for row in curves if row["figure"] == "fig14" and float(row["value"]) == 1e-4]
+    heated = [row for row in base if float(row["time_s"]) <= 0.25]
+    for name in ("reduced_deflection_rad", "dem_deflection_rad", "ensemble_mean_deflection_rad"):
+        assert max(abs(float(row[name])) for row in base) > 1e-3  # each model moves
+    assert all(
+        float(row["reduced_deflection_rad"]) == pytest.approx(float(row["dem_deflection_rad"]), abs=1e-4)
+        for row in heated
+    )
+    warmest = [row for row in curves if row["figure"] == "fig16" and float(row["temperature_change_K"]) > 99.9]
+    assert [row["quasi_static_deflection_rad"] != "" for row in warmest] == [False] + [True] * 5
+
+    content = json.loads((folder / "ensembles.json").read_text())
+    assert len(content["claims"]) == 11
+    assert [test["quantity"] for test in content["two_sample_tests"]] == ["range of θ2", "jump of θ2"]
+    assert all(row["beyond_margin"] == 0 for row in content["findings"]["envelopes"])
+    svg = (folder / "fig14.svg").read_text()
+    assert "DEM (YADE), single run" in svg and "reduced, single run" in svg
+
+
+def test_interruption_leaves_what_is_finished(
+    tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn = figures.figure_of
+
+    def figure_of(study: figures.Study, *rest: Any) -> list[Path]:
+        if study.figure == "fig15":
+            raise KeyboardInterrupt
+        return drawn(study, *rest)
+
+    monkeypatch.setattr(figures, "figure_of", figure_of)
+    outcome = invoke(tiny, tmp_path / "out")
+    folder = tmp_path / "out" / "umbrella"
+    assert isinstance(outcome.exception, Interrupted)
+    assert str(outcome.exception) == f"interrupted; finished in {folder}: fig13.png, fig14.png"
+    assert {path.name for path in folder.iterdir()} == {
+        "fig13.png", "fig13.svg", "fig14.png", "fig14.svg", "curves.csv", "ensembles.csv"
+    }
+
+
+def test_failures_are_one_sentence(
+    tiny: Path, tmp_path: Path, cases: Path, edited: Callable[..., Path]
+) -> None:
+    outcome = invoke(cases / "table1.toml", tmp_path)
+    assert isinstance(outcome.exception, StatejumpError)
+    assert str(outcome.exception) == (
+        f"{cases / 'table1.toml'}: case.kind = 'spring_slider' is not allowed: 'statejump figures' is for 'umbrella'"
+    )
+    tiny.write_text(tiny.read_text().replace("start_spread_m = 1e-6", "start_spread_m = 8e-5"))
+    outcome = invoke(tiny, tmp_path)
+    assert isinstance(outcome.exception, StatejumpError)
+    assert "cannot vary joint.radial_clearance_m: ensemble.start_spread_m = 8e-05" in str(outcome.exception)
