@@ -15,6 +15,7 @@ from rich.table import Table
 
 from . import __version__, _engine, compare, convergence, dem, laws, plot, reduced
 from .case import SpringSliderCase, UmbrellaCase, load_case
+from .control import control_command
 from .errors import StatejumpError, Interrupted, TolerancesMissed
 from .history import History
 from .output import results_folder
@@ -23,6 +24,7 @@ from .umbrella import compare as umbrella_compare
 from .umbrella import dem as umbrella_dem
 from .umbrella import model as umbrella
 from .umbrella import plot as umbrella_plot
+from .umbrella.figures import figures_command
 
 
 def _dem_label(steps: int, label: str = "DEM") -> str:
@@ -265,6 +267,10 @@ def laws_command(case_file: Path | None, results: Path, quiet: bool) -> None:
     else:
         written = laws.figure(laws.joint_of(case), folder, f"laws_{case.name}")
     console.print(f"curves: {', '.join(str(name) for name in written)}")
+
+
+for _command in (figures_command, control_command):
+    cli.add_command(_command)
 
 
 def _end(function: Callable[[], None]) -> int:

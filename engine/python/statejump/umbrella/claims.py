@@ -21,6 +21,13 @@ NEAR_STATIC = 0.05  # of the static value
 MRAD = 1e3
 
 
+RULES_CHANGED = (
+    "Two rules were changed after a first look at numbers of cases/umbrella.toml. With ten times the spread as the "
+    "threshold of rule 1 the first statement *holds in the mean*; with a monotone fall asked for instead of rule 7 "
+    "torsion springs do not pass either."
+)
+
+
 @dataclass(frozen=True)
 class Groups:
     """One quantity of every run, by the value of the parameter that was varied."""
@@ -524,6 +531,7 @@ def readme(title: str, command: str, f: Findings) -> str:
         ),
         "", "± is the standard error of the mean. Rules:", "",
         *(f"{number}. {rule}." for number, rule in enumerate(rules, start=1)),
+        "", RULES_CHANGED,
         "", "## What is certain and what is chance", "",
         f"Two reduced runs whose AB differs by {a.start_rad:.1e} rad at the start differ by "
         f"{a.at_largest_temperature_rad:.1e} rad at the largest temperature and by {a.at_end_rad:.1e} rad at the end"
