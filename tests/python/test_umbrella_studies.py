@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Slow heating, a joint left alone, the energy account over steps, and the same bits every time."""
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from statejump.case import load_case
+from statejump.errors import StatejumpError
+from statejump.umbrella import dem, energy, hold, model, slow
+
+
+@pytest.fixture(scope="module")
+def bias():
+    return load_case(Path(__file__).parents[2] / "cases" / "umbrella_bias.toml")
+
+
+@pytest.fixture(scope="module")
+def damped():
+    return load_case(Path(__file__).parents[2] / "cases" / "umbrella_damped.toml")
+
+
+@pytest.fixture(scope="module")
+def left_alone():
+    return load_case(Path(__file__).parents[2] / "cases" / "umbrella_hold.toml")
+
+
+def block(case, name: str) -> slow.Block:
+    return next(entry for entry in slow.blocks(case) if entry.name == name)
+
+
+def differences(of: slow.Block, periods) -> np.ndarray:
+    """theta2 and theta4 jump less the quasi-static one, per period."""
+    found = [slow.jumps(model.run(slow.at_period(of.case, period)).history) for period in periods]
+    return np.array(found) - of.quasi_static_rad
+
+
+def test_slow_jump_tends_to_the_elastic_loop(bias):
+    found = np.abs(differences(block(bias, "case"), (2, 4, 8)))
+    assert np.all(found[1:] < found[:-1] / 2)  # at least as 1/T
+    assert np.all(found[-1] < 2e-7)
+    assert differences(block(bias, "case"), [32])[0] == pytest.approx(block(bias, "case").predict(32), rel=0.01)
+
+
+@pytest.mark.parametrize("name", ["pin_damping", "frictionless"])
+def test_lag_of_the_pins_is_the_one_over_t_term(bias, name):
+    of = block(bias, name)
+    for period in (8, 16):
+        # the quasi-static rates that the prediction uses leave a term of the order of 1/T²
+        assert differences(of, [period])[0] == pytest.approx(of.predict(period), rel=2e-3)
+    assert of.predict(16)[0] == pytest.approx(of.predict(8)[0] / 2, rel=2e-2)
+
+
+def test_frictionless_jump_tends_to_zero(bias):
+    of = block(bias, "frictionless")
+    assert np.abs(of.quasi_static_rad) == pytest.approx([0, 0], abs=1e-14)
+    found = np.abs(differences(of, (2, 4, 8, 16)))[:, 0]
+    assert np.all(found[1:] < 0.54 * found[:-1]) and found[-1] < 3e-8  # as 1/T, the swing still dying out
+
+
+def test_unloaded_joint_converges_as_the_root_only(bias):
+    of = block(bias, "unloaded")
+    found = differences(of, (1, 16, 32))[:, 0]
+    assert found[0] == pytest.approx(1.6e-4, rel=0.05)  # a jump that is none
+    assert 0.5 < math.log2(found[1] / found[2]) < 0.62
+    assert found[2] / of.predict(32)[0] == pytest.approx(1.0, abs=0.2)
+    assert of.predict(32)[0] == pytest.approx(of.predict(8)[0] / 2)
+
+
+def test_dem_jump_is_the_reduced_one(bias):
+    # Where slip and stick change, a model is late by up to a step dt. The swing stands still there, so
+    # that costs omega^2 dt^2 of its amplitude, c atan(mu) at most; over the joint's height h that is an
+    # angle. omega^2 = F |AC|^2/(c I): pendulum of both links' inertia I under the joint force F.
+    case = slow.at_period(bias, 2.0)
+    ours, other = slow.jumps(model.run(case).history), slow.jumps(dem.execute(case).history)
+    height, play = bias.ideal_position_m[1], bias.joint.radial_clearance_m
+    force = bias.torsion_spring.stiffness_N_m_per_rad * bias.torsion_spring.bias_rad / height
+    inertia = sum(link.mass_kg / 3 * link.stress_free_length_m**2 for link in (bias.link_ab, bias.link_bc))
+    swing = force * bias.frame.length_m**2 / (play * inertia)
+    step = case.period_s / dem.number_of_steps(case)
+    tolerance = swing * step**2 * play * math.atan(bias.joint.friction_coefficient) / height
+    assert tolerance == pytest.approx(1.7e-9, rel=0.1)
+    assert other == pytest.approx(ours, abs=tolerance)
+
+
+def test_hold_by_mindlin_and_creep_by_ambrosio(left_alone):
+    case = hold.held(left_alone, period_s=0.2)
+    rate = 100_000
+    runs = {(run.law, run.model): run for run in [
+        *(hold.run_reduced(case, law, rate) for law in hold.LAWS),
+        *hold.run_dem([(law, rate) for law in hold.LAWS], case, lambda: None),
+    ]}
+    creep = hold.predict(case)
+    assert runs["mindlin", "reduced"].drift_m < 1e-9
+    # the fresh contact overshoots, at most to twice T/k_t
+    assert creep.first_slide_m < runs["mindlin", "DEM"].drift_m < 2 * creep.first_slide_m
+    assert runs["mindlin", "DEM"].settled_drift_m < 1e-9
+    for name in ("reduced", "DEM"):
+        run = runs["ambrosio", name]
+        assert run.creep_rate_m_per_s == pytest.approx(creep.creep_rate_m_per_s, rel=0.02)
+        assert run.slide_m[-1] == pytest.approx(np.interp(0.2, creep.time_s, creep.slide_m), rel=0.02)
+    # v0 + (v1 - v0) T/(mu F_N), T/F_N = tan phi: what the prediction starts with
+    start = 1e-5 + 9e-5 * math.tan(0.0744449738045623) / 0.15
+    assert hold.creep_rate_at_start(case) == pytest.approx(start)
+    assert creep.slide_m[1] / creep.time_s[1] == pytest.approx(-start, rel=1e-3)
+
+
+def test_energy_residue_falls_with_the_steps(damped):
+    found = energy.study(
+        energy.variants(damped), lambda fraction: None, energy.REDUCED_STEPS_PER_SECOND[:6],
+        energy.DEM_STEPS_PER_SECOND[:3],
+    )
+    fits = {(result.variant.name, row.model, row.instant): row.fit for result in found for row in result.rows}
+    for name in ("reduced", "DEM"):
+        for instant in ("heating", "end"):
+            assert fits["as_case", name, instant] > 0.95, (name, instant)
+    assert fits["conservative", "reduced", "heating"] > 2.5  # then chaos
+    # free ringing: the integrators' own orders
+    assert fits["conservative", "reduced", "before contact"] > 4.3
+    assert fits["conservative", "DEM", "before contact"] == pytest.approx(2, abs=0.3)
+    finest = [row for row in found[1].rows if row.model == "reduced" and row.instant == "before contact"]
+    assert [row.order for row in finest[2:4]] == pytest.approx([5, 5], abs=0.2)
+    last = [row for row in found[0].rows if row.instant == "end"]
+    assert all(abs(row.residue_over_thermal_work) < 2e-3 for row in last if row.steps_per_second >= 200_000)
+
+
+def test_energy_book_sees_what_is_missing(damped):
+    """An account without one of its terms does not close."""
+    variant = energy.variants(damped)[0]
+    history = model.run(energy.with_steps(variant.case, 200_000)).history
+    whole = abs(energy.energy_residual(history))
+    for name in ("friction_dissipation_J", "axial_dissipation_J", "pin_dissipation_J"):
+        without = type(history)({**history.columns, name: 0 * history[name]})
+        assert abs(energy.energy_residual(without)) > 100 * whole, name
+
+
+MISTAKES = {
+    "slow, other kind": (slow.slow_command, "table1", (), "is for 'umbrella'"),
+    "slow, not loaded": (slow.slow_command, "umbrella_damped", (), "start.mode = 'matched' is not allowed"),
+    "slow, undamped": (slow.slow_command, "umbrella_bias", (("axial_damping_ratio = 0.1", "axial_damping_ratio = 0"),),
+                       "must be above 0: without damping"),
+    "slow, no memory": (slow.slow_command, "umbrella_bias", (('friction_law = "mindlin"', 'friction_law = "ambrosio"'),),
+                        "joint.friction_law = 'ambrosio' is not allowed"),
+    "slow, force vanishes": (slow.slow_command, "umbrella_bias", (("bias_rad = 0.05", "bias_rad = -0.003"),),
+                             "the contact force vanishes"),
+    "slow, line contact": (slow.slow_command, "umbrella_bias", (('"hertz_internal"', '"johnson"'),),
+                           "there is no quasi-static path: normal = 'johnson'"),
+    "hold, other kind": (hold.hold_command, "table1", (), "is for 'umbrella'"),
+    "hold, no spring": (hold.hold_command, "umbrella_damped", (), "with a biased torsion spring"),
+    "hold, no friction": (hold.hold_command, "umbrella_bias", (("friction_coefficient = 0.15", "friction_coefficient = 0"),),
+                          "nothing holds the joint"),
+    "hold, no clearance to load": (hold.hold_command, "umbrella_bias", (("bias_rad = 0.05", "bias_rad = 0.001"),),
+                                   "the joint cannot be loaded"),
+    "energy, other kind": (energy.energy_command, "table1", (), "is for 'umbrella'"),
+    "energy, constant temperature": (energy.energy_command, "umbrella_hold", (), "there is no thermal work"),
+}
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_mistake_is_one_sentence(name, edited, cases, tmp_path):
+    command, case, changes, sentence = MISTAKES[name]
+    path = edited(*changes, case=case) if changes else cases / f"{case}.toml"
+    outcome = CliRunner().invoke(command, [str(path), "--results", str(tmp_path / "results")])
+    assert isinstance(outcome.exception, StatejumpError), outcome.exception
+    assert sentence in str(outcome.exception) and "\n" not in str(outcome.exception)
+    assert not (tmp_path / "results").exists()
+
+
+def test_dem_gives_the_same_bits_twice(bias):
+    values = dem.resolved(model.changed(bias, {
+        "thermal.period_s": 0.5, "dem.steps_per_cycle": 50_000, "output.samples_per_cycle": 500, "dem.threads": 1}))
+    first, second = (dem.dem.execute(values, lambda fraction: None) for _ in range(2))
+    for run in (first, second):
+        del run.summary["wall_time_s"]
+    assert first.summary == second.summary
+    assert first.history.columns.keys() == second.history.columns.keys()
+    for column, column_values in first.history.columns.items():
+        assert column_values.tobytes() == second.history[column].tobytes(), column
+
+
+def test_ensemble_does_not_depend_on_the_number_of_workers(cases, monkeypatch):
+    case = model.changed(load_case(cases / "umbrella.toml"), {
+        "ensemble.reduced_steps_per_cycle": 20_000, "output.samples_per_cycle": 100})
+    found = {}
+    for workers in (1, 2):
+        monkeypatch.setattr(model.os, "cpu_count", lambda workers=workers: workers)
+        found[workers] = model.ensemble(case, runs=6)
+    for name in ("time_s", "theta2_rad", "end_eccentricity_m"):
+        assert getattr(found[1], name).tobytes() == getattr(found[2], name).tobytes(), name
+    assert len(np.unique(found[1].jump_rad)) == 6  # the starts do differ
