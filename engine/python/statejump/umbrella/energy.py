@@ -37,9 +37,9 @@ EXPECTED = {  # observed order of the residue
 EXPLANATION = """\
 Residue: thermal work less change of stored energy less dissipation, from the start to an instant,
 over the largest thermal work of the run. `before contact` ends before the play is used up (with links
-that follow their expansion nothing has happened until then), `heating` at the last sample before the largest temperature, `end` at the end. `order` is
-log2 of the ratio of two residues, `fit` the slope of all that are above rounding. The residues
-change sign, so single orders scatter; the fit is what counts.
+that follow their expansion nothing has happened until then), `heating` at the last sample before the
+largest temperature, `end` at the end. `order` is log2 of the ratio of two residues, `fit` the slope of
+all that are above rounding. The residues change sign, so single orders scatter; the fit is what counts.
 
 - RK4 loses energy of the ringing links at order 5. Hertz's force has no second derivative at the edge
   of contact: a step over it leaves h^2.5 to h^3, seen once the ringing is resolved. Friction with
