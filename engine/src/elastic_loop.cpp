@@ -373,18 +373,7 @@ class Equations {
 Equilibrium start(const Linkage& model, const Equations& equations, double contact_angle) {
   model.validate();
   validate_laws(model);
-  require(model.torsion_stiffness > 0.0, "torsion_stiffness", model.torsion_stiffness,
-          "> 0 N m/rad, else statics leaves the position within the play undetermined");
-  require(std::abs(contact_angle) <= std::atan(model.friction_coefficient()), "contact_angle",
-          contact_angle, "[-atan(mu), atan(mu)] rad");
-  int side = 0;
-  for (const int candidate : {-1, 1}) {
-    if (candidate * joint_point(model, 0.0, candidate, contact_angle).spring_moment > 0.0) {
-      side = candidate;
-    }
-  }
-  require(side != 0, "torsion_free_angle", model.free_angle(),
-          "far enough from the ideal flare angle to load the joint at the start [rad]");
+  const int side = loaded_side(model, contact_angle);
   // Rigid bodies first; then the force (f, 0) of moments about A, and what it does to each spring.
   const JointPoint rigid = joint_point(model, 0.0, side, contact_angle);
   Equilibrium at;

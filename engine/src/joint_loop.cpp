@@ -124,20 +124,11 @@ double rolling_arc(const Linkage& model, const JointPoint& point) {
          model.bearing_radius * point.theta2;
 }
 
-JointLoop joint_loop(const Linkage& model, const kernel::ThermalProgram& program,
-                     double contact_angle, int samples) {
-  model.validate();
-  program.validate();
+int loaded_side(const Linkage& model, double contact_angle) {
   require(model.torsion_stiffness > 0.0, "torsion_stiffness", model.torsion_stiffness,
           "> 0 N m/rad, else statics leaves the position within the play undetermined");
-  require(model.journal_thermal_expansion == 0.0, "journal_thermal_expansion",
-          model.journal_thermal_expansion, "0 here");
-  require(model.bearing_thermal_expansion == 0.0, "bearing_thermal_expansion",
-          model.bearing_thermal_expansion, "0 here");
-  require(samples >= 1, "samples", samples, ">= 1");
-  const double limit = std::atan(model.friction_coefficient());
-  require(std::abs(contact_angle) <= limit, "contact_angle", contact_angle,
-          "[-atan(mu), atan(mu)] rad");
+  require(std::abs(contact_angle) <= std::atan(model.friction_coefficient()), "contact_angle",
+          contact_angle, "[-atan(mu), atan(mu)] rad");
   // The sense of M must be that of the side assumed; between the two the contact is not loaded.
   int side = 0;
   for (const int candidate : {-1, 1}) {
@@ -147,6 +138,20 @@ JointLoop joint_loop(const Linkage& model, const kernel::ThermalProgram& program
   }
   require(side != 0, "torsion_free_angle", model.free_angle(),
           "far enough from the ideal flare angle to load the joint at the start [rad]");
+  return side;
+}
+
+JointLoop joint_loop(const Linkage& model, const kernel::ThermalProgram& program,
+                     double contact_angle, int samples) {
+  model.validate();
+  program.validate();
+  require(model.journal_thermal_expansion == 0.0, "journal_thermal_expansion",
+          model.journal_thermal_expansion, "0 here");
+  require(model.bearing_thermal_expansion == 0.0, "bearing_thermal_expansion",
+          model.bearing_thermal_expansion, "0 here");
+  require(samples >= 1, "samples", samples, ">= 1");
+  const double limit = std::atan(model.friction_coefficient());
+  const int side = loaded_side(model, contact_angle);
 
   JointLoop loop;
   Walk walk(model, side, contact_angle);

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+import random
 import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable
+from typing import Any, Callable, Iterator
 
 import pytest
 
@@ -60,6 +61,25 @@ def edited(tmp_path: Path, cases: Path) -> Callable[..., Path]:
         return path
 
     return write
+
+
+def damaged(original: dict[str, Any], values: list[Any], count: int) -> Iterator[dict[str, Any]]:
+    """Yield copies of a parsed case file in which up to three values, keys or sections are wrong."""
+    rng = random.Random(1)
+    for _ in range(count):
+        data = {section: dict(keys) for section, keys in original.items()}
+        for _ in range(rng.choice((1, 1, 2, 3))):
+            section = rng.choice(list(data))
+            if not isinstance(data[section], dict) or not data[section]:
+                continue
+            action, key = rng.random(), rng.choice(list(data[section]))
+            if action < 0.8:
+                data[section][key] = rng.choice(values)
+            elif action < 0.9:
+                del data[section][key]
+            else:
+                data[section] = rng.choice(values)
+        yield data
 
 
 @pytest.fixture

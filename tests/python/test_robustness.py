@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import random
 import signal
 import subprocess
 import time
@@ -13,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from conftest import COMMAND
+from conftest import COMMAND, damaged
 from statejump import compare, reduced
 from statejump.case import Case, check_radii, load_case, parse_case
 from statejump.errors import StatejumpError
@@ -74,21 +73,8 @@ def test_damaged_files_never_end_in_another_error(cases: Path) -> None:
     original = tomllib.loads(text)
     values = [0, 1, -1, 1e-300, 1e300, -1e300, float("nan"), float("inf"), HUGE, True, "", "x", [], [1], {},
               {"a": 1}, 3.5, 1e-3, 1e3, [0, 1], ["0"], tomllib.loads("d = 2021-01-01")["d"]]
-    rng = random.Random(1)
     sentences = 0
-    for _ in range(4000):
-        data = {section: dict(keys) for section, keys in original.items()}
-        for _ in range(rng.choice((1, 1, 2, 3))):
-            section = rng.choice(list(data))
-            if not isinstance(data[section], dict) or not data[section]:
-                continue
-            action, key = rng.random(), rng.choice(list(data[section]))
-            if action < 0.8:
-                data[section][key] = rng.choice(values)
-            elif action < 0.9:
-                del data[section][key]
-            else:
-                data[section] = rng.choice(values)
+    for data in damaged(original, values, 4000):
         try:
             reduced.solve(parse_case(data, "damaged.toml"))
         except StatejumpError as error:

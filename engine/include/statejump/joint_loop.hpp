@@ -61,6 +61,11 @@ struct JointLoop {
 JointPoint joint_point(const Linkage& model, double temperature_change, int side,
                        double contact_angle);
 
+/// Side σ on which the torsion spring loads the joint at ΔT = 0 with the contact at φ.
+/// Throws std::invalid_argument for a spring that is absent or does not load the joint there (the
+/// position is then undetermined) and for |contact_angle| > atan μ.
+int loaded_side(const Linkage& model, double contact_angle);
+
 /// s = c φ + R1 θ4 − R2 θ2 [m], constant while the joint rolls: the arcs R1 (ψ − θ4) on the journal
 /// and R2 (ψ − θ2) on the bearing grow alike (ψ is the angle of n in the frame).
 double rolling_arc(const Linkage& model, const JointPoint& point);
