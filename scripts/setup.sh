@@ -7,6 +7,7 @@ packages=(
   build-essential cmake ninja-build clang-format git
   yade
   libboost-dev libboost-python-dev libboost-serialization-dev libboost-math-dev libboost-system-dev
+  libcgal-dev libgmp-dev libmpfr-dev
   libeigen3-dev libgl-dev pybind11-dev python3-dev
   python3-click python3-rich python3-pydantic python3-numpy python3-scipy python3-matplotlib python3-vtk9
   python3-pytest

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "impl.hpp"
+
+namespace statejump::geometry {
+namespace {
+
+constexpr double pi = 3.141592653589793238462643;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void require(bool holds, const char* name, double value, const char* range) {
+  if (holds) return;
+  char number[32];
+  std::snprintf(number, sizeof number, "%.9g", value);
+  throw std::invalid_argument(std::string(name) + " = " + number + ", allowed is " + range);
+}
+
+void validate(const Vector3& centre, const char* centre_name, double radius,
+              const char* radius_name, double maximum_gap) {
+  if (!centre.allFinite()) throw std::invalid_argument(std::string(centre_name) + " is not finite");
+  require(radius > 0 && std::isfinite(radius), radius_name, radius, "(0, inf) m");
+  require(maximum_gap >= 0 && std::isfinite(maximum_gap), "maximum_gap", maximum_gap, "[0, inf) m");
+}
+
+BoreContact contact_at(const BoreMesh::Impl& m, const Hit& hit, const Vector3& normal,
+                       double depth) {
+  const Principal p = principal(hit);
+  BoreContact contact;
+  contact.point = hit.point;
+  contact.normal = normal;
+  contact.depth = depth;
+  contact.section_curvature = p.smaller;
+  contact.axial_curvature = p.larger;
+  contact.curvature_1 = p.larger;
+  contact.curvature_2 = p.smaller;
+  contact.direction_1 = p.direction_larger;
+  contact.direction_2 = p.direction_smaller;
+  contact.face = m.wall.faces[hit.face];
+  contact.previous = -1;
+  return contact;
+}
+
+void sort_and_match(std::vector<BoreContact>& contacts, const std::vector<BoreContact>& previous) {
+  std::sort(contacts.begin(), contacts.end(),
+            [](const BoreContact& a, const BoreContact& b) { return a.depth > b.depth; });
+  std::vector<char> taken(previous.size(), 0);
+  for (std::size_t round = 0; round < std::min(contacts.size(), previous.size()); ++round) {
+    double best = 0.86602540378443865;  // a twelfth of a turn
+    std::size_t which = contacts.size(), whose = 0;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      if (contacts[i].previous >= 0) continue;
+      for (std::size_t j = 0; j < previous.size(); ++j)
+        if (!taken[j] && contacts[i].normal.dot(previous[j].normal) > best) {
+          best = contacts[i].normal.dot(previous[j].normal);
+          which = i;
+          whose = j;
+        }
+    }
+    if (which == contacts.size()) return;
+    contacts[which].previous = static_cast<int>(whose);
+    taken[whose] = 1;
+  }
+}
+
+/// A minimum of values on a ring.
+struct Minimum {
+  int index;
+  double value;
+};
+
+/// Drops minima whose rise to a lower neighbour is below the prominence; the lowest always stays.
+/// rise(i, j): largest value between index i and the next kept one j.
+void drop_flat(std::vector<Minimum>& minima, const std::vector<double>& values, double prominence) {
+  const int count = static_cast<int>(values.size());
+  while (minima.size() > 1) {
+    const std::size_t size = minima.size();
+    double least = infinity;
+    std::size_t which = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::size_t j = (i + 1) % size;
+      double top = std::max(minima[i].value, minima[j].value);
+      for (int k = (minima[i].index + 1) % count; k != minima[j].index; k = (k + 1) % count)
+        top = std::max(top, values[k]);
+      const double rise = top - std::max(minima[i].value, minima[j].value);
+      if (rise < least) {
+        least = rise;
+        which = minima[i].value > minima[j].value ? i : j;
+      }
+    }
+    if (!(least < prominence)) return;
+    minima.erase(minima.begin() + static_cast<std::ptrdiff_t>(which));
+  }
+}
+
+/// Distance of the wall from the journal's centre along a direction in its section, and how that
+/// changes with the angle.
+struct Section {
+  const BoreMesh::Impl& m;
+  Vector3 centre, axis;
+
+  struct Sample {
+    Hit hit;
+    double slope = 0, bend = 0;  ///< first and second derivative of hit.s by the angle
+  };
+
+  bool at(const Vector3& direction, int near, Sample& sample) const {
+    sample.hit = m.meet(centre, direction, near);
+    if (!sample.hit.found) return false;
+    const Vector3& n = sample.hit.normal;
+    const Vector3 tau = cross(axis, direction);
+    const double rho = sample.hit.s;
+    sample.slope = -rho * n.dot(tau) / n.dot(direction);
+    const Vector3 in_plane = n - n.dot(axis) * axis;
+    const double lean = in_plane.norm();
+    const Vector3 tangent = cross(axis, in_plane) / lean;
+    const double curvature = tangent.dot(sample.hit.bend * tangent) / lean;
+    const double speed_squared = rho * rho + sample.slope * sample.slope;
+    sample.bend = (rho * rho + 2 * sample.slope * sample.slope -
+                   curvature * speed_squared * std::sqrt(speed_squared)) /
+                  rho;
+    return true;
+  }
+
+  /// Local minimum between two angles from a direction; false when the wall ends there.
+  bool minimum(const Vector3& start, double low, double high, int near, Sample& best) const {
+    const Vector3 across = cross(axis, start);
+    double angle = 0;
+    for (int iteration = 0; iteration < 60; ++iteration) {
+      const Vector3 direction = std::cos(angle) * start + std::sin(angle) * across;
+      Sample sample;
+      if (!at(direction, near, sample)) {
+        // Beside a gap in the wall: back towards the start.
+        if (angle == 0) return false;
+        (angle < 0 ? low : high) = angle;
+        angle *= 0.5;
+        if (std::abs(angle) < 1e-9) return true;
+        continue;
+      }
+      best = sample;
+      near = sample.hit.face;
+      if (std::abs(sample.slope) <= 1e-15 * sample.hit.s) return true;
+      (sample.slope > 0 ? high : low) = angle;
+      double next = angle - sample.slope / sample.bend;
+      if (!(sample.bend > 0) || !(next > low && next < high)) next = 0.5 * (low + high);
+      // Below 1e-10 rad the distance changes by 1e-20 of itself.
+      if (std::abs(next - angle) < 1e-10) return true;
+      angle = next;
+    }
+    return true;
+  }
+};
+
+}  // namespace
+
+std::vector<BoreContact> BoreMesh::contacts(const Eigen::Vector3d& journal_centre,
+                                            const Eigen::Vector3d& journal_axis,
+                                            double journal_radius, double maximum_gap,
+                                            const std::vector<BoreContact>& previous) const {
+  const Impl& m = *impl_;
+  if (m.kind != SurfaceKind::bore)
+    throw std::invalid_argument("a journal needs a bore, but the mesh is a socket");
+  validate(journal_centre, "journal_centre", journal_radius, "journal_radius", maximum_gap);
+  const double axis_length = journal_axis.norm();
+  if (!(axis_length > 0) || !std::isfinite(axis_length))
+    throw std::invalid_argument("journal_axis has no direction");
+  Vector3 axis = journal_axis / axis_length;
+  double along = axis.dot(m.wall.axis);
+  if (along < 0) {
+    axis = -axis;
+    along = -along;
+  }
+  require(along > 0.5, "cosine of the journal's tilt", along, "(0.5, 1]");
+
+  const Grid& grid = m.grid;
+  const int columns = grid.columns;
+  const double limit = journal_radius + maximum_gap;
+  const Vector3 offset = journal_centre - m.wall.centre;
+  const double height = offset.dot(axis) / along;
+  const double lean_x = m.wall.axis_x.dot(axis) / along;
+  const double lean_y = m.wall.axis_y.dot(axis) / along;
+  const double centre_x = offset.dot(m.wall.axis_x);
+  const double centre_y = offset.dot(m.wall.axis_y);
+  const double centre_z = offset.dot(m.wall.axis);
+
+  // Distances of the seeds in the journal's section, rows interpolated. thread_local: no
+  // allocation.
+  thread_local std::vector<double> distance, x, y, z;
+  for (auto* v : {&distance, &x, &y, &z}) v->resize(columns);
+  const bool tilted = lean_x * lean_x + lean_y * lean_y > 0;
+  double lowest = infinity;
+  for (int c = 0; c < columns; ++c) {
+    double level = height;
+    if (tilted) level -= m.wall.radius * (grid.cosine[c] * lean_x + grid.sine[c] * lean_y);
+    const double row = (level - grid.low) / grid.step;
+    distance[c] = infinity;
+    if (!(row >= 0 && row <= grid.rows - 1)) continue;
+    const int lower = std::min(static_cast<int>(row), grid.rows - 2);
+    const double part = row - lower;
+    const double* radius = &grid.radius[static_cast<std::size_t>(lower) * columns + c];
+    const double r = (1 - part) * radius[0] + part * radius[columns];
+    if (!(r > 0)) continue;  // a hole in the grid
+    x[c] = r * grid.cosine[c] - centre_x;
+    y[c] = r * grid.sine[c] - centre_y;
+    z[c] = level - centre_z;
+    distance[c] = std::sqrt(x[c] * x[c] + y[c] * y[c] + z[c] * z[c]);
+    lowest = std::min(lowest, distance[c]);
+  }
+  if (!(lowest < infinity)) return {};
+
+  std::vector<Minimum> minima;
+  for (int c = 0; c < columns; ++c) {
+    const double here = distance[c];
+    if (here == infinity) continue;
+    const double before = distance[(c + columns - 1) % columns];
+    const double after = distance[(c + 1) % columns];
+    if (!(here <= before && here < after) && !(here < before && here <= after)) continue;
+    // Between samples the wall may be nearer by what a parabola makes of them, and by what straight
+    // interpolation between the rows leaves: an eighth of their second difference.
+    double below = 0;
+    for (const double side : {before, after})
+      if (side < infinity) below = std::max(below, side - here);
+    if (here - below - 0.01 * m.wall.radius > limit) continue;
+    minima.push_back({c, here});
+  }
+  if (minima.empty() && lowest <= limit)  // a ring of equal distances
+    minima.push_back(
+        {static_cast<int>(std::min_element(distance.begin(), distance.end()) - distance.begin()),
+         lowest});
+  if (minima.empty()) return {};
+  drop_flat(minima, distance, m.prominence);
+
+  const Section section{m, journal_centre, axis};
+  std::vector<BoreContact> result;
+  std::vector<Minimum> refined;
+  for (const Minimum& seed : minima) {
+    const int c = seed.index;
+    const auto direction_of = [&](int i) -> Vector3 {
+      return x[i] * m.wall.axis_x + y[i] * m.wall.axis_y + z[i] * m.wall.axis;
+    };
+    Vector3 start = direction_of(c);
+    start -= start.dot(axis) * axis;
+    start.normalize();
+    const Vector3 across = cross(axis, start);
+    const auto angle_of = [&](int i, double fallback) {
+      if (distance[i] == infinity) return fallback;
+      const Vector3 d = direction_of(i);
+      return 1.5 * std::atan2(d.dot(across), d.dot(start));
+    };
+    const double low = angle_of((c + columns - 1) % columns, -3 * pi / columns);
+    const double high = angle_of((c + 1) % columns, 3 * pi / columns);
+    const int row =
+        std::clamp(static_cast<int>((z[c] + centre_z - grid.low) / grid.step), 0, grid.rows - 1);
+    Section::Sample best;
+    if (!section.minimum(start, low, high, grid.face[row * columns + c], best)) continue;
+    if (!(best.hit.s < limit)) continue;
+    const Vector3 way = (best.hit.point - journal_centre).normalized();
+    BoreContact contact = contact_at(m, best.hit, way, journal_radius - best.hit.s);
+    const Vector3 in_plane = best.hit.normal - best.hit.normal.dot(axis) * axis;
+    const Vector3 tangent = cross(axis, in_plane).normalized();
+    const Vector3 axial = cross(tangent, best.hit.normal);
+    contact.section_curvature = -tangent.dot(best.hit.bend * tangent);
+    contact.axial_curvature = -axial.dot(best.hit.bend * axial);
+    result.push_back(contact);
+  }
+  // Two seeds that ran into one minimum.
+  for (std::size_t i = 0; i < result.size(); ++i)
+    for (std::size_t j = result.size(); j-- > i + 1;)
+      if (result[i].normal.dot(result[j].normal) > 1 - 1e-8)
+        result.erase(result.begin() + static_cast<std::ptrdiff_t>(j));
+  sort_and_match(result, previous);
+  return result;
+}
+
+std::vector<BoreContact> BoreMesh::ball_contacts(const Eigen::Vector3d& ball_centre,
+                                                 double ball_radius, double maximum_gap,
+                                                 const std::vector<BoreContact>& previous) const {
+  const Impl& m = *impl_;
+  validate(ball_centre, "ball_centre", ball_radius, "ball_radius", maximum_gap);
+  const Grid& grid = m.grid;
+  const int cells = grid.rows * grid.columns;
+  const double limit = ball_radius + maximum_gap;
+  thread_local std::vector<double> distance;
+  distance.resize(cells);
+  for (int i = 0; i < cells; ++i) {
+    const double d = (grid.point[i] - ball_centre).norm();
+    distance[i] = d >= 0 ? d : infinity;
+  }
+  const auto neighbours = [&](int cell, const auto& use) {
+    const int row = cell / grid.columns, column = cell % grid.columns;
+    for (int dr = -1; dr <= 1; ++dr) {
+      if (row + dr < 0 || row + dr >= grid.rows) continue;
+      for (int dc = -1; dc <= 1; ++dc)
+        if (dr != 0 || dc != 0)
+          use((row + dr) * grid.columns + (column + dc + grid.columns) % grid.columns);
+    }
+  };
+  // Cells near enough, and one ring more: the wall may be nearer between samples.
+  std::vector<int> order;
+  for (int i = 0; i < cells; ++i)
+    if (distance[i] < limit + 0.01 * m.wall.radius) order.push_back(i);
+  if (order.empty()) return {};
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return distance[a] < distance[b] || (distance[a] == distance[b] && a < b);
+  });
+  // Flooding from the lowest cell: basins that join after less than the prominence are one.
+  thread_local std::vector<int> basin;
+  basin.assign(cells, -1);
+  std::vector<int> parent, root, alive;
+  const auto find = [&](int b) {
+    while (parent[b] != b) b = parent[b] = parent[parent[b]];
+    return b;
+  };
+  for (const int cell : order) {
+    int own = -1;
+    neighbours(cell, [&](int other) {
+      if (basin[other] < 0) return;
+      const int b = find(basin[other]);
+      if (own < 0) {
+        own = b;
+      } else if (own != b) {
+        const int higher = distance[root[own]] > distance[root[b]] ? own : b;
+        const int lower = higher == own ? b : own;
+        if (distance[cell] - distance[root[higher]] < m.prominence) alive[higher] = 0;
+        parent[higher] = lower;
+        own = lower;
+      }
+    });
+    if (own < 0) {
+      own = static_cast<int>(parent.size());
+      parent.push_back(own);
+      root.push_back(cell);
+      alive.push_back(1);
+    }
+    basin[cell] = own;
+  }
+  std::vector<BoreContact> result;
+  for (std::size_t b = 0; b < root.size(); ++b) {
+    if (!alive[b]) continue;
+    const Vector3 way = grid.point[root[b]] - ball_centre;
+    Hit hit = m.meet(ball_centre, way.normalized(), grid.face[root[b]]);
+    if (!hit.found) continue;
+    if (!m.descend(ball_centre, hit)) continue;
+    const Vector3 out = hit.point - ball_centre;
+    const double reach = out.norm();
+    if (!(reach < limit)) continue;
+    result.push_back(contact_at(m, hit, out / reach, ball_radius - reach));
+  }
+  for (std::size_t i = 0; i < result.size(); ++i)
+    for (std::size_t j = result.size(); j-- > i + 1;)
+      if ((result[i].point - result[j].point).norm() < 1e-4 * m.wall.radius)
+        result.erase(result.begin() + static_cast<std::ptrdiff_t>(j));
+  sort_and_match(result, previous);
+  return result;
+}
+
+}  // namespace statejump::geometry

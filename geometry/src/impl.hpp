@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/AABB_triangle_primitive.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include <limits>
+
+#include "jet.hpp"
+#include "wall.hpp"
+
+namespace statejump::geometry {
+
+/// The smooth wall where a line meets it.
+struct Hit {
+  bool found = false;  ///< false: the line passes the wall's border; weights are then clamped
+  double s = 0;        ///< line parameter [m]
+  int face = -1;       ///< of the wall (index into Wall::faces)
+  std::array<double, 3> weight{};  ///< barycentric, in the flat face
+  Vector3 point, normal;
+  Eigen::Matrix3d bend;  ///< [1/m], positive where the wall rises to the free side
+};
+
+/// Points of the smooth wall on a grid around the axis: seeds of searches. Column i is at the angle
+/// 2 pi i/columns; rows are levels of z (bore) or of the polar angle from the axis (socket).
+struct Grid {
+  int columns = 0, rows = 0;
+  double low = 0, step = 0;    ///< of the rows
+  std::vector<double> radius;  ///< [row * columns + column] from axis or centre; NaN: no wall
+  std::vector<Vector3> point;
+  std::vector<int> face;  ///< of the wall
+  std::vector<double> cosine, sine;
+};
+
+struct BoreMesh::Impl {
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  using Facets = std::vector<Kernel::Triangle_3>;
+  using Primitive = CGAL::AABB_triangle_primitive<Kernel, Facets::const_iterator>;
+  using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+
+  Impl(Triangles given, const BoreOptions& options, const std::string& name);
+
+  /// Follows a line from face to face until it passes through one; start is a face near by.
+  Hit follow(const Vector3& point, const Vector3& direction, int start) const;
+  /// Where a ray from a point first meets a facet that faces it; -1: nowhere.
+  int shoot(const Vector3& point, const Vector3& direction) const;
+  /// follow() from a face near by, shoot() where that fails.
+  Hit meet(const Vector3& point, const Vector3& direction, int start) const;
+  /// Fills point, normal and bend of a hit whose face, weights and flat s are known.
+  void blend(const Vector3& point, const Vector3& direction, Hit& hit) const;
+  /// Same without normal and curvature.
+  double blended_parameter(const Vector3& point, const Vector3& direction, const Hit& hit) const;
+  /// Nearest point of the smooth wall, from a start on it; false when the foot leaves the wall.
+  bool descend(const Vector3& query, Hit& hit) const;
+
+  Triangles mesh;
+  SurfaceKind kind;
+  Wall wall;
+  std::vector<std::array<int, 3>> corner;  ///< of wall faces, into jets
+  Neighbours neighbour;                    ///< of wall faces
+  std::vector<Jet> jet;
+  std::vector<Vector3> vertex_normal;  ///< of all vertices of the mesh
+  Facets facets;
+  Tree tree;
+  Grid grid;
+  double error = 0, prominence = 0;
+  double least_curvature = 0, most_curvature = 0;
+
+ private:
+  void make_jets(int degree);
+  void make_grid();
+  void estimate_error();
+};
+
+/// Principal curvatures (convex positive) and directions of a hit.
+struct Principal {
+  double larger, smaller;
+  Vector3 direction_larger, direction_smaller;
+};
+Principal principal(const Hit& hit);
+
+}  // namespace statejump::geometry

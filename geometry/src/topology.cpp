@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "topology.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <stdexcept>
+#include <unordered_map>
+
+namespace statejump::geometry {
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
+
+std::string face_name(const Triangles& mesh, int face) {
+  const auto& corner = mesh.faces[face];
+  return "face " + std::to_string(face) + " (vertices " + std::to_string(corner[0]) + ", " +
+         std::to_string(corner[1]) + ", " + std::to_string(corner[2]) + ")";
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& what) {
+  throw std::runtime_error(name + ": " + what);
+}
+
+void check_faces(const Triangles& mesh, const std::string& name) {
+  if (mesh.faces.empty()) refuse(name, "the mesh has no faces");
+  const int count = static_cast<int>(mesh.vertices.size());
+  for (int i = 0; i < count; ++i)
+    if (!mesh.vertices[i].allFinite())
+      refuse(name, "vertex " + std::to_string(i) + " is not finite");
+  for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f) {
+    for (const int corner : mesh.faces[f])
+      if (corner < 0 || corner >= count)
+        refuse(name, "face " + std::to_string(f) + " has corner " + std::to_string(corner) +
+                         ", but there are only " + std::to_string(count) + " vertices");
+    const auto& corner = mesh.faces[f];
+    double longest = 0;
+    for (int k = 0; k < 3; ++k)
+      longest = std::max(
+          longest, (mesh.vertices[corner[k]] - mesh.vertices[corner[(k + 1) % 3]]).squaredNorm());
+    // Height below a millionth of a millionth of the longest side: rounding of the corners.
+    if (!(area_vector(mesh, f).norm() > 1e-12 * longest))
+      refuse(name, face_name(mesh, f) + " at " + place(face_centre(mesh, f)) + " has no area");
+  }
+}
+
+struct Edge {
+  int face[2] = {-1, -1};
+  int opposite[2] = {-1, -1};
+  bool forward[2] = {false, false};  ///< runs from the smaller to the larger vertex
+};
+
+using Edges = std::unordered_map<std::uint64_t, Edge>;
+
+std::uint64_t edge_key(int a, int b) {
+  return (static_cast<std::uint64_t>(std::min(a, b)) << 32) |
+         static_cast<std::uint64_t>(std::max(a, b));
+}
+
+Edges edges_of(const Triangles& mesh, const std::string& name) {
+  Edges edges;
+  edges.reserve(mesh.faces.size() * 2);
+  for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const int a = mesh.faces[f][(k + 1) % 3];
+      const int b = mesh.faces[f][(k + 2) % 3];
+      Edge& edge = edges[edge_key(a, b)];
+      const int side = edge.face[0] < 0 ? 0 : 1;
+      if (edge.face[side] >= 0)
+        refuse(name, "the edge between vertices " + std::to_string(std::min(a, b)) + " and " +
+                         std::to_string(std::max(a, b)) + " at " +
+                         place(0.5 * (mesh.vertices[a] + mesh.vertices[b])) +
+                         " belongs to more than two faces (" + std::to_string(edge.face[0]) + ", " +
+                         std::to_string(edge.face[1]) + ", " + std::to_string(f) + ")");
+      edge.face[side] = f;
+      edge.opposite[side] = k;
+      edge.forward[side] = a < b;
+    }
+  return edges;
+}
+
+/// Makes neighbours agree with CGAL, which turns polygons over until they do.
+void orient(Triangles& mesh, const std::string& name) {
+  std::vector<Kernel::Point_3> points;
+  points.reserve(mesh.vertices.size());
+  for (const Vector3& v : mesh.vertices) points.emplace_back(v.x(), v.y(), v.z());
+  std::vector<std::vector<std::size_t>> polygons;
+  polygons.reserve(mesh.faces.size());
+  for (const auto& face : mesh.faces)
+    polygons.push_back({std::size_t(face[0]), std::size_t(face[1]), std::size_t(face[2])});
+  if (!pmp::orient_polygon_soup(points, polygons))
+    refuse(name, "the faces have no common orientation (a one-sided surface)");
+  bool first_turned = false;
+  for (std::size_t f = 0; f < polygons.size(); ++f) {
+    std::array<int, 3> face{static_cast<int>(polygons[f][0]), static_cast<int>(polygons[f][1]),
+                            static_cast<int>(polygons[f][2])};
+    const auto& old = mesh.faces[f];
+    const auto start = std::find(face.begin(), face.end(), old[0]);
+    std::rotate(face.begin(), start, face.end());
+    if (f == 0) first_turned = face[1] != old[1];
+    if (first_turned) std::swap(face[1], face[2]);
+    mesh.faces[f] = face;
+  }
+}
+
+}  // namespace
+
+std::string place(const Vector3& point) {
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g) m", point.x() + 0.0, point.y() + 0.0,
+                point.z() + 0.0);
+  return text;
+}
+
+Neighbours check_topology(Triangles& mesh, const std::string& name) {
+  check_faces(mesh, name);
+  const int face_count = static_cast<int>(mesh.faces.size());
+  Edges edges = edges_of(mesh, name);
+  const auto disagrees = [](const Edge& edge) {
+    return edge.face[1] >= 0 && edge.forward[0] == edge.forward[1];
+  };
+  if (std::any_of(edges.begin(), edges.end(), [&](const auto& e) { return disagrees(e.second); })) {
+    orient(mesh, name);
+    edges = edges_of(mesh, name);
+  }
+  Neighbours neighbours(face_count, {-1, -1, -1});
+  for (const auto& [key, edge] : edges)
+    if (edge.face[1] >= 0) {
+      neighbours[edge.face[0]][edge.opposite[0]] = edge.face[1];
+      neighbours[edge.face[1]][edge.opposite[1]] = edge.face[0];
+    }
+
+  // Around a vertex the faces must be one fan.
+  std::vector<int> faces_at(mesh.vertices.size(), 0);
+  std::vector<int> some_face(mesh.vertices.size(), -1);
+  for (int f = 0; f < face_count; ++f)
+    for (const int corner : mesh.faces[f]) {
+      ++faces_at[corner];
+      some_face[corner] = f;
+    }
+  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
+    if (some_face[v] < 0) continue;
+    const auto step = [&](int face, int turn) {
+      const auto& corner = mesh.faces[face];
+      const int k = static_cast<int>(std::find(corner.begin(), corner.end(), v) - corner.begin());
+      return neighbours[face][(k + turn) % 3];
+    };
+    int reached = 1;
+    int face = step(some_face[v], 1);
+    while (face >= 0 && face != some_face[v] && reached <= faces_at[v]) {
+      ++reached;
+      face = step(face, 1);
+    }
+    if (face < 0) {
+      face = step(some_face[v], 2);
+      while (face >= 0 && reached <= faces_at[v]) {
+        ++reached;
+        face = step(face, 2);
+      }
+    }
+    if (reached != faces_at[v])
+      refuse(name, "at vertex " + std::to_string(v) + " at " + place(mesh.vertices[v]) +
+                       " two sheets meet that share no edge");
+  }
+
+  std::vector<int> part(face_count, -1);
+  std::vector<int> stack{0};
+  part[0] = 0;
+  int reached = 0;
+  while (!stack.empty()) {
+    const int face = stack.back();
+    stack.pop_back();
+    ++reached;
+    for (const int next : neighbours[face])
+      if (next >= 0 && part[next] < 0) {
+        part[next] = 0;
+        stack.push_back(next);
+      }
+  }
+  if (reached != face_count) {
+    const int other = static_cast<int>(std::find(part.begin(), part.end(), -1) - part.begin());
+    refuse(name, "the mesh has several parts: " + face_name(mesh, other) + " at " +
+                     place(face_centre(mesh, other)) + " is not connected to face 0");
+  }
+  return neighbours;
+}
+
+std::vector<Loop> border_loops(const Triangles& mesh, const Neighbours& neighbours) {
+  std::map<int, int> next;  // along the border; a vertex is on at most one loop: fans are single
+  for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f)
+    for (int k = 0; k < 3; ++k)
+      if (neighbours[f][k] < 0) next[mesh.faces[f][(k + 1) % 3]] = mesh.faces[f][(k + 2) % 3];
+  std::vector<Loop> loops;
+  while (!next.empty()) {
+    Loop loop;
+    auto at = next.begin();
+    while (at != next.end()) {
+      loop.push_back(at->first);
+      const int to = at->second;
+      next.erase(at);
+      at = next.find(to);
+    }
+    loops.push_back(loop);
+  }
+  return loops;
+}
+
+void check_self_intersection(const Triangles& mesh, const std::string& name) {
+  SurfaceMesh surface;
+  surface.reserve(static_cast<SurfaceMesh::size_type>(mesh.vertices.size()),
+                  static_cast<SurfaceMesh::size_type>(mesh.faces.size() * 3 / 2),
+                  static_cast<SurfaceMesh::size_type>(mesh.faces.size()));
+  for (const Vector3& v : mesh.vertices) surface.add_vertex({v.x(), v.y(), v.z()});
+  using Index = SurfaceMesh::Vertex_index;
+  for (const auto& face : mesh.faces)
+    surface.add_face(Index(static_cast<unsigned>(face[0])), Index(static_cast<unsigned>(face[1])),
+                     Index(static_cast<unsigned>(face[2])));
+  std::vector<std::pair<SurfaceMesh::Face_index, SurfaceMesh::Face_index>> pairs;
+  pmp::self_intersections(surface, std::back_inserter(pairs));
+  if (pairs.empty()) return;
+  std::pair<int, int> first{INT_MAX, INT_MAX};
+  for (const auto& [a, b] : pairs) {
+    const int i = static_cast<int>(a.idx());
+    const int j = static_cast<int>(b.idx());
+    first = std::min(first, {std::min(i, j), std::max(i, j)});
+  }
+  refuse(name,
+         "faces " + std::to_string(first.first) + " and " + std::to_string(first.second) + " at " +
+             place(face_centre(mesh, first.first)) + " intersect" +
+             (pairs.size() > 1 ? ", and " + std::to_string(pairs.size() - 1) + " more pairs" : ""));
+}
+
+Neighbours restricted(const Neighbours& neighbours, const std::vector<int>& faces, int face_count) {
+  std::vector<int> index(face_count, -1);
+  for (int i = 0; i < static_cast<int>(faces.size()); ++i) index[faces[i]] = i;
+  Neighbours result(faces.size());
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const int other = neighbours[faces[i]][k];
+      result[i][k] = other < 0 ? -1 : index[other];
+    }
+  return result;
+}
+
+}  // namespace statejump::geometry

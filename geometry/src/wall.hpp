@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "statejump/geometry/bore_mesh.hpp"
+#include "topology.hpp"
+
+namespace statejump::geometry {
+
+/// Which faces are wall, and the round surface of least squares through them.
+struct Wall {
+  std::vector<int> faces;  ///< ascending
+  bool closed = false;
+  double radius = 0;
+  Vector3 centre, axis, axis_x, axis_y;
+  double low = 0, high = 0;  ///< axial range of the wall from the centre [m]
+};
+
+/// Finds the wall; refuses open borders that are not ends, normals that point away from the axis
+/// and radii out of the options' range.
+Wall find_wall(const Triangles& mesh, const Neighbours& neighbours, const BoreOptions& options,
+               const std::string& name);
+
+}  // namespace statejump::geometry
