@@ -17,7 +17,8 @@ struct BodyMotion {
   Vector3 angular_velocity;  ///< [rad/s]
 };
 
-/// Geometry of one contact point between body 1 (journal, slider) and body 2 (bearing, slot).
+/// Geometry of one contact point between body 1 (journal, ball, slider) and body 2 (bearing,
+/// socket, slot).
 /// Filled for a gap too; then the arms meet in the middle of the gap.
 struct JointContact {
   double penetration_depth;   ///< delta [m]; negative: gap
@@ -29,6 +30,7 @@ struct JointContact {
   double eccentricity;        ///< offset of body 1 from body 2 along the normal [m]
 };
 using RevoluteContact = JointContact;  ///< of revolute_contact()
+using BallContact = JointContact;      ///< of ball_contact()
 using PlaneContact = JointContact;     ///< of plane_contact()
 
 /// What the law needs of a joint's geometry. @param time_step dt [s]
@@ -70,6 +72,35 @@ inline bool revolute_touches(const Vector3& journal_centre, double journal_radiu
              clearance * clearance;
 }
 
+namespace detail {
+
+/// One contact of round parts, a journal or ball inside a bearing or socket.
+/// @param centres centre 1 minus centre 2, @param offset d, the part of it that closes the clearance
+/// @param concentric_normal gives the normal when d is zero
+template <class Normal>
+JointContact round_contact(const BodyMotion& inner, double inner_radius, const BodyMotion& outer,
+                           double outer_radius, const Vector3& centres, const Vector3& offset,
+                           const Normal& concentric_normal) {
+  JointContact contact;
+  const double offset_squared = offset.squaredNorm();
+  if (offset_squared > std::numeric_limits<double>::min()) {
+    contact.eccentricity = std::sqrt(offset_squared);
+    contact.normal = offset * (1.0 / contact.eccentricity);
+  } else {
+    contact.eccentricity = 0.0;
+    contact.normal = concentric_normal();
+  }
+  contact.effective_radius = internal_effective_radius(inner_radius, outer_radius);
+  contact.penetration_depth = contact.eccentricity - (outer_radius - inner_radius);
+  contact.arm_1 = (inner_radius - 0.5 * contact.penetration_depth) * contact.normal;
+  contact.arm_2 = centres + contact.arm_1;
+  contact.relative_velocity =
+      material_velocity(inner, contact.arm_1) - material_velocity(outer, contact.arm_2);
+  return contact;
+}
+
+}  // namespace detail
+
 /// Journal in a bearing with clearance c = R2 - R1, the paper's eqs (11) to (13):
 ///
 ///     d = r_C - r_D, perpendicular to the bearing's axis;   delta = |d| - c;   n = d/|d|.
@@ -92,25 +123,45 @@ inline bool revolute_touches(const Vector3& journal_centre, double journal_radiu
 inline RevoluteContact revolute_contact(const BodyMotion& journal, double journal_radius,
                                         const BodyMotion& bearing, double bearing_radius,
                                         const Vector3& axis) {
-  RevoluteContact contact;
   const Vector3 centres = journal.position - bearing.position;
-  const Vector3 offset = perpendicular_part(centres, axis);
-  const double offset_squared = offset.squaredNorm();
-  if (offset_squared > std::numeric_limits<double>::min()) {
-    contact.eccentricity = std::sqrt(offset_squared);
-    contact.normal = offset * (1.0 / contact.eccentricity);
-  } else {
-    contact.eccentricity = 0.0;
+  const auto across_the_axis = [&] {
     const Vector3 away = std::abs(axis.x()) < 0.6 ? Vector3::UnitX() : Vector3::UnitY();
-    contact.normal = perpendicular_part(away, axis).normalized();
-  }
-  contact.effective_radius = internal_effective_radius(journal_radius, bearing_radius);
-  contact.penetration_depth = contact.eccentricity - (bearing_radius - journal_radius);
-  contact.arm_1 = (journal_radius - 0.5 * contact.penetration_depth) * contact.normal;
-  contact.arm_2 = centres + contact.arm_1;
-  contact.relative_velocity =
-      material_velocity(journal, contact.arm_1) - material_velocity(bearing, contact.arm_2);
-  return contact;
+    return Vector3(perpendicular_part(away, axis).normalized());
+  };
+  return detail::round_contact(journal, journal_radius, bearing, bearing_radius, centres,
+                               perpendicular_part(centres, axis), across_the_axis);
+}
+
+/// Penetration depth of a ball in its socket [m]: delta = |d| - (R2 - R1). Negative: gap.
+/// @param ball_centre, socket_centre [m]; @param ball_radius R1, socket_radius R2 [m]
+inline double ball_penetration(const Vector3& ball_centre, double ball_radius,
+                               const Vector3& socket_centre, double socket_radius) {
+  return (ball_centre - socket_centre).norm() - (socket_radius - ball_radius);
+}
+
+/// Whether ball and socket touch, as revolute_touches().
+inline bool ball_touches(const Vector3& ball_centre, double ball_radius,
+                         const Vector3& socket_centre, double socket_radius) {
+  const double clearance = socket_radius - ball_radius;
+  return !(clearance > 0.0) || (ball_centre - socket_centre).squaredNorm() > clearance * clearance;
+}
+
+/// Ball of radius R1 in a spherical socket of radius R2: the joint of revolute_contact() with the
+/// offset d in all three directions,
+///
+///     d = r_C - r_D;   delta = |d| - c;   n = d/|d|;   P = r_C + (R1 - delta/2) n.
+///
+/// The bodies touch along a circle exactly, whose effective radius is R1 R2/(R2 - R1): the case for
+/// which Hertz' formulas are made. The whole inner sphere counts; the opening of the socket is not
+/// seen. One square root, two divisions.
+/// @param ball_radius R1 [m], @param socket_radius R2 [m], 0 < R1 < R2
+/// @return for concentric parts a gap of -c with normal x
+/// @throws std::invalid_argument when not 0 < R1 < R2
+inline BallContact ball_contact(const BodyMotion& ball, double ball_radius,
+                                const BodyMotion& socket, double socket_radius) {
+  const Vector3 centres = ball.position - socket.position;
+  return detail::round_contact(ball, ball_radius, socket, socket_radius, centres, centres,
+                               [] { return Vector3(Vector3::UnitX()); });
 }
 
 /// Spherical pad of a slider against a flat end wall of its slot.

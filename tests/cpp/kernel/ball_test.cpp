@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <limits>
+#include <stdexcept>
+
+#include "statejump/kernel/joint_kinematics.hpp"
+#include "support.hpp"
+
+namespace statejump::kernel {
+namespace {
+
+using testing::expect_vector_near;
+using testing::Random;
+
+constexpr double ball_radius = 5e-3;
+constexpr double socket_radius = 5.1e-3;
+
+TEST(Ball, DepthNormalAndOnePoint) {
+  // 2-3-6-7: |d| = 0.14 mm, so delta = 0.04 mm
+  const BodyMotion ball{Vector3(1.04, 2.06, 3.12) * 1e-3, Vector3::Zero(), Vector3::Zero()};
+  const BodyMotion socket{Vector3(1.0, 2.0, 3.0) * 1e-3, Vector3::Zero(), Vector3::Zero()};
+  const BallContact contact = ball_contact(ball, ball_radius, socket, socket_radius);
+  // positions of mm carry 4e-19 m each
+  EXPECT_NEAR(contact.eccentricity, 0.14e-3, 2e-18);
+  EXPECT_NEAR(contact.penetration_depth, 0.04e-3, 4e-18);
+  expect_vector_near(contact.normal, Vector3(2, 3, 6) / 7, 2e-14, "normal");
+  const Vector3 point = ball.position + contact.arm_1;
+  expect_vector_near(socket.position + contact.arm_2, point, 2e-18, "point");
+  EXPECT_NEAR(contact.arm_1.norm(), ball_radius - 0.02e-3, 1e-17);
+  EXPECT_NEAR(contact.arm_2.norm(), socket_radius + 0.02e-3, 1e-17);
+  EXPECT_NEAR(contact.effective_radius, 0.255, 1e-14 * 0.255);
+  EXPECT_NEAR(ball_penetration(ball.position, ball_radius, socket.position, socket_radius),
+              contact.penetration_depth, 1e-19);
+}
+
+// Across an axis that the offset is perpendicular to, ball and journal are the same contact.
+TEST(Ball, IsTheRevoluteContactInItsPlane) {
+  Random random;
+  for (int i = 0; i < 200; ++i) {
+    const Vector3 axis = random.unit();
+    const BodyMotion socket{Vector3::Zero(), random.vector(1.0), random.vector(10.0)};
+    const Vector3 offset = perpendicular_part(random.vector(2e-4), axis);
+    const BodyMotion ball{offset, random.vector(1.0), random.vector(10.0)};
+    const BallContact a = ball_contact(ball, ball_radius, socket, socket_radius);
+    const RevoluteContact b = revolute_contact(ball, ball_radius, socket, socket_radius, axis);
+    // What is left along the axis is rounding: 1e-16 of the offset.
+    EXPECT_NEAR(a.penetration_depth, b.penetration_depth, 1e-18);
+    EXPECT_EQ(a.effective_radius, b.effective_radius);
+    expect_vector_near(a.normal, b.normal, 1e-15 * 2e-4 / offset.norm(), "normal");
+    expect_vector_near(a.arm_2, b.arm_2, 1e-17 * 2e-4 / offset.norm(), "arm");
+    expect_vector_near(a.relative_velocity, b.relative_velocity, 1e-14 * 2e-4 / offset.norm(),
+                       "velocity");
+  }
+}
+
+TEST(Ball, AxialOffsetClosesTheClearanceToo) {
+  const BodyMotion socket{Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+  for (int i = 0; i < 3; ++i) {
+    for (const double sign : {-1.0, 1.0}) {
+      const Vector3 direction = sign * Vector3::Unit(i);
+      const BodyMotion ball{1.01e-4 * direction, 2.0 * direction, Vector3::Zero()};
+      const BallContact contact = ball_contact(ball, ball_radius, socket, socket_radius);
+      EXPECT_NEAR(contact.penetration_depth, 1e-6, 1e-18);
+      expect_vector_near(contact.normal, direction, 1e-15, "normal");
+      EXPECT_NEAR(contact.relative_velocity.dot(contact.normal), 2.0, 1e-15);
+    }
+  }
+}
+
+TEST(Ball, ConcentricIsAGapWithSomeNormal) {
+  const BodyMotion body{Vector3(0.3, -0.2, 0.1), Vector3::Zero(), Vector3::Zero()};
+  const BallContact contact = ball_contact(body, ball_radius, body, socket_radius);
+  EXPECT_NEAR(contact.penetration_depth, -1e-4, 1e-17);
+  EXPECT_EQ(contact.normal.norm(), 1.0);
+  EXPECT_TRUE(contact.arm_1.allFinite() && contact.arm_2.allFinite());
+}
+
+TEST(Ball, RigidMotionOfBothBodiesLeavesNoRelativeVelocity) {
+  Random random;
+  for (int i = 0; i < 100; ++i) {
+    const Vector3 origin = random.vector(0.1);
+    const Vector3 drift = random.vector(1.0);
+    const Vector3 spin = random.vector(10.0);
+    const auto moving = [&](const Vector3& position) {
+      return BodyMotion{position, drift + spin.cross(position - origin), spin};
+    };
+    const BodyMotion socket = moving(random.vector(0.1));
+    const BodyMotion ball = moving(socket.position + random.vector(2e-4));
+    // velocities up to 5 m/s, a dozen roundings
+    EXPECT_LE(ball_contact(ball, ball_radius, socket, socket_radius).relative_velocity.norm(),
+              1e-14);
+  }
+}
+
+TEST(Ball, TouchesAgreesWithDepth) {
+  Random random;
+  int touching = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3 socket = random.vector(0.1);
+    const Vector3 ball = socket + random.vector(1e-4);
+    const bool touches = ball_touches(ball, ball_radius, socket, socket_radius);
+    const double depth = ball_penetration(ball, ball_radius, socket, socket_radius);
+    if (std::abs(depth) > 1e-18) {
+      EXPECT_EQ(touches, depth > 0.0);
+    }
+    touching += touches;
+  }
+  EXPECT_GT(touching, 100);
+  EXPECT_LT(touching, 1900);
+}
+
+TEST(Ball, RefusesASocketThatDoesNotHoldTheBall) {
+  const BodyMotion body{Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+  EXPECT_THROW(ball_contact(body, 5e-3, body, 5e-3), std::invalid_argument);
+  EXPECT_THROW(ball_contact(body, 5e-3, body, 4e-3), std::invalid_argument);
+  EXPECT_TRUE(ball_touches(body.position, 5e-3, body.position, 4.9e-3));
+}
+
+}  // namespace
+}  // namespace statejump::kernel
