@@ -163,8 +163,13 @@ void ThermalLinks::act(ThermalLink& link, const Vector3r& moment) {
   link.temperatureChange = link.program->temperature_change(scene->time);
   const Real stress_free_length =
       link.stressFreeLength * (1 + link.thermalExpansion * link.temperatureChange);
-  const Real stress_free_rate =
-      link.stressFreeLength * link.thermalExpansion * link.program->temperature_rate(scene->time);
+  // Of the last step, as the velocities are: at a corner of the program the rate of one instant
+  // would set the dashpot against a speed that the tip does not have yet.
+  const Real since = scene->time - link.previousTime;
+  const Real stress_free_rate = link.previousStressFreeLength > 0 && since > 0
+                                    ? (stress_free_length - link.previousStressFreeLength) / since
+                                    : link.stressFreeLength * link.thermalExpansion *
+                                          link.program->temperature_rate(scene->time);
   const Real stiffness = link.youngModulus * link.crossSectionArea / stress_free_length;
   const Real damping = damping_coefficient(link, root, tip);
   const Real extension = length - stress_free_length;
@@ -224,6 +229,7 @@ void ThermalLinks::act(ThermalLink& link, const Vector3r& moment) {
   link.previousTension = tension;
   link.previousExtension = extension;
   link.previousStressFreeLength = stress_free_length;
+  link.previousTime = scene->time;
 }
 
 namespace {

@@ -114,6 +114,7 @@ struct ThermalLink : Registered<ThermalLink, yade::Serializable> {
   Real previousTension = 0;
   Real previousExtension = 0;
   Real previousStressFreeLength = 0;
+  Real previousTime = 0;
   Vector3r tipDirection = Vector3r::Zero();
 
   void check() const;
@@ -147,8 +148,10 @@ struct ThermalLink : Registered<ThermalLink, yade::Serializable> {
         read_only("previousExtension", &ThermalLink::previousExtension,
                   "Elastic extension of the last step [m], kept for the energy account"),
         read_only("previousStressFreeLength", &ThermalLink::previousStressFreeLength,
-                  "Stress-free length of the last step [m], kept for the energy account; 0 before "
-                  "the first"),
+                  "Stress-free length of the last step [m], kept for its rate and for the energy "
+                  "account; 0 before the first"),
+        read_only("previousTime", &ThermalLink::previousTime,
+                  "Time of the last step [s], kept for the rate of the stress-free length"),
         read_only("tipDirection", &ThermalLink::tipDirection,
                   "Direction of the link in the axes of the tip body [-]; zero before the first "
                   "step"));

@@ -24,7 +24,10 @@ from .umbrella import compare as umbrella_compare
 from .umbrella import dem as umbrella_dem
 from .umbrella import model as umbrella
 from .umbrella import plot as umbrella_plot
+from .umbrella.energy import energy_command
 from .umbrella.figures import figures_command
+from .umbrella.hold import hold_command
+from .umbrella.slow import slow_command
 
 
 def _dem_label(steps: int, label: str = "DEM") -> str:
@@ -269,7 +272,7 @@ def laws_command(case_file: Path | None, results: Path, quiet: bool) -> None:
     console.print(f"curves: {', '.join(str(name) for name in written)}")
 
 
-for _command in (figures_command, control_command):
+for _command in (figures_command, slow_command, hold_command, energy_command, control_command):
     cli.add_command(_command)
 
 
