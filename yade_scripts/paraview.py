@@ -7,7 +7,8 @@
 Files are named as those of YADE's VTKRecorder, ``<prefix>joints.<iteration>.vtp``, with one
 ``<prefix>joints.vtp.series`` each that gives ParaView the true times:
 
-- joints: outline of every Journal, Bearing, Slider and SlotFace at the current temperature
+- joints: outline of every Journal, Bearing, Ball, Socket, Slider and SlotFace at the current
+  temperature; ``kind`` counts them as KINDS below does
 - links: every ThermalLink as a line, with its axial force
 - contacts: a point per contact, with normal and shear force as vectors on body 1, the gap or
   penetration depth and whether it slips
@@ -28,7 +29,7 @@ from yade.wrapper import Omega
 
 O = Omega()
 SIDES = 96  # of a circle; its sagitta is 5e-4 of the radius
-KINDS = {"Journal": 1, "Bearing": 2, "Slider": 3, "SlotFace": 4}
+KINDS = {"Journal": 1, "Bearing": 2, "Slider": 3, "SlotFace": 4, "Ball": 5, "Socket": 6}
 
 
 class _Data:
@@ -83,7 +84,10 @@ def _outline(body) -> list[Vector3]:
         return [state.pos + state.ori * corner for corner in corners]
     radius = shape.radius * grown
     turn = [2 * pi * i / SIDES for i in range(SIDES + 1)]
-    return [state.pos + state.ori * Vector3(radius * cos(a), radius * sin(a), 0) for a in turn]
+    circle = [Vector3(radius * cos(a), radius * sin(a), 0) for a in turn]
+    if kind in ("Ball", "Socket"):  # one more great circle, from the same point
+        circle += [Vector3(point[0], 0, point[1]) for point in circle]
+    return [state.pos + state.ori * point for point in circle]
 
 
 class ParaViewRecorder:

@@ -27,13 +27,14 @@ std::string where(const yade::Scene& scene, int id1, int id2, const std::string&
 }
 
 // Failures apart from the path of every step, which stays short and free of text.
-[[gnu::cold, gnu::noinline]] void fail_closed(Real journal_radius, Real bearing_radius,
+[[gnu::cold, gnu::noinline]] void fail_closed(const char* inner, Real inner_radius,
+                                              const char* outer, Real outer_radius,
                                               const yade::Scene& scene,
                                               const yade::Interaction& contact) {
   std::ostringstream text;
   text.precision(9);
-  text << "the clearance is closed: journal radius " << journal_radius << " m, bearing radius "
-       << bearing_radius << " m at the current temperature"
+  text << "the clearance is closed: " << inner << " radius " << inner_radius << " m, " << outer
+       << " radius " << outer_radius << " m at the current temperature"
        << where(scene, contact.id1, contact.id2);
   record_failure(text.str());
 }
@@ -106,7 +107,7 @@ inline void JointGeom::update(const kernel::JointContact& contact, const yade::S
   kernel::BodyMotion bearing_motion = motion(state2);
   bearing_motion.position += shift2;
   if (!(journal_radius > 0 && bearing_radius > journal_radius)) {
-    fail_closed(journal_radius, bearing_radius, *scene, *contact);
+    fail_closed("journal", journal_radius, "bearing", bearing_radius, *scene, *contact);
     return false;
   }
   const bool keep = force || contact->isReal();
@@ -129,6 +130,39 @@ inline void JointGeom::update(const kernel::JointContact& contact, const yade::S
   geometry.axis = axis;
   geometry.clearanceRate =
       bearing.radius * bearing.thermalStrainRate - journal.radius * journal.thermalStrainRate;
+  geometry.update(found, state1, state2, scene->dt);
+  return true;
+}
+
+[[gnu::flatten]] bool Ig2_Ball_Socket_JointGeom::go(
+    const yade::shared_ptr<yade::Shape>& shape1, const yade::shared_ptr<yade::Shape>& shape2,
+    const yade::State& state1, const yade::State& state2, const Vector3r& shift2, const bool& force,
+    const yade::shared_ptr<yade::Interaction>& contact) {
+  const auto& ball = static_cast<const Ball&>(*shape1);
+  const auto& socket = static_cast<const Socket&>(*shape2);
+  const Real ball_radius = ball.expanded(ball.radius);
+  const Real socket_radius = socket.expanded(socket.radius);
+  kernel::BodyMotion socket_motion = motion(state2);
+  socket_motion.position += shift2;
+  if (!(ball_radius > 0 && socket_radius > ball_radius)) {
+    fail_closed("ball", ball_radius, "socket", socket_radius, *scene, *contact);
+    return false;
+  }
+  const bool keep = force || contact->isReal();
+  if (!keep && !kernel::ball_touches(state1.se3.position, ball_radius, socket_motion.position,
+                                     socket_radius)) {
+    return false;
+  }
+  const kernel::JointContact found =
+      kernel::ball_contact(motion(state1), ball_radius, socket_motion, socket_radius);
+  JointGeom& geometry = geometry_of(contact, found.normal);
+  geometry.refR1 = ball_radius;
+  geometry.refR2 = socket_radius;
+  geometry.journalRadius = ball_radius;
+  geometry.bearingRadius = socket_radius;
+  geometry.axis = Vector3r::Zero();
+  geometry.clearanceRate =
+      socket.radius * socket.thermalStrainRate - ball.radius * ball.thermalStrainRate;
   geometry.update(found, state1, state2, scene->dt);
   return true;
 }
@@ -320,7 +354,7 @@ void Law2_JointGeom_JointPhys_JointLaw::check() {
   law.friction_parameters = {0, v0, v1};  // the friction coefficient is that of each contact
   laws::validate(law);
   law_ = law;
-  needs_bearing_ = !(std::holds_alternative<laws::HertzPaper>(law.normal) ||
+  needs_axis_ = !(std::holds_alternative<laws::HertzPaper>(law.normal) ||
                      std::holds_alternative<laws::HertzInternal>(law.normal)) ||
                    std::holds_alternative<laws::PaperVelocity>(law.tangential_velocity);
 }
@@ -346,9 +380,10 @@ bool Law2_JointGeom_JointPhys_JointLaw::go(yade::shared_ptr<yade::IGeom>& geomet
   auto& physics = static_cast<JointPhys&>(*physics_pointer);
   const Real dt = scene->dt;
   const bool flat = !(geometry.bearingRadius > 0);
-  if (flat && needs_bearing_) {
+  if (needs_axis_ && geometry.axis.isZero()) {
     fail_law(
-        "a Slider on a SlotFace needs normalLaw 'hertz_paper' or 'hertz_internal' and "
+        std::string(flat ? "a Slider on a SlotFace" : "a Ball in a Socket") +
+            " needs normalLaw 'hertz_paper' or 'hertz_internal' and "
         "tangentialVelocity 'material', not '" +
             normalLaw + "' and '" + tangentialVelocity + "'",
         *scene, *contact);

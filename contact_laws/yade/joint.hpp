@@ -16,8 +16,8 @@ struct JointGeom : RegisteredIndexable<JointGeom, yade::GenericSpheresContact> {
   static constexpr const char* class_name = "JointGeom";
   static constexpr const char* base_name = "GenericSpheresContact";
   static constexpr const char* doc =
-      "Geometry of one contact of a clearance joint. normal points from the journal (slider), "
-      "id1, into the bearing (slot face), id2: the direction in which 1 pushes 2.";
+      "Geometry of one contact of a clearance joint. normal points from the journal (ball, slider), "
+      "id1, into the bearing (socket, slot face), id2: the direction in which 1 pushes 2.";
   Real penetrationDepth = 0;
   Real effectiveRadius = 0;
   Real eccentricity = 0;
@@ -48,9 +48,10 @@ struct JointGeom : RegisteredIndexable<JointGeom, yade::GenericSpheresContact> {
                   "Velocity of body 1 relative to body 2, of the material at the contact point "
                   "[m/s]"),
         read_only("journalRadius", &JointGeom::journalRadius,
-                  "Radius of the journal (of the slider's pads) at the current temperature [m]"),
+                  "Radius of the journal (ball, slider's pads) at the current temperature [m]"),
         read_only("bearingRadius", &JointGeom::bearingRadius,
-                  "Radius of the bearing at the current temperature [m]; 0: a flat SlotFace"));
+                  "Radius of the bearing (socket) at the current temperature [m]; 0: a flat "
+                  "SlotFace"));
   }
 };
 
@@ -142,6 +143,22 @@ struct Ig2_Journal_Bearing_JointGeom
   }
 };
 
+struct Ig2_Ball_Socket_JointGeom : Registered<Ig2_Ball_Socket_JointGeom, yade::IGeomFunctor> {
+  static constexpr const char* class_name = "Ig2_Ball_Socket_JointGeom";
+  static constexpr const char* base_name = "IGeomFunctor";
+  static constexpr const char* doc =
+      "Internal contact of a Ball in a Socket: as Ig2_Journal_Bearing_JointGeom, with the offset "
+      "of the centres in all three directions";
+  using yade::IGeomFunctor::go;
+  bool go(const yade::shared_ptr<yade::Shape>& shape1, const yade::shared_ptr<yade::Shape>& shape2,
+          const yade::State& state1, const yade::State& state2, const Vector3r& shift2,
+          const bool& force, const yade::shared_ptr<yade::Interaction>& contact) override;
+  std::string checkOrder() const override { return "Ball Socket"; }
+  std::string get2DFunctorType1() const override { return "Ball"; }
+  std::string get2DFunctorType2() const override { return "Socket"; }
+  static auto attributes() { return std::make_tuple(); }
+};
+
 struct Ig2_Slider_SlotFace_JointGeom
     : Registered<Ig2_Slider_SlotFace_JointGeom, yade::IGeomFunctor> {
   static constexpr const char* class_name = "Ig2_Slider_SlotFace_JointGeom";
@@ -218,8 +235,9 @@ struct Law2_JointGeom_JointPhys_JointLaw
       "Joint contact by laws chosen by name: normal force, impact dissipation, friction and the "
       "velocity that friction sees. The defaults are Law2_JointGeom_JointPhys_HertzMindlin. The "
       "damping ratios of JointPhys act beside the dissipation law; the tangential one belongs to "
-      "the spring of 'mindlin'. A Slider on a SlotFace takes 'hertz_paper' or 'hertz_internal' "
-      "(both with the radius of the pads) and 'material' only. A depth outside the range of the "
+      "the spring of 'mindlin'. A Slider on a SlotFace (with the radius of its pads) and a Ball in a "
+      "Socket have no axis: they take 'hertz_paper' or 'hertz_internal' and 'material' only. A "
+      "depth outside the range of the "
       "normal law stops the run. Entries in O.energy: jointElastic, jointFriction, jointDamping, "
       "jointThermalWork.";
   std::string normalLaw = kernel::laws::HertzInternal::info.name;
@@ -274,7 +292,7 @@ struct Law2_JointGeom_JointPhys_JointLaw
   void account(const kernel::laws::JointResponse& joint, const kernel::laws::NormalGeometry& radii,
                const JointGeom& geometry, JointPhys& physics);
   kernel::laws::JointLaw law_;  // built by check()
-  bool needs_bearing_ = false;  // some of the laws have no meaning at a flat face
+  bool needs_axis_ = false;   // some of the laws have no meaning without a bearing's axis
   std::mutex beginning_;        // of firstContactTime and contacts
   JointEnergies energies_;
 };

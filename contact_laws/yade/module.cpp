@@ -30,15 +30,16 @@ struct ClassList {
 };
 
 using OurClasses =
-    ClassList<ThermalFrictMat, ThermalShape, Journal, Bearing, Slider, SlotFace, Bo1<Journal>,
-              Bo1<Bearing>, Bo1<Slider>, Bo1<SlotFace>, JointGeom, JointPhys,
-              Ig2_Journal_Bearing_JointGeom, Ig2_Slider_SlotFace_JointGeom,
+    ClassList<ThermalFrictMat, ThermalShape, Journal, Bearing, Ball, Socket, Slider, SlotFace,
+              Bo1<Journal>, Bo1<Bearing>, Bo1<Ball>, Bo1<Socket>, Bo1<Slider>, Bo1<SlotFace>,
+              JointGeom, JointPhys, Ig2_Journal_Bearing_JointGeom, Ig2_Ball_Socket_JointGeom,
+              Ig2_Slider_SlotFace_JointGeom,
               Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys, Law2_JointGeom_JointPhys_HertzMindlin,
               Law2_JointGeom_JointPhys_JointLaw, ThermalProgram, ThermalExpansionEngine,
               ThermalLink, ThermalLinks, TorsionSpring, TorsionSprings
 #ifdef STATEJUMP_HAS_VIEW
               ,
-              Gl1<Journal>, Gl1<Bearing>, Gl1<Slider>, Gl1<SlotFace>
+              Gl1<Journal>, Gl1<Bearing>, Gl1<Ball>, Gl1<Socket>, Gl1<Slider>, Gl1<SlotFace>
 #endif
               >;
 
@@ -72,21 +73,28 @@ STATEJUMP_EXPORT(ThermalFrictMat)
 STATEJUMP_EXPORT(ThermalShape)
 STATEJUMP_EXPORT(Journal)
 STATEJUMP_EXPORT(Bearing)
+STATEJUMP_EXPORT(Ball)
+STATEJUMP_EXPORT(Socket)
 STATEJUMP_EXPORT(Slider)
 STATEJUMP_EXPORT(SlotFace)
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Journal>, "Bo1_Journal_Aabb")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Bearing>, "Bo1_Bearing_Aabb")
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Ball>, "Bo1_Ball_Aabb")
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Socket>, "Bo1_Socket_Aabb")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Slider>, "Bo1_Slider_Aabb")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::SlotFace>, "Bo1_SlotFace_Aabb")
 #ifdef STATEJUMP_HAS_VIEW
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Journal>, "Gl1_Journal")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Bearing>, "Gl1_Bearing")
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Ball>, "Gl1_Ball")
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Socket>, "Gl1_Socket")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Slider>, "Gl1_Slider")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::SlotFace>, "Gl1_SlotFace")
 #endif
 STATEJUMP_EXPORT(JointGeom)
 STATEJUMP_EXPORT(JointPhys)
 STATEJUMP_EXPORT(Ig2_Journal_Bearing_JointGeom)
+STATEJUMP_EXPORT(Ig2_Ball_Socket_JointGeom)
 STATEJUMP_EXPORT(Ig2_Slider_SlotFace_JointGeom)
 STATEJUMP_EXPORT(Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys)
 STATEJUMP_EXPORT(Law2_JointGeom_JointPhys_HertzMindlin)

@@ -33,6 +33,14 @@ void Bearing::check() const {
   require_not_negative(class_name, "halfLength", halfLength, "[m]");
 }
 
+void Ball::check() const {
+  require_not_negative(class_name, "radius", radius, "[m]");
+}
+
+void Socket::check() const {
+  require_not_negative(class_name, "radius", radius, "[m]");
+}
+
 void Slider::check() const {
   require_not_negative(class_name, "radius", radius, "[m]");
 }
@@ -51,6 +59,14 @@ Vector3r Journal::half_extents(const yade::Quaternionr& orientation) const {
 
 Vector3r Bearing::half_extents(const yade::Quaternionr& orientation) const {
   return cylinder_half_extents(orientation, expanded(radius), expanded(halfLength));
+}
+
+Vector3r Ball::half_extents(const yade::Quaternionr&) const {
+  return Vector3r::Constant(expanded(radius));
+}
+
+Vector3r Socket::half_extents(const yade::Quaternionr&) const {
+  return Vector3r::Constant(expanded(radius));
 }
 
 Vector3r Slider::half_extents(const yade::Quaternionr&) const {

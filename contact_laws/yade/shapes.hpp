@@ -83,6 +83,41 @@ struct Bearing : RegisteredIndexable<Bearing, ThermalShape> {
   }
 };
 
+struct Ball : RegisteredIndexable<Ball, ThermalShape> {
+  static constexpr const char* class_name = "Ball";
+  static constexpr const char* bound_functor_name = "Bo1_Ball_Aabb";
+  static constexpr const char* view_functor_name = "Gl1_Ball";
+  static constexpr const char* base_name = "ThermalShape";
+  static constexpr const char* doc = "Ball of a spherical joint, inside a Socket.";
+  Real radius = 0;
+  Ball() { createIndex(); }
+  void check() const;
+  Vector3r half_extents(const yade::Quaternionr& orientation) const;
+  static auto attributes() {
+    return std::make_tuple(
+        attribute("radius", &Ball::radius, "Radius at the reference temperature [m]"));
+  }
+};
+
+struct Socket : RegisteredIndexable<Socket, ThermalShape> {
+  static constexpr const char* class_name = "Socket";
+  static constexpr const char* bound_functor_name = "Bo1_Socket_Aabb";
+  static constexpr const char* view_functor_name = "Gl1_Socket";
+  static constexpr const char* base_name = "ThermalShape";
+  static constexpr const char* doc =
+      "Cup of a spherical joint: the inside of a sphere, all of it; the opening through which the "
+      "ball's stem leaves is not modelled. The clearance is Socket.radius - Ball.radius, both at "
+      "the current temperature.";
+  Real radius = 0;
+  Socket() { createIndex(); }
+  void check() const;
+  Vector3r half_extents(const yade::Quaternionr& orientation) const;
+  static auto attributes() {
+    return std::make_tuple(
+        attribute("radius", &Socket::radius, "Inner radius at the reference temperature [m]"));
+  }
+};
+
 struct Slider : RegisteredIndexable<Slider, ThermalShape> {
   static constexpr const char* class_name = "Slider";
   static constexpr const char* bound_functor_name = "Bo1_Slider_Aabb";

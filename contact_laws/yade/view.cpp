@@ -90,6 +90,40 @@ void ring(Real inner, Real outer, Real z) {
   glEnd();
 }
 
+// From the lowest point up to a polar angle from there. sign: as of wall().
+void sphere(Real radius, Real polar, Real sign) {
+  constexpr int rings = 24;
+  for (int k = 0; k < rings; ++k) {
+    const Real lower = polar * k / rings;
+    const Real upper = polar * (k + 1) / rings;
+    glBegin(GL_QUAD_STRIP);
+    for (int i = 0; i <= sides; ++i) {
+      const auto [c, s] = on_circle(i);
+      for (const Real angle : {lower, upper}) {
+        const Vector3r out(std::sin(angle) * c, std::sin(angle) * s, -std::cos(angle));
+        glNormal3d(sign * out.x(), sign * out.y(), sign * out.z());
+        glVertex3d(radius * out.x(), radius * out.y(), radius * out.z());
+      }
+    }
+    glEnd();
+  }
+}
+
+// One across each axis.
+void great_circles(Real radius) {
+  for (int axis = 0; axis < 3; ++axis) {
+    glBegin(GL_LINE_LOOP);
+    for (int i = 0; i < sides; ++i) {
+      const auto [c, s] = on_circle(i);
+      Vector3r point = Vector3r::Zero();
+      point[(axis + 1) % 3] = radius * c;
+      point[(axis + 2) % 3] = radius * s;
+      glVertex3d(point.x(), point.y(), point.z());
+    }
+    glEnd();
+  }
+}
+
 // Radius and place of a journal with its play drawn larger.
 struct Drawn {
   Real radius;
@@ -183,6 +217,28 @@ void draw(const Bearing& bearing, const yade::State&, bool wire) {
   ring(inner, outer, -half);
   wall(outer, half, 1);
   ring(inner, outer, half);
+}
+
+void draw(const Ball& ball, const yade::State&, bool wire) {
+  const Real radius = ball.expanded(ball.radius);
+  const Painter painter(ball.color, 1);
+  if (!wire) sphere(radius, pi, 1);
+  glDisable(GL_LIGHTING);
+  if (!wire) glColor3d(0, 0, 0);  // great circles that turn with the ball
+  great_circles(1.001 * radius);
+}
+
+void draw(const Socket& socket, const yade::State&, bool wire) {
+  // The lower half: one looks into it, as the contact is with the whole sphere inside.
+  const Real radius = socket.expanded(socket.radius);
+  {
+    const Painter painter(socket.color, 1);
+    glDisable(GL_LIGHTING);
+    great_circles(radius);
+  }
+  if (wire) return;
+  const Painter painter(socket.color, 0.35);
+  sphere(radius, pi / 2, -1);
 }
 
 void draw(const Slider& slider, const yade::State&, bool wire) {

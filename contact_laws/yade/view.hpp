@@ -1,4 +1,4 @@
-// Journals, bearings, sliders and slots in YADE's 3-D view.
+// Journals, bearings, balls, sockets, sliders and slots in YADE's 3-D view.
 #pragma once
 
 #include "registered.hpp"
@@ -19,6 +19,8 @@ struct ViewSettings {
 
 void draw(const Journal& journal, const yade::State& state, bool wire);
 void draw(const Bearing& bearing, const yade::State& state, bool wire);
+void draw(const Ball& ball, const yade::State& state, bool wire);
+void draw(const Socket& socket, const yade::State& state, bool wire);
 void draw(const Slider& slider, const yade::State& state, bool wire);
 void draw(const SlotFace& face, const yade::State& state, bool wire);
 

@@ -10,6 +10,8 @@ BASES = {
     "ThermalFrictMat": ["ThermalFrictMat", "FrictMat", "ElastMat", "Material"],
     "Journal": ["Journal", "ThermalShape", "Shape"],
     "Bearing": ["Bearing", "ThermalShape", "Shape"],
+    "Ball": ["Ball", "ThermalShape", "Shape"],
+    "Socket": ["Socket", "ThermalShape", "Shape"],
     "Slider": ["Slider", "ThermalShape", "Shape"],
     "SlotFace": ["SlotFace", "ThermalShape", "Shape"],
     "JointGeom": ["JointGeom", "GenericSpheresContact", "IGeom"],

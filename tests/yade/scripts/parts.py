@@ -81,11 +81,17 @@ def engines(
         wrapper.ForceResetter(),
         *(thermal or [sj.ThermalExpansionEngine(program=program or constant())]),
         wrapper.InsertionSortCollider(
-            [sj.Bo1_Journal_Aabb(), sj.Bo1_Bearing_Aabb(), sj.Bo1_Slider_Aabb(), sj.Bo1_SlotFace_Aabb()],
+            [
+                sj.Bo1_Journal_Aabb(), sj.Bo1_Bearing_Aabb(), sj.Bo1_Ball_Aabb(), sj.Bo1_Socket_Aabb(),
+                sj.Bo1_Slider_Aabb(), sj.Bo1_SlotFace_Aabb(),
+            ],
             verletDist=1e-4,
         ),
         wrapper.InteractionLoop(
-            [sj.Ig2_Journal_Bearing_JointGeom(), sj.Ig2_Slider_SlotFace_JointGeom()],
+            [
+                sj.Ig2_Journal_Bearing_JointGeom(), sj.Ig2_Ball_Socket_JointGeom(),
+                sj.Ig2_Slider_SlotFace_JointGeom(),
+            ],
             [
                 sj.Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys(
                     normalDampingRatio=normal_damping, tangentialDampingRatio=tangential_damping
