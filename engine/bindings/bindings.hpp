@@ -17,4 +17,7 @@ void bind_laws(pybind11::module_& module);
 /// Adds Linkage, its runs and the quasi-static loop. Call after bind_thermal_program.
 void bind_linkage(pybind11::module_& module);
 
+/// Adds the rest sets of loaded joints to the module.
+void bind_rest_set(pybind11::module_& module);
+
 }  // namespace statejump::bindings

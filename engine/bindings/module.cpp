@@ -11,4 +11,5 @@ PYBIND11_MODULE(_engine, module) {
   statejump::bindings::bind_spring_slider(module);
   statejump::bindings::bind_laws(module);
   statejump::bindings::bind_linkage(module);
+  statejump::bindings::bind_rest_set(module);
 }

@@ -62,8 +62,9 @@ RestMesh clearance_sphere(double clearance, int level);
 /// further points of the conic likewise; between them it is replaced by chords, 8 per triangle.
 /// Parts are connected through edges. Against a smooth surface with exact vertex normals the error
 /// is of second order in the edge length. μ = 0 is answered with a cone of 1e-6: parts that it
-/// leaves smaller than 1e-4 of the mesh are isolated points, slivers are lines. diameter_error: the
-/// largest edge squared over 8 times the mesh's half extent, the sagitta. At most 256 forces.
+/// leaves smaller than 1e-4 of the mesh are isolated points, slivers are lines. diameter_error is
+/// an estimate: twice the sagitta of the longest edge on a sphere as large as the mesh's bounding
+/// box. At most 256 forces.
 SurfaceRestStudy rest_on_mesh(const RestMesh& mesh, const std::vector<Eigen::Vector3d>& forces,
                               double mu);
 
