@@ -1,0 +1,236 @@
+"""Where a loaded joint with friction can rest: not in one place, but in a whole set of them.
+
+    yade -n -x yade_scripts/multistable.py             # table; CSV and figure in results/multistable
+    FOLDER=out CASES=circle,sphere yade -n -x yade_scripts/multistable.py
+
+A journal in a bearing under a constant force F touches the wall somewhere. It rests there if friction
+can hold it: if the reaction that F needs, -F, is no farther than atan(mu) from the wall's normal N on
+the free side (Coulomb's cone). Every place where that holds is a stable state.
+
+Here many joints, far from each other, are let go at once, each at rest at another place of its wall
+and as deep in it as its part of F along the normal presses it. Those that the cone holds stay; all
+others leave. The journals cannot turn, like pins fixed to a link; a free one would roll.
+"""
+import csv
+import os
+import sys
+from dataclasses import dataclass, field
+from math import acos, atan, atan2, cos, degrees, pi, radians, sin, sqrt
+from pathlib import Path
+
+# The build tree, for a clone that is not installed.
+here = Path(sys.argv[0]).resolve().parent
+sys.path += [str(here), str(here.parent / "build" / "python")]
+from statejump_yade import *
+
+young, poisson, friction = 70e9, 0.3, 0.3  # Table 2 of Chen et al. (2021): Pa, -, -
+R1, R2 = 5e-3, 5.1e-3  # m, journal (ball) and bearing (socket)
+load, mass = 1.0, 1e-3  # N, kg
+spacing = 0.02  # m, between joints that do not see each other
+cone = atan(friction)
+modulus = young / (2 * (1 - poisson**2))  # E* of two equal bodies
+shear_modulus = young / (4 * (2 - poisson) * (1 + poisson))  # G*
+
+
+def depth_under(force, wall_radius):
+    """Depth at which Hertz contact carries a force [m]."""
+    effective = R1 * wall_radius / (wall_radius - R1)
+    return (max(force, 0) / (4 / 3 * modulus * sqrt(effective))) ** (2 / 3)
+
+
+def creep(wall_radius=R2):
+    """How far friction at its limit stretches the contact [m]: mu F / k_t."""
+    contact_radius = sqrt(R1 * wall_radius / (wall_radius - R1) * depth_under(load, wall_radius))
+    return friction * load / (8 * shear_modulus * contact_radius)
+
+
+@dataclass
+class Case:
+    """A wall: places on it as (unit normal into the wall, local radius, centre of the journal that
+    just touches there), the force on the journal, and how to make the two bodies."""
+
+    name: str
+    force: Vector3
+    places: list
+    inner: object
+    outer: object
+    blocked: str
+    not_admissible: int = 0
+    rows: list = field(default_factory=list)
+
+
+def circle():
+    """Journal in a round bearing: a place for every half degree."""
+    angles = [radians(0.5 * i + 0.25) for i in range(720)]
+    normals = [Vector3(cos(a), sin(a), 0) for a in angles]
+    return Case(
+        "circle", load * Vector3(0.6, -0.8, 0), [(n, R2, n * (R2 - R1)) for n in normals],
+        lambda: Journal(radius=R1), lambda: Bearing(radius=R2), "zXYZ",
+    )
+
+
+def sphere():
+    """Ball in a socket: places spread evenly over the part within 45 degrees of the force."""
+    force = load * Vector3(0.36, 0.48, -0.8)
+    frame = Quaternion.Identity
+    frame.setFromTwoVectors(Vector3(0, 0, 1), force)
+    count, places = 900, []
+    for i in range(count):
+        height = 1 - (1 - cos(radians(45))) * (i + 0.5) / count
+        turn = i * pi * (3 - sqrt(5))
+        across = sqrt(1 - height**2)
+        normal = frame * Vector3(across * cos(turn), across * sin(turn), height)
+        places.append((normal, R2, normal * (R2 - R1)))
+    return Case("sphere", force, places, lambda: Ball(radius=R1), lambda: Socket(radius=R2), "XYZ")
+
+
+def release(case):
+    """Let go of one journal per place and see which are still there after 20 ms."""
+    O.reset()
+    metal = O.materials[O.materials.append(
+        ThermalFrictMat(young=young, poisson=poisson, frictionAngle=cone)
+    )]
+    wall = case.outer()  # one shape for all: the walls are the same
+    along = case.force.normalized()
+    pairs = []
+    for i, (normal, radius, touching) in enumerate(case.places):
+        origin = spacing * Vector3(i % 30, i // 30, 0)
+        start = origin + touching + depth_under(load * along.dot(normal), radius) * normal
+        for shape, position, blocked in ((wall, origin, "xyzXYZ"), (case.inner(), start, case.blocked)):
+            body = Body()
+            body.shape, body.material, body.bound = shape, metal, Aabb()
+            body.state.pos, body.state.mass, body.state.blockedDOFs = position, mass, blocked
+            number = O.bodies.append(body)
+        O.forces.setPermF(number, case.force)
+        pairs.append((number, start))
+    O.engines = [
+        ForceResetter(),
+        InsertionSortCollider(
+            [Bo1_Journal_Aabb(), Bo1_Bearing_Aabb(), Bo1_Ball_Aabb(), Bo1_Socket_Aabb()],
+            verletDist=1e-3,
+        ),
+        InteractionLoop(
+            [Ig2_Journal_Bearing_JointGeom(), Ig2_Ball_Socket_JointGeom()],
+            [Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys(
+                normalDampingRatio=0.5, tangentialDampingRatio=0.5
+            )],
+            [Law2_JointGeom_JointPhys_JointLaw()],
+        ),
+        NewtonIntegrator(damping=0),
+    ]
+    O.dt = 1e-6
+    O.run(20000, True)
+    # Whoever leaves at an angle beyond the cone swings as far to its other side: an angle of 0.2
+    # degrees makes that 0.4 degrees of the clearance circle.
+    threshold = 20 * creep()
+    for (number, start), (normal, radius, _) in zip(pairs, case.places):
+        state = O.bodies[number].state
+        moved = (state.pos - start).norm()
+        angle = acos(max(-1, min(1, along.dot(normal))))
+        case.rows.append({
+            "normal_x": normal[0], "normal_y": normal[1], "normal_z": normal[2],
+            "wall_radius_m": radius, "angle_to_force_deg": degrees(angle),
+            "predicted": "stays" if angle <= cone else "leaves",
+            "seen": "left" if moved > threshold else "stayed",
+            "moved_m": moved, "speed_m_per_s": state.vel.norm(),
+        })
+    return case
+
+
+def wrong(case, beyond):
+    """Number of joints that did not do what was predicted, beyond or within 1 degree."""
+    return sum(
+        (row["predicted"] == "stays") != (row["seen"] == "stayed")
+        and (abs(row["angle_to_force_deg"] - degrees(cone)) > 1) == beyond
+        for row in case.rows
+    )
+
+
+def table(cases):
+    """The table of the results, as text."""
+    lines = [
+        "| case | released | not admissible | predicted to stay | stayed | predicted to leave | left |"
+        " wrong within 1° of the boundary | wrong beyond |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|",
+    ]
+    for case in cases:
+        counts = [
+            sum(row[key] == value for row in case.rows)
+            for key, value in (("predicted", "stays"), ("seen", "stayed"), ("predicted", "leaves"),
+                               ("seen", "left"))
+        ]
+        numbers = [len(case.rows), case.not_admissible, *counts, wrong(case, False), wrong(case, True)]
+        lines.append(f"| {case.name} | " + " | ".join(map(str, numbers)) + " |")
+    return "\n".join(lines)
+
+
+def draw(cases, folder):
+    """Places coloured by behaviour, the predicted set behind them."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+
+    plt.rcParams.update({"font.size": 8, "svg.hashsalt": "multistable"})
+    colours = {"stayed": "#0b6e4f", "left": "#c8553d"}
+    figure, axes = plt.subplots(1, len(cases), figsize=(3.4 * len(cases), 3.7), squeeze=False)
+    for axis, case in zip(axes[0], cases):
+        if case.name == "sphere":
+            # Seen along the force: the distance from the middle is the angle to it.
+            frame = Quaternion.Identity
+            frame.setFromTwoVectors(case.force, Vector3(0, 0, 1))
+            local = [frame * Vector3(r["normal_x"], r["normal_y"], r["normal_z"]) for r in case.rows]
+            turns = [atan2(n[1], n[0]) for n in local]
+            points = [
+                (r["angle_to_force_deg"] * cos(t), r["angle_to_force_deg"] * sin(t))
+                for r, t in zip(case.rows, turns)
+            ]
+            rim = [(degrees(cone) * cos(t), degrees(cone) * sin(t)) for t in (pi * k / 90 for k in range(181))]
+            axis.fill(*zip(*rim), color="#bfe3d0", zorder=0)
+            axis.set_xlabel("angle to the force [°]")
+            size = 3
+        else:
+            points = [(1e6 * touching[0], 1e6 * touching[1]) for _, _, touching in case.places]
+            along = case.force.normalized()
+            held = sorted(
+                (atan2(along.cross(n)[2], along.dot(n)), p)
+                for (n, _, _), p in zip(case.places, points) if along.dot(n) >= cos(cone)
+            )
+            axis.fill([0, *(p[0] for _, p in held)], [0, *(p[1] for _, p in held)], color="#bfe3d0", zorder=0)
+            reach = max(max(abs(x), abs(y)) for x, y in points)
+            axis.annotate(
+                "", 0.75 * reach * Vector2(along[0], along[1]), (0, 0), arrowprops={"arrowstyle": "->"}
+            )
+            axis.text(0, 0, "F", ha="right", va="bottom")
+            axis.set_xlabel("centre of the journal [µm]")
+            size = 2
+        for seen, colour in colours.items():
+            chosen = [p for p, r in zip(points, case.rows) if r["seen"] == seen]
+            if chosen:
+                axis.scatter(*zip(*chosen), s=size, color=colour, label=f"{seen} ({len(chosen)})", linewidths=0)
+        axis.set_aspect("equal")
+        axis.set_title(case.name)
+        axis.legend(loc="upper right", frameon=False, markerscale=2, borderaxespad=0, fontsize=7)
+        axis.spines[["top", "right"]].set_visible(False)
+    figure.tight_layout()
+    figure.savefig(folder / "multistable.png", dpi=150)
+    figure.savefig(folder / "multistable.svg", metadata={"Date": None})
+
+
+known = {"circle": circle, "sphere": sphere}
+chosen = os.environ.get("CASES", ",".join(known)).split(",")
+cases = [release(known[name]()) for name in chosen]
+folder = Path(os.environ.get("FOLDER", here.parent / "results" / "multistable"))
+folder.mkdir(parents=True, exist_ok=True)
+for case in cases:
+    with open(folder / f"{case.name}.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, case.rows[0])
+        writer.writeheader()
+        writer.writerows(
+            {k: f"{v:.9g}" if isinstance(v, float) else v for k, v in row.items()} for row in case.rows
+        )
+draw(cases, folder)
+print(table(cases))
+failed = sum(wrong(case, True) for case in cases)
+if failed:
+    print(f"{failed} joints more than 1 degree from the boundary did not do what was predicted")
