@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Dask's ``distributed``: a cluster on this machine, or a scheduler that runs already."""
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import shutil
+import signal
+import sys
+import tempfile
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Iterator, Optional
+
+import dask
+
+# Before distributed is imported: it and its workers take their log levels from here.
+_QUIET = {
+    "logging": {name: "critical" for name in ("distributed", "distributed.client", "bokeh", "tornado", "asyncio")},
+    "distributed.comm.timeouts.connect": "5s",
+}
+dask.config.set(_QUIET)
+
+from distributed import Client, LocalCluster  # noqa: E402
+
+from .. import __version__, dem  # noqa: E402
+from ..errors import StatejumpError  # noqa: E402
+
+CONNECT_S = 5
+WORKERS_S = 10  # how long a scheduler without workers is waited for
+
+
+@contextmanager
+def open_client(scheduler: Optional[str], workers: int, model: str) -> Iterator[Client]:
+    """Yield a client; at the end everything that was started here is ended.
+
+    :param scheduler: address of a scheduler that runs already; None: a cluster on this machine
+    :param workers: processes of one thread each of the cluster on this machine
+    :raises StatejumpError: the scheduler cannot be reached, has no workers or other ones
+    """
+    with ExitStack() as stack:
+        stack.enter_context(_quiet())
+        if scheduler is None:
+            client = stack.enter_context(_local(workers, model))
+        else:
+            client = stack.enter_context(_existing(scheduler))
+        yield client
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Lost connections are told in our own words."""
+    loggers = [logging.getLogger(name) for name in ("distributed", "tornado", "asyncio", "concurrent.futures")]
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, levels):
+            logger.setLevel(level)
+
+
+@contextmanager
+def _local(workers: int, model: str) -> Iterator[Client]:
+    with tempfile.TemporaryDirectory(prefix="statejump-", ignore_cleanup_errors=True) as scratch:
+        environment = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+        if model == "dem":
+            environment["STATEJUMP_YADE"] = _yade_that_dies_with_its_worker(Path(scratch))
+        with _no_main_file(), ExitStack() as stack:
+            with _interrupt_blocked():
+                cluster = LocalCluster(
+                    n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None,
+                    silence_logs=logging.CRITICAL + 1, local_directory=scratch, memory_limit=0,
+                    env=environment,
+                )
+                stack.callback(_close, cluster)
+                client = stack.enter_context(Client(cluster))
+            yield client
+
+
+def _close(cluster: LocalCluster) -> None:
+    """End the cluster at once, also in the middle of a run."""
+    for nanny in list(cluster.workers.values()):
+        process = getattr(getattr(nanny, "process", None), "process", None)
+        nanny.auto_restart = False
+        if process is not None and process.pid:
+            try:
+                os.kill(process.pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+    cluster.close(timeout=10)
+
+
+def _yade_that_dies_with_its_worker(folder: Path) -> str:
+    """Return a command that starts YADE so that the kernel ends it with the worker that waits for it."""
+    yade, setpriv = dem.find_yade(), shutil.which("setpriv")
+    if setpriv is None:
+        return yade
+    wrapper = folder / "yade"
+    wrapper.write_text(f'#!/bin/sh\nexec "{setpriv}" --pdeathsig KILL "{os.path.abspath(yade)}" "$@"\n')
+    wrapper.chmod(0o755)
+    return str(wrapper)
+
+
+@contextmanager
+def _interrupt_blocked() -> Iterator[None]:
+    """Threads and processes started within never see Ctrl-C: only this thread ends the campaign."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _no_main_file() -> Iterator[None]:
+    """Hide the script that runs from new processes, which would run it again."""
+    main = sys.modules["__main__"]
+    hidden = {name: main.__dict__.pop(name) for name in ("__file__", "__spec__") if name in main.__dict__}
+    main.__dict__["__spec__"] = None
+    try:
+        yield
+    finally:
+        main.__dict__.update(hidden)
+
+
+@contextmanager
+def _existing(address: str) -> Iterator[Client]:
+    try:
+        client = Client(address, timeout=CONNECT_S, set_as_default=False)
+    except (OSError, ValueError, TypeError, asyncio.TimeoutError):
+        raise StatejumpError(
+            f"--scheduler = {address!r} cannot be reached within {CONNECT_S} s: must be the address of a running "
+            "dask scheduler, as 'tcp://host:8786'"
+        ) from None
+    try:
+        try:
+            client.wait_for_workers(1, timeout=WORKERS_S)
+        except asyncio.TimeoutError:
+            raise StatejumpError(f"--scheduler = {address!r} has no workers after {WORKERS_S} s") from None
+        try:
+            versions = client.run(_version)
+        except Exception as problem:  # the package is missing there, or is another one
+            raise StatejumpError(
+                f"--scheduler = {address!r}: its workers cannot import statejump {__version__}, start them with "
+                f"PYTHONPATH set: {type(problem).__name__}: {problem}"
+            ) from None
+        for worker, version in versions.items():
+            if version != __version__:
+                raise StatejumpError(
+                    f"--scheduler = {address!r}: worker {worker} has statejump {version}, here it is {__version__}"
+                )
+        yield client
+    finally:
+        client.close(timeout=CONNECT_S)
+
+
+def _version() -> str:
+    return __version__

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figures of a campaign: distributions and rank correlations, or outcomes along a sweep."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ..plot import STYLE, plt, save
+from .campaign_file import SWEEP, Campaign
+from .summary import spearman
+from .tables import Table
+
+BLUE, ORANGE, DARK = "#0072B2", "#D55E00", "#000000"
+LINES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+MOST_POINTS = 4000  # of one scatter panel
+MOST_LINES = 7
+
+
+def figures(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
+    """Write the figures, as PNG and SVG, and return their paths; none if every sample failed."""
+    if bool(np.all(table.failed)):
+        return []
+    with plt.rc_context(STYLE):
+        if campaign.command == SWEEP:
+            return _sweep(campaign, table, folder)
+        return _distributions(campaign, table, folder) + _scatter(campaign, table, folder)
+
+
+def _label(name: str, unit: str) -> str:
+    """Name without its unit, then the unit."""
+    plain = name
+    for ending in (unit, unit.replace("/", "_per_").replace(" ", "_"), "per_" + unit.removeprefix("1/")):
+        plain = plain.removesuffix("_" + ending)
+    section, _, key = plain.rpartition(".")
+    words = key.replace("_", " ").replace("temperature change", "ΔT")
+    return words + (f" of {section.replace('_', ' ')}" if section else "") + ("" if unit == "-" else f" [{unit}]")
+
+
+def _wrapped(text: str, width: int = 26) -> str:
+    lines = [""]
+    for word in text.split(" "):
+        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
+            lines.append(word)
+        else:
+            lines[-1] = f"{lines[-1]} {word}".strip()
+    return "\n".join(lines)
+
+
+def _small(panel: plt.Axes) -> None:
+    panel.ticklabel_format(axis="both", style="sci", scilimits=(-3, 4), useMathText=True)
+    panel.xaxis.get_offset_text().set_fontsize(7)
+    panel.yaxis.get_offset_text().set_fontsize(7)
+    panel.tick_params(labelsize=7)
+
+
+def _distributions(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
+    """Histogram and cumulated distribution of every outcome."""
+    columns = 3
+    rows = -(-len(table.outcomes) // columns)
+    drawing, panels = plt.subplots(
+        rows, columns, figsize=(10.5, 3.0 * rows), constrained_layout=True, squeeze=False
+    )
+    for panel in panels.flat[len(table.outcomes):]:
+        panel.set_axis_off()
+    for panel, (name, values) in zip(panels.flat, table.outcomes.items()):
+        there = np.sort(values[np.isfinite(values)])
+        panel.set_xlabel(_label(name, campaign.units[name]))
+        _small(panel)
+        lost = len(values) - int(np.count_nonzero(table.failed)) - len(there)
+        panel.set_title(f"in {len(there):,} of {len(there) + lost:,} samples", fontsize=8)
+        if not len(there):
+            continue
+        panel.hist(there, bins=_bins(there), color=BLUE, alpha=0.55)
+        panel.set_ylabel("samples in the bar", color=BLUE)
+        other = panel.twinx()
+        other.plot(there, np.arange(1, len(there) + 1) / len(there), color=ORANGE, linewidth=1.4,
+                   drawstyle="steps-post")
+        for level in (0.05, 0.5, 0.95):
+            other.axvline(float(np.quantile(there, level)), color=DARK, linewidth=0.7, linestyle=(0, (4, 3)))
+        other.set_ylim(0, 1.02)
+        other.grid(False)
+        other.tick_params(labelsize=7)
+        other.set_ylabel("cumulated share", color=ORANGE)
+    drawing.suptitle(f"{campaign.title}: outcomes; dashed: 5, 50 and 95 %", fontsize=11)
+    return save(drawing, folder, "distributions")
+
+
+def _bins(there: np.ndarray) -> np.ndarray:
+    count = int(np.clip(np.sqrt(len(there)), 8, 60))
+    low, high = float(there[0]), float(there[-1])
+    if high - low <= 1e-12 * max(abs(low), abs(high)):  # one value
+        half = 0.5 * abs(low) or 0.5
+        low, high = low - half, high + half
+    return np.linspace(low, high, count + 1)
+
+
+def _scatter(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
+    """Every outcome against every varied parameter, with the rank correlation."""
+    rows, columns = len(table.outcomes), len(table.parameters)
+    drawing, panels = plt.subplots(
+        rows, columns, figsize=(max(4.5, 2.25 * columns + 0.6), 1.75 * rows + 0.8), constrained_layout=True,
+        squeeze=False, sharex="col",
+    )
+    for row, (name, values) in enumerate(table.outcomes.items()):
+        there = np.isfinite(values)
+        for column, (parameter, varied) in enumerate(table.parameters.items()):
+            panel = panels[row, column]
+            shown = np.flatnonzero(there)[:MOST_POINTS]  # samples are independent: the first are as good
+            panel.plot(varied[shown], values[shown], ".", color=BLUE, markersize=2.5, alpha=0.35,
+                       markeredgewidth=0, rasterized=True)
+            rank = spearman(varied, values)
+            text = "ρ: one value only" if rank is None else f"ρ = {round(rank, 2) + 0.0:.2f}"  # no -0.00
+            panel.set_title(text, fontsize=8,
+                            color=ORANGE if rank is not None and abs(rank) >= 0.3 else "0.35", pad=3)
+            _small(panel)
+            if column == 0:
+                panel.set_ylabel(_wrapped(_label(name, campaign.units[name]), 20), fontsize=7.5)
+            else:
+                panel.tick_params(labelleft=False)
+                panel.yaxis.get_offset_text().set_visible(False)
+                panel.sharey(panels[row, 0])
+            if row == rows - 1:
+                panel.set_xlabel(_wrapped(_label(parameter, campaign.unit_of(parameter)), 24), fontsize=8)
+    drawing.suptitle(f"{campaign.title}: outcomes against what varies, ρ: Spearman", fontsize=11)
+    return save(drawing, folder, "correlations")
+
+
+def _sweep(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
+    """Outcomes against the first parameter, one line for every combination of the others."""
+    first, *others = campaign.vary
+    along = table.parameters[first.keys[0]]
+    rest = [table.parameters[parameter.keys[0]] for parameter in others]
+    combinations = sorted(set(zip(*rest))) if rest else [()]
+    columns = 3
+    rows = -(-len(table.outcomes) // columns)
+    drawing, panels = plt.subplots(
+        rows, columns, figsize=(10.5, 3.0 * rows + 0.3), constrained_layout=True, squeeze=False
+    )
+    for panel in panels.flat[len(table.outcomes):]:
+        panel.set_axis_off()
+    few = len(combinations) <= MOST_LINES
+    for panel, (name, values) in zip(panels.flat, table.outcomes.items()):
+        for number, combination in enumerate(combinations):
+            here = np.ones(len(along), dtype=bool)
+            for column, wanted in zip(rest, combination):
+                here &= column == wanted
+            order = np.argsort(along[here], kind="stable")
+            text = ", ".join(
+                f"{parameter.keys[0]} = {value:g}" for parameter, value in zip(others, combination)
+            )
+            colour = LINES[number] if few else plt.cm.viridis(number / (len(combinations) - 1))
+            panel.plot(along[here][order], values[here][order], "o-", color=colour, markersize=3,
+                       linewidth=1.2, label=text or None)
+        panel.set_xlabel(_label(first.keys[0], campaign.unit_of(first.keys[0])))
+        panel.set_ylabel(_wrapped(_label(name, campaign.units[name]), 30), fontsize=8)
+        _small(panel)
+        if first.spacing == "log":
+            panel.set_xscale("log")
+        if not np.any(np.isfinite(values)):
+            panel.set_title("in no sample", fontsize=8)
+    title = campaign.title
+    if others and few:
+        handles, labels = panels[0, 0].get_legend_handles_labels()
+        drawing.legend(handles, labels, loc="lower right", fontsize=8)
+    elif others:
+        title += f"; {len(combinations)} lines, dark to light: {', '.join(p.keys[0] for p in others)} rising"
+    drawing.suptitle(title, fontsize=11)
+    return save(drawing, folder, "sweep")

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All samples as one table: CSV and HDF5, the same bytes however the campaign was run."""
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from .. import __version__
+from ..output import replacing, write_atomically
+from .campaign_file import Campaign
+from .work import Sample
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns over the samples; outcomes of a failed sample are NaN and ``error`` says why."""
+
+    parameters: dict[str, np.ndarray]
+    outcomes: dict[str, np.ndarray]
+    error: list[str]
+
+    @property
+    def failed(self) -> np.ndarray:
+        """Which samples failed."""
+        return np.array([bool(error) for error in self.error])
+
+
+def make_table(campaign: Campaign, samples: dict[int, Sample]) -> Table:
+    """Gather all samples, in their order."""
+    ordered = [samples[index] for index in range(campaign.samples)]
+    parameters = np.array([campaign.values(index) for index in range(campaign.samples)], dtype=float)
+    lost = (np.nan,) * len(campaign.units)
+    outcomes = np.array([lost if sample.values is None else sample.values for sample in ordered])
+    return Table(
+        {parameter.keys[0]: parameters[:, place] for place, parameter in enumerate(campaign.vary)},
+        {name: outcomes[:, place] for place, name in enumerate(campaign.units)},
+        [sample.error for sample in ordered],
+    )
+
+
+def write_csv(table: Table, path: Path) -> None:
+    """Write one line per sample, full precision; outcomes of a failed sample are empty."""
+    columns = [values.tolist() for values in (*table.parameters.values(), *table.outcomes.values())]
+    count = len(table.parameters)
+    with write_atomically(path) as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["sample", *table.parameters, *table.outcomes, "error"])
+        for index, (error, *row) in enumerate(zip(table.error, *columns)):
+            outcomes = ["" if error else repr(value) for value in row[count:]]
+            writer.writerow([index, *map(repr, row[:count]), *outcomes, error])
+
+
+def write_hdf5(campaign: Campaign, table: Table, path: Path) -> None:
+    """Write groups ``parameters`` and ``outcomes``, each column with its unit, and ``error``."""
+    with replacing(path) as aside:
+        with h5py.File(aside, "w", libver=("earliest", "v110"), track_order=False) as file:
+            file.attrs["campaign"] = campaign.text
+            file.attrs["command"] = campaign.command
+            file.attrs["model"] = campaign.model
+            file.attrs["case"] = campaign.case.json()
+            file.attrs["key_sha256"] = campaign.key
+            if campaign.seed is not None:
+                file.attrs["seed"] = campaign.seed
+            file.attrs["statejump_version"] = __version__
+            file.attrs["numpy_version"] = np.__version__
+            file.attrs["h5py_version"] = h5py.__version__
+            _dataset(file, "sample", np.arange(len(table.error)), "-")
+            for name, values in table.parameters.items():
+                _dataset(file, f"parameters/{name}", values, campaign.unit_of(name))
+            for name, values in table.outcomes.items():
+                _dataset(file, f"outcomes/{name}", values, campaign.units[name])
+            texts = [error.encode() for error in table.error]
+            longest = max(1, *map(len, texts))
+            _dataset(file, "error", np.array(texts, dtype=h5py.string_dtype("utf-8", longest)), "-")
+
+
+def _dataset(file: h5py.File, name: str, values: np.ndarray, unit: str) -> None:
+    dataset = file.create_dataset(name, data=values, track_times=False)
+    dataset.attrs["unit"] = unit

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a worker does: run some samples. Every sample ends as outcomes or as a sentence."""
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import Optional, Sequence
+
+from ..case import parse_case
+from ..errors import StatejumpError
+from .campaign_file import Campaign
+from .outcomes import outcome
+
+NAME = "sample"
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A finished sample: either values or an error."""
+
+    index: int
+    values: Optional[tuple[float, ...]]
+    error: str = ""
+
+
+def run_sample(campaign: Campaign, index: int) -> Sample:
+    """Run one sample; whatever goes wrong is its error, in one sentence."""
+    try:
+        case = parse_case(campaign.data(index), NAME)
+        found = outcome(case, campaign.model)
+        return Sample(index, tuple(float(found[name]) for name in campaign.units))
+    except StatejumpError as problem:
+        return Sample(index, None, _one_line(str(problem).removeprefix(f"{NAME}: ")))
+    except Exception as problem:  # one sample never ends the campaign
+        return Sample(index, None, _one_line(f"the run failed: {type(problem).__name__}: {problem}"))
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def run_samples(campaign: Campaign, indices: Sequence[int]) -> tuple[float, list[Sample]]:
+    """Run several samples; return the seconds that they took, and the samples."""
+    started = time.perf_counter()
+    done = [run_sample(campaign, index) for index in indices]
+    return time.perf_counter() - started, done
