@@ -59,20 +59,21 @@ struct BoreContact {
 
 /// Inner surface of a bore (or of a socket) given by triangles.
 ///
-/// **The wall.** Of a tube every face is wall; of a closed ring those that the axis sees: hit first
-/// by a ray that leaves the axis perpendicularly through the face's centre. In both, faces that
-/// lean more than 45 degrees against the axis (ends, chamfers) are not wall. Axis and mean radius
-/// are the cylinder of least squares through the wall's vertices, weighted with their areas (for a
-/// socket: the sphere).
+/// **The wall.** Of a tube every face may be wall; of a closed ring the faces of the largest patch
+/// that surrounds an axis with normals pointing to it. Patches end where faces meet at more than 40
+/// degrees, so a closed ring needs more than 9 facets around. In both, faces that lean more than 45
+/// degrees against the axis (ends, chamfers) are not wall. Axis and mean radius are the cylinder of
+/// least squares through the wall's vertices, weighted with their areas (for a socket: the sphere).
 ///
 /// **The smooth wall.** The vertices are taken as points of the true surface. A chord lies inside a
 /// circle by h^2/(8 R), far more than an elastic depth, so the facets only say where to look.
 /// Through each vertex and its neighbours (two rings) goes a polynomial of degree 4 over the
 /// tangent plane, by least squares (the jet of Cazals and Pouget, Computer Aided Geometric Design
 /// 22, 2005), and within a face the three corners' polynomials are blended with weights that vanish
-/// smoothly on the opposite edge. Points, normals and curvatures are those of the blend; the error
-/// falls as h^5 or faster. Limits: noise of the vertices is followed, not smoothed, and second
-/// derivatives enlarge it by 1/h^2; sharp edges inside the wall (keyways, grooves) are rounded.
+/// smoothly on the opposite edge. Points, normals and curvatures are those of the blend; on a round
+/// bore the distance errs as h^6, by 2e-13 m at a radius of 5.1 mm and 200 facets around. Limits:
+/// noise of the vertices is followed, not smoothed, and second derivatives enlarge it by 1/h^2;
+/// sharp edges inside the wall (keyways, grooves) are rounded.
 ///
 /// Immutable after construction; all queries are const and may run in any number of threads. Copies
 /// share the mesh.
@@ -138,10 +139,12 @@ class BoreMesh {
   double length() const;                  ///< [m], of the wall along the axis
   double smallest_curvature() const;      ///< [1/m], of the wall at its vertices, convex positive
   double largest_curvature() const;       ///< [1/m]
-  /// How far the polynomials of neighbouring vertices disagree [m], largest half-way along an edge:
-  /// an estimate of the error of the smooth wall.
+  /// How far the polynomials of neighbouring vertices disagree [m], largest a quarter along an
+  /// edge: an estimate of the error of the smooth wall.
   double reconstruction_error() const;
-  double prominence() const;  ///< [m], see contacts(): 4 reconstruction errors + 1e-12
+  /// Rise between two minima below which contacts() takes them for one [m]: 1e-12 plus 4 times the
+  /// disagreement that 95 % of the edges stay below.
+  double prominence() const;
   /// Corner normals, unit, towards the free side; zero for vertices that are not on the wall.
   const std::vector<Eigen::Vector3d>& vertex_normals() const;
 
