@@ -46,6 +46,9 @@ py::dict set_dict(const RestSet& set) {
     one["angle_rad"] = std::isnan(part.angle) ? py::object(py::none()) : py::float_(part.angle);
     one["representative_m"] = part.representative;
     one["points_m"] = rows(part.points);
+    py::list rims;
+    for (const auto& rim : part.rims) rims.append(rows(rim));
+    one["rims_m"] = rims;
     parts.append(one);
   }
   py::dict result;

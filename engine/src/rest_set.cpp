@@ -509,21 +509,24 @@ RestSet can(const CanSet& set, double c, double b) {
     const auto& [row, arc] = nodes[root];
     part.representative = on_circle(c, 0.5 * (arc.a + arc.b), row == 0 ? 0.0 : row == 1 ? -b : b);
     part.diameter = can_diameter(own, c, b, nullptr);
-    if (part.area == 0.0) {
-      for (int r = 0; r < 3; ++r) {
-        for (const Interval& i : own_rows[r]->list()) {
-          if (r == 0) {
-            part.points.push_back(on_circle(c, i.a, -b));
-            part.points.push_back(on_circle(c, i.a, b));
-          } else if (own.band.list().empty()) {
-            const int steps = i.width() > 0.0 ? 2 + static_cast<int>(i.width() * 60.0) : 0;
-            for (int k = 0; k <= steps; ++k) {
-              const double angle = steps ? i.a + i.width() * k / steps : i.a;
-              part.points.push_back(on_circle(c, angle, r == 1 ? -b : b));
-            }
-          }
+    for (const bool high : {false, true}) {
+      for (const Interval& i : (high ? own.high_rim : own.low_rim).list()) {
+        std::vector<Vector3d> line;
+        const int steps = i.width() > 0.0 ? 2 + static_cast<int>(i.width() * 60.0) : 0;
+        for (int k = 0; k <= steps; ++k) {
+          const double angle = steps ? i.a + i.width() * k / steps : i.a;
+          line.push_back(on_circle(c, angle, high ? b : -b));
+        }
+        if (part.area > 0.0) {
+          part.rims.push_back(line);
+        } else if (own.band.list().empty()) {
+          part.points = line;
         }
       }
+    }
+    if (part.area == 0.0 && !own.band.list().empty()) {  // a line over the whole height
+      const double angle = own.band.list().front().a;
+      part.points = {on_circle(c, angle, -b), on_circle(c, angle, b)};
     }
     result.parts.push_back(part);
   }

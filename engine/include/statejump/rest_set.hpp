@@ -20,6 +20,8 @@ struct RestPart {
   Eigen::Vector3d representative = Eigen::Vector3d::Zero();
   /// Along a one-dimensional part, its ends first and last (one point if it is isolated).
   std::vector<Eigen::Vector3d> points;
+  /// Of a part with area: its one-dimensional pieces, the rims of rest_in_bore().
+  std::vector<std::vector<Eigen::Vector3d>> rims;
 };
 
 /// Positions at which a component can rest.

@@ -23,13 +23,14 @@ from .case_schema import (
     thermal_problem,
 )
 from .case_spring_slider import SpringSliderCase
+from .case_statics import StaticsCase
 from .case_umbrella import UmbrellaCase
 from .errors import StatejumpError
 
-__all__ = ["Case", "SpringSliderCase", "UmbrellaCase", "check_radii", "load_case", "parse_case"]
+__all__ = ["Case", "SpringSliderCase", "StaticsCase", "UmbrellaCase", "check_radii", "load_case", "parse_case"]
 
 # A kind is a module of its own and its class here.
-KINDS: dict[str, type[Case]] = {kind.KIND: kind for kind in (SpringSliderCase, UmbrellaCase)}
+KINDS: dict[str, type[Case]] = {kind.KIND: kind for kind in (SpringSliderCase, UmbrellaCase, StaticsCase)}
 
 
 class _HeaderOnly(Section):
