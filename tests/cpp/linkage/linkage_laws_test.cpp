@@ -66,6 +66,30 @@ TEST(LinkageLaws, PaperVelocityDoesNotSeeTheSpins) {
   EXPECT_DOUBLE_EQ(std::abs(joint.tangential_force), 0.3 * joint.normal_force);
 }
 
+TEST(LinkageLaws, StateSaysWhatTheJointDoes) {
+  const Linkage model = with_laws({"hertz_internal", "hunt_crossley", "mindlin", "material"});
+  LinkageState state = initial_state(model, LinkageStart::rest, 0.0, {1e-4, 0.0});
+  state.journal_centre.x() += 1e-8;
+  state.contact.tangential_force = {0.5, 0.0, 0.0};
+  for (const bool slipping : {false, true}) {
+    state.contact.slipping = slipping;
+    const LinkageJoint joint = joint_state(model, state, 0.0, 0.0);
+    EXPECT_EQ(joint.slipping, slipping);
+    EXPECT_EQ(joint.tangential_force, 0.5);
+    EXPECT_NEAR(joint.penetration_depth, 1e-8, 1e-15);
+  }
+  // Of a run: an impact speed while in contact and at no other time.
+  const LinkageRun done =
+      simulate(model, heating(0.05), initial_state(model, LinkageStart::rest, 0.0), {20000, 1});
+  int touching = 0;
+  for (const LinkageSample& s : done.samples) {
+    const LinkageJoint joint = joint_state(model, s.state, s.temperature_change, 0.0);
+    touching += joint.penetration_depth > 0.0;
+    ASSERT_EQ(s.state.impact_speed > 0.0, joint.penetration_depth > 0.0) << s.time;
+  }
+  EXPECT_GT(touching, 10);
+}
+
 TEST(LinkageLaws, DepthOutsideTheRangeStopsWithTheInstant) {
   // Johnson's formula ends at 4 e^-2 ΔR = 0.54 ΔR; a journal that arrives at 30 m/s goes beyond.
   const Linkage model = with_laws({"johnson", "none", "none", "material"});
