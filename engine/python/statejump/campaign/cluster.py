@@ -5,8 +5,10 @@ from __future__ import annotations
 import asyncio
 import logging
 import os
+import re
 import shutil
 import signal
+import socket
 import sys
 import tempfile
 from contextlib import ExitStack, contextmanager
@@ -19,6 +21,7 @@ import dask
 _QUIET = {
     "logging": {name: "critical" for name in ("distributed", "distributed.client", "bokeh", "tornado", "asyncio")},
     "distributed.comm.timeouts.connect": "5s",
+    "distributed.scheduler.allowed-failures": 1,  # a task whose worker dies is tried once more
 }
 dask.config.set(_QUIET)
 
@@ -128,13 +131,16 @@ def _no_main_file() -> Iterator[None]:
 
 @contextmanager
 def _existing(address: str) -> Iterator[Client]:
+    rule = "must be the address of a running dask scheduler, as 'tcp://host:8786'"
+    found = re.fullmatch(r"(?:(?:tcp|tls)://)?(\[[0-9a-fA-F:]+\]|[^\s:/\[\]]+):(\d{1,5})", address)
+    if found is None or int(found[2]) > 65535:
+        raise StatejumpError(f"--scheduler = {address!r} is not allowed: {rule}")
     try:
+        # Whether anybody listens, before Dask begins to try again and again.
+        socket.create_connection((found[1].strip("[]"), int(found[2])), timeout=CONNECT_S).close()
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
-    except (OSError, ValueError, TypeError, asyncio.TimeoutError):
-        raise StatejumpError(
-            f"--scheduler = {address!r} cannot be reached within {CONNECT_S} s: must be the address of a running "
-            "dask scheduler, as 'tcp://host:8786'"
-        ) from None
+    except (OSError, ValueError, asyncio.TimeoutError):
+        raise StatejumpError(f"--scheduler = {address!r} cannot be reached within {CONNECT_S} s: {rule}") from None
     try:
         try:
             client.wait_for_workers(1, timeout=WORKERS_S)

@@ -103,7 +103,7 @@ def _finished(
     """Yield finished batches. Samples whose worker died go one by one, each alone, at the end: only a
     sample that kills its worker also then is to blame."""
     batches = _Batches(missing, campaign.model)
-    running = as_completed()
+    running = as_completed(loop=client.loop)
     asked: dict[str, list[int]] = {}
     suspects: list[int] = []
 

@@ -150,8 +150,10 @@ def _sweep(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
                 f"{parameter.keys[0]} = {value:g}" for parameter, value in zip(others, combination)
             )
             colour = LINES[number] if few else plt.cm.viridis(number / (len(combinations) - 1))
-            panel.plot(along[here][order], values[here][order], "o-", color=colour, markersize=3,
-                       linewidth=1.2, label=text or None)
+            # Lines that cover each other stay visible: the later the thinner.
+            width = 1.2 + (1.3 * (len(combinations) - 1 - number) if few else 0.0)
+            panel.plot(along[here][order], values[here][order], "o-", color=colour, markersize=1.8 + width,
+                       linewidth=width, label=text or None)
         panel.set_xlabel(_label(first.keys[0], campaign.unit_of(first.keys[0])))
         panel.set_ylabel(_wrapped(_label(name, campaign.units[name]), 30), fontsize=8)
         _small(panel)
@@ -161,8 +163,7 @@ def _sweep(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
             panel.set_title("in no sample", fontsize=8)
     title = campaign.title
     if others and few:
-        handles, labels = panels[0, 0].get_legend_handles_labels()
-        drawing.legend(handles, labels, loc="lower right", fontsize=8)
+        panels[0, 0].legend(loc="best", fontsize=7, framealpha=1)
     elif others:
         title += f"; {len(combinations)} lines, dark to light: {', '.join(p.keys[0] for p in others)} rising"
     drawing.suptitle(title, fontsize=11)

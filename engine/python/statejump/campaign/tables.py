@@ -55,7 +55,7 @@ def write_csv(table: Table, path: Path) -> None:
 
 
 def write_hdf5(campaign: Campaign, table: Table, path: Path) -> None:
-    """Write groups ``parameters`` and ``outcomes``, each column with its unit, and ``error``."""
+    """Write groups ``parameters`` and ``outcomes``, each column with its unit, and ``failed``."""
     with replacing(path) as aside:
         with h5py.File(aside, "w", libver=("earliest", "v110"), track_order=False) as file:
             file.attrs["campaign"] = campaign.text
@@ -73,9 +73,11 @@ def write_hdf5(campaign: Campaign, table: Table, path: Path) -> None:
                 _dataset(file, f"parameters/{name}", values, campaign.unit_of(name))
             for name, values in table.outcomes.items():
                 _dataset(file, f"outcomes/{name}", values, campaign.units[name])
-            texts = [error.encode() for error in table.error]
-            longest = max(1, *map(len, texts))
-            _dataset(file, "error", np.array(texts, dtype=h5py.string_dtype("utf-8", longest)), "-")
+            failed = np.flatnonzero(table.failed)
+            texts = [table.error[index].encode() for index in failed]
+            longest = max([1, *map(len, texts)])
+            _dataset(file, "failed/sample", failed, "-")
+            _dataset(file, "failed/error", np.array(texts, dtype=h5py.string_dtype("utf-8", longest)), "-")
 
 
 def _dataset(file: h5py.File, name: str, values: np.ndarray, unit: str) -> None:

@@ -1,0 +1,504 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Campaigns: samples, sentences, both models, resume after a kill, the same bytes however run."""
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any, Callable, Iterator
+
+import h5py
+import numpy as np
+import pytest
+
+from conftest import BUILT, REPOSITORY, Outcome
+
+from statejump.campaign import campaign_file, execute, journal, summary, tables, work
+from statejump.campaign.campaign_file import MONTECARLO, SWEEP, Campaign, load_campaign
+from statejump.campaign.sampling import Distribution, Values, montecarlo_values, sweep_values
+from statejump.campaign.yade_batch import write_table
+from statejump.errors import StatejumpError
+
+# As the launcher: without a guard, so that processes that import it would run it again.
+LAUNCHER = f"""
+import sys
+sys.path.insert(0, {str(BUILT)!r})
+from statejump import campaign
+from statejump.cli import cli, main
+for command in (campaign.montecarlo_command, campaign.sweep_command):
+    cli.add_command(command)
+main()
+"""
+
+HEADER = """[campaign]
+name = "trial"
+case = "{case}"
+model = "{model}"
+samples = {samples}
+seed = 7
+"""
+FRICTION = """[[vary]]
+key = "joint.friction_coefficient"
+distribution = "normal"
+relative = 0.2
+"""
+CLEARANCE = """[[vary]]
+key = "joint.clearance_plus_m"
+also = ["joint.clearance_minus_m"]
+distribution = "uniform"
+low = 0.5e-3
+high = 1.5e-3
+"""
+
+
+@pytest.fixture
+def write(tmp_path: Path, cases: Path) -> Callable[..., Path]:
+    """Write a campaign file."""
+
+    def text(
+        *vary: str, case: Path | str = cases / "table1.toml", model: str = "reduced", samples: int = 50
+    ) -> Path:
+        path = tmp_path / "trial.toml"
+        path.write_text(HEADER.format(case=case, model=model, samples=samples) + "".join(vary or (FRICTION, CLEARANCE)))
+        return path
+
+    return text
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Callable[..., subprocess.Popen]:
+    """Start the command in a process group of its own."""
+    script = tmp_path / "launcher"
+    script.write_text(LAUNCHER)
+
+    def begin(*arguments: object, **environment: str) -> subprocess.Popen:
+        return subprocess.Popen(
+            [sys.executable, str(script), *map(str, arguments)], cwd=tmp_path, text=True,
+            env={**os.environ, **environment}, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            stdin=subprocess.DEVNULL, start_new_session=True,
+        )
+
+    return begin
+
+
+@pytest.fixture
+def command(start: Callable[..., subprocess.Popen]) -> Callable[..., Outcome]:
+    """Run the command to its end."""
+
+    def run(*arguments: object, **environment: str) -> Outcome:
+        with start(*arguments, **environment) as process:
+            output, errors = process.communicate(timeout=120)
+        return Outcome(process.returncode, output, errors)
+
+    return run
+
+
+def finish(campaign: Campaign, folder: Path, workers: int = 1, scheduler: str | None = None) -> tuple[bytes, bytes]:
+    """Run the samples that are missing; return both tables."""
+    folder.mkdir(exist_ok=True)
+    with journal.Journal(folder, campaign, restart=False) as kept:
+        execute.run_missing(campaign, kept, scheduler, workers, lambda fraction: None)
+        table = tables.make_table(campaign, kept.samples)
+    tables.write_csv(table, folder / "samples.csv")
+    tables.write_hdf5(campaign, table, folder / "samples.h5")
+    return (folder / "samples.csv").read_bytes(), (folder / "samples.h5").read_bytes()
+
+
+def rows_of(folder: Path) -> list[dict[str, str]]:
+    with (folder / "samples.csv").open(newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+pytestmark = pytest.mark.filterwarnings("ignore:make_current is deprecated")  # distributed's own
+
+
+# Sampling.
+
+def test_moments_of_every_distribution() -> None:
+    key, count = ("joint.friction_coefficient",), 20_000
+    vary = [
+        Distribution(key, "normal", 0.3, 0.05),
+        Distribution(key, "lognormal", 0.3, 0.1),
+        Distribution(key, "uniform", low=0.1, high=0.4),
+        Distribution(key, "truncated_normal", 0.3, 0.1, 0.2, 0.4),
+        Distribution(key, "truncated_normal", 0.0, 1.0, 8.0, math.inf),  # far out in the tail
+    ]
+    drawn = np.array([montecarlo_values(vary, 1, index) for index in range(count)])
+    mean, deviation = drawn.mean(axis=0), drawn.std(axis=0)
+    density = math.exp(-0.5) / math.sqrt(2 * math.pi)
+    inside = math.erf(1 / math.sqrt(2))
+    cut = 0.1 * math.sqrt(1 - 2 * density / inside)  # limits one standard deviation away
+    expected = [(0.3, 0.05), (0.3, 0.1), (0.25, 0.3 / math.sqrt(12)), (0.3, cut)]
+    for place, (wanted_mean, wanted_deviation) in enumerate(expected):
+        assert abs(mean[place] - wanted_mean) < 4 * wanted_deviation / math.sqrt(count)
+        assert deviation[place] == pytest.approx(wanted_deviation, rel=0.03)
+    assert np.median(np.log(drawn[:, 1])) == pytest.approx(math.log(0.3 / math.sqrt(1 + 1 / 9)), abs=0.01)
+    for place, (low, high) in {2: (0.1, 0.4), 3: (0.2, 0.4), 4: (8.0, 9.5)}.items():
+        assert low <= drawn[:, place].min() and drawn[:, place].max() <= high
+    assert mean[4] == pytest.approx(8.1213, abs=0.005)  # density over tail probability at 8
+    correlation = np.corrcoef(drawn, rowvar=False) - np.eye(len(vary))
+    assert np.abs(correlation).max() < 4 / math.sqrt(count)
+
+
+def test_sample_depends_on_seed_and_number_alone(write: Callable[..., Path]) -> None:
+    few, many = (load_campaign(write(samples=count), MONTECARLO) for count in (5, 50))
+    assert [few.values(i) for i in range(5)] == [many.values(i) for i in range(5)]
+    assert len({tuple(many.values(i)) for i in range(50)}) == 50
+    assert few.key == many.key  # a campaign may be extended
+    data = many.data(3)["joint"]
+    assert data["clearance_minus_m"] == data["clearance_plus_m"] == many.values(3)[1]
+
+
+def test_grid_of_a_sweep(tmp_path: Path, cases: Path) -> None:
+    grid = [Values(("a",), (1, 2)), Values(("b",), (3, 4, 5))]
+    assert [sweep_values(grid, i) for i in range(6)] == [[1, 3], [1, 4], [1, 5], [2, 3], [2, 4], [2, 5]]
+    path = tmp_path / "sweep.toml"
+    path.write_text(
+        f'[campaign]\nname = "s"\ncase = "{cases / "table1.toml"}"\n'
+        '[[vary]]\nkey = "thermal.cycles"\nvalues = [1, 2]\n'
+        '[[vary]]\nkey = "joint.friction_coefficient"\nstart = 0.01\nstop = 1\ncount = 3\nspacing = "log"\n'
+    )
+    campaign = load_campaign(path, SWEEP)
+    assert campaign.samples == 6
+    assert [campaign.values(i) for i in (0, 4)] == [[1, 0.01], [2, pytest.approx(0.1)]]
+    finish(campaign, tmp_path / "s")
+    rows = rows_of(tmp_path / "s")
+    # f l0 / (E A), for any number of cycles
+    for row in rows:
+        exact = float(row["joint.friction_coefficient"]) * 100 * 0.5 / (70e9 * 9e-6)
+        assert float(row["state_jump_m"]) == pytest.approx(exact, rel=1e-4)
+
+
+# Sentences.
+
+MISTAKES = {
+    "no such case": (("table1.toml", "tabel1.toml"), "tabel1.toml: no such case file"),
+    "unknown section": (("[campaign]", "[campain]"), "section [campain] is unknown: did you mean [campaign]?"),
+    "unknown table": (("[[vary]]", "[[vari]]"), "section [vari] is unknown: did you mean [[vary]]?"),
+    "unknown key": (("samples =", "sampels ="), "campaign.sampels is unknown: did you mean campaign.samples?"),
+    "missing key": (("seed = 7\n", ""), "campaign.seed is missing: must be between 0 and 2.14748e+09 [-]"),
+    "no samples": (("samples = 50", "samples = 0"), "campaign.samples = 0 is not allowed: must be between 1 and 1e+07 [-]"),
+    "unknown model": (('"reduced"', '"redcued"'),
+                      "campaign.model = 'redcued' is not allowed: must be 'reduced' or 'dem'; did you mean 'reduced'?"),
+    "bad name": (('"trial"', '"../trial"'), "campaign.name = '../trial' is not allowed: must consist of"),
+    "misspelt parameter": (("joint.friction_coefficient", "joint.frictoin_coefficient"),
+                           "vary[1].key = 'joint.frictoin_coefficient' is unknown in a case of kind 'spring_slider': "
+                           "did you mean 'joint.friction_coefficient'?"),
+    "not a number": (("joint.friction_coefficient", "thermal.shape"),
+                     "vary[1].key = 'thermal.shape' is not allowed: it is not a number"),
+    "whole number": (("joint.friction_coefficient", "thermal.cycles"),
+                     "vary[1].key = 'thermal.cycles' is not allowed: it is a whole number, only 'statejump sweep'"),
+    "twice": (("joint.friction_coefficient", "joint.clearance_minus_m"),
+              "vary[2].key = 'joint.clearance_minus_m' is not allowed: it varies already"),
+    "unknown distribution": (('"normal"', '"nromal"'),
+                             "vary[1].distribution = 'nromal' is not allowed: must be 'normal' or 'truncated_normal' or "
+                             "'lognormal' or 'uniform'; did you mean 'normal'?"),
+    "misspelt key of a table": (("relative", "realtive"), "vary[1].realtive is unknown: did you mean relative?"),
+    "key of a sweep": (("relative = 0.2", "values = [1]"),
+                       "vary[1].values is not allowed in a campaign of 'statejump montecarlo': it is for 'statejump sweep'"),
+    "no spread": (("relative = 0.2\n", ""), "vary[1].standard_deviation is missing: either it or relative is needed"),
+    "negative spread": (("relative = 0.2", "relative = -0.2"),
+                        "vary[1].relative = -0.2 is not allowed: must be a finite number above 0"),
+    "mean out of range": (("relative = 0.2", "mean = -0.3\nstandard_deviation = 1"),
+                          "vary[1].mean = -0.3 is not allowed: must be between 0 and 10 [-]"),
+    "mean not a number": (("relative = 0.2", 'mean = "0.3"\nrelative = 1'),
+                          "vary[1].mean = '0.3' is not allowed: must be a number, between 0 and 10 [-]"),
+    "limits exchanged": (("low = 0.5e-3", "low = 2e-3"),
+                         "vary[2].high = 0.0015 is not allowed: must be above low = 0.002"),
+    "limits of a normal distribution": (("relative = 0.2", "relative = 0.2\nlow = 0"),
+                                        "vary[1].low is not allowed: a normal distribution has no limits"),
+    "infinite": (("high = 1.5e-3", "high = inf"), "vary[2].high = inf is not allowed: must be a finite number"),
+    "nothing left between the limits": (
+        ('"uniform"\nlow = 0.5e-3', '"truncated_normal"\nstandard_deviation = 1e-6\nlow = 1.4e-3'),
+        "vary[2].mean = 0.001 is not allowed: practically nothing of the normal distribution is left"),
+    "not TOML": (("[campaign]", "[campaign"), "not TOML: "),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_mistake_in_the_campaign_file(write: Callable[..., Path], mistake: str) -> None:
+    (old, new), sentence = MISTAKES[mistake]
+    path = write()
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new) if old == "[[vary]]" else text.replace(old, new, 1))
+    with pytest.raises(StatejumpError) as caught:
+        load_campaign(path, MONTECARLO)
+    place = "" if mistake == "no such case" else f"{path}: "
+    assert str(caught.value).removeprefix(str(path.parent)).find(sentence) >= 0, str(caught.value)
+    assert str(caught.value).startswith(place)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("text, sentence", [
+    ("values = []", "vary[1].values = [] is not allowed: must be a list of numbers"),
+    ("values = [0.1, 11]", "vary[1].values = 11 is not allowed: must be between 0 and 10 [-]"),
+    ("values = [0.1, 0.1]", "vary[1].values is not allowed: a value is there twice"),
+    ("values = [0.1]\nstart = 1", "vary[1].start is not allowed beside values"),
+    ("start = 0\nstop = 1", "vary[1].count is missing: either values, or start, stop and count are needed"),
+    ("start = 0\nstop = 1\ncount = 1", "vary[1].count = 1 is not allowed: must be a whole number, between 2 and"),
+    ("start = 0\nstop = 1\ncount = 3\nspacing = 'log'", "vary[1].start = 0.0 is not allowed: must, as stop, be above 0"),
+    ("values = [0.1]\nspacing = 'lin'", "vary[1].spacing = 'lin' is not allowed: must be 'linear' or 'log'"),
+    ("relative = 0.1", "vary[1].relative is not allowed in a campaign of 'statejump sweep'"),
+])
+def test_mistake_in_a_sweep(tmp_path: Path, cases: Path, text: str, sentence: str) -> None:
+    path = tmp_path / "sweep.toml"
+    path.write_text(
+        f'[campaign]\nname = "s"\ncase = "{cases / "table1.toml"}"\n[[vary]]\nkey = "joint.friction_coefficient"\n{text}\n'
+    )
+    with pytest.raises(StatejumpError) as caught:
+        load_campaign(path, SWEEP)
+    assert str(caught.value).startswith(f"{path}: {sentence}")
+
+
+def test_command_ends_with_one_sentence(write: Callable[..., Path], command: Callable[..., Outcome]) -> None:
+    path = write()
+    began = time.monotonic()
+    for arguments, sentence in (
+        (("--scheduler", "tcp://127.0.0.1:9"), "--scheduler = 'tcp://127.0.0.1:9' cannot be reached within 5 s"),
+        (("--scheduler", "nowhere"), "--scheduler = 'nowhere' is not allowed: must be the address of"),
+    ):
+        outcome = command("montecarlo", path.name, *arguments)
+        assert outcome.status == 2
+        assert outcome.errors.startswith(f"error: {sentence}") and outcome.errors.count("\n") == 1, outcome.errors
+    assert time.monotonic() - began < 30
+
+
+# Failed samples.
+
+def test_failed_sample_is_recorded(tmp_path: Path, write: Callable[..., Path]) -> None:
+    wide = FRICTION.replace('"normal"\nrelative = 0.2', '"uniform"\nlow = -0.3\nhigh = 0.3')
+    campaign = load_campaign(write(wide), MONTECARLO)
+    finish(campaign, tmp_path / "trial")
+    rows = rows_of(tmp_path / "trial")
+    assert [int(row["sample"]) for row in rows] == list(range(50))
+    failed = [row for row in rows if row["error"]]
+    assert failed and len(failed) < 50
+    for row in rows:
+        friction = row["joint.friction_coefficient"]
+        if float(friction) < 0:
+            assert row["error"] == f"joint.friction_coefficient = {friction} is not allowed: must be between 0 and 10 [-]"
+            assert row["state_jump_m"] == ""
+        else:
+            assert row["error"] == "" and float(row["state_jump_m"]) > 0
+    with journal.Journal(tmp_path / "trial", campaign, restart=False) as kept:
+        table = tables.make_table(campaign, kept.samples)
+    found = summary.summary(campaign, table)
+    assert found["failed"] == len(failed) == found["failures"][0]["samples"]
+    assert found["failures"][0]["sentence"] == (
+        "joint.friction_coefficient = … is not allowed: must be between 0 and 10 [-]"
+    )
+    assert found["outcomes"]["state_jump_m"]["count"] == 50 - len(failed)
+    with h5py.File(tmp_path / "trial" / "samples.h5") as file:
+        assert file["failed/sample"][:].tolist() == [int(row["sample"]) for row in failed]
+        assert file["failed/error"].asstr()[0] == failed[0]["error"]
+        assert file["outcomes/state_jump_m"].attrs["unit"] == "m"
+        assert file.attrs["campaign"] == campaign.text and file.attrs["seed"] == 7
+        jump = file["outcomes/state_jump_m"][:]
+    assert np.count_nonzero(np.isnan(jump)) == len(failed)
+
+
+def test_unforeseen_error_of_one_sample(write: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    campaign = load_campaign(write(), MONTECARLO)
+
+    def broken(*ignored: Any) -> None:
+        raise ZeroDivisionError("a\nb")
+
+    monkeypatch.setattr(work, "outcome", broken)
+    assert work.run_sample(campaign, 0).error == "the run failed: ZeroDivisionError: a b"
+
+
+def test_sample_that_kills_its_worker(
+    tmp_path: Path, write: Callable[..., Path], fake_yade: Callable[[str], str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("STATEJUMP_YADE", fake_yade("kill -9 $PPID\n"))
+    campaign = load_campaign(write(model="dem", samples=1), MONTECARLO)
+    finish(campaign, tmp_path / "trial")
+    assert rows_of(tmp_path / "trial")[0]["error"] == "the run ended its worker process, time and again"
+
+
+# Execution.
+
+def test_same_bytes_with_any_workers(tmp_path: Path, write: Callable[..., Path]) -> None:
+    campaign = load_campaign(write(samples=3000), MONTECARLO)
+    one = finish(campaign, tmp_path / "one", workers=1)
+    time.sleep(1.1)  # a time stamp in the file would differ
+    from distributed import LocalCluster
+
+    from statejump.campaign.cluster import _no_main_file
+
+    with _no_main_file(), LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path)
+    ) as cluster:
+        two = finish(campaign, tmp_path / "two", scheduler=cluster.scheduler_address)
+    assert one == two
+    extended = load_campaign(write(samples=3010), MONTECARLO)
+    longer = finish(extended, tmp_path / "one")[0]
+    assert longer.startswith(one[0]) and len(longer) > len(one[0])
+    # The first samples, computed here and now.
+    rows = rows_of(tmp_path / "two")
+    for index in range(5):
+        sample = work.run_sample(campaign, index)
+        assert [repr(value) for value in sample.values] == [rows[index][name] for name in campaign.units]
+
+
+def _wait_for_samples(process: subprocess.Popen, path: Path, wanted: int) -> None:
+    end = time.monotonic() + 60
+    while time.monotonic() < end:
+        assert process.poll() is None, process.communicate()
+        if path.exists() and path.read_bytes().count(b"],[") >= wanted:
+            return
+        time.sleep(0.05)
+    raise AssertionError("no samples in a minute")
+
+
+def _processes_of(folder: Path) -> Iterator[int]:
+    """Processes that work in a folder."""
+    for entry in Path("/proc").iterdir():
+        try:
+            if entry.name.isdigit() and (entry / "cwd").readlink() == folder and (entry / "stat").read_text().split()[2] != "Z":
+                yield int(entry.name)
+        except OSError:
+            continue
+
+
+def test_interrupted_and_killed_and_resumed(
+    tmp_path: Path, cases: Path, write: Callable[..., Path], start: Callable[..., subprocess.Popen]
+) -> None:
+    path = write(FRICTION, case=cases / "umbrella_damped.toml", samples=100)
+    # 20 000 steps last 10 ms
+    text = (cases / "umbrella_damped.toml").read_text().replace("steps_per_cycle = 100000", "steps_per_cycle = 20000")
+    (tmp_path / "short.toml").write_text(text)
+    path.write_text(path.read_text().replace(str(cases / "umbrella_damped.toml"), "short.toml"))
+    campaign = load_campaign(path, MONTECARLO)
+    kept = tmp_path / "results" / "trial" / journal.NAME
+
+    first = start("montecarlo", path.name, "--workers", 1)
+    _wait_for_samples(first, kept, 15)
+    os.killpg(first.pid, signal.SIGINT)
+    output, errors = first.communicate(timeout=30)
+    assert first.returncode == 130, errors
+    assert errors.startswith("interrupted; ") and errors.count("\n") == 1, errors
+    finished = kept.read_bytes()
+
+    second = start("montecarlo", path.name, "--workers", 1)
+    _wait_for_samples(second, kept, finished.count(b"],[") + 20)
+    second.kill()
+    second.communicate(timeout=30)
+    end = time.monotonic() + 20
+    while list(_processes_of(tmp_path)) and time.monotonic() < end:
+        time.sleep(0.1)
+    assert not list(_processes_of(tmp_path))  # workers go with the command
+    assert kept.read_bytes().startswith(finished)
+    with kept.open("ab") as stream:
+        stream.write(b"[[99,[0.1,0.")  # torn
+    with journal.Journal(kept.parent, campaign, restart=False) as there:
+        assert 15 < len(there.samples) < 100
+    resumed = finish(campaign, kept.parent)
+    assert resumed == finish(campaign, tmp_path / "uninterrupted", workers=2)
+
+
+def test_changed_campaign_is_refused(tmp_path: Path, write: Callable[..., Path]) -> None:
+    campaign = load_campaign(write(), MONTECARLO)
+    folder = tmp_path / "trial"
+    folder.mkdir()
+    with journal.Journal(folder, campaign, restart=False) as kept:
+        kept.add([work.run_sample(campaign, index) for index in (4, 2)])
+        with pytest.raises(StatejumpError, match="another run of this campaign is at work"):
+            journal.Journal(folder, campaign, restart=False)
+    other = load_campaign(write(FRICTION), MONTECARLO)
+    with pytest.raises(StatejumpError, match="belongs to another campaign .* --restart drops what is there"):
+        journal.Journal(folder, other, restart=False)
+    with journal.Journal(folder, campaign, restart=False) as kept:
+        assert kept.samples == {index: work.run_sample(campaign, index) for index in (4, 2)}
+    with journal.Journal(folder, other, restart=True) as kept:
+        assert not kept.samples
+    (folder / journal.NAME).write_text((folder / journal.NAME).read_text() + "[[1]]\n")
+    with pytest.raises(StatejumpError, match="is damaged; --restart"):
+        journal.Journal(folder, other, restart=False)
+
+
+@pytest.fixture
+def short(tmp_path: Path, cases: Path) -> str:
+    """A case whose DEM run lasts a moment."""
+    text = (cases / "table1.toml").read_text()
+    for old, new in (("period_s = 1.0", "period_s = 0.05"), ("samples_per_cycle = 2000", "samples_per_cycle = 400")):
+        assert old in text
+        text = text.replace(old, new)
+    (tmp_path / "short.toml").write_text(text)
+    return "short.toml"
+
+
+def test_either_model_and_yade_batch(
+    tmp_path: Path, write: Callable[..., Path], short: str, command: Callable[..., Outcome]
+) -> None:
+    path = write(case=short, model="dem", samples=2)
+    outcome = command("montecarlo", path.name)
+    assert outcome.status == 0 and outcome.errors == "", outcome.errors
+    folder = tmp_path / "results" / "trial"
+    for name in ("summary.md", "run.json", "distributions.png", "distributions.svg", "correlations.png", "correlations.svg"):
+        assert (folder / name).stat().st_size > 100, name
+    assert json.loads((folder / "run.json").read_text())["largest_batch"] == 1
+    rows = rows_of(folder)
+    reduced = load_campaign(write(case=short, samples=2), MONTECARLO)
+    for index, row in enumerate(rows):
+        sample = work.run_sample(reduced, index)
+        exact = dict(zip(reduced.units, sample.values))
+        for name, tolerance in (("state_jump_m", 0.005), ("friction_dissipation_J", 0.02)):
+            assert float(row[name]) == pytest.approx(exact[name], rel=tolerance), name
+
+    dem = load_campaign(write(case=short, model="dem", samples=2), MONTECARLO)
+    write_table(dem, tmp_path / "samples.table")
+    lines = (tmp_path / "samples.table").read_text().splitlines()
+    assert len(lines) == 4
+    assert lines[1].split() == ["description", "campaign", "command", "sample", "joint__friction_coefficient", "joint__clearance_plus_m"]
+    done = subprocess.run(
+        ["yade", "-n", "-x", str(REPOSITORY / "yade_scripts" / "batch_case.py")], cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(BUILT), "YADE_BATCH": "samples.table:4"}, stdin=subprocess.DEVNULL,
+        capture_output=True, text=True, timeout=120,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    found = json.loads((tmp_path / "samples.table.sample_1.outcomes.json").read_text())
+    # The very numbers of the campaign.
+    assert [repr(found[name]) for name in dem.units] == [rows[1][name] for name in dem.units]
+
+
+def test_largest_force_is_that_of_the_whole_path(write: Callable[..., Path]) -> None:
+    from statejump import reduced
+    from statejump.case import parse_case
+
+    campaign = load_campaign(write(), MONTECARLO)
+    for index in range(50):
+        case = parse_case(campaign.data(index), "x")
+        path = reduced.solve(case)
+        dense = path.sample(np.linspace(0, 1, 20_001))
+        found = dict(zip(campaign.units, work.run_sample(campaign, index).values))
+        largest = float(np.max(np.abs(dense["axial_force_N"])))
+        assert largest <= found["largest_axial_force_N"] * (1 + 1e-12)
+        assert found["largest_axial_force_N"] == pytest.approx(largest, rel=1e-3)
+        assert found["friction_dissipation_J"] == pytest.approx(dense["friction_dissipation_J"][-1], rel=1e-12)
+
+
+def test_umbrella_in_either_model(tmp_path: Path, cases: Path, write: Callable[..., Path]) -> None:
+    text = (cases / "umbrella_damped.toml").read_text()
+    text = text.replace("steps_per_cycle = 100000", "steps_per_cycle = 20000").replace("steps_per_cycle = 400000", "steps_per_cycle = 100000")
+    (tmp_path / "rib.toml").write_text(text)
+    expansion = ('[[vary]]\nkey = "link_ab.thermal_expansion_per_K"\nalso = ["link_bc.thermal_expansion_per_K"]\n'
+                 'distribution = "truncated_normal"\nrelative = 0.1\nlow = 0\n')
+    found = {}
+    for model in ("reduced", "dem"):
+        campaign = load_campaign(write(expansion, case="rib.toml", model=model, samples=1), MONTECARLO)
+        sample = work.run_sample(campaign, 0)
+        assert sample.error == ""
+        found[model] = dict(zip(campaign.units, sample.values))
+    exact = 1e-4 / (campaign.values(0)[0] * 0.12)  # c / (alpha |AC|)
+    for values in found.values():
+        assert values["first_contact_temperature_change_K"] == pytest.approx(exact, abs=0.01)
+    for name in ("theta2_range_rad", "theta4_range_rad"):
+        assert found["dem"][name] == pytest.approx(found["reduced"][name], rel=0.01)

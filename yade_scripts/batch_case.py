@@ -1,0 +1,40 @@
+"""Runs one sample of a campaign in YADE; started by ``yade-batch``, once per line of its table.
+
+    statejump montecarlo CAMPAIGN.toml --yade-batch samples.table
+    export PYTHONPATH=build/python
+    yade-batch --job-threads=1 --log=@.log samples.table yade_scripts/batch_case.py
+
+Each line leaves ``samples.table.sample_<number>.csv``, the history, and ``….outcomes.json``, the
+numbers that ``statejump`` itself puts into the row of its table. Nothing is resumed: that is what
+``statejump montecarlo`` is for.
+"""
+import json
+import os
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
+from statejump.campaign.yade_batch import BatchSample
+from statejump.errors import StatejumpError
+from yade import utils
+
+utils.readParamsFromTable(unknownOk=True, noTableOk=False)
+from yade.params import table
+
+table_file = Path(os.environ["YADE_BATCH"].rpartition(":")[0]).resolve()
+try:
+    sample = BatchSample(vars(table))
+except StatejumpError as problem:
+    print(f"ERROR {problem}", flush=True)
+    os._exit(2)
+history = table_file.with_name(f"{table_file.name}.sample_{sample.index}.csv")
+values = history.with_suffix(".case.json")
+values.write_text(json.dumps(sample.resolved()))
+os.environ["STATEJUMP_CASE_JSON"], os.environ["STATEJUMP_OUTPUT"] = str(values), str(history)
+# The same script that statejump starts; it needs the namespace of the main script.
+runner = Path(sys.argv[0]).resolve().with_name("run_case.py")
+exec(compile(runner.read_text(), str(runner), "exec"), globals())
+values.unlink()
+history.with_suffix(".outcomes.json").write_text(
+    json.dumps({"sample": sample.index, **sample.outcomes(history)}, indent=2) + "\n"
+)
