@@ -317,6 +317,11 @@ class Study {
   }
 
  private:
+  struct Edge {
+    std::vector<Span> spans;  ///< one per force, from the vertex with the smaller index
+    std::vector<int> around;  ///< triangles
+  };
+
   struct Piece {
     int triangle;
     Polygon polygon;
@@ -352,8 +357,11 @@ class Study {
     return 0.5 * (low + high);
   }
 
-  const std::vector<Span>& edge_spans(const EdgeKey& key) {
+  /// Spans of the forces on an edge of triangle t.
+  const std::vector<Span>& edge_spans(const EdgeKey& key, int t) {
     auto [found, fresh] = edges_.try_emplace(key);
+    Edge& edge = found->second;
+    edge.around.push_back(t);
     if (fresh) {
       for (const Cone& cone : cones_) {
         Span span = span_of(cone, normals_[key.first], normals_[key.second]);
@@ -361,10 +369,10 @@ class Study {
           span.a = refined(cone, key, span.a);
           span.b = std::max(span.a, refined(cone, key, span.b));
         }
-        found->second.push_back(span);
+        edge.spans.push_back(span);
       }
     }
-    return found->second;
+    return edge.spans;
   }
 
   void cut_all() {
@@ -373,7 +381,7 @@ class Study {
       const std::array<Vector3d, 3> normals = {normals_[v[0]], normals_[v[1]], normals_[v[2]]};
       std::array<const std::vector<Span>*, 3> sides;
       for (int i = 0; i < 3; ++i) {
-        sides[i] = &edge_spans(std::minmax(v[i], v[(i + 1) % 3]));
+        sides[i] = &edge_spans(std::minmax(v[i], v[(i + 1) % 3]), t);
       }
       std::vector<Piece> pieces = {{t, {Plane(0, 0), Plane(1, 0), Plane(0, 1)}, {}}};
       for (std::size_t k = 0; k < cones_.size(); ++k) {
@@ -428,13 +436,10 @@ class Study {
         components.join(node(piece.triangle, own), node(piece.triangle, k));
       }
     }
-    std::map<EdgeKey, std::vector<int>> at_edge;
-    for (int t = 0; t < static_cast<int>(triangles); ++t) {
-      const auto& v = mesh_.triangles[t];
-      for (int i = 0; i < 3; ++i) at_edge[std::minmax(v[i], v[(i + 1) % 3])].push_back(t);
-    }
-    for (const auto& [key, around] : at_edge) {
-      const std::vector<Span>& spans = edges_.at(key);
+    for (const auto& [key, edge] : edges_) {
+      const std::vector<Span>& spans = edge.spans;
+      const std::vector<int>& around = edge.around;
+      if (around.size() < 2) continue;
       Mask on_edge;
       Span common{0.0, 1.0};
       for (std::size_t k = 0; k < spans.size(); ++k) {
@@ -535,7 +540,7 @@ class Study {
   bool points_only_;
   std::vector<Cone> cones_;
   double longest_ = 0.0, size_ = 0.0;
-  std::map<EdgeKey, std::vector<Span>> edges_;
+  std::map<EdgeKey, Edge> edges_;
   std::map<std::pair<int, int>, Plane> axis_points_;
   std::vector<Piece> pieces_;
 };
