@@ -39,7 +39,9 @@ struct WallPoint {
   Eigen::Vector3d direction_2;  ///< unit, tangential, of curvature_2, direction_1 x normal
   int face;                     ///< of the mesh, as numbered in its file
   std::array<double, 3> barycentric;  ///< of the corners of that face, >= 0, sum 1
-  bool on_rim;  ///< the nearest point is on the wall's rim: not a foot of a normal
+  /// The nearest point is on the wall's rim and not the foot of a normal; it is then only as good
+  /// as the facets, h^2/(8 R).
+  bool on_rim;
 };
 
 /// One place where a journal or a ball touches the wall or nearly does.

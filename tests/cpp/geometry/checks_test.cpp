@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every refusal with its sentence, and the files that are read.
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <stdexcept>
+
+#include "support.hpp"
+
+namespace statejump::geometry {
+namespace {
+
+using testing::round_bore;
+
+std::string refusal(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "nothing was refused";
+}
+
+std::string refusal(const Triangles& mesh, const BoreOptions& options = {}) {
+  return refusal([&] { BoreMesh(mesh, options); });
+}
+
+Triangles tube() {
+  return bore_triangles(round_bore(), 12, 2);
+}
+
+Triangles ring() {
+  BoreShape shape = round_bore();
+  shape.wall_thickness = 2e-3;
+  return bore_triangles(shape, 24, 2);
+}
+
+TEST(BoreChecks, TubeAndRingAreAccepted) {
+  const BoreMesh open(tube());
+  EXPECT_FALSE(open.closed());
+  EXPECT_EQ(open.wall().size(), 48u);
+  const BoreMesh closed(ring());
+  EXPECT_TRUE(closed.closed());
+  EXPECT_EQ(closed.wall().size(), 96u);  // neither ends nor outside
+  for (const BoreMesh& mesh : {open, closed}) {
+    EXPECT_NEAR(mesh.mean_radius(), 5.1e-3, 1e-17);
+    EXPECT_NEAR(mesh.length(), 10e-3, 1e-17);
+    EXPECT_NEAR((mesh.axis() - Eigen::Vector3d::UnitZ()).norm(), 0, 1e-14);
+    EXPECT_NEAR(mesh.centre().norm(), 0, 1e-17);
+  }
+}
+
+TEST(BoreChecks, BadArrays) {
+  EXPECT_EQ(refusal(Triangles{}), "mesh: the mesh has no faces");
+  Triangles mesh = tube();
+  mesh.faces[7][1] = 99;
+  EXPECT_EQ(refusal(mesh), "mesh: face 7 has corner 99, but there are only 36 vertices");
+  mesh = tube();
+  mesh.faces[7][1] = -1;
+  EXPECT_EQ(refusal(mesh), "mesh: face 7 has corner -1, but there are only 36 vertices");
+  mesh = tube();
+  mesh.vertices[5].y() = std::nan("");
+  EXPECT_EQ(refusal(mesh), "mesh: vertex 5 is not finite");
+}
+
+TEST(BoreChecks, FaceWithoutArea) {
+  Triangles mesh = tube();
+  mesh.vertices[12] = mesh.vertices[0];
+  EXPECT_EQ(refusal(mesh),
+            "mesh: face 1 (vertices 0, 13, 12) at (0.00487224, 0.00085, 0.00333333) m has no area");
+}
+
+TEST(BoreChecks, EdgeOfThreeFaces) {
+  Triangles mesh = tube();
+  mesh.vertices.emplace_back(0, 0, 0);
+  mesh.faces.push_back({12, 13, 36});
+  EXPECT_EQ(refusal(mesh),
+            "mesh: the edge between vertices 12 and 13 at (0.00475836, 0.001275, 0) m belongs to "
+            "more than two faces (1, 24, 48)");
+}
+
+TEST(BoreChecks, SheetsThatMeetInAVertex) {
+  Triangles mesh = tube();
+  mesh.vertices.emplace_back(6e-3, 0, 0.008);
+  mesh.vertices.emplace_back(6e-3, 1e-3, 0.008);
+  mesh.faces.push_back({0, 36, 37});
+  EXPECT_EQ(refusal(mesh),
+            "mesh: at vertex 0 at (0.0051, 0, 0.005) m two sheets meet that share no edge");
+}
+
+TEST(BoreChecks, SeveralParts) {
+  Triangles mesh = tube();
+  const Triangles other = tube();
+  for (auto v : other.vertices) mesh.vertices.push_back(v + Eigen::Vector3d(0, 0, 0.02));
+  for (auto f : other.faces) mesh.faces.push_back({f[0] + 36, f[1] + 36, f[2] + 36});
+  EXPECT_EQ(refusal(mesh),
+            "mesh: the mesh has several parts: face 48 (vertices 36, 37, 49) at (0.00464449, "
+            "0.0017, 0.0233333) m is not connected to face 0");
+}
+
+TEST(BoreChecks, Hole) {
+  Triangles mesh = bore_triangles(round_bore(), 12, 4);
+  mesh.faces.erase(mesh.faces.begin() + 24);
+  EXPECT_EQ(refusal(mesh),
+            "mesh: the mesh has 1 hole(s) beside the open end(s), the largest of 3 edges around "
+            "(0.00464449, 0.0017, 0.00166667) m");
+  mesh = ring();
+  mesh.faces.erase(mesh.faces.begin() + 24);
+  EXPECT_EQ(refusal(mesh).substr(0, 51), "mesh: the mesh has one open end, of 3 edges around ");
+}
+
+TEST(BoreChecks, FacesThatIntersect) {
+  Triangles mesh = bore_triangles(round_bore(), 12, 4);
+  mesh.vertices[24] = Eigen::Vector3d(-6e-3, 0, 1e-4);  // through the wall opposite
+  const std::string sentence = refusal(mesh);
+  EXPECT_NE(sentence.find(" intersect"), std::string::npos) << sentence;
+  EXPECT_EQ(sentence.substr(0, 12), "mesh: faces ");
+}
+
+TEST(BoreChecks, InsideOut) {
+  Triangles mesh = tube();
+  for (auto& face : mesh.faces) std::swap(face[1], face[2]);
+  EXPECT_EQ(refusal(mesh),
+            "mesh: the mesh is inside out: its normals point away from the axis, as that of face 0 "
+            "at (0.00464449, 0.0017, 0.00333333) m; flip turns it");
+  BoreOptions options;
+  options.flip = true;
+  EXPECT_EQ(BoreMesh(mesh, options).wall().size(), 48u);
+  mesh = ring();
+  for (auto& face : mesh.faces) std::swap(face[1], face[2]);
+  EXPECT_EQ(refusal(mesh),
+            "mesh: the closed mesh is inside out: its normals point into the body; flip turns it");
+}
+
+TEST(BoreChecks, FacesThatDisagreeAreTurnedLikeTheFirst) {
+  Triangles mesh = tube();
+  for (const int f : {3, 8, 21, 22, 40}) std::swap(mesh.faces[f][1], mesh.faces[f][2]);
+  const BoreMesh mended(mesh);
+  EXPECT_EQ(mended.triangles().faces, tube().faces);
+}
+
+TEST(BoreChecks, NoBore) {
+  Triangles cube;
+  for (int i = 0; i < 8; ++i) cube.vertices.emplace_back(i & 1, (i >> 1) & 1, i >> 2);
+  cube.faces = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  EXPECT_EQ(refusal(cube), "mesh: the closed mesh has no bore: no smooth wall surrounds an axis");
+}
+
+TEST(BoreChecks, Units) {
+  BoreOptions options;
+  options.scale = 1e3;
+  EXPECT_EQ(refusal(tube(), options),
+            "mesh: the mean radius is 5.1 m, allowed is 1e-05 to 0.5 m: are the coordinates in "
+            "millimetres? Then scale by 0.001");
+  options.largest_radius = 10;
+  EXPECT_NEAR(BoreMesh(tube(), options).mean_radius(), 5.1, 1e-14);
+  options = {};
+  options.scale = 1e-3;
+  EXPECT_EQ(refusal(tube(), options),
+            "mesh: the mean radius is 5.1e-06 m, allowed is 1e-05 to 0.5 m: is the scale right?");
+  options.scale = 0;
+  EXPECT_EQ(refusal(tube(), options), "scale = 0, allowed is (0, inf) m");
+  options = {};
+  options.fit_degree = 5;
+  EXPECT_EQ(refusal(tube(), options), "fit_degree = 5, allowed is 2, 3 or 4");
+}
+
+TEST(BoreChecks, Arguments) {
+  const BoreMesh mesh(tube());
+  const Eigen::Vector3d z(0, 0, 1), origin(0, 0, 0);
+  EXPECT_EQ(refusal([&] { mesh.contacts(origin, z, 0, 0); }),
+            "journal_radius = 0, allowed is (0, inf) m");
+  EXPECT_EQ(refusal([&] { mesh.contacts(origin, z, 5e-3, -1); }),
+            "maximum_gap = -1, allowed is [0, inf) m");
+  EXPECT_EQ(refusal([&] { mesh.contacts(origin, origin, 5e-3, 0); }),
+            "journal_axis has no direction");
+  EXPECT_EQ(refusal([&] {
+              mesh.contacts(origin, {1, 0, 0}, 5e-3, 0);
+            }).substr(0, 31),
+            "cosine of the journal's tilt = ");
+  EXPECT_EQ(refusal([&] { mesh.closest_point({0, 0, std::nan("")}); }), "query is not finite");
+  BoreOptions socket;
+  socket.kind = SurfaceKind::socket;
+  const BoreMesh cup(socket_triangles(8e-3, 1.5, 24, 10), socket);
+  EXPECT_EQ(refusal([&] { cup.contacts(origin, z, 5e-3, 0); }),
+            "a journal needs a bore, but the mesh is a socket");
+  EXPECT_EQ(refusal([] {
+              bore_triangles({5e-3, 1e-2}, 2, 1);
+            }),
+            "around = 2, allowed is 3, 4, 5, ...");
+  EXPECT_EQ(refusal([] {
+              bore_triangles({-5e-3, 1e-2}, 9, 1);
+            }),
+            "radius = -0.005, allowed is (0, inf) m");
+}
+
+class BoreFiles : public ::testing::Test {
+ protected:
+  std::string path(const std::string& name) const {
+    return ::testing::TempDir() + "statejump_" + std::to_string(::getpid()) + "_" + name;
+  }
+  std::string write(const std::string& name, const std::string& content) {
+    files_.push_back(path(name));
+    std::ofstream(files_.back(), std::ios::binary) << content;
+    return files_.back();
+  }
+  void TearDown() override {
+    for (const auto& file : files_) std::remove(file.c_str());
+  }
+
+ private:
+  std::vector<std::string> files_;
+};
+
+std::string digits(const Eigen::Vector3d& v) {
+  char text[128];
+  std::snprintf(text, sizeof text, "%.17g %.17g %.17g", v.x(), v.y(), v.z());
+  return text;
+}
+
+TEST_F(BoreFiles, EveryFormatHoldsTheSameMesh) {
+  const Triangles mesh = tube();
+  std::string off = "OFF\n36 48 0\n",
+              ply =
+                  "ply\nformat ascii 1.0\nelement vertex 36\nproperty double x\nproperty double "
+                  "y\nproperty "
+                  "double z\nelement face 48\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string text = "solid tube\n";
+  std::string binary(80, ' ');
+  const auto append = [&binary](const auto value) {
+    binary.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  append(std::uint32_t{48});
+  for (const auto& v : mesh.vertices) {
+    off += digits(v) + "\n";
+    ply += digits(v) + "\n";
+  }
+  for (const auto& f : mesh.faces) {
+    const std::string line = "3 " + std::to_string(f[0]) + " " + std::to_string(f[1]) + " " +
+                             std::to_string(f[2]) + "\n";
+    off += line;
+    ply += line;
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (int i = 0; i < 3; ++i) append(0.0f);
+    for (const int corner : f) {
+      text += "vertex " + digits(mesh.vertices[corner]) + "\n";
+      for (int i = 0; i < 3; ++i) append(static_cast<float>(mesh.vertices[corner][i]));
+    }
+    text += "endloop\nendfacet\n";
+    append(std::uint16_t{0});
+  }
+  text += "endsolid tube\n";
+  for (const std::string& file :
+       {write("a.off", off), write("a.PLY", ply), write("t.stl", text), write("b.stl", binary)}) {
+    const Triangles read = read_triangles(file);
+    ASSERT_EQ(read.faces.size(), 48u) << file;
+    ASSERT_EQ(read.vertices.size(), 36u) << file;
+    const BoreMesh bore = BoreMesh::read(file);
+    // Binary STL holds floats: 6e-8 of 5 mm.
+    EXPECT_NEAR(bore.mean_radius(), 5.1e-3, 4e-10) << file;
+    for (std::size_t f = 0; f < 48; ++f)
+      for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR((read.vertices[read.faces[f][k]] - mesh.vertices[mesh.faces[f][k]]).norm(), 0,
+                    1e-9);
+  }
+}
+
+TEST_F(BoreFiles, Refusals) {
+  const auto sentence = [](const std::string& file) {
+    return refusal([&] { BoreMesh::read(file); });
+  };
+  EXPECT_EQ(sentence("/nowhere/bore.stl"), "/nowhere/bore.stl: cannot be opened");
+  EXPECT_EQ(sentence("/nowhere/bore.step"),
+            "/nowhere/bore.step: a mesh file ends with .off, .stl, .ply or .obj");
+  EXPECT_EQ(sentence("/nowhere/bore"),
+            "/nowhere/bore: a mesh file ends with .off, .stl, .ply or .obj");
+  std::string file = write("empty.off", "");
+  EXPECT_EQ(sentence(file), file + ": the file is empty");
+  file = write("rubbish.off", "this is no mesh\n");
+  EXPECT_EQ(sentence(file), file + ": not readable as OFF");
+  file = write("cut.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n");
+  EXPECT_EQ(sentence(file), file + ": not readable as OFF");
+  file = write("none.off", "OFF\n0 0 0\n");
+  EXPECT_EQ(sentence(file), file + ": the mesh has no faces");
+  file = write("far.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
+  EXPECT_NE(sentence(file).find(file + ": "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace statejump::geometry

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "statejump/geometry/bore_mesh.hpp"
+
+namespace statejump::geometry::testing {
+
+using Eigen::Vector3d;
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double bearing_radius = 5.1e-3;  // [m], with journal_radius the joint of the paper
+constexpr double journal_radius = 5e-3;    // [m]
+
+inline BoreShape round_bore() {
+  return {bearing_radius, 10e-3};
+}
+
+/// Uniform numbers with a fixed seed, the same on every system.
+class Random {
+ public:
+  double uniform(double low, double high) {
+    return low + (high - low) * (static_cast<double>(generator_()) / 4294967296.0);
+  }
+
+ private:
+  std::mt19937 generator_{20210110};
+};
+
+/// The same shape with vertices at random places of the wall: rings shifted, spacing uneven.
+inline Triangles uneven_bore(const BoreShape& shape, int around, int along, double unevenness) {
+  Triangles mesh = bore_triangles(shape, around, along);
+  Random random;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    Vector3d& v = mesh.vertices[i];
+    const bool end = i < std::size_t(around) || i >= mesh.vertices.size() - std::size_t(around);
+    const double z =
+        v.z() + (end ? 0 : random.uniform(-0.5, 0.5) * unevenness * shape.length / along);
+    const double theta =
+        std::atan2(v.y(), v.x()) + random.uniform(-0.5, 0.5) * unevenness * 2 * pi / around;
+    const double r = bore_radius(shape, theta, z);
+    v = {r * std::cos(theta), r * std::sin(theta), z};
+  }
+  return mesh;
+}
+
+}  // namespace statejump::geometry::testing
