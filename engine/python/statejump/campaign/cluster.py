@@ -80,6 +80,7 @@ def _local(workers: int, model: str) -> Iterator[Client]:
                 )
                 stack.callback(_close, cluster)
                 client = stack.enter_context(Client(cluster))
+            client.run(_version)  # imports the package everywhere
             yield client
 
 

@@ -39,12 +39,12 @@ def run_campaign(
             with progress(console, label) as tell:
                 done = execute.run_missing(campaign, kept, scheduler, workers, tell)
         except KeyboardInterrupt:
-            finished = sum(index < campaign.samples for index in kept.samples)
+            finished = sum(index < campaign.samples for index in kept.finished)
             raise Interrupted(
                 f"interrupted; {finished:,} of {campaign.samples:,} samples are kept in {kept.path}, the same "
                 "command goes on with the others"
             ) from None
-        table = tables.make_table(campaign, kept.samples)
+        table = tables.make_table(campaign, kept.batches)
     tables.write_csv(table, folder / "samples.csv")
     tables.write_hdf5(campaign, table, folder / "samples.h5")
     found = summary.summary(campaign, table)
@@ -85,7 +85,7 @@ def _print(campaign: Campaign, found: dict[str, Any], done: Any, console: Consol
     if done.run_now:
         console.print(
             f"{done.run_now:,} samples in {done.wall_time_s:.2f} s on {done.workers} worker(s), "
-            f"{done.samples_per_second:,.0f} per second; {len(done.batch_sizes)} tasks of up to "
+            f"{shown(done.samples_per_second)} per second; {len(done.batch_sizes)} tasks of up to "
             f"{max(done.batch_sizes)} samples"
         )
     for entry in found["failures"]:

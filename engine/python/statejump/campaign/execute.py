@@ -12,7 +12,7 @@ from ..errors import StatejumpError
 from .campaign_file import Campaign
 from .cluster import open_client
 from .journal import Journal
-from .work import Sample, run_samples
+from .work import Batch, Sample, batch_of, run_samples
 
 from distributed import Client, Future, KilledWorker, as_completed  # noqa: E402, after cluster set it up
 
@@ -73,7 +73,7 @@ def run_missing(
     :param tell: called with the finished fraction of all samples
     :raises StatejumpError: no cluster; what is finished stays in the journal
     """
-    missing = [index for index in range(campaign.samples) if index not in journal.samples]
+    missing = [index for index in range(campaign.samples) if index not in journal.finished]
     done = Statistics(already_there=campaign.samples - len(missing))
     if not missing:
         return done
@@ -82,11 +82,11 @@ def run_missing(
         started = time.perf_counter()
         tell(done.already_there / campaign.samples)
         done.workers = _slots(client)
-        for seconds, samples in _finished(client, campaign, missing):
-            journal.add(samples)
-            done.run_now += len(samples)
+        for seconds, batch in _finished(client, campaign, missing):
+            journal.add(batch)
+            done.run_now += len(batch.indices)
             done.worker_time_s += seconds
-            done.batch_sizes.append(len(samples))
+            done.batch_sizes.append(len(batch.indices))
             done.wall_time_s = time.perf_counter() - started
             tell((done.already_there + done.run_now) / campaign.samples)
     return done
@@ -99,7 +99,7 @@ def _slots(client: Client) -> int:
 
 def _finished(
     client: Client, campaign: Campaign, missing: list[int]
-) -> Iterator[tuple[float, list[Sample]]]:
+) -> Iterator[tuple[float, Batch]]:
     """Yield finished batches. Samples whose worker died go one by one, each alone, at the end: only a
     sample that kills its worker also then is to blame."""
     batches = _Batches(missing, campaign.model)
@@ -130,11 +130,11 @@ def _finished(
             pass
     for index in suspects:
         future = client.submit(run_samples, campaign, [index], pure=False)
-        answer = _answer(future)
-        yield answer or (0.0, [Sample(index, None, "the run ended its worker process, time and again")])
+        lost = Sample(index, None, "the run ended its worker process, time and again")
+        yield _answer(future) or (0.0, batch_of([lost], len(campaign.units)))
 
 
-def _answer(future: Future) -> Optional[tuple[float, list[Sample]]]:
+def _answer(future: Future) -> Optional[tuple[float, Batch]]:
     """Result of a batch; None: its worker died. :raises StatejumpError: the cluster is gone"""
     try:
         return future.result()

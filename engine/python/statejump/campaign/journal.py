@@ -2,20 +2,23 @@
 """Finished samples on disk, batch by batch, so that a killed campaign goes on where it was.
 
 JSON lines: first the campaign's key and columns, then one line per batch, written at once and
-synced. A line that a kill has torn is dropped.
+synced; values are packed (base64 of little-endian doubles, row by row). A line that a kill has torn
+is dropped.
 """
 from __future__ import annotations
 
+import base64
 import fcntl
 import json
-import math
 import os
 from pathlib import Path
-from typing import IO, Any, Optional, Sequence
+from typing import IO, Any
+
+import numpy as np
 
 from ..errors import StatejumpError
 from .campaign_file import Campaign
-from .work import Sample
+from .work import Batch
 
 NAME = "samples.journal.jsonl"
 
@@ -26,7 +29,8 @@ class Journal:
     def __init__(self, folder: Path, campaign: Campaign, restart: bool) -> None:
         """Open or begin it. :raises StatejumpError: it belongs to another campaign, or is in use"""
         self.path = folder / NAME
-        self.samples: dict[int, Sample] = {}
+        self.batches: list[Batch] = []
+        self.finished: set[int] = set()
         self._header = {
             "campaign": campaign.key, "model": campaign.model, "columns": list(campaign.units),
         }
@@ -58,10 +62,8 @@ class Journal:
                     "since); --restart drops what is there, another campaign.name keeps it"
                 )
             for line in lines[1:]:
-                for entry in json.loads(line):
-                    sample = _sample(entry)
-                    self.samples[sample.index] = sample
-        except (ValueError, TypeError, KeyError, IndexError):
+                self._keep(_batch(json.loads(line), len(self._header["columns"])))
+        except (ValueError, TypeError, KeyError, AttributeError):
             raise StatejumpError(f"{self.path}: is damaged; --restart drops what is there") from None
 
     def _whole_lines(self) -> list[bytes]:
@@ -80,10 +82,14 @@ class Journal:
         except OSError as failure:
             raise StatejumpError(f"{self.path}: cannot be written: {failure.strerror}") from None
 
-    def add(self, samples: Sequence[Sample]) -> None:
+    def _keep(self, batch: Batch) -> None:
+        self.batches.append(batch)
+        self.finished.update(batch.indices)
+
+    def add(self, batch: Batch) -> None:
         """Keep finished samples; on return they are on disk."""
-        self._append([_entry(sample) for sample in samples])
-        self.samples.update((sample.index, sample) for sample in samples)
+        self._append(_entry(batch))
+        self._keep(batch)
 
     def __enter__(self) -> "Journal":
         return self
@@ -92,15 +98,13 @@ class Journal:
         self._stream.close()
 
 
-def _entry(sample: Sample) -> list[Any]:
-    """JSON has no NaN: null stands for it."""
-    if sample.values is None:
-        return [sample.index, None, sample.error]
-    return [sample.index, [None if math.isnan(value) else value for value in sample.values]]
+def _entry(batch: Batch) -> dict[str, Any]:
+    packed = base64.b64encode(batch.values.astype("<f8").tobytes()).decode()
+    return {"samples": batch.indices, "values": packed, "errors": batch.errors}
 
 
-def _sample(entry: list[Any]) -> Sample:
-    values: Optional[list[Any]] = entry[1]
-    if values is None:
-        return Sample(int(entry[0]), None, str(entry[2]))
-    return Sample(int(entry[0]), tuple(math.nan if value is None else float(value) for value in values))
+def _batch(entry: dict[str, Any], columns: int) -> Batch:
+    indices = tuple(int(index) for index in entry["samples"])
+    values = np.frombuffer(base64.b64decode(entry["values"], validate=True), dtype="<f8")
+    errors = {int(index): str(error) for index, error in entry["errors"].items()}
+    return Batch(indices, values.reshape(len(indices), columns), errors)

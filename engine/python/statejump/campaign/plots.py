@@ -13,7 +13,7 @@ from .tables import Table
 
 BLUE, ORANGE, DARK = "#0072B2", "#D55E00", "#000000"
 LINES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-MOST_POINTS = 4000  # of one scatter panel
+MOST_POINTS = 2000  # of one scatter panel
 MOST_LINES = 7
 
 

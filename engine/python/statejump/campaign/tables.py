@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Iterable
 
 import h5py
 import numpy as np
@@ -12,7 +13,7 @@ import numpy as np
 from .. import __version__
 from ..output import replacing, write_atomically
 from .campaign_file import Campaign
-from .work import Sample
+from .work import Batch
 
 
 @dataclass(frozen=True)
@@ -29,16 +30,22 @@ class Table:
         return np.array([bool(error) for error in self.error])
 
 
-def make_table(campaign: Campaign, samples: dict[int, Sample]) -> Table:
-    """Gather all samples, in their order."""
-    ordered = [samples[index] for index in range(campaign.samples)]
+def make_table(campaign: Campaign, batches: Iterable[Batch]) -> Table:
+    """Gather all samples, in their order; batches may hold more than the campaign asks for."""
     parameters = np.array([campaign.values(index) for index in range(campaign.samples)], dtype=float)
-    lost = (np.nan,) * len(campaign.units)
-    outcomes = np.array([lost if sample.values is None else sample.values for sample in ordered])
+    outcomes = np.full((campaign.samples, len(campaign.units)), np.nan)
+    errors = [""] * campaign.samples
+    for batch in batches:
+        indices = np.array(batch.indices)
+        wanted = indices < campaign.samples
+        outcomes[indices[wanted]] = batch.values[wanted]
+        for index, error in batch.errors.items():
+            if index < campaign.samples:
+                errors[index] = error
     return Table(
         {parameter.keys[0]: parameters[:, place] for place, parameter in enumerate(campaign.vary)},
         {name: outcomes[:, place] for place, name in enumerate(campaign.units)},
-        [sample.error for sample in ordered],
+        errors,
     )
 
 

@@ -6,6 +6,8 @@ import time
 from dataclasses import dataclass
 from typing import Optional, Sequence
 
+import numpy as np
+
 from ..case import parse_case
 from ..errors import StatejumpError
 from .campaign_file import Campaign
@@ -39,8 +41,27 @@ def _one_line(text: str) -> str:
     return " ".join(text.split())
 
 
-def run_samples(campaign: Campaign, indices: Sequence[int]) -> tuple[float, list[Sample]]:
+@dataclass(frozen=True)
+class Batch:
+    """Finished samples together; values of a failed one are NaN."""
+
+    indices: tuple[int, ...]
+    values: np.ndarray  # (samples, outcomes)
+    errors: dict[int, str]  # of the failed samples, by index
+
+
+def batch_of(samples: Sequence[Sample], outcomes: int) -> Batch:
+    """Put samples together; ``outcomes``: number of columns."""
+    values = np.full((len(samples), outcomes), np.nan)
+    for row, sample in zip(values, samples):
+        if sample.values is not None:
+            row[:] = sample.values
+    errors = {sample.index: sample.error for sample in samples if sample.values is None}
+    return Batch(tuple(sample.index for sample in samples), values, errors)
+
+
+def run_samples(campaign: Campaign, indices: Sequence[int]) -> tuple[float, Batch]:
     """Run several samples; return the seconds that they took, and the samples."""
     started = time.perf_counter()
-    done = [run_sample(campaign, index) for index in indices]
+    done = batch_of([run_sample(campaign, index) for index in indices], len(campaign.units))
     return time.perf_counter() - started, done
