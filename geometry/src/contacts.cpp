@@ -188,6 +188,8 @@ std::vector<BoreContact> BoreMesh::contacts(const Eigen::Vector3d& journal_centr
   const double centre_y = offset.dot(m.wall.axis_y);
   const double centre_z = offset.dot(m.wall.axis);
 
+  if (grid.least - std::hypot(centre_x, centre_y) > limit) return {};
+
   // Distances of the seeds in the journal's section, rows interpolated. thread_local: no
   // allocation.
   thread_local std::vector<double> distance, x, y, z;
@@ -285,6 +287,12 @@ std::vector<BoreContact> BoreMesh::ball_contacts(const Eigen::Vector3d& ball_cen
   const Grid& grid = m.grid;
   const int cells = grid.rows * grid.columns;
   const double limit = ball_radius + maximum_gap;
+  // From a centre off the axis (the middle of a socket) no wall is nearer than this.
+  const Vector3 offset = ball_centre - m.wall.centre;
+  const Vector3 across = m.kind == SurfaceKind::bore
+                             ? Vector3(offset - offset.dot(m.wall.axis) * m.wall.axis)
+                             : offset;
+  if (grid.least - across.norm() > limit) return {};
   thread_local std::vector<double> distance;
   distance.resize(cells);
   for (int i = 0; i < cells; ++i) {

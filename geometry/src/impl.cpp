@@ -237,6 +237,18 @@ void BoreMesh::Impl::make_grid() {
       grid.face[cell] = hit.face;
     }
   }
+  // Between samples the wall may be nearer, by no more than neighbouring samples differ.
+  double least = std::numeric_limits<double>::infinity(), largest_step = 0;
+  for (int r = 0; r < grid.rows; ++r)
+    for (int c = 0; c < grid.columns; ++c) {
+      const double here = grid.radius[r * grid.columns + c];
+      const double after = grid.radius[r * grid.columns + (c + 1) % grid.columns];
+      const double above = grid.radius[std::min(r + 1, grid.rows - 1) * grid.columns + c];
+      if (here < least) least = here;
+      for (const double other : {after, above})
+        if (std::abs(other - here) > largest_step) largest_step = std::abs(other - here);
+    }
+  grid.least = least - largest_step - prominence;
 }
 
 int BoreMesh::Impl::shoot(const Vector3& point, const Vector3& direction) const {

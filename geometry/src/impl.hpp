@@ -32,6 +32,7 @@ struct Grid {
   std::vector<Vector3> point;
   std::vector<int> face;  ///< of the wall
   std::vector<double> cosine, sine;
+  double least = 0;  ///< no wall is nearer to the axis (centre) [m]
 };
 
 struct BoreMesh::Impl {
