@@ -334,7 +334,7 @@ def test_same_bytes_with_any_workers(tmp_path: Path, write: Callable[..., Path])
     from statejump.campaign.cluster import _no_main_file
 
     with _no_main_file(), LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path)
+        n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0", local_directory=str(tmp_path)
     ) as cluster:
         two = finish(campaign, tmp_path / "two", scheduler=cluster.scheduler_address)
     assert one == two

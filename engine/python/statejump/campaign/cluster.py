@@ -68,13 +68,14 @@ def _quiet() -> Iterator[None]:
 @contextmanager
 def _local(workers: int, model: str) -> Iterator[Client]:
     with tempfile.TemporaryDirectory(prefix="statejump-", ignore_cleanup_errors=True) as scratch:
-        environment = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+        environment = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "TMPDIR": scratch}
         if model == "dem":
             environment["STATEJUMP_YADE"] = _yade_that_dies_with_its_worker(Path(scratch))
         with _no_main_file(), ExitStack() as stack:
             with _interrupt_blocked():
                 cluster = LocalCluster(
-                    n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None,
+                    n_workers=workers, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0",
+                    worker_dashboard_address="127.0.0.1:0",
                     silence_logs=logging.CRITICAL + 1, local_directory=scratch, memory_limit=0,
                     env=environment,
                 )

@@ -15,6 +15,7 @@ BLUE, ORANGE, DARK = "#0072B2", "#D55E00", "#000000"
 LINES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 MOST_POINTS = 2000  # of one scatter panel
 MOST_LINES = 7
+MOST_WHOLE = 60
 
 
 def figures(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
@@ -92,6 +93,8 @@ def _bins(there: np.ndarray) -> np.ndarray:
     if high - low <= 1e-12 * max(abs(low), abs(high)):  # one value
         half = 0.5 * abs(low) or 0.5
         low, high = low - half, high + half
+    elif high - low <= MOST_WHOLE and bool(np.all(there == np.round(there))):  # counts: a bar each
+        return np.arange(low - 0.5, high + 1.0)
     return np.linspace(low, high, count + 1)
 
 
