@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bores given by triangles: what `statejump bore` says of them."""
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from statejump import _engine, bore
+from statejump.errors import StatejumpError
+
+RADIUS = 5.1e-3
+JOURNAL = 5e-3
+
+
+def write_off(path: Path, vertices: np.ndarray, faces: np.ndarray) -> Path:
+    lines = ["OFF", f"{len(vertices)} {len(faces)} 0"]
+    lines += [" ".join(f"{x:.17g}" for x in v) for v in vertices]
+    lines += ["3 " + " ".join(map(str, f)) for f in faces]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def lobed(**more) -> tuple[np.ndarray, np.ndarray]:
+    return _engine.bore_triangles(
+        RADIUS, 10e-3, 240, 12, lobes=[(3, 10e-6, 0.3), (2, 1e-6, 1.1), (7, 2e-7, 0.05)], **more
+    )
+
+
+def test_harmonics_are_recovered():
+    mesh = _engine.BoreMesh(*lobed())
+    report = bore.measure(mesh, "lobed", JOURNAL)
+    assert report.dominating_harmonic == 3
+    for each in report.sections:
+        found = dict(zip(bore.HARMONICS, zip(each.amplitude_m, each.phase_rad)))
+        for order, amplitude, phase in ((3, 10e-6, 0.3), (2, 1e-6, 1.1), (7, 2e-7, 0.05)):
+            assert found[order][0] == pytest.approx(amplitude, abs=1e-10)
+            assert np.angle(np.exp(1j * order * (found[order][1] - phase))) == pytest.approx(0, abs=1e-4)
+        for order in (4, 5, 6, 8, 9, 10, 11, 12):
+            assert found[order][0] < 1e-9
+    assert mesh.mean_radius_m == pytest.approx(RADIUS, abs=2e-8)  # least squares of a wave: a^2/R
+    exact = RADIUS + sum(a * np.cos(k * (bore.angles_rad() - p))
+                         for k, a, p in ((3, 10e-6, 0.3), (2, 1e-6, 1.1), (7, 2e-7, 0.05)))
+    assert report.middle.roundness_error_m == pytest.approx(np.ptp(exact), abs=1e-9)
+    # The axis of least squares is off by the product of neighbouring lobes: 10 um * 1 um / R = 2e-9.
+    assert report.smallest_radius_m == pytest.approx(exact.min(), abs=3e-9)
+
+
+def test_round_bore_has_no_lobes():
+    mesh = _engine.BoreMesh(*_engine.bore_triangles(RADIUS, 10e-3, 200, 8))
+    report = bore.measure(mesh, "round")
+    assert report.middle.roundness_error_m < 1e-12
+    assert report.cylindricity_m < 1e-12
+
+
+def test_contacts_from_python():
+    mesh = _engine.BoreMesh(*_engine.bore_triangles(RADIUS, 10e-3, 200, 8))
+    (contact,) = mesh.contacts([1.01e-4, 0, 0], [0, 0, 1], JOURNAL)
+    assert contact["depth_m"] == pytest.approx(1e-6, abs=1e-12)
+    assert contact["normal"] == pytest.approx([1, 0, 0], abs=1e-6)
+    assert mesh.closest_point([4e-3, 0, 0])["distance_m"] == pytest.approx(1.1e-3, abs=1e-12)
+    cup = _engine.BoreMesh(*_engine.socket_triangles(8e-3, 1.4, 100, 40), kind="socket")
+    (contact,) = cup.ball_contacts([0, 0, -1.01e-4], 7.9e-3)
+    assert contact["depth_m"] == pytest.approx(1e-6, abs=1e-9)
+
+
+def run(tmp_path: Path, *arguments: object):
+    return CliRunner().invoke(
+        bore.bore_command, [*map(str, arguments), "--results", str(tmp_path / "results")]
+    )
+
+
+def test_command_writes_table_and_picture(tmp_path: Path):
+    vertices, faces = lobed(wall_thickness_m=2e-3)
+    file = write_off(tmp_path / "worn.off", vertices * 1e3, faces)
+    done = run(tmp_path, file, "--scale", "0.001", "--journal-radius", JOURNAL)
+    assert done.exit_code == 0, done.output
+    folder = tmp_path / "results" / "bore_worn"
+    assert sorted(p.name for p in folder.iterdir()) == ["bore.csv", "roundness.png", "roundness.svg"]
+    with (folder / "bore.csv").open() as stream:
+        values = {row["quantity"]: row["value"] for row in csv.DictReader(stream)}
+    assert values["body"] == "closed ring"
+    assert values["lobes that dominate"] == "3"
+    assert float(values["harmonic 3, middle section: amplitude"]) == pytest.approx(1e-5, abs=1e-9)
+    assert float(values["radial clearance, least squares"]) == pytest.approx(1e-4, abs=2e-8)
+    assert float(values["radial clearance, smallest, journal on the axis"]) < 9e-5
+    first = (folder / "roundness.svg").read_bytes()
+    assert run(tmp_path, file, "--scale", "0.001", "--journal-radius", JOURNAL).exit_code == 0
+    assert (folder / "roundness.svg").read_bytes() == first
+
+
+def refusal(tmp_path: Path, *arguments: object) -> str:
+    done = run(tmp_path, *arguments)
+    assert isinstance(done.exception, StatejumpError), done.output
+    assert done.exception.exit_status == 2
+    assert not (tmp_path / "results").exists()
+    return str(done.exception)
+
+
+def test_refusals(tmp_path: Path):
+    vertices, faces = _engine.bore_triangles(RADIUS, 10e-3, 12, 2)
+    file = write_off(tmp_path / "mm.off", vertices * 1e3, faces)
+    assert refusal(tmp_path, file) == (
+        f"{file}: the mean radius is 5.1 m, allowed is 1e-05 to 0.5 m: are the coordinates in "
+        "millimetres? Then use --scale 0.001"
+    )
+    file = write_off(tmp_path / "inside_out.off", vertices, faces[:, ::-1])
+    assert refusal(tmp_path, file).startswith(f"{file}: the mesh is inside out: its normals point away from the axis")
+    assert refusal(tmp_path, file).endswith("; --flip turns it")
+    assert run(tmp_path, file, "--flip").exit_code == 0
+    missing = tmp_path / "none.stl"
+    with pytest.raises(StatejumpError, match="cannot be opened"):
+        bore.load(missing)
+
+
+def test_journal_of_another_unit(tmp_path: Path):
+    vertices, faces = _engine.bore_triangles(0.051, 0.1, 24, 2)
+    file = write_off(tmp_path / "large.off", vertices, faces)
+    assert refusal(tmp_path, file, "--journal-radius", "0.005") == (
+        f"{file}: the bore's mean radius 0.051 m is 10.2 times the journal's 0.005 m: are the coordinates in "
+        "millimetres? Then use --scale 0.001"
+    )
+    assert refusal(tmp_path, file, "--journal-radius", "-1") == "journal radius = -1, allowed is (0, inf) m"
