@@ -14,11 +14,13 @@ from rich.console import Console
 from rich.table import Table
 
 from . import __version__, _engine, compare, convergence, dem, laws, plot, reduced
-from .case import SpringSliderCase, UmbrellaCase, load_case
+from .campaign import montecarlo_command, sweep_command
+from .case import SpringSliderCase, UmbrellaCase
 from .control import control_command
 from .errors import StatejumpError, Interrupted, TolerancesMissed
 from .history import History
 from .output import results_folder
+from .statics import statics_command
 from .terminal import CASE, QUIET, RESULTS, load_kind, make_console, number, progress
 from .umbrella import compare as umbrella_compare
 from .umbrella import dem as umbrella_dem
@@ -67,7 +69,7 @@ def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
       statejump reduced cases/table1.toml
     """
     console = make_console(quiet)
-    case = load_case(case_file)
+    case = load_kind(case_file, SpringSliderCase, UmbrellaCase)
     folder = results_folder(results, case.name)
     if isinstance(case, UmbrellaCase):
         _reduced_umbrella(case, folder, console)
@@ -138,7 +140,7 @@ def dem_command(case_file: Path, results: Path, quiet: bool) -> None:
       statejump dem cases/table1.toml
     """
     console = make_console(quiet)
-    case = load_case(case_file)
+    case = load_kind(case_file, SpringSliderCase, UmbrellaCase)
     folder = results_folder(results, case.name)
     if isinstance(case, UmbrellaCase):
         with progress(console, _dem_label(umbrella_dem.number_of_steps(case))) as report:
@@ -171,7 +173,7 @@ def compare_command(case_file: Path, results: Path, quiet: bool) -> None:
       statejump compare cases/table1.toml
     """
     console = make_console(quiet)
-    case = load_case(case_file)
+    case = load_kind(case_file, SpringSliderCase, UmbrellaCase)
     folder = results_folder(results, case.name)
     if isinstance(case, UmbrellaCase):
         rows, figures = _compare_umbrella(case, folder, console)
@@ -272,7 +274,10 @@ def laws_command(case_file: Path | None, results: Path, quiet: bool) -> None:
     console.print(f"curves: {', '.join(str(name) for name in written)}")
 
 
-for _command in (figures_command, slow_command, hold_command, energy_command, control_command):
+for _command in (
+    figures_command, slow_command, hold_command, energy_command, control_command, statics_command,
+    montecarlo_command, sweep_command,
+):
     cli.add_command(_command)
 
 

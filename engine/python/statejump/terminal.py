@@ -32,14 +32,15 @@ def make_console(quiet: bool) -> Console:
     return console
 
 
-def load_kind(case_file: Path, kind: type[CaseType]) -> CaseType:
-    """Load a case of the kind that the command is for; StatejumpError for any other."""
+def load_kind(case_file: Path, *kinds: type[CaseType]) -> CaseType:
+    """Load a case of one of the kinds that the command is for; StatejumpError for any other."""
     case = load_case(case_file)
-    if not isinstance(case, kind):
+    if not isinstance(case, kinds):
         command = click.get_current_context().info_name
+        allowed = " and ".join(repr(kind.KIND) for kind in kinds)
         raise StatejumpError(
             f"{case_file}: case.kind = {case.kind!r} is not allowed: 'statejump {command}' is for "
-            f"{kind.KIND!r}"
+            f"{allowed}"
         )
     return case
 

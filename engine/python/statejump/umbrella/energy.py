@@ -46,8 +46,8 @@ all that are above rounding. The residues change sign, so single orders scatter;
   memory takes the slide of a step at the stiffness of its end: order 1 to 2.
 - Leapfrog keeps the energy of the ringing to order 2, contacts included.
 - Damped DEM: order 1. At a corner of the program the rate of the links' thermal length jumps by 2 dl/dt
-  and the dashpots book one step at the rate after it, together sum c (2 dl/dt)^2 dt; `corner` below.
-  Whether the corner's step lies before or after the instant is up to rounding.
+  and with it the dashpots' force; across a jump an account step by step is of first order, its error a
+  fraction of sum c (2 dl/dt)^2 dt, `corner` below.
 - Without friction and damping the motion after contact is chaotic: runs of different steps end in
   different states. The account of each run must close all the same; before contact they follow
   one path.
