@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cases of kind ``statics``: where a loaded clearance joint can rest, the paper's section 2."""
+"""Cases of kind ``statics``: where a loaded clearance joint can rest, the paper's section 2.
+
+Forces that depend on temperature, F0 + rate dT, are taken at the listed temperatures. Friction cones
+are convex, so what holds at the first and the last temperature holds between them: the intersection
+is exact with the two ends of the range. The union is that of the listed temperatures only.
+"""
 from __future__ import annotations
 
 from dataclasses import dataclass

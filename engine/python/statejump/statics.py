@@ -273,7 +273,8 @@ def vertex_normals(mesh: _engine.RestMesh) -> np.ndarray:
 
 def _measure(value: dict[str, Any]) -> tuple[str, str]:
     """Length and area for a table; a point has neither."""
-    return (number(value["length_m"]) if value["length_m"] else "-", number(value["area_m2"]) if value["area_m2"] else "-")
+    length, area = (number(value[key]) if value[key] else "-" for key in ("length_m", "area_m2"))
+    return length, area
 
 
 def print_table(case: StaticsCase, statics: Statics, console: Console) -> None:

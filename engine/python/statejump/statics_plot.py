@@ -45,7 +45,8 @@ def planar(case: StaticsCase, solutions: list[Statics], folder: Path) -> list[Pa
         for panel in panels[-1:] if slot else panels:
             panel.set_xlabel("position of the centre [µm]" if slot else "x of the centre [µm]")
         below.axis("off")
-        below.legend(handles=_legend(case, solutions[0]), loc="center", ncol=3 if slot or count < 3 else 5, fontsize=8, framealpha=1)
+        below.legend(handles=_legend(case, solutions[0]), loc="center", ncol=3 if slot or count < 3 else 5,
+                     fontsize=8, framealpha=1)
         drawing.suptitle(case.title, fontsize=11)
         return plot.save(drawing, folder, case.name)
 
@@ -217,9 +218,11 @@ def spatial(case: StaticsCase, statics: Statics, folder: Path) -> list[Path]:
     light = 0.55 + 0.45 * np.abs(outwards @ (lamp / np.linalg.norm(lamp)))
     shaded = np.clip(colours * light[:, None], 0, 1)
     with plt.rc_context(plot.STYLE):
-        drawing = plt.figure(figsize=(7.0, 6.4))
+        drawing = plt.figure(figsize=(7.0, 6.4), dpi=160)  # of the picture inside the SVG
         panel = drawing.add_axes((0.0, 0.08, 1.0, 0.84), projection="3d", computed_zorder=False)
-        panel.add_collection3d(Poly3DCollection(polygons, facecolors=shaded, edgecolors=shaded, linewidths=0.15, zorder=1))
+        surface = Poly3DCollection(polygons, facecolors=shaded, edgecolors=shaded, linewidths=0.15, zorder=1)
+        surface.set_rasterized(True)  # thousands of polygons
+        panel.add_collection3d(surface)
         handles = [Patch(facecolor=SURFACE, label="positions of the centre in contact"),
                    Patch(facecolor=HELD, label="at rest" if every == 1 else "at rest under at least one force")]
         if every > 1:

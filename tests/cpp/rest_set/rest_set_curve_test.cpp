@@ -71,6 +71,26 @@ TEST(RestOnCurve, WithoutFrictionIsolatedPoints) {
   }
 }
 
+TEST(RestOnCurve, ThreeNodes) {
+  // N turns by 2 pi / 3 between nodes, through the angle pi as well.
+  RestCurve coarse;
+  coarse.closed = true;
+  coarse.at = [](double t) {
+    const double angle = 2.0 * pi * t / 3.0;
+    const Vector2d e(std::cos(angle), std::sin(angle));
+    return CurvePoint{c * e, -e};
+  };
+  for (int i = 0; i < 3; ++i) coarse.nodes.push_back(coarse.at(i));
+  for (int i = 0; i < 40; ++i) {
+    const double direction = 0.16 * i - pi;
+    const Vector2d force(std::cos(direction), std::sin(direction));
+    const RestSet set = rest_on_curves({coarse}, {force}, 8.0).any;
+    ASSERT_EQ(set.parts.size(), 1u) << direction;
+    EXPECT_NEAR(angle_to(set.parts[0].points.front(), direction), std::atan(8.0), 1e-12);
+    EXPECT_NEAR(angle_to(set.parts[0].points.back(), direction), std::atan(8.0), 1e-12);
+  }
+}
+
 TEST(RestOnCurve, TwoForces) {
   const auto curves = circle(60);
   const double phi = std::atan(0.3);

@@ -96,6 +96,13 @@ TEST(RestInBearing, TwoForcesAtBeta) {
   }
 }
 
+TEST(RestInBearing, FarthestOfThreeArcs) {
+  // 2.5 rad between the second and the third, less between the others.
+  const RestStudy study = rest_in_bearing(c, {at(1.0), at(3.0), at(5.5)}, 0.05);
+  EXPECT_EQ(study.any.parts.size(), 3u);
+  EXPECT_NEAR(study.any.diameter, 2.0 * c * std::sin(1.25 + std::atan(0.05)), 1e-18);
+}
+
 TEST(RestInBearing, ForcesAllAround) {
   std::vector<Vector2d> forces;
   for (int i = 0; i < 12; ++i) forces.push_back(at(2.0 * pi * i / 12));
