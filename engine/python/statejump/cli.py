@@ -14,6 +14,7 @@ from rich.console import Console
 from rich.table import Table
 
 from . import __version__, _engine, compare, convergence, dem, laws, plot, reduced
+from .bore import bore_command
 from .campaign import montecarlo_command, sweep_command
 from .case import SpringSliderCase, UmbrellaCase
 from .control import control_command
@@ -276,7 +277,7 @@ def laws_command(case_file: Path | None, results: Path, quiet: bool) -> None:
 
 for _command in (
     figures_command, slow_command, hold_command, energy_command, control_command, statics_command,
-    montecarlo_command, sweep_command,
+    bore_command, montecarlo_command, sweep_command,
 ):
     cli.add_command(_command)
 
