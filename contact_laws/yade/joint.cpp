@@ -2,67 +2,17 @@
 
 #include <boost/make_shared.hpp>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "blocked_motion.hpp"
+#include "bore.hpp"
+#include "contact_parts.hpp"
 #include "failure.hpp"
 #include "ranges.hpp"
 #include "shapes.hpp"
-#include "thermal.hpp"
 
 namespace statejump::dem {
 namespace {
-
-kernel::BodyMotion motion(const yade::State& state) {
-  return {state.se3.position, state.vel, state.angVel};
-}
-
-std::string where(const yade::Scene& scene, int id1, int id2, const std::string& more = "") {
-  std::ostringstream text;
-  text.precision(9);
-  text << " (contact of bodies " << id1 << " and " << id2 << ", time " << scene.time << " s" << more
-       << ")";
-  return text.str();
-}
-
-// Failures apart from the path of every step, which stays short and free of text.
-[[gnu::cold, gnu::noinline]] void fail_closed(const char* inner, Real inner_radius,
-                                              const char* outer, Real outer_radius,
-                                              const yade::Scene& scene,
-                                              const yade::Interaction& contact) {
-  std::ostringstream text;
-  text.precision(9);
-  text << "the clearance is closed: " << inner << " radius " << inner_radius << " m, " << outer
-       << " radius " << outer_radius << " m at the current temperature"
-       << where(scene, contact.id1, contact.id2);
-  record_failure(text.str());
-}
-
-[[gnu::cold, gnu::noinline]] void fail_tilted(const yade::Scene& scene,
-                                              const yade::Interaction& contact) {
-  record_failure(
-      "the axes of journal and bearing are tilted by more than maxTilt, and contact "
-      "at the edges is not covered" +
-      where(scene, contact.id1, contact.id2));
-}
-
-[[gnu::cold, gnu::noinline]] void fail_unstable(Real effective_mass, Real stiffness,
-                                                const yade::Scene& scene,
-                                                const yade::Interaction& contact) {
-  std::ostringstream text;
-  text.precision(6);
-  text << "the time step " << scene.dt << " s is above the stable one, "
-       << kernel::critical_time_step(effective_mass, stiffness) << " s"
-       << where(scene, contact.id1, contact.id2);
-  record_failure(text.str());
-}
-
-// Local z axis in the world: orientation * (0, 0, 1) without the products with zero.
-Vector3r axis_of(const yade::Quaternionr& q) {
-  return {2 * (q.x() * q.z() + q.w() * q.y()), 2 * (q.y() * q.z() - q.w() * q.x()),
-          1 - 2 * (q.x() * q.x() + q.y() * q.y())};
-}
 
 JointGeom& geometry_of(const yade::shared_ptr<yade::Interaction>& contact,
                        const Vector3r& first_normal) {
@@ -79,21 +29,6 @@ Real inverse_mass_of(const yade::Scene& scene, int id) {
 }
 
 }  // namespace
-
-inline void JointGeom::update(const kernel::JointContact& contact, const yade::State& state1,
-                              const yade::State& state2, Real time_step) {
-  previousNormal = normal;
-  normal = contact.normal;
-  penetrationDepth = contact.penetration_depth;
-  effectiveRadius = contact.effective_radius;
-  eccentricity = contact.eccentricity;
-  relativeVelocity = contact.relative_velocity;
-  arm1 = contact.arm_1;
-  arm2 = contact.arm_2;
-  contactPoint = state1.se3.position + arm1;
-  // The history turns with the mean spin of both bodies about the normal.
-  twistAngle = 0.5 * time_step * (state1.angVel + state2.angVel).dot(normal);
-}
 
 [[gnu::flatten]] bool Ig2_Journal_Bearing_JointGeom::go(
     const yade::shared_ptr<yade::Shape>& shape1, const yade::shared_ptr<yade::Shape>& shape2,
@@ -204,7 +139,9 @@ void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
   if (contact->phys) return;
   const auto& first = static_cast<const ThermalFrictMat&>(*material1);
   const auto& second = static_cast<const ThermalFrictMat&>(*material2);
-  auto physics = boost::make_shared<JointPhys>();
+  const bool many = dynamic_cast<const BoreGeom*>(contact->geom.get()) != nullptr;
+  auto physics = many ? yade::shared_ptr<JointPhys>(boost::make_shared<BorePhys>())
+                      : boost::make_shared<JointPhys>();
   try {
     const kernel::ElasticPair elastic =
         kernel::elastic_pair(first.young, first.poisson, second.young, second.poisson);
@@ -296,184 +233,11 @@ void Law2_JointGeom_JointPhys_HertzMindlin::account(const kernel::ContactRespons
                  response.friction_dissipation, response.damping_dissipation, thermal_work});
 }
 
-namespace {
-
-namespace laws = kernel::laws;
-
-// The name of a law of one kind, or a sentence that lists the known ones.
-template <class Law>
-Law law_by_name(Law (*find)(const std::string&), const char* class_name, const char* attribute,
-                const std::string& name) {
-  try {
-    return find(name);
-  } catch (const std::invalid_argument&) {
-    std::string allowed = "one of ";
-    for (const std::string& known : laws::law_names<Law>()) allowed += known + ", ";
-    allowed.resize(allowed.size() - 2);
-    refuse(class_name, attribute, name, allowed);
-  }
-}
-
-// Temperature changes that the engines of the scene impose, for messages.
-std::string temperatures(const yade::Scene& scene) {
-  std::ostringstream text;
-  text.precision(9);
-  for (const auto& engine : scene.engines) {
-    if (const auto* heater = dynamic_cast<const ThermalExpansionEngine*>(engine.get())) {
-      text << ", temperature change " << heater->temperatureChange << " K";
-    }
-  }
-  return text.str();
-}
-
-[[gnu::cold, gnu::noinline]] void fail_law(const std::string& sentence, const yade::Scene& scene,
-                                           const yade::Interaction& contact) {
-  record_failure(sentence + where(scene, contact.id1, contact.id2, temperatures(scene)));
-}
-
-}  // namespace
-
-void Law2_JointGeom_JointPhys_JointLaw::check() {
-  laws::JointLaw law;
-  law.normal = law_by_name(laws::normal_law, class_name, "normalLaw", normalLaw);
-  law.dissipation =
-      law_by_name(laws::dissipation_law, class_name, "dissipationLaw", dissipationLaw);
-  law.friction = law_by_name(laws::friction_law, class_name, "frictionLaw", frictionLaw);
-  law.tangential_velocity = law_by_name(laws::tangential_velocity_law, class_name,
-                                        "tangentialVelocity", tangentialVelocity);
-  if (!(restitution > 0 && restitution <= 1)) {
-    dem::refuse(class_name, "restitution", restitution, "in (0, 1] [-]");
-  }
-  require_positive(class_name, "smallestImpactSpeed", smallestImpactSpeed, "[m/s]");
-  require_positive(class_name, "contactLength", contactLength, "[m]");
-  require_not_negative(class_name, "v0", v0, "[m/s]");
-  if (!(v1 > v0 && std::isfinite(v1))) dem::refuse(class_name, "v1", v1, "above v0 [m/s]");
-  law.restitution = restitution;
-  law.smallest_impact_speed = smallestImpactSpeed;
-  law.contact_length = contactLength;
-  law.friction_parameters = {0, v0, v1};  // the friction coefficient is that of each contact
-  laws::validate(law);
-  law_ = law;
-  needs_axis_ = !(std::holds_alternative<laws::HertzPaper>(law.normal) ||
-                     std::holds_alternative<laws::HertzInternal>(law.normal)) ||
-                   std::holds_alternative<laws::PaperVelocity>(law.tangential_velocity);
-}
-
-// The bodies have moved uniformly over the last step, at the velocity of the half step, and the
-// clearance has changed by clearanceRate dt: the touching is where that straight line crosses 0.
-void Law2_JointGeom_JointPhys_JointLaw::begin(const JointGeom& geometry, JointPhys& physics) {
-  physics.impactSpeed = geometry.relativeVelocity.dot(geometry.normal);
-  const Real rate = physics.impactSpeed - geometry.clearanceRate;
-  const Real since =
-      rate * scene->dt > geometry.penetrationDepth ? geometry.penetrationDepth / rate : scene->dt;
-  const bool ever_apart = rate > 0 && scene->time >= scene->dt;
-  const Real touched = ever_apart ? scene->time - since : scene->time;
-  const std::lock_guard<std::mutex> lock(beginning_);
-  ++contacts;
-  if (firstContactTime < 0 || touched < firstContactTime) firstContactTime = touched;
-}
-
-bool Law2_JointGeom_JointPhys_JointLaw::go(yade::shared_ptr<yade::IGeom>& geometry_pointer,
-                                           yade::shared_ptr<yade::IPhys>& physics_pointer,
+bool Law2_JointGeom_JointPhys_JointLaw::go(yade::shared_ptr<yade::IGeom>& geometry,
+                                           yade::shared_ptr<yade::IPhys>& physics,
                                            yade::Interaction* contact) {
-  const auto& geometry = static_cast<const JointGeom&>(*geometry_pointer);
-  auto& physics = static_cast<JointPhys&>(*physics_pointer);
-  const Real dt = scene->dt;
-  const bool flat = !(geometry.bearingRadius > 0);
-  if (needs_axis_ && geometry.axis.isZero()) {
-    fail_law(
-        std::string(flat ? "a Slider on a SlotFace" : "a Ball in a Socket") +
-            " needs normalLaw 'hertz_paper' or 'hertz_internal' and "
-        "tangentialVelocity 'material', not '" +
-            normalLaw + "' and '" + tangentialVelocity + "'",
-        *scene, *contact);
-    return true;
-  }
-  const bool touching = geometry.penetrationDepth > 0;
-  if (touching && physics.impactSpeed == -1) begin(geometry, physics);
-
-  const kernel::ContactParameters parameters{
-      {physics.effectiveYoungModulus, physics.effectiveShearModulus},
-      physics.tangensOfFrictionAngle,
-      physics.normalDampingRatio,
-      physics.tangentialDampingRatio,
-      physics.effectiveMass};
-  kernel::ContactHistory history;
-  history.tangential_force = kernel::transport(-physics.shearForce, geometry.previousNormal,
-                                               geometry.normal, geometry.twistAngle);
-  history.tangential_stiffness = physics.ks;
-  history.slipping = physics.slipping;
-  const auto& state1 = *body_at(*scene, static_cast<std::size_t>(contact->id1))->state;
-  const auto& state2 = *body_at(*scene, static_cast<std::size_t>(contact->id2))->state;
-  const laws::JointKinematics kinematics{
-      {geometry.penetrationDepth, geometry.normal, geometry.arm1, geometry.arm2,
-       geometry.relativeVelocity, geometry.effectiveRadius, geometry.eccentricity},
-      {geometry.journalRadius,
-       flat ? std::numeric_limits<Real>::infinity() : geometry.bearingRadius, law_.contact_length},
-      motion(state1),
-      motion(state2),
-      geometry.axis,
-      physics.impactSpeed,
-      geometry.clearanceRate,
-      dt};
-  try {
-    const laws::JointResponse response =
-        laws::joint_response(law_, parameters, kinematics, history);
-    if (scene->trackEnergy) account(response, kinematics.geometry, geometry, physics);
-    if (!touching) return false;
-
-    const Real normal_stiffness = response.contact.normal_stiffness;
-    if (dt * dt * normal_stiffness > 4 * physics.effectiveMass && physics.effectiveMass > 0) {
-      fail_unstable(physics.effectiveMass, normal_stiffness, *scene, *contact);
-    }
-    physics.kn = normal_stiffness;
-    physics.ks = history.tangential_stiffness;
-    physics.slipping = history.slipping;
-    physics.normalForce = response.contact.normal_force * geometry.normal;
-    // 'ambrosio' remembers nothing: what it gives is force, not history.
-    physics.shearForce = physics.ks > 0 ? Vector3r(-history.tangential_force)
-                                        : Vector3r(-response.contact.tangential_force);
-    physics.dissipationSlope = response.dissipation_slope;
-    physics.frictionSlope = response.friction_slope;
-    const kernel::Wrench& wrench = response.wrench;
-    scene->forces.addForce(contact->id1, wrench.force_1);
-    scene->forces.addTorque(contact->id1, wrench.torque_1);
-    scene->forces.addForce(contact->id2, wrench.force_2);
-    scene->forces.addTorque(contact->id2, wrench.torque_2);
-  } catch (const std::exception& error) {
-    fail_law(error.what(), *scene, *contact);
-  }
-  return true;
-}
-
-// As Hertz and Mindlin's, but dV/dR by the law itself: V(delta, R1, R2) is known by value only.
-void Law2_JointGeom_JointPhys_JointLaw::account(const laws::JointResponse& joint,
-                                                const laws::NormalGeometry& radii,
-                                                const JointGeom& geometry, JointPhys& physics) {
-  const kernel::ContactResponse& response = joint.contact;
-  const Real clearance = geometry.eccentricity - geometry.penetrationDepth;
-  Real thermal_work = 0;
-  if (physics.previousRadius > 0) {
-    const Real force = 0.5 * (response.elastic_normal_force + physics.previousElasticForce);
-    thermal_work = -force * (clearance - physics.previousClearance) -
-                   joint.dissipation_force * geometry.clearanceRate * scene->dt;
-    laws::NormalGeometry before = radii;
-    before.journal_radius = physics.previousRadius;
-    if (physics.previousBearingRadius > 0) before.bearing_radius = physics.previousBearingRadius;
-    for (const Real depth : {geometry.penetrationDepth, physics.previousDepth}) {
-      thermal_work += 0.5 * laws::radius_energy_change(law_.normal, {physics.effectiveYoungModulus},
-                                                       depth, before, radii);
-    }
-  }
-  physics.previousElasticForce = response.elastic_normal_force;
-  physics.previousElasticEnergy = response.normal_elastic_energy;
-  physics.previousClearance = clearance;
-  physics.previousRadius = geometry.journalRadius;
-  physics.previousBearingRadius = geometry.bearingRadius;
-  physics.previousDepth = geometry.penetrationDepth;
-  energies_.add(*scene,
-                {response.normal_elastic_energy + response.tangential_elastic_energy,
-                 response.friction_dissipation, response.damping_dissipation, thermal_work});
+  return step(static_cast<const JointGeom&>(*geometry), static_cast<JointPhys&>(*physics), *contact,
+              *scene);
 }
 
 }  // namespace statejump::dem

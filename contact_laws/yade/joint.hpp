@@ -16,7 +16,8 @@ struct JointGeom : RegisteredIndexable<JointGeom, yade::GenericSpheresContact> {
   static constexpr const char* class_name = "JointGeom";
   static constexpr const char* base_name = "GenericSpheresContact";
   static constexpr const char* doc =
-      "Geometry of one contact of a clearance joint. normal points from the journal (ball, slider), "
+      "Geometry of one contact of a clearance joint. normal points from the journal (ball, "
+      "slider), "
       "id1, into the bearing (socket, slot face), id2: the direction in which 1 pushes 2.";
   Real penetrationDepth = 0;
   Real effectiveRadius = 0;
@@ -121,6 +122,21 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
   }
 };
 
+inline void JointGeom::update(const kernel::JointContact& contact, const yade::State& state1,
+                              const yade::State& state2, Real time_step) {
+  previousNormal = normal;
+  normal = contact.normal;
+  penetrationDepth = contact.penetration_depth;
+  effectiveRadius = contact.effective_radius;
+  eccentricity = contact.eccentricity;
+  relativeVelocity = contact.relative_velocity;
+  arm1 = contact.arm_1;
+  arm2 = contact.arm_2;
+  contactPoint = state1.se3.position + arm1;
+  // The history turns with the mean spin of both bodies about the normal.
+  twistAngle = 0.5 * time_step * (state1.angVel + state2.angVel).dot(normal);
+}
+
 struct Ig2_Journal_Bearing_JointGeom
     : Registered<Ig2_Journal_Bearing_JointGeom, yade::IGeomFunctor> {
   static constexpr const char* class_name = "Ig2_Journal_Bearing_JointGeom";
@@ -181,7 +197,7 @@ struct Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys
   static constexpr const char* doc =
       "Elastic moduli, friction (the smaller of the two friction angles, as elsewhere in YADE) and "
       "damping of a joint contact. Stiffness is not fixed here: the law computes it in each step "
-      "from the radii at the current temperature.";
+      "from the radii at the current temperature. A pair with a MeshBore gets a BorePhys.";
   Real normalDampingRatio = 0;
   Real tangentialDampingRatio = 0;
   using yade::IPhysFunctor::go;
@@ -227,19 +243,10 @@ struct Law2_JointGeom_JointPhys_HertzMindlin
   JointEnergies energies_;
 };
 
-struct Law2_JointGeom_JointPhys_JointLaw
-    : Registered<Law2_JointGeom_JointPhys_JointLaw, yade::LawFunctor> {
-  static constexpr const char* class_name = "Law2_JointGeom_JointPhys_JointLaw";
-  static constexpr const char* base_name = "LawFunctor";
-  static constexpr const char* doc =
-      "Joint contact by laws chosen by name: normal force, impact dissipation, friction and the "
-      "velocity that friction sees. The defaults are Law2_JointGeom_JointPhys_HertzMindlin. The "
-      "damping ratios of JointPhys act beside the dissipation law; the tangential one belongs to "
-      "the spring of 'mindlin'. A Slider on a SlotFace (with the radius of its pads) and a Ball in a "
-      "Socket have no axis: they take 'hertz_paper' or 'hertz_internal' and 'material' only. A "
-      "depth outside the range of the "
-      "normal law stops the run. Entries in O.energy: jointElastic, jointFriction, jointDamping, "
-      "jointThermalWork.";
+// What all laws have in common whose parts are chosen by name: attributes, checks and one contact's
+// step. A law derives from it beside its registration and gives law_attributes() for its own.
+class NamedJointLaw {
+ public:
   std::string normalLaw = kernel::laws::HertzInternal::info.name;
   std::string dissipationLaw = kernel::laws::NoDissipation::info.name;
   std::string frictionLaw = kernel::laws::MindlinFriction::info.name;
@@ -252,49 +259,81 @@ struct Law2_JointGeom_JointPhys_JointLaw
   Real firstContactTime = -1;
   int contacts = 0;
 
+ protected:
+  template <class Law>
+  static auto law_attributes() {
+    const auto member = [](auto pointer) {
+      using Type = std::decay_t<decltype(std::declval<NamedJointLaw&>().*pointer)>;
+      return static_cast<Type Law::*>(pointer);
+    };
+    return std::make_tuple(
+        attribute("normalLaw", member(&NamedJointLaw::normalLaw),
+                  "'hertz_paper', 'hertz_internal', 'johnson', 'esdu_78035' or 'persson' [-]"),
+        attribute("dissipationLaw", member(&NamedJointLaw::dissipationLaw),
+                  "'none', 'lankarani_nikravesh', 'hunt_crossley' or 'flores' [-]"),
+        attribute("frictionLaw", member(&NamedJointLaw::frictionLaw),
+                  "'none', 'ambrosio' (holds no static load) or 'mindlin' [-]"),
+        attribute("tangentialVelocity", member(&NamedJointLaw::tangentialVelocity),
+                  "'material' (of the material at the contact point) or 'paper' (of the geometric "
+                  "points of eqs 14-16, without the spins) [-]"),
+        attribute("restitution", member(&NamedJointLaw::restitution),
+                  "Restitution of the dissipation laws, in (0, 1] [-]"),
+        attribute("smallestImpactSpeed", member(&NamedJointLaw::smallestImpactSpeed),
+                  "Floor of the impact speed in the dissipation laws [m/s]: a contact that begins "
+                  "slower would be damped without bound"),
+        attribute("contactLength", member(&NamedJointLaw::contactLength),
+                  "Axial length of the line contacts johnson, esdu_78035 and persson [m]"),
+        attribute("v0", member(&NamedJointLaw::v0),
+                  "ambrosio: no friction up to this sliding speed [m/s]"),
+        attribute("v1", member(&NamedJointLaw::v1),
+                  "ambrosio: full friction from this sliding speed on [m/s]"),
+        read_only("firstContactTime", member(&NamedJointLaw::firstContactTime),
+                  "Time of the first touching [s], located linearly within its step (second order "
+                  "in O.dt); -1 before. Bodies that already touch in the very first step count "
+                  "from its time"),
+        read_only("contacts", member(&NamedJointLaw::contacts),
+                  "Number of contacts that have begun [-]"));
+  }
+
+  // Makes the law of the attributes. Throws std::invalid_argument that names class and attribute.
+  void build(const char* class_name);
+  // Forces of one contact on its two bodies and its entries in O.energy. False when it is open.
+  bool step(const JointGeom& geometry, JointPhys& physics, const yade::Interaction& contact,
+            yade::Scene& scene);
+
+ private:
+  void begin(const JointGeom& geometry, JointPhys& physics, const yade::Scene& scene);
+  void account(const kernel::laws::JointResponse& joint, const kernel::laws::NormalGeometry& radii,
+               const JointGeom& geometry, JointPhys& physics, yade::Scene& scene);
+  kernel::laws::JointLaw law_;  // made by build()
+  bool needs_axis_ = false;     // some of the laws have no meaning without a bearing's axis
+  std::mutex beginning_;        // of firstContactTime and contacts
+  JointEnergies energies_;
+};
+
+struct Law2_JointGeom_JointPhys_JointLaw
+    : Registered<Law2_JointGeom_JointPhys_JointLaw, yade::LawFunctor>,
+      NamedJointLaw {
+  static constexpr const char* class_name = "Law2_JointGeom_JointPhys_JointLaw";
+  static constexpr const char* base_name = "LawFunctor";
+  static constexpr const char* doc =
+      "Joint contact by laws chosen by name: normal force, impact dissipation, friction and the "
+      "velocity that friction sees. The defaults are Law2_JointGeom_JointPhys_HertzMindlin. The "
+      "damping ratios of JointPhys act beside the dissipation law; the tangential one belongs to "
+      "the spring of 'mindlin'. A Slider on a SlotFace (with the radius of its pads) and a Ball in "
+      "a "
+      "Socket have no axis: they take 'hertz_paper' or 'hertz_internal' and 'material' only. A "
+      "depth outside the range of the "
+      "normal law stops the run. Entries in O.energy: jointElastic, jointFriction, jointDamping, "
+      "jointThermalWork.";
   Law2_JointGeom_JointPhys_JointLaw() { check(); }
   using yade::LawFunctor::go;
   bool go(yade::shared_ptr<yade::IGeom>& geometry, yade::shared_ptr<yade::IPhys>& physics,
           yade::Interaction* contact) override;
   std::string get2DFunctorType1() const override { return "JointGeom"; }
   std::string get2DFunctorType2() const override { return "JointPhys"; }
-  void check();
-  static auto attributes() {
-    using Self = Law2_JointGeom_JointPhys_JointLaw;
-    return std::make_tuple(
-        attribute("normalLaw", &Self::normalLaw,
-                  "'hertz_paper', 'hertz_internal', 'johnson', 'esdu_78035' or 'persson' [-]"),
-        attribute("dissipationLaw", &Self::dissipationLaw,
-                  "'none', 'lankarani_nikravesh', 'hunt_crossley' or 'flores' [-]"),
-        attribute("frictionLaw", &Self::frictionLaw,
-                  "'none', 'ambrosio' (holds no static load) or 'mindlin' [-]"),
-        attribute("tangentialVelocity", &Self::tangentialVelocity,
-                  "'material' (of the material at the contact point) or 'paper' (of the geometric "
-                  "points of eqs 14-16, without the spins) [-]"),
-        attribute("restitution", &Self::restitution,
-                  "Restitution of the dissipation laws, in (0, 1] [-]"),
-        attribute("smallestImpactSpeed", &Self::smallestImpactSpeed,
-                  "Floor of the impact speed in the dissipation laws [m/s]: a contact that begins "
-                  "slower would be damped without bound"),
-        attribute("contactLength", &Self::contactLength,
-                  "Axial length of the line contacts johnson, esdu_78035 and persson [m]"),
-        attribute("v0", &Self::v0, "ambrosio: no friction up to this sliding speed [m/s]"),
-        attribute("v1", &Self::v1, "ambrosio: full friction from this sliding speed on [m/s]"),
-        read_only("firstContactTime", &Self::firstContactTime,
-                  "Time of the first touching [s], located linearly within its step (second order "
-                  "in O.dt); -1 before. Bodies that already touch in the very first step count "
-                  "from its time"),
-        read_only("contacts", &Self::contacts, "Number of contacts that have begun [-]"));
-  }
-
- private:
-  void begin(const JointGeom& geometry, JointPhys& physics);
-  void account(const kernel::laws::JointResponse& joint, const kernel::laws::NormalGeometry& radii,
-               const JointGeom& geometry, JointPhys& physics);
-  kernel::laws::JointLaw law_;  // built by check()
-  bool needs_axis_ = false;   // some of the laws have no meaning without a bearing's axis
-  std::mutex beginning_;        // of firstContactTime and contacts
-  JointEnergies energies_;
+  void check() { build(class_name); }
+  static auto attributes() { return law_attributes<Law2_JointGeom_JointPhys_JointLaw>(); }
 };
 
 }  // namespace statejump::dem

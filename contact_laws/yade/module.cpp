@@ -2,6 +2,7 @@
 // Adding a class is one entry in the list below.
 #include <boost/make_shared.hpp>
 
+#include "bore.hpp"
 #include "joint.hpp"
 #include "object_list.hpp"
 #include "shapes.hpp"
@@ -29,19 +30,20 @@ struct ClassList {
   }
 };
 
-using OurClasses =
-    ClassList<ThermalFrictMat, ThermalShape, Journal, Bearing, Ball, Socket, Slider, SlotFace,
-              Bo1<Journal>, Bo1<Bearing>, Bo1<Ball>, Bo1<Socket>, Bo1<Slider>, Bo1<SlotFace>,
-              JointGeom, JointPhys, Ig2_Journal_Bearing_JointGeom, Ig2_Ball_Socket_JointGeom,
-              Ig2_Slider_SlotFace_JointGeom,
-              Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys, Law2_JointGeom_JointPhys_HertzMindlin,
-              Law2_JointGeom_JointPhys_JointLaw, ThermalProgram, ThermalExpansionEngine,
-              ThermalLink, ThermalLinks, TorsionSpring, TorsionSprings
+using OurClasses = ClassList<
+    ThermalFrictMat, ThermalShape, Journal, Bearing, Ball, Socket, Slider, SlotFace, MeshBore,
+    Bo1<MeshBore>, Bo1<Journal>, Bo1<Bearing>, Bo1<Ball>, Bo1<Socket>, Bo1<Slider>, Bo1<SlotFace>,
+    JointGeom, JointPhys, BoreGeom, BorePhys, Ig2_Journal_MeshBore_BoreGeom,
+    Ig2_Ball_MeshBore_BoreGeom, Law2_BoreGeom_BorePhys_JointLaw, Ig2_Journal_Bearing_JointGeom,
+    Ig2_Ball_Socket_JointGeom, Ig2_Slider_SlotFace_JointGeom,
+    Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys, Law2_JointGeom_JointPhys_HertzMindlin,
+    Law2_JointGeom_JointPhys_JointLaw, ThermalProgram, ThermalExpansionEngine, ThermalLink,
+    ThermalLinks, TorsionSpring, TorsionSprings
 #ifdef STATEJUMP_HAS_VIEW
-              ,
-              Gl1<Journal>, Gl1<Bearing>, Gl1<Ball>, Gl1<Socket>, Gl1<Slider>, Gl1<SlotFace>
+    ,
+    Gl1<Journal>, Gl1<Bearing>, Gl1<Ball>, Gl1<Socket>, Gl1<Slider>, Gl1<SlotFace>, Gl1<MeshBore>
 #endif
-              >;
+    >;
 
 // Empty on success, otherwise the sentence that the Python wrapper raises.
 std::string setup(const boost::python::object& wrapper) {
@@ -55,6 +57,9 @@ std::string setup(const boost::python::object& wrapper) {
 #endif
   register_list_converter<ThermalLink>();
   register_list_converter<TorsionSpring>();
+  register_list_converter<JointGeom>();
+  register_list_converter<JointPhys>();
+  register_triangles_converter();
   OurClasses::register_all();
   refresh_view();
   return "";
@@ -81,6 +86,7 @@ BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Journal>, "Bo1_Journ
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Bearing>, "Bo1_Bearing_Aabb")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Ball>, "Bo1_Ball_Aabb")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Socket>, "Bo1_Socket_Aabb")
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::MeshBore>, "Bo1_MeshBore_Aabb")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Slider>, "Bo1_Slider_Aabb")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::SlotFace>, "Bo1_SlotFace_Aabb")
 #ifdef STATEJUMP_HAS_VIEW
@@ -88,10 +94,17 @@ BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Journal>, "Gl1_Journ
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Bearing>, "Gl1_Bearing")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Ball>, "Gl1_Ball")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Socket>, "Gl1_Socket")
+BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::MeshBore>, "Gl1_MeshBore")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Slider>, "Gl1_Slider")
 BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::SlotFace>, "Gl1_SlotFace")
 #endif
 STATEJUMP_EXPORT(JointGeom)
+STATEJUMP_EXPORT(MeshBore)
+STATEJUMP_EXPORT(BoreGeom)
+STATEJUMP_EXPORT(BorePhys)
+STATEJUMP_EXPORT(Ig2_Journal_MeshBore_BoreGeom)
+STATEJUMP_EXPORT(Ig2_Ball_MeshBore_BoreGeom)
+STATEJUMP_EXPORT(Law2_BoreGeom_BorePhys_JointLaw)
 STATEJUMP_EXPORT(JointPhys)
 STATEJUMP_EXPORT(Ig2_Journal_Bearing_JointGeom)
 STATEJUMP_EXPORT(Ig2_Ball_Socket_JointGeom)
@@ -111,6 +124,20 @@ BOOST_PYTHON_MODULE(_native) {
   namespace py = boost::python;
   py::def("setup", &statejump::dem::setup, py::arg("wrapper"));
   py::def("class_names", &statejump::dem::OurClasses::names);
+  py::def(
+      "bore_triangles", &statejump::dem::bore_triangles,
+      (py::arg("radius"), py::arg("length"), py::arg("around"), py::arg("along"),
+       py::arg("lobes") = py::list(), py::arg("wearDepth") = 0.0, py::arg("wearAngle") = 0.0,
+       py::arg("wearWidth") = 0.5, py::arg("crown") = 0.0, py::arg("wallThickness") = 0.0),
+      "Triangles of a bore along z as keywords for MeshBore. radius R, length [m]; facets "
+      "around (>= 3) and along (>= 1); lobes: list of (waves per turn, amplitude [m], angle of "
+      "the largest radius [rad]), r = R + amplitude cos(waves (angle - phase)); wearDepth [m] "
+      "of a trough at wearAngle [rad], wearWidth [rad] wide; crown [m]: growth of the radius at "
+      "both ends; wallThickness [m]: above 0 a closed ring, else a tube.");
+  py::def("socket_triangles", &statejump::dem::socket_triangles,
+          (py::arg("radius"), py::arg("opening"), py::arg("around"), py::arg("along")),
+          "Triangles of a cup as keywords for MeshBore: the part of a sphere of the radius [m] "
+          "below the polar angle opening [rad] from z, facets around (>= 3) and rings (>= 2).");
   py::def("stable_time_step", &statejump::dem::stable_time_step_of_scene,
           "Stable time step of the current scene [s], on the safe side: smallest of "
           "4 / (c + sqrt(c^2 + 4 k)) over the bodies, k and c twice the sums of stiffness and "

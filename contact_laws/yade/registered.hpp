@@ -17,6 +17,7 @@
 // Python access, O.save/O.load and dict() all follow from that one list.
 #pragma once
 
+#include <array>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/archive/xml_iarchive.hpp>
@@ -73,6 +74,33 @@ void archive_value(Archive& archive, const char* name, Vector3r& value) {
     const std::string component = std::string(name) + components[i];
     archive& boost::serialization::make_nvp(component.c_str(), value[i]);
   }
+}
+
+// Lists of triples as one list of numbers, for the same reason.
+template <class Archive, class Triple, class Number>
+void archive_triples(Archive& archive, const char* name, std::vector<Triple>& list,
+                     std::vector<Number> flat) {
+  if constexpr (!Archive::is_loading::value) {
+    flat.reserve(3 * list.size());
+    for (const Triple& triple : list) flat.insert(flat.end(), {triple[0], triple[1], triple[2]});
+  }
+  archive& boost::serialization::make_nvp(name, flat);
+  if constexpr (Archive::is_loading::value) {
+    list.resize(flat.size() / 3);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) list[i][k] = flat[3 * i + k];
+    }
+  }
+}
+
+template <class Archive>
+void archive_value(Archive& archive, const char* name, std::vector<Vector3r>& value) {
+  archive_triples(archive, name, value, std::vector<Real>());
+}
+
+template <class Archive>
+void archive_value(Archive& archive, const char* name, std::vector<std::array<int, 3>>& value) {
+  archive_triples(archive, name, value, std::vector<int>());
 }
 
 template <class Class>

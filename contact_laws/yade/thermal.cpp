@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <unordered_set>
 
 #include "blocked_motion.hpp"
+#include "bore.hpp"
 #include "failure.hpp"
 #include "joint.hpp"
 #include "ranges.hpp"
@@ -77,11 +79,13 @@ const kernel::ThermalProgram& ThermalProgram::program() const {
 
 void ThermalExpansionEngine::collect_targets() {
   targets_.clear();
+  std::unordered_set<const ThermalShape*> shapes;
   const auto add = [&](yade::Body& body, bool required) {
     auto* shape = dynamic_cast<ThermalShape*>(body.shape.get());
     const auto* material = dynamic_cast<const ThermalFrictMat*>(body.material.get());
     if (shape && material) {
-      targets_.push_back({static_cast<std::size_t>(body.id), shape, material});
+      targets_.push_back(
+          {static_cast<std::size_t>(body.id), shape, material, !shapes.insert(shape).second});
     } else if (required) {
       throw std::invalid_argument("ThermalExpansionEngine.ids: body " + std::to_string(body.id) +
                                   " needs a ThermalShape and a ThermalFrictMat");
@@ -115,6 +119,7 @@ void ThermalExpansionEngine::action() {
   if (!collected()) collect_targets();
   temperatureChange = program->temperature_change(scene->time);
   for (const Target& target : targets_) {
+    if (target.is_shared) continue;
     const Real strain = target.material->thermalExpansion * temperatureChange;
     target.shape->thermalStrainRate =
         scene->dt > 0 ? (strain - target.shape->thermalStrain) / scene->dt : 0;
@@ -261,25 +266,38 @@ double stable_time_step(const yade::Scene& scene) {
     stiffness[static_cast<std::size_t>(id)] += mobility_of_body * k;
     damping[static_cast<std::size_t>(id)] += mobility_of_body * c;
   };
+  const auto touch_at = [&](const yade::Interaction& contact, const JointGeom& geometry,
+                            const JointPhys& physics) {
+    const Real normal_damping =
+        kernel::viscous_damping(physics.normalDampingRatio, physics.effectiveMass, physics.kn) +
+        physics.dissipationSlope;
+    const Real tangential_damping =
+        kernel::viscous_damping(physics.tangentialDampingRatio, physics.effectiveMass, physics.ks) +
+        physics.frictionSlope;
+    for (const int id : {contact.id1, contact.id2}) {
+      const yade::State& state = *body_of(scene, id, "stable_time_step").state;
+      const Vector3r arm = geometry.contactPoint - state.se3.position;
+      touch(id, mobility(state, arm.cross(geometry.normal).squaredNorm()), physics.kn,
+            normal_damping);
+      touch(id, mobility(state, arm.squaredNorm()), physics.ks, tangential_damping);
+    }
+  };
   for (std::size_t i = 0; i < number_of_interactions(scene); ++i) {
     const yade::Interaction& contact = interaction_at(scene, i);
     if (!contact.isReal()) continue;
+    if (const auto* pair = dynamic_cast<const BoreGeom*>(contact.geom.get())) {
+      const auto* all = dynamic_cast<const BorePhys*>(contact.phys.get());
+      for (std::size_t k = 0; all && k < std::min(pair->contacts.size(), all->contacts.size());
+           ++k) {
+        if (pair->contacts[k]->penetrationDepth > 0) {
+          touch_at(contact, *pair->contacts[k], *all->contacts[k]);
+        }
+      }
+      continue;
+    }
     const auto* physics = dynamic_cast<const JointPhys*>(contact.phys.get());
     const auto* geometry = dynamic_cast<const JointGeom*>(contact.geom.get());
-    if (!physics || !geometry) continue;
-    const Real normal_damping =
-        kernel::viscous_damping(physics->normalDampingRatio, physics->effectiveMass, physics->kn) +
-        physics->dissipationSlope;
-    const Real tangential_damping = kernel::viscous_damping(physics->tangentialDampingRatio,
-                                                            physics->effectiveMass, physics->ks) +
-                                    physics->frictionSlope;
-    for (const int id : {contact.id1, contact.id2}) {
-      const yade::State& state = *body_of(scene, id, "stable_time_step").state;
-      const Vector3r arm = geometry->contactPoint - state.se3.position;
-      touch(id, mobility(state, arm.cross(geometry->normal).squaredNorm()), physics->kn,
-            normal_damping);
-      touch(id, mobility(state, arm.squaredNorm()), physics->ks, tangential_damping);
-    }
+    if (physics && geometry) touch_at(contact, *geometry, *physics);
   }
   for (const auto& engine : scene.engines) {
     if (const auto* group = dynamic_cast<const ThermalLinks*>(engine.get())) {

@@ -83,6 +83,7 @@ struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalE
     std::size_t id;
     ThermalShape* shape;
     const ThermalFrictMat* material;
+    bool is_shared;  // its shape is that of an earlier body, whose material counts
   };
   void collect_targets();
   bool collected() const;

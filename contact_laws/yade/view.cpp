@@ -241,6 +241,39 @@ void draw(const Socket& socket, const yade::State&, bool wire) {
   sphere(radius, pi / 2, -1);
 }
 
+void draw(const MeshBore& bore, const yade::State&, bool wire) {
+  if (!bore.mesh()) return;
+  const geometry::BoreMesh& mesh = *bore.mesh();
+  const geometry::Triangles& all = mesh.triangles();
+  const Real grown = bore.expanded(1);
+  const auto place = [&](const Vector3r& v) -> Vector3r {
+    return mesh.centre() + grown * (v - mesh.centre());
+  };
+  constexpr std::size_t most = 20000;  // beyond that, dots
+  const Painter painter(bore.color, wire ? 1 : 0.35);
+  if (wire || all.faces.size() > most) {
+    glDisable(GL_LIGHTING);
+    const std::size_t stride = 1 + all.vertices.size() / most;
+    glBegin(GL_POINTS);
+    for (std::size_t i = 0; i < all.vertices.size(); i += stride) {
+      const Vector3r v = place(all.vertices[i]);
+      glVertex3d(v.x(), v.y(), v.z());
+    }
+    glEnd();
+    return;
+  }
+  glBegin(GL_TRIANGLES);
+  for (const auto& face : all.faces) {
+    const Vector3r a = place(all.vertices[static_cast<std::size_t>(face[0])]);
+    const Vector3r b = place(all.vertices[static_cast<std::size_t>(face[1])]);
+    const Vector3r c = place(all.vertices[static_cast<std::size_t>(face[2])]);
+    const Vector3r normal = (b - a).cross(c - a).normalized();
+    glNormal3d(normal.x(), normal.y(), normal.z());
+    for (const Vector3r& v : {a, b, c}) glVertex3d(v.x(), v.y(), v.z());
+  }
+  glEnd();
+}
+
 void draw(const Slider& slider, const yade::State&, bool wire) {
   // The pads are parts of one sphere; the block between them is drawn as the box around it.
   const Real half = slider.expanded(slider.radius);

@@ -1,6 +1,7 @@
 // Journals, bearings, balls, sockets, sliders and slots in YADE's 3-D view.
 #pragma once
 
+#include "bore.hpp"
 #include "registered.hpp"
 #include "shapes.hpp"
 
@@ -21,6 +22,7 @@ void draw(const Journal& journal, const yade::State& state, bool wire);
 void draw(const Bearing& bearing, const yade::State& state, bool wire);
 void draw(const Ball& ball, const yade::State& state, bool wire);
 void draw(const Socket& socket, const yade::State& state, bool wire);
+void draw(const MeshBore& bore, const yade::State& state, bool wire);
 void draw(const Slider& slider, const yade::State& state, bool wire);
 void draw(const SlotFace& face, const yade::State& state, bool wire);
 

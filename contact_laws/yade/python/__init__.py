@@ -32,7 +32,8 @@ if _difference:
     )
 
 stable_time_step = _native.stable_time_step
-__all__ = ["slot", "stable_time_step", *_native.class_names()]
+bore_triangles, socket_triangles = _native.bore_triangles, _native.socket_triangles
+__all__ = ["slot", "stable_time_step", "bore_triangles", "socket_triangles", *_native.class_names()]
 for _name in _native.class_names():
     globals()[_name] = getattr(_wrapper, _name)
 

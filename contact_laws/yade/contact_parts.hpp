@@ -1,0 +1,29 @@
+// What the geometry and law functors of all joints share.
+#pragma once
+
+#include "statejump/kernel/joint_kinematics.hpp"
+#include "yade_api.hpp"
+
+namespace statejump::dem {
+
+inline kernel::BodyMotion motion(const yade::State& state) {
+  return {state.se3.position, state.vel, state.angVel};
+}
+
+// Local z axis in the world: orientation * (0, 0, 1) without the products with zero.
+inline yade::Vector3r axis_of(const yade::Quaternionr& q) {
+  return {2 * (q.x() * q.z() + q.w() * q.y()), 2 * (q.y() * q.z() - q.w() * q.x()),
+          1 - 2 * (q.x() * q.x() + q.y() * q.y())};
+}
+
+// Failures apart from the path of every step, which stays short and free of text. Lengths in m.
+[[gnu::cold]] void fail_closed(const char* inner, yade::Real inner_radius, const char* outer,
+                               yade::Real outer_radius, const yade::Scene& scene,
+                               const yade::Interaction& contact);
+[[gnu::cold]] void fail_tilted(const yade::Scene& scene, const yade::Interaction& contact);
+[[gnu::cold]] void fail_unstable(yade::Real effective_mass, yade::Real stiffness,
+                                 const yade::Scene& scene, const yade::Interaction& contact);
+// The end of such a sentence: which bodies and when.
+std::string where(const yade::Scene& scene, int id1, int id2, const std::string& more = "");
+
+}  // namespace statejump::dem
