@@ -58,7 +58,8 @@ TEST(RestOnMesh, ImplicitSphere) {
     const RestMesh mesh = implicit_sphere(cells);
     const RestSet set = rest_on_mesh(mesh, {force}, mu).study.any;
     ASSERT_EQ(set.parts.size(), 1u);
-    // Ends on edges are roots on the sphere itself, not of the linear normals.
+    // Measured between points of the sphere. (There linear normals are exact too, so this does not
+    // test the roots on edges.)
     EXPECT_NEAR(set.diameter / exact.diameter, 1.0, 1e-8);
     const double area = std::abs(set.area / exact.area - 1.0);
     std::printf("%5d  %9zu  %.3e  %.3e\n", cells, mesh.triangles.size(), area,
