@@ -246,9 +246,12 @@ def _vary(table: dict[str, Any], case: Case, command: str) -> Union[Distribution
             continue
         if name in others:
             other = SWEEP if command == MONTECARLO else MONTECARLO
-            raise ValueError(f"{name} is not allowed in a campaign of 'statejump {command}': it is for 'statejump {other}'")
+            raise ValueError(
+                f"{name} is not allowed in a campaign of 'statejump {command}': it is for 'statejump {other}'"
+            )
         match = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-        raise ValueError(f"{name} is unknown: " + (f"did you mean {match[0]}?" if match else "known are " + ", ".join(known)))
+        hint = f"did you mean {match[0]}?" if match else "known are " + ", ".join(known)
+        raise ValueError(f"{name} is unknown: {hint}")
     if "key" not in table:
         raise ValueError("key is missing: must be section.key as in the case file")
     main = _checked_path(table["key"], "key", case)

@@ -75,7 +75,7 @@ def _distributions(campaign: Campaign, table: Table, folder: Path) -> list[Path]
         panel.hist(there, bins=_bins(there), color=BLUE, alpha=0.55)
         panel.set_ylabel("samples in the bar", color=BLUE)
         other = panel.twinx()
-        other.plot(there, np.arange(1, len(there) + 1) / len(there), color=ORANGE, linewidth=1.4,
+        other.plot(np.append(there[:1], there), np.arange(len(there) + 1) / len(there), color=ORANGE, linewidth=1.4,
                    drawstyle="steps-post")
         for level in (0.05, 0.5, 0.95):
             other.axvline(float(np.quantile(there, level)), color=DARK, linewidth=0.7, linestyle=(0, (4, 3)))
@@ -110,8 +110,9 @@ def _scatter(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
         for column, (parameter, varied) in enumerate(table.parameters.items()):
             panel = panels[row, column]
             shown = np.flatnonzero(there)[:MOST_POINTS]  # samples are independent: the first are as good
-            panel.plot(varied[shown], values[shown], ".", color=BLUE, markersize=2.5, alpha=0.35,
-                       markeredgewidth=0, rasterized=True)
+            thin = float(np.clip(100 / max(1, len(shown)), 0.0, 1.0))  # few points: large and opaque
+            panel.plot(varied[shown], values[shown], ".", color=BLUE, markersize=2.5 + 4.5 * thin,
+                       alpha=0.35 + 0.5 * thin, markeredgewidth=0, rasterized=True)
             rank = spearman(varied, values)
             text = "ρ: one value only" if rank is None else f"ρ = {round(rank, 2) + 0.0:.2f}"  # no -0.00
             panel.set_title(text, fontsize=8,

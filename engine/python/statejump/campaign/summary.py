@@ -17,6 +17,10 @@ from .campaign_file import Campaign
 from .tables import Table
 
 QUANTILES = (0.05, 0.5, 0.95)
+# A decimal number where sentences have what was sampled or when it happened, not an allowed range.
+SAMPLED = re.compile(
+    r"(?<![\w.])-?\d+(?:\.\d+(?:e[+-]?\d+)?|e[+-]?\d+)(?![\w.])(?= is not allowed| s\b| K\b|,)"
+)
 
 
 def statistics(values: np.ndarray) -> dict[str, Optional[float]]:
@@ -46,7 +50,7 @@ def spearman(parameter: np.ndarray, outcome: np.ndarray) -> Optional[float]:
 
 def sentence_kind(error: str) -> str:
     """An error without the sampled numbers, so that errors of one kind count together."""
-    return re.sub(r"(?<![\w.])-?\d+(?:\.\d+(?:e[+-]?\d+)?|e[+-]?\d+)(?![\w.])(?= is not allowed| s\b| K\b|,)", "…", error)
+    return SAMPLED.sub("…", error)
 
 
 def summary(campaign: Campaign, table: Table) -> dict[str, Any]:

@@ -33,8 +33,8 @@ def write_table(campaign: Campaign, path: Path) -> None:
         stream.write(f"# statejump {campaign.command} {campaign.name}: {campaign.samples} samples\n")
         stream.write(" ".join(["description", "campaign", "command", "sample", *columns]) + "\n")
         for index in range(campaign.samples):
-            values = map(repr, campaign.values(index))
-            stream.write(" ".join([f"sample_{index}", f"'{file}'", f"'{campaign.command}'", str(index), *values]) + "\n")
+            cells = [f"sample_{index}", f"'{file}'", f"'{campaign.command}'", index, *campaign.values(index)]
+            stream.write(" ".join(map(str, cells)) + "\n")
 
 
 class BatchSample:
