@@ -84,8 +84,37 @@ def sphere():
     return Case("sphere", force, places, lambda: Ball(radius=R1), lambda: Socket(radius=R2), "XYZ")
 
 
+def lobed(name, waves, amplitude):
+    """Journal in a bore of triangles whose radius is R2 + amplitude cos(waves angle): places at equal
+    angles of the wall, with normal and curvature of that formula, not of the mesh."""
+
+    def wall(angle):
+        r = R2 + amplitude * cos(waves * angle)
+        slope = -waves * amplitude * sin(waves * angle)
+        bend = -(waves**2) * amplitude * cos(waves * angle)
+        out, across = Vector3(cos(angle), sin(angle), 0), Vector3(-sin(angle), cos(angle), 0)
+        length = sqrt(r**2 + slope**2)
+        return r * out, (r * out - slope * across) / length, length**3 / (length**2 + slope**2 - r * bend)
+
+    count, places, skipped = 600, [], 0
+    others = [wall(2 * pi * i / 1440)[0] for i in range(1440)]
+    for i in range(count):
+        point, normal, radius = wall(2 * pi * (i + 0.5) / count)
+        touching = point - R1 * normal
+        # Elsewhere the journal must not be in the wall: then this place cannot be reached.
+        if radius > R1 and min((other - touching).norm() for other in others) > R1 - 1e-10:
+            places.append((normal, radius, touching))
+        else:
+            skipped += 1
+    shape = bore_triangles(R2, 2 * R1, 300, 10, lobes=[(waves, amplitude, 0)])
+    return Case(
+        name, load * Vector3(0.8, -0.6, 0), places, lambda: Journal(radius=R1),
+        lambda: MeshBore(**shape), "zXYZ", skipped,
+    )
+
+
 def release(case):
-    """Let go of one journal per place and see which are still there after 20 ms."""
+    """Let go of one journal per place and see which are still there after 8 ms."""
     O.reset()
     metal = O.materials[O.materials.append(
         ThermalFrictMat(young=young, poisson=poisson, frictionAngle=cone)
@@ -106,20 +135,21 @@ def release(case):
     O.engines = [
         ForceResetter(),
         InsertionSortCollider(
-            [Bo1_Journal_Aabb(), Bo1_Bearing_Aabb(), Bo1_Ball_Aabb(), Bo1_Socket_Aabb()],
+            [Bo1_Journal_Aabb(), Bo1_Bearing_Aabb(), Bo1_Ball_Aabb(), Bo1_Socket_Aabb(),
+             Bo1_MeshBore_Aabb()],
             verletDist=1e-3,
         ),
         InteractionLoop(
-            [Ig2_Journal_Bearing_JointGeom(), Ig2_Ball_Socket_JointGeom()],
+            [Ig2_Journal_Bearing_JointGeom(), Ig2_Ball_Socket_JointGeom(), Ig2_Journal_MeshBore_BoreGeom()],
             [Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys(
                 normalDampingRatio=0.5, tangentialDampingRatio=0.5
             )],
-            [Law2_JointGeom_JointPhys_JointLaw()],
+            [Law2_JointGeom_JointPhys_JointLaw(), Law2_BoreGeom_BorePhys_JointLaw()],
         ),
         NewtonIntegrator(damping=0),
     ]
     O.dt = 1e-6
-    O.run(20000, True)
+    O.run(8000, True)
     # Whoever leaves at an angle beyond the cone swings as far to its other side: an angle of 0.2
     # degrees makes that 0.4 degrees of the clearance circle.
     threshold = 20 * creep()
@@ -173,7 +203,7 @@ def draw(cases, folder):
 
     plt.rcParams.update({"font.size": 8, "svg.hashsalt": "multistable"})
     colours = {"stayed": "#0b6e4f", "left": "#c8553d"}
-    figure, axes = plt.subplots(1, len(cases), figsize=(3.4 * len(cases), 3.7), squeeze=False)
+    figure, axes = plt.subplots(1, len(cases), figsize=(3.4 * len(cases), 4.0), squeeze=False)
     for axis, case in zip(axes[0], cases):
         if case.name == "sphere":
             # Seen along the force: the distance from the middle is the angle to it.
@@ -210,14 +240,17 @@ def draw(cases, folder):
                 axis.scatter(*zip(*chosen), s=size, color=colour, label=f"{seen} ({len(chosen)})", linewidths=0)
         axis.set_aspect("equal")
         axis.set_title(case.name)
-        axis.legend(loc="upper right", frameon=False, markerscale=2, borderaxespad=0, fontsize=7)
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncol=2, frameon=False, markerscale=2)
         axis.spines[["top", "right"]].set_visible(False)
     figure.tight_layout()
     figure.savefig(folder / "multistable.png", dpi=150)
     figure.savefig(folder / "multistable.svg", metadata={"Date": None})
 
 
-known = {"circle": circle, "sphere": sphere}
+known = {
+    "circle": circle, "sphere": sphere,
+    "three_lobes": lambda: lobed("three_lobes", 3, 10e-6), "ellipse": lambda: lobed("ellipse", 2, 25e-6),
+}
 chosen = os.environ.get("CASES", ",".join(known)).split(",")
 cases = [release(known[name]()) for name in chosen]
 folder = Path(os.environ.get("FOLDER", here.parent / "results" / "multistable"))
