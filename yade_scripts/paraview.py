@@ -7,8 +7,8 @@
 Files are named as those of YADE's VTKRecorder, ``<prefix>joints.<iteration>.vtp``, with one
 ``<prefix>joints.vtp.series`` each that gives ParaView the true times:
 
-- joints: outline of every Journal, Bearing, Ball, Socket, Slider and SlotFace at the current
-  temperature; ``kind`` counts them as KINDS below does
+- joints: outline of every Journal, Bearing, Ball, Socket, Slider, SlotFace and MeshBore (a circle
+  of its mean radius about the body's centre) at the current temperature; ``kind`` counts them as KINDS below does
 - links: every ThermalLink as a line, with its axial force
 - contacts: a point per contact, with normal and shear force as vectors on body 1, the gap or
   penetration depth and whether it slips
@@ -29,7 +29,8 @@ from yade.wrapper import Omega
 
 O = Omega()
 SIDES = 96  # of a circle; its sagitta is 5e-4 of the radius
-KINDS = {"Journal": 1, "Bearing": 2, "Slider": 3, "SlotFace": 4, "Ball": 5, "Socket": 6}
+KINDS = {"Journal": 1, "Bearing": 2, "Slider": 3, "SlotFace": 4, "Ball": 5, "Socket": 6,
+         "MeshBore": 7}
 
 
 class _Data:
@@ -82,7 +83,7 @@ def _outline(body) -> list[Vector3]:
         half = shape.distance * grown if shape.distance > 0 else 1.0
         corners = [normal * shape.distance * grown + across * s for s in (-half, half)]
         return [state.pos + state.ori * corner for corner in corners]
-    radius = shape.radius * grown
+    radius = (shape.meanRadius() if kind == "MeshBore" else shape.radius) * grown
     turn = [2 * pi * i / SIDES for i in range(SIDES + 1)]
     circle = [Vector3(radius * cos(a), radius * sin(a), 0) for a in turn]
     if kind in ("Ball", "Socket"):  # one more great circle, from the same point
@@ -120,8 +121,14 @@ class ParaViewRecorder:
             "body_1": 1, "body_2": 1,
         })
         for contact in O.interactions:
-            if contact.isReal and isinstance(contact.geom, sj.JointGeom):
-                geom, phys = contact.geom, contact.phys
+            if not contact.isReal:
+                continue
+            pairs = []
+            if isinstance(contact.geom, sj.JointGeom):
+                pairs = [(contact.geom, contact.phys)]
+            elif isinstance(contact.geom, sj.BoreGeom):
+                pairs = zip(contact.geom.contacts, contact.phys.contacts)
+            for geom, phys in pairs:
                 contacts.add(  # YADE stores the forces on body 2
                     [geom.contactPoint], -phys.normalForce, -phys.shearForce,
                     geom.penetrationDepth, phys.slipping, contact.id1, contact.id2,
