@@ -77,7 +77,7 @@ MUTATIONS = [
              "kinematics.relative_velocity - approach_speed * n", "kinematics.relative_velocity",
              "contact_law_test"),
     Mutation("viscous_force_beyond_the_limit", "contact_law.hpp",
-             "tangential_force *= limit / std::sqrt(squared);", "", "contact_law_test"),
+             "force *= limit / std::sqrt(squared);", "", "contact_law_test"),
     Mutation("moment_on_body_1_forgotten", "contact_law.hpp", "cross(arm_1, force_on_1)",
              "Vector3::Zero()", "contact_law_test"),
     Mutation("moment_on_body_2_forgotten", "contact_law.hpp", "cross(force_on_1, arm_2)",
@@ -97,13 +97,13 @@ MUTATIONS = [
              "body.velocity + cross(body.angular_velocity, arm)", "body.velocity + 0.0 * arm",
              "joint_test"),
     Mutation("two_contact_points", "joint_kinematics.hpp",
-             "contact.arm_1 = (journal_radius - 0.5 * contact.penetration_depth) * contact.normal;\n"
+             "contact.arm_1 = (inner_radius - 0.5 * contact.penetration_depth) * contact.normal;\n"
              "  contact.arm_2 = centres + contact.arm_1;",
-             "contact.arm_1 = journal_radius * contact.normal;\n"
-             "  contact.arm_2 = bearing_radius * contact.normal;", "joint_test"),
+             "contact.arm_1 = inner_radius * contact.normal;\n"
+             "  contact.arm_2 = outer_radius * contact.normal;", "joint_test"),
     Mutation("tilted_offset", "joint_kinematics.hpp",
-             "const Vector3 offset = perpendicular_part(centres, axis);",
-             "const Vector3 offset = centres;", "joint_test"),
+             "perpendicular_part(centres, axis), across_the_axis);", "centres, across_the_axis);",
+             "joint_test"),
     Mutation("wall_on_the_wrong_side", "joint_kinematics.hpp",
              "pad_radius - (face_distance - contact.eccentricity)",
              "pad_radius - (face_distance + contact.eccentricity)", "joint_test"),
