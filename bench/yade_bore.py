@@ -1,7 +1,7 @@
 """Cost of a contact step in a bore of triangles beside the analytic bearing.
 
     yade -n -x -j1 bench/yade_bore.py                   # prints a table, writes results/bench/bore.md
-    FACETS=1000,10000 REPORT=/tmp/bore.md yade -n -x -j1 bench/yade_bore.py
+    FACETS=1000,10000 REPORT=bore.md yade -n -x -j1 bench/yade_bore.py
 
 100 journals, each in its bearing, one wall for all. Two loads: at rest under a slowly rising
 temperature, and sliding, where the force on the journals turns once in 20 ms, so that every contact
