@@ -10,7 +10,7 @@ import pytest
 
 from conftest import damaged
 from statejump import _engine, reduced
-from statejump.case import KINDS, SpringSliderCase, StaticsCase, UmbrellaCase, load_case, parse_case
+from statejump.case import KINDS, SpringSliderCase, StaticsCase, TrussCase, UmbrellaCase, load_case, parse_case
 from statejump.errors import StatejumpError
 
 NORMAL = " or ".join(repr(name) for name in _engine.law_names("normal"))
@@ -36,7 +36,7 @@ def friction(name: str) -> tuple[str, str]:
 MISTAKES = {
     "unknown kind": (
         [('kind = "umbrella"', 'kind = "umbrela"')],
-        "case.kind = 'umbrela' is not allowed: must be 'spring_slider' or 'umbrella' or 'statics'; did you mean 'umbrella'?"),
+        "case.kind = 'umbrela' is not allowed: must be 'spring_slider' or 'umbrella' or 'statics' or 'truss'; did you mean 'umbrella'?"),
     "kind that is no text": (
         [('kind = "umbrella"', "kind = 3")], "case.kind = 3 is not allowed: must be a text in quotes"),
     "kind left out": (
@@ -300,7 +300,7 @@ def test_command_for_another_kind(statejump, cases: Path, tmp_path: Path, name: 
 
 
 def test_kinds_are_registered(cases: Path) -> None:
-    assert KINDS == {"spring_slider": SpringSliderCase, "umbrella": UmbrellaCase, "statics": StaticsCase}
+    assert KINDS == {"spring_slider": SpringSliderCase, "umbrella": UmbrellaCase, "statics": StaticsCase, "truss": TrussCase}
     assert isinstance(load_case(cases / "table1.toml"), SpringSliderCase)
 
 

@@ -24,13 +24,18 @@ from .case_schema import (
 )
 from .case_spring_slider import SpringSliderCase
 from .case_statics import StaticsCase
+from .case_truss import TrussCase
 from .case_umbrella import UmbrellaCase
 from .errors import StatejumpError
 
-__all__ = ["Case", "SpringSliderCase", "StaticsCase", "UmbrellaCase", "check_radii", "load_case", "parse_case"]
+__all__ = [
+    "Case", "SpringSliderCase", "StaticsCase", "TrussCase", "UmbrellaCase", "check_radii", "load_case", "parse_case",
+]
 
 # A kind is a module of its own and its class here.
-KINDS: dict[str, type[Case]] = {kind.KIND: kind for kind in (SpringSliderCase, UmbrellaCase, StaticsCase)}
+KINDS: dict[str, type[Case]] = {
+    kind.KIND: kind for kind in (SpringSliderCase, UmbrellaCase, StaticsCase, TrussCase)
+}
 
 
 class _HeaderOnly(Section):

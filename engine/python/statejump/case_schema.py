@@ -81,6 +81,31 @@ def check_name(value: str, names: Sequence[str]) -> str:
     raise ValueError(listed + (f"; did you mean {nearest[0]!r}?" if nearest else ""))
 
 
+def check_value(value: Any, extra: dict[str, Any], kind: Any) -> Any:
+    """Return the value if its key allows it, else raise ValueError with the reason.
+
+    :param extra: what the field declares: range, names, lists
+    :param kind: type of the value, of its items for a list
+    """
+    if extra.get("texts"):
+        if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
+            raise ValueError("must be a list of texts in quotes")
+        return [check_name(item, extra["names"]) for item in value] if "names" in extra else value
+    if kind is bool:
+        if not isinstance(value, bool):
+            raise ValueError("must be true or false")
+        return value
+    if "low" not in extra:
+        if not isinstance(value, str if kind is str else (str, dict)):
+            raise ValueError("must be a text in quotes")
+        return check_name(value, extra["names"]) if "names" in extra else value
+    if extra.get("listed"):
+        if not isinstance(value, list):
+            raise ValueError(f"must be a list of numbers [{extra['unit']}]")
+        return [float(check_number(item, extra, integer=False)) for item in value]
+    return check_number(value, extra, integer=kind is int)
+
+
 def check_radii(bearing_radius: float, journal_radius: float) -> None:
     """Raise ValueError unless a journal fits into its bearing; for cases with a revolute joint."""
     if not bearing_radius > journal_radius:
@@ -96,16 +121,7 @@ class Section(BaseModel):
 
     @validator("*", pre=True)
     def _strict(cls, value: Any, field: ModelField) -> Any:
-        extra = field.field_info.extra
-        if "low" not in extra:
-            if not isinstance(value, str if field.type_ is str else (str, dict)):
-                raise ValueError("must be a text in quotes")
-            return check_name(value, extra["names"]) if "names" in extra else value
-        if extra.get("listed"):
-            if not isinstance(value, list):
-                raise ValueError(f"must be a list of numbers [{extra['unit']}]")
-            return [float(check_number(item, extra, integer=False)) for item in value]
-        return check_number(value, extra, integer=field.type_ is int)
+        return check_value(value, field.field_info.extra, field.type_)
 
 
 class CaseHeader(Section):
@@ -187,17 +203,22 @@ class Case(Section):
     @property
     def temperature_range_K(self) -> tuple[float, float]:
         """Smallest and largest ΔT [K] of the program."""
-        if self.thermal.shape == "table":
-            changes = self.thermal.table_temperature_change_K or [0.0]
-            return min(changes), max(changes)
-        peak = self.thermal.temperature_change_max_K or 0.0
-        if self.thermal.shape == "sine":
-            return -abs(peak), abs(peak)
-        return min(0.0, peak), max(0.0, peak)
+        return thermal_range_K(self.thermal)
 
     def problem(self) -> str | None:
         """Return what is wrong between several keys, without the file's name."""
         raise NotImplementedError
+
+
+def thermal_range_K(thermal: Thermal) -> tuple[float, float]:
+    """Return the smallest and the largest ΔT [K] of a program."""
+    if thermal.shape == "table":
+        changes = thermal.table_temperature_change_K or [0.0]
+        return min(changes), max(changes)
+    peak = thermal.temperature_change_max_K or 0.0
+    if thermal.shape == "sine":
+        return -abs(peak), abs(peak)
+    return min(0.0, peak), max(0.0, peak)
 
 
 def thermal_problem(thermal: Thermal) -> str | None:
@@ -246,18 +267,31 @@ def no_length_left(key: str, thermal_expansion_per_K: float, case: Case) -> str 
     return None
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
     """Return a value as one would write it in the file."""
     if isinstance(value, bool):
         return str(value).lower()
     return repr(value)
 
 
-def _suggestion(word: str, known: list[str], before: str, after: str) -> str:
+def suggestion(word: str, known: list[str], before: str, after: str) -> str:
     match = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
     if match:
         return f"did you mean {before}{match[0]}{after}?"
     return "known are " + ", ".join(known)
+
+
+def rule(extra: dict[str, Any]) -> str:
+    """Return the sentence part that states what a key needs."""
+    if extra.get("texts"):
+        return "a list of texts in quotes is needed"
+    if extra.get("listed"):
+        return f"a list of numbers [{extra['unit']}] is needed"
+    if "low" in extra:
+        return allowed_range(extra)
+    if "names" in extra:
+        return "must be " + " or ".join(repr(name) for name in extra["names"])
+    return "a text in quotes is needed"
 
 
 def _sentence(error: dict[str, Any], data: dict[str, Any], sections: type[Section]) -> str:
@@ -267,24 +301,22 @@ def _sentence(error: dict[str, Any], data: dict[str, Any], sections: type[Sectio
     if len(location) == 1:
         if error["type"] == "value_error.extra":
             known = list(sections.__fields__)
-            return f"section [{section}] is unknown: {_suggestion(section, known, '[', ']')}"
+            return f"section [{section}] is unknown: {suggestion(section, known, '[', ']')}"
         if error["type"] == "value_error.missing":
-            return f"section [{section}] is missing"
-        return f"{section} = {_shown(data[section])} is not allowed: must be a section [{section}]"
+            is_list = sections.__fields__[section].field_info.extra.get("tables")
+            return f"section [[{section}]] is missing" if is_list else f"section [{section}] is missing"
+        if error["type"] == "value_error.table":
+            return error["msg"]
+        return f"{section} = {shown(data[section])} is not allowed: must be a section [{section}]"
     key = str(location[1])
     model = sections.__fields__[section].type_
     if error["type"] == "value_error.extra":
         known = list(model.__fields__)
-        return f"{section}.{key} is unknown: {_suggestion(key, known, section + '.', '')}"
+        return f"{section}.{key} is unknown: {suggestion(key, known, section + '.', '')}"
     info = model.__fields__[key].field_info
     if error["type"] == "value_error.missing":
-        rule = "a text in quotes is needed"
-        if "low" in info.extra:
-            rule = allowed_range(info.extra)
-        elif "names" in info.extra:
-            rule = "must be " + " or ".join(repr(name) for name in info.extra["names"])
-        return f"{section}.{key} is missing: {rule}"
-    return f"{section}.{key} = {_shown(data[section][key])} is not allowed: {error['msg']}"
+        return f"{section}.{key} is missing: {rule(info.extra)}"
+    return f"{section}.{key} = {shown(data[section][key])} is not allowed: {error['msg']}"
 
 
 _ORDER = {"value_error.extra": 0, "value_error.missing": 1}
