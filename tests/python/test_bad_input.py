@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 from conftest import COMMAND
+from statejump.history import SPRING_SLIDER_COLUMNS
+from statejump.resultfile import read
 
 E_LINE, NU = "young_modulus_Pa = 70e9\nstress", "friction_coefficient = 0.3"
 
@@ -109,10 +111,11 @@ def test_failed_run(statejump, cases: Path, fake_yade, tmp_path: Path, failure: 
 
 
 def test_interrupt_keeps_the_samples_so_far(cases: Path, fake_yade, tmp_path: Path) -> None:
-    yade = fake_yade(
-        'printf "time_s,displacement_m\\n0,0\\n1,2\\n2,3" > "$STATEJUMP_OUTPUT.partial"\n'
-        "echo PROGRESS 0.5\nsleep 30\n"
-    )
+    # the columns that yade_scripts/scene_spring_slider.py writes
+    names = [name for name in SPRING_SLIDER_COLUMNS if name != "stage"]
+    rows = [",".join([time] + ["0.0"] * (len(names) - 1)) for time in ("0.0", "1.0", "2.0")]
+    lines = "\\n".join([",".join(names), *rows])[:-2]
+    yade = fake_yade(f'printf "{lines}" > "$STATEJUMP_OUTPUT.partial"\necho PROGRESS 0.5\nsleep 30\n')
     process = subprocess.Popen(
         [COMMAND, "dem", str(cases / "table1.toml")], cwd=tmp_path, stderr=subprocess.PIPE,
         stdout=subprocess.PIPE, text=True, env={**os.environ, "STATEJUMP_YADE": yade, "PYTHONUNBUFFERED": "1"},
@@ -123,13 +126,14 @@ def test_interrupt_keeps_the_samples_so_far(cases: Path, fake_yade, tmp_path: Pa
     _, errors = process.communicate(timeout=20)
     assert time.monotonic() - started < 15, "YADE was not ended"
     assert process.returncode == 130
-    kept = tmp_path / "results" / "table1" / "dem_history.interrupted.csv"
-    assert errors == (
-        "interrupted; the 2 samples so far are in results/table1/dem_history.interrupted.csv\n"
-    )
+    folder = tmp_path / "results" / "table1"
+    assert errors == "interrupted; the 2 samples so far are in results/table1/dem.interrupted.h5\n"
     # the row that was cut in the middle is not kept
-    assert kept.read_text() == "time_s,displacement_m\n0,0\n1,2\n"
-    assert [entry.name for entry in kept.parent.iterdir()] == [kept.name]
+    table = (folder / "dem_history.interrupted.csv").read_text().splitlines()
+    assert table == [",".join(names), *rows[:2]]
+    kept = read(folder / "dem.interrupted.h5")
+    assert not kept.complete and kept.models["dem"].time_s.tolist() == [0.0, 1.0]
+    assert sorted(entry.name for entry in folder.iterdir()) == ["dem.interrupted.h5", "dem_history.interrupted.csv"]
 
 
 def test_wrong_python_is_named() -> None:

@@ -26,7 +26,7 @@ def test_compare(statejump, cases: Path, tmp_path: Path, name: str) -> None:
     folder = tmp_path / "results" / name
     found = quantities(folder)
     assert {entry.name for entry in folder.iterdir()} == {
-        "comparison.csv", "comparison.json", "dem_history.csv", "dem_run.json", "reduced_history.csv",
+        "comparison.csv", "comparison.h5", "comparison.json", "dem_history.csv", "dem_run.json", "reduced_history.csv",
         f"{name}.png", f"{name}.svg"}
     jump = found["state_jump"]
     if name == "table1_frictionless":

@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 from typing import Any, Callable
 
 import click
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 
@@ -21,8 +22,11 @@ from .control import control_command
 from .errors import StatejumpError, Interrupted, TolerancesMissed
 from .history import History
 from .output import results_folder
+from .resultfile import ModelRun, kind_spring_slider, kind_umbrella
+from .resultfile.record import Record, case_text
 from .statics import statics_command
 from .terminal import CASE, QUIET, RESULTS, load_kind, make_console, number, progress
+from .truss.commands import truss_command
 from .umbrella import compare as umbrella_compare
 from .umbrella import dem as umbrella_dem
 from .umbrella import model as umbrella
@@ -72,16 +76,18 @@ def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
     console = make_console(quiet)
     case = load_kind(case_file, SpringSliderCase, UmbrellaCase)
     folder = results_folder(results, case.name)
+    record = Record("reduced", case, case_text(case_file), folder)
     if isinstance(case, UmbrellaCase):
-        _reduced_umbrella(case, folder, console)
+        _reduced_umbrella(case, record, console)
     else:
-        _reduced_spring_slider(case, folder, console)
-    console.print(f"history: {folder / 'reduced_history.csv'}")
+        _reduced_spring_slider(case, record, console)
+    console.print(f"results: {record.save()}, history: {folder / 'reduced_history.csv'}")
 
 
-def _reduced_spring_slider(case: SpringSliderCase, folder: Path, console: Console) -> None:
+def _reduced_spring_slider(case: SpringSliderCase, record: Record, console: Console) -> None:
     path = reduced.solve(case)
-    reduced.sample(path, reduced.sample_times(case)).write_csv(folder / "reduced_history.csv")
+    history = reduced.sample(path, reduced.sample_times(case))
+    record.models["reduced"] = kind_spring_slider.reduced_run(case, path, history)
     table = Table(title=f"{case.title}: events of the first cycle")
     for heading in ("event", "stage", "ΔT [K]", "time [s]", "displacement [m]", "axial force [N]"):
         table.add_column(heading, justify="left" if heading in ("event", "stage") else "right")
@@ -92,12 +98,12 @@ def _reduced_spring_slider(case: SpringSliderCase, folder: Path, console: Consol
                           f"{event.displacement_m:.6e}", f"{event.axial_force_N:.4f}")
     console.print(table)
     console.print(f"state jump: {path.state_jump_m:.6e} m after {case.thermal.cycles} cycle(s)")
-    _warn(case, path, console)
+    _warn(case, path, record, console)
 
 
-def _reduced_umbrella(case: UmbrellaCase, folder: Path, console: Console) -> None:
+def _reduced_umbrella(case: UmbrellaCase, record: Record, console: Console) -> None:
     run = umbrella.run(case)
-    run.history.write_csv(folder / "reduced_history.csv")
+    record.models["reduced"] = kind_umbrella.reduced_run(case, run)
     _print_first_contact(run.first_contact_temperature_change_K, run.first_contact_time_s, console)
     _print_umbrella_jump(case, run.history, console)
     console.print(
@@ -124,8 +130,9 @@ def _print_umbrella_jump(case: UmbrellaCase, history: History, console: Console)
         )
 
 
-def _warn(case: SpringSliderCase, path: Any, console: Console) -> None:
-    for warning in (*path.warnings, *reduced.warnings(case)):
+def _warn(case: SpringSliderCase, path: Any, record: Record, console: Console) -> None:
+    record.warnings += [*path.warnings, *reduced.warnings(case)]
+    for warning in record.warnings:
         console.print(f"warning: {warning}")
 
 
@@ -143,23 +150,27 @@ def dem_command(case_file: Path, results: Path, quiet: bool) -> None:
     console = make_console(quiet)
     case = load_kind(case_file, SpringSliderCase, UmbrellaCase)
     folder = results_folder(results, case.name)
+    record = Record("dem", case, case_text(case_file), folder)
     if isinstance(case, UmbrellaCase):
         with progress(console, _dem_label(umbrella_dem.number_of_steps(case))) as report:
-            done = umbrella_dem.run(case, folder, report)
+            done = umbrella_dem.run(case, folder, report, record.keep)
         _print_first_contact(
             done.summary["first_contact_temperature_change_K"], done.summary["first_contact_time_s"], console
         )
         _print_umbrella_jump(case, done.history, console)
     else:
-        history = _run_spring_slider(case, folder, console)
-        jump = history["displacement_m"][-1] - history["displacement_m"][0]
+        done = _run_spring_slider(case, folder, console, keep=record.keep)
+        jump = done.history["displacement_m"][-1] - done.history["displacement_m"][0]
         console.print(f"state jump: {jump:.6e} m after {case.thermal.cycles} cycle(s)")
-    console.print(f"history: {folder / 'dem_history.csv'}")
+    record.add_dem(done)
+    console.print(f"results: {record.save()}, history: {folder / 'dem_history.csv'}")
 
 
-def _run_spring_slider(case: SpringSliderCase, folder: Path, console: Console, label: str = "DEM") -> History:
+def _run_spring_slider(
+    case: SpringSliderCase, folder: Path, console: Console, label: str = "DEM", keep: dem.Keep | None = None
+) -> dem.DemRun:
     with progress(console, _dem_label(dem.number_of_steps(case), label)) as report:
-        return dem.run(case, folder, report)
+        return dem.run(case, folder, report, keep)
 
 
 @cli.command("compare")
@@ -176,39 +187,48 @@ def compare_command(case_file: Path, results: Path, quiet: bool) -> None:
     console = make_console(quiet)
     case = load_kind(case_file, SpringSliderCase, UmbrellaCase)
     folder = results_folder(results, case.name)
+    record = Record("compare", case, case_text(case_file), folder)
     if isinstance(case, UmbrellaCase):
-        rows, figures = _compare_umbrella(case, folder, console)
+        rows, figures = _compare_umbrella(case, record, console)
     else:
-        rows, figures = _compare_spring_slider(case, folder, console)
+        rows, figures = _compare_spring_slider(case, record, console)
     compare.write_comparison(case, rows, folder)
-    console.print(f"results: {folder / 'comparison.json'}, {', '.join(str(name) for name in figures)}")
+    written = [record.save(rows), folder / "comparison.json", *figures]
+    console.print(f"results: {', '.join(str(name) for name in written)}")
     missed = [row.name for row in rows if not row.passed]
     if missed:
         raise TolerancesMissed(f"{case_file}: tolerance missed: {', '.join(missed)}")
 
 
 def _compare_spring_slider(
-    case: SpringSliderCase, folder: Path, console: Console
+    case: SpringSliderCase, record: Record, console: Console
 ) -> tuple[list[compare.Quantity], list[Path]]:
     path = reduced.solve(case)
-    history = _run_spring_slider(case, folder, console)
-    reduced.sample(path, history["time_s"]).write_csv(folder / "reduced_history.csv")
-    rows = compare.compare(case, path, history)
-    figures = plot.figure(case, path, history, folder)
+
+    def sampled(times_s: np.ndarray) -> ModelRun:
+        return kind_spring_slider.reduced_run(case, path, reduced.sample(path, times_s))
+
+    record.models["reduced"] = sampled(reduced.sample_times(case))
+    done = _run_spring_slider(case, record.folder, console, keep=record.keep)
+    record.models["reduced"] = sampled(done.history["time_s"])
+    record.add_dem(done)
+    rows = compare.compare(case, path, done.history)
+    figures = plot.figure(case, path, done.history, record.folder)
     _print_comparison(case.title, rows, console)
-    _warn(case, path, console)
+    _warn(case, path, record, console)
     return rows, figures
 
 
 def _compare_umbrella(
-    case: UmbrellaCase, folder: Path, console: Console
+    case: UmbrellaCase, record: Record, console: Console
 ) -> tuple[list[compare.Quantity], list[Path]]:
     run = umbrella.run(case)
+    record.models["reduced"] = kind_umbrella.reduced_run(case, run)
     with progress(console, _dem_label(umbrella_dem.number_of_steps(case))) as report:
-        done = umbrella_dem.run(case, folder, report)
-    run.history.write_csv(folder / "reduced_history.csv")
+        done = umbrella_dem.run(case, record.folder, report, record.keep)
+    record.add_dem(done)
     rows = umbrella_compare.compare(case, run, done)
-    figures = umbrella_plot.figure(case, run.history, done.history, folder)
+    figures = umbrella_plot.figure(case, run.history, done.history, record.folder)
     _print_comparison(case.title, rows, console)
     if not umbrella.is_reproducible(case):
         console.print(
@@ -237,7 +257,7 @@ def convergence_command(case_file: Path, results: Path, quiet: bool) -> None:
     with TemporaryDirectory(prefix="statejump-") as scratch:
         try:
             histories = [
-                _run_spring_slider(variant, Path(scratch), console, f"{number}/{len(variants)}")
+                _run_spring_slider(variant, Path(scratch), console, f"{number}/{len(variants)}").history
                 for number, variant in enumerate(variants, start=1)
             ]
         except Interrupted:
@@ -277,7 +297,7 @@ def laws_command(case_file: Path | None, results: Path, quiet: bool) -> None:
 
 for _command in (
     figures_command, slow_command, hold_command, energy_command, control_command, statics_command,
-    bore_command, montecarlo_command, sweep_command,
+    bore_command, montecarlo_command, sweep_command, truss_command,
 ):
     cli.add_command(_command)
 

@@ -7,7 +7,7 @@ import json
 import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -129,17 +129,27 @@ def compare(case: SpringSliderCase, path: _engine.Path, dem: History) -> list[Qu
     return rows
 
 
-def write_comparison(case: Case, rows: list[Quantity], folder: Path) -> None:
-    """Write ``comparison.json`` and ``comparison.csv``."""
+def _entries(rows: list[Quantity]) -> list[dict[str, Any]]:
     entries = []
     for row in rows:
         entry = asdict(row)
         entry["pass"] = entry.pop("passed")
         entries.append({k: None if isinstance(v, float) and math.isnan(v) else v for k, v in entry.items()})
-    document = {"case": case.name, "pass": all(row.passed for row in rows), "quantities": entries}
-    with write_atomically(folder / "comparison.json") as stream:
-        stream.write(json.dumps(document, indent=2) + "\n")
-    with write_atomically(folder / "comparison.csv") as stream:
+    return entries
+
+
+def write_comparison_csv(rows: list[Quantity], path: Path) -> None:
+    """Write the rows of a comparison as CSV; there must be one."""
+    entries = _entries(rows)
+    with write_atomically(path) as stream:
         writer = csv.DictWriter(stream, fieldnames=list(entries[0]))
         writer.writeheader()
         writer.writerows(entries)
+
+
+def write_comparison(case: Case, rows: list[Quantity], folder: Path) -> None:
+    """Write ``comparison.json`` and ``comparison.csv``."""
+    document = {"case": case.name, "pass": all(row.passed for row in rows), "quantities": _entries(rows)}
+    with write_atomically(folder / "comparison.json") as stream:
+        stream.write(json.dumps(document, indent=2) + "\n")
+    write_comparison_csv(rows, folder / "comparison.csv")

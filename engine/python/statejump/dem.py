@@ -21,7 +21,8 @@ from .errors import StatejumpError, Interrupted
 from .history import History
 from .output import write_atomically
 
-INTERRUPTED = "dem_history.interrupted.csv"
+# Takes the samples of an interrupted run, writes them and returns the file to name.
+Keep = Callable[[History], Path]
 
 
 def number_of_steps(case: SpringSliderCase) -> int:
@@ -70,9 +71,11 @@ def find_yade() -> str:
     return found
 
 
-def run(case: SpringSliderCase, folder: Path, progress: Callable[[float], None]) -> History:
+def run(
+    case: SpringSliderCase, folder: Path, progress: Callable[[float], None], keep: Keep | None = None
+) -> DemRun:
     """Run a ``spring_slider`` case in YADE; see :func:`run_resolved`."""
-    return run_resolved(resolved(case), folder, progress).history
+    return run_resolved(resolved(case), folder, progress, keep)
 
 
 @dataclass(frozen=True)
@@ -83,29 +86,28 @@ class DemRun:
     summary: dict[str, Any]
 
 
-def run_resolved(values: dict[str, Any], folder: Path, progress: Callable[[float], None]) -> DemRun:
-    """Run a resolved case in YADE and write ``dem_history.csv`` and ``dem_run.json``.
+def run_resolved(
+    values: dict[str, Any], folder: Path, progress: Callable[[float], None], keep: Keep | None = None
+) -> DemRun:
+    """Run a resolved case in YADE and write ``dem_run.json``, what the run says of itself.
 
     :param values: resolved case, see :func:`common_values`
     :param folder: results folder, exists
     :param progress: called with the finished fraction, 0 to 1
+    :param keep: gets the samples of an interrupted run; None: they are dropped
     :raises StatejumpError: YADE is missing, failed or was killed; nothing half-written is left
-    :raises Interrupted: Ctrl-C; the samples so far are kept in ``dem_history.interrupted.csv``
+    :raises Interrupted: Ctrl-C
     """
-    done = execute(values, progress, keep_in=folder)
-    done.history.write_csv(folder / "dem_history.csv")
+    done = execute(values, progress, keep)
     with write_atomically(folder / "dem_run.json") as stream:
         stream.write(json.dumps(done.summary, indent=2) + "\n")
     return done
 
 
 def execute(
-    values: dict[str, Any], progress: Callable[[float], None], keep_in: Path | None = None
+    values: dict[str, Any], progress: Callable[[float], None], keep: Keep | None = None
 ) -> DemRun:
-    """Run a resolved case in YADE without writing results.
-
-    :param keep_in: folder that gets the samples of an interrupted run; None: they are dropped
-    """
+    """Run a resolved case in YADE without writing results; see :func:`run_resolved`."""
     name, threads = values["case"]["name"], values["dem"]["threads"]
     command = [find_yade(), "-n", "-x", f"-j{threads}", str(_paths.YADE_SCRIPTS / "run_case.py")]
     with tempfile.TemporaryDirectory(prefix="statejump-") as scratch:
@@ -122,7 +124,7 @@ def execute(
         try:
             problem = _watch(command, environment, progress)
         except KeyboardInterrupt:
-            raise Interrupted(_keep_partial(output, keep_in)) from None
+            raise Interrupted(_keep_partial(output, keep)) from None
         except OSError as error:
             raise StatejumpError(f"YADE cannot be started: {command[0]}: {error.strerror}") from None
         if problem:
@@ -172,15 +174,14 @@ def _watch(command: list[str], environment: dict[str, str], progress: Callable[[
     return ""
 
 
-def _keep_partial(output: Path, folder: Path | None) -> str:
-    if folder is None:
+def _keep_partial(output: Path, keep: Keep | None) -> str:
+    if keep is None:
         return "interrupted; nothing was written"
     partial = output.with_name(output.name + ".partial")
-    if not partial.exists():
-        return "interrupted before the first sample; nothing was written"
-    lines = partial.read_text(encoding="utf-8").splitlines(keepends=True)
+    lines = partial.read_text(encoding="utf-8").splitlines(keepends=True) if partial.exists() else []
     if lines and not lines[-1].endswith("\n"):
         lines.pop()  # a row cut in the middle
-    with write_atomically(folder / INTERRUPTED) as stream:
-        stream.writelines(lines)
-    return f"interrupted; the {max(0, len(lines) - 1)} samples so far are in {folder / INTERRUPTED}"
+    if len(lines) < 2:
+        return "interrupted before the first sample; nothing was written"
+    partial.write_text("".join(lines), encoding="utf-8")
+    return f"interrupted; the {len(lines) - 1} samples so far are in {keep(History.read_csv(partial))}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Iterable
+from typing import Iterable, Mapping
 
 import numpy as np
 
@@ -67,13 +67,22 @@ UMBRELLA_COLUMNS = (
 )
 
 
-def _order(names: Iterable[str]) -> list[str]:
+def common_order(names: Iterable[str]) -> list[str]:
     """Return the names in their common order; ValueError if one is unknown."""
     names = set(names)
     order = UMBRELLA_COLUMNS if "theta2_rad" in names else SPRING_SLIDER_COLUMNS
     for name in sorted(names.difference(order)):
         raise ValueError(f"unknown column {name}")
     return [name for name in order if name in names]
+
+
+def write_columns(columns: Mapping[str, np.ndarray], path: Path) -> None:
+    """Write columns of equal length as CSV; full precision, so nothing is lost."""
+    rows = zip(*(values.tolist() for values in columns.values()))
+    with write_atomically(path) as stream:
+        writer = csv.writer(stream)
+        writer.writerow(columns)
+        writer.writerows([value if isinstance(value, str) else repr(value) for value in row] for row in rows)
 
 
 @dataclass(frozen=True)
@@ -92,13 +101,8 @@ class History:
         return len(self.columns["time_s"])
 
     def write_csv(self, path: Path) -> None:
-        """Write the columns in the common order; full precision, so nothing is lost."""
-        names = _order(self.columns)
-        rows = zip(*(self.columns[name].tolist() for name in names))
-        with write_atomically(path) as stream:
-            writer = csv.writer(stream)
-            writer.writerow(names)
-            writer.writerows([value if isinstance(value, str) else repr(value) for value in row] for row in rows)
+        """Write the columns in the common order, see :func:`write_columns`."""
+        write_columns({name: self.columns[name] for name in common_order(self.columns)}, path)
 
     @staticmethod
     def read_csv(path: Path) -> "History":
@@ -109,7 +113,7 @@ class History:
             raise StatejumpError(f"{path}: holds no samples")
         names, body = rows[0], rows[1:]
         try:
-            _order(names)
+            common_order(names)
         except ValueError as problem:
             raise StatejumpError(f"{path}: {problem}") from None
         columns = {}

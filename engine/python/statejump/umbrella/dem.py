@@ -30,9 +30,11 @@ def resolved(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> dict[str
     return values
 
 
-def run(case: UmbrellaCase, folder: Path, progress: Callable[[float], None]) -> dem.DemRun:
-    """Run the case and write its history; see :func:`statejump.dem.run_resolved`."""
-    return dem.run_resolved(resolved(case), folder, progress)
+def run(
+    case: UmbrellaCase, folder: Path, progress: Callable[[float], None], keep: dem.Keep | None = None
+) -> dem.DemRun:
+    """Run the case; see :func:`statejump.dem.run_resolved`."""
+    return dem.run_resolved(resolved(case), folder, progress, keep)
 
 
 def execute(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> dem.DemRun:

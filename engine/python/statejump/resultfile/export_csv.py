@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""CSV files of a result: ``<model>_history.csv``, ``<model>_events.csv``, ``comparison.csv``."""
+from __future__ import annotations
+
+import csv
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Iterator
+
+import numpy as np
+
+from ..compare import write_comparison_csv
+from ..history import common_order, write_columns
+from ..output import write_atomically
+from .contents import Column, Event, ModelRun, Result, history_of
+
+AXES = ("x", "y", "z")
+
+
+def _flat(name: str, column: Column, names: dict[str, list[str]]) -> Iterator[tuple[str, np.ndarray]]:
+    """Yield a column of several items as columns of one value: ``name[item]``, ``name[item].x``."""
+    for place, item in enumerate(names[column.items]):
+        values = column.values[:, place]
+        if values.ndim == 1:
+            yield f"{name}[{item}]", values
+        else:
+            for axis, letter in enumerate(AXES):
+                yield f"{name}[{item}].{letter}", values[:, axis]
+
+
+def history_columns(run: ModelRun, names: dict[str, list[str]]) -> dict[str, np.ndarray]:
+    """Return the columns of the CSV file of a model, in their order."""
+    plain = history_of(run).columns
+    found = {name: plain[name] for name in common_order(plain)}
+    for name, column in {**run.history, **run.energy}.items():
+        if column.values.ndim > 1:
+            found.update(_flat(name, column, names))
+    return found
+
+
+def write_histories(result: Result, folder: Path, mark: str = "") -> list[Path]:
+    """Write ``<model>_history<mark>.csv``."""
+    written = []
+    for model, run in result.models.items():
+        written.append(folder / f"{model}_history{mark}.csv")
+        write_columns(history_columns(run, result.names), written[-1])
+    return written
+
+
+def write_all(result: Result, folder: Path) -> list[Path]:
+    """Write all CSV files of a result and return their paths."""
+    written = write_histories(result, folder)
+    for model, run in result.models.items():
+        path = folder / f"{model}_events.csv"
+        with write_atomically(path) as stream:
+            writer = csv.DictWriter(stream, fieldnames=[entry.name for entry in fields(Event)])
+            writer.writeheader()
+            writer.writerows(asdict(event) for event in run.events)
+        written.append(path)
+    if result.comparison:
+        path = folder / "comparison.csv"
+        write_comparison_csv(result.comparison, path)
+        written.append(path)
+    return written

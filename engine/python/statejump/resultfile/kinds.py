@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What each kind of case puts into a result file. A kind is a module of its own and its entry here.
+
+A module has ``names(case)`` (lists of items of columns), ``scene(case)`` (see :mod:`.scene`) and
+``dem_run(case, done)``, which makes a :class:`~.contents.ModelRun` of a finished or interrupted DEM
+run; its ``reduced_run`` takes what its own reduced model returns.
+"""
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+from ..case import Case, SpringSliderCase, UmbrellaCase
+from ..dem import DemRun
+from . import kind_spring_slider, kind_umbrella
+from .contents import ModelRun
+
+
+class Kind(Protocol):
+    """What the module of a kind has."""
+
+    def names(self, case: Any) -> dict[str, list[str]]:
+        """Names of the items of columns."""
+
+    def scene(self, case: Any) -> dict[str, Any]:
+        """What to draw."""
+
+    def dem_run(self, case: Any, done: DemRun) -> ModelRun:
+        """Result of a DEM run."""
+
+
+KINDS: dict[str, Kind] = {SpringSliderCase.KIND: kind_spring_slider, UmbrellaCase.KIND: kind_umbrella}
+
+
+def kind_of(case: Case) -> Kind:
+    """Return the module of a case's kind."""
+    return KINDS[case.kind]

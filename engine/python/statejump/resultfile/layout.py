@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Layout of a result file, as data: the writer is checked against it, the reader checks by it, the
+table in docs/result_file.md is made from it."""
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Optional
+
+FORMAT = "statejump result"
+VERSION = 1  # raised when a reader of the old layout would go wrong
+SUFFIX = ".h5"
+MODELS = ("reduced", "dem")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One place in the file. In ``path`` ``{model}`` is a model, ``{name}`` any name; an attribute
+    follows ``@``. ``form`` is the type and, in brackets, the shape."""
+
+    path: str
+    form: str
+    meaning: str
+    required: bool = True
+
+    def matches(self, path: str) -> bool:
+        """Whether a place in a file is this entry."""
+        return re.fullmatch(
+            re.escape(self.path).replace(r"\{model\}", "(?:" + "|".join(MODELS) + ")").replace(r"\{name\}", "[^/@]+"),
+            path,
+        ) is not None
+
+
+TEXT = "text"
+COLUMN = "float64, or uint8 with labels [samples], [samples, items] or [samples, items, 3]"
+
+ENTRIES = (
+    Entry("/@format", TEXT, f'"{FORMAT}"'),
+    Entry("/@layout_version", "int64", f"{VERSION}; a reader refuses a newer one"),
+    Entry("/@complete", "bool", "false: the run was interrupted, the file holds what there was"),
+    Entry("/@command", TEXT, "which command wrote the file: reduced, dem or compare"),
+    Entry("/case", "group", "what was asked"),
+    Entry("/case@name", TEXT, "name of the case"),
+    Entry("/case@kind", TEXT, "kind of the case"),
+    Entry("/case@title", TEXT, "one line for figures and tables"),
+    Entry("/case@source", TEXT, "where its numbers come from"),
+    Entry("/case/text", TEXT, "the case file as given, TOML; empty if there was none"),
+    Entry("/case/resolved", TEXT, "the case with all defaults, JSON; sections and keys as in the case file"),
+    Entry("/provenance", "group", "what computed it: nothing of the machine, nothing of the day"),
+    Entry("/provenance@statejump_version", TEXT, "version of this project"),
+    Entry("/provenance@git_commit", TEXT, "commit it was built from, -dirty if changed; empty if not known"),
+    Entry("/provenance@python_version", TEXT, "version of Python"),
+    Entry("/provenance@numpy_version", TEXT, "version of numpy"),
+    Entry("/provenance@h5py_version", TEXT, "version of h5py"),
+    Entry("/provenance@hdf5_version", TEXT, "version of the HDF5 library"),
+    Entry("/provenance@yade_version", TEXT, "version of YADE; only with a DEM run", required=False),
+    Entry("/provenance@threads", "int64", "OpenMP threads of the DEM run; only with one", required=False),
+    Entry("/provenance@seed", "int64", "seed of the case's random numbers; only for kinds that draw some",
+          required=False),
+    Entry("/names", "group", "names of the items along the second axis of columns"),
+    Entry("/names/{name}", "text [items]", "a list of names; columns refer to it with their attribute items",
+          required=False),
+    Entry("/scene", TEXT, "parts, forces and how columns move them, JSON; see below"),
+    Entry("/meshes", "group", "surfaces that parts of type mesh refer to", required=False),
+    Entry("/meshes/{name}", "group", "one surface", required=False),
+    Entry("/meshes/{name}/vertices_m", "float64 [vertices, 3]", "in the part's own frame", required=False),
+    Entry("/meshes/{name}/triangles", "int64 [triangles, 3]", "places in vertices_m", required=False),
+    Entry("/warnings", "text [sentences]", "limits of the models that the run met"),
+    Entry("/models", "group", "one group per model that was run"),
+    Entry("/models/{model}", "group", "a run", required=False),
+    Entry("/models/{model}/history", "group", "what the model gives over time"),
+    Entry("/models/{model}/history/time_s", "float64 [samples]", "times of all columns of this model"),
+    Entry("/models/{model}/history/temperature_change_K", "float64 [samples]", "program of the temperature change",
+          required=False),
+    Entry("/models/{model}/history/{name}", COLUMN, "a column; the same names as in the CSV files", required=False),
+    Entry("/models/{model}/energy", "group", "energies, dissipated and supplied energies"),
+    Entry("/models/{model}/energy/{name}", COLUMN, "a column [J]", required=False),
+    Entry("/models/{model}/links", "group", "what is known of every link"),
+    Entry("/models/{model}/links/axial_force_N", "float64 [samples, links]", "compression positive", required=False),
+    Entry("/models/{model}/links/thermal_strain", "float64 [samples, links]", "alpha times temperature change",
+          required=False),
+    Entry("/models/{model}/links/{name}", COLUMN, "a further column", required=False),
+    Entry("/models/{model}/contacts", "group", "what is known of every contact"),
+    Entry("/models/{model}/contacts/state", "uint8 [samples, contacts]",
+          "0 separated, 1 stick, 2 slip, 3 at_stop, as its attribute labels says", required=False),
+    Entry("/models/{model}/contacts/gap_m", "float64 [samples, contacts]", "negative: penetration", required=False),
+    Entry("/models/{model}/contacts/point_m", "float64 [samples, contacts, 3]", "where the force acts",
+          required=False),
+    Entry("/models/{model}/contacts/normal_force_N", "float64 [samples, contacts, 3]",
+          "on the part that the scene's contact names in `on`", required=False),
+    Entry("/models/{model}/contacts/tangential_force_N", "float64 [samples, contacts, 3]", "on the same part",
+          required=False),
+    Entry("/models/{model}/contacts/{name}", COLUMN, "a further column", required=False),
+    Entry("/models/{model}/events", "group", "what happened, in order of time; five data sets of one length"),
+    Entry("/models/{model}/events/kind", "text [events]", "first_contact, first_slip, stop_reached, ..."),
+    Entry("/models/{model}/events/time_s", "float64 [events]", "when"),
+    Entry("/models/{model}/events/temperature_change_K", "float64 [events]", "at which temperature change"),
+    Entry("/models/{model}/events/joint", "text [events]", "name of the contact or joint; empty: none"),
+    Entry("/models/{model}/events/time_uncertainty_s", "float64 [events]",
+          "0: located by the model; else half the distance of the samples between which it lies"),
+    Entry("/models/{model}/summary", "group", "numbers that sum up the run"),
+    Entry("/models/{model}/summary/{name}", "float64", "one number; NaN: it did not happen", required=False),
+    Entry("/comparison", "group", "the two models beside each other; only in files of compare", required=False),
+    Entry("/comparison@passed", "bool", "whether all rows passed", required=False),
+    Entry("/comparison/quantity", "text [rows]", "what was compared", required=False),
+    Entry("/comparison/unit", "text [rows]", "unit of the row", required=False),
+    Entry("/comparison/reduced", "float64 [rows]", "value of the reduced model; NaN: it has none", required=False),
+    Entry("/comparison/dem", "float64 [rows]", "value of the DEM; NaN: it has none", required=False),
+    Entry("/comparison/difference", "float64 [rows]", "DEM less reduced; NaN: one is missing", required=False),
+    Entry("/comparison/tolerance", "float64 [rows]", "allowed size of the difference", required=False),
+    Entry("/comparison/passed", "bool [rows]", "whether it is kept", required=False),
+)
+
+# Attributes of data sets of numbers, wherever they stand.
+ATTRIBUTES = {
+    "unit": "unit of the values, - for none; all data sets of numbers have it",
+    "items": "name of the list below /names that names the second axis",
+    "labels": "the values are places in this list of texts",
+    "note": "how the values were found, where the name does not say it",
+}
+
+
+def entry_of(path: str) -> Optional[Entry]:
+    """Return the entry that a place in a file belongs to, the most special first."""
+    found = [entry for entry in ENTRIES if entry.matches(path)]
+    return min(found, key=lambda entry: entry.path.count("{name}")) if found else None
+
+
+def markdown() -> str:
+    """Return the layout as the two tables of docs/result_file.md."""
+    lines = ["| place | type [shape] | meaning |", "|---|---|---|"]
+    for entry in ENTRIES:
+        always = "" if entry.required else " (not always there)"
+        lines.append(f"| `{entry.path}` | {entry.form} | {entry.meaning}{always} |")
+    lines += ["", "| attribute | meaning |", "|---|---|"]
+    lines += [f"| `{name}` | {meaning} |" for name, meaning in ATTRIBUTES.items()]
+    return "\n".join(lines) + "\n"
