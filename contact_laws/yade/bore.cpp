@@ -9,12 +9,12 @@
 #include "contact_parts.hpp"
 #include "failure.hpp"
 #include "ranges.hpp"
+#include "statejump/geometry/follow.hpp"
 
 namespace statejump::dem {
 namespace {
 
 namespace py = boost::python;
-using ConstVector = Eigen::Map<const Vector3r>;
 
 struct TrianglesConverter {
   using List = std::vector<std::array<int, 3>>;
@@ -183,88 +183,6 @@ struct BoreContacts::Probe {
 
 namespace {
 
-// BoreGeom::known: where the wall was searched last and what was found, all in the wall's axes at
-// the reference temperature.
-enum Header { at_centre = 0, at_axis = 3, at_radius = 6, at_free = 7, header_size = 8 };
-// Then for each contact near by the wall around it. Of a journal, u is the wall's normal (which may
-// lean against the section), k_a its curvature in the section and k_b across; of a ball, u and v
-// are the principal directions of k_a and k_b. Hollow is positive. slot: number in
-// BoreGeom::contacts.
-enum Patch {
-  at_point = 0,
-  at_normal = 3,
-  at_u = 6,
-  at_v = 9,
-  at_k_a = 12,
-  at_k_b = 13,
-  at_slot = 14,
-  patch_size = 15
-};
-
-// The nearest point of a wall around a patch.
-struct Found {
-  Vector3r normal;  // into the wall
-  Real distance;    // of the centre [m]
-  Real curvature;   // that the law takes [1/m], hollow positive
-};
-
-// Distance from a circle through the origin whose tangent there is across and whose centre is at
-// height 1/k, of a point at the given height and place along the tangent; exact for any k, 0 too.
-struct OnCircle {
-  Real distance;
-  Real cosine;  // of the turn of the normal
-  Real sine;
-};
-OnCircle on_circle(Real k, Real height, Real along) {
-  const Real q = 1 - k * height;
-  const Real root = std::sqrt(q * q + k * k * along * along);
-  return {(2 * height - k * (height * height + along * along)) / (1 + root), q / root,
-          k * along / root};
-}
-
-Found near_patch(const Real* patch, const Vector3r& centre, const Vector3r& axis, bool is_ball) {
-  const ConstVector point(patch + at_point), normal(patch + at_normal), u(patch + at_u);
-  const Real k_a = patch[at_k_a], k_b = patch[at_k_b];
-  if (is_ball) {
-    const ConstVector v(patch + at_v);
-    const Vector3r from = centre - point;
-    const OnCircle first = on_circle(k_a, -from.dot(normal), from.dot(u));
-    const OnCircle second = on_circle(k_b, first.distance, from.dot(v));
-    const Vector3r turned = first.cosine * normal + first.sine * u;
-    return {(second.cosine * turned + second.sine * v).normalized(), second.distance,
-            0.5 * (k_a + k_b)};
-  }
-  // The section has moved along the axis by this much where the contact is.
-  const Real shift = (centre - point).dot(axis);
-  const Vector3r across = (normal - normal.dot(axis) * axis).normalized();
-  const Real lean = u.dot(axis) / u.dot(normal);
-  const Vector3r moved = point + shift * axis - (shift * lean + 0.5 * k_b * shift * shift) * across;
-  const Vector3r from = centre - moved;
-  const Vector3r tangent = axis.cross(across);
-  const OnCircle found = on_circle(k_a, -from.dot(across), from.dot(tangent));
-  return {found.cosine * across + found.sine * tangent, found.distance, k_a};
-}
-
-void remember(std::vector<Real>& known, const geometry::BoreContact& found, bool is_ball) {
-  const std::size_t start = known.size();
-  known.resize(start + patch_size, 0);
-  Real* patch = known.data() + start;
-  Eigen::Map<Vector3r>(patch + at_point) = found.point;
-  Eigen::Map<Vector3r>(patch + at_normal) = found.normal;
-  if (is_ball) {
-    Eigen::Map<Vector3r>(patch + at_u) = found.direction_1;
-    Eigen::Map<Vector3r>(patch + at_v) = found.direction_2;
-    patch[at_k_a] = -found.curvature_1;
-    patch[at_k_b] = -found.curvature_2;
-  } else {
-    const Vector3r wall = found.direction_1.cross(found.direction_2);
-    Eigen::Map<Vector3r>(patch + at_u) = wall.dot(found.normal) < 0 ? Vector3r(-wall) : wall;
-    patch[at_k_a] = -found.section_curvature;
-    patch[at_k_b] = -found.axial_curvature;
-  }
-  patch[at_slot] = -1;
-}
-
 [[gnu::cold, gnu::noinline]] void fail_curvature(const char* inner, Real radius, Real wall_radius,
                                                  const Vector3r& point, const yade::Scene& scene,
                                                  const yade::Interaction& contact) {
@@ -315,78 +233,12 @@ bool BoreContacts::find(const Probe& probe, const MeshBore& bore, const yade::St
   // Even without contact the pair keeps what is known of the wall; it is real only with physics.
   if (!contact->geom) contact->geom = boost::make_shared<BoreGeom>();
   auto& pair = static_cast<BoreGeom&>(*contact->geom);
-  std::vector<Real>& known = pair.known;
-  thread_local std::vector<Found> found;
-  const auto look = [&] {
-    found.clear();
-    bool good = true;
-    for (std::size_t at = header_size; at < known.size(); at += patch_size) {
-      found.push_back(near_patch(known.data() + at, centre, axis, probe.is_ball));
-      const ConstVector normal(known.data() + at + at_normal);
-      good = good && (found.back().normal - normal).squaredNorm() < patchAngle * patchAngle &&
-             found.back().distance > 0;
-    }
-    return good;
-  };
-  // What was not near at the last search has stayed away since: no distance from the wall changes
-  // faster than the centre moves (in a section of a wall that leans 45 degrees: by 1.5 of it).
-  bool search = known.empty() || patchAngle == 0;
-  if (!search) {
-    const Real moved = 1.5 * (centre - ConstVector(known.data() + at_centre)).norm() +
-                       mesh.mean_radius() * (axis - ConstVector(known.data() + at_axis)).norm() +
-                       std::abs(radius - known[at_radius]);
-    search = moved >= known[at_free] || !look();
-    // A contact begins with a search, so that it does not depend on what was known before.
-    search = search || (pair.contacts.empty() &&
-                        std::any_of(found.begin(), found.end(),
-                                    [&](const Found& one) { return one.distance < radius; }));
-  }
-  thread_local std::vector<int> slot_before;  // of each patch now, in the list of the last step
-  slot_before.clear();
-  if (search) {
-    std::vector<geometry::BoreContact> before, now;
-    thread_local std::vector<int> old_slot;
-    old_slot.clear();
-    for (std::size_t at = header_size; at < known.size(); at += patch_size) {
-      geometry::BoreContact one{};
-      one.point = ConstVector(known.data() + at + at_point);
-      one.normal = ConstVector(known.data() + at + at_normal);
-      before.push_back(one);
-      old_slot.push_back(static_cast<int>(known[at + at_slot]));
-    }
-    const Real play = std::max(mesh.mean_radius() - radius, 1e-3 * mesh.mean_radius());
-    const Real reach = (probe.is_ball ? 0.5 : 2) * play;
-    const Real near = 0.02 * play;
-    try {
-      now = probe.is_ball ? mesh.ball_contacts(centre, radius, reach, before)
-                          : mesh.contacts(centre, axis, radius, reach, before);
-    } catch (const std::exception& error) {
-      fail_search(error.what(), scene, *contact);
-      return false;
-    }
-    known.assign(header_size, 0);
-    // A journal always has a nearest point; none means that its section misses the wall.
-    Real free = now.empty() && !probe.is_ball ? 0 : reach;
-    for (const geometry::BoreContact& one : now) {
-      if (one.depth <= -near) {
-        free = std::min(free, -one.depth);
-      } else {
-        remember(known, one, probe.is_ball);
-        slot_before.push_back(one.previous >= 0 ? old_slot[static_cast<std::size_t>(one.previous)]
-                                                : -1);
-      }
-    }
-    // Beside a contact another one may come out of its flank.
-    if (!slot_before.empty()) free = std::min(free, near);
-    Eigen::Map<Vector3r>(known.data() + at_centre) = centre;
-    Eigen::Map<Vector3r>(known.data() + at_axis) = axis;
-    known[at_radius] = radius;
-    known[at_free] = free;
-    look();
-  } else {
-    for (std::size_t at = header_size; at < known.size(); at += patch_size) {
-      slot_before.push_back(static_cast<int>(known[at + at_slot]));
-    }
+  thread_local std::vector<geometry::FollowedContact> found;
+  try {
+    geometry::follow_contacts(mesh, {centre, axis, radius}, patchAngle, pair.known, found);
+  } catch (const std::exception& error) {
+    fail_search(error.what(), scene, *contact);
+    return false;
   }
 
   // The list of contacts. Most steps leave it as it is.
@@ -395,8 +247,8 @@ bool BoreContacts::find(const Probe& probe, const MeshBore& bore, const yade::St
   for (std::size_t i = 0; i < found.size(); ++i) {
     const bool touches = found[i].distance < radius;
     const int now = touches ? static_cast<int>(touching) : -1;
-    same = same && slot_before[i] == now;
-    known[header_size + i * patch_size + at_slot] = now;
+    same = same && found[i].label == now;
+    geometry::set_label(pair.known, i, now);
     touching += touches;
   }
   same = same && touching == pair.contacts.size();
@@ -409,7 +261,7 @@ bool BoreContacts::find(const Probe& probe, const MeshBore& bore, const yade::St
     pair.previous.clear();
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (!(found[i].distance < radius)) continue;
-      const int before = slot_before[i];
+      const int before = found[i].label;
       pair.previous.push_back(before);
       if (before >= 0) {
         pair.contacts.push_back(old[static_cast<std::size_t>(before)]);
@@ -439,7 +291,7 @@ bool BoreContacts::find(const Probe& probe, const MeshBore& bore, const yade::St
   const Vector3r world_axis = probe.is_ball ? Vector3r(Vector3r::Zero()) : turn * mesh.axis();
   std::size_t next = 0;
   Real deepest = 0;
-  for (const Found& one : found) {
+  for (const geometry::FollowedContact& one : found) {
     if (!(one.distance < radius)) continue;
     const bool is_new = pair.previous[next] < 0;
     JointGeom& geometry = *pair.contacts[next++];

@@ -105,9 +105,10 @@ struct BoreGeom : RegisteredIndexable<BoreGeom, yade::GenericSpheresContact> {
                   "contact that has just ended [-]"),
         read_only("previous", &BoreGeom::previous,
                   "Which contact of the last step each continues, -1 for a new one [-]"),
-        read_only("known", &BoreGeom::known,
-                  "Journal's place at the last search of the whole wall and what was found there, "
-                  "in the wall's axes [m, 1/m, -]"));
+        read_only(
+            "known", &BoreGeom::known,
+            "What is known of the wall around the journal: where it was searched whole and the "
+            "wall at the contacts, in its axes [m, 1/m, -]"));
   }
   template <class PythonClass>
   static void register_methods(PythonClass& entry) {
@@ -154,8 +155,10 @@ class BoreContacts {
             const yade::State& state2, const Vector3r& shift2, bool force,
             const yade::shared_ptr<yade::Interaction>& contact, yade::Scene& scene) const;
   static constexpr const char* patch_angle_doc =
-      "Angle by which the normal of a contact may turn before the wall is searched again; until "
-      "then the wall around it has the curvature found there. 0: search in every step [rad]";
+      "Angle by which the normal of a contact may turn before the smooth wall is asked again at "
+      "its "
+      "new place; until then the wall around it has the curvature found there. 0: search the whole "
+      "wall in every step [rad]";
 };
 
 struct Ig2_Journal_MeshBore_BoreGeom

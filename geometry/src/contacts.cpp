@@ -46,9 +46,30 @@ BoreContact contact_at(const BoreMesh::Impl& m, const Hit& hit, const Vector3& n
   return contact;
 }
 
-void sort_and_match(std::vector<BoreContact>& contacts, const std::vector<BoreContact>& previous) {
-  std::sort(contacts.begin(), contacts.end(),
-            [](const BoreContact& a, const BoreContact& b) { return a.depth > b.depth; });
+/// A contact and the wall there.
+struct Candidate {
+  BoreContact contact;
+  Hit hit;
+};
+
+template <class Equal>
+void drop_equal(std::vector<Candidate>& candidates, const Equal& equal) {
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    for (std::size_t j = candidates.size(); j-- > i + 1;)
+      if (equal(candidates[i], candidates[j]))
+        candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(j));
+}
+
+std::vector<BoreContact> sort_and_match(std::vector<Candidate>& candidates,
+                                        const std::vector<Vector3>& previous, Survey* survey) {
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.contact.depth > b.contact.depth;
+  });
+  std::vector<BoreContact> contacts;
+  for (const Candidate& one : candidates) {
+    contacts.push_back(one.contact);
+    if (survey) survey->hits.push_back(one.hit);
+  }
   std::vector<char> taken(previous.size(), 0);
   for (std::size_t round = 0; round < std::min(contacts.size(), previous.size()); ++round) {
     double best = 0.86602540378443865;  // a twelfth of a turn
@@ -56,16 +77,23 @@ void sort_and_match(std::vector<BoreContact>& contacts, const std::vector<BoreCo
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       if (contacts[i].previous >= 0) continue;
       for (std::size_t j = 0; j < previous.size(); ++j)
-        if (!taken[j] && contacts[i].normal.dot(previous[j].normal) > best) {
-          best = contacts[i].normal.dot(previous[j].normal);
+        if (!taken[j] && contacts[i].normal.dot(previous[j]) > best) {
+          best = contacts[i].normal.dot(previous[j]);
           which = i;
           whose = j;
         }
     }
-    if (which == contacts.size()) return;
+    if (which == contacts.size()) break;
     contacts[which].previous = static_cast<int>(whose);
     taken[whose] = 1;
   }
+  return contacts;
+}
+
+std::vector<Vector3> normals_of(const std::vector<BoreContact>& contacts) {
+  std::vector<Vector3> normals;
+  for (const BoreContact& one : contacts) normals.push_back(one.normal);
+  return normals;
 }
 
 /// A minimum of values on a ring.
@@ -162,7 +190,21 @@ std::vector<BoreContact> BoreMesh::contacts(const Eigen::Vector3d& journal_centr
                                             const Eigen::Vector3d& journal_axis,
                                             double journal_radius, double maximum_gap,
                                             const std::vector<BoreContact>& previous) const {
-  const Impl& m = *impl_;
+  return find_contacts(*impl_, journal_centre, journal_axis, journal_radius, maximum_gap,
+                       normals_of(previous), nullptr);
+}
+
+std::vector<BoreContact> BoreMesh::ball_contacts(const Eigen::Vector3d& ball_centre,
+                                                 double ball_radius, double maximum_gap,
+                                                 const std::vector<BoreContact>& previous) const {
+  return find_ball_contacts(*impl_, ball_centre, ball_radius, maximum_gap, normals_of(previous),
+                            nullptr);
+}
+
+std::vector<BoreContact> find_contacts(const BoreMesh::Impl& m, const Vector3& journal_centre,
+                                       const Vector3& journal_axis, double journal_radius,
+                                       double maximum_gap, const std::vector<Vector3>& previous,
+                                       Survey* survey) {
   if (m.kind != SurfaceKind::bore)
     throw std::invalid_argument("a journal needs a bore, but the mesh is a socket");
   validate(journal_centre, "journal_centre", journal_radius, "journal_radius", maximum_gap);
@@ -188,6 +230,7 @@ std::vector<BoreContact> BoreMesh::contacts(const Eigen::Vector3d& journal_centr
   const double centre_y = offset.dot(m.wall.axis_y);
   const double centre_z = offset.dot(m.wall.axis);
 
+  if (survey) survey->not_flat = infinity;
   if (grid.least - std::hypot(centre_x, centre_y) > limit) return {};
 
   // Distances of the seeds in the journal's section, rows interpolated. thread_local: no
@@ -201,17 +244,24 @@ std::vector<BoreContact> BoreMesh::contacts(const Eigen::Vector3d& journal_centr
     if (tilted) level -= m.wall.radius * (grid.cosine[c] * lean_x + grid.sine[c] * lean_y);
     const double row = (level - grid.low) / grid.step;
     distance[c] = infinity;
+    // Where there is no wall nothing is known of the border beside.
+    if (survey && !(row >= 0 && row <= grid.rows - 1)) survey->not_flat = 0;
     if (!(row >= 0 && row <= grid.rows - 1)) continue;
     const int lower = std::min(static_cast<int>(row), grid.rows - 2);
     const double part = row - lower;
     const double* radius = &grid.radius[static_cast<std::size_t>(lower) * columns + c];
     const double r = (1 - part) * radius[0] + part * radius[columns];
+    if (survey && !(r > 0)) survey->not_flat = 0;
     if (!(r > 0)) continue;  // a hole in the grid
     x[c] = r * grid.cosine[c] - centre_x;
     y[c] = r * grid.sine[c] - centre_y;
     z[c] = level - centre_z;
     distance[c] = std::sqrt(x[c] * x[c] + y[c] * y[c] + z[c] * z[c]);
     lowest = std::min(lowest, distance[c]);
+    if (survey) {
+      const double* hollow = &grid.hollow[static_cast<std::size_t>(lower) * columns + c];
+      survey->look_at(distance[c], std::max(hollow[0], hollow[columns]), grid.sag);
+    }
   }
   if (!(lowest < infinity)) return {};
 
@@ -238,8 +288,7 @@ std::vector<BoreContact> BoreMesh::contacts(const Eigen::Vector3d& journal_centr
   drop_flat(minima, distance, m.prominence);
 
   const Section section{m, journal_centre, axis};
-  std::vector<BoreContact> result;
-  std::vector<Minimum> refined;
+  std::vector<Candidate> result;
   for (const Minimum& seed : minima) {
     const int c = seed.index;
     const auto direction_of = [&](int i) -> Vector3 {
@@ -263,26 +312,21 @@ std::vector<BoreContact> BoreMesh::contacts(const Eigen::Vector3d& journal_centr
     if (!(best.hit.s < limit)) continue;
     const Vector3 way = (best.hit.point - journal_centre).normalized();
     BoreContact contact = contact_at(m, best.hit, way, journal_radius - best.hit.s);
-    const Vector3 in_plane = best.hit.normal - best.hit.normal.dot(axis) * axis;
-    const Vector3 tangent = cross(axis, in_plane).normalized();
-    const Vector3 axial = cross(tangent, best.hit.normal);
-    contact.section_curvature = -tangent.dot(best.hit.bend * tangent);
-    contact.axial_curvature = -axial.dot(best.hit.bend * axial);
-    result.push_back(contact);
+    const SectionCurvature k = section_curvature(best.hit, axis);
+    contact.section_curvature = -k.section;
+    contact.axial_curvature = -k.axial;
+    result.push_back({contact, best.hit});
   }
   // Two seeds that ran into one minimum.
-  for (std::size_t i = 0; i < result.size(); ++i)
-    for (std::size_t j = result.size(); j-- > i + 1;)
-      if (result[i].normal.dot(result[j].normal) > 1 - 1e-8)
-        result.erase(result.begin() + static_cast<std::ptrdiff_t>(j));
-  sort_and_match(result, previous);
-  return result;
+  drop_equal(result, [](const Candidate& a, const Candidate& b) {
+    return a.contact.normal.dot(b.contact.normal) > 1 - 1e-8;
+  });
+  return sort_and_match(result, previous, survey);
 }
 
-std::vector<BoreContact> BoreMesh::ball_contacts(const Eigen::Vector3d& ball_centre,
-                                                 double ball_radius, double maximum_gap,
-                                                 const std::vector<BoreContact>& previous) const {
-  const Impl& m = *impl_;
+std::vector<BoreContact> find_ball_contacts(const BoreMesh::Impl& m, const Vector3& ball_centre,
+                                            double ball_radius, double maximum_gap,
+                                            const std::vector<Vector3>& previous, Survey* survey) {
   validate(ball_centre, "ball_centre", ball_radius, "ball_radius", maximum_gap);
   const Grid& grid = m.grid;
   const int cells = grid.rows * grid.columns;
@@ -292,12 +336,14 @@ std::vector<BoreContact> BoreMesh::ball_contacts(const Eigen::Vector3d& ball_cen
   const Vector3 across = m.kind == SurfaceKind::bore
                              ? Vector3(offset - offset.dot(m.wall.axis) * m.wall.axis)
                              : offset;
+  if (survey) survey->not_flat = infinity;
   if (grid.least - across.norm() > limit) return {};
   thread_local std::vector<double> distance;
   distance.resize(cells);
   for (int i = 0; i < cells; ++i) {
     const double d = (grid.point[i] - ball_centre).norm();
     distance[i] = d >= 0 ? d : infinity;
+    if (survey && d >= 0) survey->look_at(d, grid.hollow[i], grid.sag);
   }
   const auto neighbours = [&](int cell, const auto& use) {
     const int row = cell / grid.columns, column = cell % grid.columns;
@@ -347,7 +393,7 @@ std::vector<BoreContact> BoreMesh::ball_contacts(const Eigen::Vector3d& ball_cen
     }
     basin[cell] = own;
   }
-  std::vector<BoreContact> result;
+  std::vector<Candidate> result;
   for (std::size_t b = 0; b < root.size(); ++b) {
     if (!alive[b]) continue;
     const Vector3 way = grid.point[root[b]] - ball_centre;
@@ -357,14 +403,12 @@ std::vector<BoreContact> BoreMesh::ball_contacts(const Eigen::Vector3d& ball_cen
     const Vector3 out = hit.point - ball_centre;
     const double reach = out.norm();
     if (!(reach < limit)) continue;
-    result.push_back(contact_at(m, hit, out / reach, ball_radius - reach));
+    result.push_back({contact_at(m, hit, out / reach, ball_radius - reach), hit});
   }
-  for (std::size_t i = 0; i < result.size(); ++i)
-    for (std::size_t j = result.size(); j-- > i + 1;)
-      if ((result[i].point - result[j].point).norm() < 1e-4 * m.wall.radius)
-        result.erase(result.begin() + static_cast<std::ptrdiff_t>(j));
-  sort_and_match(result, previous);
-  return result;
+  drop_equal(result, [&](const Candidate& a, const Candidate& b) {
+    return (a.contact.point - b.contact.point).norm() < 1e-4 * m.wall.radius;
+  });
+  return sort_and_match(result, previous, survey);
 }
 
 }  // namespace statejump::geometry

@@ -92,6 +92,7 @@ BoreMesh::Impl::Impl(Triangles given, const BoreOptions& options, const std::str
   tree.accelerate_distance_queries();
   estimate_error();
   make_grid();
+  make_hollow();
 }
 
 void BoreMesh::Impl::make_jets(int degree) {
@@ -134,7 +135,9 @@ void BoreMesh::Impl::make_jets(int degree) {
 
   jet.resize(count);
   vertex_normal.assign(mesh.vertices.size(), Vector3::Zero());
-  std::vector<double> least(count), most(count);
+  std::vector<double>& least = vertex_curvature;
+  least.resize(count);
+  std::vector<double> most(count);
   in_parallel(count, [&](int begin, int end) {
     std::vector<int> seen(count, -1);
     std::vector<int> ring;
@@ -251,6 +254,46 @@ void BoreMesh::Impl::make_grid() {
   grid.least = least - largest_step - prominence;
 }
 
+void BoreMesh::Impl::make_hollow() {
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  grid.hollow.assign(grid.radius.size(), none);
+  std::vector<double> column(jet.size()), row(jet.size());
+  for (std::size_t v = 0; v < jet.size(); ++v) {
+    const Vector3 from = jet[v].origin - wall.centre;
+    const double x = from.dot(wall.axis_x), y = from.dot(wall.axis_y);
+    column[v] = std::atan2(y, x) * grid.columns / (2 * pi);
+    const double z = from.dot(wall.axis);
+    const double level =
+        kind == SurfaceKind::bore ? z : std::atan2(std::hypot(x, y), -z);  // as in make_grid()
+    row[v] = (level - grid.low) / grid.step;
+  }
+  for (const auto& c : corner) {
+    double hollow = none, first = 0, last = 0, low = row[c[0]], high = low;
+    for (const int v : c) {
+      hollow = std::max(hollow, -vertex_curvature[v]);
+      const double turned = std::remainder(column[v] - column[c[0]], double(grid.columns));
+      first = std::min(first, turned);
+      last = std::max(last, turned);
+      low = std::min(low, row[v]);
+      high = std::max(high, row[v]);
+    }
+    const int from = static_cast<int>(std::floor(column[c[0]] + first)) + grid.columns;
+    const int to = static_cast<int>(std::ceil(column[c[0]] + last)) + grid.columns;
+    const int bottom = std::max(static_cast<int>(std::floor(low)), 0);
+    const int top = std::min(static_cast<int>(std::ceil(high)), grid.rows - 1);
+    for (int r = bottom; r <= top; ++r)
+      for (int i = from; i <= to; ++i) {
+        double& cell = grid.hollow[r * grid.columns + i % grid.columns];
+        cell = std::max(cell, hollow);
+      }
+  }
+  for (int cell = grid.columns; cell + grid.columns < int(grid.radius.size()); ++cell) {
+    const double bend =
+        grid.radius[cell - grid.columns] - 2 * grid.radius[cell] + grid.radius[cell + grid.columns];
+    if (std::abs(bend) / 8 > grid.sag) grid.sag = std::abs(bend) / 8;
+  }
+}
+
 int BoreMesh::Impl::shoot(const Vector3& point, const Vector3& direction) const {
   const Kernel::Ray_3 ray(to_cgal(point),
                           Kernel::Vector_3(direction.x(), direction.y(), direction.z()));
@@ -361,6 +404,15 @@ Hit BoreMesh::Impl::meet(const Vector3& point, const Vector3& direction, int sta
   return hit;
 }
 
+bool BoreMesh::Impl::meet_near(const Vector3& point, const Vector3& direction, int start,
+                               double guess, Hit& hit) const {
+  hit = follow(point, direction, start);
+  if (!hit.found || !(hit.s > 0)) return false;
+  hit.s = guess;
+  blend(point, direction, hit);
+  return hit.normal.dot(direction) < 0;
+}
+
 bool BoreMesh::Impl::descend(const Vector3& query, Hit& hit) const {
   // Newton on the foot of the normal; a step is halved until the distance falls.
   double distance = (query - hit.point).norm();
@@ -421,6 +473,14 @@ Principal principal(const Hit& hit) {
   p.direction_smaller = high;
   p.direction_larger = cross(high, hit.normal);
   return p;
+}
+
+SectionCurvature section_curvature(const Hit& hit, const Vector3& axis) {
+  const Vector3 in_plane = hit.normal - hit.normal.dot(axis) * axis;
+  const Vector3 normal = in_plane.normalized();
+  const Vector3 tangent = cross(axis, normal);
+  const Vector3 axial = cross(tangent, hit.normal);
+  return {normal, tangent.dot(hit.bend * tangent), axial.dot(hit.bend * axial)};
 }
 
 }  // namespace statejump::geometry

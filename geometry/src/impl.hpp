@@ -6,6 +6,7 @@
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "jet.hpp"
@@ -32,7 +33,9 @@ struct Grid {
   std::vector<Vector3> point;
   std::vector<int> face;  ///< of the wall
   std::vector<double> cosine, sine;
-  double least = 0;  ///< no wall is nearer to the axis (centre) [m]
+  double least = 0;            ///< no wall is nearer to the axis (centre) [m]
+  std::vector<double> hollow;  ///< largest hollow curvature of the faces around [1/m]
+  double sag = 0;              ///< what straight interpolation between the rows leaves, at most [m]
 };
 
 struct BoreMesh::Impl {
@@ -49,6 +52,10 @@ struct BoreMesh::Impl {
   int shoot(const Vector3& point, const Vector3& direction) const;
   /// follow() from a face near by, shoot() where that fails.
   Hit meet(const Vector3& point, const Vector3& direction, int start) const;
+  /// Where a ray meets the wall, from a face near by and a good guess of the distance; false where
+  /// it does not.
+  bool meet_near(const Vector3& point, const Vector3& direction, int start, double guess,
+                 Hit& hit) const;
   /// Fills point, normal and bend of a hit whose face, weights and flat s are known.
   void blend(const Vector3& point, const Vector3& direction, Hit& hit) const;
   /// Same without normal and curvature.
@@ -68,10 +75,12 @@ struct BoreMesh::Impl {
   Grid grid;
   double error = 0, prominence = 0;
   double least_curvature = 0, most_curvature = 0;
+  std::vector<double> vertex_curvature;  ///< of jets, the smaller principal one, convex positive
 
  private:
   void make_jets(int degree);
   void make_grid();
+  void make_hollow();
   void estimate_error();
 };
 
@@ -81,5 +90,38 @@ struct Principal {
   Vector3 direction_larger, direction_smaller;
 };
 Principal principal(const Hit& hit);
+
+/// The wall at a hit, cut across a journal's axis.
+struct SectionCurvature {
+  Vector3 normal;  ///< unit, of the wall's curve in the section, towards the free side
+  double section;  ///< [1/m], normal curvature along that curve, hollow positive
+  double axial;    ///< [1/m], normal curvature across it
+};
+SectionCurvature section_curvature(const Hit& hit, const Vector3& axis);
+
+/// What a search knows beside its contacts, for follow_contacts().
+struct Survey {
+  double travel = 0;      ///< in: [m] that the centre may move
+  double not_flat = 0;    ///< out: no wall nearer than this [m] is as hollow as the journal (ball)
+  std::vector<Hit> hits;  ///< out: of the contacts
+
+  /// Takes note of a sample of the wall. @param sag of the wall between samples [m]
+  void look_at(double distance, double hollow, double sag) {
+    // Once the travel for the distance, which it lengthens, and once to spare. Between samples the
+    // distance from a centre off the axis sags, too, by less than 1e-3 of the play.
+    if (!(hollow * (distance + 2 * travel) < 1))
+      not_flat = std::min(not_flat, distance - sag - 0.02 * travel);
+  }
+};
+
+/// BoreMesh::contacts() and ball_contacts(). @param previous normals of the earlier contacts,
+/// @param survey may be null
+std::vector<BoreContact> find_contacts(const BoreMesh::Impl& mesh, const Vector3& journal_centre,
+                                       const Vector3& journal_axis, double journal_radius,
+                                       double maximum_gap, const std::vector<Vector3>& previous,
+                                       Survey* survey);
+std::vector<BoreContact> find_ball_contacts(const BoreMesh::Impl& mesh, const Vector3& ball_centre,
+                                            double ball_radius, double maximum_gap,
+                                            const std::vector<Vector3>& previous, Survey* survey);
 
 }  // namespace statejump::geometry

@@ -120,7 +120,11 @@ def two_points():
         "shears": [p.shearForce.norm() for p in phys.contacts],
     }
     # Push to the other side until the deeper contact is the other one; the histories stay theirs.
+    # The order is that of the last search: from here on search in every step.
     rows = []
+    for functor in O.engines[3].geomDispatcher.functors:
+        if hasattr(functor, "patchAngle"):
+            functor.patchAngle = 0
     O.forces.setPermF(pin, (50, -12, 0))
     for _ in range(300):
         O.run(20, True)

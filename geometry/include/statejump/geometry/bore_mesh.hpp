@@ -153,6 +153,7 @@ class BoreMesh {
   const std::vector<Eigen::Vector3d>& vertex_normals() const;
 
   struct Impl;  ///< CGAL's part, hidden
+  const Impl& impl() const { return *impl_; }
 
  private:
   std::shared_ptr<const Impl> impl_;
