@@ -23,10 +23,11 @@ from .errors import StatejumpError, Interrupted, TolerancesMissed
 from .history import History
 from .output import results_folder
 from .resultfile import ModelRun, kind_spring_slider, kind_umbrella
+from .resultfile.commands import compare_files, export_command, info_command
+from .resultfile.read import is_result_file
 from .resultfile.record import Record, case_text
 from .statics import statics_command
-from .terminal import CASE, QUIET, RESULTS, load_kind, make_console, number, progress
-from .truss.commands import truss_command
+from .terminal import CASE, QUIET, RESULTS, load_kind, make_console, number, print_comparison, progress
 from .umbrella import compare as umbrella_compare
 from .umbrella import dem as umbrella_dem
 from .umbrella import model as umbrella
@@ -39,16 +40,6 @@ from .umbrella.slow import slow_command
 
 def _dem_label(steps: int, label: str = "DEM") -> str:
     return f"{label}, {steps:,} steps"
-
-
-def _print_comparison(title: str, rows: list[compare.Quantity], console: Console) -> None:
-    table = Table(title=title)
-    for heading in ("quantity", "unit", "reduced", "DEM", "difference", "tolerance", ""):
-        table.add_column(heading, justify="left" if heading in ("quantity", "unit", "") else "right")
-    for row in rows:
-        table.add_row(row.name, row.unit, number(row.reduced), number(row.dem), number(row.difference),
-                      number(row.tolerance), "pass" if row.passed else "MISSED")
-    console.print(table)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -174,17 +165,26 @@ def _run_spring_slider(
 
 
 @cli.command("compare")
-@CASE
+@click.argument("files", metavar="CASE|FILE FILE", nargs=-1, required=True, type=click.Path(path_type=Path))
 @RESULTS
 @QUIET
-def compare_command(case_file: Path, results: Path, quiet: bool) -> None:
-    """Both models of CASE side by side; exit status 1 when a tolerance is missed.
+def compare_command(files: tuple[Path, ...], results: Path, quiet: bool) -> None:
+    """Both models of CASE side by side, or two result files of the same case; exit status 1 when a
+    tolerance is missed, 2 when the files are of different cases.
 
     \b
-    Example:
+    Examples:
       statejump compare cases/table1.toml
+      statejump compare results/table1/reduced.h5 results/table1/dem.h5
     """
     console = make_console(quiet)
+    if len(files) > 1 or is_result_file(files[0]):
+        compare_files(files, console)
+    else:
+        _compare_case(files[0], results, console)
+
+
+def _compare_case(case_file: Path, results: Path, console: Console) -> None:
     case = load_kind(case_file, SpringSliderCase, UmbrellaCase)
     folder = results_folder(results, case.name)
     record = Record("compare", case, case_text(case_file), folder)
@@ -214,7 +214,7 @@ def _compare_spring_slider(
     record.add_dem(done)
     rows = compare.compare(case, path, done.history)
     figures = plot.figure(case, path, done.history, record.folder)
-    _print_comparison(case.title, rows, console)
+    print_comparison(case.title, rows, console)
     _warn(case, path, record, console)
     return rows, figures
 
@@ -229,7 +229,7 @@ def _compare_umbrella(
     record.add_dem(done)
     rows = umbrella_compare.compare(case, run, done)
     figures = umbrella_plot.figure(case, run.history, done.history, record.folder)
-    _print_comparison(case.title, rows, console)
+    print_comparison(case.title, rows, console)
     if not umbrella.is_reproducible(case):
         console.print(
             "without damping of links and pins the motion after contact is chaotic: compared point by point "
@@ -297,7 +297,7 @@ def laws_command(case_file: Path | None, results: Path, quiet: bool) -> None:
 
 for _command in (
     figures_command, slow_command, hold_command, energy_command, control_command, statics_command,
-    bore_command, montecarlo_command, sweep_command, truss_command,
+    bore_command, montecarlo_command, sweep_command, info_command, export_command,
 ):
     cli.add_command(_command)
 

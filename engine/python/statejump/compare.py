@@ -88,15 +88,28 @@ def loop_drift(dem: History, samples_per_cycle: int, cycles: int) -> float:
     return float(max(np.max(np.abs(loop - loops[0])) for loop in loops))
 
 
+def jump_row(case: SpringSliderCase, exact_m: float, other_m: float) -> Quantity:
+    """Compare two state jumps [m]."""
+    tolerance = case.tolerance
+    limit = max(tolerance.state_jump_relative * abs(exact_m), tolerance.state_jump_absolute_m)
+    return quantity("state_jump", "m", exact_m, other_m, limit)
+
+
+def displacement_row(case: SpringSliderCase, exact: History, other: History) -> Quantity:
+    """Compare two histories of displacement at the same times."""
+    x, y = exact["displacement_m"], other["displacement_m"]
+    largest = float(np.max(np.abs(x)))
+    rms = float(np.sqrt(np.mean((y - x) ** 2)))
+    return quantity("displacement_rms_over_largest", "-", 0.0, rms / largest if largest > 0 else math.nan,
+                    case.tolerance.displacement_rms_relative)
+
+
 def compare(case: SpringSliderCase, path: _engine.Path, dem: History) -> list[Quantity]:
     """Compare a DEM history with the exact path of the same case."""
     tolerance = case.tolerance
     samples = case.dem.samples_per_cycle
     exact = reduced.sample(path, dem["time_s"])
-    exact_jump = path.state_jump_m
-    jump = float(dem["displacement_m"][-1] - dem["displacement_m"][0])
-    jump_tolerance = max(tolerance.state_jump_relative * abs(exact_jump), tolerance.state_jump_absolute_m)
-    rows = [quantity("state_jump", "m", exact_jump, jump, jump_tolerance)]
+    rows = [jump_row(case, path.state_jump_m, float(dem["displacement_m"][-1] - dem["displacement_m"][0]))]
 
     if case.friction_force_N > 0:
         exact_events: dict[str, float] = {}
@@ -110,10 +123,7 @@ def compare(case: SpringSliderCase, path: _engine.Path, dem: History) -> list[Qu
             for kind in COMPARED_EVENTS
         ]
 
-    largest = float(np.max(np.abs(exact["displacement_m"])))
-    rms = float(np.sqrt(np.mean((dem["displacement_m"] - exact["displacement_m"]) ** 2)))
-    rows.append(quantity("displacement_rms_over_largest", "-", 0.0,
-                          rms / largest if largest > 0 else math.nan, tolerance.displacement_rms_relative))
+    rows.append(displacement_row(case, exact, dem))
 
     reference = float(dem["friction_dissipation_J"][-1] - dem["friction_dissipation_J"][0])
     name = "energy_residual_over_friction_work"
@@ -123,6 +133,7 @@ def compare(case: SpringSliderCase, path: _engine.Path, dem: History) -> list[Qu
     rows.append(quantity(name, "-", 0.0, energy_residual(dem) / reference if reference > 0 else math.nan,
                           tolerance.energy_balance_relative))
     if case.thermal.cycles > 2:
+        largest = float(np.max(np.abs(exact["displacement_m"])))
         drift = loop_drift(dem, samples, case.thermal.cycles)
         rows.append(quantity("loop_drift_over_largest_displacement", "-", 0.0, drift / largest,
                               tolerance.drift_relative))

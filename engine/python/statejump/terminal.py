@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Callable, Iterator, Optional, TypeVar
+from typing import Callable, Iterator, Optional, Sequence, TypeVar
 
 import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Table
 
 from .case import Case, load_case
+from .compare import Quantity
 from .errors import StatejumpError
 
 CASE = click.argument("case_file", metavar="CASE", type=click.Path(path_type=Path))
@@ -48,6 +50,19 @@ def load_kind(case_file: Path, *kinds: type[CaseType]) -> CaseType:
 def number(value: Optional[float]) -> str:
     """Return a number for a table."""
     return "none" if value is None else f"{value:.6g}"
+
+
+def print_comparison(
+    title: str, rows: Sequence[Quantity], console: Console, names: tuple[str, str] = ("reduced", "DEM")
+) -> None:
+    """Print rows of a comparison; ``names`` head the two columns of values."""
+    table = Table(title=title)
+    for heading in ("quantity", "unit", *names, "difference", "tolerance", ""):
+        table.add_column(heading, justify="left" if heading in ("quantity", "unit", "") else "right")
+    for row in rows:
+        table.add_row(row.name, row.unit, number(row.reduced), number(row.dem), number(row.difference),
+                      number(row.tolerance), "pass" if row.passed else "MISSED")
+    console.print(table)
 
 
 @contextmanager

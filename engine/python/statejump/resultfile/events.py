@@ -2,11 +2,12 @@
 """Events of a run, read off the states of its contacts between two samples."""
 from __future__ import annotations
 
-from typing import Sequence
+import math
+from typing import Optional, Sequence
 
 import numpy as np
 
-from .contents import AT_STOP, SEPARATED, SLIP, Event
+from .contents import AT_STOP, SEPARATED, SLIP, Event, ModelRun
 
 
 def kind_of(before: int, after: int, slipped: bool) -> str:
@@ -50,3 +51,8 @@ def from_states(
     return sorted(found, key=lambda event: event.time_s)
 
 
+def first_event_K(run: ModelRun, kind: str, until_s: float = math.inf) -> Optional[float]:
+    """Return the temperature change [K] of the first event of a kind; None if there is none."""
+    return next(
+        (event.temperature_change_K for event in run.events if event.kind == kind and event.time_s <= until_s), None
+    )

@@ -6,15 +6,17 @@ from typing import Any, Optional
 
 import numpy as np
 
-from .. import _engine
+from .. import _engine, compare
 from ..case_spring_slider import SpringSliderCase
+from ..compare import Quantity
 from ..dem import DemRun
 from ..history import History
 from . import scene as drawing
 from .contents import (
-    AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Event, ModelRun, Scalar, columns_of, scalars,
+    AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Event, ModelRun, Scalar, columns_of,
+    history_of, scalars,
 )
-from .events import from_states
+from .events import first_event_K, from_states
 
 CONTACTS = ("floor", "stop_minus", "stop_plus")
 SLIDING_STAGES = ("S2", "S5")
@@ -141,3 +143,15 @@ def dem_run(case: SpringSliderCase, done: DemRun) -> ModelRun:
     x = done.history["displacement_m"]
     summary = {"state_jump_m": Scalar(float(x[-1] - x[0]), "m"), **scalars(done.summary)}
     return _run(case, done.history, None, summary)
+
+
+def difference_rows(case: SpringSliderCase, first: ModelRun, second: ModelRun) -> list[Quantity]:
+    """Two runs of the case at the same times against its tolerances."""
+    jumps = [run.summary["state_jump_m"].value for run in (first, second)]
+    rows = [compare.jump_row(case, *jumps)]
+    if case.friction_force_N > 0:
+        for kind in compare.COMPARED_EVENTS:
+            changes = [first_event_K(run, kind, case.period_s) for run in (first, second)]
+            rows.append(compare.quantity(f"{kind}_temperature_change", "K", *changes, case.tolerance.event_temperature_K))
+    rows.append(compare.displacement_row(case, history_of(first), history_of(second)))
+    return rows

@@ -7,12 +7,16 @@ from typing import Any, Optional
 import numpy as np
 
 from ..case_umbrella import UmbrellaCase
+from ..compare import Quantity, quantity
 from ..dem import DemRun
 from ..history import History
+from ..umbrella.compare import history_rows
 from ..umbrella.model import ReducedRun
 from . import scene as drawing
-from .contents import CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Event, ModelRun, Scalar, columns_of, scalars
-from .events import from_states
+from .contents import (
+    CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Event, ModelRun, Scalar, columns_of, history_of, scalars,
+)
+from .events import first_event_K, from_states
 
 CONTACTS = ("joint_b",)
 LINKS = ("link_ab", "link_bc")
@@ -132,3 +136,12 @@ def dem_run(case: UmbrellaCase, done: DemRun) -> ModelRun:
     """The DEM."""
     first = [done.summary.get(f"first_contact_{key}") for key in ("time_s", "temperature_change_K")]
     return _run(case, done.history, first[0], first[1], scalars(done.summary))
+
+
+def difference_rows(case: UmbrellaCase, first: ModelRun, second: ModelRun) -> list[Quantity]:
+    """Two runs of the case at the same times against its tolerances."""
+    rows = []
+    if case.start.mode != "loaded":
+        changes = [first_event_K(run, "first_contact") for run in (first, second)]
+        rows.append(quantity("first_contact_temperature_change", "K", *changes, case.tolerance.first_contact_dem_K))
+    return rows + history_rows(case, history_of(first), history_of(second))

@@ -3,13 +3,15 @@
 
 A module has ``names(case)`` (lists of items of columns), ``scene(case)`` (see :mod:`.scene`) and
 ``dem_run(case, done)``, which makes a :class:`~.contents.ModelRun` of a finished or interrupted DEM
-run; its ``reduced_run`` takes what its own reduced model returns.
+run, and ``difference_rows(case, first, second)``, two runs at the same times against the tolerances of
+the case; its ``reduced_run`` takes what its own reduced model returns.
 """
 from __future__ import annotations
 
 from typing import Any, Protocol
 
 from ..case import Case, SpringSliderCase, UmbrellaCase
+from ..compare import Quantity
 from ..dem import DemRun
 from . import kind_spring_slider, kind_umbrella
 from .contents import ModelRun
@@ -26,6 +28,9 @@ class Kind(Protocol):
 
     def dem_run(self, case: Any, done: DemRun) -> ModelRun:
         """Result of a DEM run."""
+
+    def difference_rows(self, case: Any, first: ModelRun, second: ModelRun) -> list[Quantity]:
+        """Two runs of the case against its tolerances; ``Quantity.reduced`` is of the first."""
 
 
 KINDS: dict[str, Kind] = {SpringSliderCase.KIND: kind_spring_slider, UmbrellaCase.KIND: kind_umbrella}

@@ -77,17 +77,12 @@ def closed_form_first_contact(case: UmbrellaCase) -> Optional[float]:
     return model.linkage(case).first_contact_temperature_change()
 
 
-def compare(case: UmbrellaCase, reduced: model.ReducedRun, dem: DemRun) -> list[Quantity]:
-    """Compare a DEM run with the reduced run of the same case.
-
-    A damped case is compared over its whole program. Without damping the motion after contact is
-    chaotic: what can be compared point by point ends at the largest temperature; for the rest there
-    is the ensemble (``statejump figures``).
-    """
-    ours, other = reduced.history, dem.history
+def history_rows(case: UmbrellaCase, ours: History, other: History) -> list[Quantity]:
+    """Compare two histories at the same times: jumps and largest differences of both angles. What is
+    not reproducible is compared until the largest temperature, see :func:`compare`."""
     tolerance = case.tolerance
-    rows = [] if case.start.mode == "loaded" else _first_contact_rows(case, reduced, dem)
     reproducible = model.is_reproducible(case)
+    rows = []
     if reproducible:
         for angle, limit in (("theta2", tolerance.final_theta2_rad), ("theta4", tolerance.final_theta2_rad)):
             column = f"{angle}_rad"
@@ -103,5 +98,18 @@ def compare(case: UmbrellaCase, reduced: model.ReducedRun, dem: DemRun) -> list[
             quantity(f"{angle}_largest_difference_over_range{until}", "-", 0.0,
                      largest / span if span > 0 else math.nan, tolerance.history_relative)
         )
+    return rows
+
+
+def compare(case: UmbrellaCase, reduced: model.ReducedRun, dem: DemRun) -> list[Quantity]:
+    """Compare a DEM run with the reduced run of the same case.
+
+    A damped case is compared over its whole program. Without damping the motion after contact is
+    chaotic: what can be compared point by point ends at the largest temperature; for the rest there
+    is the ensemble (``statejump figures``).
+    """
+    ours, other = reduced.history, dem.history
+    rows = [] if case.start.mode == "loaded" else _first_contact_rows(case, reduced, dem)
+    rows += history_rows(case, ours, other)
     rows.append(_energy_row(case, ours, other))
     return rows

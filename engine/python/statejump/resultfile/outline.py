@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Outlines of the parts of a scene in their own frames, for viewers that draw lines."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+SIDES = 96  # of a circle; its sagitta is 5e-4 of the radius
+
+
+def _circle(radius: float) -> np.ndarray:
+    angle = 2 * np.pi * np.arange(SIDES + 1) / SIDES
+    return radius * np.stack([np.cos(angle), np.sin(angle), np.zeros(SIDES + 1)], axis=1)
+
+
+def _polyline(points: list[tuple[float, float]]) -> np.ndarray:
+    return np.array([(x, y, 0.0) for x, y in points])
+
+
+def outlines(part: dict[str, Any]) -> list[np.ndarray]:
+    """Return polylines (points, 3) [m] of a part at ΔT = 0, about its centre; none for links, springs,
+    frames and meshes, whose points stand in the scene or in the file."""
+    kind = part["type"]
+    if kind == "journal":  # the spoke shows how it turns
+        return [_circle(part["radius_m"]), _polyline([(0, 0), (part["radius_m"], 0)])]
+    if kind == "bearing":
+        return [_circle(part["radius_m"])]
+    if kind == "block":
+        x, y = part["half_width_m"], part["half_height_m"]
+        return [_polyline([(-x, -y), (x, -y), (x, y), (-x, y), (-x, -y)])]
+    if kind == "slot":
+        minus, plus, y = part["stop_minus_m"], part["stop_plus_m"], part["half_height_m"]
+        return [_polyline([(-minus, y), (-minus, -y), (plus, -y), (plus, y)])]
+    return []
+
+
+def placed(points: np.ndarray, centre: np.ndarray, angle_rad: float, growth: float) -> np.ndarray:
+    """Return points of a part's own frame in the world, grown, turned about z and moved."""
+    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
+    turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    return centre + growth * points @ turn.T
