@@ -12,8 +12,11 @@ packages=(
   python3-click python3-rich python3-pydantic python3-numpy python3-scipy python3-matplotlib python3-vtk9 python3-tomli-w
   python3-distributed python3-dask python3-h5py
   python3-pytest
-  libgtest-dev libbenchmark-dev xvfb xauth
+  libgtest-dev libbenchmark-dev xvfb xauth chromium
 )
+# Any Node of version 18 or later that is there will do for the page of the report.
+command -v node >/dev/null || packages+=(nodejs)
+command -v npm >/dev/null || packages+=(npm)
 
 missing=()
 for package in "${packages[@]}"; do

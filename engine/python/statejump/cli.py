@@ -22,6 +22,7 @@ from .control import control_command
 from .errors import StatejumpError, Interrupted, TolerancesMissed
 from .history import History
 from .output import results_folder
+from .report import report_command
 from .resultfile import ModelRun, kind_spring_slider, kind_umbrella
 from .resultfile.commands import compare_files, export_command, info_command
 from .resultfile.read import is_result_file
@@ -297,7 +298,7 @@ def laws_command(case_file: Path | None, results: Path, quiet: bool) -> None:
 
 for _command in (
     figures_command, slow_command, hold_command, energy_command, control_command, statics_command,
-    bore_command, montecarlo_command, sweep_command, info_command, export_command,
+    bore_command, montecarlo_command, sweep_command, report_command, info_command, export_command,
 ):
     cli.add_command(_command)
 

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fewer samples with a known error: the page says how many are left and what that costs."""
+from __future__ import annotations
+
+import heapq
+from typing import Iterable
+
+import numpy as np
+
+
+def kept_samples(
+    time_s: np.ndarray, columns: np.ndarray, most: int, tolerance: float, always: Iterable[int] = ()
+) -> tuple[np.ndarray, float]:
+    """Choose samples so that straight lines between them follow all columns.
+
+    Greedy splitting (Ramer 1972, Douglas and Peucker 1973) with the error of linear interpolation
+    in time: the sample that is worst off is taken next, until none is worse than the tolerance.
+
+    :param time_s: rising (samples)
+    :param columns: (samples, columns); only finite values count
+    :param most: number of samples at which to stop
+    :param tolerance: allowed error, as a fraction of the range of each column
+    :param always: samples to keep in any case
+    :returns: indices in order, and the largest error left, as a fraction of a column's range
+    """
+    count = len(time_s)
+    columns = np.where(np.isfinite(columns), columns, 0.0).reshape(count, -1)
+    spans = np.ptp(columns, axis=0)
+    columns = columns[:, spans > 0] / spans[spans > 0]
+    ends = sorted({0, count - 1, *(index for index in always if 0 <= index < count)})
+    kept = set(ends)
+
+    def worst(first: int, last: int) -> tuple[float, int, int, int]:
+        if last - first < 2 or columns.shape[1] == 0:
+            return 0.0, first, last, first
+        inner = slice(first + 1, last)
+        step = time_s[last] - time_s[first]
+        fraction = (time_s[inner] - time_s[first]) / step if step > 0 else np.zeros(last - first - 1)
+        line = columns[first] + fraction[:, None] * (columns[last] - columns[first])
+        errors = np.max(np.abs(columns[inner] - line), axis=1)
+        place = int(np.argmax(errors))
+        return -float(errors[place]), first, last, first + 1 + place
+
+    heap = [worst(first, last) for first, last in zip(ends, ends[1:])]
+    heapq.heapify(heap)
+    while heap and -heap[0][0] > tolerance and len(kept) < most:
+        _, first, last, split = heapq.heappop(heap)
+        kept.add(split)
+        heapq.heappush(heap, worst(first, split))
+        heapq.heappush(heap, worst(split, last))
+    return np.array(sorted(kept)), -heap[0][0] if heap else 0.0

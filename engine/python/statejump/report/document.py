@@ -1,0 +1,292 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a page says of one result: texts and tables ready to print, and data for charts and replay.
+
+This is the only module that knows both the result file (through its reader) and the page. The data
+for the page's script is plain JSON, :func:`Document.payload`; columns are numbers, or base64 of little-endian
+float32 (``f``) or uint8 (``u``).
+"""
+from __future__ import annotations
+
+import base64
+import json
+from dataclasses import dataclass
+from typing import Any, Optional
+
+import numpy as np
+
+from ..compare import Quantity
+from ..resultfile import Event, ModelRun, Result
+from . import charts, words
+from .decimation import kept_samples
+from .drawing import Drawing
+from .energy import Account, account
+from .units import scale_of, text
+
+TOLERANCE = 2e-4  # of a column's range, what decimation may cost
+MOST_SAMPLES = 1500  # of a model on a page
+FEWEST_SAMPLES = 200
+BYTES_PER_VALUE = 16 / 3  # float32 as base64
+MOST_EVENTS = 60  # rows of the table
+MARKED_EVENTS = ("first_contact", "first_slip", "stop_reached", "stop_left")
+
+
+@dataclass(frozen=True)
+class Kept:
+    """How a model's history was thinned out."""
+
+    model: str
+    samples: int
+    kept: int
+    error: float  # as a fraction of a column's range
+
+
+class Document:
+    """A result as it stands on a page.
+
+    :param result: what the file holds
+    :param source: the file's name, as the page states it
+    :param identifier: prefix of the page's anchors, unique on the page
+    :param budget_bytes: size that the histories may have on the page
+    """
+
+    def __init__(self, result: Result, source: str, identifier: str, budget_bytes: float) -> None:
+        self.result, self.source, self.identifier = result, source, identifier
+        self.case: dict[str, Any] = json.loads(result.case_json)
+        self.accounts: dict[str, Account] = {model: account(run) for model, run in result.models.items()}
+        self._drawing = Drawing(result)
+        self._charts = charts.charts_of(result)
+        self._columns = {model: self._full_columns(model, run) for model, run in result.models.items()}
+        self.kept: list[Kept] = []
+        self._thin: dict[str, dict[str, np.ndarray]] = {}
+        for model in result.models:
+            self._thin_out(model, budget_bytes / len(result.models))
+
+    @property
+    def title(self) -> str:
+        """Heading of the run."""
+        return self.result.title or self.result.name
+
+    @property
+    def sentences(self) -> list[str]:
+        """The case in words."""
+        return words.describe(self.result.kind, self.case)
+
+    @property
+    def verdict(self) -> tuple[str, str]:
+        """Class (pass, fail, none) and sentence."""
+        rows = self.result.comparison
+        if not self.result.complete:
+            return "fail", "The run was interrupted: this is what there was of it."
+        if rows is None:
+            only = " and ".join(words.MODELS[model] for model in self.result.models)
+            return "none", f"{only}: one model alone, nothing is compared."
+        missed = [row for row in rows if not row.passed]
+        if missed:
+            return "fail", f"{len(missed)} of {len(rows)} compared quantities miss their tolerance."
+        return "pass", f"Both models agree: all {len(rows)} compared quantities are within tolerance."
+
+    def cards(self) -> list[dict[str, Any]]:
+        """The numbers at the top: state jumps of every model, then the first contact or slip."""
+        models = self.result.models
+        names = dict.fromkeys(name for run in models.values() for name in run.summary if "jump" in name)
+        cards = [
+            {
+                "label": words.plain(name),
+                "values": [
+                    (words.MODELS[model], text(run.summary[name].value, run.summary[name].unit))
+                    for model, run in models.items() if name in run.summary
+                ],
+            }
+            for name in names
+        ]
+        for kind in ("first_contact", "first_slip"):
+            found = {model: self._first(run, kind) for model, run in models.items()}
+            if any(found.values()):
+                cards.append({
+                    "label": words.EVENTS[kind].capitalize() + " at ΔT",
+                    "values": [
+                        (words.MODELS[model], text(event.temperature_change_K if event else None, "K"))
+                        for model, event in found.items()
+                    ],
+                })
+                break
+        return cards
+
+    @staticmethod
+    def _first(run: ModelRun, kind: str) -> Optional[Event]:
+        return next((event for event in run.events if event.kind == kind), None)
+
+    def inputs(self) -> list[tuple[str, list[tuple[str, str]]]]:
+        """Sections of the case file with all defaults: key, value."""
+        sections = []
+        for section, keys in self.case.items():
+            if not isinstance(keys, dict):
+                sections.append((section, [("", f"{len(keys)} entries" if isinstance(keys, list) else str(keys))]))
+                continue
+            rows = [(key, self._shown(value)) for key, value in keys.items() if value is not None]
+            if rows and section != "case":
+                sections.append((section, rows))
+        return sections
+
+    @staticmethod
+    def _shown(value: Any) -> str:
+        if isinstance(value, bool):
+            return str(value).lower()
+        if isinstance(value, list):
+            return f"{len(value)} values" if len(value) > 8 else ", ".join(str(item) for item in value)
+        return f"{value:g}" if isinstance(value, float) else str(value)
+
+    def comparison(self) -> list[dict[str, Any]]:
+        """Rows of the table of comparisons."""
+        return [self._compared(row) for row in self.result.comparison or []]
+
+    @staticmethod
+    def _compared(row: Quantity) -> dict[str, Any]:
+        name, _, rest = row.name.partition(", ")
+        return {
+            "name": words.plain(name) + (f", {rest}" if rest else ""),
+            "reduced": text(row.reduced, row.unit), "dem": text(row.dem, row.unit),
+            "difference": text(row.difference, row.unit, 3), "tolerance": text(row.tolerance, row.unit, 3),
+            # How much of the tolerance is used: a bar in the table.
+            "used": min(1.0, abs(row.difference) / row.tolerance) if row.difference is not None and row.tolerance else None,
+            "passed": row.passed,
+        }
+
+    def events(self) -> tuple[list[dict[str, Any]], int]:
+        """Rows of the table of events, the models' events of one kind side by side in their order,
+        and how many rows were left off."""
+        rows: dict[tuple[str, str, int], dict[str, Any]] = {}
+        for model, run in self.result.models.items():
+            seen: dict[tuple[str, str], int] = {}
+            for event in run.events:
+                key = (event.kind, event.joint)
+                seen[key] = seen.get(key, 0) + 1
+                row = rows.setdefault((*key, seen[key]), {
+                    "kind": words.EVENTS.get(event.kind, words.plain(event.kind)),
+                    "joint": words.plain(event.joint) if event.joint else "", "time_s": event.time_s, "at": {},
+                })
+                row["at"][model] = {
+                    "temperature": text(event.temperature_change_K, "K"), "time": text(event.time_s, "s"),
+                    "uncertainty": text(event.time_uncertainty_s, "s", 2) if event.time_uncertainty_s else "",
+                    "time_s": event.time_s,
+                }
+        ordered = sorted(rows.values(), key=lambda row: row["time_s"])
+        return ordered[:MOST_EVENTS], max(0, len(ordered) - MOST_EVENTS)
+
+    def stages(self) -> list[dict[str, Any]]:
+        """Stages of the first model that names them: name, meaning, from, to."""
+        for run in self.result.models.values():
+            column = run.history.get("stage")
+            if column is None or not column.labels:
+                continue
+            values, times = column.values, run.time_s
+            change = run.history["temperature_change_K"].values
+            starts = np.concatenate(([0], np.flatnonzero(values[1:] != values[:-1]) + 1))
+            ends = np.concatenate((starts[1:], [len(values) - 1]))
+            return [
+                {
+                    "name": words.NAMES.get(column.labels[int(values[start])], column.labels[int(values[start])]),
+                    "meaning": words.STAGES.get(column.labels[int(values[start])], ""),
+                    "start_s": float(times[start]), "end_s": float(times[end]),
+                    "start_K": text(float(change[start]), "K", 4), "end_K": text(float(change[end]), "K", 4),
+                }
+                for start, end in zip(starts.tolist(), ends.tolist())
+            ]
+        return []
+
+    def provenance(self) -> list[tuple[str, str]]:
+        """What computed the result."""
+        rows = [(words.plain(key), str(value)) for key, value in self.result.provenance.items() if value != ""]
+        return [("Result file", self.source), ("Command", f"statejump {self.result.command}"), *rows]
+
+    def payload(self) -> dict[str, Any]:
+        """Data for the page's script."""
+        run = next(iter(self.result.models.values()))
+        units = {name: column.unit for name, column in run.history.items()}
+        marks = [
+            {"time_s": event.time_s, "label": words.EVENTS[kind], "value": text(event.temperature_change_K, "K", 4),
+             "role": "event"}
+            for kind in MARKED_EVENTS if (event := self._first(run, kind)) is not None
+        ]
+        jumps = [value for name, value in run.summary.items() if "jump" in name]
+        if jumps and jumps[0].value:
+            marks.append({"time_s": float(run.time_s[-1]), "label": "state jump", "role": "jump",
+                          "value": text(jumps[0].value, jumps[0].unit, 4)})
+        shown = [
+            made for chart in self._charts if (made := charts.shown(chart, self._columns, units, marks)) is not None
+        ]
+        return {
+            "id": self.identifier,
+            "title": self.title,
+            "models": [
+                {
+                    "key": model, "label": words.MODELS[model],
+                    "columns": {name: _encoded(values) for name, values in columns.items()},
+                }
+                for model, columns in self._thin.items()
+            ],
+            "charts": shown,
+            "energy": self._energy_chart(),
+            "stages": self.stages(),
+            "readouts": self._readouts(shown),
+            "scene": {**self._drawing.scene, "parts": [_packed(part) for part in self._drawing.scene["parts"]]},
+        }
+
+    def _full_columns(self, model: str, run: ModelRun) -> dict[str, np.ndarray]:
+        names = {"time_s", "temperature_change_K"}
+        names.update(axis.column for chart in self._charts for axis in (chart.x, chart.y))
+        history = {
+            name: run.history[name].values for name in sorted(names)
+            if name in run.history and run.history[name].values.ndim == 1
+        }
+        return {**history, **self.accounts[model].columns, **self._drawing.columns[model]}
+
+    def _thin_out(self, model: str, budget_bytes: float) -> None:
+        columns = self._columns[model]
+        moving = [values for values in columns.values() if np.ptp(np.nan_to_num(values)) > 0]
+        affordable = int(budget_bytes / (BYTES_PER_VALUE * max(1, len(moving))))
+        most = min(MOST_SAMPLES, max(FEWEST_SAMPLES, affordable))
+        time_s = columns["time_s"]
+        chosen, error = kept_samples(time_s, np.stack(moving, axis=1).astype(float), most, TOLERANCE)
+        self._thin[model] = {name: values[chosen] for name, values in columns.items()}
+        self.kept.append(Kept(words.MODELS[model], len(time_s), len(chosen), error))
+
+    def _energy_chart(self) -> Optional[dict[str, Any]]:
+        size = max((found.turnover_J for found in self.accounts.values()), default=0.0)
+        if size == 0:
+            return None
+        scale, unit = scale_of("J", size)
+        roles = (("supplied_J", "supplied"), ("stored_J", "stored"), ("friction_J", "friction"), ("damping_J", "damping"))
+        return {
+            "title": "Energy over time", "equal": False, "stages": False, "marks": [], "rings": [],
+            "x": {"column": "time_s", "label": "Time [s]", "unit": "s", "scale": 1.0, "start": 0.0},
+            "y": {"column": "supplied_J", "label": f"Energy [{unit}]", "unit": unit, "scale": scale, "start": 0.0},
+            "series": [
+                {"model": model, "x": "time_s", "y": column, "style": role}
+                for model in self.result.models for column, role in roles
+                if np.ptp(self.accounts[model].columns[column]) > 0
+            ],
+        }
+
+    @staticmethod
+    def _readouts(shown: list[dict[str, Any]]) -> list[dict[str, Any]]:
+        """Numbers beside the replay: what the charts show over temperature and time."""
+        axes = {chart["y"]["column"]: chart["y"] for chart in shown if not chart["equal"]}
+        return [
+            {**{key: axis[key] for key in ("column", "scale", "start", "unit")}, "label": axis["label"].partition(" [")[0]}
+            for axis in axes.values()
+        ]
+
+
+def _encoded(values: np.ndarray) -> Any:
+    """Return a column for the page; a number if it is the same everywhere."""
+    if values.dtype == np.uint8:
+        return {"u": base64.b64encode(values.tobytes()).decode("ascii")}
+    values = np.nan_to_num(values.astype("<f4"))
+    if np.ptp(values) == 0:
+        return float(values[0])
+    return {"f": base64.b64encode(values.tobytes()).decode("ascii")}
+
+
+def _packed(part: dict[str, Any]) -> dict[str, Any]:
+    return {key: _encoded(value) if isinstance(value, np.ndarray) else value for key, value in part.items()}

@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scene of a result file as the replay wants it: points that move, parts on them, forces.
+
+A point whose part rests on or in another part's is given *relative* to that part's point, as
+difference of the full-precision columns: a clearance of 0.1 mm on a link of 100 mm is lost in
+single precision otherwise, and this is what the replay magnifies.
+"""
+from __future__ import annotations
+
+import json
+import math
+from typing import Any, Callable
+
+import numpy as np
+
+from ..resultfile import ModelRun, Result
+from ..resultfile.scene import growth, resolve, resolve_point
+from . import words
+
+SHOWN_GAP = 0.03  # of the scene's size, that the default magnification gives the smallest clearance
+AXES = "xyz"
+
+
+def round_down(value: float) -> float:
+    """Return the largest of 1, 2, 5, 10, 20, ... that is not above the value; at least 1."""
+    if not value > 1:
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(value))
+    return power * max(step for step in (1, 2, 5) if step * power <= value * (1 + 1e-9))
+
+
+class Drawing:
+    """Collects points, parts, forces and the columns that move them, for every model of a result.
+
+    ``scene`` is plain JSON data; where a number may change it holds the name of a column instead.
+    ``columns`` has these by model and name.
+    """
+
+    def __init__(self, result: Result) -> None:
+        self.result = result
+        self.columns: dict[str, dict[str, np.ndarray]] = {model: {} for model in result.models}
+        self._points: dict[str, int] = {}
+        self._parts = {part["name"]: part for part in result.scene["parts"]}
+        self._expressions: list[Any] = []
+        for part in result.scene["parts"]:
+            for expression in _points_of(part):
+                key = json.dumps(expression, sort_keys=True)
+                if key not in self._points:
+                    self._points[key] = len(self._points)
+                    self._expressions.append(expression)
+        pairs = self._pairs()
+        self.scene: dict[str, Any] = {
+            "points": [self._point(place, pairs.get(place)) for place in range(len(self._expressions))],
+            "parts": [self._part(part) for part in result.scene["parts"]],
+            "contacts": [self._contact(place, contact) for place, contact in enumerate(result.scene["contacts"])],
+            "forces": self._forces(),
+            "states": [
+                {"label": words.STATES.get(state, state), "colour": colour}
+                for state, colour in result.scene["states"].items()
+            ],
+        }
+        self._measure()
+
+    def _column(self, name: str, values: Callable[[ModelRun], np.ndarray]) -> str:
+        for model, run in self.result.models.items():
+            self.columns[model][name] = values(run)
+        return name
+
+    def _at(self, expression: Any, run: ModelRun) -> np.ndarray:
+        return resolve_point(expression, run, self.result.names)
+
+    def _place(self, part: dict[str, Any]) -> int:
+        return self._points[json.dumps(part["centre"], sort_keys=True)]
+
+    def _pairs(self) -> dict[int, int]:
+        """Return for points of parts that rest on another part the point of the other."""
+        pairs: dict[int, int] = {}
+        for contact in self.result.scene["contacts"]:
+            on, other = (self._parts[contact[key]] for key in ("on", "from"))
+            if "centre" not in on or "centre" not in other:
+                continue
+            place, base = self._place(on), self._place(other)
+            step = base
+            while step in pairs and step != place:  # a ring of parts has no end to begin at
+                step = pairs[step]
+            if step != place:
+                pairs.setdefault(place, base)
+        return pairs
+
+    def _point(self, place: int, base: int | None) -> dict[str, Any]:
+        expression = self._expressions[place]
+        if base is None and isinstance(expression, list) and not any(isinstance(value, dict) for value in expression):
+            return {"at": [float(value) for value in expression]}
+
+        def values(run: ModelRun, axis: int) -> np.ndarray:
+            at = self._at(expression, run)
+            return at[:, axis] if base is None else (at - self._at(self._expressions[base], run))[:, axis]
+
+        at = [self._column(f"point{place}_{AXES[axis]}", lambda run, a=axis: values(run, a)) for axis in range(3)]
+        return {"at": at} if base is None else {"at": at, "of": base}
+
+    def _angle(self, part: dict[str, Any]) -> Any:
+        angle = part.get("angle_rad", 0.0)
+        if not isinstance(angle, dict):
+            return float(angle)
+        return self._column(f"angle_{part['name']}", lambda run: resolve(angle, run, self.result.names))
+
+    def _partner(self, part: dict[str, Any], kind: str) -> dict[str, Any] | None:
+        for contact in self.result.scene["contacts"]:
+            if contact["from"] == part["name"] and self._parts[contact["on"]]["type"] == kind:
+                return self._parts[contact["on"]]
+        return None
+
+    def _size(self, name: str, part: dict[str, Any], key: str, other: dict[str, Any], other_key: str) -> Any:
+        """Return a dimension of a part less one of another: a number, or a column if they expand."""
+        if not part.get("thermal_expansion_per_K") and not other.get("thermal_expansion_per_K"):
+            return part[key] - other[other_key]
+        for model in self.result.models:
+            self.columns[model][name] = (
+                part[key] * growth(part, self.result, model) - other[other_key] * growth(other, self.result, model)
+            )
+        return name
+
+    def _part(self, part: dict[str, Any]) -> dict[str, Any]:
+        drawn: dict[str, Any] = {"name": part["name"], "label": words.plain(part["name"]), "type": part["type"]}
+        drawn["points"] = [self._points[json.dumps(point, sort_keys=True)] for point in _points_of(part)]
+        for key in ("width_m", "radius_m", "half_width_m", "half_height_m"):
+            if key in part:
+                drawn[key] = part[key]
+        if "angle_rad" in part:
+            drawn["angle"] = self._angle(part)
+        if part["type"] == "bearing":
+            journal = self._partner(part, "journal")
+            if journal is not None:
+                drawn["inner_m"] = journal["radius_m"]
+                drawn["clearance"] = self._size(
+                    f"clearance_{part['name']}", part, "radius_m", journal, "radius_m"
+                )
+        if part["type"] == "slot":
+            block = self._partner(part, "block")
+            for side in ("minus", "plus"):
+                key = f"stop_{side}_m"
+                drawn[f"inner_{side}_m"] = block["half_width_m"] if block else part[key]
+                drawn[f"clearance_{side}"] = (
+                    self._size(f"clearance_{side}_{part['name']}", part, key, block, "half_width_m") if block else 0.0
+                )
+        if part["type"] == "mesh" and part["mesh"] in self.result.meshes:
+            mesh = self.result.meshes[part["mesh"]]
+            drawn["vertices"] = np.asarray(mesh.vertices_m, dtype=float).ravel()
+            drawn["triangles"] = np.asarray(mesh.triangles, dtype=float).ravel()
+        return drawn
+
+    def _contact(self, place: int, contact: dict[str, Any]) -> dict[str, Any]:
+        names = self.result.names
+        return {
+            "name": contact["name"],
+            "label": words.plain(contact["name"]),
+            "on": list(self._parts).index(contact["on"]),
+            "from": list(self._parts).index(contact["from"]),
+            "state": self._column(
+                f"state{place}", lambda run: resolve(contact["state"], run, names).astype(np.uint8)
+            ),
+            "gap": self._column(f"gap{place}", lambda run: resolve(contact["gap_m"], run, names)),
+        }
+
+    def _force(self, place: int, label: str, kind: str, on: str, at: Any, vector: Callable[[ModelRun], np.ndarray]) -> dict[str, Any]:
+        centre = self._parts[on].get("centre")
+
+        def arm(run: ModelRun) -> np.ndarray:
+            return self._at(at, run) - self._at(centre, run) if centre is not None else np.zeros((len(run.time_s), 3))
+
+        return {
+            "label": label,
+            "kind": kind,
+            "point": self._place(self._parts[on]) if centre is not None else self._points[json.dumps(at, sort_keys=True)],
+            "arm": [self._column(f"arm{place}_{AXES[a]}", lambda run, a=a: arm(run)[:, a]) for a in range(3)],
+            "vector": [self._column(f"force{place}_{AXES[a]}", lambda run, a=a: vector(run)[:, a]) for a in range(3)],
+        }
+
+    def _forces(self) -> list[dict[str, Any]]:
+        names = self.result.names
+        drawn = [
+            self._force(
+                place, f"{force['kind'].capitalize()} force on {words.plain(force['on']).lower()}", force["kind"],
+                force["on"], force["at"], lambda run, f=force: resolve_point(f["vector_N"], run, names),
+            )
+            for place, force in enumerate(self.result.scene["forces"])
+        ]
+        for part in self.result.scene["parts"]:
+            axial = part.get("values", {}).get("axial_force_N")
+            if part["type"] == "link" and axial is not None:
+                drawn.append(self._axial(len(drawn), part, axial))
+        return [force for force in drawn if self._largest(force) > 0]
+
+    def _axial(self, place: int, link: dict[str, Any], axial: Any) -> dict[str, Any]:
+        """Return the force of a link on what its second end holds; compression pushes outward."""
+
+        def vector(run: ModelRun) -> np.ndarray:
+            first, second = (self._at(end, run) for end in link["ends"])
+            along = second - first
+            along = along / np.linalg.norm(along, axis=1, keepdims=True)
+            return along * resolve(axial, run, self.result.names)[:, None]
+
+        return self._force(
+            place, f"Axial force of {words.plain(link['name'])}", "axial", link["name"], link["ends"][1], vector
+        )
+
+    def _largest(self, force: dict[str, Any]) -> float:
+        return max(
+            float(np.nanmax(np.sqrt(sum(columns[name] ** 2 for name in force["vector"])), initial=0.0))
+            for columns in self.columns.values()
+        )
+
+    def _measure(self) -> None:
+        """Size of the scene at the start, largest force, magnification to begin with."""
+        run = next(iter(self.result.models.values()))
+        corners = []
+        for part in self.result.scene["parts"]:
+            reach = max(
+                (part.get(key, 0.0) for key in ("radius_m", "half_width_m", "half_height_m", "stop_plus_m", "stop_minus_m")),
+                default=0.0,
+            )
+            for expression in _points_of(part):
+                at = self._at(expression, run)[0]
+                corners += [at - [reach, reach, 0], at + [reach, reach, 0]]
+        low, high = np.min(corners, axis=0), np.max(corners, axis=0)
+        clearance = float(self.result.scene["smallest_clearance_m"])
+        size = float(np.max(high - low))
+        self.scene.update(
+            low=low.tolist(),
+            high=high.tolist(),
+            largest_force_N=max((self._largest(force) for force in self.scene["forces"]), default=0.0),
+            clearance_m=clearance,
+            magnification=round_down(SHOWN_GAP * size / clearance) if clearance > 0 else 1.0,
+            # Whether anything but relative places moves: else there is no deformation to magnify.
+            deforms=any(
+                "of" not in point and any(
+                    isinstance(name, str) and np.ptp(columns[name]) > 0
+                    for name in point["at"] for columns in self.columns.values()
+                )
+                for point in self.scene["points"]
+            ),
+        )
+
+
+def _points_of(part: dict[str, Any]) -> list[Any]:
+    if "centre" in part:
+        return [part["centre"]]
+    return list(part.get("ends") or part.get("points") or [])

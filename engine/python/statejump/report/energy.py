@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Energy account of a run: supplied, stored, dissipated, and what is left over."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..resultfile import ModelRun
+from . import words
+
+# The end of a column's name tells its side of the account.
+ROLES = {"_work_J": "supplied", "_energy_J": "stored", "_dissipation_J": "dissipated"}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One line of the account."""
+
+    label: str
+    role: str
+    change_J: float  # over the whole run
+
+
+@dataclass(frozen=True)
+class Account:
+    """The account of a run, as lines and over time."""
+
+    entries: list[Entry]
+    residue_J: float  # supplied less stored less dissipated, at the end
+    largest_residue_J: float  # at any sample
+    turnover_J: float  # largest of the three sums at any sample; what the residue is small against
+    columns: dict[str, np.ndarray]  # sums over time, [J]
+
+
+def account(run: ModelRun) -> Account:
+    """Return the account of a run from its energy columns; all changes since the first sample."""
+    zero = np.zeros(len(run.time_s))
+    sums = {role: zero.copy() for role in ROLES.values()}
+    friction = zero.copy()
+    entries = []
+    for name, column in run.energy.items():
+        role = next((role for ending, role in ROLES.items() if name.endswith(ending)), None)
+        if role is None or column.values.ndim != 1:
+            continue
+        change = column.values - column.values[0]
+        sums[role] += change
+        if name.startswith("friction"):
+            friction += change
+        entries.append(Entry(words.plain(name), role, float(change[-1])))
+    order = list(ROLES.values())
+    entries.sort(key=lambda entry: order.index(entry.role))
+    residue = sums["supplied"] - sums["stored"] - sums["dissipated"]
+    return Account(
+        entries, float(residue[-1]), float(np.max(np.abs(residue))),
+        max(float(np.max(np.abs(values))) for values in sums.values()),
+        {
+            "supplied_J": sums["supplied"], "stored_J": sums["stored"], "friction_J": friction,
+            "damping_J": sums["dissipated"] - friction,
+        },
+    )

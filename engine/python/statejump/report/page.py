@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Puts documents, script and style into one HTML file that needs nothing beside it."""
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from .. import __version__
+from ..errors import StatejumpError
+from ..output import write_atomically
+from . import units, words
+from .document import Document
+
+HERE = Path(__file__).resolve().parent
+SCRIPT, STYLE, NOTICES = "page.js", "page.css", "notices.txt"
+
+
+def _asset(name: str) -> str:
+    path = HERE / name
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError:
+        raise StatejumpError(
+            f"the page's script is missing ({path}): build with STATEJUMP_BUILD_REPORT=ON, which needs Node and, "
+            "once, the npm registry"
+        ) from None
+
+
+def embedded_json(data: Any) -> Markup:
+    """Return data as JSON that may stand in a script element: no text in it can end the element."""
+    dumped = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    return Markup(dumped.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e"))
+
+
+def embedded_code(source: str, element: str) -> Markup:
+    """Return a script or style that may stand in its element; ValueError if it would end it."""
+    if f"</{element}" in source.lower():
+        raise ValueError(f"the {element} contains </{element}")
+    return Markup(source)
+
+
+def render(documents: list[Document]) -> str:
+    """Return the page."""
+    script, style, notices = _asset(SCRIPT), _asset(STYLE), _asset(NOTICES)
+    environment = Environment(
+        loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["quantity"] = units.text
+    return environment.get_template("page.html").render(
+        documents=documents,
+        title=documents[0].title if len(documents) == 1 else f"{len(documents)} runs",
+        version=__version__,
+        models=words.MODELS,
+        data=embedded_json({"runs": [document.payload() for document in documents]}),
+        script=embedded_code(script, "script"),
+        style=embedded_code(style, "style"),
+        notices=notices,
+    )
+
+
+def write(documents: list[Document], path: Path) -> None:
+    """Write the page; StatejumpError if it cannot be written."""
+    text = render(documents)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StatejumpError(f"{path}: cannot be written: {error.strerror or error}") from None
+    with write_atomically(path) as stream:
+        stream.write(text)

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Numbers with units as an engineer writes them: 23.8095 µm, not 2.38095e-05 m."""
+from __future__ import annotations
+
+import math
+from typing import Optional
+
+PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+# Units that take a prefix, with the powers of ten that are usual for them.
+PREFIXED = {
+    "m": (-9, 0), "N": (-6, 6), "J": (-9, 6), "s": (-9, 0), "rad": (-9, 0), "Pa": (0, 9), "N/m": (0, 9), "W": (-9, 6),
+    "N m": (-6, 6),
+}
+WRITTEN = {"m2": "m²", "kg/m3": "kg/m³", "N m": "N·m", "N m/rad": "N·m/rad", "N m s/rad": "N·m·s/rad"}
+
+
+def scale_of(unit: str, size: float) -> tuple[float, str]:
+    """Return the factor that brings values of a size into a readable range, and the unit then."""
+    written = WRITTEN.get(unit, unit)
+    if unit == "m2" and 0 < abs(size) < 1e-2:
+        return 1e6, "mm²"
+    if unit not in PREFIXED or not math.isfinite(size) or size == 0:
+        return 1.0, "" if unit == "-" else written
+    low, high = PREFIXED[unit]
+    power = min(high, max(low, 3 * math.floor(math.log10(abs(size)) / 3 + 1e-12)))
+    return 10.0**-power, PREFIXES[power] + written
+
+
+def text(value: Optional[float], unit: str = "-", digits: int = 6) -> str:
+    """Return a number with its unit; ``none`` for None and NaN."""
+    if value is None or math.isnan(value):
+        return "none"
+    scale, written = scale_of(unit, value)
+    shown = f"{value * scale:.{digits}g}"
+    if "e" in shown:  # beyond the prefixes: a power of ten of the unit itself
+        written = "" if unit == "-" else WRITTEN.get(unit, unit)
+        shown = f"{value:.{digits - 1}e}"
+        mantissa, power = shown.split("e")
+        shown = f"{mantissa}·10{str(int(power)).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}"
+    shown = shown.replace("-", "−")
+    return f"{shown}\u202f{written}" if written else shown

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Words for what result files name by keys: columns, events, states, and a case in sentences."""
+from __future__ import annotations
+
+from typing import Any, Callable
+
+from .units import text
+
+MODELS = {"reduced": "Reduced model", "dem": "DEM (YADE)"}
+STATES = {"separated": "gap", "stick": "stick", "slip": "slip", "at_stop": "at the stop"}
+NAMES = {
+    "joint_b": "Joint B", "link_ab": "Link AB", "link_bc": "Link BC", "floor": "Floor", "stop_plus": "Stop +",
+    "stop_minus": "Stop −", "bar": "Bar", "at_stop_plus": "stop +", "at_stop_minus": "stop −",
+    "theta2_jump_rad": "Jump of θ2", "theta4_jump_rad": "Jump of θ4", "theta2_jump": "Jump of θ2",
+    "theta4_jump": "Jump of θ4",
+}
+COLUMNS = {
+    "time_s": "Time",
+    "temperature_change_K": "Temperature change",
+    "displacement_m": "Displacement of the slider",
+    "axial_force_N": "Axial force, compression positive",
+    "normal_force_N": "Normal force",
+    "theta2_rad": "Angle θ2 of AB",
+    "theta4_rad": "Angle θ4 of BC",
+}
+EVENTS = {
+    "first_contact": "first contact", "contact": "contact", "separation": "separation", "first_slip": "first slip",
+    "slip": "slip", "stick": "stick", "stop_reached": "stop reached", "stop_unloaded": "stop unloaded",
+    "stop_left": "stop left", "reversal": "temperature turns, sticks", "force_sign_change": "axial force changes sign",
+    "cycle_end": "end of a cycle",
+}
+STAGES = {
+    "S1": "stick, never slid yet", "S2": "slip in the sense of the first slide",
+    "S3": "stick, the link unloads", "S4": "stick, the link loads the other way",
+    "S5": "slip against the first slide", "at_stop_plus": "at the stop, + side", "at_stop_minus": "at the stop, − side",
+}
+SHAPES = {
+    "triangle": "up and down in straight lines", "half_sine": "up and down as half a sine",
+    "sine": "as a full sine", "table": "as a table says",
+}
+
+
+def plain(name: str) -> str:
+    """Return a key as words, with a capital; units at its end are left off."""
+    if name in NAMES:
+        return NAMES[name]
+    for ending in ("_m", "_rad", "_K", "_N", "_J", "_s"):
+        name = name.removesuffix(ending)
+    words = name.replace("_", " ").strip()
+    return words[:1].upper() + words[1:]
+
+
+def column(name: str) -> str:
+    """Return what a column holds, without its unit."""
+    return COLUMNS.get(name, plain(name))
+
+
+def _temperature(case: dict[str, Any]) -> str:
+    thermal = case.get("thermal", {})
+    changes = thermal.get("table_temperature_change_K") or [thermal.get("temperature_change_max_K") or 0.0]
+    peak = max(changes, key=abs)
+    cycles = thermal.get("cycles", 1)
+    times = "once" if cycles == 1 else f"{cycles} times"
+    period = case.get("thermal", {}).get("period_s") or case.get("dem", {}).get("period_s")
+    lasts = f"; a cycle lasts {text(period, 's')}" if period else ""
+    return f"The temperature goes {SHAPES.get(thermal.get('shape'), 'through its program')}, to {text(peak, 'K')}, {times}{lasts}."
+
+
+def _spring_slider(case: dict[str, Any]) -> list[str]:
+    link, joint = case["link"], case["joint"]
+    limit = joint["friction_coefficient"] * joint["normal_force_N"]
+    minus, plus = joint["clearance_minus_m"], joint["clearance_plus_m"]
+    stops = f"{text(plus, 'm')} away on either side" if minus == plus else f"{text(minus, 'm')} and {text(plus, 'm')} away"
+    sentences = [
+        f"A bar, {text(link['stress_free_length_m'], 'm')} long and {text(link['cross_section_area_m2'], 'm2')} in section, "
+        f"is held at one end and pushes a block at the other.",
+        f"The block is pressed on its floor with {text(joint['normal_force_N'], 'N')}; friction with "
+        f"μ = {joint['friction_coefficient']:g} holds it up to {text(limit, 'N')}. Two stops are {stops}.",
+    ]
+    if joint.get("preload_stiffness_N_per_m"):
+        sentences.append(f"A spring of {text(joint['preload_stiffness_N_per_m'], 'N/m')} ties the block to the ground.")
+    return sentences
+
+
+def _umbrella(case: dict[str, Any]) -> list[str]:
+    ab, bc, joint = case["link_ab"], case["link_bc"], case["joint"]
+    sentences = [
+        f"One rib of an umbrella antenna: link AB, {text(ab['stress_free_length_m'], 'm')}, {ab['mass_kg']:g}\u202fkg, "
+        f"and link BC, {text(bc['stress_free_length_m'], 'm')}, {bc['mass_kg']:g}\u202fkg, turn on two ideal pins A "
+        f"and C, {text(case['frame']['length_m'], 'm')} apart on a frame that does not expand.",
+        f"At B the journal of BC, radius {text(joint['journal_radius_m'], 'm')}, has a radial clearance of "
+        f"{text(joint['radial_clearance_m'], 'm')} in the bearing of AB; friction coefficient "
+        f"{joint['friction_coefficient']:g}.",
+    ]
+    spring = case.get("torsion_spring", {}).get("stiffness_N_m_per_rad")
+    if spring:
+        sentences.append(f"A torsion spring of {text(spring, 'N m/rad')} acts on the angle between the links.")
+    return sentences
+
+
+DESCRIPTIONS: dict[str, Callable[[dict[str, Any]], list[str]]] = {
+    "spring_slider": _spring_slider, "umbrella": _umbrella,
+}
+
+
+def describe(kind: str, case: dict[str, Any]) -> list[str]:
+    """Return a case in sentences.
+
+    :param case: sections and keys as in the case file, with all defaults
+    """
+    return [*DESCRIPTIONS.get(kind, lambda _: [])(case), _temperature(case)]

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import "./page.css";
+import { setUpCharts } from "./charts";
+import { loadRuns } from "./payload";
+import { Playhead } from "./playhead";
+import { setUpPlayers } from "./player";
+import { setUpStrips } from "./strips";
+import { setUpTheme } from "./theme";
+
+setUpTheme();
+const runs = loadRuns();
+const heads = runs.map((run) => new Playhead(run));
+setUpPlayers(runs, heads);
+runs.forEach((run, i) => {
+  const head = heads[i]!;
+  setUpStrips(run, head);
+  setUpCharts(run, head);
+  // Rows of the table of events bring the replay there.
+  for (const row of document.querySelectorAll<HTMLElement>(`#${run.data.id} .events [data-time]`)) {
+    row.addEventListener("click", () => head.change({ time: Number(row.dataset["time"]) }));
+  }
+});
