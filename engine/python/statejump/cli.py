@@ -29,6 +29,7 @@ from .resultfile.read import is_result_file
 from .resultfile.record import Record, case_text
 from .statics import statics_command
 from .terminal import CASE, QUIET, RESULTS, load_kind, make_console, number, print_comparison, progress
+from .truss.commands import truss_command
 from .umbrella import compare as umbrella_compare
 from .umbrella import dem as umbrella_dem
 from .umbrella import model as umbrella
@@ -298,7 +299,7 @@ def laws_command(case_file: Path | None, results: Path, quiet: bool) -> None:
 
 for _command in (
     figures_command, slow_command, hold_command, energy_command, control_command, statics_command,
-    bore_command, montecarlo_command, sweep_command, report_command, info_command, export_command,
+    bore_command, montecarlo_command, sweep_command, report_command, info_command, export_command, truss_command,
 ):
     cli.add_command(_command)
 

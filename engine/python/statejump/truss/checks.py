@@ -264,31 +264,23 @@ def _temperatures(case: "TrussCase", truss: ResolvedTruss) -> None:
         )
 
 
-def constraints(truss: ResolvedTruss, node: int) -> np.ndarray:
-    """Return the directions (k, 3) in which the supports of a node hold it."""
-    rows = [np.eye(3)[truss.nodes.fixed[node]]]
-    if truss.nodes.guide_normal[node].any():
-        rows.append(truss.nodes.guide_normal[node][None, :])
-    return np.concatenate(rows)
-
-
 def _sliders(truss: ResolvedTruss) -> None:
-    sliders = truss.sliders
-    for index, (node, guide) in enumerate(sliders.nodes):
-        if guide != GROUND:
-            continue
-        axis = sliders.axis[index]
-        held = constraints(truss, node)
-        where = f"slider {sliders.names[index]!r}"
-        name = truss.nodes.names[node]
-        shown = [float(value) for value in axis[: truss.dimension]]
-        if np.any(np.abs(held @ axis) > SAME_DIRECTION):
-            raise _Problem(f"{where}: axis = {shown} is not allowed: the supports of node {name!r} hold it along the axis")
-        if np.linalg.matrix_rank(held, tol=SAME_DIRECTION) < 2:
-            raise _Problem(
-                f"{where}: axis = {shown} is not allowed: node {name!r} is free across the axis, a slider on ground "
-                "needs supports there (fixed or guide_normal)"
-            )
+    sliders, nodes = truss.sliders, truss.nodes
+    on_ground = np.flatnonzero(sliders.nodes[:, 1] == GROUND)
+    carrier, axis = sliders.nodes[on_ground, 0], sliders.axis[on_ground]
+    guide = nodes.guide_normal[carrier]
+    # Sum of n n^T over the directions in which supports hold the node: its rank is how many these are.
+    held = nodes.fixed[carrier][:, :, None] * np.eye(3) + guide[:, :, None] * guide[:, None, :]
+    along = np.einsum("ki,kij,kj->k", axis, held, axis) > SAME_DIRECTION**2
+    across = np.linalg.eigvalsh(held)[:, 1] <= SAME_DIRECTION**2
+    for number in np.flatnonzero(along | across)[:1]:
+        shown = [float(value) for value in axis[number, : truss.dimension]]
+        name = nodes.names[carrier[number]]
+        reason = (
+            f"the supports of node {name!r} hold it along the axis" if along[number] else
+            f"node {name!r} is free across the axis, a slider on ground needs supports there (fixed or guide_normal)"
+        )
+        raise _Problem(f"slider {sliders.names[on_ground[number]]!r}: axis = {shown} is not allowed: {reason}")
 
 
 def _revolutes(case: "TrussCase", truss: ResolvedTruss) -> None:
