@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Iterator
+from typing import Iterable, Iterator
 
 import numpy as np
 
@@ -28,10 +28,18 @@ def _flat(name: str, column: Column, names: dict[str, list[str]]) -> Iterator[tu
                 yield f"{name}[{item}].{letter}", values[:, axis]
 
 
+def _order(names: Iterable[str]) -> list[str]:
+    """Return the common order of the names; where a kind has none, the program first, then by name."""
+    try:
+        return common_order(names)
+    except ValueError:
+        return sorted(names, key=lambda name: ({"time_s": 0, "temperature_change_K": 1}.get(name, 2), name))
+
+
 def history_columns(run: ModelRun, names: dict[str, list[str]]) -> dict[str, np.ndarray]:
     """Return the columns of the CSV file of a model, in their order."""
     plain = history_of(run).columns
-    found = {name: plain[name] for name in common_order(plain)}
+    found = {name: plain[name] for name in _order(plain)}
     for name, column in {**run.history, **run.energy}.items():
         if column.values.ndim > 1:
             found.update(_flat(name, column, names))

@@ -114,7 +114,8 @@ def _model(group: h5py.Group) -> ModelRun:
 
 def _column(dataset: h5py.Dataset, samples: int) -> Column:
     if dataset.shape[:1] != (samples,):
-        raise ValueError(f"{dataset.name} has {dataset.shape[:1]} samples, time_s has {samples}")
+        found = dataset.shape[0] if dataset.shape else "no"
+        raise ValueError(f"{dataset.name} has {found} samples, time_s has {samples}")
     attributes = dataset.attrs
     return Column(
         dataset[()], attributes["unit"], attributes.get("items", ""),

@@ -21,7 +21,7 @@ def write(result: Result, path: Path) -> None:
     """Write the file aside, then rename it. StatejumpError if it cannot be written.
 
     No object keeps a time of its making and no order of creation (which would bring the times back
-    for groups): iteration is by name everywhere.
+    for groups): everything is written, as it is read, in the order of the names.
     """
     with replacing(path) as aside:
         with h5py.File(aside, "w", libver=("earliest", "v110"), track_order=False) as file:
@@ -34,13 +34,13 @@ def write(result: Result, path: Path) -> None:
                 case.attrs[key] = getattr(result, key)
             _text(case, "text", result.case_text)
             _text(case, "resolved", result.case_json)
-            file.create_group("provenance").attrs.update(result.provenance)
+            file.create_group("provenance").attrs.update(dict(sorted(result.provenance.items())))
             names = file.create_group("names")
-            for key, values in result.names.items():
+            for key, values in sorted(result.names.items()):
                 _texts(names, key, values)
             _text(file, "scene", json.dumps(result.scene, indent=1))
             _texts(file, "warnings", result.warnings)
-            for name, mesh in result.meshes.items():
+            for name, mesh in sorted(result.meshes.items()):
                 _numbers(file, f"meshes/{name}/vertices_m", mesh.vertices_m, "m")
                 _numbers(file, f"meshes/{name}/triangles", mesh.triangles.astype(np.int64), "-")
             models = file.create_group("models")
@@ -53,7 +53,7 @@ def write(result: Result, path: Path) -> None:
 def _model(group: h5py.Group, run: ModelRun) -> None:
     for name in ("history", "energy", "links", "contacts"):
         part = group.create_group(name)
-        for key, column in getattr(run, name).items():
+        for key, column in sorted(getattr(run, name).items()):
             _column(part, key, column)
     events = group.create_group("events")
     _texts(events, "kind", [event.kind for event in run.events])
@@ -61,7 +61,7 @@ def _model(group: h5py.Group, run: ModelRun) -> None:
     for key, unit in (("time_s", "s"), ("temperature_change_K", "K"), ("time_uncertainty_s", "s")):
         _numbers(events, key, np.array([getattr(event, key) for event in run.events], dtype=float), unit)
     summary = group.create_group("summary")
-    for key, scalar in run.summary.items():
+    for key, scalar in sorted(run.summary.items()):
         _numbers(summary, key, np.array(scalar.value, dtype=float), scalar.unit)
 
 
