@@ -10,6 +10,10 @@ the free side (Coulomb's cone). Every place where that holds is a stable state.
 Here many joints, far from each other, are let go at once, each at rest at another place of its wall
 and as deep in it as its part of F along the normal presses it. Those that the cone holds stay; all
 others leave. The journals cannot turn, like pins fixed to a link; a free one would roll.
+
+A convex wall has each normal once, so its stable states are one piece (docs/physics.md). The case
+three_hollows has a wall that is not convex, but nowhere as hollow as the journal is round, and a force
+towards a bump: three pieces, on the bump's top and beside it in the two hollows.
 """
 import csv
 import os
@@ -32,15 +36,19 @@ modulus = young / (2 * (1 - poisson**2))  # E* of two equal bodies
 shear_modulus = young / (4 * (2 - poisson) * (1 + poisson))  # G*
 
 
-def depth_under(force, wall_radius):
+def effective_radius(inner_radius, wall_radius):
+    """Of journal (ball) and wall; a wall that bulges has a negative radius [m]."""
+    return inner_radius * wall_radius / (wall_radius - inner_radius)
+
+
+def depth_under(force, effective):
     """Depth at which Hertz contact carries a force [m]."""
-    effective = R1 * wall_radius / (wall_radius - R1)
     return (max(force, 0) / (4 / 3 * modulus * sqrt(effective))) ** (2 / 3)
 
 
-def creep(wall_radius=R2):
+def creep(effective):
     """How far friction at its limit stretches the contact [m]: mu F / k_t."""
-    contact_radius = sqrt(R1 * wall_radius / (wall_radius - R1) * depth_under(load, wall_radius))
+    contact_radius = sqrt(effective * depth_under(load, effective))
     return friction * load / (8 * shear_modulus * contact_radius)
 
 
@@ -56,6 +64,7 @@ class Case:
     outer: object
     blocked: str
     not_admissible: int = 0
+    inner_radius: float = R1
     rows: list = field(default_factory=list)
 
 
@@ -84,9 +93,10 @@ def sphere():
     return Case("sphere", force, places, lambda: Ball(radius=R1), lambda: Socket(radius=R2), "XYZ")
 
 
-def lobed(name, waves, amplitude):
-    """Journal in a bore of triangles whose radius is R2 + amplitude cos(waves angle): places at equal
-    angles of the wall, with normal and curvature of that formula, not of the mesh."""
+def lobed(name, waves, amplitude, towards, journal=R1, count=600):
+    """Journal in a bore of triangles whose radius is R2 + amplitude cos(waves angle), under a force
+    towards an angle [rad]: places at equal angles of the wall, with normal and curvature of that
+    formula, not of the mesh."""
 
     def wall(angle):
         r = R2 + amplitude * cos(waves * angle)
@@ -96,20 +106,21 @@ def lobed(name, waves, amplitude):
         length = sqrt(r**2 + slope**2)
         return r * out, (r * out - slope * across) / length, length**3 / (length**2 + slope**2 - r * bend)
 
-    count, places, skipped = 600, [], 0
+    places, skipped = [], 0
     others = [wall(2 * pi * i / 1440)[0] for i in range(1440)]
     for i in range(count):
         point, normal, radius = wall(2 * pi * (i + 0.5) / count)
-        touching = point - R1 * normal
+        touching = point - journal * normal
         # Elsewhere the journal must not be in the wall: then this place cannot be reached.
-        if radius > R1 and min((other - touching).norm() for other in others) > R1 - 1e-10:
+        flatter = radius > journal or radius < 0
+        if flatter and min((other - touching).norm() for other in others) > journal - 1e-10:
             places.append((normal, radius, touching))
         else:
             skipped += 1
     shape = bore_triangles(R2, 2 * R1, 300, 10, lobes=[(waves, amplitude, 0)])
     return Case(
-        name, load * Vector3(0.8, -0.6, 0), places, lambda: Journal(radius=R1),
-        lambda: MeshBore(**shape), "zXYZ", skipped,
+        name, load * Vector3(cos(towards), sin(towards), 0), places, lambda: Journal(radius=journal),
+        lambda: MeshBore(**shape), "zXYZ", skipped, journal,
     )
 
 
@@ -124,7 +135,8 @@ def release(case):
     pairs = []
     for i, (normal, radius, touching) in enumerate(case.places):
         origin = spacing * Vector3(i % 30, i // 30, 0)
-        start = origin + touching + depth_under(load * along.dot(normal), radius) * normal
+        effective = effective_radius(case.inner_radius, radius)
+        start = origin + touching + depth_under(load * along.dot(normal), effective) * normal
         for shape, position, blocked in ((wall, origin, "xyzXYZ"), (case.inner(), start, case.blocked)):
             body = Body()
             body.shape, body.material, body.bound = shape, metal, Aabb()
@@ -152,11 +164,11 @@ def release(case):
     O.run(8000, True)
     # Whoever leaves at an angle beyond the cone swings as far to its other side: an angle of 0.2
     # degrees makes that 0.4 degrees of the clearance circle.
-    threshold = 20 * creep()
     for (number, start), (normal, radius, _) in zip(pairs, case.places):
         state = O.bodies[number].state
         moved = (state.pos - start).norm()
         angle = acos(max(-1, min(1, along.dot(normal))))
+        threshold = 20 * creep(effective_radius(case.inner_radius, radius))
         case.rows.append({
             "normal_x": normal[0], "normal_y": normal[1], "normal_z": normal[2],
             "wall_radius_m": radius, "angle_to_force_deg": degrees(angle),
@@ -176,12 +188,22 @@ def wrong(case, beyond):
     )
 
 
+def parts(case, key, value):
+    """Runs of consecutive places around the wall whose rows have a value: lists of their numbers."""
+    chosen = [row[key] == value for row in case.rows]
+    runs = []
+    for first in (i for i, here in enumerate(chosen) if here and not chosen[i - 1]):
+        length = next(n for n in range(1, len(chosen)) if not chosen[(first + n) % len(chosen)])
+        runs.append([(first + n) % len(chosen) for n in range(length)])
+    return runs
+
+
 def table(cases):
     """The table of the results, as text."""
     lines = [
         "| case | released | not admissible | predicted to stay | stayed | predicted to leave | left |"
-        " wrong within 1° of the boundary | wrong beyond |",
-        "|---|--:|--:|--:|--:|--:|--:|--:|--:|",
+        " wrong within 1° of the boundary | wrong beyond | parts predicted | seen |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|",
     ]
     for case in cases:
         counts = [
@@ -190,6 +212,10 @@ def table(cases):
                                ("seen", "left"))
         ]
         numbers = [len(case.rows), case.not_admissible, *counts, wrong(case, False), wrong(case, True)]
+        # The sphere's places lie on a surface, not one after the other.
+        numbers += ["–"] * 2 if case.name == "sphere" else [
+            len(parts(case, "predicted", "stays")), len(parts(case, "seen", "stayed"))
+        ]
         lines.append(f"| {case.name} | " + " | ".join(map(str, numbers)) + " |")
     return "\n".join(lines)
 
@@ -203,8 +229,14 @@ def draw(cases, folder):
 
     plt.rcParams.update({"font.size": 8, "svg.hashsalt": "multistable"})
     colours = {"stayed": "#0b6e4f", "left": "#c8553d"}
-    figure, axes = plt.subplots(1, len(cases), figsize=(3.4 * len(cases), 4.0), squeeze=False)
-    for axis, case in zip(axes[0], cases):
+    columns = min(3, len(cases))
+    lines = -(-len(cases) // columns)
+    figure, axes = plt.subplots(
+        lines, columns, figsize=(3.2 * columns, 3.4 * lines + 0.4), squeeze=False
+    )
+    for axis in axes.flat[len(cases):]:
+        axis.set_axis_off()
+    for axis, case in zip(axes.flat, cases):
         if case.name == "sphere":
             # Seen along the force: the distance from the middle is the angle to it.
             frame = Quaternion.Identity
@@ -222,34 +254,38 @@ def draw(cases, folder):
         else:
             points = [(1e6 * touching[0], 1e6 * touching[1]) for _, _, touching in case.places]
             along = case.force.normalized()
-            held = sorted(
-                (atan2(along.cross(n)[2], along.dot(n)), p)
-                for (n, _, _), p in zip(case.places, points) if along.dot(n) >= cos(cone)
-            )
-            axis.fill([0, *(p[0] for _, p in held)], [0, *(p[1] for _, p in held)], color="#bfe3d0", zorder=0)
+            for run in parts(case, "predicted", "stays"):
+                axis.fill(*zip((0, 0), *(points[i] for i in run)), color="#bfe3d0", zorder=0, linewidth=0)
             reach = max(max(abs(x), abs(y)) for x, y in points)
             axis.annotate(
-                "", 0.75 * reach * Vector2(along[0], along[1]), (0, 0), arrowprops={"arrowstyle": "->"}
+                "", 0.4 * reach * Vector2(along[0], along[1]), (0, 0), arrowprops={"arrowstyle": "->"}
             )
             axis.text(0, 0, "F", ha="right", va="bottom")
             axis.set_xlabel("centre of the journal [µm]")
             size = 2
         for seen, colour in colours.items():
             chosen = [p for p, r in zip(points, case.rows) if r["seen"] == seen]
-            if chosen:
-                axis.scatter(*zip(*chosen), s=size, color=colour, label=f"{seen} ({len(chosen)})", linewidths=0)
+            axis.scatter([p[0] for p in chosen], [p[1] for p in chosen], s=size, color=colour, label=seen, linewidths=0)
         axis.set_aspect("equal")
-        axis.set_title(case.name)
-        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncol=2, frameon=False, markerscale=2)
+        axis.set_title(", ".join([case.name] + [
+            f"{sum(r['seen'] == seen for r in case.rows)} {seen}" for seen in colours
+        ]), fontsize=9)
         axis.spines[["top", "right"]].set_visible(False)
-    figure.tight_layout()
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(
+        [*handles, plt.Rectangle((0, 0), 1, 1, color="#bfe3d0")], [*labels, "predicted to stay"],
+        loc="lower center", ncol=3, frameon=False, markerscale=3,
+    )
+    figure.tight_layout(rect=(0, 0.25 / figure.get_figheight(), 1, 1))
     figure.savefig(folder / "multistable.png", dpi=150)
     figure.savefig(folder / "multistable.svg", metadata={"Date": None})
 
 
 known = {
     "circle": circle, "sphere": sphere,
-    "three_lobes": lambda: lobed("three_lobes", 3, 10e-6), "ellipse": lambda: lobed("ellipse", 2, 25e-6),
+    "three_lobes": lambda: lobed("three_lobes", 3, 10e-6, atan2(-0.6, 0.8)),
+    "ellipse": lambda: lobed("ellipse", 2, 25e-6, atan2(-0.6, 0.8)),
+    "three_hollows": lambda: lobed("three_hollows", 3, 1.5e-3, pi / 3, 1e-3, 1200),
 }
 chosen = os.environ.get("CASES", ",".join(known)).split(",")
 cases = [release(known[name]()) for name in chosen]

@@ -188,13 +188,8 @@ namespace {
                                                  const yade::Interaction& contact) {
   std::ostringstream text;
   text.precision(9);
-  text << "the wall of the MeshBore ";
-  if (wall_radius > 0) {
-    text << "conforms too closely: its radius of curvature is " << wall_radius << " m, that of the "
-         << inner << " " << radius << " m,";
-  } else {
-    text << "is not hollow (its radius of curvature is " << wall_radius << " m)";
-  }
+  text << "the wall of the MeshBore conforms too closely: its radius of curvature is "
+       << wall_radius << " m, that of the " << inner << " " << radius << " m,";
   text << " at the contact at (" << point.x() << ", " << point.y() << ", " << point.z() << ") m"
        << where(scene, contact.id1, contact.id2);
   record_failure(text.str());
@@ -297,7 +292,7 @@ bool BoreContacts::find(const Probe& probe, const MeshBore& bore, const yade::St
     JointGeom& geometry = *pair.contacts[next++];
     const Vector3r foot = centre - mesh.centre() + one.distance * one.normal;
     const Real wall_radius = grown / one.curvature;
-    if (!(one.curvature > 0 && wall_radius > probe.radius)) {
+    if (wall_radius > 0 && !(wall_radius > probe.radius)) {
       fail_curvature(probe.is_ball ? "ball" : "journal", probe.radius, wall_radius,
                      state1.se3.position + turn * (probe.radius * one.normal), scene, *contact);
       return false;
@@ -320,7 +315,7 @@ bool BoreContacts::find(const Probe& probe, const MeshBore& bore, const yade::St
                : geometry.eccentricity - geometry.penetrationDepth + clearance_rate * scene.dt;
     here.eccentricity = here.penetration_depth + clearance;
     geometry.refR1 = probe.radius;
-    geometry.refR2 = wall_radius;
+    geometry.refR2 = std::abs(wall_radius);
     geometry.journalRadius = probe.radius;
     geometry.bearingRadius = wall_radius;
     geometry.axis = world_axis;
@@ -330,7 +325,7 @@ bool BoreContacts::find(const Probe& probe, const MeshBore& bore, const yade::St
       deepest = here.penetration_depth;
       pair.normal = here.normal;
       pair.contactPoint = geometry.contactPoint;
-      pair.refR2 = wall_radius;
+      pair.refR2 = std::abs(wall_radius);
     }
   }
   return keep || touching > 0;
@@ -410,7 +405,7 @@ bool Law2_BoreGeom_BorePhys_JointLaw::go(yade::shared_ptr<yade::IGeom>& geometry
     const JointGeom& here = *geometry.contacts[i];
     JointPhys& physics = *pair.contacts[i];
     // The part of the wall's radius that expansion has changed; the rest is another place.
-    if (physics.previousBearingRadius > 0) {
+    if (physics.previousBearingRadius != 0) {
       physics.previousBearingRadius = here.bearingRadius * (1 - geometry.strain_change);
     }
     if (!step(here, physics, *contact, *scene)) continue;

@@ -156,9 +156,8 @@ class BoreContacts {
             const yade::shared_ptr<yade::Interaction>& contact, yade::Scene& scene) const;
   static constexpr const char* patch_angle_doc =
       "Angle by which the normal of a contact may turn before the smooth wall is asked again at "
-      "its "
-      "new place; until then the wall around it has the curvature found there. 0: search the whole "
-      "wall in every step [rad]";
+      "its new place; until then the wall around it has the curvature found there. 0: search the "
+      "whole wall in every step [rad]";
 };
 
 struct Ig2_Journal_MeshBore_BoreGeom
@@ -168,9 +167,9 @@ struct Ig2_Journal_MeshBore_BoreGeom
   static constexpr const char* base_name = "IGeomFunctor";
   static constexpr const char* doc =
       "All contacts of a Journal in a MeshBore, in the section across the journal's axis through "
-      "its centre. The axes must be parallel within maxTilt, as in a Bearing. The wall at a "
-      "contact must be hollow, with a radius of curvature above the journal's: anything else stops "
-      "the run.";
+      "its centre. The axes must be parallel within maxTilt, as in a Bearing. Where the wall is "
+      "hollow its radius of curvature must be above the journal's, otherwise the run stops; it may "
+      "bulge, too.";
   Real maxTilt = 1e-3;
   using yade::IGeomFunctor::go;
   bool go(const yade::shared_ptr<yade::Shape>& shape1, const yade::shared_ptr<yade::Shape>& shape2,

@@ -52,7 +52,7 @@ struct JointGeom : RegisteredIndexable<JointGeom, yade::GenericSpheresContact> {
                   "Radius of the journal (ball, slider's pads) at the current temperature [m]"),
         read_only("bearingRadius", &JointGeom::bearingRadius,
                   "Radius of the bearing (socket) at the current temperature [m]; 0: a flat "
-                  "SlotFace"));
+                  "SlotFace; negative: a MeshBore that bulges there"));
   }
 };
 

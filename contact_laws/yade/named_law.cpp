@@ -89,7 +89,12 @@ void NamedJointLaw::begin(const JointGeom& geometry, JointPhys& physics, const y
 bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
                          const yade::Interaction& contact, yade::Scene& scene) {
   const Real dt = scene.dt;
-  const bool flat = !(geometry.bearingRadius > 0);
+  const bool flat = geometry.bearingRadius == 0;
+  if (geometry.bearingRadius < 0 && !std::holds_alternative<laws::HertzInternal>(law_.normal)) {
+    fail_law("a wall that bulges needs normalLaw 'hertz_internal', not '" + normalLaw + "'", scene,
+             contact);
+    return true;
+  }
   if (needs_axis_ && geometry.axis.isZero()) {
     fail_law(
         std::string(flat ? "a Slider on a SlotFace" : "a Ball in a Socket") +
@@ -168,7 +173,7 @@ void NamedJointLaw::account(const laws::JointResponse& joint, const laws::Normal
                    joint.dissipation_force * geometry.clearanceRate * scene.dt;
     laws::NormalGeometry before = radii;
     before.journal_radius = physics.previousRadius;
-    if (physics.previousBearingRadius > 0) before.bearing_radius = physics.previousBearingRadius;
+    if (physics.previousBearingRadius != 0) before.bearing_radius = physics.previousBearingRadius;
     for (const Real depth : {geometry.penetrationDepth, physics.previousDepth}) {
       thermal_work += 0.5 * laws::radius_energy_change(law_.normal, {physics.effectiveYoungModulus},
                                                        depth, before, radii);

@@ -71,6 +71,19 @@ def test_history_follows_its_contact_when_the_order_changes(seen):
     assert speeds[True] != speeds[False]
 
 
+def test_a_wall_that_bulges_is_touched_as_a_ball(seen):
+    found = seen["bulge"]
+    # r = R2 + a cos 3t at its smallest: curvature (r - 9 a)/r^2.
+    radius = -3.6e-3**2 / (9 * 1.5e-3 - 3.6e-3)
+    assert found["number"] == 1
+    # The mesh's facets of 0.1 mm on 1.3 mm: 1e-4 of the curvature, half of that in the force; the
+    # distance errs by 1e-10 m of 1e-6 m.
+    assert found["radius"] == pytest.approx(radius, rel=2e-3)
+    effective = 1e-3 * -radius / (1e-3 - radius)
+    assert found["force"] == pytest.approx(4 / 3 * found["modulus"] * effective**0.5 * 1e-9, rel=2e-3)
+    assert found["johnson"][1].startswith("a wall that bulges needs normalLaw 'hertz_internal', not 'johnson'")
+
+
 def test_mistakes_are_one_sentence(seen):
     kind, text = seen["too_close"]
     assert kind == "RuntimeError"

@@ -148,6 +148,8 @@ TEST(Hertz, GrowsWithDepthAndIsZeroInAGap) {
 TEST(Hertz, LimitsOfTheEffectiveRadius) {
   EXPECT_EQ(internal_effective_radius(5e-3, infinity), 5e-3);
   EXPECT_NEAR(internal_effective_radius(5e-3, 5e6), 5e-3, 2e-9 * 5e-3);  // 1 + R1/R2
+  // A wall that bulges: two balls outside each other, R1 R2/(R1 + R2).
+  EXPECT_NEAR(internal_effective_radius(1e-3, -3e-3), 0.75e-3, 1e-14 * 0.75e-3);
   EXPECT_THROW(internal_effective_radius(5e-3, 5e-3), std::invalid_argument);
   EXPECT_THROW(internal_effective_radius(5e-3, 4e-3), std::invalid_argument);
   EXPECT_THROW(internal_effective_radius(0.0, 4e-3), std::invalid_argument);

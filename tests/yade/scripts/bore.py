@@ -148,6 +148,28 @@ def too_close():
     return sentence_of(lambda: [O.step() for _ in range(3)])
 
 
+def bulge():
+    """A small journal on the bump of three lobes, and what other laws say to it."""
+    def pressed(law):
+        reset()
+        metal = material()
+        # The bump at 60 degrees, 3.6 mm from the axis, bulges with a radius of 1.3091 mm.
+        out = Vector3(0.5, 0.75**0.5, 0)
+        pin = body(out * (3.6e-3 - 1e-3 + 1e-6), sj.Journal(radius=1e-3), metal, mass=0.1)
+        hole = body((0, 0, 0), tube(300, 10, lobes=[(3, 1.5e-3, 0)]), metal)
+        bore_engines(law=law)
+        O.dt = 1e-9
+        O.step()
+        return contact(pin, hole)
+
+    found = pressed(Law())
+    return {
+        "force": found.phys.normalForce.norm(), "modulus": found.phys.effectiveYoungModulus,
+        "radius": found.geom.contacts[0].bearingRadius, "number": found.geom.numberOfContacts,
+        "johnson": sentence_of(lambda: (pressed(Law(normalLaw="johnson")), O.step())),
+    }
+
+
 def refused():
     triangles = sj.bore_triangles(R2, LENGTH, 40, 4)
     broken = {**triangles, "triangles": [t for i, t in enumerate(triangles["triangles"]) if i != 100]}
@@ -208,7 +230,7 @@ if mode == "checks":
         "swing": {
             "bearing": swing(sj.Bearing(radius=R2)), "mesh": swing(tube()), "searching": swing(tube(), 0.0),
         },
-        "two": two_points(), "too_close": too_close(), "refused": refused(),
+        "two": two_points(), "too_close": too_close(), "refused": refused(), "bulge": bulge(),
         "radii": [tube().meanRadius(), *tube().sectionRadii(0.0, 7)],
     })
 elif mode == "many":

@@ -13,14 +13,15 @@ namespace statejump::kernel {
 /// concave, -1/R2. The paper's eq. (7) has R1 R2 / (R1 + R2), the external contact of two balls;
 /// the concave bearing makes the contact much stiffer.
 /// @param journal_radius R1 [m], > 0 and finite
-/// @param bearing_radius R2 [m], > R1; +infinity is a flat wall and gives R1
-/// @throws std::invalid_argument when not 0 < R1 < R2
+/// @param bearing_radius R2 [m], > R1; +infinity is a flat wall and gives R1, negative a wall that
+///        bulges towards the journal with radius -R2
+/// @throws std::invalid_argument when not 0 < R1 < R2 or R2 < 0
 /// Limit: Hertz needs a contact radius a = sqrt(R delta) well below R1; as R2 tends to R1 the
 /// contact turns conformal and this radius grows without bound.
 inline double internal_effective_radius(double journal_radius, double bearing_radius) {
   require(journal_radius > 0.0, "journal_radius", journal_radius, "(0, inf) m");
-  require(bearing_radius > journal_radius, "bearing_radius", bearing_radius,
-          "(journal_radius, inf] m");
+  require(bearing_radius > journal_radius || bearing_radius < 0.0, "bearing_radius", bearing_radius,
+          "(journal_radius, inf] m or negative");
   if (std::isinf(bearing_radius)) return journal_radius;
   return journal_radius * (bearing_radius / (bearing_radius - journal_radius));
 }

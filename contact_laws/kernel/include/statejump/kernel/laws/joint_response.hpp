@@ -114,7 +114,7 @@ inline JointResponse joint_response(const JointLaw& law, const ContactParameters
 
 /// Change of the potential V(delta, R1, R2) of the normal law when only the radii change, at fixed
 /// depth [J]; what their change does to the depth, -F dc, is not part of it. By a central
-/// difference along the change, with 1e-5 of the clearance (of R1 at a flat wall) as its step: the
+/// difference along the change, with 1e-5 of the smaller of clearance and R1 as its step: the
 /// change of one time step itself is too small to subtract. Relative error about 1e-9.
 /// @param before, after radii [m]; @param depth [m]
 inline double radius_energy_change(const NormalLaw& law, const NormalMaterial& material,
@@ -128,7 +128,8 @@ inline double radius_energy_change(const NormalLaw& law, const NormalMaterial& m
   NormalGeometry middle = before;
   middle.journal_radius += 0.5 * change_1;
   if (!flat) middle.bearing_radius += 0.5 * change_2;
-  const double scale = 1e-5 * (flat ? middle.journal_radius : middle.clearance()) / largest;
+  const double scale =
+      1e-5 * std::min(std::abs(middle.clearance()), middle.journal_radius) / largest;
   const auto energy = [&](double steps) {
     NormalGeometry shifted = middle;
     shifted.journal_radius += steps * change_1;
