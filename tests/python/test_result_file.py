@@ -19,9 +19,12 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridRead
 from conftest import COMMAND, REPOSITORY
 from statejump import compare, reduced
 from statejump.case import load_case
+from statejump.dem import DemRun
 from statejump.errors import StatejumpError
 from statejump.history import History
-from statejump.resultfile import Column, Event, ModelRun, Result, Scalar, layout, read, scene, write
+from statejump.resultfile import (
+    Column, Event, ModelRun, Result, Scalar, kind_spring_slider, layout, read, scene, write,
+)
 from statejump.resultfile.contents import AT_STOP, SEPARATED, SLIP, STICK, Mesh, history_of
 from statejump.resultfile.difference import case_differences, difference
 from statejump.resultfile.events import from_states
@@ -223,6 +226,34 @@ def test_contacts_of_the_slider(compared) -> None:
         event = next(event for event in result.models["dem"].events if event.kind == kind)
         assert event.temperature_change_K == change and event.joint == ("floor" if kind == "first_slip" else "stop_plus")
         assert event.time_uncertainty_s == pytest.approx(0.1 / 2000 / 2, rel=1e-6)
+
+
+def test_both_stops_of_the_slider(cases: Path) -> None:
+    case = load_case(cases / "table1.toml")
+    case = case.copy(update={"thermal": case.thermal.copy(update={"shape": "sine"})})
+    path = reduced.solve(case)
+    history = reduced.sample(path, reduced.sample_times(case))
+    ours = kind_spring_slider.reduced_run(case, path, history)
+    # The same as a DEM would give it: flags instead of stages.
+    columns = dict(history.columns)
+    stage = columns.pop("stage")
+    columns["slipping"] = np.isin(stage, ("S2", "S5")).astype(float)
+    columns["stop_contact"] = (columns["stop_force_N"] != 0).astype(float)
+    columns["floor_normal_force_N"] = np.full(len(stage), 100.0)
+    other = kind_spring_slider.dem_run(case, DemRun(History(columns), {}))
+    for place, side in ((1, -1), (2, 1)):
+        pushed = side * history["stop_force_N"] < 0
+        assert pushed.any()
+        for found in (ours, other):
+            state, force = found.contacts["state"].values, found.contacts["normal_force_N"].values
+            assert np.all(state[pushed, place] == AT_STOP) and np.all(state[pushed, 3 - place] == SEPARATED)
+            assert np.array_equal(force[:, place, 0], np.where(pushed, history["stop_force_N"], 0))
+        # The rigid stop is touched until the block slides away, an elastic one while it carries force.
+        at_stop = ours.contacts["state"].values[:, place] == AT_STOP
+        assert np.array_equal(at_stop, side * history["displacement_m"] >= 1e-3 * (1 - 1e-9))
+        assert np.array_equal(other.contacts["state"].values[:, place] == AT_STOP, pushed)
+    reached = [event.joint for event in ours.events if event.kind == "stop_reached"]
+    assert reached[:2] == ["stop_plus", "stop_minus"]
 
 
 def test_contacts_of_the_rib(compared) -> None:
