@@ -587,6 +587,10 @@ def stiffness_and_forces(truss: ResolvedTruss, temperature_change_K: float) -> t
 def test_ring_is_rigid_and_presses_every_joint(n: int, sunlit: bool) -> None:
     truss = parsed(GENERATORS["ring"](n, sunlit=sunlit)).resolve()
     outer = [name.startswith("outer") for name in truss.links.names]
+    # Every joint is between two links of the outer hoop, its own and the one before.
+    names, joints = truss.links.names, truss.revolutes
+    assert [(names[a], names[b]) for a, b in zip(joints.bearing_link, joints.journal_link)] == [
+        (f"outer{(k - 1) % n}", f"outer{k}") for k in range(n)]
     for change in (0.0, 100.0):
         values, forces = stiffness_and_forces(truss, change)
         # A mechanism has an eigenvalue of 0, that is of rounding, 1e-16 of the largest times their number.

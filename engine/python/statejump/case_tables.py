@@ -89,7 +89,8 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> list[ItemTyp
                 continue
             field = fields.get(key)
             if field is None:
-                raise TableError(f"{where(section, table, number)}: {key} is unknown: {suggestion(key, list(fields), '', '')}")
+                hint = suggestion(key, list(fields), "", "")
+                raise TableError(f"{where(section, table, number)}: {key} is unknown: {hint}")
             try:
                 checked = check_value(given, field.field_info.extra, field.type_)
                 if key == "name" and not checked:
@@ -101,7 +102,8 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> list[ItemTyp
             values[key] = float(checked) if field.type_ is float and type(checked) is int else checked
         for key in needed:
             if key not in table:
-                raise TableError(f"{where(section, table, number)}: {key} is missing: {rule(fields[key].field_info.extra)}")
+                needs = rule(fields[key].field_info.extra)
+                raise TableError(f"{where(section, table, number)}: {key} is missing: {needs}")
         # As BaseModel.construct does, which takes several times as long.
         item = model.__new__(model)
         object.__setattr__(item, "__dict__", values)

@@ -290,8 +290,8 @@ def _revolutes(case: "TrussCase", truss: ResolvedTruss) -> None:
     apart = np.linalg.norm(offset - along, axis=1)
     for index in np.flatnonzero(apart > revolutes.radial_clearance_m)[:1]:
         raise _Problem(
-            f"revolute {revolutes.names[index]!r}: journal_node = {case.revolute[index].journal_node!r} is not allowed: "
-            f"it is {apart[index]:.6g} m from bearing_node = {case.revolute[index].bearing_node!r}, the clearance is "
+            f"revolute {revolutes.names[index]!r}: journal_node = {case.revolute[index].journal_node!r} is not "
+            f"allowed: it is {apart[index]:.6g} m from bearing_node = {case.revolute[index].bearing_node!r}, the clearance is "
             f"radial_clearance_m = {revolutes.radial_clearance_m[index]:g} [m]"
         )
 

@@ -211,7 +211,8 @@ def _names(truss: ResolvedTruss) -> list[tuple[np.ndarray, str, np.ndarray]]:
     for one, two in np.concatenate((ends, ends[:, ::-1])):
         taken.setdefault(int(one), []).append((positions[two] - positions[one])[:2])
     for index in np.flatnonzero(truss.nodes.fixed[:, :2].any(axis=1)):
-        taken.setdefault(int(index), []).append(np.array([-1.0, 0.0] if not truss.nodes.fixed[index, 1] else [0.0, -1.0]))
+        ground = [0.0, -1.0] if truss.nodes.fixed[index, 1] else [-1.0, 0.0]
+        taken.setdefault(int(index), []).append(np.array(ground))
     for index in np.flatnonzero(truss.nodes.force_N.any(axis=1)):
         taken.setdefault(int(index), []).append(-truss.nodes.force_N[index, :2])
     for (node, _), axis in zip(truss.sliders.nodes, truss.sliders.axis):
@@ -389,8 +390,8 @@ def _spatial(truss: ResolvedTruss) -> plt.Figure:
     handles = _legend(truss)
     below_in = 0.3 + 0.22 * -(-len(handles) // 2)
     drawing = plt.figure(figsize=(7.4, 6.2 + below_in))
-    panel = drawing.add_axes((0.02, below_in / (6.2 + below_in), 0.9, 0.9 - below_in / (6.2 + below_in)), projection="3d",
-                             computed_zorder=False)
+    below = below_in / (6.2 + below_in)
+    panel = drawing.add_axes((0.02, below, 0.9, 0.9 - below), projection="3d", computed_zorder=False)
     ends = positions[truss.links.nodes]
     panel.add_collection3d(Line3DCollection(list(ends), colors=colours, linewidths=float(np.clip(size / 5, 0.8, 2.2)),
                                             zorder=2))
