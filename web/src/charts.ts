@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import * as Plot from "@observablehq/plot";
 import { element, number } from "./elements";
-import { AxisData, ChartData, Run, SeriesData, StageData } from "./payload";
+import { AxisData, ChartData, MarkData, Run, SeriesData, StageData } from "./payload";
 import { Playhead } from "./playhead";
 
 // As the figures of the commands: a thick light line under a thin dark dashed one.
@@ -15,6 +15,9 @@ const STYLES: Record<string, { stroke: string; width: number; dash?: string; lab
 };
 const SHADES = ["var(--band)", "transparent"];
 const RING_SIDES = 180;
+const SIGN = 16; // pixels across
+
+const signOf = (mark: MarkData, place: number) => (mark.role === "jump" ? "J" : String(place + 1));
 
 interface Dot {
   x: number;
@@ -88,7 +91,7 @@ class Chart {
         element(
           "span",
           { class: `mark ${mark.role}` },
-          element("b", {}, mark.role === "jump" ? "J" : String(i + 1)),
+          element("b", {}, signOf(mark, i)),
           ` ${mark.label} ${mark.value}`,
         ),
       ),
@@ -128,15 +131,7 @@ class Chart {
           strokeDasharray: energy ? (data.model === "dem" ? "6 3" : undefined) : style?.dash,
         });
       }),
-      Plot.dot(chart.marks, { x: "x", y: "y", r: 8, fill: (mark) => `var(--${mark.role})`, stroke: "var(--paper)" }),
-      Plot.text(chart.marks, {
-        x: "x",
-        y: "y",
-        text: (mark, i) => (mark.role === "jump" ? "J" : String(i + 1)),
-        fill: "var(--on-mark)",
-        fontWeight: 700,
-        fontSize: 10,
-      }),
+      ...this.markSigns(width),
       Plot.tip(
         this.lines.flatMap(({ data, dots }) => dots.map((dot) => ({ ...dot, style: data.style }))),
         Plot.pointer({
@@ -180,6 +175,32 @@ class Chart {
     svg.append(this.ring);
     this.holder.append(svg);
     this.follow();
+  }
+
+  /** Events as discs with their number of the caption, one above the other where they would coincide. */
+  private markSigns(width: number): Plot.Markish[] {
+    const dots = this.lines.flatMap((line) => line.dots);
+    const span = (key: "x" | "y") =>
+      Math.max(...dots.map((dot) => dot[key])) - Math.min(...dots.map((dot) => dot[key])) || 1;
+    const across = width / span("x"),
+      up = (0.6 * width) / span("y");
+    const { marks } = this.chart;
+    return marks.flatMap((mark, i) => {
+      const lift = marks
+        .slice(0, i)
+        .filter((other) => Math.hypot((other.x - mark.x) * across, (other.y - mark.y) * up) < SIGN).length;
+      const place = { x: "x", y: "y", dy: -1.1 * SIGN * lift };
+      return [
+        Plot.dot([mark], { ...place, r: SIGN / 2, fill: `var(--${mark.role})`, stroke: "var(--paper)" }),
+        Plot.text([mark], {
+          ...place,
+          text: () => signOf(mark, i),
+          fill: "var(--on-mark)",
+          fontWeight: 700,
+          fontSize: 10,
+        }),
+      ];
+    });
   }
 
   private line(): Line | undefined {

@@ -354,13 +354,13 @@ class Player {
     this.updates.push(() => {
       const { head } = this;
       text.textContent = [
-        `Magnified: the place of a journal in its bearing or of a block in its slot, and the clearance itself, ${short(head.clearance)} times; the smallest clearance, ${gap} mm, is drawn as ${short(1e3 * scene.clearance_m * head.clearance)} mm.`,
+        `Magnified: the place of a journal in its bearing or of a block in its slot, and the clearance itself, ${short(head.clearance)} times; the smallest clearance, ${gap}\u202fmm, is drawn as ${short(1e3 * scene.clearance_m * head.clearance)}\u202fmm.`,
         scene.deforms
           ? `The way of the links from where they started is magnified ${short(head.deformation)} times.`
           : "",
         "Lengths, radii and widths are not magnified; a link is drawn between the drawn places of its ends. Very thin links are drawn thicker.",
         scene.forces.length
-          ? `The length of an arrow grows with the square root of the force; the longest is ${short(scene.largest_force_N)} N.`
+          ? `The length of an arrow grows with the square root of the force; the longest is ${short(scene.largest_force_N)}\u202fN.`
           : "",
       ]
         .filter(Boolean)

@@ -37,6 +37,7 @@ TEMPERATURE = Axis("temperature_change_K", "Temperature change")
 TIME = Axis("time_s", "Time")
 NOT_SHOWN = {"time_s", "temperature_change_K", "slipping", "stop_contact", "stage"}
 MOST_OTHER_LOOPS = 4
+STATE_UNITS = {"m", "rad"}  # of places: forces have no state jump
 
 
 def charts_of(result: Result) -> list[Chart]:
@@ -94,7 +95,8 @@ def shown(
 
     :param columns: by model and name
     :param unit_of: unit of every column
-    :param marks: events to mark: ``time_s``, ``label``, ``role``
+    :param marks: events to mark: ``time_s``, ``label``, ``value``, ``role``; the value of a ``jump`` is
+        that of the chart's own quantity
     """
     models = [model for model, values in columns.items() if {chart.x.column, chart.y.column} <= set(values)]
     if not models:
@@ -110,12 +112,15 @@ def shown(
     placed = []
     if chart.marks:
         values = columns[models[0]]
+        ends = values[chart.y.column][[0, -1]]
         for mark in marks:
-            at = [
-                (float(np.interp(mark["time_s"], values["time_s"], values[axis["column"]])) - axis["start"]) * axis["scale"]
-                for axis in (x, y)
-            ]
-            placed.append({**mark, "x": at[0], "y": at[1]})
+            if mark["role"] == "jump":
+                if unit_of.get(chart.y.column) not in STATE_UNITS:
+                    continue
+                mark = {**mark, "value": units.text(float(ends[1] - ends[0]), unit_of[chart.y.column], 4)}
+            at = [np.interp(mark["time_s"], values["time_s"], values[axis["column"]]) for axis in (x, y)]
+            shown_at = [float((value - axis["start"]) * axis["scale"]) for value, axis in zip(at, (x, y))]
+            placed.append({**mark, "x": shown_at[0], "y": shown_at[1]})
     return {
         "title": chart.title, "x": x, "y": y, "equal": chart.equal, "stages": chart.stages, "marks": placed,
         "rings": [radius * x["scale"] for radius in chart.rings_m],

@@ -10,7 +10,7 @@ import numpy as np
 
 def kept_samples(
     time_s: np.ndarray, columns: np.ndarray, most: int, tolerance: float, always: Iterable[int] = ()
-) -> tuple[np.ndarray, float]:
+) -> np.ndarray:
     """Choose samples so that straight lines between them follow all columns.
 
     Greedy splitting (Ramer 1972, Douglas and Peucker 1973) with the error of linear interpolation
@@ -21,7 +21,7 @@ def kept_samples(
     :param most: number of samples at which to stop
     :param tolerance: allowed error, as a fraction of the range of each column
     :param always: samples to keep in any case
-    :returns: indices in order, and the largest error left, as a fraction of a column's range
+    :returns: indices in order
     """
     count = len(time_s)
     columns = np.where(np.isfinite(columns), columns, 0.0).reshape(count, -1)
@@ -48,4 +48,17 @@ def kept_samples(
         kept.add(split)
         heapq.heappush(heap, worst(first, split))
         heapq.heappush(heap, worst(split, last))
-    return np.array(sorted(kept)), -heap[0][0] if heap else 0.0
+    return np.array(sorted(kept))
+
+
+def largest_error(time_s: np.ndarray, columns: Iterable[np.ndarray], kept: np.ndarray) -> float:
+    """Return by how much straight lines between kept samples miss any column, as a fraction of its
+    range; only finite values count."""
+    largest = 0.0
+    for column in columns:
+        values = np.where(np.isfinite(column), column, 0.0)
+        span = float(np.ptp(values))
+        if span > 0:
+            missed = np.max(np.abs(np.interp(time_s, time_s[kept], values[kept]) - values))
+            largest = max(largest, float(missed) / span)
+    return largest

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 from dataclasses import dataclass
 from typing import Any, Optional
 
@@ -17,7 +18,7 @@ import numpy as np
 from ..compare import Quantity
 from ..resultfile import Event, ModelRun, Result
 from . import charts, words
-from .decimation import kept_samples
+from .decimation import kept_samples, largest_error
 from .drawing import Drawing
 from .energy import Account, account
 from .units import scale_of, text
@@ -26,6 +27,7 @@ TOLERANCE = 2e-4  # of a column's range, what decimation may cost
 MOST_SAMPLES = 1500  # of a model on a page
 FEWEST_SAMPLES = 200
 BYTES_PER_VALUE = 16 / 3  # float32 as base64
+MOST_GUIDES = 200  # columns that decide which samples are kept; the error is of all
 MOST_EVENTS = 60  # rows of the table
 MARKED_EVENTS = ("first_contact", "first_slip", "stop_reached", "stop_left")
 
@@ -148,7 +150,8 @@ class Document:
             "reduced": text(row.reduced, row.unit), "dem": text(row.dem, row.unit),
             "difference": text(row.difference, row.unit, 3), "tolerance": text(row.tolerance, row.unit, 3),
             # How much of the tolerance is used: a bar in the table.
-            "used": min(1.0, abs(row.difference) / row.tolerance) if row.difference is not None and row.tolerance else None,
+            "used": min(1.0, abs(row.difference) / row.tolerance) if row.difference is not None and row.tolerance
+            else None,
             "passed": row.passed,
         }
 
@@ -210,8 +213,7 @@ class Document:
         ]
         jumps = [value for name, value in run.summary.items() if "jump" in name]
         if jumps and jumps[0].value:
-            marks.append({"time_s": float(run.time_s[-1]), "label": "state jump", "role": "jump",
-                          "value": text(jumps[0].value, jumps[0].unit, 4)})
+            marks.append({"time_s": float(run.time_s[-1]), "label": "state jump", "role": "jump", "value": ""})
         shown = [
             made for chart in self._charts if (made := charts.shown(chart, self._columns, units, marks)) is not None
         ]
@@ -247,7 +249,9 @@ class Document:
         affordable = int(budget_bytes / (BYTES_PER_VALUE * max(1, len(moving))))
         most = min(MOST_SAMPLES, max(FEWEST_SAMPLES, affordable))
         time_s = columns["time_s"]
-        chosen, error = kept_samples(time_s, np.stack(moving, axis=1).astype(float), most, TOLERANCE)
+        guides = moving[:: math.ceil(len(moving) / MOST_GUIDES)]
+        chosen = kept_samples(time_s, np.stack(guides, axis=1).astype(float), most, TOLERANCE)
+        error = largest_error(time_s, moving, chosen)
         self._thin[model] = {name: values[chosen] for name, values in columns.items()}
         self.kept.append(Kept(words.MODELS[model], len(time_s), len(chosen), error))
 
@@ -256,14 +260,14 @@ class Document:
         if size == 0:
             return None
         scale, unit = scale_of("J", size)
-        roles = (("supplied_J", "supplied"), ("stored_J", "stored"), ("friction_J", "friction"), ("damping_J", "damping"))
+        roles = {"supplied_J": "supplied", "stored_J": "stored", "friction_J": "friction", "damping_J": "damping"}
         return {
             "title": "Energy over time", "equal": False, "stages": False, "marks": [], "rings": [],
             "x": {"column": "time_s", "label": "Time [s]", "unit": "s", "scale": 1.0, "start": 0.0},
             "y": {"column": "supplied_J", "label": f"Energy [{unit}]", "unit": unit, "scale": scale, "start": 0.0},
             "series": [
                 {"model": model, "x": "time_s", "y": column, "style": role}
-                for model in self.result.models for column, role in roles
+                for model in self.result.models for column, role in roles.items()
                 if np.ptp(self.accounts[model].columns[column]) > 0
             ],
         }
@@ -273,8 +277,7 @@ class Document:
         """Numbers beside the replay: what the charts show over temperature and time."""
         axes = {chart["y"]["column"]: chart["y"] for chart in shown if not chart["equal"]}
         return [
-            {**{key: axis[key] for key in ("column", "scale", "start", "unit")}, "label": axis["label"].partition(" [")[0]}
-            for axis in axes.values()
+            {**axis, "label": axis["label"].partition(" [")[0]} for axis in axes.values()
         ]
 
 

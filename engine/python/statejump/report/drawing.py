@@ -66,6 +66,12 @@ class Drawing:
             self.columns[model][name] = values(run)
         return name
 
+    def _vector(self, name: str, values: Callable[[ModelRun], np.ndarray]) -> list[str]:
+        for model, run in self.result.models.items():
+            found = values(run)
+            self.columns[model].update({f"{name}_{axis}": found[:, place] for place, axis in enumerate(AXES)})
+        return [f"{name}_{axis}" for axis in AXES]
+
     def _at(self, expression: Any, run: ModelRun) -> np.ndarray:
         return resolve_point(expression, run, self.result.names)
 
@@ -92,11 +98,11 @@ class Drawing:
         if base is None and isinstance(expression, list) and not any(isinstance(value, dict) for value in expression):
             return {"at": [float(value) for value in expression]}
 
-        def values(run: ModelRun, axis: int) -> np.ndarray:
+        def values(run: ModelRun) -> np.ndarray:
             at = self._at(expression, run)
-            return at[:, axis] if base is None else (at - self._at(self._expressions[base], run))[:, axis]
+            return at if base is None else at - self._at(self._expressions[base], run)
 
-        at = [self._column(f"point{place}_{AXES[axis]}", lambda run, a=axis: values(run, a)) for axis in range(3)]
+        at = self._vector(f"point{place}", values)
         return {"at": at} if base is None else {"at": at, "of": base}
 
     def _angle(self, part: dict[str, Any]) -> Any:
@@ -163,7 +169,9 @@ class Drawing:
             "gap": self._column(f"gap{place}", lambda run: resolve(contact["gap_m"], run, names)),
         }
 
-    def _force(self, place: int, label: str, kind: str, on: str, at: Any, vector: Callable[[ModelRun], np.ndarray]) -> dict[str, Any]:
+    def _force(
+        self, place: int, label: str, kind: str, on: str, at: Any, vector: Callable[[ModelRun], np.ndarray]
+    ) -> dict[str, Any]:
         centre = self._parts[on].get("centre")
 
         def arm(run: ModelRun) -> np.ndarray:
@@ -172,9 +180,9 @@ class Drawing:
         return {
             "label": label,
             "kind": kind,
-            "point": self._place(self._parts[on]) if centre is not None else self._points[json.dumps(at, sort_keys=True)],
-            "arm": [self._column(f"arm{place}_{AXES[a]}", lambda run, a=a: arm(run)[:, a]) for a in range(3)],
-            "vector": [self._column(f"force{place}_{AXES[a]}", lambda run, a=a: vector(run)[:, a]) for a in range(3)],
+            "point": self._points[json.dumps(at if centre is None else centre, sort_keys=True)],
+            "arm": self._vector(f"arm{place}", arm),
+            "vector": self._vector(f"force{place}", vector),
         }
 
     def _forces(self) -> list[dict[str, Any]]:
@@ -217,8 +225,8 @@ class Drawing:
         corners = []
         for part in self.result.scene["parts"]:
             reach = max(
-                (part.get(key, 0.0) for key in ("radius_m", "half_width_m", "half_height_m", "stop_plus_m", "stop_minus_m")),
-                default=0.0,
+                part.get(key, 0.0)
+                for key in ("radius_m", "half_width_m", "half_height_m", "stop_plus_m", "stop_minus_m")
             )
             for expression in _points_of(part):
                 at = self._at(expression, run)[0]

@@ -11,6 +11,7 @@ PREFIXED = {
     "m": (-9, 0), "N": (-6, 6), "J": (-9, 6), "s": (-9, 0), "rad": (-9, 0), "Pa": (0, 9), "N/m": (0, 9), "W": (-9, 6),
     "N m": (-6, 6),
 }
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 WRITTEN = {"m2": "m²", "kg/m3": "kg/m³", "N m": "N·m", "N m/rad": "N·m/rad", "N m s/rad": "N·m·s/rad"}
 
 
@@ -36,6 +37,6 @@ def text(value: Optional[float], unit: str = "-", digits: int = 6) -> str:
         written = "" if unit == "-" else WRITTEN.get(unit, unit)
         shown = f"{value:.{digits - 1}e}"
         mantissa, power = shown.split("e")
-        shown = f"{mantissa}·10{str(int(power)).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}"
+        shown = f"{mantissa}·10{str(int(power)).translate(RAISED)}"
     shown = shown.replace("-", "−")
     return f"{shown}\u202f{written}" if written else shown

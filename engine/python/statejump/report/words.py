@@ -32,11 +32,12 @@ EVENTS = {
 STAGES = {
     "S1": "stick, never slid yet", "S2": "slip in the sense of the first slide",
     "S3": "stick, the link unloads", "S4": "stick, the link loads the other way",
-    "S5": "slip against the first slide", "at_stop_plus": "at the stop, + side", "at_stop_minus": "at the stop, − side",
+    "S5": "slip against the first slide",
+    "at_stop_plus": "at the stop, + side", "at_stop_minus": "at the stop, − side",
 }
 SHAPES = {
-    "triangle": "up and down in straight lines", "half_sine": "up and down as half a sine",
-    "sine": "as a full sine", "table": "as a table says",
+    "triangle": "changes by {peak} and back in straight lines", "half_sine": "changes by {peak} and back as half a sine",
+    "sine": "swings by ± {peak} as a sine", "table": "follows a table, up to {peak} from its start",
 }
 
 
@@ -63,17 +64,19 @@ def _temperature(case: dict[str, Any]) -> str:
     times = "once" if cycles == 1 else f"{cycles} times"
     period = case.get("thermal", {}).get("period_s") or case.get("dem", {}).get("period_s")
     lasts = f"; a cycle lasts {text(period, 's')}" if period else ""
-    return f"The temperature goes {SHAPES.get(thermal.get('shape'), 'through its program')}, to {text(peak, 'K')}, {times}{lasts}."
+    way = SHAPES.get(thermal.get("shape"), "changes by up to {peak}").format(peak=text(peak, "K"))
+    return f"The temperature {way}, {times}{lasts}."
 
 
 def _spring_slider(case: dict[str, Any]) -> list[str]:
     link, joint = case["link"], case["joint"]
     limit = joint["friction_coefficient"] * joint["normal_force_N"]
     minus, plus = joint["clearance_minus_m"], joint["clearance_plus_m"]
-    stops = f"{text(plus, 'm')} away on either side" if minus == plus else f"{text(minus, 'm')} and {text(plus, 'm')} away"
+    both = f"{text(minus, 'm')} and {text(plus, 'm')} away"
+    stops = f"{text(plus, 'm')} away on either side" if minus == plus else both
     sentences = [
-        f"A bar, {text(link['stress_free_length_m'], 'm')} long and {text(link['cross_section_area_m2'], 'm2')} in section, "
-        f"is held at one end and pushes a block at the other.",
+        f"A bar, {text(link['stress_free_length_m'], 'm')} long and {text(link['cross_section_area_m2'], 'm2')} in "
+        f"section, is held at one end and pushes a block at the other.",
         f"The block is pressed on its floor with {text(joint['normal_force_N'], 'N')}; friction with "
         f"μ = {joint['friction_coefficient']:g} holds it up to {text(limit, 'N')}. Two stops are {stops}.",
     ]

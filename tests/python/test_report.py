@@ -1,0 +1,327 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""statejump report: the page needs nothing beside it, is of bounded size, and says what it shows."""
+from __future__ import annotations
+
+import base64
+import json
+import math
+import os
+import subprocess
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any, Callable
+
+import h5py
+import numpy as np
+import pytest
+
+from conftest import COMMAND, REPOSITORY, Outcome
+
+from statejump.compare import quantity
+from statejump.errors import StatejumpError
+from statejump.report import page, units
+from statejump.report.decimation import kept_samples, largest_error
+from statejump.report.document import TOLERANCE, Document
+from statejump.report.drawing import round_down
+from statejump.resultfile import Column, Event, ModelRun, Result, Scalar, read
+from statejump.resultfile import scene as drawing
+from statejump.resultfile.contents import CONTACT_STATES
+
+MEGABYTE = 1_000_000
+
+
+class Page(HTMLParser):
+    """What a browser would load or run."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.addresses: list[str] = []
+        self.scripts: list[tuple[dict[str, str | None], str]] = []
+        self.identifiers: list[str] = []
+        self.policy = ""
+        self.styles = ""
+        self.words = ""
+        self._inside = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        attributes = dict(attrs)
+        self.addresses += [
+            attributes[name] or "" for name in ("src", "href", "srcset", "action", "poster", "data") if name in attributes
+        ]
+        if "id" in attributes:
+            self.identifiers.append(attributes["id"] or "")
+        if attributes.get("http-equiv") == "Content-Security-Policy":
+            self.policy = attributes["content"] or ""
+        self._inside = tag
+        if tag == "script":
+            self.scripts.append((attributes, ""))
+
+    def handle_endtag(self, tag: str) -> None:
+        self._inside = ""
+
+    def handle_data(self, data: str) -> None:
+        if self._inside == "script":
+            attributes, text = self.scripts[-1]
+            self.scripts[-1] = (attributes, text + data)
+        elif self._inside == "style":
+            self.styles += data
+        else:
+            self.words += " " + data
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """What the page's script gets."""
+        return json.loads(next(text for attributes, text in self.scripts if attributes.get("type") == "application/json"))
+
+
+def decoded(column: Any, samples: int) -> np.ndarray:
+    """Return a column of the page."""
+    if isinstance(column, dict):
+        (kind, text), = column.items()
+        return np.frombuffer(base64.b64decode(text), dtype={"f": "<f4", "u": "u1"}[kind])
+    return np.full(samples, column)
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Results of both models of two cases."""
+    folder = tmp_path_factory.mktemp("report")
+    for case in ("table1", "umbrella_damped"):
+        done = subprocess.run(
+            [COMMAND, "compare", REPOSITORY / "cases" / f"{case}.toml", "--quiet"], cwd=folder, env=os.environ,
+            capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL,
+        )
+        assert done.returncode == 0, done.stderr
+    return folder / "results"
+
+
+def written(statejump: Callable[..., Outcome], *arguments: object) -> tuple[Page, int]:
+    """Return the page that the command writes, and its size in bytes."""
+    done = statejump("report", *arguments, "-o", "page.html")
+    assert done.status == 0, done.errors
+    path = Path(done.output.rsplit("page: ", 1)[1].split(" (")[0])
+    path = next(candidate for candidate in (path, _folder(statejump) / path) if candidate.is_file())
+    return Page(path.read_text(encoding="utf-8")), path.stat().st_size
+
+
+def _folder(statejump: Callable[..., Outcome]) -> Path:
+    # The fixture runs the command in the test's own folder.
+    return next(cell.cell_contents for cell in statejump.__closure__ or () if isinstance(cell.cell_contents, Path))
+
+
+@pytest.mark.parametrize(("case", "most"), [("table1", 2), ("umbrella_damped", 5)])
+def test_page_is_small_and_needs_nothing(
+    statejump: Callable[..., Outcome], results: Path, case: str, most: float
+) -> None:
+    found, size = written(statejump, results / case)
+    assert size < most * MEGABYTE
+    assert all(address.startswith(("#", "data:")) for address in found.addresses)
+    assert "default-src 'none'" in found.policy and "connect-src" not in found.policy
+    assert "@import" not in found.styles and "url(" not in found.styles
+    assert len(found.scripts) == 2 and all("src" not in attributes for attributes, _ in found.scripts)
+
+
+def test_page_says_what_was_found(statejump: Callable[..., Outcome], results: Path) -> None:
+    found, _ = written(statejump, results / "table1")
+    result = read(results / "table1" / "comparison.h5")
+    for row in result.comparison or []:
+        assert units.text(row.reduced, row.unit) in found.words and units.text(row.dem, row.unit) in found.words
+    assert "23.8095\u202fµm" in found.words  # f l0/(E A) = 30 N · 0.5 m / (70 GPa · 9 mm²)
+    assert "Both models agree: all 6 compared quantities are within tolerance." in found.words
+    assert "stop reached" in found.words and "Hertz" not in found.words
+    for library in ("three 0.", "@observablehq/plot", "d3-scale"):
+        assert library in found.words, "the licence of a bundled library is missing"
+
+
+def test_curves_on_the_page_are_those_of_the_file(statejump: Callable[..., Outcome], results: Path) -> None:
+    found, _ = written(statejump, results / "umbrella_damped")
+    result = read(results / "umbrella_damped" / "comparison.h5")
+    for model in found.data["runs"][0]["models"]:
+        history = result.models[model["key"]].history
+        time = decoded(model["columns"]["time_s"], 0).astype(float)
+        for name in ("theta2_rad", "eccentricity_x_m", "normal_force_N"):
+            full = history[name].values
+            line = np.interp(history["time_s"].values, time, decoded(model["columns"][name], len(time)))
+            # What decimation may cost, and single precision: of the values, and of the times, by the
+            # steepest slope, which for an impact is the whole range within one sample.
+            step = np.min(np.diff(history["time_s"].values))
+            single = np.finfo(np.float32).eps * (np.max(np.abs(full)) + np.ptp(full) * time[-1] / step)
+            assert np.max(np.abs(line - full)) <= TOLERANCE * np.ptp(full) + single, name
+
+
+def test_clearance_is_relative_and_in_full(statejump: Callable[..., Outcome], results: Path) -> None:
+    """The journal is given against its bearing: as absolute places the clearance would be rounded."""
+    found, _ = written(statejump, results / "umbrella_damped")
+    run = found.data["runs"][0]
+    part = {part["type"]: part for part in run["scene"]["parts"]}
+    point = run["scene"]["points"][part["journal"]["points"][0]]
+    assert point["of"] == part["bearing"]["points"][0]
+    columns = run["models"][0]["columns"]
+    samples = len(decoded(columns["time_s"], 0))
+    way = np.hypot(*(decoded(columns[name], samples).astype(float) for name in point["at"][:2]))
+    depth = 1e-7  # the largest overlap at these forces is far below 0.1 µm
+    assert part["bearing"]["clearance"] == pytest.approx(1e-4) and 0.99e-4 < np.max(way) < 1e-4 + depth
+    assert run["scene"]["magnification"] == 20  # 3 % of 0.13 m over 0.1 mm is 39
+
+
+def test_title_cannot_break_out(statejump: Callable[..., Outcome], edited: Callable[..., Path]) -> None:
+    title = "</script><script>alert(1)</script><!-- <b>&amp; \\u2028"
+    case = edited(('title = "Table 1, stop reached"', f"title = '{title}'"))
+    assert statejump("reduced", case).status == 0
+    found, _ = written(statejump, "results")
+    assert len(found.scripts) == 2
+    assert found.data["runs"][0]["title"] == title
+    assert title in found.words
+
+
+def test_one_model_alone(statejump: Callable[..., Outcome], cases: Path) -> None:
+    assert statejump("reduced", cases / "umbrella_damped.toml").status == 0
+    found, _ = written(statejump, "results/umbrella_damped/reduced.h5")
+    assert [model["key"] for model in found.data["runs"][0]["models"]] == ["reduced"]
+    assert "one model alone, nothing is compared" in found.words
+
+
+def test_several_runs(statejump: Callable[..., Outcome], results: Path) -> None:
+    found, size = written(statejump, results)
+    assert [run["id"] for run in found.data["runs"]] == ["run1", "run2"]
+    assert len(set(found.identifiers)) == len(found.identifiers)
+    assert {"#run1", "#run2"} <= set(found.addresses) and "2 runs" in found.words
+    assert size < 5 * MEGABYTE
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "sentence"),
+    [
+        ("missing.h5", None, "missing.h5: no such result file"),
+        ("text.h5", b"time_s\n0\n", "text.h5: not a result file: it is not HDF5"),
+        ("empty", "folder", "empty: no result file (*.h5) in this folder; 'statejump compare CASE' writes one"),
+    ],
+)
+def test_bad_runs(
+    statejump: Callable[..., Outcome], tmp_path: Path, name: str, content: bytes | str | None, sentence: str
+) -> None:
+    if content == "folder":
+        (tmp_path / name).mkdir()
+    elif isinstance(content, bytes):
+        (tmp_path / name).write_bytes(content)
+    done = statejump("report", name)
+    assert (done.status, done.errors) == (2, f"error: {sentence}\n")
+    assert not list(tmp_path.rglob("*.html"))
+
+
+def test_other_hdf5(statejump: Callable[..., Outcome], tmp_path: Path) -> None:
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["x"] = 1
+    done = statejump("report", "other.h5")
+    assert done.status == 2 and done.errors.startswith("error: other.h5: not a result file")
+
+
+def test_page_that_cannot_be_written(statejump: Callable[..., Outcome], results: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    done = statejump("report", results / "table1", "-o", "file/page.html")
+    assert done.status == 2 and done.errors.startswith("error: file/page.html: cannot be written")
+    assert "Traceback" not in done.errors
+
+
+def test_script_that_was_not_built(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(page, "HERE", tmp_path)
+    with pytest.raises(StatejumpError, match="build with STATEJUMP_BUILD_REPORT=ON"):
+        page.render([])
+
+
+def test_code_that_would_end_its_element() -> None:
+    with pytest.raises(ValueError):
+        page.embedded_code("x = '</SCRIPT>'", "script")
+
+
+def _truss(joints: int, samples: int) -> Result:
+    """A chain of links with a clearance joint each, all going their own way."""
+    time = np.linspace(0.0, 1.0, samples)
+    change = 100 * np.sin(np.pi * time)
+    names = [f"joint_{place}" for place in range(joints)]
+    phase = np.arange(joints)
+    clearance, radius, length = 1e-4, 5e-3, 0.1
+    turn = 2 * np.pi * time[:, None] * (1 + phase % 5) + phase
+    offset = clearance * np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=2)
+    state = ((turn / 2).astype(int) % 3).astype(np.uint8)
+    parts: list[dict[str, Any]] = []
+    for place, name in enumerate(names):
+        bearing = [length * (place + 1) + 0.0, 0.0, 0.0]
+        journal = drawing.ref("contacts/journal_m", name)
+        parts += [
+            {"name": f"bearing_{place}", "type": "bearing", "centre": bearing, "angle_rad": 0.0,
+             "radius_m": radius + clearance},
+            {"name": f"journal_{place}", "type": "journal", "centre": journal, "angle_rad": 0.0, "radius_m": radius},
+            {"name": f"link_{place}", "type": "link", "ends": [[length * place, 0.0, 0.0], journal], "width_m": 3e-3},
+        ]
+    places = offset + np.stack([length * (phase + 1.0), 0 * phase, 0 * phase], axis=1)[None]
+    force = 1e5 * offset * np.where(state > 0, 1.0, 0.0)[:, :, None]
+
+    def run() -> ModelRun:
+        return ModelRun(
+            history={"time_s": Column(time, "s"), "temperature_change_K": Column(change, "K"),
+                     "tip_displacement_m": Column(1e-3 * change, "m")},
+            energy={"thermal_work_J": Column(change, "J"), "elastic_energy_J": Column(change, "J")},
+            links={},
+            contacts={
+                "state": Column(state, items="contacts", labels=CONTACT_STATES),
+                "gap_m": Column(np.where(state > 0, 0.0, clearance), "m", "contacts"),
+                "journal_m": Column(places, "m", "contacts"),
+                "point_m": Column(places * (1 + radius), "m", "contacts"),
+                "normal_force_N": Column(-force, "N", "contacts"),
+                "tangential_force_N": Column(0.3 * force[:, :, [1, 0, 2]], "N", "contacts"),
+            },
+            events=[Event("first_slip", 0.1 * place / joints, 1.0, name) for place, name in enumerate(names)],
+            summary={"state_jump_m": Scalar(1e-4, "m")},
+        )
+
+    contacts = [(name, f"journal_{place}", f"bearing_{place}") for place, name in enumerate(names)]
+    return Result(
+        "compare", True, "chain", "truss", "A hundred joints", "", "", "{}", {}, {"contacts": names},
+        drawing.description(parts, contacts, clearance), {"reduced": run(), "dem": run()},
+        [quantity("state_jump", "m", 1e-4, 1e-4, 1e-6)],
+    )
+
+
+def test_a_hundred_joints(tmp_path: Path) -> None:
+    # Ten revolutions in 2000 samples: more samples are wanted than the page may hold.
+    document = Document(_truss(100, 2000), "chain.h5", "run1", 7e6)
+    text = page.render([document])
+    assert len(text.encode()) < 10 * MEGABYTE
+    assert all(kept.kept < kept.samples and kept.error > 0 for kept in document.kept)
+    assert f"{document.kept[0].kept} of 2\u202f000 samples are on this page" in " ".join(Page(text).words.split(" "))
+
+
+def test_decimation_keeps_what_it_says() -> None:
+    generator = np.random.default_rng(1)
+    time = np.cumsum(generator.uniform(0.1, 1.0, 3000))
+    columns = np.stack([np.sin(time / 50), np.where(time > 700, 1.0, 0.0), np.zeros(3000)], axis=1)
+    columns[1234, 0] = 30.0  # an impact of one sample
+    for most, tolerance in ((3000, 1e-3), (25, 1e-3)):
+        chosen = kept_samples(time, columns, most, tolerance, always=(17,))
+        error = largest_error(time, columns.T, chosen)
+        lines = np.stack([np.interp(time, time[chosen], column[chosen]) for column in columns.T], axis=1)
+        real = np.max(np.abs(lines - columns) / np.maximum(np.ptp(columns, axis=0), 1e-300))
+        assert error == pytest.approx(real, rel=1e-9)
+        assert {0, 17, 1234, 2999} <= set(chosen.tolist())
+        assert error <= tolerance or len(chosen) == most
+    assert len(kept_samples(time, columns[:, 2:], 10, 1e-3)) == 2
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "expected"),
+    [
+        (2.380952380952381e-05, "m", "23.8095\u202fµm"), (-7.65e-11, "m", "−0.0765\u202fnm"), (0.0, "J", "0\u202fJ"),
+        (9e-6, "m2", "9\u202fmm²"), (70e9, "Pa", "70\u202fGPa"), (87.5, "K", "87.5\u202fK"), (2e-4, "-", "0.0002"),
+        (1e-22, "J", "1.00000·10⁻²²\u202fJ"), (0.5, "s", "500\u202fms"), (math.nan, "m", "none"), (None, "m", "none"),
+        (1.0, "N m/rad", "1\u202fN·m/rad"),
+    ],
+)
+def test_numbers_with_units(value: float | None, unit: str, expected: str) -> None:
+    assert units.text(value, unit) == expected
+
+
+@pytest.mark.parametrize(("value", "expected"), [(0.3, 1), (1, 1), (4.99, 2), (5, 5), (39, 20), (1999, 1000)])
+def test_default_magnification_is_round(value: float, expected: float) -> None:
+    assert round_down(value) == expected
