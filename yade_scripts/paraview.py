@@ -7,8 +7,8 @@
 Files are named as those of YADE's VTKRecorder, ``<prefix>joints.<iteration>.vtp``, with one
 ``<prefix>joints.vtp.series`` each that gives ParaView the true times:
 
-- joints: outline of every Journal, Bearing, Ball, Socket, Slider, SlotFace and MeshBore (a circle
-  of its mean radius about the body's centre) at the current temperature; ``kind`` counts them as KINDS below does
+- joints: outline of every Journal, Bearing, Ball, Socket, Slider and SlotFace, and the triangles of every
+  MeshBore, at the current temperature; ``kind`` counts them as KINDS below does
 - links: every ThermalLink as a line, with its axial force
 - contacts: a point per contact, with normal and shear force as vectors on body 1, the gap or
   penetration depth and whether it slips
@@ -20,6 +20,7 @@ import os
 from math import cos, pi, sin
 from pathlib import Path
 
+import numpy as np
 import statejump_yade as sj
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
@@ -34,11 +35,12 @@ KINDS = {"Journal": 1, "Bearing": 2, "Slider": 3, "SlotFace": 4, "Ball": 5, "Soc
 
 
 class _Data:
-    """Polylines or points with arrays, filled one by one. The arrays are there even when no cell
-    is: ParaView wants the same ones at all times."""
+    """Polylines or points with arrays, filled one by one, and after them meshes. The arrays are there
+    even when no cell is: ParaView wants the same ones at all times."""
 
     def __init__(self, components: dict[str, int]) -> None:
         self.points, self.lines, self.vertices = vtkPoints(), vtkCellArray(), vtkCellArray()
+        self.triangles = vtkCellArray()
         self.points.SetDataTypeToDouble()
         self.arrays: dict[str, vtkDoubleArray] = {}
         for name, count in components.items():
@@ -55,12 +57,26 @@ class _Data:
         for array, value in zip(self.arrays.values(), values, strict=True):
             array.InsertNextTuple(tuple(value) if isinstance(value, Vector3) else (float(value),))
 
+    def add_mesh(self, points: np.ndarray, triangles: np.ndarray, *values: float | Vector3) -> None:
+        """Add triangles, a cell each with the same values; VTK counts them after all lines, so add
+        them last."""
+        first = self.points.GetNumberOfPoints()
+        for point in points:
+            self.points.InsertNextPoint(point)
+        for corners in (triangles + first).tolist():
+            self.triangles.InsertNextCell(3, corners)
+        for array, value in zip(self.arrays.values(), values, strict=True):
+            entry = tuple(value) if isinstance(value, Vector3) else (float(value),)
+            for _ in range(len(triangles)):
+                array.InsertNextTuple(entry)
+
     def write(self, path: Path) -> None:
         """Write the file aside, then rename it."""
         data = vtkPolyData()
         data.SetPoints(self.points)
         data.SetLines(self.lines)
         data.SetVerts(self.vertices)
+        data.SetPolys(self.triangles)
         for array in self.arrays.values():
             data.GetCellData().AddArray(array)
         aside = path.with_name(f".{path.stem}.partial{path.suffix}")
@@ -83,12 +99,20 @@ def _outline(body) -> list[Vector3]:
         half = shape.distance * grown if shape.distance > 0 else 1.0
         corners = [normal * shape.distance * grown + across * s for s in (-half, half)]
         return [state.pos + state.ori * corner for corner in corners]
-    radius = (shape.meanRadius() if kind == "MeshBore" else shape.radius) * grown
+    radius = shape.radius * grown
     turn = [2 * pi * i / SIDES for i in range(SIDES + 1)]
     circle = [Vector3(radius * cos(a), radius * sin(a), 0) for a in turn]
     if kind in ("Ball", "Socket"):  # one more great circle, from the same point
         circle += [Vector3(point[0], 0, point[1]) for point in circle]
     return [state.pos + state.ori * point for point in circle]
+
+
+def _mesh(body, given: np.ndarray) -> np.ndarray:
+    """Return the vertices of a MeshBore in the world [m], from those in its own axes."""
+    shape, state = body.shape, body.state
+    centre = np.array(shape.wallCentre())
+    local = centre + (1 + shape.thermalStrain) * (given - centre)
+    return np.array(state.pos) + local @ np.array(state.ori.toRotationMatrix()).reshape(3, 3).T
 
 
 class ParaViewRecorder:
@@ -102,15 +126,26 @@ class ParaViewRecorder:
         self.prefix, self.program = Path(prefix), program
         self.prefix.parent.mkdir(parents=True, exist_ok=True)
         self.series: dict[str, list[dict[str, object]]] = {}
+        # By body: vertices and triangles never change, and YADE makes new lists at each reading.
+        self.meshes: dict[int, tuple[np.ndarray, np.ndarray]] = {}
 
     def write(self) -> None:
         """Write one file of each sort for the current step, and the series so far."""
         change = self.program.temperatureChange(O.time) if self.program else 0.0
         joints = _Data({"body": 1, "kind": 1, "temperature_change_K": 1, "velocity_m_per_s": 3})
+        bores = []
         for body in O.bodies:
             kind = KINDS.get(type(body.shape).__name__) if body.shape else None
-            if kind:
+            if kind == KINDS["MeshBore"]:
+                bores.append(body)
+            elif kind:
                 joints.add(_outline(body), body.id, kind, change, body.state.vel)
+        for body in bores:
+            if body.id not in self.meshes:
+                shape = body.shape
+                self.meshes[body.id] = (shape.scale * np.array(shape.vertices), np.array(shape.triangles))
+            vertices, triangles = self.meshes[body.id]
+            joints.add_mesh(_mesh(body, vertices), triangles, body.id, KINDS["MeshBore"], change, body.state.vel)
         links = _Data({"axial_force_N": 1, "temperature_change_K": 1})
         for engine in O.engines:
             for link in engine.links if isinstance(engine, sj.ThermalLinks) else ():

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <boost/make_shared.hpp>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <sstream>
 
 #include "contact_parts.hpp"
@@ -103,6 +103,18 @@ void MeshBore::check() {
   for (const Vector3r& vertex : mesh_->triangles().vertices) {
     half_box_ = half_box_.cwiseMax(vertex.cwiseAbs());
   }
+  // Edges of one triangle only; neighbours run along an edge in opposite directions.
+  std::vector<std::array<int, 2>> edges, opposite;
+  for (const auto& face : mesh_->triangles().faces) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      edges.push_back({face[k], face[(k + 1) % 3]});
+      opposite.push_back({face[(k + 1) % 3], face[k]});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  std::sort(opposite.begin(), opposite.end());
+  std::set_difference(edges.begin(), edges.end(), opposite.begin(), opposite.end(),
+                      std::back_inserter(rim_));
 }
 
 const geometry::BoreMesh& MeshBore::made() const {
@@ -112,6 +124,10 @@ const geometry::BoreMesh& MeshBore::made() const {
 
 Real MeshBore::mean_radius() const {
   return made().mean_radius();
+}
+
+Vector3r MeshBore::wall_centre() const {
+  return made().centre();
 }
 
 Real MeshBore::reconstruction_error() const {

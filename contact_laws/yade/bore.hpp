@@ -38,7 +38,9 @@ struct MeshBore : RegisteredIndexable<MeshBore, ThermalShape> {
   Vector3r half_extents(const yade::Quaternionr& orientation) const;
   const std::optional<geometry::BoreMesh>& mesh() const { return mesh_; }
   Real mean_radius() const;
+  Vector3r wall_centre() const;
   Real reconstruction_error() const;
+  const std::vector<std::array<int, 2>>& rim() const { return rim_; }  // edges, for the view
   std::vector<Real> section_radii(Real z, int count) const;
 
   static auto attributes() {
@@ -57,6 +59,8 @@ struct MeshBore : RegisteredIndexable<MeshBore, ThermalShape> {
   static void register_methods(PythonClass& entry) {
     entry.def("meanRadius", &MeshBore::mean_radius,
               "Radius of the cylinder (sphere) of least squares at the reference temperature [m]");
+    entry.def("wallCentre", &MeshBore::wall_centre,
+              "Point of the mesh's axes about which the wall expands [m]");
     entry.def("reconstructionError", &MeshBore::reconstruction_error,
               "Estimate of the error of the smooth wall [m]");
     entry.def(
@@ -69,6 +73,7 @@ struct MeshBore : RegisteredIndexable<MeshBore, ThermalShape> {
  private:
   const geometry::BoreMesh& made() const;
   std::optional<geometry::BoreMesh> mesh_;  // by check()
+  std::vector<std::array<int, 2>> rim_;
   Vector3r half_box_ = Vector3r::Zero();
 };
 

@@ -250,6 +250,18 @@ void draw(const MeshBore& bore, const yade::State&, bool wire) {
     return mesh.centre() + grown * (v - mesh.centre());
   };
   constexpr std::size_t most = 20000;  // beyond that, dots
+  {
+    const Painter edges(bore.color, 1);
+    glDisable(GL_LIGHTING);
+    glBegin(GL_LINES);
+    for (const auto& edge : bore.rim()) {
+      for (const int end : edge) {
+        const Vector3r v = place(all.vertices[static_cast<std::size_t>(end)]);
+        glVertex3d(v.x(), v.y(), v.z());
+      }
+    }
+    glEnd();
+  }
   const Painter painter(bore.color, wire ? 1 : 0.35);
   if (wire || all.faces.size() > most) {
     glDisable(GL_LIGHTING);

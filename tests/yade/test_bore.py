@@ -84,6 +84,17 @@ def test_a_wall_that_bulges_is_touched_as_a_ball(seen):
     assert found["johnson"][1].startswith("a wall that bulges needs normalLaw 'hertz_internal', not 'johnson'")
 
 
+def test_paraview_gets_the_triangles(seen):
+    found = seen["recorded"]
+    lines, triangles, given = found["cells"]
+    assert (lines, triangles) == (1, given) and given == 720
+    assert found["kinds"] == [1, 7, 1 + given]
+    # The bore, 10 mm long and 6.1 by 4.1 mm from its axis, lies along x and has grown by 1 %.
+    x, y, z = found["bounds"][1], found["bounds"][3], found["bounds"][5]
+    assert [x, z] == pytest.approx([0.02 + 1.01 * 5e-3, 1.01 * 6.1e-3], rel=1e-9)
+    assert y == pytest.approx(1.01 * 5e-3, rel=1e-3)  # the journal is wider there
+
+
 def test_mistakes_are_one_sentence(seen):
     kind, text = seen["too_close"]
     assert kind == "RuntimeError"

@@ -1,4 +1,4 @@
-"""YADE's own 3-D view draws journal, bearing, slider and slot. Needs an X server without a screen."""
+"""YADE's own 3-D view draws all our shapes. Needs an X server without a screen."""
 import os
 import shutil
 import subprocess
@@ -55,6 +55,28 @@ def test_clearance_is_drawn_larger(pictures):
     columns = [mask.any(axis=0).nonzero()[0] for mask in (plain, magnified)]
     assert columns[1].max() == pytest.approx(columns[0].max(), abs=2)
     assert columns[1].min() > columns[0].min() + 10
+
+
+def test_ball_in_its_socket_is_seen(pictures):
+    ball, socket = pixels(pictures["ball"], 0, 2), pixels(pictures["ball"], 2, 0, 0.05)
+    # Both round and about one middle, 0.9 R1 to R2 in size. The socket's own great circles cross the ball.
+    sizes = [(mask.any(axis=1).nonzero()[0], mask.any(axis=0).nonzero()[0]) for mask in (ball, socket)]
+    extent = [[1 + where.max() - where.min() for where in pair] for pair in sizes]
+    for across, up in extent:
+        assert across == pytest.approx(up, abs=4)
+    assert extent[0][0] / extent[1][0] == pytest.approx(0.9 * 5.0 / 5.1, rel=0.04)
+    assert ball.sum() > 0.8 * 3.14159 / 4 * extent[0][0] ** 2
+
+
+def test_bore_of_triangles_is_seen(pictures):
+    mesh = pixels(pictures["mesh"], 2, 0, 0.05)
+    assert mesh.sum() > 2000
+    # Seen aslant, 10 mm of length and 10.2 mm of width, more up than across.
+    rows, columns = (1 + where.max() - where.min() for where in (
+        mesh.any(axis=1).nonzero()[0], mesh.any(axis=0).nonzero()[0]))
+    assert 1.1 < rows / columns < 1.7
+    # Its two rims are drawn in its full colour, the wall between is translucent.
+    assert pixels(pictures["mesh"], 2, 0, 0.2).sum() > 400
 
 
 def test_slider_in_its_slot_is_seen(pictures):

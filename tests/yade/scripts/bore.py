@@ -1,6 +1,9 @@
 """Journals and balls in bores of triangles. `bore.py checks` or `bore.py save FOLDER` or `bore.py many`."""
+import inspect
 import sys
+import tempfile
 from math import cos, pi, sin
+from pathlib import Path
 
 import statejump_yade as sj
 from yade import wrapper
@@ -170,6 +173,34 @@ def bulge():
     }
 
 
+def recorded():
+    """What the recorder for ParaView writes of a journal and a warm bore beside it."""
+    sys.path.insert(0, str(Path(inspect.getfile(body)).resolve().parents[3] / "yade_scripts"))
+    from paraview import ParaViewRecorder
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+    reset()
+    metal = material(expansion=1e-4)
+    body((0, 0, 0), sj.Journal(radius=R1), metal)
+    wall = tube(60, 6, lobes=[(2, 1e-3, 0)])
+    body((0.02, 0, 0), wall, metal, orientation=Quaternion((0, 1, 0), pi / 2))
+    bore_engines(constant(100))
+    O.dt = 1e-9
+    O.run(2, True)  # the program begins at 0
+    with tempfile.TemporaryDirectory() as folder:
+        ParaViewRecorder(folder + "/a-").write()
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(f"{folder}/a-joints.{O.iter}.vtp")
+        reader.Update()
+    found = reader.GetOutput()
+    kinds = found.GetCellData().GetArray("kind")
+    return {
+        "cells": [found.GetNumberOfLines(), found.GetNumberOfPolys(), len(wall.triangles)],
+        "kinds": [kinds.GetValue(0), kinds.GetValue(1), kinds.GetNumberOfTuples()],
+        "bounds": found.GetBounds(),
+    }
+
+
 def refused():
     triangles = sj.bore_triangles(R2, LENGTH, 40, 4)
     broken = {**triangles, "triangles": [t for i, t in enumerate(triangles["triangles"]) if i != 100]}
@@ -230,7 +261,7 @@ if mode == "checks":
         "swing": {
             "bearing": swing(sj.Bearing(radius=R2)), "mesh": swing(tube()), "searching": swing(tube(), 0.0),
         },
-        "two": two_points(), "too_close": too_close(), "refused": refused(), "bulge": bulge(),
+        "two": two_points(), "too_close": too_close(), "refused": refused(), "bulge": bulge(), "recorded": recorded(),
         "radii": [tube().meanRadius(), *tube().sectionRadii(0.0, 7)],
     })
 elif mode == "many":

@@ -10,6 +10,8 @@ from PyQt5.QtCore import QTimer
 from PyQt5.QtWidgets import QApplication
 from yade import qt
 
+from yade.minieigenHP import Quaternion
+
 from parts import *  # noqa: F403
 
 ORANGE, BLUE, GREEN = (0.9, 0.6, 0.2), (0.3, 0.5, 0.9), (0.2, 0.8, 0.3)
@@ -23,7 +25,7 @@ body((0, 0, 0), sj.Bearing(radius=R2, color=BLUE), metal)
 engines()
 O.dt = 1e-7
 # What the scene shows in turn; the slot is wider than the joint.
-pictures = ["plain", "magnified", "slider"]
+pictures = ["plain", "magnified", "slider", "ball", "mesh"]
 view = qt.View()
 view.axes, view.grid = False, (False, False, False)
 view.screenSize = (600, 600)
@@ -38,15 +40,30 @@ def look(distance):
 
 
 def picture(index):
+    global magnified
     name = pictures[index]
     if name == "magnified":
         sj.Gl1_Journal.clearanceScale = 10
+        magnified = sj.Gl1_Journal.clearanceScale
     if name == "slider":
         # Face on to the block; the floor and both stops are seen from their edges.
         O.bodies.erase(pin)
         O.bodies.erase(pin + 1)
         body((0, 0, 0), sj.Slider(radius=R1, color=GREEN), metal)
         O.bodies.append(sj.slot((0, 0, 0), 2 * R1, 2 * R1, R1, metal))
+    if name in ("ball", "mesh"):
+        for old in list(O.bodies):
+            O.bodies.erase(old.id)
+        inner, outer, turned = {
+            "ball": (sj.Ball(radius=0.9 * R1, color=ORANGE), sj.Socket(radius=R2, color=BLUE), 0.0),
+            # Half a millimetre deep lobes, seen aslant into the bore.
+            "mesh": (sj.Journal(radius=0.8 * R1, halfLength=3e-3, color=ORANGE),
+                     sj.MeshBore(**sj.bore_triangles(R2, 10e-3, 120, 12, lobes=[(3, 4e-4, 0)]), color=BLUE), 0.5),
+        }[name]
+        sj.Gl1_Journal.clearanceScale = 1
+        tilt = Quaternion((1, 0, 0), turned)
+        for shape in (inner, outer):
+            body((0, 0, 0), shape, metal, orientation=tilt)
     look(0.06)
     O.step()
     QTimer.singleShot(700, lambda: save(index))
@@ -62,7 +79,7 @@ def go_on(index):
         picture(index)
     else:
         O.run(50, True)
-        finish({"pictures": pictures, "iteration": O.iter, "scale": sj.Gl1_Journal.clearanceScale})
+        finish({"pictures": pictures, "iteration": O.iter, "scale": magnified})
         os._exit(0)
 
 

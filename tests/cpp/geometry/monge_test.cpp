@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Our polynomial through a vertex beside CGAL's jet fitting, the same method by its authors.
+#include <CGAL/Monge_via_jet_fitting.h>
+#include <CGAL/Simple_cartesian.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+#include "jet.hpp"
+#include "support.hpp"
+
+namespace statejump::geometry {
+namespace {
+
+using testing::bearing_radius;
+using testing::pi;
+using testing::Random;
+using testing::Vector3d;
+
+struct Curvatures {
+  double larger, smaller;  // [1/m], positive where the surface rises to the normal
+};
+
+Curvatures ours(const std::vector<Vector3d>& points, const Vector3d& normal) {
+  const Jet jet =
+      fit_jet(points[0], normal, Vector3d::UnitZ(), {points.begin() + 1, points.end()}, 4);
+  const JetHit hit = jet.hit(points[0], normal, 0);
+  // The tensor has no part along the normal: 0 between or beside the other two.
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hit.bend);
+  Eigen::Index along = 0;
+  (solver.eigenvectors().transpose() * hit.normal).cwiseAbs().maxCoeff(&along);
+  const double a = solver.eigenvalues()((along + 1) % 3), b = solver.eigenvalues()((along + 2) % 3);
+  return {std::max(a, b), std::min(a, b)};
+}
+
+Curvatures cgals(const std::vector<Vector3d>& points, const Vector3d& normal) {
+  using Kernel = CGAL::Simple_cartesian<double>;
+  std::vector<Kernel::Point_3> given;
+  for (const Vector3d& p : points) given.emplace_back(p.x(), p.y(), p.z());
+  CGAL::Monge_via_jet_fitting<Kernel> fit;
+  auto form = fit(given.begin(), given.end(), 4, 4);
+  form.comply_wrt_given_normal(Kernel::Vector_3(normal.x(), normal.y(), normal.z()));
+  return {form.principal_curvatures(0), form.principal_curvatures(1)};
+}
+
+TEST(JetFit, AgreesWithCgalsMongeViaJetFitting) {
+  BoreShape shape{bearing_radius, 10e-3};
+  shape.lobes = {{3, 1e-4, 0.3}};
+  shape.crown = 2e-4;
+  Random random;
+  double last = 0;
+  for (const int around : {60, 120, 240}) {
+    const double step = 2 * pi / around, along = step * bearing_radius;
+    double apart = 0;
+    for (int i = 0; i < 100; ++i) {
+      const double theta = random.uniform(-3, 3), z = random.uniform(-3e-3, 3e-3);
+      const auto at = [&](double t, double h) {
+        const double r = bore_radius(shape, t, h);
+        return Vector3d(r * std::cos(t), r * std::sin(t), h);
+      };
+      std::vector<Vector3d> points{at(theta, z)};
+      for (int a = -2; a <= 2; ++a)
+        for (int b = -2; b <= 2; ++b)
+          if (a != 0 || b != 0)
+            points.push_back(at(theta + (a + random.uniform(-0.2, 0.2)) * step,
+                                z + (b + random.uniform(-0.2, 0.2)) * along));
+      const Vector3d normal = -Vector3d(std::cos(theta), std::sin(theta), 0);
+      const Curvatures one = ours(points, normal), other = cgals(points, normal);
+      apart = std::max(
+          {apart, std::abs(one.larger - other.larger), std::abs(one.smaller - other.smaller)});
+    }
+    apart *= bearing_radius;
+    std::printf("%d around: principal curvatures differ by %.2g / R\n", around, apart);
+    // The fits weigh the neighbours differently, ours keeps the vertex: they differ by what both
+    // leave out, terms of the fifth order, h^3 in the curvature.
+    if (last > 0) {
+      EXPECT_LT(apart, last / 6);
+    }
+    EXPECT_LT(apart, std::pow(step, 3));
+    last = apart;
+  }
+}
+
+}  // namespace
+}  // namespace statejump::geometry
