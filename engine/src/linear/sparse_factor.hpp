@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <memory>
+
+namespace statejump::detail {
+
+/// LU factors of a sparse square matrix whose pattern never changes. One source file per library:
+/// KLU where SuiteSparse is installed, else Eigen's SparseLU. (CHOLMOD factorises symmetric
+/// matrices only; Coulomb slip is not symmetric.) Serial: the result does not depend on a number of
+/// threads.
+class SparseFactor {
+ public:
+  SparseFactor();
+  ~SparseFactor();
+  SparseFactor(const SparseFactor&) = delete;
+  SparseFactor& operator=(const SparseFactor&) = delete;
+
+  /// Factors the matrix; orders it at the first call. False if it is singular to rounding.
+  bool factorize(const Eigen::SparseMatrix<double>& matrix);
+  /// Solution of the factored system.
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
+  /// "KLU" or "SparseLU".
+  static const char* library();
+
+ private:
+  struct Factors;
+  std::unique_ptr<Factors> factors_;
+};
+
+}  // namespace statejump::detail

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+
+#include "truss_parts.hpp"
+#include "truss_system.hpp"
+
+namespace statejump::detail {
+
+namespace {
+
+/// Angle between two links from the drawn shape, or of one from the ground [rad].
+double torsion_angle(const TrussModel& model, const TrussTorsionSpring& spring,
+                     const Matrix32& plane, const TrussSystem& system, const VectorXd& z) {
+  const auto turned = [&](int i) {
+    const TrussLink& link = model.links[index(i)];
+    const Vector2d drawn = plane.transpose() * (model.nodes[index(link.second)].position -
+                                                model.nodes[index(link.first)].position);
+    const Vector2d moved = plane.transpose() * (system.displacement(link.second, z) -
+                                                system.displacement(link.first, z));
+    return std::atan2(cross(drawn, moved), drawn.dot(drawn + moved));
+  };
+  const double first = turned(spring.first_link);
+  return spring.second_link < 0 ? first : turned(spring.second_link) - first;
+}
+
+}  // namespace
+
+Axial TrussSystem::axial(const TrussLink& link, const VectorXd& z, double time) const {
+  const Vector3d drawn =
+      model_->nodes[index(link.second)].position - model_->nodes[index(link.first)].position;
+  const Lengths length = lengths(drawn, displacement(link.second, z) - displacement(link.first, z));
+  return link_axial(link, length.growth, length.drawn,
+                    model_->temperature_change(link.program, link.temperature_fraction, time));
+}
+
+void TrussSystem::describe(const VectorXd& z, double time, const Statuses& statuses,
+                           TrussState& state) const {
+  const TrussModel& model = *model_;
+  const auto size = [](const auto& list) { return static_cast<Eigen::Index>(list.size()); };
+  state.time = time;
+  state.temperature_change = model.temperature_change(0, 1.0, time);
+  state.displacement.resize(3, size(model.nodes));
+  state.axial_force.resize(size(model.links));
+  state.tension.resize(size(model.springs));
+  state.slide.resize(size(model.sliders));
+  state.slider_force.resize(size(model.sliders));
+  state.eccentricity.resize(3, size(model.revolutes));
+  state.normal_force.resize(size(model.revolutes));
+  state.friction_force.resize(size(model.revolutes));
+  state.slider_status = statuses.sliders;
+  state.revolute_status = statuses.revolutes;
+  state.elastic_energy = 0.0;
+  state.load_potential = 0.0;
+  for (int i = 0; i < size(model.nodes); ++i) {
+    state.displacement.col(i) = displacement(i, z);
+    state.load_potential -= model.nodes[index(i)].load.dot(state.displacement.col(i));
+  }
+  for (int i = 0; i < size(model.links); ++i) {
+    const Axial force = axial(model.links[index(i)], z, time);
+    state.axial_force[i] = -force.tension;
+    state.elastic_energy += 0.5 * force.tension * force.tension / force.stiffness;
+  }
+  for (int i = 0; i < size(model.springs); ++i) {
+    const AxialSpring& spring = model.springs[index(i)];
+    const Axial force = spring_axial(spring, between(spring.first, spring.second, z).norm());
+    state.tension[i] = force.tension;
+    if (force.stiffness > 0.0) {
+      state.elastic_energy += 0.5 * force.tension * force.tension / force.stiffness;
+    }
+  }
+  for (std::size_t i = 0; i < model.torsion_springs.size(); ++i) {
+    const TrussTorsionSpring& spring = model.torsion_springs[i];
+    const double wound =
+        torsion_angle(model, spring, torsion_plane_[i], *this, z) - spring.free_angle;
+    state.elastic_energy += 0.5 * spring.stiffness * wound * wound;
+  }
+  for (int i = 0; i < size(model.sliders); ++i) {
+    state.slide[i] = slide(i, z);
+    state.slider_force[i] = slider_force(i, z);
+  }
+  for (int i = 0; i < size(model.revolutes); ++i) {
+    const ClearanceRevolute& revolute = model.revolutes[index(i)];
+    state.eccentricity.col(i) = between(revolute.bearing_node, revolute.journal_node, z);
+    const Vector2d force = revolute_force(i, z);
+    state.normal_force[i] = force[0];
+    state.friction_force[i] = force[1];
+    state.elastic_energy += 0.4 * force[0] * depth_of(revolute, force[0]);  // 2/5 K δ^5/2
+  }
+}
+
+void TrussSystem::account(const VectorXd& z_before, double time_before, const VectorXd& z,
+                          double time, const StepStart& start, TrussState& state) const {
+  const TrussModel& model = *model_;
+  for (int i = 0; i < static_cast<int>(model.sliders.size()); ++i) {
+    // Whenever it slides, friction is f; a stop takes no heat.
+    state.slider_dissipation[i] +=
+        model.sliders[index(i)].friction_force * std::abs(slide(i, z) - start.slide[i]);
+  }
+  for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
+    const RevoluteGeometry g = revolute_geometry(i, z, time, start, 1.0);
+    const double normal = 0.5 * (revolute_force(i, z_before)[0] + revolute_force(i, z)[0]);
+    state.revolute_dissipation[i] +=
+        model.revolutes[index(i)].friction_coefficient * normal * std::abs(g.surface_slide);
+  }
+  for (const TrussLink& link : model.links) {
+    if (link.thermal_expansion == 0.0) continue;
+    // ∂V/∂l_T = −N − N²/(2 E A), by the trapezoidal rule.
+    const auto rate = [&](const VectorXd& at, double when) {
+      const double tension = axial(link, at, when).tension;
+      return -tension * (1.0 + 0.5 * tension / link.axial_stiffness);
+    };
+    const double growth =
+        link.stress_free_length * link.thermal_expansion *
+        (model.temperature_change(link.program, link.temperature_fraction, time) -
+         model.temperature_change(link.program, link.temperature_fraction, time_before));
+    state.thermal_work += 0.5 * (rate(z_before, time_before) + rate(z, time)) * growth;
+  }
+}
+
+double TrussSystem::largest_load(const VectorXd& z, double time) const {
+  double largest = 0.0;
+  for (const TrussNode& node : model_->nodes) largest = std::max(largest, node.load.norm());
+  for (const TrussLink& link : model_->links) {
+    largest = std::max(largest, std::abs(axial(link, z, time).tension));
+  }
+  for (const AxialSpring& spring : model_->springs) {
+    const double length = between(spring.first, spring.second, z).norm();
+    largest = std::max(largest, std::abs(spring_axial(spring, length).tension));
+  }
+  return largest;
+}
+
+Eigen::SparseMatrix<double> TrussSystem::joined_stiffness(const VectorXd& z, double time,
+                                                          const Statuses& statuses,
+                                                          JointModel joints) const {
+  // The forces of the joints are condensed: a direction that a joint holds becomes a stiff spring,
+  // the largest stiffness of the truss. Rows that hold nothing drop out.
+  VectorXd residual(unknowns_);
+  Eigen::SparseMatrix<double> jacobian = pattern();
+  evaluate(z, time, step_start(z, statuses), statuses, joints, 1.0, residual, jacobian);
+  const Eigen::SparseMatrix<double> full = jacobian.block(0, 0, displacements_, displacements_);
+  const int forces = unknowns_ - displacements_;
+  Eigen::SparseMatrix<double> held = jacobian.block(displacements_, 0, forces, displacements_);
+  // Rows in metres have gradients of order one, whatever lever arms they have.
+  Eigen::SparseMatrix<double> stiffness =
+      0.5 * (full + Eigen::SparseMatrix<double>(full.transpose()));
+  stiffness += stiffness_scale_ * (held.transpose() * held);
+  return stiffness;
+}
+
+}  // namespace statejump::detail

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+
+#include "statejump/truss.hpp"
+
+namespace statejump::detail {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+inline double cross(const Vector2d& a, const Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+inline Vector2d turned_left(const Vector2d& v) {
+  return {-v.y(), v.x()};
+}
+
+inline std::size_t index(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Force and energy of a straight part at one length.
+struct Axial {
+  double tension;
+  double stiffness;
+};
+
+inline Axial link_axial(const TrussLink& link, double elongation_from_drawn, double drawn_length,
+                        double change) {
+  const double l0 = link.stress_free_length;
+  // From differences: the rounding of a length would cost E A times 1e-16.
+  const double stretch =
+      elongation_from_drawn + (drawn_length - l0) - l0 * link.thermal_expansion * change;
+  const double stiffness =
+      link.axial_stiffness / kernel::thermal_length(l0, link.thermal_expansion, change);
+  return {stiffness * stretch, stiffness};
+}
+
+inline Axial spring_axial(const AxialSpring& spring, double length) {
+  const double stretch = length - spring.free_length;
+  if (spring.cable && stretch < 0.0) return {0.0, 0.0};
+  return {spring.stiffness * stretch, spring.stiffness};
+}
+
+/// Length of drawn + moved, and its growth, without the difference of two lengths.
+struct Lengths {
+  double drawn;
+  double now;
+  double growth;
+};
+
+inline Lengths lengths(const Vector3d& drawn, const Vector3d& moved) {
+  const double before = drawn.norm();
+  const double now = (drawn + moved).norm();
+  return {before, now, moved.dot(2.0 * drawn + moved) / (before + now)};
+}
+
+inline double depth_of(const ClearanceRevolute& revolute, double normal_force) {
+  if (std::isinf(revolute.hertz_stiffness) || normal_force <= 0.0) return 0.0;
+  return std::pow(normal_force / revolute.hertz_stiffness, 2.0 / 3.0);
+}
+
+}  // namespace statejump::detail

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/truss_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "statejump/kernel/require.hpp"
+#include "truss_newton.hpp"
+#include "truss_parts.hpp"
+
+namespace statejump {
+
+using detail::index;
+using detail::JointModel;
+using detail::SolveEnd;
+using detail::SolveReport;
+using detail::Statuses;
+using detail::StepStart;
+using detail::TrussNewton;
+using detail::TrussSystem;
+using Eigen::Vector2d;
+using Eigen::VectorXd;
+
+const char* to_string(JointStatus status) {
+  switch (status) {
+    case JointStatus::stick:
+      return "stick";
+    case JointStatus::slip_plus:
+      return "slip_plus";
+    case JointStatus::slip_minus:
+      return "slip_minus";
+    case JointStatus::stop_plus:
+      return "stop_plus";
+    case JointStatus::stop_minus:
+      return "stop_minus";
+    case JointStatus::open:
+      return "open";
+  }
+  return "unknown";
+}
+
+namespace {
+
+/// "slider 'J3'" or "revolute 'B1'".
+std::string joint_name(const TrussModel& model, int joint) {
+  const int sliders = static_cast<int>(model.sliders.size());
+  if (joint < sliders) return "slider '" + model.sliders[index(joint)].name + "'";
+  return "revolute '" + model.revolutes[index(joint - sliders)].name + "'";
+}
+
+std::string at_temperature(const TrussModel& model, double time) {
+  std::ostringstream text;
+  text.precision(9);
+  text << " at a temperature change of " << model.temperature_change(0, 1.0, time)
+       << " K (t = " << time << " s)";
+  return text.str();
+}
+
+/// Equilibrium being followed.
+struct Walker {
+  const TrussModel& model;
+  const TrussSystem& system;
+  const TrussOptions& options;
+  TrussNewton newton;
+  TrussPath path;
+  VectorXd z;
+  Statuses statuses;
+  TrussState state;
+  double time = 0.0;
+
+  [[noreturn]] void fail(const SolveReport& report, JointModel joints, double when,
+                         const std::string& doing) const {
+    const std::string modes = detail::mechanism(system, z, when, statuses, joints);
+    if (!modes.empty()) {
+      throw std::runtime_error("the truss is a mechanism" + at_temperature(model, when) + ": " +
+                               modes);
+    }
+    throw std::runtime_error(
+        doing + at_temperature(model, when) +
+        (report.end == SolveEnd::singular ? ": the stiffness is singular" : ": not converged") +
+        (report.joint < 0
+             ? std::string(", after all joints had settled")
+             : ", while the status of " + joint_name(model, report.joint) + " still changed"));
+  }
+
+  void note(const SolveReport& report) {
+    ++path.solves;
+    path.largest_force_residual = std::max(path.largest_force_residual, report.force_residual);
+    path.largest_closure_residual =
+        std::max(path.largest_closure_residual, report.closure_residual);
+  }
+
+  void start();
+  void open_clearances();
+  bool step_to(double target, double tolerance);
+  bool state_depends_on(int joint, JointStatus before, JointStatus after) const;
+};
+
+/// Relaxes the drawn shape at ΔT = 0; see truss_path().
+void Walker::start() {
+  statuses.sliders.assign(model.sliders.size(), JointStatus::stick);
+  statuses.revolutes.assign(model.revolutes.size(), JointStatus::stick);
+  z = VectorXd::Zero(system.unknowns());
+  const std::string modes = detail::mechanism(system, z, 0.0, statuses, JointModel::pins);
+  if (!modes.empty()) {
+    throw std::runtime_error("the truss is a mechanism even with every joint held, " + modes);
+  }
+  const StepStart begin = system.step_start(z, statuses);
+  const SolveReport report =
+      newton.solve(0.0, begin, JointModel::pins, 1.0, options.most_iterations, z, statuses);
+  note(report);
+  if (report.end != SolveEnd::converged) {
+    fail(report, JointModel::pins, 0.0, "no equilibrium of the drawn shape");
+  }
+  if (!model.revolutes.empty()) open_clearances();
+}
+
+void Walker::open_clearances() {
+  double largest = 0.0;
+  for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
+    largest = std::max(largest, system.revolute_force(i, z).norm());
+  }
+  const double loads = system.largest_load(z, 0.0);
+  for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
+    const Vector2d force = system.revolute_force(i, z);
+    // Below this share a pin force is rounding of the forces around it.
+    if (!(force.norm() > 1e-9 * std::max(largest, loads))) {
+      throw std::runtime_error(
+          "revolute '" + model.revolutes[index(i)].name +
+          "' carries no force at the start: statics does not determine its position in the play; "
+          "load it by a spring, a cable or a force");
+    }
+  }
+  // The journal touches where its pin force pushes; the clearances open little by little, each time
+  // from the last equilibrium, because the links turn as they open.
+  double opened = 0.0;
+  double share = 0.125;
+  statuses.revolutes.assign(model.revolutes.size(), JointStatus::slip_plus);
+  while (opened < 1.0) {
+    const double next = std::min(1.0, opened + share);
+    VectorXd trial = z;
+    Statuses trial_statuses = statuses;
+    for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
+      const Vector2d force = system.revolute_force(i, z);
+      const Vector2d eccentricity = system.step_start(z, statuses).eccentricity.col(i);
+      const Vector2d normal = opened == 0.0 ? Vector2d(force / force.norm())
+                                            : Vector2d(eccentricity / eccentricity.norm());
+      system.move_journal(i, (next - opened) * model.revolutes[index(i)].radial_clearance * normal,
+                          trial);
+      if (opened == 0.0) system.set_revolute_force(i, {force.norm(), 0.0}, trial);
+    }
+    const StepStart begin = system.step_start(trial, trial_statuses);
+    const SolveReport report = newton.solve(0.0, begin, JointModel::frictionless, next,
+                                            options.most_iterations, trial, trial_statuses);
+    note(report);
+    if (report.end == SolveEnd::converged) {
+      z = trial;
+      statuses = trial_statuses;
+      opened = next;
+      continue;
+    }
+    share *= 0.5;
+    if (share < 1e-4) {
+      fail(report, JointModel::frictionless, 0.0, "no equilibrium in contact at the start");
+    }
+  }
+  for (std::size_t i = 0; i < model.revolutes.size(); ++i) {
+    if (statuses.revolutes[i] == JointStatus::open) {
+      throw std::runtime_error("revolute '" + model.revolutes[i].name +
+                               "' has no contact at the start: statics does not determine its "
+                               "position in the play");
+    }
+    if (model.revolutes[i].friction_coefficient > 0.0) {
+      statuses.revolutes[i] = JointStatus::stick;
+    }
+  }
+}
+
+/// Whether the state after a change depends on where in the step it happened.
+bool Walker::state_depends_on(int joint, JointStatus before, JointStatus after) const {
+  const int sliders = static_cast<int>(model.sliders.size());
+  const auto is_slip = [](JointStatus s) {
+    return s == JointStatus::slip_plus || s == JointStatus::slip_minus;
+  };
+  if (joint < sliders) {
+    if (model.sliders[index(joint)].friction_force == 0.0) return false;
+    return is_slip(before) && (after == JointStatus::stick || is_slip(after));
+  }
+  if (model.revolutes[index(joint - sliders)].friction_coefficient == 0.0) return false;
+  if (before == JointStatus::open) return true;
+  return is_slip(before) && (after == JointStatus::stick || is_slip(after));
+}
+
+/// One step, if it is converged and exact or no longer than `tolerance`; else nothing happens.
+bool Walker::step_to(double target, double tolerance) {
+  // The sum time + tolerance is rounded.
+  const bool is_short = target - time <= 1.5 * tolerance;
+  VectorXd trial = z;
+  Statuses trial_statuses = statuses;
+  const StepStart begin = system.step_start(z, statuses);
+  const SolveReport report = newton.solve(target, begin, JointModel::friction, 1.0,
+                                          options.most_iterations, trial, trial_statuses);
+  if (report.end != SolveEnd::converged) {
+    ++path.solves;
+    if (!is_short) return false;
+    statuses = trial_statuses;
+    fail(report, JointModel::friction, target, "no equilibrium");
+  }
+  const int sliders = static_cast<int>(model.sliders.size());
+  std::vector<TrussEvent> events;
+  const auto compare = [&](int joint, JointStatus before, JointStatus after) {
+    if (before == after) return true;
+    if (!is_short && (options.locate_events || state_depends_on(joint, before, after))) {
+      return false;
+    }
+    const bool is_revolute = joint >= sliders;
+    events.push_back({target, target - time, model.temperature_change(0, 1.0, target), is_revolute,
+                      is_revolute ? joint - sliders : joint, before, after});
+    return true;
+  };
+  for (int i = 0; i < sliders; ++i) {
+    if (!compare(i, statuses.sliders[index(i)], trial_statuses.sliders[index(i)])) {
+      ++path.solves;
+      return false;
+    }
+  }
+  for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
+    if (!compare(sliders + i, statuses.revolutes[index(i)], trial_statuses.revolutes[index(i)])) {
+      ++path.solves;
+      return false;
+    }
+  }
+  note(report);
+  system.account(z, time, trial, target, begin, state);
+  z = trial;
+  statuses = trial_statuses;
+  time = target;
+  system.describe(z, time, statuses, state);
+  path.events.insert(path.events.end(), events.begin(), events.end());
+  if (!events.empty() && options.locate_events && !options.cycle_ends_only) {
+    path.states.push_back(state);
+  }
+  return true;
+}
+
+/// Corners of all programs.
+std::vector<double> corners(const TrussModel& model) {
+  std::set<double> times{0.0};
+  for (const auto& program : model.programs) {
+    for (const auto& branch : kernel::monotone_branches(program)) times.insert(branch.end_time);
+  }
+  return {times.begin(), times.end()};
+}
+
+}  // namespace
+
+TrussPath truss_path(const TrussModel& model, const TrussOptions& options) {
+  model.validate();
+  kernel::require(options.increments_per_branch >= 1, "increments_per_branch",
+                  options.increments_per_branch, ">= 1");
+  kernel::require(options.event_tolerance > 0.0 && options.event_tolerance <= 1.0,
+                  "event_tolerance", options.event_tolerance, "above 0 and at most 1");
+  kernel::require(options.most_iterations >= 2, "most_iterations", options.most_iterations, ">= 2");
+  const TrussSystem system(model);
+  Walker walker{model, system, options, TrussNewton(system), {}, {}, {}, {}, 0.0};
+  walker.path.unknowns = system.unknowns();
+  walker.state.slider_dissipation = VectorXd::Zero(static_cast<Eigen::Index>(model.sliders.size()));
+  walker.state.revolute_dissipation =
+      VectorXd::Zero(static_cast<Eigen::Index>(model.revolutes.size()));
+  walker.start();
+  system.describe(walker.z, 0.0, walker.statuses, walker.state);
+  walker.path.states.push_back(walker.state);
+  walker.path.cycle_ends.push_back(walker.state);
+
+  const std::vector<double> times = corners(model);
+  const double duration = model.programs.front().duration();
+  int cycle = 1;
+  for (std::size_t b = 0; b + 1 < times.size() && walker.path.complete; ++b) {
+    const double length = times[b + 1] - times[b];
+    const double tolerance = options.event_tolerance * length;
+    for (int k = 0; k <= options.increments_per_branch; ++k) {
+      // k = 0: the short first step, within which slips turn into sticks after the corner.
+      const double target = k == 0 ? times[b] + tolerance
+                            : k == options.increments_per_branch
+                                ? times[b + 1]
+                                : times[b] + length * k / options.increments_per_branch;
+      double stride = target - walker.time;
+      while (walker.time < target) {
+        double goal = std::min(target, walker.time + stride);
+        if (goal <= walker.time) goal = std::nextafter(walker.time, target);
+        if (walker.step_to(
+                goal, std::max(tolerance, std::nextafter(walker.time, target) - walker.time))) {
+          stride = target - walker.time;
+        } else {
+          stride = std::max(0.125 * (goal - walker.time), tolerance);
+        }
+      }
+      if (k > 0 && !options.cycle_ends_only) walker.path.states.push_back(walker.state);
+      if (options.progress && !options.progress(walker.time / duration)) {
+        walker.path.complete = false;
+        break;
+      }
+    }
+    if (walker.path.complete && times[b + 1] >= cycle * model.programs.front().period) {
+      walker.path.cycle_ends.push_back(walker.state);
+      ++cycle;
+    }
+  }
+  walker.path.factorizations = walker.newton.factorizations();
+  if (options.cycle_ends_only) walker.path.states = walker.path.cycle_ends;
+  return std::move(walker.path);
+}
+
+}  // namespace statejump

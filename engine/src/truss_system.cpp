@@ -1,0 +1,701 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "truss_system.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "truss_parts.hpp"
+
+namespace statejump::detail {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Two directions that make a right-handed frame with the axis; x and y for the z axis.
+Matrix32 plane_of(const Vector3d& axis) {
+  Matrix32 plane;
+  const Vector3d a = axis.normalized();
+  if (a.isApprox(Vector3d::UnitZ())) {
+    plane << 1, 0, 0, 1, 0, 0;
+    return plane;
+  }
+  Eigen::Index smallest = 0;
+  a.cwiseAbs().minCoeff(&smallest);
+  const Vector3d first = Vector3d::Unit(smallest).cross(a).normalized();
+  plane << first, a.cross(first);
+  return plane;
+}
+
+bool moves_along(const TrussNode& node, const Vector3d& direction) {
+  for (int i = 0; i < node.freedoms; ++i) {
+    if (std::abs(node.free_directions.col(i).dot(direction)) > 1e-9) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+TrussSystem::TrussSystem(const TrussModel& model) : model_(&model) {
+  for (const TrussNode& node : model.nodes) {
+    node_row_.push_back(unknowns_);
+    unknowns_ += node.freedoms;
+  }
+  displacements_ = unknowns_;
+  for (const TrussSlider& slider : model.sliders) {
+    slider_row_.push_back(unknowns_++);
+    std::vector<Vector3d> across;
+    if (slider.second >= 0) {
+      const Matrix32 plane = plane_of(slider.axis);
+      for (int i = 0; i < 2; ++i) {
+        const Vector3d direction = plane.col(i);
+        if (moves_along(model.nodes[index(slider.first)], direction) ||
+            moves_along(model.nodes[index(slider.second)], direction)) {
+          across.push_back(direction);
+          ++unknowns_;
+        }
+      }
+    }
+    slider_across_.push_back(std::move(across));
+  }
+  for (const ClearanceRevolute& revolute : model.revolutes) {
+    revolute_row_.push_back(unknowns_);
+    unknowns_ += 2;
+    revolute_plane_.push_back(plane_of(revolute.axis));
+    const bool holds = moves_along(model.nodes[index(revolute.journal_node)], revolute.axis) ||
+                       moves_along(model.nodes[index(revolute.bearing_node)], revolute.axis);
+    revolute_holds_axis_.push_back(holds);
+    if (holds) ++unknowns_;
+  }
+  for (const TrussTorsionSpring& spring : model.torsion_springs) {
+    torsion_plane_.push_back(plane_of(spring.axis));
+  }
+  for (const TrussLink& link : model.links) {
+    stiffness_scale_ = std::max(stiffness_scale_, link.axial_stiffness / link.stress_free_length);
+  }
+  for (const AxialSpring& spring : model.springs) {
+    stiffness_scale_ = std::max(stiffness_scale_, spring.stiffness);
+  }
+}
+
+Vector3d TrussSystem::displacement(int node, const VectorXd& z) const {
+  const TrussNode& part = model_->nodes[index(node)];
+  Vector3d moved = Vector3d::Zero();
+  for (int i = 0; i < part.freedoms; ++i) {
+    moved += z[node_row_[index(node)] + i] * part.free_directions.col(i);
+  }
+  return moved;
+}
+
+Vector3d TrussSystem::between(int from, int to, const VectorXd& z) const {
+  return (model_->nodes[index(to)].position - model_->nodes[index(from)].position) +
+         (displacement(to, z) - displacement(from, z));
+}
+
+int TrussSystem::far_node(int link, int node) const {
+  const TrussLink& part = model_->links[index(link)];
+  return part.first == node ? part.second : part.first;
+}
+
+int TrussSystem::node_of(int displacement) const {
+  const auto after = std::upper_bound(node_row_.begin(), node_row_.end(), displacement);
+  return static_cast<int>(after - node_row_.begin()) - 1;
+}
+
+double TrussSystem::slide(int slider, const VectorXd& z) const {
+  const TrussSlider& part = model_->sliders[index(slider)];
+  Vector3d moved = displacement(part.first, z);
+  if (part.second >= 0) moved -= displacement(part.second, z);
+  return part.axis.dot(moved);
+}
+
+Vector2d TrussSystem::link_direction(int link, int at_node, const Matrix32& plane,
+                                     const VectorXd& z) const {
+  if (link < 0) return Vector2d::Zero();
+  return plane.transpose() * between(far_node(link, at_node), at_node, z);
+}
+
+/// Angle from one direction to another [rad]; exact for small ones.
+double TrussSystem::surface_angle(const Vector2d& before, const Vector2d& now) const {
+  const Vector2d step = now - before;
+  return std::atan2(cross(before, step), before.dot(now));
+}
+
+RevoluteGeometry TrussSystem::revolute_geometry(int i, const VectorXd& z, double time,
+                                                const StepStart& start,
+                                                double clearance_scale) const {
+  const ClearanceRevolute& part = model_->revolutes[index(i)];
+  const Matrix32& plane = revolute_plane_[index(i)];
+  RevoluteGeometry g{};
+  g.eccentricity = plane.transpose() * between(part.bearing_node, part.journal_node, z);
+  g.journal_direction = link_direction(part.journal_link, part.journal_node, plane, z);
+  g.bearing_direction = link_direction(part.bearing_link, part.bearing_node, plane, z);
+  const double change = model_->temperature_change(part.program, part.temperature_fraction, time);
+  const double bearing = part.journal_radius + part.radial_clearance;
+  const double growth = change * (part.bearing_thermal_expansion * bearing -
+                                  part.journal_thermal_expansion * part.journal_radius);
+  g.clearance = clearance_scale * (part.radial_clearance + growth);
+  // Both surfaces meet half-way between them.
+  const double depth = g.eccentricity.norm() - g.clearance;
+  g.journal_radius = part.journal_radius * (1.0 + part.journal_thermal_expansion * change) -
+                     0.5 * std::max(0.0, depth);
+  g.bearing_radius =
+      bearing * (1.0 + part.bearing_thermal_expansion * change) + 0.5 * std::max(0.0, depth);
+  const Vector2d before = start.eccentricity.col(i);
+  if (before.squaredNorm() > 0.0 && g.eccentricity.squaredNorm() > 0.0) {
+    g.turned = surface_angle(before, g.eccentricity);
+    g.surface_slide = 0.5 * (before.norm() + g.eccentricity.norm()) * g.turned;
+  }
+  if (part.journal_link >= 0) {
+    g.surface_slide +=
+        g.journal_radius * surface_angle(start.journal_direction.col(i), g.journal_direction);
+  }
+  if (part.bearing_link >= 0) {
+    g.surface_slide -=
+        g.bearing_radius * surface_angle(start.bearing_direction.col(i), g.bearing_direction);
+  }
+  return g;
+}
+
+namespace {
+
+/// Collects the places of the Jacobian's entries.
+class PatternSink {
+ public:
+  void add(int row, int column, double) { places.emplace_back(row, column, 0.0); }
+  void residual(int, double) {}
+  std::vector<Eigen::Triplet<double>> places;
+};
+
+/// Adds up values.
+class ValueSink {
+ public:
+  ValueSink(VectorXd& residual, Eigen::SparseMatrix<double>& jacobian)
+      : residual_(&residual), jacobian_(&jacobian) {
+    residual.setZero();
+    std::fill_n(jacobian.valuePtr(), jacobian.nonZeros(), 0.0);
+  }
+  void add(int row, int column, double value) {
+    const int* rows = jacobian_->innerIndexPtr();
+    const int* begin = rows + jacobian_->outerIndexPtr()[column];
+    const int* end = rows + jacobian_->outerIndexPtr()[column + 1];
+    jacobian_->valuePtr()[std::lower_bound(begin, end, row) - rows] += value;
+  }
+  void residual(int row, double value) { (*residual_)[row] += value; }
+
+ private:
+  VectorXd* residual_;
+  Eigen::SparseMatrix<double>* jacobian_;
+};
+
+/// Adds forces on nodes and their derivatives, through the nodes' free directions.
+template <class Sink>
+class NodeWriter {
+ public:
+  NodeWriter(const TrussModel& model, const std::vector<int>& rows, Sink& sink)
+      : model_(model), rows_(rows), sink_(sink) {}
+
+  void force(int node, const Vector3d& value) {
+    const TrussNode& part = model_.nodes[index(node)];
+    for (int i = 0; i < part.freedoms; ++i) {
+      sink_.residual(rows_[index(node)] + i, part.free_directions.col(i).dot(value));
+    }
+  }
+  void block(int row_node, int column_node, const Matrix3d& value) {
+    const TrussNode& row_part = model_.nodes[index(row_node)];
+    const TrussNode& column_part = model_.nodes[index(column_node)];
+    for (int j = 0; j < column_part.freedoms; ++j) {
+      const Vector3d image = value * column_part.free_directions.col(j);
+      for (int i = 0; i < row_part.freedoms; ++i) {
+        sink_.add(rows_[index(row_node)] + i, rows_[index(column_node)] + j,
+                  row_part.free_directions.col(i).dot(image));
+      }
+    }
+  }
+  void row(int row, int node, const Vector3d& gradient) {
+    const TrussNode& part = model_.nodes[index(node)];
+    for (int i = 0; i < part.freedoms; ++i) {
+      sink_.add(row, rows_[index(node)] + i, part.free_directions.col(i).dot(gradient));
+    }
+  }
+  void column(int node, int column, const Vector3d& gradient) {
+    const TrussNode& part = model_.nodes[index(node)];
+    for (int i = 0; i < part.freedoms; ++i) {
+      sink_.add(rows_[index(node)] + i, column, part.free_directions.col(i).dot(gradient));
+    }
+  }
+
+ private:
+  const TrussModel& model_;
+  const std::vector<int>& rows_;
+  Sink& sink_;
+};
+
+/// Gradient and Hessian of the angle of an in-plane vector.
+struct AngleDerivatives {
+  Vector3d gradient;
+  Matrix3d hessian;
+};
+
+AngleDerivatives angle_derivatives(const Vector2d& v, const Matrix32& plane) {
+  const double length = v.norm();
+  const Vector3d along = plane * (v / length);
+  const Vector3d left = plane * (turned_left(v) / length);
+  return {left / length,
+          -(along * left.transpose() + left * along.transpose()) / (length * length)};
+}
+
+}  // namespace
+
+template <class Sink>
+double TrussSystem::assemble(const VectorXd& z, double time, const StepStart& start,
+                             const Statuses& statuses, JointModel joints, double clearance_scale,
+                             Sink& sink) const {
+  const TrussModel& model = *model_;
+  NodeWriter<Sink> nodes(model, node_row_, sink);
+  double largest = 0.0;
+  std::vector<double> changes;
+  for (const auto& program : model.programs) changes.push_back(program.temperature_change(time));
+
+  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+    nodes.force(static_cast<int>(n), -model.nodes[n].load);
+    largest = std::max(largest, model.nodes[n].load.lpNorm<Eigen::Infinity>());
+  }
+
+  const auto bar = [&](int first, int second, const Vector3d& direction, double length,
+                       const Axial& axial) {
+    const Matrix3d along = direction * direction.transpose();
+    const Matrix3d stiffness =
+        axial.stiffness * along + axial.tension / length * (Matrix3d::Identity() - along);
+    nodes.force(first, -axial.tension * direction);
+    nodes.force(second, axial.tension * direction);
+    nodes.block(first, first, stiffness);
+    nodes.block(second, second, stiffness);
+    nodes.block(first, second, -stiffness);
+    nodes.block(second, first, -stiffness);
+    largest = std::max(largest, std::abs(axial.tension));
+  };
+  for (const TrussLink& link : model.links) {
+    const Vector3d drawn =
+        model.nodes[index(link.second)].position - model.nodes[index(link.first)].position;
+    const Vector3d moved = displacement(link.second, z) - displacement(link.first, z);
+    const Lengths length = lengths(drawn, moved);
+    const double change = link.temperature_fraction * changes[index(link.program)];
+    bar(link.first, link.second, (drawn + moved) / length.now, length.now,
+        link_axial(link, length.growth, length.drawn, change));
+  }
+  for (const AxialSpring& spring : model.springs) {
+    const Vector3d v = between(spring.first, spring.second, z);
+    bar(spring.first, spring.second, v / v.norm(), v.norm(), spring_axial(spring, v.norm()));
+  }
+
+  for (std::size_t i = 0; i < model.torsion_springs.size(); ++i) {
+    const TrussTorsionSpring& spring = model.torsion_springs[i];
+    const Matrix32& plane = torsion_plane_[i];
+    std::array<int, 2> links{spring.first_link, spring.second_link};
+    // The angle runs from the first link to the second; that of a single link from the ground.
+    std::array<double, 2> sign{-1.0, 1.0};
+    if (spring.second_link < 0) sign[0] = 1.0;
+    double angle = 0.0;
+    std::array<AngleDerivatives, 2> turn;
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (links[k] < 0) continue;
+      const TrussLink& link = model.links[index(links[k])];
+      const Vector2d drawn = plane.transpose() * (model.nodes[index(link.second)].position -
+                                                  model.nodes[index(link.first)].position);
+      const Vector2d moved =
+          plane.transpose() * (displacement(link.second, z) - displacement(link.first, z));
+      angle += sign[k] * std::atan2(cross(drawn, moved), drawn.dot(drawn + moved));
+      turn[k] = angle_derivatives(drawn + moved, plane);
+    }
+    const double moment = spring.stiffness * (angle - spring.free_angle);
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (links[k] < 0) continue;
+      const TrussLink& link = model.links[index(links[k])];
+      const Vector3d force = moment * sign[k] * turn[k].gradient;
+      nodes.force(link.second, force);
+      nodes.force(link.first, -force);
+      largest = std::max(largest, force.norm());
+      for (std::size_t m = 0; m < 2; ++m) {
+        if (links[m] < 0) continue;
+        const TrussLink& other = model.links[index(links[m])];
+        Matrix3d block =
+            spring.stiffness * sign[k] * sign[m] * turn[k].gradient * turn[m].gradient.transpose();
+        if (k == m) block += moment * sign[k] * turn[k].hessian;
+        nodes.block(link.second, other.second, block);
+        nodes.block(link.first, other.first, block);
+        nodes.block(link.second, other.first, -block);
+        nodes.block(link.first, other.second, -block);
+      }
+    }
+  }
+
+  for (std::size_t i = 0; i < model.sliders.size(); ++i) {
+    const TrussSlider& slider = model.sliders[i];
+    const int row = slider_row_[i];
+    const double s = slide(static_cast<int>(i), z);
+    const double force = z[row];
+    largest = std::max(largest, std::abs(force));
+    nodes.force(slider.first, force * slider.axis);
+    nodes.column(slider.first, row, slider.axis);
+    if (slider.second >= 0) {
+      nodes.force(slider.second, -force * slider.axis);
+      nodes.column(slider.second, row, -slider.axis);
+    }
+    bool is_slip = false;
+    double closure = 0.0;
+    switch (statuses.sliders[i]) {
+      case JointStatus::stop_plus:
+        closure = s - slider.clearance_plus;
+        break;
+      case JointStatus::stop_minus:
+        closure = s + slider.clearance_minus;
+        break;
+      case JointStatus::slip_plus:
+        is_slip = true;
+        closure = force - slider.friction_force;
+        break;
+      case JointStatus::slip_minus:
+        is_slip = true;
+        closure = force + slider.friction_force;
+        break;
+      default:
+        closure = s - start.slide[static_cast<Eigen::Index>(i)];
+    }
+    const double slides = is_slip ? 0.0 : 1.0;
+    sink.residual(row, closure);
+    sink.add(row, row, is_slip ? 1.0 : 0.0);
+    nodes.row(row, slider.first, slides * slider.axis);
+    if (slider.second >= 0) nodes.row(row, slider.second, -slides * slider.axis);
+    for (std::size_t k = 0; k < slider_across_[i].size(); ++k) {
+      const Vector3d& across = slider_across_[i][k];
+      const int held = row + 1 + static_cast<int>(k);
+      const Vector3d moved = displacement(slider.first, z) - displacement(slider.second, z);
+      sink.residual(held, across.dot(moved));
+      nodes.row(held, slider.first, across);
+      nodes.row(held, slider.second, -across);
+      nodes.force(slider.first, z[held] * across);
+      nodes.force(slider.second, -z[held] * across);
+      nodes.column(slider.first, held, across);
+      nodes.column(slider.second, held, -across);
+      sink.add(held, held, 0.0);
+      largest = std::max(largest, std::abs(z[held]));
+    }
+  }
+
+  for (std::size_t i = 0; i < model.revolutes.size(); ++i) {
+    const ClearanceRevolute& revolute = model.revolutes[i];
+    const Matrix32& plane = revolute_plane_[i];
+    const int row = revolute_row_[i];
+    const int part = static_cast<int>(i);
+    const RevoluteGeometry g = revolute_geometry(part, z, time, start, clearance_scale);
+    const double first_force = z[row];
+    const double second_force = z[row + 1];
+    largest = std::max({largest, std::abs(first_force), std::abs(second_force)});
+
+    // Four nodes: journal, bearing, far ends of the links that turn them.
+    const std::array<int, 4> node{
+        revolute.journal_node, revolute.bearing_node,
+        revolute.journal_link < 0 ? -1 : far_node(revolute.journal_link, revolute.journal_node),
+        revolute.bearing_link < 0 ? -1 : far_node(revolute.bearing_link, revolute.bearing_node)};
+    std::array<Vector3d, 4> normal_gradient;
+    std::array<Vector3d, 4> slide_gradient;  // virtual work of friction
+    std::array<Vector3d, 4> friction_row;    // derivative of Δσ
+    std::array<std::array<Matrix3d, 4>, 4> hessian;
+    normal_gradient.fill(Vector3d::Zero());
+    slide_gradient.fill(Vector3d::Zero());
+    friction_row.fill(Vector3d::Zero());
+    for (auto& line : hessian) line.fill(Matrix3d::Zero());
+    double first_closure = 0.0;
+    double second_closure = 0.0;
+    std::array<double, 4> corner{};  // d(first row)/d(forces), d(second row)/d(forces)
+    bool first_geometric = false;
+    bool second_geometric = false;
+
+    if (joints == JointModel::pins) {
+      normal_gradient[0] = plane.col(0);
+      normal_gradient[1] = -plane.col(0);
+      slide_gradient[0] = plane.col(1);
+      slide_gradient[1] = -plane.col(1);
+      friction_row = slide_gradient;
+      first_closure = g.eccentricity.x();
+      second_closure = g.eccentricity.y();
+      first_geometric = second_geometric = true;
+    } else {
+      const double distance = g.eccentricity.norm();
+      const Vector2d n = g.eccentricity / distance;
+      const Vector3d along = plane * n;
+      const Vector3d left = plane * turned_left(n);
+      normal_gradient[0] = along;
+      normal_gradient[1] = -along;
+      slide_gradient[0] = left;
+      slide_gradient[1] = -left;
+      const Matrix3d bend =
+          (first_force * left - second_force * along) * left.transpose() / distance;
+      hessian[0][0] += bend;
+      hessian[1][1] += bend;
+      hessian[0][1] -= bend;
+      hessian[1][0] -= bend;
+      const Vector2d before = start.eccentricity.col(part);
+      friction_row[0] = (0.5 * (before.norm() / distance + 1.0)) * left + 0.5 * g.turned * along;
+      friction_row[1] = -friction_row[0];
+      const auto turn = [&](std::size_t at, std::size_t far, const Vector2d& direction,
+                            double radius) {
+        const AngleDerivatives angle = angle_derivatives(direction, plane);
+        slide_gradient[at] += radius * angle.gradient;
+        slide_gradient[far] -= radius * angle.gradient;
+        friction_row[at] += radius * angle.gradient;
+        friction_row[far] -= radius * angle.gradient;
+        const Matrix3d block = second_force * radius * angle.hessian;
+        hessian[at][at] += block;
+        hessian[far][far] += block;
+        hessian[at][far] -= block;
+        hessian[far][at] -= block;
+      };
+      if (node[2] >= 0) turn(0, 2, g.journal_direction, g.journal_radius);
+      if (node[3] >= 0) turn(1, 3, g.bearing_direction, -g.bearing_radius);
+
+      const JointStatus status = statuses.revolutes[i];
+      if (status == JointStatus::open) {
+        first_closure = first_force;
+        second_closure = second_force;
+        corner = {1.0, 0.0, 0.0, 1.0};
+      } else {
+        first_geometric = true;
+        first_closure = distance - g.clearance - depth_of(revolute, first_force);
+        if (!std::isinf(revolute.hertz_stiffness)) {
+          // The slope of the depth is infinite without force: taken where the depth is a
+          // millionth of the clearance.
+          const double least =
+              revolute.hertz_stiffness * std::pow(1e-6 * revolute.radial_clearance, 1.5);
+          const double loaded = std::max(first_force, least);
+          corner[0] = -2.0 / 3.0 * depth_of(revolute, loaded) / loaded;
+        }
+        const double mu = joints == JointModel::friction ? revolute.friction_coefficient : 0.0;
+        if (status == JointStatus::stick && joints == JointModel::friction) {
+          second_geometric = true;
+          second_closure = g.surface_slide;
+        } else {
+          const double sense = status == JointStatus::slip_minus ? -1.0 : 1.0;
+          second_closure = second_force - sense * mu * first_force;
+          corner[2] = -sense * mu;
+          corner[3] = 1.0;
+        }
+      }
+    }
+
+    for (std::size_t a = 0; a < 4; ++a) {
+      if (node[a] < 0) continue;
+      nodes.force(node[a], first_force * normal_gradient[a] + second_force * slide_gradient[a]);
+      nodes.column(node[a], row, normal_gradient[a]);
+      nodes.column(node[a], row + 1, slide_gradient[a]);
+      nodes.row(row, node[a], (first_geometric ? 1.0 : 0.0) * normal_gradient[a]);
+      nodes.row(row + 1, node[a], (second_geometric ? 1.0 : 0.0) * friction_row[a]);
+      for (std::size_t b = 0; b < 4; ++b) {
+        if (node[b] >= 0) nodes.block(node[a], node[b], hessian[a][b]);
+      }
+    }
+    sink.residual(row, first_closure);
+    sink.residual(row + 1, second_closure);
+    sink.add(row, row, corner[0]);
+    sink.add(row, row + 1, corner[1]);
+    sink.add(row + 1, row, corner[2]);
+    sink.add(row + 1, row + 1, corner[3]);
+    if (revolute_holds_axis_[i]) {
+      const int held = row + 2;
+      const Vector3d axis = revolute.axis;
+      sink.residual(held, axis.dot(between(revolute.bearing_node, revolute.journal_node, z)));
+      nodes.row(held, revolute.journal_node, axis);
+      nodes.row(held, revolute.bearing_node, -axis);
+      nodes.force(revolute.journal_node, z[held] * axis);
+      nodes.force(revolute.bearing_node, -z[held] * axis);
+      nodes.column(revolute.journal_node, held, axis);
+      nodes.column(revolute.bearing_node, held, -axis);
+      sink.add(held, held, 0.0);
+    }
+  }
+  return largest;
+}
+
+double TrussSystem::evaluate(const VectorXd& z, double time, const StepStart& start,
+                             const Statuses& statuses, JointModel joints, double clearance_scale,
+                             VectorXd& residual, Eigen::SparseMatrix<double>& jacobian) const {
+  ValueSink sink(residual, jacobian);
+  return assemble(z, time, start, statuses, joints, clearance_scale, sink);
+}
+
+Eigen::SparseMatrix<double> TrussSystem::pattern() const {
+  PatternSink sink;
+  Statuses statuses;
+  statuses.sliders.assign(model_->sliders.size(), JointStatus::stick);
+  statuses.revolutes.assign(model_->revolutes.size(), JointStatus::stick);
+  const VectorXd z = VectorXd::Zero(unknowns_);
+  assemble(z, 0.0, step_start(z, statuses), statuses, JointModel::pins, 1.0, sink);
+  Eigen::SparseMatrix<double> matrix(unknowns_, unknowns_);
+  matrix.setFromTriplets(sink.places.begin(), sink.places.end());
+  matrix.makeCompressed();
+  return matrix;
+}
+
+int TrussSystem::correct_statuses(const VectorXd& z, double time, const StepStart& start,
+                                  JointModel joints, double clearance_scale, Statuses& statuses,
+                                  int& last_changed) const {
+  int changed = 0;
+  // Inequalities are violated when rounding cannot be the reason; forces are as round as the
+  // stiffest part makes them.
+  const double length_slack = length_rounding(z);
+  const double force_slack = 16.0 * stiffness_scale_ * length_slack;
+  const auto become = [&](JointStatus& status, JointStatus next, int joint) {
+    if (status == next) return;
+    status = next;
+    last_changed = joint;
+    ++changed;
+  };
+  for (std::size_t i = 0; i < model_->sliders.size(); ++i) {
+    const TrussSlider& slider = model_->sliders[i];
+    const int joint = static_cast<int>(i);
+    const double s = slide(joint, z);
+    const double step = s - start.slide[joint];
+    const double force = slider_force(joint, z);
+    const double f = slider.friction_force;
+    const double beyond = f + force_slack;
+    JointStatus& status = statuses.sliders[i];
+    const JointStatus before = start.statuses.sliders[i];
+    switch (status) {
+      case JointStatus::stick:
+        if (force > beyond) become(status, JointStatus::slip_plus, joint);
+        if (force < -beyond) become(status, JointStatus::slip_minus, joint);
+        break;
+      case JointStatus::slip_plus:
+        if (s > slider.clearance_plus + length_slack) {
+          become(status, JointStatus::stop_plus, joint);
+        } else if (step < -length_slack) {
+          become(status, before == JointStatus::stop_minus ? before : JointStatus::stick, joint);
+        }
+        break;
+      case JointStatus::slip_minus:
+        if (s < -slider.clearance_minus - length_slack) {
+          become(status, JointStatus::stop_minus, joint);
+        } else if (step > length_slack) {
+          become(status, before == JointStatus::stop_plus ? before : JointStatus::stick, joint);
+        }
+        break;
+      case JointStatus::stop_plus:
+        // Rested there already: friction helps to stay. Arrived in this step: friction pushes back.
+        if (before == JointStatus::stop_plus) {
+          if (force < -beyond) become(status, JointStatus::slip_minus, joint);
+        } else if (force < f - force_slack) {
+          become(status, JointStatus::slip_plus, joint);
+        }
+        break;
+      case JointStatus::stop_minus:
+        if (before == JointStatus::stop_minus) {
+          if (force > beyond) become(status, JointStatus::slip_plus, joint);
+        } else if (force > -f + force_slack) {
+          become(status, JointStatus::slip_minus, joint);
+        }
+        break;
+      case JointStatus::open:
+        break;
+    }
+  }
+  if (joints == JointModel::pins) return changed;
+  for (std::size_t i = 0; i < model_->revolutes.size(); ++i) {
+    const ClearanceRevolute& revolute = model_->revolutes[i];
+    const int part = static_cast<int>(i);
+    const int joint = static_cast<int>(model_->sliders.size()) + part;
+    const RevoluteGeometry g = revolute_geometry(part, z, time, start, clearance_scale);
+    const Vector2d force = revolute_force(part, z);
+    JointStatus& status = statuses.revolutes[i];
+    const double mu = joints == JointModel::friction ? revolute.friction_coefficient : 0.0;
+    const JointStatus resting = mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
+    if (status == JointStatus::open) {
+      if (g.eccentricity.norm() > g.clearance + length_slack) become(status, resting, joint);
+    } else if (force[0] < -force_slack) {
+      become(status, JointStatus::open, joint);
+    } else if (mu == 0.0) {
+      continue;  // slips freely either way
+    } else if (status == JointStatus::stick) {
+      const double bound = mu * force[0] + force_slack;
+      if (force[1] > bound) become(status, JointStatus::slip_plus, joint);
+      if (force[1] < -bound) become(status, JointStatus::slip_minus, joint);
+    } else {
+      const double sense = status == JointStatus::slip_plus ? 1.0 : -1.0;
+      if (sense * g.surface_slide < -length_slack) become(status, JointStatus::stick, joint);
+    }
+  }
+  return changed;
+}
+
+double TrussSystem::length_rounding(const VectorXd& z) const {
+  const double reach = displacements_ == 0 ? 0.0 : z.head(displacements_).lpNorm<Eigen::Infinity>();
+  return 4.0 * std::numeric_limits<double>::epsilon() * reach;
+}
+
+void TrussSystem::settle_statuses(const VectorXd& z, double time, const StepStart& start,
+                                  Statuses& statuses) const {
+  // A thousand times rounding, because a solve magnifies it: labels change, the state does not.
+  const double rounding = 1e3 * length_rounding(z);
+  const auto is_slip = [](JointStatus status) {
+    return status == JointStatus::slip_plus || status == JointStatus::slip_minus;
+  };
+  for (int i = 0; i < static_cast<int>(model_->sliders.size()); ++i) {
+    const JointStatus before = start.statuses.sliders[index(i)];
+    JointStatus& status = statuses.sliders[index(i)];
+    if (!is_slip(status) || is_slip(before)) continue;
+    if (std::abs(slide(i, z) - start.slide[i]) <= rounding) status = before;
+  }
+  for (int i = 0; i < static_cast<int>(model_->revolutes.size()); ++i) {
+    const JointStatus before = start.statuses.revolutes[index(i)];
+    JointStatus& status = statuses.revolutes[index(i)];
+    if (!is_slip(status) || before != JointStatus::stick) continue;
+    const RevoluteGeometry g = revolute_geometry(i, z, time, start, 1.0);
+    if (std::abs(g.surface_slide) <= rounding) status = before;
+  }
+}
+
+StepStart TrussSystem::step_start(const VectorXd& z, const Statuses& statuses) const {
+  StepStart start;
+  start.statuses = statuses;
+  start.slide.resize(static_cast<Eigen::Index>(model_->sliders.size()));
+  for (int i = 0; i < start.slide.size(); ++i) {
+    const TrussSlider& slider = model_->sliders[index(i)];
+    // At a stop the slide is the clearance itself: rounding must not add up.
+    start.slide[i] = slide(i, z);
+    if (statuses.sliders[index(i)] == JointStatus::stop_plus)
+      start.slide[i] = slider.clearance_plus;
+    if (statuses.sliders[index(i)] == JointStatus::stop_minus) {
+      start.slide[i] = -slider.clearance_minus;
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(model_->revolutes.size());
+  start.eccentricity.resize(2, count);
+  start.journal_direction.resize(2, count);
+  start.bearing_direction.resize(2, count);
+  for (int i = 0; i < count; ++i) {
+    const ClearanceRevolute& part = model_->revolutes[index(i)];
+    const Matrix32& plane = revolute_plane_[index(i)];
+    start.eccentricity.col(i) =
+        plane.transpose() * between(part.bearing_node, part.journal_node, z);
+    start.journal_direction.col(i) = link_direction(part.journal_link, part.journal_node, plane, z);
+    start.bearing_direction.col(i) = link_direction(part.bearing_link, part.bearing_node, plane, z);
+  }
+  return start;
+}
+
+void TrussSystem::move_journal(int revolute, const Vector2d& step, VectorXd& z) const {
+  const int node = model_->revolutes[index(revolute)].journal_node;
+  const TrussNode& part = model_->nodes[index(node)];
+  const Vector3d moved = revolute_plane_[index(revolute)] * step;
+  for (int i = 0; i < part.freedoms; ++i) {
+    z[node_row_[index(node)] + i] += part.free_directions.col(i).dot(moved);
+  }
+}
+
+}  // namespace statejump::detail
