@@ -240,6 +240,37 @@ def test_code_that_would_end_its_element() -> None:
         page.embedded_code("x = '</SCRIPT>'", "script")
 
 
+def test_campaign(statejump: Callable[..., Outcome], cases: Path, tmp_path: Path) -> None:
+    text = (cases / "campaigns" / "table1_tolerances.toml").read_text()
+    text = text.replace('"../table1.toml"', f'"{cases}/table1.toml"').replace("samples = 10000", "samples = 300")
+    title = "</script><script>alert(1)</script>"
+    (tmp_path / "campaign.toml").write_text(text.replace('title = "Table 1 with tolerances"', f'title = "{title}"'))
+    assert statejump("montecarlo", "campaign.toml").status == 0
+    found, size = written(statejump, "results/campaign_table1_tolerances")
+    assert size < 2 * MEGABYTE and len(found.scripts) == 2 and title in found.words
+    campaign = found.data["campaigns"][0]
+    with h5py.File(tmp_path / "results/campaign_table1_tolerances/samples.h5") as file:
+        for histogram, outcome in zip(campaign["histograms"], ("state_jump_m", "first_slip_temperature_change_K")):
+            values = file[f"outcomes/{outcome}"][()]
+            assert sum(histogram["counts"]) == np.count_nonzero(np.isfinite(values)) == 300
+            middle = histogram["quantiles"][1]
+            assert middle == pytest.approx(np.median(values) * (1e6 if outcome.endswith("_m") else 1))
+    # The jump is f l0/(E A): it follows friction above all.
+    assert campaign["ranks"][0]["bars"][0]["parameter"] == "Friction coefficient of joint"
+    assert units.text(float(np.median(values)), "K", 4) in found.words
+
+
+def test_sweep_beside_a_run(statejump: Callable[..., Outcome], cases: Path) -> None:
+    assert statejump("sweep", cases / "campaigns" / "table1_friction.toml").status == 0
+    assert statejump("reduced", cases / "table1.toml").status == 0
+    found, _ = written(statejump, "results")
+    assert [len(found.data[key]) for key in ("runs", "campaigns")] == [1, 1]
+    curve = found.data["campaigns"][0]["curves"][0]
+    assert len(curve["points"]) == 63 and curve["z"].startswith("Clearance plus")
+    last = max(curve["points"], key=lambda point: point["x"])
+    assert last["y"] == pytest.approx(1e6 * 100 * 0.5 / (70e9 * 9e-6))  # μ = 1: f = 100 N
+
+
 def _truss(joints: int, samples: int) -> Result:
     """A chain of links with a clearance joint each, all going their own way."""
     time = np.linspace(0.0, 1.0, samples)

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import "./page.css";
 import { setUpCharts } from "./charts";
-import { loadRuns } from "./payload";
+import { setUpCampaigns } from "./campaign";
+import { loadPage } from "./payload";
 import { Playhead } from "./playhead";
 import { setUpPlayers } from "./player";
 import { setUpStrips } from "./strips";
 import { setUpTheme } from "./theme";
 
 setUpTheme();
-const runs = loadRuns();
+const { runs, campaigns } = loadPage();
+setUpCampaigns(campaigns);
 const heads = runs.map((run) => new Playhead(run));
 setUpPlayers(runs, heads);
 runs.forEach((run, i) => {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The data in the page, as document.py writes it, and its columns decoded.
+import type { CampaignData } from "./campaign";
 
 /** A column: the same number everywhere, or base64 of little-endian float32 (f) or uint8 (u). */
 export type Encoded = number | { f: string } | { u: string };
@@ -190,8 +191,9 @@ export interface Run {
   models: Model[];
 }
 
-export function loadRuns(): Run[] {
-  const text = document.getElementById("data")?.textContent ?? '{"runs":[]}';
-  const { runs } = JSON.parse(text) as { runs: RunData[] };
-  return runs.map((data) => ({ data, models: data.models.map((model) => new Model(model)) }));
+/** What the page holds: runs with their histories decoded, campaigns as they are. */
+export function loadPage(): { runs: Run[]; campaigns: CampaignData[] } {
+  const text = document.getElementById("data")?.textContent ?? '{"runs":[],"campaigns":[]}';
+  const { runs, campaigns } = JSON.parse(text) as { runs: RunData[]; campaigns: CampaignData[] };
+  return { runs: runs.map((data) => ({ data, models: data.models.map((model) => new Model(model)) })), campaigns };
 }

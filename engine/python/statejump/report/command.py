@@ -48,25 +48,31 @@ def _target(output: Optional[Path], runs: tuple[Path, ...], files: list[Path]) -
 )
 @QUIET
 def report_command(runs: tuple[Path, ...], output: Optional[Path], quiet: bool) -> None:
-    """One HTML page of RUN...: comparison, loops, events, energies, 3-D replay. A RUN is a result
-    file or a results folder; the page needs nothing beside it, no network either.
+    """One HTML page of RUN...: comparison, loops, events, energies, 3-D replay; of a campaign its
+    distributions. A RUN is a result file, a campaign's samples.h5 or a results folder; the page
+    needs nothing beside it, no network either.
 
     \b
     Example:
       statejump report results/table1
     """
     from . import page  # the template engine takes a while to load: only here
+    from .campaign import CampaignDocument, is_campaign
     from .document import Document
 
     console = make_console(quiet)
     files = list(dict.fromkeys(path for run in runs for path in result_files(run)))
     documents = [
-        Document(read(path), path.name, f"run{place}", BUDGET_BYTES / len(files))
+        CampaignDocument(path, f"run{place}") if is_campaign(path)
+        else Document(read(path), path.name, f"run{place}", BUDGET_BYTES / len(files))
         for place, path in enumerate(files, start=1)
     ]
     target = _target(output, runs, files)
     page.write(documents, target)
     for document in documents:
+        if isinstance(document, CampaignDocument):
+            console.print(f"{document.title}: {document.samples:,} samples, {len(document.failed):,} failed")
+            continue
         for kept in document.kept:
             console.print(
                 f"{document.result.name}, {kept.model}: {kept.kept:,} of {kept.samples:,} samples kept, "

@@ -51,6 +51,8 @@ class Document:
     :param budget_bytes: size that the histories may have on the page
     """
 
+    template = "run.html"
+
     def __init__(self, result: Result, source: str, identifier: str, budget_bytes: float) -> None:
         self.result, self.source, self.identifier = result, source, identifier
         self.case: dict[str, Any] = json.loads(result.case_json)
@@ -67,6 +69,11 @@ class Document:
     def title(self) -> str:
         """Heading of the run."""
         return self.result.title or self.result.name
+
+    @property
+    def kind(self) -> str:
+        """Kind of the case."""
+        return self.result.kind
 
     @property
     def sentences(self) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, Sequence
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
@@ -13,6 +13,7 @@ from .. import __version__
 from ..errors import StatejumpError
 from ..output import write_atomically
 from . import units, words
+from .campaign import CampaignDocument
 from .document import Document
 
 HERE = Path(__file__).resolve().parent
@@ -43,7 +44,7 @@ def embedded_code(source: str, element: str) -> Markup:
     return Markup(source)
 
 
-def render(documents: list[Document]) -> str:
+def render(documents: Sequence[Document | CampaignDocument]) -> str:
     """Return the page."""
     script, style, notices = _asset(SCRIPT), _asset(STYLE), _asset(NOTICES)
     environment = Environment(
@@ -55,14 +56,17 @@ def render(documents: list[Document]) -> str:
         title=documents[0].title if len(documents) == 1 else f"{len(documents)} runs",
         version=__version__,
         models=words.MODELS,
-        data=embedded_json({"runs": [document.payload() for document in documents]}),
+        data=embedded_json({
+            "runs": [document.payload() for document in documents if isinstance(document, Document)],
+            "campaigns": [document.payload() for document in documents if isinstance(document, CampaignDocument)],
+        }),
         script=embedded_code(script, "script"),
         style=embedded_code(style, "style"),
         notices=notices,
     )
 
 
-def write(documents: list[Document], path: Path) -> None:
+def write(documents: Sequence[Document | CampaignDocument], path: Path) -> None:
     """Write the page; StatejumpError if it cannot be written."""
     text = render(documents)
     try:

@@ -51,6 +51,20 @@ def plain(name: str) -> str:
     return words[:1].upper() + words[1:]
 
 
+def parameter(path: str) -> str:
+    """Return a key of a case file, or a name alone, as words: ``link.young_modulus_Pa``."""
+    section, _, key = path.rpartition(".")
+    for ending in ("_per_K", "_m2", "_Pa", "_kg", "_kg_per_m3", "_N_per_m"):
+        key = key.removesuffix(ending)
+    named = plain(key).replace("temperature change", "ΔT")
+    return f"{named} of {plain(section).lower() if section not in NAMES else NAMES[section]}" if section else named
+
+
+def inside(words: str) -> str:
+    """Return words as they stand inside a sentence."""
+    return words if words[:2].isupper() else words[:1].lower() + words[1:]
+
+
 def column(name: str) -> str:
     """Return what a column holds, without its unit."""
     return COLUMNS.get(name, plain(name))

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a page says of a campaign: distributions of its outcomes, or their curves over a grid, and
+which of the varied parameters they follow. Knows the campaign's table of samples and the page."""
+from __future__ import annotations
+
+import json
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Optional
+
+import h5py
+import numpy as np
+
+from ..campaign.summary import statistics, spearman
+from ..errors import StatejumpError
+from . import words
+from .units import scale_of, text
+
+BARS = 60  # of a histogram, as in the figures of the commands
+QUANTILES = ("quantile_5", "median", "quantile_95")
+FEWEST_MANY_POINTS = 2000  # points of a sweep beyond which a page shows every n-th
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A column of the table of samples."""
+
+    name: str
+    unit: str
+    values: np.ndarray  # NaN: the sample has no such value
+
+    @property
+    def shown(self) -> tuple[float, str]:
+        """Factor and unit in which values are shown."""
+        there = self.values[np.isfinite(self.values)]
+        return scale_of(self.unit, float(np.median(np.abs(there))) if len(there) else 0.0)
+
+    @property
+    def label(self) -> str:
+        """Name with unit, for an axis."""
+        unit = self.shown[1]
+        return f"{words.parameter(self.name)} [{unit}]" if unit else words.parameter(self.name)
+
+
+def is_campaign(path: Path) -> bool:
+    """Whether a file is the table of samples of a campaign."""
+    if not (path.is_file() and h5py.is_hdf5(path)):
+        return False
+    with h5py.File(path, "r") as file:
+        return "campaign" in file.attrs and "outcomes" in file
+
+
+class CampaignDocument:
+    """A campaign as it stands on a page; arguments as of :class:`~.document.Document`.
+
+    :raises StatejumpError: the table is damaged
+    """
+
+    template = "campaign.html"
+
+    def __init__(self, path: Path, identifier: str) -> None:
+        self.source, self.identifier = path.name, identifier
+        try:
+            with h5py.File(path, "r") as file:
+                attributes = dict(file.attrs)
+                self.parameters = self._variables(file["parameters"])
+                self.outcomes = self._variables(file["outcomes"])
+                self.failed = [
+                    (int(sample), bytes(error).decode("utf-8"))
+                    for sample, error in zip(file["failed/sample"][()], file["failed/error"][()])
+                ]
+                self.samples = len(file["sample"])
+            self.text = str(attributes["campaign"])
+            header = tomllib.loads(self.text)["campaign"]
+            self.command, self.model = str(attributes["command"]), str(attributes["model"])
+            self.case = str(json.loads(attributes["case"])["case"]["name"])
+        except (OSError, KeyError, ValueError, TypeError) as error:
+            raise StatejumpError(f"{path}: damaged: {' '.join(str(error).split())}") from None
+        self.seed: Optional[Any] = attributes.get("seed")
+        self.title = str(header.get("title") or header.get("name"))
+        self.attributes = {key: value for key, value in attributes.items() if key not in ("campaign", "case")}
+        # What the campaign is about comes first.
+        self.outcomes.sort(key=lambda outcome: "jump" not in outcome.name)
+        self.statistics = {outcome.name: statistics(outcome.values) for outcome in self.outcomes}
+
+    @staticmethod
+    def _variables(group: h5py.Group) -> list[Variable]:
+        return [
+            Variable(name, str(dataset.attrs["unit"]), dataset[()].astype(float)) for name, dataset in group.items()
+        ]
+
+    @property
+    def kind(self) -> str:
+        """What the page's list of runs calls it."""
+        return "campaign"
+
+    @property
+    def verdict(self) -> tuple[str, str]:
+        """Class and sentence."""
+        if self.failed:
+            return "fail", f"{_count(len(self.failed))} of {_count(self.samples)} samples failed."
+        return "none", f"All {_count(self.samples)} samples ran; a campaign compares nothing."
+
+    @property
+    def sentences(self) -> list[str]:
+        """The campaign in words."""
+        drawn = "on a grid" if self.command == "sweep" else "drawn at random"
+        seed = f" (seed {self.seed})" if self.seed is not None else ""
+        names = [words.inside(words.parameter(parameter.name)) for parameter in self.parameters]
+        varied = names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+        return [
+            f"{_count(self.samples)} samples of case {self.case} in the {words.inside(words.MODELS[self.model])}, "
+            f"{drawn}{seed}.",
+            f"Varied: {varied}.",
+        ]
+
+    def cards(self) -> list[dict[str, Any]]:
+        """The numbers at the top: the first outcomes' middle and spread."""
+        shown = {"median": "median", "quantile_5": "5 % are below", "quantile_95": "5 % are above"}
+        if self.command == "sweep":  # a grid has no frequencies
+            shown = {"minimum": "smallest", "maximum": "largest"}
+        return [
+            {
+                "label": words.parameter(outcome.name),
+                "values": [
+                    (label, text(self.statistics[outcome.name][key], outcome.unit, 4)) for key, label in shown.items()
+                ],
+            }
+            for outcome in self.outcomes[:3]
+        ]
+
+    def table(self) -> list[dict[str, Any]]:
+        """Rows of the table of outcomes."""
+        return [
+            {
+                "name": words.parameter(outcome.name),
+                "count": self.statistics[outcome.name]["count"],
+                **{
+                    key: text(self.statistics[outcome.name][key], outcome.unit, 4)
+                    for key in ("mean", "standard_deviation", "minimum", *QUANTILES, "maximum")
+                },
+            }
+            for outcome in self.outcomes
+        ]
+
+    def provenance(self) -> list[tuple[str, str]]:
+        """What computed the samples."""
+        return [("Table of samples", self.source)] + [
+            (words.plain(key), str(value)) for key, value in self.attributes.items()
+        ]
+
+    def payload(self) -> dict[str, Any]:
+        """Data for the page's script."""
+        sweep = self.command == "sweep"
+        return {
+            "id": self.identifier,
+            "histograms": [] if sweep else [self._histogram(outcome) for outcome in self.outcomes],
+            "curves": [self._curve(outcome) for outcome in self.outcomes] if sweep else [],
+            "ranks": [] if sweep else [self._ranks(outcome) for outcome in self.outcomes],
+        }
+
+    def _histogram(self, outcome: Variable) -> dict[str, Any]:
+        scale, _ = outcome.shown
+        there = outcome.values[np.isfinite(outcome.values)] * scale
+        counts, edges = np.histogram(there, BARS) if len(there) else (np.zeros(0, int), np.zeros(1))
+        found = self.statistics[outcome.name]
+        return {
+            "title": words.parameter(outcome.name), "label": outcome.label, "counts": counts.tolist(),
+            "edges": edges.tolist(),
+            "note": f"in {_count(len(there))} of {_count(self.samples)} samples" if len(there) < self.samples else "",
+            "quantiles": [found[key] * scale for key in QUANTILES if found[key] is not None],
+        }
+
+    def _ranks(self, outcome: Variable) -> dict[str, Any]:
+        """How closely an outcome follows each parameter: rank correlation, strongest first."""
+        bars = [
+            {"parameter": words.parameter(parameter.name), "value": spearman(parameter.values, outcome.values)}
+            for parameter in self.parameters
+        ]
+        known = [bar for bar in bars if bar["value"] is not None]
+        return {"title": words.parameter(outcome.name), "bars": sorted(known, key=lambda bar: -abs(bar["value"]))}
+
+    def _curve(self, outcome: Variable) -> dict[str, Any]:
+        """An outcome over the first parameter, a line for each value of the second."""
+        first, second = self.parameters[0], self.parameters[1] if len(self.parameters) > 1 else None
+        if len(self.parameters) > 1 and len(np.unique(first.values)) < len(np.unique(self.parameters[1].values)):
+            first, second = self.parameters[1], self.parameters[0]
+        step = max(1, self.samples // FEWEST_MANY_POINTS)
+        points = []
+        for place in range(0, self.samples, step):
+            y = outcome.values[place]
+            if np.isfinite(y):
+                points.append({
+                    "x": float(first.values[place] * first.shown[0]), "y": float(y * outcome.shown[0]),
+                    "z": text(float(second.values[place]), second.unit, 4) if second is not None else "",
+                })
+        return {
+            "title": f"{words.parameter(outcome.name)} over {words.inside(words.parameter(first.name))}",
+            "x": first.label, "y": outcome.label, "z": words.parameter(second.name) if second is not None else "", "points": points,
+        }
+
+
+def _count(number: int) -> str:
+    return f"{number:,}".replace(",", "\u202f")
