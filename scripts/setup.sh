@@ -11,7 +11,7 @@ packages=(
   libeigen3-dev libsuitesparse-dev libgl-dev pybind11-dev python3-dev
   python3-click python3-rich python3-pydantic python3-numpy python3-scipy python3-matplotlib python3-vtk9 python3-tomli-w
   python3-distributed python3-dask python3-h5py python3-jinja2
-  python3-pytest
+  python3-pytest python3-jsonschema
   libgtest-dev libbenchmark-dev xvfb xauth chromium
 )
 # Any Node of version 18 or later that is there will do for the page of the report.

@@ -127,7 +127,7 @@ MISTAKES = {
         "force 1: force_N is missing: must be a list of three numbers [N], none beyond 1e+12"),
     "unknown key of a force": (
         "journal", [("force_N = [60, -80, 0]", "forces = 1")],
-        "force 1: forces is unknown: known are name, force_N, force_rate_N_per_K, temperature_change_K"),
+        "force 1: forces is unknown: did you mean force_N?"),
     "rate without temperatures": (
         "ball", [("temperature_change_K = [0, 50, 100]", "")],
         "force 1: temperature_change_K = None is not allowed: must be a list of numbers between -10000 and 10000 [K] "

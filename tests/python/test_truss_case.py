@@ -450,7 +450,7 @@ COUNTS = [
 @pytest.mark.parametrize("kind, n, counts", COUNTS)
 def test_generators_load_again(kind: str, n: int, counts: list[int], tmp_path: Path) -> None:
     made = GENERATORS[kind](n)
-    write(made, tmp_path / "made.toml", ["a comment"])
+    write(made, tmp_path / "made.toml", ["# a comment"])
     assert tomllib.loads(to_toml(made)) == made
     case = load_case(tmp_path / "made.toml")
     assert isinstance(case, TrussCase)
@@ -627,11 +627,12 @@ def test_examples_are_made_by_the_command_in_their_header(
     name: str, cases: Path, tmp_path: Path, statejump: Callable[..., Any]
 ) -> None:
     text = (cases / "trusses" / f"{name}.toml").read_text()
-    command = re.fullmatch(r"# Made by: statejump (.*)", text.splitlines()[0])
+    command = re.fullmatch(r"# Made by: statejump (.*)", text.splitlines()[1])
     assert command is not None
     made = statejump(*command[1].split())
     assert (made.status, made.errors) == (0, "")
-    assert (tmp_path / f"{name}.toml").read_text() == text
+    # The first line, where the schema is, depends on the folder.
+    assert (tmp_path / f"{name}.toml").read_text().splitlines()[1:] == text.splitlines()[1:]
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -667,7 +668,8 @@ def test_generators_do_not_overwrite(tmp_path: Path, statejump: Callable[..., An
     assert statejump("truss", "chain", 3, "-o", "a.toml", "--force", "--cycles", 2).status == 0
     case = load_case(tmp_path / "a.toml")
     assert (case.name, case.thermal.cycles, len(case.link)) == ("a", 2, 3)
-    assert (tmp_path / "a.toml").read_text().startswith("# Made by: statejump truss chain 3 --cycles 2 -o a.toml\n")
+    lines = (tmp_path / "a.toml").read_text().splitlines()
+    assert lines[1] == "# Made by: statejump truss chain 3 --cycles 2 -o a.toml"
 
 
 @pytest.mark.parametrize("arguments, expected", [

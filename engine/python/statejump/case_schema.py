@@ -44,6 +44,8 @@ def parameter(
 
 def allowed_range(extra: dict[str, Any]) -> str:
     """Return the sentence part that states the allowed range of a parameter."""
+    if math.isinf(extra["high"]):
+        return "must be a number" + (f" above {extra['low']:g}" if math.isfinite(extra["low"]) else "")
     if extra["above"]:
         return f"must be above {extra['low']:g} and at most {extra['high']:g} [{extra['unit']}]"
     return f"must be between {extra['low']:g} and {extra['high']:g} [{extra['unit']}]"
@@ -57,6 +59,21 @@ def choice(default: Any, names: Sequence[str], source: str) -> Any:
     :param source: where the default comes from
     """
     return Field(default, names=tuple(names), description=source)
+
+
+FOLDER_NAME = "[A-Za-z0-9][A-Za-z0-9_-]*"
+
+
+def folder_name() -> Any:
+    """Return the pydantic field of a name that becomes that of the results folder."""
+    return Field(..., pattern=FOLDER_NAME, description="name of the results folder")
+
+
+def check_folder_name(value: str) -> str:
+    """Return the value if it can be the name of a results folder, else raise ValueError."""
+    if not re.fullmatch(FOLDER_NAME, value):
+        raise ValueError("must consist of letters, digits, '_' and '-'")
+    return value
 
 
 def check_number(value: Any, extra: dict[str, Any], integer: bool) -> float | int:
@@ -115,6 +132,9 @@ def check_radii(bearing_radius: float, journal_radius: float) -> None:
 class Section(BaseModel):
     """A table of the case file: unknown keys are refused, numbers are strict and in range."""
 
+    # Choice of the section: keys that some of its names need and the others refuse.
+    GOES_WITH: ClassVar[dict[str, dict[str, tuple[str, ...]]]] = {}
+
     class Config:
         extra = Extra.forbid
         allow_mutation = False
@@ -127,20 +147,24 @@ class Section(BaseModel):
 class CaseHeader(Section):
     """What the case is."""
 
-    name: str = Field(..., description="name of the results folder")
+    name: str = folder_name()
     kind: str = Field(..., description="which experiment")
     title: str = Field("", description="one line for figures")
     source: str = Field("", description="where the numbers come from")
 
     @validator("name")
     def _name(cls, value: str) -> str:
-        if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", value):
-            raise ValueError("must consist of letters, digits, '_' and '-'")
-        return value
+        return check_folder_name(value)
 
 
 class Thermal(Section):
     """The temperature program, one cycle repeated."""
+
+    GOES_WITH = {"shape": {
+        "temperature_change_max_K": ("triangle", "half_sine", "sine"),
+        "table_time_s": ("table",),
+        "table_temperature_change_K": ("table",),
+    }}
 
     shape: str = choice(..., ("triangle", "half_sine", "sine", "table"), CHOICE)
     temperature_change_max_K: Optional[float] = parameter(None, "K", -1e4, 1e4, "Chen et al. (2021), sections 3.3 and 4.3")
@@ -160,6 +184,8 @@ class Case(Section):
     """
 
     KIND: ClassVar[str]
+    # Sections that a file of this kind may not have.
+    NOT_IN_FILE: ClassVar[tuple[str, ...]] = ()
 
     case: CaseHeader
     thermal: Thermal

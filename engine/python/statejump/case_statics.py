@@ -14,7 +14,8 @@ from typing import Any, ClassVar, Optional
 from pydantic import Field, validator
 from pydantic.fields import ModelField
 
-from .case_schema import CHOICE, Case, Section, Thermal, choice, parameter
+from .case_schema import CHOICE, Case, Section, Thermal, choice, parameter, suggestion
+from .case_tables import numbers
 
 PAPER = "Chen et al. (2021), section 2"
 TYPES = ("slot", "journal", "ball", "cylinder", "lobed", "mesh")
@@ -29,11 +30,27 @@ KEYS_OF_TYPES = {
     "mesh_file": ("mesh",),
     "mesh_unit_m": ("mesh",),
 }
-_FORCE_KEYS = ("name", "force_N", "force_rate_N_per_K", "temperature_change_K")
+LARGEST_TEMPERATURE_CHANGE_K = 1e4
+
+
+# What a [[force]] may hold; _load_cases() judges it.
+class Force(Section):
+    """One force on the component, or one for each of several temperatures."""
+
+    name: Optional[str] = Field(None, description="F1, F2, ...")
+    force_N: list[float] = numbers(..., "N", -LARGEST_FORCE_N, LARGEST_FORCE_N, PAPER + ": x, y, z", length=3)
+    force_rate_N_per_K: Optional[list[float]] = numbers(
+        None, "N/K", -LARGEST_FORCE_N, LARGEST_FORCE_N, "with temperature_change_K", length=3
+    )
+    temperature_change_K: Optional[list[float]] = numbers(
+        None, "K", -LARGEST_TEMPERATURE_CHANGE_K, LARGEST_TEMPERATURE_CHANGE_K, "with force_rate_N_per_K"
+    )
 
 
 class StaticsJoint(Section):
     """The joint: what its clearance leaves free, and friction."""
+
+    GOES_WITH = {"type": KEYS_OF_TYPES}
 
     type: str = choice(..., TYPES, PAPER + ": one, two or three dimensions")
     friction_coefficient: float = parameter(..., "-", 0, 100, PAPER)
@@ -75,7 +92,8 @@ def _vector(value: Any) -> Optional[tuple[float, float, float]]:
 def _temperatures(value: Any) -> Optional[list[float]]:
     if not isinstance(value, list) or not value:
         return None
-    if any(isinstance(item, bool) or not isinstance(item, (int, float)) or not abs(item) <= 1e4 for item in value):
+    largest = LARGEST_TEMPERATURE_CHANGE_K
+    if any(isinstance(item, bool) or not isinstance(item, (int, float)) or not abs(item) <= largest for item in value):
         return None
     return [float(item) for item in value]
 
@@ -91,8 +109,8 @@ def _load_cases(tables: Any) -> list[LoadCase] | str:
     for number, table in enumerate(tables, start=1):
         where = f"force {number}"
         for key in table:
-            if key not in _FORCE_KEYS:
-                return f"{where}: {key} is unknown: known are {', '.join(_FORCE_KEYS)}"
+            if key not in Force.__fields__:
+                return f"{where}: {key} is unknown: {suggestion(key, list(Force.__fields__), '', '')}"
         name = table.get("name", f"F{number}")
         if not isinstance(name, str) or not name:
             return f"{where}: name = {name!r} is not allowed: must be a text in quotes"
@@ -130,7 +148,9 @@ class StaticsCase(Case):
     KIND: ClassVar[str] = "statics"
 
     joint: StaticsJoint
-    force: Any = Field(..., description="sections [[force]]")
+    NOT_IN_FILE: ClassVar[tuple[str, ...]] = ("thermal",)
+
+    force: Any = Field(..., tables=Force, description="sections [[force]]")
     picture: Picture = Field(default_factory=Picture)
     # The common part of all kinds; forces carry their temperatures themselves.
     thermal: Thermal = Field(default_factory=lambda: Thermal(shape="triangle", temperature_change_max_K=0.0))

@@ -44,9 +44,9 @@ def texts(default: Any, source: str, names: Sequence[str] = ()) -> Any:
     return Field(default, texts=True, description=source, **({"names": tuple(names)} if names else {}))
 
 
-def numbers(default: Any, unit: str, low: float, high: float, source: str) -> Any:
-    """Return the pydantic field of a list of numbers, each within the range."""
-    return Field(default, unit=unit, low=low, high=high, above=False, listed=True, description=source)
+def numbers(default: Any, unit: str, low: float, high: float, source: str, **more: Any) -> Any:
+    """Return the pydantic field of a list of numbers, each within the range; ``length``: how many."""
+    return Field(default, unit=unit, low=low, high=high, above=False, listed=True, description=source, **more)
 
 
 def is_tables(field: ModelField) -> bool:

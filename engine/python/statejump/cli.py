@@ -27,6 +27,7 @@ from .resultfile import ModelRun, kind_spring_slider, kind_umbrella
 from .resultfile.commands import compare_files, export_command, info_command
 from .resultfile.read import is_result_file
 from .resultfile.record import Record, case_text
+from .schema import schema_command
 from .statics import statics_command
 from .terminal import CASE, QUIET, RESULTS, load_kind, make_console, number, print_comparison, progress
 from .truss.commands import truss_command
@@ -300,6 +301,7 @@ def laws_command(case_file: Path | None, results: Path, quiet: bool) -> None:
 for _command in (
     figures_command, slow_command, hold_command, energy_command, control_command, statics_command,
     bore_command, montecarlo_command, sweep_command, report_command, info_command, export_command, truss_command,
+    schema_command,
 ):
     cli.add_command(_command)
 

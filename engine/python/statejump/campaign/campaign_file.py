@@ -6,7 +6,6 @@ import difflib
 import hashlib
 import json
 import math
-import re
 import tomllib
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -17,8 +16,12 @@ from pydantic import Field, validator
 from pydantic.fields import ModelField
 
 from .. import __version__
+from ..case import KINDS as CASE_KINDS
 from ..case import Case, load_case
-from ..case_schema import CHOICE, Section, check_name, check_number, choice, parameter, parsed
+from ..case_schema import (
+    CHOICE, Section, check_folder_name, check_name, check_number, choice, folder_name, parameter, parsed,
+)
+from ..case_tables import is_tables, numbers, texts
 from ..errors import StatejumpError
 from .outcomes import KINDS, MODELS
 from .sampling import (
@@ -27,24 +30,20 @@ from .sampling import (
 
 MONTECARLO, SWEEP = "montecarlo", "sweep"
 MOST_SAMPLES = 10_000_000
-MONTECARLO_KEYS = ("key", "also", "distribution", "mean", "standard_deviation", "relative", "low", "high")
-SWEEP_KEYS = ("key", "also", "values", "start", "stop", "count", "spacing")
 SPACINGS = ("linear", "log")
 
 
 class SweepHeader(Section):
     """The [campaign] section of a sweep."""
 
-    name: str = Field(..., description="name of the results folder")
+    name: str = folder_name()
     title: str = Field("", description="one line for figures")
     case: str = Field(..., description="case file, relative to the campaign file")
     model: str = choice("reduced", MODELS, CHOICE + ": the fast one")
 
     @validator("name")
     def _name(cls, value: str) -> str:
-        if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]*", value):
-            raise ValueError("must consist of letters, digits, '_' and '-'")
-        return value
+        return check_folder_name(value)
 
 
 class MonteCarloHeader(SweepHeader):
@@ -60,6 +59,73 @@ class _SweepFile(Section):
 
 class _MonteCarloFile(Section):
     campaign: MonteCarloHeader
+
+
+def _numbers(kind: type[Case]) -> dict[str, ModelField]:
+    """Every key of a kind of case that holds one number, as ``section.key``."""
+    found = {}
+    for section, field in kind.__fields__.items():
+        for key, inner in getattr(field.type_, "__fields__", {}).items():
+            extra = inner.field_info.extra
+            if "low" in extra and not extra.get("listed") and not is_tables(field):
+                found[f"{section}.{key}"] = inner
+    return found
+
+
+_PATHS = tuple(sorted({path for kind in KINDS for path in _numbers(CASE_KINDS[kind])}))
+_OWN = "section.key as in the case file"
+
+
+def _free(source: str, *, unit: str = "as key", above: Optional[float] = None) -> Any:
+    """A number without range, in the unit of the varied key."""
+    low = -math.inf if above is None else above
+    return parameter(None, unit, low, math.inf, source, above=above is not None)
+
+
+# What a [[vary]] table may hold. _vary() judges it: most keys depend on each other.
+class MonteCarloVary(Section):
+    """A [[vary]] table of a Monte Carlo campaign."""
+
+    key: str = choice(..., _PATHS, _OWN)
+    also: list[str] = texts([], "keys that get the same value", _PATHS)
+    distribution: str = choice(..., DISTRIBUTIONS, "of the parameter")
+    mean: Optional[float] = _free("the case's own")
+    standard_deviation: Optional[float] = _free("this or relative", above=0)
+    relative: Optional[float] = _free(
+        "standard deviation, of a uniform distribution the half width, over the mean", unit="-", above=0
+    )
+    low: Optional[float] = _free("no lower limit")
+    high: Optional[float] = _free("no upper limit")
+
+
+class SweepVary(Section):
+    """A [[vary]] table of a sweep."""
+
+    key: str = choice(..., _PATHS, _OWN)
+    also: list[str] = texts([], "keys that get the same value", _PATHS)
+    values: Optional[list[float]] = numbers(None, "as key", -math.inf, math.inf, "these, or start, stop and count")
+    start: Optional[float] = _free("first value")
+    stop: Optional[float] = _free("last value")
+    count: Optional[int] = parameter(None, "-", 2, MOST_SAMPLES, "number of values")
+    spacing: str = choice("linear", SPACINGS, CHOICE)
+
+
+MONTECARLO_KEYS, SWEEP_KEYS = tuple(MonteCarloVary.__fields__), tuple(SweepVary.__fields__)
+
+
+class MonteCarloCampaign(_MonteCarloFile):
+    """A case whose parameters are random."""
+
+    vary: Any = Field(..., tables=MonteCarloVary, description="sections [[vary]]")
+
+
+class SweepCampaign(_SweepFile):
+    """A case on a grid of its parameters."""
+
+    vary: Any = Field(..., tables=SweepVary, description="sections [[vary]]")
+
+
+FILES: dict[str, type[Section]] = {MONTECARLO: MonteCarloCampaign, SWEEP: SweepCampaign}
 
 
 @dataclass(frozen=True)
@@ -176,19 +242,8 @@ def _toml(path: Path) -> tuple[str, dict[str, Any]]:
         raise StatejumpError(f"{path}: not TOML: {failure}") from None
 
 
-def _numbers(case: Case) -> dict[str, ModelField]:
-    """Every key of the kind of case that holds one number, as ``section.key``."""
-    found = {}
-    for section, field in type(case).__fields__.items():
-        for key, inner in getattr(field.type_, "__fields__", {}).items():
-            extra = inner.field_info.extra
-            if "low" in extra and not extra.get("listed"):
-                found[f"{section}.{key}"] = inner
-    return found
-
-
 def _field(case: Case, path: str) -> ModelField:
-    return _numbers(case)[path]
+    return _numbers(type(case))[path]
 
 
 def own_value(case: Case, path: str) -> Optional[float]:
@@ -200,14 +255,14 @@ def own_value(case: Case, path: str) -> Optional[float]:
 def _checked_path(path: Any, name: str, case: Case) -> str:
     if not isinstance(path, str):
         raise ValueError(f"{name} = {path!r} is not allowed: must be a text such as 'joint.friction_coefficient'")
-    numbers = _numbers(case)
-    if path in numbers:
+    known = _numbers(type(case))
+    if path in known:
         return path
     section, _, key = path.partition(".")
     model = getattr(type(case).__fields__.get(section), "type_", None)
     if key in getattr(model, "__fields__", {}):
         raise ValueError(f"{name} = {path!r} is not allowed: it is not a number")
-    match = difflib.get_close_matches(path, numbers, n=1, cutoff=0.5)
+    match = difflib.get_close_matches(path, known, n=1, cutoff=0.5)
     raise ValueError(
         f"{name} = {path!r} is unknown in a case of kind {case.kind!r}"
         + (f": did you mean {match[0]!r}?" if match else ": must be section.key as in the case file")

@@ -15,6 +15,7 @@ from ..case_schema import Thermal
 from ..case_truss import Revolute, TrussCase
 from ..errors import StatejumpError
 from ..output import results_folder
+from ..schema import head_line
 from ..terminal import CASE, QUIET, RESULTS, load_kind, make_console
 from .document import Document, write
 from .generate import GENERATORS
@@ -77,7 +78,7 @@ def _generator_command(kind: str, function: Callable[..., Document]) -> click.Co
             for key, value in values.items() if value != keys[key]
         ]
         line = " ".join(["statejump truss", kind, str(n), *given, "-o", shlex.quote(output.name)])
-        write(made, output, [f"Made by: {line}", "Units are in the names."])
+        write(made, output, [head_line(case.kind, output), f"# Made by: {line}", "# Units are in the names."])
         assert isinstance(case, TrussCase)
         joints = len(case.slider) + len(case.revolute)
         console.print(f"{output}: nodes {len(case.node)}, links {len(case.link)}, joints {joints}")

@@ -72,9 +72,9 @@ def _on_one_line(match: re.Match[str]) -> str:
 def write(made: Document, path: Path, header: Sequence[str]) -> None:
     """Write a document to a file.
 
-    :param header: comment lines at its head, without ``#``
+    :param header: comment lines at its head
     :raises StatejumpError: the file cannot be written
     """
     with write_atomically(path) as stream:
-        stream.writelines(f"# {line}\n" for line in header)
+        stream.writelines(f"{line}\n" for line in header)
         stream.write(to_toml(made))
