@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "statejump/geometry/bore_mesh.hpp"
+#include "statejump/geometry/follow.hpp"
 #include "statejump/kernel/elliptic_hertz.hpp"
 #include "statejump/kernel/joint_kinematics.hpp"
 
@@ -63,6 +64,25 @@ void bore_contacts(benchmark::State& state) {
   state.counters["contacts"] = count / static_cast<double>(state.iterations());
 }
 BENCHMARK(bore_contacts)->RangeMultiplier(10)->Range(1000, 1000000);
+
+/// The same way, 3e-4 rad a step: the smooth wall is asked in every step.
+void bore_followed(benchmark::State& state) {
+  const BoreMesh& mesh = bore(static_cast<int>(state.range(0)));
+  std::vector<double> track;
+  std::vector<statejump::geometry::FollowedContact> found;
+  int i = 0;
+  double searches = 0;
+  for (auto _ : state) {
+    const double angle = 3e-4 * ++i;
+    const Vector3d place(1.01e-4 * std::cos(angle), 1.01e-4 * std::sin(angle), 1e-3);
+    const auto how =
+        follow_contacts(mesh, {place, Vector3d::UnitZ(), journal_radius}, 2e-4, track, found);
+    for (std::size_t k = 0; k < found.size(); ++k) statejump::geometry::set_label(track, k, 0);
+    searches += how == statejump::geometry::Followed::search;
+  }
+  state.counters["searches"] = searches / static_cast<double>(state.iterations());
+}
+BENCHMARK(bore_followed)->RangeMultiplier(10)->Range(1000, 1000000);
 
 void bore_no_contact(benchmark::State& state) {
   const BoreMesh& mesh = bore(static_cast<int>(state.range(0)));

@@ -72,6 +72,55 @@ TEST(RestOnMesh, ImplicitSphere) {
   EXPECT_LT(before, 2e-3);
 }
 
+TEST(RestOnMesh, BorderOnAnImplicitSurfaceIsWhereTheConeEnds) {
+  // An ellipsoid: unlike on a sphere the normal is not linear along an edge.
+  const Vector3d axes(1.0e-4, 0.7e-4, 0.5e-4), force(0.3, -0.5, 1.0);
+  const double mu = 0.5;
+  const RestMesh mesh = implicit_surface(
+      [&](const Vector3d& p) { return p.cwiseQuotient(axes).squaredNorm() - 1.0; },
+      [&](const Vector3d& p) -> Vector3d {
+        return 2.0 * p.cwiseQuotient(axes).cwiseQuotient(axes);
+      },
+      Vector3d(-1.21e-4, -0.93e-4, -0.72e-4), Vector3d(1.24e-4, 0.92e-4, 0.75e-4), 24);
+  double linear = 0.0;
+  int borders = 0, exact = 0;
+  for (const RestPiece& piece : rest_on_mesh(mesh, {force}, mu).pieces) {
+    if (piece.forces == 0) continue;
+    const auto& corners = mesh.triangles[piece.triangle];
+    for (const Vector3d& point : piece.polygon) {
+      Vector3d flat = Vector3d::Zero();
+      bool corner = false;
+      double total = 0.0, least = 1.0;
+      for (int k = 0; k < 3; ++k) {
+        const Vector3d& a = mesh.vertices[corners[k]];
+        const Vector3d& b = mesh.vertices[corners[(k + 1) % 3]];
+        const Vector3d& d = mesh.vertices[corners[(k + 2) % 3]];
+        corner = corner || (point - a).norm() < 1e-12;
+        const double weight = (b - point).cross(d - point).norm();
+        flat += weight * mesh.normal(a).normalized();
+        total += weight;
+        least = std::min(least, weight);
+      }
+      // Between its edges the border follows the linear normals.
+      if (corner || least > 1e-9 * total) continue;
+      const auto beyond = [&](const Vector3d& normal) {
+        return std::abs(std::atan2(force.cross(normal).norm(), -force.dot(normal)) - std::atan(mu));
+      };
+      ++borders;
+      // 60 halvings of a fifth of an edge.
+      exact += beyond(mesh.normal(mesh.project(point))) < 1e-9;
+      linear = std::max(linear, beyond(flat / total));
+    }
+  }
+  EXPECT_GT(borders, 50);
+  // A few are where the curve of linear normals, drawn between the roots, meets an edge beside
+  // them.
+  EXPECT_GT(exact, 0.8 * borders);
+  std::printf("%d of %d places on edges are exact\n", exact, borders);
+  // So it was worth the roots of the true normal.
+  EXPECT_GT(linear, 1e-5);
+}
+
 TEST(RestOnMesh, CapInsideOneTriangle) {
   // The cone is far smaller than a triangle: no corner and no side of it is in the set.
   const RestMesh mesh = clearance_sphere(c, 2);
