@@ -195,6 +195,20 @@ def test_several_runs(statejump: Callable[..., Outcome], results: Path) -> None:
     assert size < 5 * MEGABYTE
 
 
+def test_events_of_both_models_stand_in_one_row() -> None:
+    result = _truss(3, 50)
+    for run, late in ((result.models["reduced"], 0.0), (result.models["dem"], 0.04)):
+        run.events[:] = [
+            Event("slip", 0.1 + late, 1.0, "joint_0"), Event("stick", 0.3, 2.0, "joint_0"),
+            Event("slip", 0.5 + late, 1.0, "joint_0", 2.5e-4), Event("slip", 0.5, 1.0, "joint_1"),
+        ]
+    result.models["dem"].events.insert(1, Event("slip", 0.2, 1.0, "joint_0"))  # one that only it has
+    rows, omitted = Document(result, "x.h5", "run1", 1e6).events()
+    assert omitted == 0 and [len(row["at"]) for row in rows] == [2, 1, 2, 2, 2]
+    assert [row["time_s"] for row in rows] == [0.1, 0.2, 0.3, 0.5, 0.5]
+    assert rows[3]["at"]["dem"]["time"] == "540\u202fms" and rows[3]["at"]["dem"]["uncertainty"] == "250\u202fµs"
+
+
 @pytest.mark.parametrize(
     ("name", "content", "sentence"),
     [
@@ -350,7 +364,7 @@ def test_decimation_keeps_what_it_says() -> None:
     [
         (2.380952380952381e-05, "m", "23.8095\u202fµm"), (-7.65e-11, "m", "−0.0765\u202fnm"), (0.0, "J", "0\u202fJ"),
         (9e-6, "m2", "9\u202fmm²"), (70e9, "Pa", "70\u202fGPa"), (87.5, "K", "87.5\u202fK"), (2e-4, "-", "0.0002"),
-        (1e-22, "J", "1.00000·10⁻²²\u202fJ"), (0.5, "s", "500\u202fms"), (math.nan, "m", "none"), (None, "m", "none"),
+        (1e-22, "J", "1.00000·10⁻²²\u202fJ"), (0.5, "s", "500\u202fms"), (123456.0, "K", "123456\u202fK"), (math.nan, "m", "none"), (None, "m", "none"),
         (1.0, "N m/rad", "1\u202fN·m/rad"),
     ],
 )

@@ -10,8 +10,7 @@ export const FORCE_KINDS: Record<string, string> = {
   axial: "force-axial",
   external: "force-external",
 };
-const LONGEST = 0.2; // of the scene's size
-const SHORTEST = 0.02;
+const SHORTEST = 0.1; // of the longest arrow
 const NONE = 1e-6; // of the largest force: not drawn
 
 /** An arrow whose length grows with the square root of its force: impacts and holding forces differ
@@ -41,7 +40,7 @@ export class Arrow {
     this.group.visible = size > NONE * largest;
     if (!this.group.visible) return;
     const headLength = 6 * 0.22 * this.measures.bar;
-    const length = Math.max(SHORTEST, LONGEST * Math.sqrt(size / largest)) * this.measures.size;
+    const length = Math.max(SHORTEST, Math.sqrt(size / largest)) * this.measures.arrow;
     this.shaft.scale.y = length;
     this.head.position.y = length;
     const arm = this.force.arm.map((component) => pose.value(component)) as [number, number, number];

@@ -20,6 +20,8 @@ export interface Measures {
   size: number;
   bar: number;
   depth: number;
+  /** Length of the largest force. */
+  arrow: number;
 }
 
 export interface Solid {

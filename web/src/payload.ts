@@ -92,6 +92,7 @@ export interface SceneData {
   high: number[];
   largest_force_N: number;
   clearance_m: number;
+  shortest_link_m: number;
   magnification: number;
   deforms: boolean;
 }

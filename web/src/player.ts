@@ -18,7 +18,7 @@ const KEYS: [string, string][] = [
   ["Shift + ← →", "event before, after"],
   ["Home, End", "start, end"],
   ["+ −", "magnification"],
-  ["1 2 3 4", "views: oblique, front, top, joint"],
+  ["1 2 3 4", "views: oblique, front, top, joint; 4 again: next joint"],
   ["Z, Shift + Z", "zoom in, out"],
   ["M", "other model"],
   ["G", "what stands behind as a ghost"],
@@ -159,7 +159,7 @@ class Player {
 
   private stageWithTools(): HTMLElement {
     const views = VIEWS.map((view) =>
-      element("button", { type: "button", click: () => this.view?.look(view) }, VIEW_NAMES[view]),
+      element("button", { type: "button", click: () => this.view?.choose(view) }, VIEW_NAMES[view]),
     );
     const zooms = [
       ["+", 1.25, "Zoom in"],
@@ -442,7 +442,7 @@ class Player {
       l: () => head.change({ labels: !head.labels }),
     };
     VIEWS.forEach((view, i) => {
-      actions[String(i + 1)] = () => this.view?.look(view);
+      actions[String(i + 1)] = () => this.view?.choose(view);
     });
     const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!action) return;

@@ -25,6 +25,12 @@ const TONES: Record<Tone, string> = {
 };
 const FIELD_OF_VIEW = 24; // degrees
 const MARGIN = 1.12;
+// Thickness of links that are thinner, and length of the largest force: shares of the scene's size,
+// but of the shortest link no more than leaves it recognizable.
+const BAR = 0.014;
+const BAR_OF_LINK = 0.1;
+const ARROW = 0.2;
+const ARROW_OF_LINK = 0.8;
 const LOOKS = 40; // moments that the camera is placed for
 const MOST_LABELS = 8; // contacts beyond which labels would hide the parts
 
@@ -143,6 +149,9 @@ export class SceneView {
   private readonly resize: ResizeObserver;
   private view: View = "oblique";
   private followed: THREE.Vector3 | null = null;
+  /** Parts that carry contacts, and which of them the view of a joint shows. */
+  private readonly joints: number[];
+  private shown = 0;
   private pending = false;
   private moved = false;
 
@@ -161,8 +170,13 @@ export class SceneView {
     this.scale = 10 / size;
     this.centre = low.clone().add(high).multiplyScalar(0.5);
     const radii = scene.parts.flatMap((part) => part.radius_m ?? part.half_height_m ?? []);
-    const bar = 0.014 * size;
-    this.measures = { size, bar, depth: Math.max(2 * bar, 0.8 * Math.max(0, ...radii)) };
+    const bar = Math.min(BAR * size, BAR_OF_LINK * scene.shortest_link_m);
+    this.measures = {
+      size,
+      bar,
+      depth: Math.max(2 * bar, 0.8 * Math.max(0, ...radii)),
+      arrow: Math.min(ARROW * size, ARROW_OF_LINK * scene.shortest_link_m),
+    };
     this.bodies = new Assembly(scene, this.measures, false);
     this.ghost = new Assembly(scene, this.measures, true);
     this.ghost.group.position.z = -0.02 * this.measures.depth; // behind, where surfaces coincide
@@ -180,11 +194,8 @@ export class SceneView {
     const canvas = this.renderer.domElement;
     canvas.setAttribute("aria-hidden", "true");
     holder.append(canvas);
-    const parts = new Set(scene.contacts.map((contact) => contact.on));
-    this.labels =
-      scene.contacts.length <= MOST_LABELS
-        ? [...parts].map((part) => element("div", { class: "tag", "data-part": part }))
-        : [];
+    this.joints = [...new Set(scene.contacts.map((contact) => contact.on))];
+    this.labels = this.joints.map((part) => element("div", { class: "tag", "data-part": part }));
     holder.append(...this.labels);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableZoom = false; // the wheel scrolls the page; see the buttons and keys
@@ -234,7 +245,13 @@ export class SceneView {
     this.request();
   }
 
-  /** Moves the camera to a preset from which everything, or the first joint, is in sight. */
+  /** A view as the reader asks for it: the joint's, asked again, goes on to the next joint. */
+  choose(view: View): void {
+    if (view === "joint" && this.view === "joint" && !this.moved) this.shown = (this.shown + 1) % this.joints.length;
+    this.look(view);
+  }
+
+  /** Moves the camera to a preset from which everything, or one joint, is in sight. */
   look(view: View): void {
     this.view = view;
     this.moved = false;
@@ -302,17 +319,16 @@ export class SceneView {
     this.request();
   }
 
-  /** Where the first contact's part is drawn, in the camera's world. */
+  /** Where the part of the joint in view is drawn, in the camera's world. */
   private joint(): THREE.Vector3 | null {
-    const contact = this.run.data.scene.contacts[0];
-    const place = contact && this.run.data.scene.parts[contact.on]?.points[0];
+    const place = this.run.data.scene.parts[this.joints[this.shown] ?? -1]?.points[0];
     if (place === undefined) return null;
     return this.moment().point(place).clone().sub(this.centre).multiplyScalar(this.scale);
   }
 
   private jointReach(): number {
     const { scene } = this.run.data;
-    const part = scene.parts[scene.contacts[0]?.on ?? 0];
+    const part = scene.parts[this.joints[this.shown] ?? 0];
     const radius = part?.radius_m ?? Math.max(part?.half_width_m ?? 0, part?.half_height_m ?? 0);
     return 1.7 * radius + 1.3 * this.head.clearance * scene.clearance_m;
   }
@@ -390,10 +406,11 @@ export class SceneView {
     const { scene } = this.run.data,
       at = this.head.model.cursor(this.head.time);
     for (const label of this.labels) {
-      label.hidden = !this.head.labels;
+      const part = Number(label.dataset["part"]);
+      const seen = scene.contacts.length <= MOST_LABELS || (this.followed && part === this.joints[this.shown]);
+      label.hidden = !this.head.labels || !seen;
       if (label.hidden) continue;
-      const part = Number(label.dataset["part"]),
-        contacts = scene.contacts.filter((contact) => contact.on === part);
+      const contacts = scene.contacts.filter((contact) => contact.on === part);
       const texts = contacts.flatMap((contact) => {
         const state = this.head.model.nearest(contact.state, at);
         if (state === 0 && contacts.length > 1) return [];
@@ -402,8 +419,8 @@ export class SceneView {
       });
       label.textContent = texts.join(" · ");
       const place = now.point(scene.parts[part]!.points[0]!).clone();
-      place.y +=
-        (scene.parts[part]!.half_height_m ?? 2.6 * (scene.parts[part]!.radius_m ?? 0)) + 1.5 * this.measures.bar;
+      const { half_height_m: height, radius_m: radius } = scene.parts[part]!;
+      place.y += (height ?? 1.6 * (radius ?? 0) + 2 * now.clearance * scene.clearance_m) + this.measures.bar;
       place.sub(this.centre).multiplyScalar(this.scale).project(this.camera);
       const width = this.holder.clientWidth,
         half = label.offsetWidth / 2 + 6;

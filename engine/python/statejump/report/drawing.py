@@ -17,7 +17,10 @@ from ..resultfile import ModelRun, Result
 from ..resultfile.scene import growth, resolve, resolve_point
 from . import words
 
-SHOWN_GAP = 0.03  # of the scene's size, that the default magnification gives the smallest clearance
+# What the default magnification gives the smallest clearance: a share of the scene's size, but of the
+# shortest link no more than can be told from the link.
+SHOWN_GAP = 0.03
+SHOWN_GAP_OF_LINK = 0.15
 AXES = "xyz"
 
 
@@ -234,12 +237,19 @@ class Drawing:
         low, high = np.min(corners, axis=0), np.max(corners, axis=0)
         clearance = float(self.result.scene["smallest_clearance_m"])
         size = float(np.max(high - low))
+        lengths = [
+            float(np.linalg.norm(np.subtract(*(self._at(end, run)[0] for end in part["ends"]))))
+            for part in self.result.scene["parts"] if part["type"] == "link"
+        ]
+        shortest = min((length for length in lengths if length > 0), default=size)
+        shown = min(SHOWN_GAP * size, SHOWN_GAP_OF_LINK * shortest)
         self.scene.update(
             low=low.tolist(),
             high=high.tolist(),
             largest_force_N=max((self._largest(force) for force in self.scene["forces"]), default=0.0),
             clearance_m=clearance,
-            magnification=round_down(SHOWN_GAP * size / clearance) if clearance > 0 else 1.0,
+            shortest_link_m=shortest,
+            magnification=round_down(shown / clearance) if clearance > 0 else 1.0,
             # Whether anything but relative places moves: else there is no deformation to magnify.
             deforms=any(
                 "of" not in point and any(

@@ -32,7 +32,8 @@ def text(value: Optional[float], unit: str = "-", digits: int = 6) -> str:
     if value is None or math.isnan(value):
         return "none"
     scale, written = scale_of(unit, value)
-    shown = f"{value * scale:.{digits}g}"
+    before_point = len(str(int(abs(value * scale)))) if abs(value * scale) < 1000 else 0
+    shown = f"{value * scale:.{max(digits, before_point)}g}"
     if "e" in shown:  # beyond the prefixes: a power of ten of the unit itself
         written = "" if unit == "-" else WRITTEN.get(unit, unit)
         shown = f"{value:.{digits - 1}e}"

@@ -12,7 +12,7 @@ NAMES = {
     "joint_b": "Joint B", "link_ab": "Link AB", "link_bc": "Link BC", "floor": "Floor", "stop_plus": "Stop +",
     "stop_minus": "Stop −", "bar": "Bar", "at_stop_plus": "stop +", "at_stop_minus": "stop −",
     "theta2_jump_rad": "Jump of θ2", "theta4_jump_rad": "Jump of θ4", "theta2_jump": "Jump of θ2",
-    "theta4_jump": "Jump of θ4",
+    "theta4_jump": "Jump of θ4", "young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio",
 }
 COLUMNS = {
     "time_s": "Time",
@@ -62,7 +62,8 @@ def parameter(path: str) -> str:
 
 def inside(words: str) -> str:
     """Return words as they stand inside a sentence."""
-    return words if words[:2].isupper() else words[:1].lower() + words[1:]
+    kept = words[:2].isupper() or words.startswith(("Young", "Poisson"))
+    return words if kept else words[:1].lower() + words[1:]
 
 
 def column(name: str) -> str:
