@@ -176,6 +176,8 @@ def test_title_cannot_break_out(statejump: Callable[..., Outcome], edited: Calla
     assert statejump("reduced", case).status == 0
     found, _ = written(statejump, "results")
     assert len(found.scripts) == 2
+    # Nothing that a browser could take for the begin or end of an element or a comment.
+    assert not set("<>&") & set(next(text for attributes, text in found.scripts if attributes))
     assert found.data["runs"][0]["title"] == title
     assert title in found.words
 
@@ -357,6 +359,13 @@ def test_decimation_keeps_what_it_says() -> None:
         assert {0, 17, 1234, 2999} <= set(chosen.tolist())
         assert error <= tolerance or len(chosen) == most
     assert len(kept_samples(time, columns[:, 2:], 10, 1e-3)) == 2
+
+
+def test_decimation_finds_the_kinks() -> None:
+    # Straight lines deviate most from straight pieces where the pieces meet.
+    time, kinks = np.arange(2000.0), [0, 300, 301, 950, 1700, 1999]
+    column = np.interp(time, kinks, [0.0, 1.0, -1.0, 0.5, 0.4, 0.0])
+    assert kept_samples(time, column[:, None], 100, 1e-9).tolist() == kinks
 
 
 @pytest.mark.parametrize(
