@@ -28,7 +28,8 @@ def run(case, output):
     partial = output.with_name(output.name + ".partial")
     with partial.open("w", newline="") as stream:
         writer = csv.writer(stream)
-        writer.writerow(kind.COLUMNS)
+        columns = getattr(kind, "columns", None)  # of a kind whose items differ from case to case
+        writer.writerow(columns(case) if columns else kind.COLUMNS)
         recorder = PyRunner(
             command="record()", iterPeriod=every, initRun=True, label="recorder"
         )

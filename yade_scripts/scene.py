@@ -36,15 +36,21 @@ def fixed_point(position: tuple[float, float, float]) -> int:
 
 def joint_engines(
     links: list[sj.ThermalLink],
-    program: sj.ThermalProgram,
+    program: sj.ThermalProgram | None,
     law: wrapper.LawFunctor,
     dampingRatio: float,
     verletDist: float,
     recorders: list[wrapper.Engine],
     springs: tuple[sj.TorsionSpring, ...] = (),
+    expansions: list[wrapper.Engine] | None = None,
 ) -> list[wrapper.Engine]:
     """Return the engines of any scene of joints, links and torsion springs. Recorders see a state
-    of one time: positions, temperature and forces of the current step."""
+    of one time: positions, temperature and forces of the current step.
+
+    :param expansions: ThermalExpansionEngines of the bodies; None: all of them follow ``program``
+    """
+    if expansions is None:
+        expansions = [sj.ThermalExpansionEngine(program=program)]
     bounds = [
         sj.Bo1_Journal_Aabb(),
         sj.Bo1_Bearing_Aabb(),
@@ -53,7 +59,7 @@ def joint_engines(
     ]
     return [
         wrapper.ForceResetter(),
-        sj.ThermalExpansionEngine(program=program),
+        *expansions,
         wrapper.InsertionSortCollider(bounds, verletDist=verletDist),
         wrapper.InteractionLoop(
             [sj.Ig2_Journal_Bearing_JointGeom(), sj.Ig2_Slider_SlotFace_JointGeom()],

@@ -7,12 +7,13 @@ from yade.minieigenHP import Quaternion, Vector3
 
 def slot(
     center: Vector3,
-    stopMinus: float,
-    stopPlus: float,
+    stopMinus: float | None,
+    stopPlus: float | None,
     halfHeight: float,
     material: wrapper.Material,
     orientation: Quaternion = Quaternion((0, 0, 1), 0),
     ceiling: bool = False,
+    halfSize: float | None = None,
 ) -> list[wrapper.Body]:
     """Return the fixed faces of a slot along the local x axis: floor, end stops, ceiling.
 
@@ -20,20 +21,26 @@ def slot(
     to the stops and touches the floor when ``halfHeight == R``.
 
     :param center: centre of the slot [m]
-    :param stopMinus: distance of the stop on the negative side from the centre [m]
-    :param stopPlus: distance of the stop on the positive side from the centre [m]
+    :param stopMinus: distance of the stop on the negative side from the centre [m]; None: no such stop
+    :param stopPlus: distance of the stop on the positive side from the centre [m]; None: no such stop
     :param halfHeight: distance of the floor (and the ceiling) from the centre [m]
     :param material: a ThermalFrictMat, or the label or number of one in ``O.materials``
     :param orientation: orientation of the slot
     :param ceiling: whether there is a ceiling
-    :returns: bodies to append, in the order floor, minus stop, plus stop[, ceiling]
+    :param halfSize: how far faces reach from the centre for the collider [m]; None: as far as the
+        most distant face
+    :returns: bodies to append, in the order floor, minus stop, plus stop[, ceiling]; without the
+        stops that there are not
     """
     if isinstance(material, (str, int)):
         material = wrapper.Omega().materials[material]
-    faces = [((0, -1, 0), halfHeight), ((-1, 0, 0), stopMinus), ((1, 0, 0), stopPlus)]
+    faces = [((0, -1, 0), halfHeight)]
+    faces += [
+        ((side, 0, 0), stop) for side, stop in ((-1, stopMinus), (1, stopPlus)) if stop is not None
+    ]
     if ceiling:
         faces.append(((0, 1, 0), halfHeight))
-    half_size = max(stopMinus, stopPlus, halfHeight)
+    half_size = max(distance for _, distance in faces) if halfSize is None else halfSize
     bodies = []
     for normal, distance in faces:
         body = wrapper.Body()

@@ -66,11 +66,31 @@ UMBRELLA_COLUMNS = (
     "thermal_work_J",
 )
 
+TRUSS_COLUMNS = (
+    "time_s",
+    "temperature_change_K",
+    "elastic_energy_J",  # of links, springs, torsion springs and contacts
+    "kinetic_energy_J",
+    "friction_dissipation_J",
+    "damping_dissipation_J",  # of links, pins and contacts
+    "thermal_work_J",
+    "external_work_J",  # of the dead loads
+)
+
 
 def common_order(names: Iterable[str]) -> list[str]:
-    """Return the names in their common order; ValueError if one is unknown."""
-    names = set(names)
-    order = UMBRELLA_COLUMNS if "theta2_rad" in names else SPRING_SLIDER_COLUMNS
+    """Return the names in their common order; ValueError if one is unknown. Columns of an item,
+    ``name[item]`` or ``name[item].x``, follow in the order given."""
+    given = list(names)
+    items = [name for name in given if "[" in name]
+    if items:
+        plain = [name for name in given if "[" not in name]
+        return _ordered(plain, TRUSS_COLUMNS) + items
+    return _ordered(given, UMBRELLA_COLUMNS if "theta2_rad" in given else SPRING_SLIDER_COLUMNS)
+
+
+def _ordered(given: Iterable[str], order: tuple[str, ...]) -> list[str]:
+    names = set(given)
     for name in sorted(names.difference(order)):
         raise ValueError(f"unknown column {name}")
     return [name for name in order if name in names]

@@ -1,0 +1,334 @@
+"""YADE scene of ``truss`` cases: nodes are bodies, bars are links, joints are contacts.
+
+What the DEM cannot represent has been refused before: ``statejump/truss/dem.py``, which also says how
+masses are lumped. A slider's pad is held at the depth at which its floor carries the normal force.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import atan, atan2, cos, pi, sin
+from typing import Any
+
+import statejump_yade as sj
+from scene import O, fixed_point, joint_engines
+from yade import wrapper
+from yade.minieigenHP import Matrix3, Quaternion, Vector3
+
+PLAIN = (
+    "time_s", "temperature_change_K", "elastic_energy_J", "kinetic_energy_J", "friction_dissipation_J",
+    "damping_dissipation_J", "thermal_work_J", "external_work_J",
+)
+GROUND = -1
+STICK, SLIP, AT_STOP, SEPARATED = 1, 2, 3, 0  # as statejump.resultfile.contents has them
+
+
+@dataclass
+class TrussScene:
+    """What a script reads from the scene: bodies by node, links, springs, faces of sliders."""
+
+    program: sj.ThermalProgram
+    nodes: list[int]
+    links: list[sj.ThermalLink]
+    springs: list[sj.ThermalLink]
+    faces: list[tuple[int, list[int]]] = field(default_factory=list)  # floor and stops of each slider
+    free: list[int] = field(default_factory=list)  # nodes that move
+    loaded: list[int] = field(default_factory=list)  # nodes with a dead load
+    start: list[Vector3] = field(default_factory=list)
+    cables: list[int] = field(default_factory=list)
+
+
+def columns(case: dict[str, Any]) -> list[str]:
+    """Return the names of the columns of a case."""
+
+    def of(section: str, *names: str, vector: bool = False) -> list[str]:
+        ends = (".x", ".y", ".z") if vector else ("",)
+        return [f"{name}[{item}]{end}" for name in names for item in case[section]["names"] for end in ends]
+
+    return [
+        *PLAIN, *of("node", "displacement_m", vector=True), *of("link", "axial_force_N"), *of("spring", "tension_N"),
+        *of("slider", "slide_m", "slider_force_N", "slider_state"),
+        *of("revolute", "eccentricity_m", vector=True),
+        *of("revolute", "normal_force_N", "friction_force_N", "revolute_state"),
+    ]
+
+
+class Programs:
+    """Temperature programs, one for each program and fraction that an item has."""
+
+    def __init__(self, case: dict[str, Any]) -> None:
+        self._case = case["programs"]
+        self._made: dict[tuple[int, float], sj.ThermalProgram] = {}
+
+    def of(self, number: int, fraction: float) -> sj.ThermalProgram:
+        """Return the program with its temperatures times the fraction."""
+        if (number, fraction) not in self._made:
+            given = self._case[number]
+            if given["shape"] == "table":
+                shape = dict(
+                    tableTimes=given["table_time_s"],
+                    tableTemperatureChanges=[fraction * change for change in given["table_temperature_change_K"]],
+                )
+            else:
+                shape = dict(temperatureChangeMax=fraction * given["temperature_change_max_K"])
+            self._made[number, fraction] = sj.ThermalProgram(
+                shape=given["shape"], period=given["period_s"], cycles=given["cycles"], **shape
+            )
+        return self._made[number, fraction]
+
+
+def _rows(section: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return a section of columns as one dict per item."""
+    count = len(section["names"])
+    whole = {key: values for key, values in section.items() if isinstance(values, list) and len(values) == count}
+    return [{key: values[place] for key, values in whole.items()} for place in range(count)]
+
+
+def _material(part: dict[str, Any], expansion: float = 0.0) -> sj.ThermalFrictMat:
+    return sj.ThermalFrictMat(
+        young=part["young_modulus_Pa"], poisson=part["poisson_ratio"],
+        frictionAngle=atan(part["friction_coefficient"]), thermalExpansion=expansion,
+    )
+
+
+def _give(body: wrapper.Body, shape, material, group: int) -> None:
+    body.shape, body.material, body.bound = shape, material, wrapper.Aabb()
+    body.mask = 1 << group
+
+
+def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
+    """Build the scene in the equilibrium in which the quasi-static path starts.
+
+    :param case: what ``statejump.truss.dem.resolved`` returns
+    :param recorders: engines that read the state, run before the motion of each step
+    """
+    dem = case["dem"]
+    programs = Programs(case)
+    nodes, links = _rows(case["node"]), _rows(case["link"])
+    sliders, joints = _rows(case["slider"]), _rows(case["revolute"])
+    bodies = []
+    for node in nodes:
+        body = wrapper.Body()
+        body.state.mass = node["mass_kg"]
+        body.state.pos = body.state.refPos = node["start_m"]
+        blocked = "".join(axis for axis, held in zip("xyz", node["blocked"]) if held)
+        body.state.blockedDOFs = blocked + "XYZ"
+        bodies.append(body)
+
+    faces: list[list[wrapper.Body]] = []
+    for slider in sliders:
+        body, radius = bodies[slider["nodes"][0]], slider["pad_radius_m"]
+        material = _material(slider)
+        _give(body, sj.Slider(radius=radius), material, slider["group"])
+        axis, down = Vector3(slider["axis"]), Vector3(slider["floor_normal"])
+        across = axis.cross(-down)
+        # Columns: the slot's x, y and z in space.
+        turned = Matrix3(*(value for k in range(3) for value in (axis[k], -down[k], across[k])))
+        stops = [
+            None if slider[f"clearance_{side}_m"] is None else radius + slider[f"clearance_{side}_m"]
+            for side in ("minus", "plus")
+        ]
+        made = sj.slot(
+            Vector3(nodes[slider["nodes"][0]]["position_m"]), stopMinus=stops[0], stopPlus=stops[1],
+            halfHeight=radius - slider["depth_m"], material=material, orientation=Quaternion(turned),
+            halfSize=slider["reach_m"],
+        )
+        for face in made:
+            face.mask = 1 << slider["group"]
+        faces.append(made)
+
+    turning: dict[int, set[int]] = {}  # of each link, the nodes whose bodies turn with it
+    parts_of: dict[tuple[int, float], list[int]] = {}
+    for joint in joints:
+        for part in ("bearing", "journal"):
+            node, expansion = joint[f"{part}_node"], joint[f"{part}_thermal_expansion_per_K"]
+            shape = (sj.Bearing if part == "bearing" else sj.Journal)(radius=joint[f"{part}_radius_m"])
+            _give(bodies[node], shape, _material(joint, expansion), joint["group"])
+            bodies[node].state.ori = Quaternion()
+            bodies[node].state.ori.setFromTwoVectors(Vector3(0, 0, 1), Vector3(joint["axis"]))
+            if expansion:
+                parts_of.setdefault((joint["program"], joint["temperature_fraction"]), []).append(node)
+            if joint[f"{part}_link"] != GROUND:
+                turning.setdefault(joint[f"{part}_link"], set()).add(node)
+
+    ids = [O.bodies.append(body) for body in bodies]
+    common = programs.of(0, 1.0)
+    scene = TrussScene(common, ids, [], [])
+    for place, made in enumerate(faces):
+        numbers = O.bodies.append(made)
+        scene.faces.append((numbers[0], list(numbers[1:])))
+    for place, node in enumerate(nodes):
+        scene.start.append(Vector3(node["start_m"]))
+        if not all(node["blocked"]):
+            scene.free.append(place)
+        if any(node["force_N"]):
+            O.forces.setPermF(ids[place], Vector3(node["force_N"]))
+            scene.loaded.append(place)
+
+    carriers = []  # links without stiffness that turn the root of a link that turns its tip as well
+    for place, link in enumerate(links):
+        ends = [int(node) for node in link["nodes"]]
+        turned = turning.get(place, set())
+        if ends[0] in turned and ends[1] not in turned:
+            ends.reverse()  # a ThermalLink turns its tip
+        program = programs.of(link["program"], link["temperature_fraction"])
+        scene.links.append(sj.ThermalLink(
+            id1=ids[ends[0]], id2=ids[ends[1]], youngModulus=link["young_modulus_Pa"],
+            crossSectionArea=link["cross_section_area_m2"], stressFreeLength=link["stress_free_length_m"],
+            thermalExpansion=link["thermal_expansion_per_K"], dampingRatio=dem["link_damping_ratio"],
+            pinDamping=dem["pin_damping_N_m_s_per_rad"], tipTurnsWithLink=ends[1] in turned, program=program,
+        ))
+        if ends[0] in turned:
+            carriers.append(sj.ThermalLink(
+                id1=ids[ends[1]], id2=ids[ends[0]], stressFreeLength=link["stress_free_length_m"],
+                tipTurnsWithLink=True, program=program,
+            ))
+    for place, spring in enumerate(_rows(case["spring"])):
+        length = spring["free_length_m"]
+        scene.springs.append(sj.ThermalLink(
+            id1=ids[spring["nodes"][0]], id2=ids[spring["nodes"][1]], youngModulus=spring["stiffness_N_per_m"],
+            crossSectionArea=length, stressFreeLength=length, dampingRatio=dem["link_damping_ratio"], program=common,
+        ))
+        if spring["cable"]:
+            scene.cables.append(place)
+    expansions = [
+        sj.ThermalExpansionEngine(program=programs.of(*key), ids=sorted({ids[node] for node in parts}))
+        for key, parts in parts_of.items()
+    ]
+    radii = [slider["pad_radius_m"] for slider in sliders] + [joint["journal_radius_m"] for joint in joints]
+    O.engines = joint_engines(
+        scene.links + carriers + scene.springs, None, sj.Law2_JointGeom_JointPhys_HertzMindlin(),
+        dem["contact_damping_ratio"], verletDist=0.1 * min(radii, default=1.0), recorders=recorders,
+        springs=tuple(_torsion_spring(spring, nodes, links, ids, common) for spring in _rows(case["torsion_spring"])),
+        expansions=expansions,
+    )
+    O.trackEnergy = True
+    O.dt = dem["time_step_s"]
+    return scene
+
+
+def _torsion_spring(spring: dict[str, Any], nodes, links, ids, program) -> sj.TorsionSpring:
+    """Return a spring on its own pair of links, which point so that the angle is far from its jump
+    at half a turn; ground is a link between two points that do not move."""
+    first, second = spring["links"]
+    sense = 1.0 if spring["axis"][2] > 0 else -1.0  # angles are about +z in the DEM
+
+    def direction(link: int) -> Vector3:
+        start, end = (Vector3(nodes[node]["position_m"]) for node in links[link]["nodes"])
+        return end - start
+
+    one = direction(first)
+    if second == GROUND:
+        ends = [fixed_point((0, 0, 0)), fixed_point((one[0], one[1], 0))]
+        pair = [(*ends, one), (*[ids[node] for node in links[first]["nodes"]], one)]
+    else:
+        pair = [(*[ids[node] for node in links[link]["nodes"]], direction(link)) for link in (first, second)]
+    angle = _angle(pair[0][2], pair[1][2])
+    if abs(angle) > pi / 2:
+        pair[1] = (pair[1][1], pair[1][0], -pair[1][2])
+        angle = _angle(pair[0][2], pair[1][2])
+    # These links carry no force: the engine of links does not know them.
+    carried = [sj.ThermalLink(id1=root, id2=tip, stressFreeLength=1, program=program) for root, tip, _ in pair]
+    free = angle + sense * spring["bias_rad"]
+    return sj.TorsionSpring(
+        link1=carried[0], link2=carried[1], stiffness=spring["stiffness_N_m_per_rad"],
+        freeAngle=atan2(sin(free), cos(free)),
+    )
+
+
+def _angle(one: Vector3, other: Vector3) -> float:
+    return atan2(one.cross(other)[2], one.dot(other))
+
+
+def _velocity_now(body: int) -> Vector3:
+    """Velocity at the time of the positions [m/s]: YADE keeps that of half a step before."""
+    state = O.bodies[body].state
+    moved = 0.5 * O.dt / state.mass * O.forces.f(body, sync=True)
+    held = state.blockedDOFs
+    return state.vel + Vector3(*(0.0 if axis in held else moved[k] for k, axis in enumerate("xyz")))
+
+
+def _contact(one: int, other: int):
+    if not O.interactions.has(one, other):
+        return None
+    found = O.interactions[one, other]
+    return found if found.isReal else None
+
+
+def _slider(slider: dict[str, Any], body: int, faces: tuple[int, list[int]], origin: Vector3) -> tuple:
+    axis = Vector3(slider["axis"])
+    floor = _contact(body, faces[0])
+    if floor is None:
+        raise RuntimeError(f"slider {slider['names']!r} has left its floor at {O.time:.6g} s: the contact is lost")
+    # Forces of a contact act on the face: along the axis they are against the slider's.
+    force = floor.phys.shearForce.dot(axis)
+    at_stop = False
+    for face in faces[1]:
+        stop = _contact(body, face)
+        if stop is not None and stop.phys.normalForce.squaredNorm() > 0:
+            force += stop.phys.normalForce.dot(axis)
+            at_stop = True
+    state = AT_STOP if at_stop else SLIP if floor.phys.slipping else STICK
+    return (O.bodies[body].state.pos - origin).dot(axis), force, state
+
+
+def _revolute(joint: dict[str, Any], journal: int, bearing: int) -> tuple:
+    offset = O.bodies[journal].state.pos - O.bodies[bearing].state.pos
+    axis = Vector3(joint["axis"])
+    offset -= offset.dot(axis) * axis
+    contact = _contact(journal, bearing)
+    if contact is None or contact.geom.penetrationDepth <= 0:
+        return offset, 0.0, 0.0, SEPARATED
+    normal = contact.geom.normal
+    # On the journal against the positive slide, which is anticlockwise: shearForce acts on the bearing.
+    friction = contact.phys.shearForce.dot(axis.cross(normal))
+    return offset, contact.phys.normalForce.dot(normal), friction, SLIP if contact.phys.slipping else STICK
+
+
+def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
+    """Return one row: the state of the current step, see :func:`columns`."""
+    energy = {name: O.energy[name] for name in O.energy.keys()}
+
+    def total(*names: str) -> float:
+        return sum(energy.get(name, 0.0) for name in names)
+
+    states = [O.bodies[body].state for body in built.nodes]
+    kinetic = sum(
+        0.5 * states[node].mass * _velocity_now(built.nodes[node]).squaredNorm() for node in built.free
+    )
+    work = sum(
+        Vector3(case["node"]["force_N"][node]).dot(states[node].pos - built.start[node]) for node in built.loaded
+    )
+    row = [
+        O.time, built.program.temperatureChange(O.time), total("linkElastic", "torsionElastic", "jointElastic"),
+        kinetic, total("jointFriction"), total("linkDamping", "pinDamping", "jointDamping"),
+        total("linkThermalWork", "jointThermalWork"), work,
+    ]
+    for place, state in enumerate(states):
+        row += [state.pos[k] - case["node"]["position_m"][place][k] for k in range(3)]
+    row += [link.axialForce for link in built.links]
+    tensions = [-spring.axialForce for spring in built.springs]
+    for place in built.cables:
+        if tensions[place] < 0:
+            raise RuntimeError(
+                f"cable {case['spring']['names'][place]!r} has gone slack at {O.time:.6g} s, the DEM has no "
+                "element that only pulls"
+            )
+    row += tensions
+    sliders = [
+        _slider(slider, built.nodes[slider["nodes"][0]], faces, Vector3(case["node"]["position_m"][slider["nodes"][0]]))
+        for slider, faces in zip(_rows(case["slider"]), built.faces)
+    ]
+    row += [values[k] for k in range(3) for values in sliders]
+    joints = [
+        _revolute(joint, built.nodes[joint["journal_node"]], built.nodes[joint["bearing_node"]])
+        for joint in _rows(case["revolute"])
+    ]
+    for offset, *_ in joints:
+        row += list(offset)
+    row += [values[k] for k in range(1, 4) for values in joints]
+    return row
+
+
+def summary(case: dict[str, Any], built: TrussScene) -> dict[str, Any]:
+    """Return what else the run has to say, as plain values."""
+    return {"joints": len(built.faces) + len(case["revolute"]["names"]), "nodes": len(built.nodes)}
