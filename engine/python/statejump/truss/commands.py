@@ -17,6 +17,7 @@ from ..errors import StatejumpError
 from ..output import results_folder
 from ..schema import head_line
 from ..terminal import CASE, QUIET, RESULTS, load_kind, make_console
+from .answers_command import answers_command
 from .document import Document, write
 from .generate import GENERATORS
 
@@ -31,7 +32,7 @@ _NAMES = {
 
 @click.group("truss")
 def truss_command() -> None:
-    """Trusses of many joints: make case files of a size N, draw them.
+    """Trusses of many joints: make case files of a size N, draw them, answer a designer's questions.
 
     \b
     Example:
@@ -123,3 +124,6 @@ def draw_command(case_file: Path, results: Path, quiet: bool) -> None:
     folder = results_folder(results, case.name)
     written = draw.figure(case, folder)
     console.print(f"drawing: {', '.join(str(path) for path in written)}")
+
+
+truss_command.add_command(answers_command)
