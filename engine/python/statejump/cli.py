@@ -1,20 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The ``statejump`` command. Exit status: 0 done, 1 a tolerance is missed, 2 bad input or a failed
-run, 130 interrupted."""
+run, 130 interrupted. With ``--json`` before the command a failure is one line of JSON on standard error."""
 from __future__ import annotations
 
 import signal
 import sys
+import traceback
+from itertools import takewhile
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Callable
+from typing import Any, Sequence
 
 import click
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from . import __version__, _engine, compare, convergence, dem, laws, plot, reduced
+from . import __version__, _engine, compare, convergence, dem, errors, laws, plot, reduced
 from .bore import bore_command
 from .campaign import montecarlo_command, sweep_command
 from .case import SpringSliderCase, UmbrellaCase
@@ -40,6 +42,8 @@ from .umbrella.figures import figures_command
 from .umbrella.hold import hold_command
 from .umbrella.slow import slow_command
 
+JSON = "--json"
+
 
 def _dem_label(steps: int, label: str = "DEM") -> str:
     return f"{label}, {steps:,} steps"
@@ -47,6 +51,7 @@ def _dem_label(steps: int, label: str = "DEM") -> str:
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="statejump")
+@click.option(JSON, is_flag=True, expose_value=False, help="Failures as one line of JSON on standard error.")
 def cli() -> None:
     """State jump of deployable structures: an exact reduced model and a DEM model in YADE.
 
@@ -306,23 +311,38 @@ for _command in (
     cli.add_command(_command)
 
 
-def _end(function: Callable[[], None]) -> int:
+def _told(error: BaseException, as_json: bool) -> int:
+    """Tell what ended the command on standard error; return the exit status."""
+    if isinstance(error, StatejumpError):
+        failure = error.fields()
+    elif isinstance(error, click.ClickException):
+        failure = errors.fields("usage", error.format_message(), 2)
+    elif isinstance(error, (click.exceptions.Abort, KeyboardInterrupt)):
+        failure = errors.fields("interrupted", "interrupted", Interrupted.exit_status)
+    else:  # a fault of the program: status 1 would say that a tolerance is missed
+        failure = errors.fields(
+            "internal", f"a fault of statejump itself: {type(error).__name__}: {error}", 2,
+            remedy="run the command without --json for the traceback",
+        )
+        if not as_json:
+            traceback.print_exception(error)
+    if as_json:
+        click.echo(errors.to_json(failure), err=True)
+    else:
+        is_error = failure["kind"] not in (TolerancesMissed.kind, Interrupted.kind)
+        click.echo(("error: " if is_error else "") + failure["message"], err=True)
+    return failure["exit_status"]
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run the command with these arguments and return its exit status; failures go to standard error."""
+    as_json = JSON in takewhile(lambda word: word.startswith("-"), arguments)
     try:
-        function()
-    except (TolerancesMissed, Interrupted) as error:
-        click.echo(str(error), err=True)
-        return error.exit_status
-    except StatejumpError as error:
-        click.echo(f"error: {error}", err=True)
-        return error.exit_status
-    except click.exceptions.Exit as error:
-        return int(error.exit_code)
-    except click.ClickException as error:
-        click.echo(f"error: {error.format_message()}", err=True)
-        return 2
-    except (click.exceptions.Abort, KeyboardInterrupt):
-        click.echo("interrupted", err=True)
-        return 130
+        cli.main(list(arguments), standalone_mode=False)
+    except click.exceptions.Exit as end:
+        return int(end.exit_code)
+    except (Exception, KeyboardInterrupt) as error:
+        return _told(error, as_json)
     return 0
 
 
@@ -330,4 +350,4 @@ def main() -> None:
     """Entry point of the launcher."""
     # Ended from outside, it ends YADE and cleans up as on Ctrl-C.
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
-    sys.exit(_end(lambda: cli.main(standalone_mode=False)))
+    sys.exit(run(sys.argv[1:]))

@@ -17,7 +17,7 @@ from typing import Any, Callable
 from . import _paths, stable_step
 from .case_schema import Case
 from .case_spring_slider import SpringSliderCase
-from .errors import StatejumpError, Interrupted
+from .errors import FailedRun, Interrupted
 from .history import History
 from .output import write_atomically
 
@@ -64,7 +64,7 @@ def find_yade() -> str:
     wanted = os.environ.get("STATEJUMP_YADE", "yade")
     found = shutil.which(wanted)
     if found is None:
-        raise StatejumpError(
+        raise FailedRun(
             f"YADE is missing: no command {wanted!r} found; install Debian's package 'yade' or set "
             "STATEJUMP_YADE to the command"
         )
@@ -126,14 +126,14 @@ def execute(
         except KeyboardInterrupt:
             raise Interrupted(_keep_partial(output, keep)) from None
         except OSError as error:
-            raise StatejumpError(f"YADE cannot be started: {command[0]}: {error.strerror}") from None
+            raise FailedRun(f"YADE cannot be started: {command[0]}: {error.strerror}") from None
         if problem:
-            raise StatejumpError(f"case {name}: {problem}")
+            raise FailedRun(f"case {name}: {problem}", cause=problem)
         try:
             history = History.read_csv(output)
             summary = json.loads(output.with_name(output.name + ".json").read_text(encoding="utf-8"))
         except (OSError, ValueError, IndexError) as error:
-            raise StatejumpError(f"case {name}: the DEM run left no complete result: {error}") from None
+            raise FailedRun(f"case {name}: the DEM run left no complete result: {error}") from None
     return DemRun(history, summary)
 
 

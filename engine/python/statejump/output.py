@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Iterator
 
-from .errors import StatejumpError
+from .errors import NotWritten
 
 
 @contextmanager
@@ -18,7 +18,7 @@ def replacing(path: Path) -> Iterator[Path]:
         yield aside
         os.replace(aside, path)
     except OSError as error:
-        raise StatejumpError(f"{path}: cannot be written: {error.strerror or error}") from None
+        raise NotWritten(f"{path}: cannot be written: {error.strerror or error}") from None
     finally:
         aside.unlink(missing_ok=True)
 
@@ -40,7 +40,7 @@ def results_folder(root: Path, name: str) -> Path:
         probe.touch()
         probe.unlink()
     except OSError as error:
-        raise StatejumpError(
+        raise NotWritten(
             f"results folder {folder}: cannot be written: {error.strerror or error}; "
             "choose another with --results"
         ) from None

@@ -15,7 +15,7 @@ from rich.table import Table
 
 from . import _engine
 from .case_statics import LoadCase, StaticsCase
-from .errors import StatejumpError
+from .errors import FailedRun, StatejumpError
 from .output import replacing, results_folder, write_atomically
 from .terminal import CASE, QUIET, RESULTS, load_kind, make_console, number
 
@@ -75,7 +75,7 @@ def solve(case: StaticsCase, folder: Path, friction_coefficient: Optional[float]
         if mesh is not None:
             pieces = found if joint.type == "mesh" else _engine.rest_on_mesh(mesh, forces, mu)
     except ValueError as reason:
-        raise StatejumpError(f"{case.name}: {reason}") from None
+        raise FailedRun(f"{case.name}: {reason}") from None
     return Statics(mu, loads, found["each"], found["any"], found["all"], curve, mesh, pieces)
 
 

@@ -11,7 +11,7 @@ import rich.table
 from rich.console import Console
 
 from .. import dem
-from ..errors import Interrupted, StatejumpError
+from ..errors import FailedRun, Interrupted, StatejumpError
 from ..output import results_folder, write_atomically
 from ..terminal import QUIET, RESULTS, make_console, progress
 from . import campaign_file, yade_batch
@@ -121,7 +121,7 @@ def _command(name: str, text: str) -> Callable[..., click.Command]:
             campaign, results_folder(results, campaign.name), scheduler, workers, restart, console
         )
         if found["failed"] == campaign.samples:
-            raise StatejumpError(
+            raise FailedRun(
                 f"{file}: every sample failed, the first one: {found['failures'][0]['first_sentence']}"
             )
 

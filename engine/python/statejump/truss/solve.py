@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import _engine
 from ..case_truss import TrussCase, TrussThermal
-from ..errors import StatejumpError
+from ..errors import FailedRun
 from .resolved import ResolvedTruss
 
 # Bytes of the states of a whole path beyond which only the ends of cycles are kept.
@@ -122,7 +122,7 @@ def path(
             event_tolerance=event_tolerance, cycle_ends_only=cycle_ends_only, progress=progress,
         )
     except (ValueError, RuntimeError) as failure:
-        raise StatejumpError(f"{truss.name}: {failure}") from None
+        raise FailedRun(f"{truss.name}: {failure}", cause=str(failure)) from None
     names = {"slider": sliders.names, "revolute": truss.revolutes.names}
     events = tuple(
         TrussEvent(name=names[event["joint_kind"]][event["joint"]], **event) for event in found.pop("events")

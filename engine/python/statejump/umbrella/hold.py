@@ -13,7 +13,7 @@ import numpy as np
 
 from .. import _engine
 from ..case_umbrella import UmbrellaCase
-from ..errors import Interrupted, StatejumpError
+from ..errors import FailedRun, Interrupted, StatejumpError
 from ..history import History
 from ..output import results_folder, write_atomically
 from ..plot import DEM, REDUCED, STYLE, plt, save
@@ -294,7 +294,7 @@ def hold_command(case_file: Path, results: Path, quiet: bool) -> None:
     try:
         creep = predict(case)
     except ValueError as error:
-        raise StatejumpError(f"case {case.name}: the joint cannot be loaded: {error}") from None
+        raise FailedRun(f"case {case.name}: the joint cannot be loaded: {error}") from None
     folder = results_folder(results, case.name)
     wanted = [(law, rate) for law in LAWS for rate in STEPS_PER_SECOND]
     done = [0]

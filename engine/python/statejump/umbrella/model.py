@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import _engine
 from ..case_umbrella import UmbrellaCase, UmbrellaLink
-from ..errors import StatejumpError
+from ..errors import FailedRun
 from ..history import History
 from ..reduced import thermal_program
 
@@ -91,7 +91,7 @@ def run(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> ReducedRun:
             steps = case.reduced.steps_per_cycle
             done = _engine.simulate(model, program, start, steps * cycles, steps // samples)
     except (ValueError, RuntimeError) as error:
-        raise StatejumpError(f"case {case.name}: the reduced run failed: {error}") from None
+        raise FailedRun(f"case {case.name}: the reduced run failed: {error}", cause=str(error)) from None
     return ReducedRun(
         History(done.columns()),
         done.first_contact_time_s,
