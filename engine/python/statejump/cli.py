@@ -19,7 +19,7 @@ from rich.table import Table
 from . import __version__, _engine, compare, convergence, dem, errors, laws, plot, reduced
 from .bore import bore_command
 from .campaign import montecarlo_command, sweep_command
-from .case import SpringSliderCase, UmbrellaCase
+from .case import SpringSliderCase, TrussCase, UmbrellaCase
 from .control import control_command
 from .errors import StatejumpError, Interrupted, TolerancesMissed
 from .history import History
@@ -32,6 +32,7 @@ from .resultfile.record import Record, case_text
 from .schema import schema_command
 from .statics import statics_command
 from .terminal import CASE, QUIET, RESULTS, load_kind, make_console, number, print_comparison, progress
+from .truss import run as truss_run
 from .truss.commands import truss_command
 from .umbrella import compare as umbrella_compare
 from .umbrella import dem as umbrella_dem
@@ -73,11 +74,13 @@ def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
       statejump reduced cases/table1.toml
     """
     console = make_console(quiet)
-    case = load_kind(case_file, SpringSliderCase, UmbrellaCase)
+    case = load_kind(case_file, SpringSliderCase, UmbrellaCase, TrussCase)
     folder = results_folder(results, case.name)
     record = Record("reduced", case, case_text(case_file), folder)
     if isinstance(case, UmbrellaCase):
         _reduced_umbrella(case, record, console)
+    elif isinstance(case, TrussCase):
+        truss_run.reduced(case, record, console)
     else:
         _reduced_spring_slider(case, record, console)
     console.print(f"results: {record.save()}, history: {folder / 'reduced_history.csv'}")
@@ -147,7 +150,7 @@ def dem_command(case_file: Path, results: Path, quiet: bool) -> None:
       statejump dem cases/table1.toml
     """
     console = make_console(quiet)
-    case = load_kind(case_file, SpringSliderCase, UmbrellaCase)
+    case = load_kind(case_file, SpringSliderCase, UmbrellaCase, TrussCase)
     folder = results_folder(results, case.name)
     record = Record("dem", case, case_text(case_file), folder)
     if isinstance(case, UmbrellaCase):
@@ -157,6 +160,8 @@ def dem_command(case_file: Path, results: Path, quiet: bool) -> None:
             done.summary["first_contact_temperature_change_K"], done.summary["first_contact_time_s"], console
         )
         _print_umbrella_jump(case, done.history, console)
+    elif isinstance(case, TrussCase):
+        done = truss_run.only_dem(case, record, console)
     else:
         done = _run_spring_slider(case, folder, console, keep=record.keep)
         jump = done.history["displacement_m"][-1] - done.history["displacement_m"][0]
@@ -193,11 +198,13 @@ def compare_command(files: tuple[Path, ...], results: Path, quiet: bool) -> None
 
 
 def _compare_case(case_file: Path, results: Path, console: Console) -> None:
-    case = load_kind(case_file, SpringSliderCase, UmbrellaCase)
+    case = load_kind(case_file, SpringSliderCase, UmbrellaCase, TrussCase)
     folder = results_folder(results, case.name)
     record = Record("compare", case, case_text(case_file), folder)
     if isinstance(case, UmbrellaCase):
         rows, figures = _compare_umbrella(case, record, console)
+    elif isinstance(case, TrussCase):
+        rows, figures = truss_run.both(case, record, console)
     else:
         rows, figures = _compare_spring_slider(case, record, console)
     compare.write_comparison(case, rows, folder)

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-from ..case import Case, SpringSliderCase, UmbrellaCase
+from ..case import Case, SpringSliderCase, TrussCase, UmbrellaCase
 from ..compare import Quantity
 from ..dem import DemRun
-from . import kind_spring_slider, kind_umbrella
+from . import kind_spring_slider, kind_truss, kind_umbrella
 from .contents import ModelRun
 
 
@@ -33,7 +33,9 @@ class Kind(Protocol):
         """Two runs of the case against its tolerances; ``Quantity.reduced`` is of the first."""
 
 
-KINDS: dict[str, Kind] = {SpringSliderCase.KIND: kind_spring_slider, UmbrellaCase.KIND: kind_umbrella}
+KINDS: dict[str, Kind] = {
+    SpringSliderCase.KIND: kind_spring_slider, UmbrellaCase.KIND: kind_umbrella, TrussCase.KIND: kind_truss,
+}
 
 
 def kind_of(case: Case) -> Kind:

@@ -168,7 +168,7 @@ def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) 
     return group
 
 
-def _pressing_directions(truss: ResolvedTruss) -> np.ndarray:
+def pressing_directions(truss: ResolvedTruss) -> np.ndarray:
     """Return for every slider the unit normal of its floor, across its axis (s, 3)."""
     if truss.dimension == 2:
         return np.tile([0.0, 0.0, -1.0], (len(truss.sliders.names), 1))
@@ -270,7 +270,7 @@ def resolved(case: TrussCase, path: TrussPath) -> dict[str, Any]:
         "programs": _programs(case, truss),
         "node": _lists(truss.nodes, blocked=_blocked(truss), mass_kg=mass, start_m=truss.nodes.position_m + start),
         "link": _lists(truss.links),
-        "slider": _lists(truss.sliders, depth_m=pad.depth_m, reach_m=reach, floor_normal=_pressing_directions(truss),
+        "slider": _lists(truss.sliders, depth_m=pad.depth_m, reach_m=reach, floor_normal=pressing_directions(truss),
                          clearance_minus_m=_finite(truss.sliders.clearance_minus_m),
                          clearance_plus_m=_finite(truss.sliders.clearance_plus_m), group=groups[:count]),
         "revolute": _lists(truss.revolutes, bearing_radius_m=truss.revolutes.bearing_radius_m, group=groups[count:]),
