@@ -43,11 +43,13 @@ def joint_engines(
     recorders: list[wrapper.Engine],
     springs: tuple[sj.TorsionSpring, ...] = (),
     expansions: list[wrapper.Engine] | None = None,
+    guides: dict[int, tuple[float, float, float]] | None = None,
 ) -> list[wrapper.Engine]:
     """Return the engines of any scene of joints, links and torsion springs. Recorders see a state
     of one time: positions, temperature and forces of the current step.
 
     :param expansions: ThermalExpansionEngines of the bodies; None: all of them follow ``program``
+    :param guides: normals of the planes in which bodies stay, by id
     """
     if expansions is None:
         expansions = [sj.ThermalExpansionEngine(program=program)]
@@ -72,6 +74,7 @@ def joint_engines(
         ),
         sj.ThermalLinks(links=links),
         sj.TorsionSprings(springs=list(springs)),
+        *([sj.GuidePlanes(ids=list(guides), normals=list(guides.values()))] if guides else []),
         *recorders,
         wrapper.NewtonIntegrator(damping=0),
     ]

@@ -200,6 +200,10 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
         dem["contact_damping_ratio"], verletDist=0.1 * min(radii, default=1.0), recorders=recorders,
         springs=tuple(_torsion_spring(spring, nodes, links, ids, common) for spring in _rows(case["torsion_spring"])),
         expansions=expansions,
+        guides={
+            ids[place]: node["guide_normal"] for place, node in enumerate(nodes)
+            if any(node["guide_normal"]) and not all(node["blocked"])
+        },
     )
     O.trackEnergy = True
     O.dt = dem["time_step_s"]
@@ -210,7 +214,7 @@ def _torsion_spring(spring: dict[str, Any], nodes, links, ids, program) -> sj.To
     """Return a spring on its own pair of links, which point so that the angle is far from its jump
     at half a turn; ground is a link between two points that do not move."""
     first, second = spring["links"]
-    sense = 1.0 if spring["axis"][2] > 0 else -1.0  # angles are about +z in the DEM
+    axis = Vector3(spring["axis"])
 
     def direction(link: int) -> Vector3:
         start, end = (Vector3(nodes[node]["position_m"]) for node in links[link]["nodes"])
@@ -218,25 +222,25 @@ def _torsion_spring(spring: dict[str, Any], nodes, links, ids, program) -> sj.To
 
     one = direction(first)
     if second == GROUND:
-        ends = [fixed_point((0, 0, 0)), fixed_point((one[0], one[1], 0))]
+        ends = [fixed_point((0, 0, 0)), fixed_point(one)]
         pair = [(*ends, one), (*[ids[node] for node in links[first]["nodes"]], one)]
     else:
         pair = [(*[ids[node] for node in links[link]["nodes"]], direction(link)) for link in (first, second)]
-    angle = _angle(pair[0][2], pair[1][2])
+    angle = _angle(pair[0][2], pair[1][2], axis)
     if abs(angle) > pi / 2:
         pair[1] = (pair[1][1], pair[1][0], -pair[1][2])
-        angle = _angle(pair[0][2], pair[1][2])
+        angle = _angle(pair[0][2], pair[1][2], axis)
     # These links carry no force: the engine of links does not know them.
     carried = [sj.ThermalLink(id1=root, id2=tip, stressFreeLength=1, program=program) for root, tip, _ in pair]
-    free = angle + sense * spring["bias_rad"]
+    free = angle + spring["bias_rad"]
     return sj.TorsionSpring(
         link1=carried[0], link2=carried[1], stiffness=spring["stiffness_N_m_per_rad"],
-        freeAngle=atan2(sin(free), cos(free)),
+        freeAngle=atan2(sin(free), cos(free)), axis=axis,
     )
 
 
-def _angle(one: Vector3, other: Vector3) -> float:
-    return atan2(one.cross(other)[2], one.dot(other))
+def _angle(one: Vector3, other: Vector3, axis: Vector3) -> float:
+    return atan2(one.cross(other).dot(axis), one.dot(other))
 
 
 def _velocity_now(body: int) -> Vector3:

@@ -3,6 +3,7 @@
 #include <boost/make_shared.hpp>
 
 #include "bore.hpp"
+#include "guide.hpp"
 #include "joint.hpp"
 #include "object_list.hpp"
 #include "shapes.hpp"
@@ -38,7 +39,7 @@ using OurClasses = ClassList<
     Ig2_Ball_Socket_JointGeom, Ig2_Slider_SlotFace_JointGeom,
     Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys, Law2_JointGeom_JointPhys_HertzMindlin,
     Law2_JointGeom_JointPhys_JointLaw, ThermalProgram, ThermalExpansionEngine, ThermalLink,
-    ThermalLinks, TorsionSpring, TorsionSprings
+    ThermalLinks, TorsionSpring, TorsionSprings, GuidePlanes
 #ifdef STATEJUMP_HAS_VIEW
     ,
     Gl1<Journal>, Gl1<Bearing>, Gl1<Ball>, Gl1<Socket>, Gl1<Slider>, Gl1<SlotFace>, Gl1<MeshBore>
@@ -118,6 +119,7 @@ STATEJUMP_EXPORT(ThermalLink)
 STATEJUMP_EXPORT(ThermalLinks)
 STATEJUMP_EXPORT(TorsionSpring)
 STATEJUMP_EXPORT(TorsionSprings)
+STATEJUMP_EXPORT(GuidePlanes)
 #undef STATEJUMP_EXPORT
 
 BOOST_PYTHON_MODULE(_native) {

@@ -38,4 +38,11 @@ inline void require_not_negative(const char* class_name, const char* attribute, 
   }
 }
 
+template <class Vector>
+void require_unit(const char* class_name, const char* attribute, const Vector& value) {
+  if (!(std::abs(value.norm() - 1) <= 1e-9)) {
+    refuse(class_name, attribute, value.norm(), "of length 1 [-]");
+  }
+}
+
 }  // namespace statejump::dem

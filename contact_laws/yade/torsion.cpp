@@ -13,17 +13,20 @@ namespace {
 
 const std::string torsion_elastic = "torsionElastic";
 constexpr Real pi = 3.14159265358979323846;
-// Largest z component of a link's direction: rounding of a scene laid out in a turned plane is far
-// below it, and what it neglects is the square of it.
+// Largest component of a link's direction along the axis: rounding of a scene laid out in a turned
+// plane is far below it, and what it neglects is the square of it.
 constexpr Real largest_tilt = 1e-6;
 
-void require_planar(const ThermalLink& link, const Vector3r& direction) {
-  if (std::abs(direction.z()) <= largest_tilt) return;
+void require_planar(const ThermalLink& link, const Vector3r& direction, const Vector3r& axis) {
+  const Real tilt = direction.dot(axis);
+  if (std::abs(tilt) <= largest_tilt) return;
   std::ostringstream text;
   text.precision(9);
   text << "TorsionSpring: the link between bodies " << link.id1 << " and " << link.id2
-       << " leaves the x-y plane, z component of its direction " << direction.z()
-       << ", allowed is at most " << largest_tilt;
+       << (axis == Vector3r::UnitZ() ? " leaves the x-y plane, z component of its direction "
+                                     : " leaves the plane across the axis, component of its "
+                                       "direction along it ")
+       << tilt << ", allowed is at most " << largest_tilt;
   throw std::invalid_argument(text.str());
 }
 
@@ -39,6 +42,7 @@ void TorsionSpring::check() const {
   if (!(freeAngle > -pi && freeAngle <= pi)) {
     refuse(class_name, "freeAngle", freeAngle, "in (-pi, pi] [rad]");
   }
+  require_unit(class_name, "axis", axis);
 }
 
 void TorsionSprings::action() {
@@ -54,11 +58,11 @@ void TorsionSprings::act(TorsionSpring& spring) {
   if (!spring.link2) throw std::invalid_argument("TorsionSpring.link2 is missing");
   const LinkEnds first = ends_of(*scene, *spring.link1);
   const LinkEnds second = ends_of(*scene, *spring.link2);
-  require_planar(*spring.link1, first.direction);
-  require_planar(*spring.link2, second.direction);
+  require_planar(*spring.link1, first.direction, spring.axis);
+  require_planar(*spring.link2, second.direction, spring.axis);
 
   const Vector3r turn = first.direction.cross(second.direction);
-  spring.angle = std::atan2(turn.z(), first.direction.dot(second.direction));
+  spring.angle = std::atan2(turn.dot(spring.axis), first.direction.dot(second.direction));
   const Real stretch = spring.angle - spring.freeAngle;
   spring.moment = spring.stiffness * stretch;
 
@@ -76,7 +80,7 @@ void TorsionSprings::act(TorsionSpring& spring) {
   }
 
   const auto add_couple = [&](const ThermalLink& link, const LinkEnds& ends, Real moment) {
-    const Vector3r across(-ends.direction.y(), ends.direction.x(), 0);
+    const Vector3r across = spring.axis.cross(ends.direction);
     const Vector3r force = moment / ends.length * across;
     scene->forces.addForce(link.id2, force);
     scene->forces.addForce(link.id1, -force);

@@ -12,15 +12,18 @@ struct TorsionSpring : Registered<TorsionSpring, yade::Serializable> {
   static constexpr const char* class_name = "TorsionSpring";
   static constexpr const char* base_name = "Serializable";
   static constexpr const char* doc =
-      "Torsion spring between two links that share a joint, in the x-y plane. Its flare angle "
-      "alpha is the angle from the direction of link1 (root to tip) to that of link2, "
+      "Torsion spring between two links that share a joint, in the plane across its axis. Its "
+      "flare "
+      "angle alpha is the angle from the direction of link1 (root to tip) to that of link2, "
       "anticlockwise "
-      "about +z, in (-pi, pi]. The moment M = K_M (alpha - alpha0) (equation 17 of Chen et al. "
+      "about the axis, in (-pi, pi]. The moment M = K_M (alpha - alpha0) (equation 17 of Chen et "
+      "al. "
       "2021) acts on link1, its opposite on link2.";
   yade::shared_ptr<ThermalLink> link1;
   yade::shared_ptr<ThermalLink> link2;
   Real stiffness = 0;
   Real freeAngle = 0;
+  Vector3r axis = Vector3r::UnitZ();
   Real angle = 0;
   Real moment = 0;
 
@@ -32,6 +35,8 @@ struct TorsionSpring : Registered<TorsionSpring, yade::Serializable> {
         attribute("stiffness", &TorsionSpring::stiffness, "Torsion stiffness K_M [N m/rad]"),
         attribute("freeAngle", &TorsionSpring::freeAngle,
                   "Flare angle alpha0 without moment, in (-pi, pi] [rad]"),
+        attribute("axis", &TorsionSpring::axis,
+                  "Axis about which angles are anticlockwise, fixed in space, unit vector [-]"),
         read_only("angle", &TorsionSpring::angle, "Flare angle alpha of the last step [rad]"),
         read_only("moment", &TorsionSpring::moment, "Moment M of the last step [N m]"));
   }

@@ -183,10 +183,6 @@ def _refuse_what_cannot(case: TrussCase, truss: ResolvedTruss, mass: np.ndarray,
     nodes, sliders, joints, springs = truss.nodes, truss.sliders, truss.revolutes, truss.springs
     for index in np.flatnonzero(sliders.nodes[:, 1] != GROUND)[:1]:
         raise refuse(case, f"slider {sliders.names[index]!r} is between two nodes, the DEM has sliders on ground only")
-    slanted = nodes.guide_normal.any(axis=1) & (np.abs(nodes.guide_normal).max(axis=1) < 1 - SAME_DIRECTION)
-    for index in np.flatnonzero(slanted & ~nodes.fixed.all(axis=1))[:1]:
-        raise refuse(case, f"node {nodes.names[index]!r}: guide_normal is along none of x, y and z, the DEM blocks "
-                           "motion along these only")
     free = ~_blocked(truss).all(axis=1)
     for index in np.flatnonzero(free & (mass <= 0))[:1]:
         raise refuse(case, f"node {nodes.names[index]!r} has no mass because no link ends there, the DEM needs one")
@@ -212,9 +208,18 @@ def _refuse_what_cannot(case: TrussCase, truss: ResolvedTruss, mass: np.ndarray,
     for index in np.flatnonzero(springs.cable & (tension.min(axis=0, initial=inf) <= 0))[:1]:
         raise refuse(case, f"cable {springs.names[index]!r} goes slack, the DEM has no element that only pulls")
     if truss.dimension == 3:
-        for index in np.flatnonzero(np.abs(truss.torsion_springs.axis[:, 2]) < 1 - 1e-12)[:1]:
-            raise refuse(case, f"torsion_spring {truss.torsion_springs.names[index]!r} has another axis than z, the "
-                               "DEM has torsion springs about z only")
+        _refuse_tilted_springs(case, truss)
+
+
+def _refuse_tilted_springs(case: TrussCase, truss: ResolvedTruss) -> None:
+    """A torsion spring of the DEM acts in the plane across its axis, of the solver on views of links."""
+    springs, links, position = truss.torsion_springs, truss.links, truss.nodes.position_m
+    for index, (ends, axis) in enumerate(zip(springs.links, springs.axis)):
+        for link in ends[ends != GROUND]:
+            start, end = position[links.nodes[link]]
+            if abs((end - start) @ axis) > SAME_DIRECTION * np.linalg.norm(end - start):
+                raise refuse(case, f"torsion_spring {springs.names[index]!r} has link {links.names[link]!r} that is not "
+                                   "across its axis, the DEM has torsion springs in a plane only")
 
 
 def _blocked(truss: ResolvedTruss) -> np.ndarray:

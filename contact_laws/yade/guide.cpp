@@ -1,0 +1,33 @@
+#include "guide.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "failure.hpp"
+#include "ranges.hpp"
+#include "thermal.hpp"
+
+namespace statejump::dem {
+
+void GuidePlanes::check() const {
+  for (const Vector3r& normal : normals) require_unit(class_name, "normals", normal);
+}
+
+void GuidePlanes::action() {
+  throw_recorded_failure();
+  if (ids.size() != normals.size()) {
+    throw std::invalid_argument("GuidePlanes: " + std::to_string(ids.size()) + " ids, but " +
+                                std::to_string(normals.size()) + " normals");
+  }
+  // All forces before the first is added: adding one makes YADE ask for another sum.
+  scene->forces.sync();
+  std::vector<Vector3r> held(ids.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    yade::State& state = *body_of(*scene, ids[i], "GuidePlanes.ids").state;
+    held[i] = scene->forces.getForce(ids[i]).dot(normals[i]) * normals[i];
+    state.vel -= state.vel.dot(normals[i]) * normals[i];
+  }
+  for (std::size_t i = 0; i < ids.size(); ++i) scene->forces.addForce(ids[i], -held[i]);
+}
+
+}  // namespace statejump::dem
