@@ -143,8 +143,9 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
             node, expansion = joint[f"{part}_node"], joint[f"{part}_thermal_expansion_per_K"]
             shape = (sj.Bearing if part == "bearing" else sj.Journal)(radius=joint[f"{part}_radius_m"])
             _give(bodies[node], shape, _material(joint, expansion), joint["group"])
-            bodies[node].state.ori = Quaternion()
-            bodies[node].state.ori.setFromTwoVectors(Vector3(0, 0, 1), Vector3(joint["axis"]))
+            turned = Quaternion()
+            turned.setFromTwoVectors(Vector3(0, 0, 1), Vector3(joint["axis"]))
+            bodies[node].state.ori = turned
             if expansion:
                 parts_of.setdefault((joint["program"], joint["temperature_fraction"]), []).append(node)
             if joint[f"{part}_link"] != GROUND:

@@ -153,7 +153,8 @@ def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) 
     if not len(where):
         return group
     tree = cKDTree(where)
-    near = tree.query_ball_point(where, 2 * np.sqrt(3) * reach_m.max())
+    # Boxes of YADE's collider are cubes, a tenth of the smallest radius larger than the parts.
+    near = tree.query_ball_point(where, 2.1 * reach_m.max(), p=inf)
     for place, others in enumerate(near):
         if group[place] >= 0:
             continue
@@ -179,7 +180,10 @@ def pressing_directions(truss: ResolvedTruss) -> np.ndarray:
     return np.array(found).reshape(-1, 3)
 
 
-def _refuse_what_cannot(case: TrussCase, truss: ResolvedTruss, mass: np.ndarray, path: TrussPath) -> None:
+def check(case: TrussCase) -> None:
+    """Raise StatejumpError if the DEM cannot represent an item, before anything is solved."""
+    truss = case.resolve()
+    mass = lumped_mass_kg(truss)
     nodes, sliders, joints, springs = truss.nodes, truss.sliders, truss.revolutes, truss.springs
     for index in np.flatnonzero(sliders.nodes[:, 1] != GROUND)[:1]:
         raise refuse(case, f"slider {sliders.names[index]!r} is between two nodes, the DEM has sliders on ground only")
@@ -204,11 +208,15 @@ def _refuse_what_cannot(case: TrussCase, truss: ResolvedTruss, mass: np.ndarray,
     for index in np.flatnonzero(springs.free_length_m <= 0)[:1]:
         raise refuse(case, f"spring {springs.names[index]!r} has the free length {springs.free_length_m[index]:.6g} m, "
                            "the DEM needs one above 0")
-    tension = path.states["tension_N"]
-    for index in np.flatnonzero(springs.cable & (tension.min(axis=0, initial=inf) <= 0))[:1]:
-        raise refuse(case, f"cable {springs.names[index]!r} goes slack, the DEM has no element that only pulls")
     if truss.dimension == 3:
         _refuse_tilted_springs(case, truss)
+
+
+def _refuse_slack(case: TrussCase, path: TrussPath) -> None:
+    """A cable that never goes slack is a spring; the run itself watches that it does not."""
+    springs, tension = path.truss.springs, path.states["tension_N"]
+    for index in np.flatnonzero(springs.cable & (tension.min(axis=0, initial=inf) <= 0))[:1]:
+        raise refuse(case, f"cable {springs.names[index]!r} goes slack, the DEM has no element that only pulls")
 
 
 def _refuse_tilted_springs(case: TrussCase, truss: ResolvedTruss) -> None:
@@ -253,14 +261,15 @@ def resolved(case: TrussCase, path: TrussPath) -> dict[str, Any]:
         time step, its slides the size of the floors
     :raises StatejumpError: the DEM cannot represent an item, which the sentence names
     """
+    check(case)
     truss, mass = path.truss, lumped_mass_kg(path.truss)
     if path.cycle_ends and len(path.states["time_s"]) <= len(path.cycle_ends["time_s"]):
         raise refuse(case, "the path is too large to be kept as a whole")
-    _refuse_what_cannot(case, truss, mass, path)
+    _refuse_slack(case, path)
     pad = pads(truss)
     # A floor ends where no pad gets to: twice as far as in the quasi-static model, and the pad itself.
     reach = truss.sliders.pad_radius_m + 2 * np.abs(path.states["slide_m"]).max(axis=0)
-    groups = _contact_groups(truss, case, np.concatenate((reach, truss.revolutes.bearing_radius_m)))
+    groups = _contact_groups(truss, case, np.concatenate((reach, np.sqrt(2) * truss.revolutes.bearing_radius_m)))
     count = len(truss.sliders.names)
     steps = number_of_steps(case, path)
     torsion = truss.torsion_springs

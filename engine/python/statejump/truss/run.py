@@ -56,6 +56,7 @@ def run_dem(case: TrussCase, path: TrussPath, record: Record, console: Console) 
 
 def only_dem(case: TrussCase, record: Record, console: Console) -> DemRun:
     """Run the DEM from the equilibrium of the solver and print jumps, events and energy residue."""
+    dem.check(case)
     done = run_dem(case, path_of(case, console), record, console)
     print_jumps(case, kind_truss.dem_run(case, done), console)
     return done
@@ -63,6 +64,7 @@ def only_dem(case: TrussCase, record: Record, console: Console) -> DemRun:
 
 def both(case: TrussCase, record: Record, console: Console) -> tuple[list[Quantity], list[Path]]:
     """Run both models, print jumps side by side and the comparison."""
+    dem.check(case)
     path = path_of(case, console)
     ours = record.models["reduced"] = kind_truss.reduced_run(case, path, _sample_times(case))
     done = run_dem(case, path, record, console)

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Trusses in the DEM and beside the quasi-static solver, through the command."""
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from statejump.case import parse_case
+from statejump.dem import execute
+from statejump.errors import StatejumpError
+from statejump.resultfile.read import read
+from statejump.truss import dem, generate
+from statejump.truss.document import write
+from statejump.truss.solve import solve
+
+K = 70e9 * 9e-6 / 0.5  # stiffness of a bar of Table 1 [N/m]
+
+
+def case_file(folder: Path, made: dict[str, Any]) -> Path:
+    path = folder / f"{made['case']['name']}.toml"
+    write(made, path, [])
+    return path
+
+
+def quantities(folder: Path) -> dict[str, dict]:
+    return {entry["name"]: entry for entry in json.loads((folder / "comparison.json").read_text())["quantities"]}
+
+
+def test_chain_jumps_as_the_closed_form_and_does_not_drift(statejump, tmp_path: Path) -> None:
+    n, friction = 3, 100.0
+    made = generate.chain(n, friction_force_N=friction, cycles=3, period_s=0.1)
+    outcome = statejump("compare", case_file(tmp_path, made))
+    assert outcome.status == 0, outcome.output + outcome.errors
+    found = quantities(tmp_path / "results" / "chain_3")
+    # While all slide back, bar i carries the friction of the blocks behind it.
+    jump = friction / K * n * (n + 1) / 2
+    # Blocks slide at the end: k_t does not matter. Inertia: m v^2 of the tip, 1e-5 J, against f x = 0.05 J.
+    assert found["jump_of_node_N3"]["dem"] == pytest.approx(jump, rel=1e-3)
+    assert found["jump_of_node_N3"]["reduced"] == pytest.approx(jump, rel=1e-9)
+    # Preslip f/k_t, 3.5 um of 3.3 mm.
+    assert found["displacement_largest_rms_over_largest"]["dem"] < 4e-3
+    assert found["loop_drift_over_largest_displacement"]["dem"] < 1e-4
+    assert abs(found["energy_residual_over_friction_work"]["dem"]) < 1e-6
+    assert "N3" in outcome.output and "energy residue" in outcome.output
+    assert (tmp_path / "results" / "chain_3" / "chain_3.svg").exists()
+
+    file = tmp_path / "results" / "chain_3" / "comparison.h5"
+    result = read(file)
+    assert result.passed and set(result.models) == {"reduced", "dem"}
+    for run in result.models.values():
+        assert run.history["displacement_m"].values.shape == (601, 4, 3)
+        assert run.contacts["state"].values.shape == (601, 3)
+        # Both say friction with one sign: it holds back the blocks that move out.
+        assert np.all(run.contacts["tangential_force_N"].values[90, :, 0] < -0.99 * friction)
+    # Two files of the case against each other.
+    again = statejump("compare", file, file)
+    assert again.status == 2 or "pass" in again.output
+    info = statejump("info", file)
+    assert info.status == 0 and "truss" in info.output
+
+
+def test_rib_in_space_is_the_rib_in_the_plane() -> None:
+    """One of 3 ribs that nothing couples, on its slanted plane: masses, time step, loaded start."""
+    planar = parse_case(generate.umbrella(1), "rib")
+    spatial = parse_case(generate.umbrella(3), "ribs")
+    paths = [solve(case) for case in (planar, spatial)]
+    values = [dem.resolved(case, path) for case, path in zip((planar, spatial), paths)]
+    # The two links of a rib: a third of each at its tip.
+    assert values[0]["node"]["mass_kg"] == pytest.approx([0, 0, 0.5 / 3, 1 / 3])
+    assert values[1]["node"]["mass_kg"] == pytest.approx([0, 0, 0.5 / 3, 1 / 3] * 3)
+    assert values[0]["dem"]["number_of_steps"] == values[1]["dem"]["number_of_steps"]
+    flat, space = (np.array(found["node"]["start_m"]) for found in values)
+    for rib in range(3):
+        for node in (2, 3):
+            place = space[4 * rib + node]
+            # The solver closes equilibrium to 1e-12 of the forces.
+            assert place[0] == pytest.approx(flat[node][0], abs=1e-12)
+            assert np.hypot(place[1], place[2]) == pytest.approx(flat[node][1], abs=1e-12)
+
+
+def test_ribs_in_space_move_as_the_rib_in_the_plane(tmp_path: Path) -> None:
+    """Not slow, so that the swing of the links is compared as well."""
+    runs = {}
+    for n in (1, 3):
+        made = generate.umbrella(n, period_s=0.3)
+        made["output"] = {"samples_per_cycle": 100}
+        case = parse_case(made, f"umbrella_{n}")
+        runs[n] = execute(dem.resolved(case, solve(case)), lambda fraction: None).history
+    for rib in (1, 2, 3):
+        angle = 2 * np.pi * (rib - 1) / 3
+        for node in "BJ":
+            x, y, z = (runs[3][f"displacement_m[{node}{rib}].{axis}"] for axis in "xyz")
+            flat = [runs[1][f"displacement_m[{node}].{axis}"] for axis in "xy"]
+            # Motion of 3e-4 m; friction forgives roundings of the start, 1e-15 m times 5e6 N/m.
+            assert np.abs(x - flat[0]).max() < 1e-10
+            assert np.abs(y * np.cos(angle) + z * np.sin(angle) - flat[1]).max() < 1e-10
+            assert np.abs(z * np.cos(angle) - y * np.sin(angle)).max() < 1e-14
+        slip = runs[3][f"revolute_state[joint{rib}]"]
+        assert set(slip) == set(runs[1]["revolute_state[joint]"]) and len(set(slip)) > 1
+
+
+def test_masses_of_a_bar_between_free_nodes() -> None:
+    case = parse_case(generate.chain(2), "chain")
+    bar = 2700 * 9e-6 * 0.5
+    # A third at the tip of the bar that hangs on the ground, else halves.
+    assert dem.lumped_mass_kg(case.resolve()) == pytest.approx([0, bar / 3 + bar / 2, bar / 2])
+
+
+def test_joints_that_could_meet_are_kept_apart() -> None:
+    case = parse_case(generate.iwan(100), "iwan")
+    values = dem.resolved(case, solve(case))["slider"]
+    places = 0.5 + 0.5 * (1 + np.arange(100) / 100)
+    groups, reach = np.array(values["group"]), np.array(values["reach_m"])
+    for i in range(100):
+        near = np.abs(places - places[i]) < reach + reach[i]
+        assert np.sum(groups[near] == groups[i]) == 1
+    assert groups.max() < dem.CONTACT_GROUPS
+
+
+def two_nodes(made: dict[str, Any]) -> None:
+    made["slider"][1]["nodes"] = ["N2", "N1"]
+
+
+def no_mass(made: dict[str, Any]) -> None:
+    made["node"].append({"name": "M", "position_m": [1.5, 0.0], "fixed": ["y"]})
+    made["spring"] = [{"name": "k", "nodes": ["N2", "M"], "stiffness_N_per_m": 1e3}]
+
+
+def slack(made: dict[str, Any]) -> None:
+    made["spring"] = [{"name": "k", "nodes": ["N0", "N2"], "stiffness_N_per_m": 1e3, "cable": True}]
+
+
+def no_length(made: dict[str, Any]) -> None:
+    made["spring"] = [{"name": "k", "nodes": ["N0", "N2"], "stiffness_N_per_m": 1e3, "preload_N": 1e4}]
+
+
+def two_parts(made: dict[str, Any]) -> None:
+    made["revolute"] = [{
+        "name": "R", "bearing_node": "N0", "journal_node": "N2", "journal_link": "L2", "journal_radius_m": 0.01,
+        "radial_clearance_m": 1.5, "friction_coefficient": 0.1,
+    }]
+
+
+@pytest.mark.parametrize(("change", "sentence"), [
+    (two_nodes, "slider 'S2' is between two nodes"),
+    (no_mass, "node 'M' has no mass"),
+    (slack, "cable 'k' goes slack"),
+    (no_length, "spring 'k' has the free length -9 m"),
+    (two_parts, "revolute 'R' gives node 'N2' a second contact part"),
+])
+def test_what_the_dem_cannot_represent_is_named(change, sentence: str) -> None:
+    made = generate.chain(2)
+    made.setdefault("spring", [])
+    change(made)
+    case = parse_case({key: value for key, value in made.items() if value != []}, "chain")
+    with pytest.raises(StatejumpError) as refusal:
+        dem.check(case)
+        dem.resolved(case, solve(case))  # whether a cable goes slack is seen on the path
+    assert sentence in str(refusal.value) and "\n" not in str(refusal.value)
