@@ -21,11 +21,12 @@ from ..case import Case, load_case
 from ..case_schema import (
     CHOICE, Section, check_folder_name, check_name, check_number, choice, folder_name, parameter, parsed,
 )
-from ..case_tables import is_tables, numbers, texts
+from ..case_tables import is_tables, numbers
 from ..errors import StatejumpError
 from .outcomes import KINDS, MODELS
 from .sampling import (
-    DISTRIBUTIONS, Distribution, Values, changed_data, montecarlo_values, number_of_points, sweep_values,
+    DISTRIBUTIONS, Distribution, Independent, Values, changed_data, montecarlo_draws, montecarlo_values,
+    number_of_points, split_path, sweep_values,
 )
 
 MONTECARLO, SWEEP = "montecarlo", "sweep"
@@ -62,18 +63,21 @@ class _MonteCarloFile(Section):
 
 
 def _numbers(kind: type[Case]) -> dict[str, ModelField]:
-    """Every key of a kind of case that holds one number, as ``section.key``."""
+    """Every key of a kind of case that holds one number, as ``section.key``; of items of a list as
+    ``section.*.key``."""
     found = {}
     for section, field in kind.__fields__.items():
+        item = ".*" if is_tables(field) else ""
         for key, inner in getattr(field.type_, "__fields__", {}).items():
             extra = inner.field_info.extra
-            if "low" in extra and not extra.get("listed") and not is_tables(field):
-                found[f"{section}.{key}"] = inner
+            if "low" in extra and not extra.get("listed"):
+                found[f"{section}{item}.{key}"] = inner
     return found
 
 
-_PATHS = tuple(sorted({path for kind in KINDS for path in _numbers(CASE_KINDS[kind])}))
-_OWN = "section.key as in the case file"
+_PATHS = sorted({path for kind in KINDS for path in _numbers(CASE_KINDS[kind])})
+_PATTERN = "(?:" + "|".join(path.replace(".", r"\.").replace("*", ".+") for path in _PATHS) + ")"
+_OWN = "section.key as in the case file, of a list section.item.key, * for all items"
 
 
 def _free(source: str, *, unit: str = "as key", above: Optional[float] = None) -> Any:
@@ -86,8 +90,8 @@ def _free(source: str, *, unit: str = "as key", above: Optional[float] = None) -
 class MonteCarloVary(Section):
     """A [[vary]] table of a Monte Carlo campaign."""
 
-    key: str = choice(..., _PATHS, _OWN)
-    also: list[str] = texts([], "keys that get the same value", _PATHS)
+    key: str = Field(..., pattern=_PATTERN, description=_OWN)
+    also: list[str] = Field([], texts=True, pattern=_PATTERN, description="keys that get the same value")
     distribution: str = choice(..., DISTRIBUTIONS, "of the parameter")
     mean: Optional[float] = _free("the case's own")
     standard_deviation: Optional[float] = _free("this or relative", above=0)
@@ -101,8 +105,8 @@ class MonteCarloVary(Section):
 class SweepVary(Section):
     """A [[vary]] table of a sweep."""
 
-    key: str = choice(..., _PATHS, _OWN)
-    also: list[str] = texts([], "keys that get the same value", _PATHS)
+    key: str = Field(..., pattern=_PATTERN, description=_OWN)
+    also: list[str] = Field([], texts=True, pattern=_PATTERN, description="keys that get the same value")
     values: Optional[list[float]] = numbers(None, "as key", -math.inf, math.inf, "these, or start, stop and count")
     start: Optional[float] = _free("first value")
     stop: Optional[float] = _free("last value")
@@ -140,7 +144,7 @@ class Campaign:
     model: str
     case: Case
     case_data: dict[str, dict[str, Any]]  # as in the case file, without what it leaves out
-    vary: tuple[Union[Distribution, Values], ...]
+    vary: tuple[Union[Distribution, Independent, Values], ...]
     samples: int
     seed: Optional[int]
 
@@ -161,7 +165,10 @@ class Campaign:
 
     def data(self, index: int) -> dict[str, dict[str, Any]]:
         """The case file of sample ``index``, parsed but not checked."""
-        return changed_data(self.case_data, self.vary, self.values(index))
+        if self.command == SWEEP:
+            return changed_data(self.case_data, self.vary, self.values(index))  # type: ignore[arg-type]
+        draws = montecarlo_draws(self.vary, self.seed, index)  # type: ignore[arg-type]
+        return changed_data(self.case_data, [item for item, _ in draws], [value for _, value in draws])
 
     @property
     def key(self) -> str:
@@ -201,6 +208,10 @@ def load_campaign(path: Path, command: str) -> Campaign:
     case = load_case(case_file)
     if case.kind not in KINDS:
         raise StatejumpError(f"{path}: campaign.case = {header.case!r} is not allowed: no campaign runs {case.kind!r}")
+    if header.model == "dem" and KINDS[case.kind].of_dem_run is None:
+        raise StatejumpError(
+            f"{path}: campaign.model = 'dem' is not allowed: a campaign of {case.kind!r} has model = 'reduced'"
+        )
     if not isinstance(tables, list) or not tables or not all(isinstance(table, dict) for table in tables):
         raise StatejumpError(f"{path}: [[vary]] is missing: at least one table says what varies")
     vary = []
@@ -211,7 +222,7 @@ def load_campaign(path: Path, command: str) -> Campaign:
             raise StatejumpError(f"{path}: vary[{number}].{reason}") from None
         taken = [key for parameter in vary[:-1] for key in parameter.keys]
         for key in vary[-1].keys:
-            if key in taken or vary[-1].keys.count(key) > 1:
+            if any(_overlap(key, other) for other in taken) or vary[-1].keys.count(key) > 1:
                 raise StatejumpError(f"{path}: vary[{number}].key = {key!r} is not allowed: it varies already")
     if command == SWEEP:
         samples, seed = number_of_points(vary), None
@@ -242,23 +253,51 @@ def _toml(path: Path) -> tuple[str, dict[str, Any]]:
         raise StatejumpError(f"{path}: not TOML: {failure}") from None
 
 
+def _pattern(path: str) -> str:
+    """The path with ``*`` for the name of its item."""
+    section, item, key = split_path(path)
+    return f"{section}.*.{key}" if item else path
+
+
+def _overlap(one: str, other: str) -> bool:
+    """Whether two paths have a number of the case in common."""
+    if _pattern(one) != _pattern(other):
+        return False
+    return one == other or "*" in (split_path(one)[1], split_path(other)[1])
+
+
 def _field(case: Case, path: str) -> ModelField:
-    return _numbers(type(case))[path]
+    return _numbers(type(case))[_pattern(path)]
+
+
+def _items(case: Case, path: str) -> list[str]:
+    """Names of the items that a path with ``*`` stands for."""
+    return [item.name for item in getattr(case, split_path(path)[0])]
 
 
 def own_value(case: Case, path: str) -> Optional[float]:
-    """What the case itself says; None: nothing."""
-    section, key = path.split(".")
-    return getattr(getattr(case, section), key)
+    """What the case itself says, for ``*`` if its items agree; None: nothing."""
+    section, item, key = split_path(path)
+    if not item:
+        return getattr(getattr(case, section), key)
+    values = {getattr(one, key) for one in getattr(case, section) if item in ("*", one.name)}
+    return values.pop() if len(values) == 1 else None
 
 
 def _checked_path(path: Any, name: str, case: Case) -> str:
     if not isinstance(path, str):
         raise ValueError(f"{name} = {path!r} is not allowed: must be a text such as 'joint.friction_coefficient'")
     known = _numbers(type(case))
-    if path in known:
-        return path
-    section, _, key = path.partition(".")
+    section, item, key = split_path(path)
+    if _pattern(path) in known:
+        names = _items(case, path) if item else []
+        if item and not names:
+            raise ValueError(f"{name} = {path!r} is not allowed: the case has no [[{section}]]")
+        if not item or item == "*" or item in names:
+            return path
+        match = difflib.get_close_matches(item, names, n=1, cutoff=0.5)
+        raise ValueError(f"{name} = {path!r} is unknown: the case has no {section} {item!r}"
+                         + (f": did you mean {match[0]!r}?" if match else ""))
     model = getattr(type(case).__fields__.get(section), "type_", None)
     if key in getattr(model, "__fields__", {}):
         raise ValueError(f"{name} = {path!r} is not allowed: it is not a number")
@@ -293,7 +332,7 @@ def _in_range(name: str, value: Any, field: ModelField) -> Union[int, float]:
         raise ValueError(f"{name} = {_shown(value)} is not allowed: {reason}") from None
 
 
-def _vary(table: dict[str, Any], case: Case, command: str) -> Union[Distribution, Values]:
+def _vary(table: dict[str, Any], case: Case, command: str) -> Union[Distribution, Independent, Values]:
     """Return one [[vary]] table. :raises ValueError: what is wrong, begins with the key"""
     known, others = (MONTECARLO_KEYS, SWEEP_KEYS) if command == MONTECARLO else (SWEEP_KEYS, MONTECARLO_KEYS)
     for name in table:
@@ -314,7 +353,17 @@ def _vary(table: dict[str, Any], case: Case, command: str) -> Union[Distribution
     if not isinstance(also, list):
         raise ValueError(f"also = {also!r} is not allowed: must be a list of keys that get the same value")
     keys = (main, *(_checked_path(path, "also", case) for path in also))
-    return _distribution(table, keys, case) if command == MONTECARLO else _values(table, keys, case)
+    if command == SWEEP:
+        return _values(table, keys, case)
+    if split_path(main)[1] != "*":
+        return _distribution(table, keys, case)
+    for path in keys[1:]:
+        if split_path(path)[:2] != split_path(main)[:2]:
+            raise ValueError(f"also = {path!r} is not allowed: items of {main!r} share their values with their own keys")
+    return Independent(keys, tuple(
+        _distribution(table, tuple(path.replace(".*.", f".{item}.", 1) for path in keys), case)
+        for item in _items(case, main)
+    ))
 
 
 def _distribution(table: dict[str, Any], keys: tuple[str, ...], case: Case) -> Distribution:

@@ -11,8 +11,10 @@ from typing import Any, Callable, Optional
 import numpy as np
 
 from .. import compare, dem, reduced
-from ..case import Case, SpringSliderCase, UmbrellaCase
+from ..case import Case, SpringSliderCase, TrussCase, UmbrellaCase
 from ..history import History
+from ..truss.outcomes import UNITS as TRUSS_UNITS
+from ..truss.outcomes import outcomes as truss_outcomes
 from ..umbrella import compare as umbrella_compare
 from ..umbrella import dem as umbrella_dem
 from ..umbrella import model as umbrella
@@ -26,8 +28,8 @@ class KindOutcomes:
 
     units: dict[str, str]  # unit of each column, in the order of the table
     reduced: Callable[[Any], dict[str, float]]
-    resolved: Callable[[Any], dict[str, Any]]  # what the YADE script needs
-    of_dem_run: Callable[[Any, dem.DemRun], dict[str, float]]
+    resolved: Optional[Callable[[Any], dict[str, Any]]] = None  # what the YADE script needs
+    of_dem_run: Optional[Callable[[Any, dem.DemRun], dict[str, float]]] = None  # None: no DEM in campaigns
 
 
 def _or_nan(value: Optional[float]) -> float:
@@ -120,6 +122,7 @@ KINDS: dict[str, KindOutcomes] = {
     UmbrellaCase.KIND: KindOutcomes(
         UMBRELLA_UNITS, _umbrella_reduced, umbrella_dem.resolved, _umbrella_dem
     ),
+    TrussCase.KIND: KindOutcomes(TRUSS_UNITS, truss_outcomes),
 }
 
 
@@ -131,5 +134,6 @@ def outcome(case: Case, model: str) -> dict[str, float]:
     kind = KINDS[case.kind]
     if model == "reduced":
         return kind.reduced(case)
+    assert kind.resolved is not None and kind.of_dem_run is not None  # the campaign file was checked
     run = dem.execute(kind.resolved(case), lambda fraction: None)
     return kind.of_dem_run(case, run)

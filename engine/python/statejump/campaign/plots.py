@@ -35,7 +35,10 @@ def _label(name: str, unit: str) -> str:
         plain = plain.removesuffix("_" + ending)
     section, _, key = plain.rpartition(".")
     words = key.replace("_", " ").replace("temperature change", "ΔT")
-    return words + (f" of {section.replace('_', ' ')}" if section else "") + ("" if unit == "-" else f" [{unit}]")
+    # Of every item: of a Monte Carlo campaign the mean of their values.
+    every = "every " if section.endswith(".*") else ""
+    section = section.removesuffix(".*").replace("_", " ")
+    return words + (f" of {every}{section}" if section else "") + ("" if unit == "-" else f" [{unit}]")
 
 
 def _wrapped(text: str, width: int = 26) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, inf, log, log1p, prod, sqrt
+from math import exp, fsum, inf, log, log1p, prod, sqrt
 from typing import Any, Sequence, Union
 
 import numpy as np
@@ -51,6 +51,19 @@ class Distribution:
 
 
 @dataclass(frozen=True)
+class Independent:
+    """A parameter of every item of a list, ``slider.*.friction_coefficient``: one draw per item, of items
+    of one kind as manufacture makes them. Its column holds the mean over the items."""
+
+    keys: tuple[str, ...]
+    items: tuple[Distribution, ...]  # keys with the item's name
+
+    def draws(self, generator: np.random.Generator) -> list[float]:
+        """Return one value per item; takes as many variates from the generator, in the items' order."""
+        return [item.draw(generator) for item in self.items]
+
+
+@dataclass(frozen=True)
 class Values:
     """A parameter that takes the values of a list."""
 
@@ -64,10 +77,28 @@ def number_of_points(vary: Sequence[Values]) -> int:
     return prod(len(axis.values) for axis in vary)
 
 
-def montecarlo_values(vary: Sequence[Distribution], seed: int, index: int) -> list[float]:
-    """Values of sample ``index``, one per varied parameter."""
+def montecarlo_draws(
+    vary: Sequence[Union[Distribution, Independent]], seed: int, index: int
+) -> list[tuple[Distribution, float]]:
+    """All single draws of sample ``index``, in the order of the parameters and of their items."""
     generator = np.random.default_rng([seed, index])
-    return [parameter.draw(generator) for parameter in vary]
+    found: list[tuple[Distribution, float]] = []
+    for parameter in vary:
+        if isinstance(parameter, Independent):
+            found += zip(parameter.items, parameter.draws(generator))
+        else:
+            found.append((parameter, parameter.draw(generator)))
+    return found
+
+
+def montecarlo_values(vary: Sequence[Union[Distribution, Independent]], seed: int, index: int) -> list[float]:
+    """Values of sample ``index``, one per varied parameter: of an independent one the mean of its items."""
+    draws = iter(montecarlo_draws(vary, seed, index))
+    found = []
+    for parameter in vary:
+        count = len(parameter.items) if isinstance(parameter, Independent) else 1
+        found.append(fsum(next(draws)[1] for _ in range(count)) / count)
+    return found
 
 
 def sweep_values(vary: Sequence[Values], index: int) -> list[Union[int, float]]:
@@ -79,13 +110,32 @@ def sweep_values(vary: Sequence[Values], index: int) -> list[Union[int, float]]:
     return found[::-1]
 
 
+def split_path(path: str) -> tuple[str, str, str]:
+    """Return section, item and key of ``section.key`` (no item: "") or ``section.item.key``; items may be
+    ``*`` and may have dots in their names."""
+    section, _, rest = path.partition(".")
+    item, _, key = rest.rpartition(".")
+    return section, item, key
+
+
 def changed_data(
-    data: dict[str, dict[str, Any]], vary: Sequence[Union[Distribution, Values]], values: Sequence[float]
-) -> dict[str, dict[str, Any]]:
-    """Return the parsed case file with the values of one sample."""
-    changed = {section: dict(keys) for section, keys in data.items()}
-    for parameter, value in zip(vary, values):
+    data: dict[str, Any], parameters: Sequence[Union[Distribution, Values]], values: Sequence[float]
+) -> dict[str, Any]:
+    """Return the parsed case file with the values of one sample; those of ``*`` in every item."""
+    changed = {
+        section: [dict(table) for table in content] if isinstance(content, list) else dict(content)
+        for section, content in data.items()
+    }
+    numbers: dict[str, dict[str, int]] = {}
+    for parameter, value in zip(parameters, values):
         for path in parameter.keys:
-            section, key = path.split(".")
-            changed.setdefault(section, {})[key] = value
+            section, item, key = split_path(path)
+            if not item:
+                changed.setdefault(section, {})[key] = value
+                continue
+            tables = changed[section]
+            if section not in numbers:
+                numbers[section] = {table["name"]: number for number, table in enumerate(tables)}
+            for table in tables if item == "*" else [tables[numbers[section][item]]]:
+                table[key] = value
     return changed

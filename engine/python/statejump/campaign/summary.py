@@ -14,6 +14,7 @@ from scipy.stats import rankdata
 from .. import __version__
 from ..output import write_atomically
 from .campaign_file import Campaign
+from .sampling import Independent
 from .tables import Table
 
 QUANTILES = (0.05, 0.5, 0.95)
@@ -120,6 +121,9 @@ def _markdown(campaign: Campaign, found: dict[str, Any]) -> str:
             for entry in found["failures"]
         )
     parameters = list(found["parameters"])
+    every = ""
+    if any(isinstance(parameter, Independent) for parameter in campaign.vary):
+        every = "\nKeys with `*`: every item is drawn on its own, shown is the mean over the items of a sample."
     ranks = "| | " + " | ".join(f"`{name}`" for name in parameters) + " |\n|---|" + "--:|" * len(parameters) + "\n"
     for name, entry in found["spearman"].items():
         cells = ("–" if entry[key] is None else f"{entry[key]:.3f}" for key in parameters)
@@ -127,7 +131,7 @@ def _markdown(campaign: Campaign, found: dict[str, Any]) -> str:
     return f"""# {campaign.title}
 
 Case `{found['case']}`, {found['model']} model, {found['samples']:,} samples{drawn}, {found['failed']:,} failed.
-Units are in the names; count is the number of samples that have the value.
+Units are in the names; count is the number of samples that have the value.{every}
 
 ## Outcomes
 

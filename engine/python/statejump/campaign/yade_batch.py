@@ -9,6 +9,7 @@ from urllib.parse import quote, unquote
 
 from .. import dem
 from ..case import parse_case
+from ..errors import StatejumpError
 from ..history import History
 from ..output import write_atomically
 from .campaign_file import MONTECARLO, Campaign, load_campaign
@@ -26,6 +27,8 @@ def write_table(campaign: Campaign, path: Path) -> None:
 
     The script takes the values from their columns; the campaign file tells case and outcomes.
     """
+    if KINDS[campaign.case.kind].of_dem_run is None:
+        raise StatejumpError(f"{campaign.file}: --yade-batch is not allowed: no such campaign runs {campaign.case.kind!r}")
     columns = [column_of(parameter.keys[0]) for parameter in campaign.vary]
     # Tables have neither blanks nor '#' in a value.
     file = quote(str(campaign.file.resolve()))

@@ -204,8 +204,8 @@ def run(case: TrussCase, folder: Path, output_name: str, *, each: bool, step: fl
                 rows = sensitivities(found, output, each=each, step=step, progress=tell)
             tables["sensitivities"] = sensitivity_rows(rows, jump)
             if any(row.verdict == "not differentiable" for row in rows):
-                notes.append("the jump is not differentiable where a small change sends a joint through other "
-                             "statuses: see the verdicts of the sensitivities")
+                notes.append("the jump has a kink here in some parameters, its slopes on both sides differ: see the "
+                             "verdicts of the sensitivities")
     written = []
     for name, rows in tables.items():
         written.append(folder / f"{name}.csv")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import floor, log10
 from pathlib import Path
+from textwrap import fill
 from typing import Any, Optional
 
 import numpy as np
@@ -60,9 +61,9 @@ def jumps_figure(found: TrussPath, shares: Optional[Contributions], title: str, 
     extent = np.ptp(np.concatenate((drawn, moved))[:, axes], axis=0)
     with plt.rc_context(plot.STYLE):
         if flat:
-            shape = np.maximum(extent, 0.12 * extent.max())
+            shape = np.maximum(extent, 0.25 * extent.max())
             wide, tall = shape * min(7.0 / shape[0], 6.0 / shape[1])
-            drawing = plt.figure(figsize=(max(wide, 3.2) + 2.2, tall + 1.6), constrained_layout=True)
+            drawing = plt.figure(figsize=(wide + 3.0, tall + 1.7), constrained_layout=True)
             panel = drawing.add_subplot()
             collection: Any = LineCollection
         else:
@@ -78,26 +79,28 @@ def jumps_figure(found: TrussPath, shares: Optional[Contributions], title: str, 
         panel.scatter(*moved[:, axes].T, **dots)
         if shares is not None and shares.jump != 0:
             _mark(panel, truss, shares, moved[:, axes])
-        panel.set_xlabel("x [m]")
-        panel.set_ylabel("y [m]")
+        panel.set_xlabel("x [m]", labelpad=4 if flat else 10)
+        panel.set_ylabel("y [m]", labelpad=4 if flat else 10)
         if flat:
             panel.set_aspect("equal")
-            panel.margins(0.08)
-            if extent[1] < 0.2 * extent[0]:
-                middle = float(np.mean(drawn[:, 1]))
-                panel.set_ylim(middle - 0.12 * extent[0], middle + 0.12 * extent[0])
+            reach = 0.58 * shape
         else:
-            panel.set_zlabel("z [m]")
-            panel.set_box_aspect(tuple(np.maximum(extent / extent.max(), 0.25)), zoom=0.95)
-            # The x axis towards the observer's left: umbrellas open along it.
+            panel.set_zlabel("z [m]", labelpad=10)
+            panel.tick_params(labelsize=8)
+            reach = 0.54 * np.maximum(extent, 0.25 * extent.max())
+            panel.set_box_aspect(tuple(reach), zoom=0.95)
             panel.view_init(elev=22, azim=-55)
+        middle = (np.concatenate((drawn, moved)).max(axis=0) + np.concatenate((drawn, moved)).min(axis=0))[axes] / 2
+        for axis, centre, half in zip("xyz", middle, reach):
+            getattr(panel, f"set_{axis}lim")(centre - half, centre + half)
         drawing.colorbar(colours, ax=panel, label=f"Jump of a node [{unit}]", shrink=0.8 if flat else 0.6,
                          pad=0.02 if flat else 0.1)
         cycles = len(found.cycle_ends["time_s"]) - 1
-        text = f"jumps after {cycles} cycle{'s' if cycles > 1 else ''} {scale:g} times magnified, grey: as drawn"
+        text = f"jumps after {cycles} cycle{'s' if cycles > 1 else ''}, {scale:g} times magnified; grey: as drawn"
         if shares is not None and shares.jump != 0:
             text += "; numbers: rank of a joint"
-        drawing.suptitle(f"{title}\n{text}", fontsize=10)
+        wrapped = fill(text, int(13 * drawing.get_figwidth()))
+        drawing.suptitle(f"{title}\n{wrapped}", fontsize=10)
         return plot.save(drawing, folder, name)
 
 

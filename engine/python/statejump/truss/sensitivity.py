@@ -26,7 +26,7 @@ class Sensitivity:
     value: Optional[float]  # None: the items differ
     per_relative_change: float  # in the output's unit
     half_step: float
-    verdict: str  # "smooth", "no influence", "kinked", "not differentiable", "failed: ..."
+    verdict: str  # "smooth", "no influence", "steps disagree", "not differentiable", "failed: ..."
 
     @property
     def per_unit(self) -> Optional[float]:
@@ -79,10 +79,11 @@ def sensitivities(
     """Return the sensitivities of an output's jump, parameters without value (0 or no stop) left out.
 
     A parameter is changed by ±step and ±step/2 of its value, all items of a section together or, with
-    ``each``, one by one. "kinked": the two steps differ by more than AGREE; "not differentiable": a joint
-    goes through other statuses on one side than on the other.
+    ``each``, one by one. "not differentiable": the slopes on both sides differ by more than AGREE, at half
+    the step as at the whole, or both steps disagree and a joint goes through other statuses with one change
+    than with another; "steps disagree": the slopes of both steps differ by more than AGREE, for another reason.
     """
-    truss = found.truss
+    truss, own_jump = found.truss, output.jump(found)
     names = {"slider": truss.sliders.names, "revolute": truss.revolutes.names, "link": truss.links.names,
              "spring": truss.springs.names, "torsion_spring": truss.torsion_springs.names}
     asked: list[tuple[str, str, str, np.ndarray, np.ndarray]] = []
@@ -101,7 +102,8 @@ def sensitivities(
         same = float(own[0]) if np.ptp(own) <= 1e-12 * abs(own[0]) else None
         label = f"{section}.{name}.{key}"
         try:
-            rows.append(Sensitivity(label, len(own), same, *_differences(truss, section, key, which, output, step)))
+            found_of = _differences(truss, section, key, which, output, own_jump, step)
+            rows.append(Sensitivity(label, len(own), same, *found_of))
         except StatejumpError as problem:
             rows.append(Sensitivity(label, len(own), same, float("nan"), float("nan"), f"failed: {problem}"))
         progress((place + 1) / len(asked))
@@ -109,22 +111,26 @@ def sensitivities(
 
 
 def _differences(
-    truss: ResolvedTruss, section: str, key: str, which: np.ndarray, output: Output, step: float
+    truss: ResolvedTruss, section: str, key: str, which: np.ndarray, output: Output, own_jump: float, step: float
 ) -> tuple[float, float, str]:
-    jumps, slopes, histories = [], [], []
+    jumps, slopes, gaps, histories = [], [], [], []
     for size in (step, step / 2):
         pair = [quick_path(changed(truss, section, key, np.where(which, 1 + sign * size, 1.0)), cycle_ends_only=True)
                 for sign in (1, -1)]
         values = [output.jump(one) for one in pair]
         jumps += values
         slopes.append((values[0] - values[1]) / (2 * size))
+        gaps.append(abs(values[0] + values[1] - 2 * own_jump) / size)  # of a smooth function as small as the step
         histories += [_histories(one) for one in pair]
     whole, half = slopes
     largest = max(abs(whole), abs(half))
     if largest * step <= NOISE * max(map(abs, jumps)):
         word = "no influence"
-    elif any(history != histories[0] for history in histories):
+    elif gaps[1] > max(AGREE * largest, 0.75 * gaps[0]):
         word = "not differentiable"
+    elif abs(whole - half) <= AGREE * largest:
+        word = "smooth"
     else:
-        word = "smooth" if abs(whole - half) <= AGREE * largest else "kinked"
+        same = all(history == histories[0] for history in histories)
+        word = "steps disagree" if same else "not differentiable"
     return whole, half, word
