@@ -45,9 +45,9 @@ def run(case, output):
                 print(f"PROGRESS {fraction:.4f}", flush=True)
 
         globals()["record"] = record
-        started = time.perf_counter()
+        started, started_cpu = time.perf_counter(), time.process_time()
         O.run(steps + 1, True)  # the recorder sees the end of the program one step later
-        elapsed = time.perf_counter() - started
+        elapsed, elapsed_cpu = time.perf_counter() - started, time.process_time() - started_cpu
         if O.iter != steps + 1:  # an error in the first steps can end the run without a word
             raise RuntimeError(f"YADE stopped after {O.iter} of {steps + 1} steps")
     os.replace(partial, output)
@@ -55,6 +55,7 @@ def run(case, output):
         "steps": O.iter,
         "time_step_s": O.dt,
         "wall_time_s": elapsed,
+        "cpu_time_s": elapsed_cpu,
         "yade_version": __import__("yade").config.version,
         "stable_time_step_s": sj.stable_time_step(),
         **kind.summary(case, built),

@@ -160,7 +160,7 @@ def history_of(run: ModelRun) -> History:
 
 
 # Differs from run to run of the same case: not a result.
-_OF_THE_DAY = ("wall_time_s",)
+_OF_THE_DAY = ("wall_time_s", "cpu_time_s")
 
 
 def scalars(values: dict[str, Any]) -> dict[str, Scalar]:
