@@ -2,7 +2,7 @@
 BUILD := build
 JOBS  ?= $(shell nproc)
 
-.PHONY: demo test bench build setup sanitize format clean
+.PHONY: demo test bench build package setup sanitize format clean
 demo: build
 	$(BUILD)/bin/statejump compare cases/table1.toml
 
@@ -16,6 +16,9 @@ bench: build
 build: setup
 	cmake --preset release
 	cmake --build $(BUILD) --parallel $(JOBS)
+
+package: build
+	cd $(BUILD) && cpack
 
 setup:
 	./scripts/setup.sh

@@ -3,14 +3,13 @@
 # Does nothing when all of them are there. Root and sudo alike.
 set -euo pipefail
 
-packages=(
+# What running needs, and so what the Debian package depends on.
+mapfile -t packages <"$(dirname "${BASH_SOURCE[0]}")/runtime_packages.txt"
+packages+=(
   build-essential cmake ninja-build clang-format git
-  yade
   libboost-dev libboost-python-dev libboost-serialization-dev libboost-math-dev libboost-system-dev
   libcgal-dev libgmp-dev libmpfr-dev
   libeigen3-dev libsuitesparse-dev libgl-dev pybind11-dev python3-dev
-  python3-click python3-rich python3-pydantic python3-numpy python3-scipy python3-matplotlib python3-vtk9 python3-tomli-w
-  python3-distributed python3-dask python3-h5py python3-jinja2
   python3-pytest python3-jsonschema
   libgtest-dev libbenchmark-dev xvfb xauth chromium
 )

@@ -69,6 +69,15 @@ def test_missing_file(statejump) -> None:
     assert (outcome.status, outcome.errors) == (2, "error: nowhere.toml: no such case file\n")
 
 
+def test_cases_that_come_with_the_program_are_found_from_everywhere(statejump, tmp_path: Path) -> None:
+    assert statejump("reduced", "cases/table1.toml", "--quiet").status == 0
+    # A file of one's own comes first.
+    (tmp_path / "cases").mkdir()
+    (tmp_path / "cases" / "table1.toml").write_text("wrong")
+    assert statejump("reduced", "cases/table1.toml").errors.startswith("error: cases/table1.toml: not TOML")
+    assert statejump("reduced", "cases/table2.toml").errors == "error: cases/table2.toml: no such case file\n"
+
+
 def test_unwritable_results(statejump, cases: Path, tmp_path: Path) -> None:
     (tmp_path / "results").write_text("a file where a folder should be")
     outcome = statejump("compare", cases / "table1.toml")

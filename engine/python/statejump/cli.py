@@ -31,7 +31,7 @@ from .resultfile.read import is_result_file
 from .resultfile.record import Record, case_text
 from .schema import schema_command
 from .statics import statics_command
-from .terminal import CASE, QUIET, RESULTS, load_kind, make_console, number, print_comparison, progress
+from .terminal import CASE, CaseFile, QUIET, RESULTS, load_kind, make_console, number, print_comparison, progress
 from .truss import run as truss_run
 from .truss.commands import truss_command
 from .umbrella import compare as umbrella_compare
@@ -178,7 +178,7 @@ def _run_spring_slider(
 
 
 @cli.command("compare")
-@click.argument("files", metavar="CASE|FILE FILE", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("files", metavar="CASE|FILE FILE", nargs=-1, required=True, type=CaseFile())
 @RESULTS
 @QUIET
 def compare_command(files: tuple[Path, ...], results: Path, quiet: bool) -> None:
@@ -282,7 +282,7 @@ def convergence_command(case_file: Path, results: Path, quiet: bool) -> None:
 
 
 @cli.command("laws")
-@click.argument("case_file", metavar="[CASE]", required=False, type=click.Path(path_type=Path))
+@click.argument("case_file", metavar="[CASE]", required=False, type=CaseFile())
 @RESULTS
 @QUIET
 def laws_command(case_file: Path | None, results: Path, quiet: bool) -> None:

@@ -4,18 +4,34 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Callable, Iterator, Optional, Sequence, TypeVar
+from typing import Any, Callable, Iterator, Optional, Sequence, TypeVar
 
 import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
 
+from . import _paths
 from .case import Case, load_case
 from .compare import Quantity
 from .errors import StatejumpError
 
-CASE = click.argument("case_file", metavar="CASE", type=click.Path(path_type=Path))
+
+
+class CaseFile(click.Path):
+    """A case file: as given, or, where there is none, that of the cases that come with the program, so that
+    ``cases/table1.toml`` is found from every folder."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+    def convert(self, value: Any, param: Optional[click.Parameter], ctx: Optional[click.Context]) -> Any:
+        path = super().convert(value, param, ctx)
+        shipped = _paths.SHARE / path
+        return shipped if path.parts[:1] == ("cases",) and not path.exists() and shipped.exists() else path
+
+
+CASE = click.argument("case_file", metavar="CASE", type=CaseFile())
 RESULTS = click.option(
     "--results", default="results", show_default=True, type=click.Path(path_type=Path),
     help="Folder that gets one folder per case.",

@@ -13,7 +13,7 @@ from rich.console import Console
 from .. import dem
 from ..errors import FailedRun, Interrupted, StatejumpError
 from ..output import results_folder, write_atomically
-from ..terminal import QUIET, RESULTS, make_console, progress
+from ..terminal import CaseFile, QUIET, RESULTS, make_console, progress
 from . import campaign_file, yade_batch
 from .campaign_file import MONTECARLO, SWEEP, Campaign
 
@@ -94,7 +94,7 @@ def _print(campaign: Campaign, found: dict[str, Any], done: Any, console: Consol
 
 def _command(name: str, text: str) -> Callable[..., click.Command]:
     @click.command(name, help=text)
-    @click.argument("file", metavar="CAMPAIGN", type=click.Path(path_type=Path))
+    @click.argument("file", metavar="CAMPAIGN", type=CaseFile())
     @click.option("--workers", type=int, metavar="N", help="Processes on this machine.  [default: one per core]")
     @click.option("--scheduler", metavar="ADDRESS",
                   help="Dask scheduler that runs already, as tcp://host:8786, instead of a cluster on this machine.")
