@@ -94,6 +94,24 @@ def test_not_differentiable_is_said() -> None:
     assert words["revolute.*.friction_coefficient"] == "not differentiable"
 
 
+def test_kink_whose_slopes_cancel_is_said() -> None:
+    # One block with friction f, ε = α ΔT. Hot, the bar of l (1 + ε) is shorter by f of its stiffness. It slips
+    # back if f is below EA ε/(2 + ε): jump f l/EA. With more it stays: jump ε l - (1 + ε) f l/EA.
+    truss = made("chain", 1)
+    links = truss.links
+    strain = float(links.thermal_expansion_per_K[0]) * 100.0
+    most = float((links.young_modulus_Pa * links.cross_section_area_m2)[0]) * strain / (2 + strain)
+    truss = replace(truss, sliders=replace(
+        truss.sliders, normal_force_N=most / truss.sliders.friction_coefficient))
+    path = answers.quick_path(truss)
+    found = {row.parameter: row for row in sensitivities(path, answers.chosen_output(path, "node"))}
+    row = found["slider.*.friction_coefficient"]
+    jump = answers.node_jumps(path)[-1, 1, 0]
+    assert jump == pytest.approx(strain / (2 + strain) * links.stress_free_length_m[0], rel=1e-6)
+    assert abs(row.per_relative_change) < strain * jump  # 1 and -(1 + ε), the mean of both
+    assert row.verdict == "not differentiable"
+
+
 def test_verdicts() -> None:
     truss = made("mast", 2, cycles=3)
     path = answers.quick_path(truss)
@@ -109,7 +127,7 @@ def test_verdicts() -> None:
             ends[key] = np.zeros((len(each) + 1, 1))
         return answers.verdict(replace(path, cycle_ends=ends, states=ends)).word
 
-    assert of([1e-3, 1e-4, 1e-4, 1e-4]) == "ratcheting"
+    assert of([1e-3, 1e-4, 1.003e-4, 1e-4]) == "ratcheting"
     assert of([1e-3, 0, 0]) == "shakedown"
     assert of([1e-3, 5e-4, 2.5e-4]) == "not settled"
     assert of([0, 0]) == "no jump"

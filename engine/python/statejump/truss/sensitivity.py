@@ -124,10 +124,12 @@ def _differences(
         histories += [_histories(one) for one in pair]
     whole, half = slopes
     largest = max(abs(whole), abs(half))
-    if largest * step <= NOISE * max(map(abs, jumps)):
-        word = "no influence"
-    elif gaps[1] > max(AGREE * largest, 0.75 * gaps[0]):
+    noise = NOISE * max(map(abs, jumps)) / step
+    # A kink may have slopes that cancel each other.
+    if gaps[1] > max(AGREE * largest, 0.75 * gaps[0], noise):
         word = "not differentiable"
+    elif largest <= noise:
+        word = "no influence"
     elif abs(whole - half) <= AGREE * largest:
         word = "smooth"
     else:
