@@ -20,6 +20,14 @@ constexpr double force_tolerance = 1e-12;
 /// from its end, for ever in a cycle of the active set.
 constexpr int most_visits = 2;
 
+/// Joints that change in one iteration of a front.
+constexpr int a_few = 4;
+
+/// Newton has gone astray when a step is so many times as long as the first ones, and no small part
+/// of the truss.
+constexpr double divergence = 30.0;
+constexpr double smallest_astray = 1e-4;
+
 /// Hash (FNV-1a) of all statuses.
 std::size_t fingerprint(const Statuses& statuses) {
   std::size_t hash = 14695981039346656037ull;
@@ -40,10 +48,12 @@ SolveReport TrussNewton::solve(double time, const StepStart& start, JointModel j
   const int displacements = system_->displacements();
   const double stiffness = system_->stiffness_scale();
   double last_step = std::numeric_limits<double>::infinity();
-  // A front of slips may pass through the truss joint by joint, one an iteration: iterations count
-  // from the last change of a status, unless a set of statuses comes back.
+  // A front of slips may pass through the truss joint by joint, one an iteration: iterations do not
+  // count while few joints change or no more than before, unless a set of statuses comes back.
   std::unordered_map<std::size_t, int> visits;
   int since_change = 0;
+  int last_changes = std::numeric_limits<int>::max();
+  double early_step = 0.0;
   for (int iteration = 0; since_change < most_iterations; ++iteration, ++since_change) {
     const double largest =
         system_->evaluate(z, time, start, statuses, joints, clearance_scale, residual_, jacobian_);
@@ -68,7 +78,6 @@ SolveReport TrussNewton::solve(double time, const StepStart& start, JointModel j
                                                     corrected, changed_joint);
       if (changed == 0) {
         report.end = SolveEnd::converged;
-        if (joints == JointModel::friction) system_->settle_statuses(z, time, start, statuses);
         report.joint = -1;
         report.force_residual = largest > 0.0 ? balance / largest : 0.0;
         report.closure_residual = closure;
@@ -87,10 +96,18 @@ SolveReport TrussNewton::solve(double time, const StepStart& start, JointModel j
     }
     z += step;
     last_step = displacements == 0 ? 0.0 : step.head(displacements).lpNorm<Eigen::Infinity>();
+    if (iteration < 5) early_step = std::max(early_step, last_step);
+    if (last_step > std::max(divergence * early_step, smallest_astray * system_->size())) {
+      return report;
+    }
     int joint = -1;
-    if (system_->correct_statuses(z, time, start, joints, clearance_scale, statuses, joint) > 0) {
+    const int changes =
+        system_->correct_statuses(z, time, start, joints, clearance_scale, statuses, joint);
+    if (changes > 0) {
       report.joint = joint;
-      if (++visits[fingerprint(statuses)] <= most_visits) since_change = 0;
+      const bool calms_down = changes <= a_few || changes <= last_changes;
+      last_changes = changes;
+      if (++visits[fingerprint(statuses)] <= most_visits && calms_down) since_change = 0;
       last_step = std::numeric_limits<double>::infinity();
     }
   }

@@ -59,6 +59,9 @@ std::string at_temperature(const TrussModel& model, double time) {
   return text.str();
 }
 
+/// How a step ended: with the state moved on, or back at its start.
+enum class StepEnd : unsigned char { done, event_inside, not_converged };
+
 /// Equilibrium being followed.
 struct Walker {
   const TrussModel& model;
@@ -70,6 +73,8 @@ struct Walker {
   Statuses statuses;
   TrussState state;
   double time = 0.0;
+  /// How fast every joint slid in the last step, sliders before revolutes [m/s].
+  VectorXd slide_rate;
 
   [[noreturn]] void fail(const SolveReport& report, JointModel joints, double when,
                          const std::string& doing) const {
@@ -95,8 +100,9 @@ struct Walker {
 
   void start();
   void open_clearances();
-  bool step_to(double target, double tolerance);
+  StepEnd step_to(double target, double tolerance);
   bool state_depends_on(int joint, JointStatus before, JointStatus after) const;
+  bool slide_at_stake(int joint, JointStatus before, double target) const;
 };
 
 /// Relaxes the drawn shape at ΔT = 0; see truss_path().
@@ -143,9 +149,10 @@ void Walker::open_clearances() {
     const double next = std::min(1.0, opened + share);
     VectorXd trial = z;
     Statuses trial_statuses = statuses;
+    const StepStart last = system.step_start(z, statuses);
     for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
       const Vector2d force = system.revolute_force(i, z);
-      const Vector2d eccentricity = system.step_start(z, statuses).eccentricity.col(i);
+      const Vector2d eccentricity = last.eccentricity.col(i);
       const Vector2d normal = opened == 0.0 ? Vector2d(force / force.norm())
                                             : Vector2d(eccentricity / eccentricity.norm());
       system.move_journal(i, (next - opened) * model.revolutes[index(i)].radial_clearance * normal,
@@ -194,8 +201,20 @@ bool Walker::state_depends_on(int joint, JointStatus before, JointStatus after) 
   return is_slip(before) && (after == JointStatus::stick || is_slip(after));
 }
 
+/// Whether a joint that stopped sliding before `target` may have slid by more than rounding until
+/// it did: slides of a step are lost when it ends in a stick.
+bool Walker::slide_at_stake(int joint, JointStatus before, double target) const {
+  if (before == JointStatus::open) return true;
+  const int sliders = static_cast<int>(model.sliders.size());
+  double least = 1e3 * system.length_rounding(z);
+  if (joint >= sliders) {
+    least += options.event_tolerance * model.revolutes[index(joint - sliders)].radial_clearance;
+  }
+  return slide_rate[joint] * (target - time) > least;
+}
+
 /// One step, if it is converged and exact or no longer than `tolerance`; else nothing happens.
-bool Walker::step_to(double target, double tolerance) {
+StepEnd Walker::step_to(double target, double tolerance) {
   // The sum time + tolerance is rounded.
   const bool is_short = target - time <= 1.5 * tolerance;
   VectorXd trial = z;
@@ -205,7 +224,7 @@ bool Walker::step_to(double target, double tolerance) {
                                           options.most_iterations, trial, trial_statuses);
   if (report.end != SolveEnd::converged) {
     ++path.solves;
-    if (!is_short) return false;
+    if (!is_short) return StepEnd::not_converged;
     statuses = trial_statuses;
     fail(report, JointModel::friction, target, "no equilibrium");
   }
@@ -213,7 +232,8 @@ bool Walker::step_to(double target, double tolerance) {
   std::vector<TrussEvent> events;
   const auto compare = [&](int joint, JointStatus before, JointStatus after) {
     if (before == after) return true;
-    if (!is_short && (options.locate_events || state_depends_on(joint, before, after))) {
+    if (!is_short && (options.locate_events || (state_depends_on(joint, before, after) &&
+                                                slide_at_stake(joint, before, target)))) {
       return false;
     }
     const bool is_revolute = joint >= sliders;
@@ -224,17 +244,24 @@ bool Walker::step_to(double target, double tolerance) {
   for (int i = 0; i < sliders; ++i) {
     if (!compare(i, statuses.sliders[index(i)], trial_statuses.sliders[index(i)])) {
       ++path.solves;
-      return false;
+      return StepEnd::event_inside;
     }
   }
   for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
     if (!compare(sliders + i, statuses.revolutes[index(i)], trial_statuses.revolutes[index(i)])) {
       ++path.solves;
-      return false;
+      return StepEnd::event_inside;
     }
   }
   note(report);
   system.account(z, time, trial, target, begin, state);
+  for (int i = 0; i < sliders; ++i) {
+    slide_rate[i] = std::abs(system.slide(i, trial) - begin.slide[i]) / (target - time);
+  }
+  for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
+    const double slid = system.revolute_geometry(i, trial, target, begin, 1.0).surface_slide;
+    slide_rate[sliders + i] = std::abs(slid) / (target - time);
+  }
   z = trial;
   statuses = trial_statuses;
   time = target;
@@ -243,7 +270,7 @@ bool Walker::step_to(double target, double tolerance) {
   if (!events.empty() && options.locate_events && !options.cycle_ends_only) {
     path.states.push_back(state);
   }
-  return true;
+  return StepEnd::done;
 }
 
 /// Corners of all programs.
@@ -265,7 +292,9 @@ TrussPath truss_path(const TrussModel& model, const TrussOptions& options) {
                   "event_tolerance", options.event_tolerance, "above 0 and at most 1");
   kernel::require(options.most_iterations >= 2, "most_iterations", options.most_iterations, ">= 2");
   const TrussSystem system(model);
-  Walker walker{model, system, options, TrussNewton(system), {}, {}, {}, {}, 0.0};
+  Walker walker{model, system, options, TrussNewton(system), {}, {}, {}, {}, 0.0, {}};
+  walker.slide_rate =
+      VectorXd::Zero(static_cast<Eigen::Index>(model.sliders.size() + model.revolutes.size()));
   walker.path.unknowns = system.unknowns();
   walker.state.slider_dissipation = VectorXd::Zero(static_cast<Eigen::Index>(model.sliders.size()));
   walker.state.revolute_dissipation =
@@ -275,27 +304,46 @@ TrussPath truss_path(const TrussModel& model, const TrussOptions& options) {
   walker.path.states.push_back(walker.state);
   walker.path.cycle_ends.push_back(walker.state);
 
+  const int sliders = static_cast<int>(model.sliders.size());
+  // A joint changes its status a few times in an increment; many more are no path but a flicker.
+  const std::size_t most_events = 1000 + 50 * (model.sliders.size() + model.revolutes.size());
   const std::vector<double> times = corners(model);
   const double duration = model.programs.front().duration();
   int cycle = 1;
   for (std::size_t b = 0; b + 1 < times.size() && walker.path.complete; ++b) {
     const double length = times[b + 1] - times[b];
     const double tolerance = options.event_tolerance * length;
+    double convergent = length;  // longest step that Newton is trusted with
     for (int k = 0; k <= options.increments_per_branch; ++k) {
       // k = 0: the short first step, within which slips turn into sticks after the corner.
       const double target = k == 0 ? times[b] + tolerance
                             : k == options.increments_per_branch
                                 ? times[b + 1]
                                 : times[b] + length * k / options.increments_per_branch;
-      double stride = target - walker.time;
+      const std::size_t events_before = walker.path.events.size();
+      double stride = std::min(target - walker.time, convergent);
+      bool locating = false;
       while (walker.time < target) {
-        double goal = std::min(target, walker.time + stride);
-        if (goal <= walker.time) goal = std::nextafter(walker.time, target);
-        if (walker.step_to(
-                goal, std::max(tolerance, std::nextafter(walker.time, target) - walker.time))) {
-          stride = target - walker.time;
+        const double goal =
+            std::max(std::nextafter(walker.time, target), std::min(target, walker.time + stride));
+        const double shortest = std::nextafter(walker.time, target) - walker.time;
+        const StepEnd end = walker.step_to(goal, std::max(tolerance, shortest));
+        if (end == StepEnd::done) {
+          convergent = std::max(2.0 * convergent, tolerance);
+          // While a change is being located, the next one may be near.
+          stride = std::min(target - walker.time, locating ? 8.0 * stride : convergent);
+          if (walker.path.events.size() - events_before > most_events) {
+            const TrussEvent& event = walker.path.events.back();
+            throw std::runtime_error(
+                joint_name(model, event.joint + (event.is_revolute ? sliders : 0)) +
+                " does not settle" + at_temperature(model, walker.time) +
+                ": its status changed from " + to_string(event.before) + " to " +
+                to_string(event.after) + " again and again");
+          }
         } else {
           stride = std::max(0.125 * (goal - walker.time), tolerance);
+          if (end == StepEnd::not_converged) convergent = stride;
+          locating = end == StepEnd::event_inside;
         }
       }
       if (k > 0 && !options.cycle_ends_only) walker.path.states.push_back(walker.state);

@@ -48,6 +48,9 @@ TrussSystem::TrussSystem(const TrussModel& model) : model_(&model) {
     unknowns_ += node.freedoms;
   }
   displacements_ = unknowns_;
+  Eigen::AlignedBox3d box;
+  for (const TrussNode& node : model.nodes) box.extend(node.position);
+  size_ = box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
   for (const TrussSlider& slider : model.sliders) {
     slider_row_.push_back(unknowns_++);
     std::vector<Vector3d> across;
@@ -636,28 +639,6 @@ int TrussSystem::correct_statuses(const VectorXd& z, double time, const StepStar
 double TrussSystem::length_rounding(const VectorXd& z) const {
   const double reach = displacements_ == 0 ? 0.0 : z.head(displacements_).lpNorm<Eigen::Infinity>();
   return 4.0 * std::numeric_limits<double>::epsilon() * reach;
-}
-
-void TrussSystem::settle_statuses(const VectorXd& z, double time, const StepStart& start,
-                                  Statuses& statuses) const {
-  // A thousand times rounding, because a solve magnifies it: labels change, the state does not.
-  const double rounding = 1e3 * length_rounding(z);
-  const auto is_slip = [](JointStatus status) {
-    return status == JointStatus::slip_plus || status == JointStatus::slip_minus;
-  };
-  for (int i = 0; i < static_cast<int>(model_->sliders.size()); ++i) {
-    const JointStatus before = start.statuses.sliders[index(i)];
-    JointStatus& status = statuses.sliders[index(i)];
-    if (!is_slip(status) || is_slip(before)) continue;
-    if (std::abs(slide(i, z) - start.slide[i]) <= rounding) status = before;
-  }
-  for (int i = 0; i < static_cast<int>(model_->revolutes.size()); ++i) {
-    const JointStatus before = start.statuses.revolutes[index(i)];
-    JointStatus& status = statuses.revolutes[index(i)];
-    if (!is_slip(status) || before != JointStatus::stick) continue;
-    const RevoluteGeometry g = revolute_geometry(i, z, time, start, 1.0);
-    if (std::abs(g.surface_slide) <= rounding) status = before;
-  }
 }
 
 StepStart TrussSystem::step_start(const VectorXd& z, const Statuses& statuses) const {

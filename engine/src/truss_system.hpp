@@ -74,11 +74,6 @@ class TrussSystem {
                        JointModel joints, double clearance_scale, Statuses& statuses,
                        int& last_changed) const;
 
-  /// Gives joints that slip by nothing but rounding the status they started the step with: a force at
-  /// its limit may hold or slip, and which one Newton found says nothing.
-  void settle_statuses(const Eigen::VectorXd& z, double time, const StepStart& start,
-                       Statuses& statuses) const;
-
   /// The state as the start of the next step.
   StepStart step_start(const Eigen::VectorXd& z, const Statuses& statuses) const;
 
@@ -112,19 +107,21 @@ class TrussSystem {
   /// mechanisms; free displacements only. A joint listed as open or slipping does not hold there.
   Eigen::SparseMatrix<double> joined_stiffness(const Eigen::VectorXd& z, double time,
                                                const Statuses& statuses, JointModel joints) const;
+  /// Rounding of a displacement at z [m].
+  double length_rounding(const Eigen::VectorXd& z) const;
   /// Largest force of links, springs and dead loads [N].
   double largest_load(const Eigen::VectorXd& z, double time) const;
   int displacements() const { return displacements_; }
   /// Node of a free displacement.
   int node_of(int displacement) const;
   double stiffness_scale() const { return stiffness_scale_; }
+  double size() const { return size_; }  ///< Largest extent of the drawn shape [m].
 
  private:
   template <class Sink>
   double assemble(const Eigen::VectorXd& z, double time, const StepStart& start,
                   const Statuses& statuses, JointModel joints, double clearance_scale,
                   Sink& sink) const;
-  double length_rounding(const Eigen::VectorXd& z) const;
   double surface_angle(const Eigen::Vector2d& before, const Eigen::Vector2d& now) const;
   Eigen::Vector3d between(int from, int to, const Eigen::VectorXd& z) const;
   Eigen::Vector2d link_direction(int link, int at_node, const Matrix32& plane,
@@ -136,6 +133,7 @@ class TrussSystem {
   int unknowns_ = 0;
   int displacements_ = 0;
   double stiffness_scale_ = 0.0;
+  double size_ = 0.0;
   std::vector<int> node_row_;      // first free displacement of each node
   std::vector<int> slider_row_;    // axial force, then forces across
   std::vector<int> revolute_row_;  // normal, friction, axial force
