@@ -35,6 +35,7 @@ class TrussScene:
     loaded: list[int] = field(default_factory=list)  # nodes with a dead load
     start: list[Vector3] = field(default_factory=list)
     cables: list[int] = field(default_factory=list)
+    pairs: set[tuple[int, int]] = field(default_factory=set)  # bodies that may touch
 
 
 def columns(case: dict[str, Any]) -> list[str]:
@@ -157,6 +158,8 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
     for place, made in enumerate(faces):
         numbers = O.bodies.append(made)
         scene.faces.append((numbers[0], list(numbers[1:])))
+        scene.pairs.update((ids[sliders[place]["nodes"][0]], face) for face in numbers)
+    scene.pairs.update((ids[joint["journal_node"]], ids[joint["bearing_node"]]) for joint in joints)
     for place, node in enumerate(nodes):
         scene.start.append(Vector3(node["start_m"]))
         if not all(node["blocked"]):
@@ -296,6 +299,8 @@ def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
     def total(*names: str) -> float:
         return sum(energy.get(name, 0.0) for name in names)
 
+    if O.interactions.countReal() > sum(_contact(*pair) is not None for pair in built.pairs):
+        raise RuntimeError(f"parts of different joints touch at {O.time:.6g} s, the model has no such contact")
     states = [O.bodies[body].state for body in built.nodes]
     kinetic = sum(
         0.5 * states[node].mass * _velocity_now(built.nodes[node]).squaredNorm() for node in built.free

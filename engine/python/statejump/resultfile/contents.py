@@ -101,9 +101,9 @@ class ModelRun:
 
 
 def _given(values: Any) -> Any:
-    """Return parsed JSON without what is null: a case file has no such value."""
+    """Return parsed JSON without what is null or a list of nothing: a case file has no such value."""
     if isinstance(values, dict):
-        return {key: _given(value) for key, value in values.items() if value is not None}
+        return {key: _given(value) for key, value in values.items() if value is not None and value != []}
     return [_given(value) for value in values] if isinstance(values, list) else values
 
 

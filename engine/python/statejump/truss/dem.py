@@ -153,8 +153,8 @@ def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) 
     if not len(where):
         return group
     tree = cKDTree(where)
-    # Boxes of YADE's collider are cubes, a tenth of the smallest radius larger than the parts.
-    near = tree.query_ball_point(where, 2.1 * reach_m.max(), p=inf)
+    # Boxes of YADE's collider are cubes, on each side a tenth of the smallest radius larger than the parts.
+    near = tree.query_ball_point(where, 2.3 * reach_m.max(), p=inf)
     for place, others in enumerate(near):
         if group[place] >= 0:
             continue

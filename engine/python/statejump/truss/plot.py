@@ -12,7 +12,7 @@ from ..plot import DEM, REDUCED, STYLE, plt, save
 from .compare import jumps_m
 
 if TYPE_CHECKING:
-    from ..resultfile.contents import ModelRun
+    from ..resultfile.contents import Column, ModelRun
 
 QUASI_STATIC = {**REDUCED, "label": "quasi-static solver", "linewidth": 3.6}
 DEM_RUN = {**DEM, "linewidth": 1.1}
@@ -37,20 +37,21 @@ def _shown(case: TrussCase, run: "ModelRun") -> list[tuple[int, int]]:
 def figure(case: TrussCase, reduced: "ModelRun", dem: "ModelRun", folder: Path) -> list[Path]:
     """Write ``<case>.png`` and ``<case>.svg`` into the folder and return their paths."""
     shown = _shown(case, reduced)
+    scale, unit = (1e3, "mm") if np.abs(reduced.history["displacement_m"].values).max() > 2e-3 else (1e6, "µm")
     link = int(np.argmax(np.ptp(reduced.links["axial_force_N"].values, axis=0)))
     with plt.rc_context(STYLE):
         drawing, panels = plt.subplots(2, 2, figsize=(9.5, 7.0), constrained_layout=True)
         for run, style in ((reduced, QUASI_STATIC), (dem, DEM_RUN)):
             change, time = run.history["temperature_change_K"].values, run.time_s
             for panel, (node, axis) in zip(panels[0], shown):
-                panel.plot(change, run.history["displacement_m"].values[:, node, axis] * 1e6, **style)
+                panel.plot(change, run.history["displacement_m"].values[:, node, axis] * scale, **style)
             panels[1, 0].plot(change, run.links["axial_force_N"].values[:, link], **style)
             heat = run.energy["friction_dissipation_J"].values
             panels[1, 1].plot(time, (heat - heat[0]) * 1e3, **style)
         for panel, (node, axis) in zip(panels[0], shown):
             panel.set_xlabel("Temperature change [K]")
-            panel.set_ylabel(f"Displacement of node {case.node[node].name} along {'xyz'[axis]} [µm]")
-            _mark_jump(panel, reduced, node, axis)
+            panel.set_ylabel(f"Displacement of node {case.node[node].name} along {'xyz'[axis]} [{unit}]")
+            _mark_jump(panel, reduced.history, node, axis, scale, unit)
         if len(shown) == 1:
             panels[0, 1].set_axis_off()
         panels[1, 0].set_xlabel("Temperature change [K]")
@@ -62,9 +63,10 @@ def figure(case: TrussCase, reduced: "ModelRun", dem: "ModelRun", folder: Path) 
         return save(drawing, folder, case.name)
 
 
-def _mark_jump(panel: plt.Axes, run: "ModelRun", node: int, axis: int) -> None:
-    values = run.history["displacement_m"].values[:, node, axis] * 1e6
-    change = run.history["temperature_change_K"].values[-1]
-    panel.plot(change, values[-1], "s", color="#D55E00", markersize=5, zorder=6,
-               label=f"state jump {values[-1] - values[0]:.4g} µm")
+def _mark_jump(
+    panel: plt.Axes, history: "dict[str, Column]", node: int, axis: int, scale: float, unit: str
+) -> None:
+    values = history["displacement_m"].values[:, node, axis] * scale
+    panel.plot(history["temperature_change_K"].values[-1], values[-1], "s", color="#D55E00", markersize=5, zorder=6,
+               label=f"state jump {values[-1] - values[0]:.4g} {unit}")
     panel.legend(loc="best", framealpha=1)
