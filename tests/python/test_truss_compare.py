@@ -91,8 +91,15 @@ def test_ribs_in_space_move_as_the_rib_in_the_plane(tmp_path: Path) -> None:
     for n in (1, 3):
         made = generate.umbrella(n, period_s=0.3)
         made["output"] = {"samples_per_cycle": 100}
+        for node in made["node"]:
+            if "guide_normal" in node:  # a load that only the guide carries
+                node["force_N"] = [5.0 * part for part in node["guide_normal"]]
         case = parse_case(made, f"umbrella_{n}")
-        runs[n] = execute(dem.resolved(case, solve(case)), lambda fraction: None).history
+        path = solve(case)
+        runs[n] = execute(dem.resolved(case, path), lambda fraction: None).history
+    # Friction on the journal has one sign in both models: the means agree but for the swing.
+    ours = np.interp(runs[1]["time_s"], path.states["time_s"], path.states["friction_force_N"][:, 0])
+    assert np.mean(runs[1]["friction_force_N[joint]"][20:50]) == pytest.approx(np.mean(ours[20:50]), rel=0.3)
     for rib in (1, 2, 3):
         angle = 2 * np.pi * (rib - 1) / 3
         for node in "BJ":
@@ -119,7 +126,8 @@ def test_joints_that_could_meet_are_kept_apart() -> None:
     places = 0.5 + 0.5 * (1 + np.arange(100) / 100)
     groups, reach = np.array(values["group"]), np.array(values["reach_m"])
     for i in range(100):
-        near = np.abs(places - places[i]) < reach + reach[i]
+        # On both sides YADE's boxes are larger by the collider's reserve, a tenth of the pad's radius.
+        near = np.abs(places - places[i]) < reach + reach[i] + 2 * 0.1 * 0.05
         assert np.sum(groups[near] == groups[i]) == 1
     assert groups.max() < dem.CONTACT_GROUPS
 
