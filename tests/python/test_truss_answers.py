@@ -115,7 +115,7 @@ def test_kink_whose_slopes_cancel_is_said() -> None:
 def test_verdicts() -> None:
     truss = made("mast", 2, cycles=3)
     path = answers.quick_path(truss)
-    found = answers.verdict(path, answers.resolution_m(path, 50))
+    found = answers.verdict(path, answers.resolution_m(path, answers.quick_path(truss, 100)))
     assert found.word == "shakedown" and len(found.cycle_jump_m) == 3
 
     def of(each: list[float]) -> str:

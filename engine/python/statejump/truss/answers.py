@@ -89,14 +89,10 @@ def _cycle_jumps(found: TrussPath) -> np.ndarray:
     return np.linalg.norm(np.diff(found.cycle_ends["displacement_m"], axis=0), axis=2).max(axis=1)
 
 
-def resolution_m(found: TrussPath, increments_per_branch: int) -> float:
-    """Return by how much [m] the jumps of cycles after the first depend on the increments: against a path of
-    twice as many. 0 for one cycle."""
-    each = _cycle_jumps(found)
-    if len(each) == 1:
-        return 0.0
-    finer = _cycle_jumps(quick_path(found.truss, 2 * increments_per_branch, cycle_ends_only=True))
-    return float(np.abs(each - finer)[1:].max())
+def resolution_m(found: TrussPath, finer: TrussPath) -> float:
+    """Return by how much [m] the jumps of cycles after the first depend on the increments, against a path of
+    more of them. 0 for one cycle."""
+    return float(np.abs(_cycle_jumps(found) - _cycle_jumps(finer))[1:].max(initial=0.0))
 
 
 def verdict(found: TrussPath, resolution: float = 0.0) -> Verdict:

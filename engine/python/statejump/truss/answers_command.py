@@ -21,6 +21,7 @@ from .sensitivity import STEP, Sensitivity, sensitivities
 from .solve import TrussPath
 
 NO_JUMP = 1e-9  # of the largest jump of a node: what is smaller is rounding
+RESOLVED = 0.01  # of the jump: what twice the increments may change
 MOST_ROWS = 15  # of a table in answers.md
 
 Row = dict[str, Any]
@@ -177,7 +178,8 @@ def run(case: TrussCase, folder: Path, output_name: str, *, each: bool, step: fl
         found = answers.quick_path(truss, case.reduced.increments_per_branch,
                                    progress=lambda fraction: (tell(fraction), True)[1])
     output = answers.chosen_output(found, output_name)
-    checked = answers.verdict(found, answers.resolution_m(found, case.reduced.increments_per_branch))
+    finer = answers.quick_path(truss, 2 * case.reduced.increments_per_branch, cycle_ends_only=True)
+    checked = answers.verdict(found, answers.resolution_m(found, finer))
     jump, largest = output.jump(found), float(np.linalg.norm(answers.node_jumps(found)[-1], axis=1).max())
     tables: dict[str, list[Row]] = {"node_jumps": node_rows(found), "joint_jumps": joint_rows(found)}
     notes: list[str] = []
@@ -187,6 +189,10 @@ def run(case: TrussCase, folder: Path, output_name: str, *, each: bool, step: fl
         notes += [f"reflecting surface: {note}" for note in surface.notes]
     elif truss.reflector is not None:
         notes.append("reflecting surface: its nodes do not determine a fit")
+    change = abs(output.jump(finer) - jump)
+    if change > RESOLVED * abs(jump):
+        notes.append(f"the jump is not resolved: with twice the increments it changes by {change:.2g} {output.unit}; "
+                     "more reduced.increments_per_branch are needed, or there is none")
     shares = None
     size = float(np.ptp(truss.nodes.position_m, axis=0).max())
     if abs(jump) <= NO_JUMP * (largest / size if output.unit == "rad" else largest):
