@@ -2,7 +2,7 @@
 BUILD := build
 JOBS  ?= $(shell nproc)
 
-.PHONY: demo test bench build package setup sanitize format clean
+.PHONY: demo test bench build package docs setup sanitize format clean
 demo: build
 	$(BUILD)/bin/statejump compare cases/table1.toml
 
@@ -19,6 +19,9 @@ build: setup
 
 package: build
 	cd $(BUILD) && cpack
+
+docs: build
+	/usr/bin/python3 docs/api/make.py --build $(BUILD)
 
 setup:
 	./scripts/setup.sh

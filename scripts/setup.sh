@@ -11,6 +11,7 @@ packages+=(
   libcgal-dev libgmp-dev libmpfr-dev
   libeigen3-dev libsuitesparse-dev libgl-dev pybind11-dev python3-dev
   python3-pytest python3-jsonschema
+  doxygen python3-sphinx python3-breathe furo
   libgtest-dev libbenchmark-dev xvfb xauth chromium
 )
 # Any Node of version 18 or later that is there will do for the page of the report.
