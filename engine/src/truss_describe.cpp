@@ -119,19 +119,6 @@ void TrussSystem::account(const VectorXd& z_before, double time_before, const Ve
   }
 }
 
-double TrussSystem::largest_load(const VectorXd& z, double time) const {
-  double largest = 0.0;
-  for (const TrussNode& node : model_->nodes) largest = std::max(largest, node.load.norm());
-  for (const TrussLink& link : model_->links) {
-    largest = std::max(largest, std::abs(axial(link, z, time).tension));
-  }
-  for (const AxialSpring& spring : model_->springs) {
-    const double length = between(spring.first, spring.second, z).norm();
-    largest = std::max(largest, std::abs(spring_axial(spring, length).tension));
-  }
-  return largest;
-}
-
 Eigen::SparseMatrix<double> TrussSystem::joined_stiffness(const VectorXd& z, double time,
                                                           const Statuses& statuses,
                                                           JointModel joints) const {

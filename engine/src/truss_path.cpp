@@ -59,6 +59,10 @@ std::string at_temperature(const TrussModel& model, double time) {
   return text.str();
 }
 
+/// Largest angle [rad] by which a contact may move around its bearing in one step; more within a
+/// located instant is a jump.
+constexpr double most_turned = 0.5;
+
 /// How a step ended: with the state moved on, or back at its start.
 enum class StepEnd : unsigned char { done, event_inside, not_converged };
 
@@ -125,15 +129,10 @@ void Walker::start() {
 }
 
 void Walker::open_clearances() {
-  double largest = 0.0;
+  // Below this a pin force is rounding of what the stiffest part would carry.
+  const double rounding = 1e-14 * system.stiffness_scale() * system.size();
   for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
-    largest = std::max(largest, system.revolute_force(i, z).norm());
-  }
-  const double loads = system.largest_load(z, 0.0);
-  for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
-    const Vector2d force = system.revolute_force(i, z);
-    // Below this share a pin force is rounding of the forces around it.
-    if (!(force.norm() > 1e-9 * std::max(largest, loads))) {
+    if (!(system.revolute_force(i, z).norm() > rounding)) {
       throw std::runtime_error(
           "revolute '" + model.revolutes[index(i)].name +
           "' carries no force at the start: statics does not determine its position in the play; "
@@ -253,6 +252,31 @@ StepEnd Walker::step_to(double target, double tolerance) {
       return StepEnd::event_inside;
     }
   }
+  bool opened = false;
+  for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
+    const JointStatus before = statuses.revolutes[index(i)];
+    const JointStatus after = trial_statuses.revolutes[index(i)];
+    opened = opened || (before != JointStatus::open && after == JointStatus::open);
+    if (before == JointStatus::open || after == JointStatus::open) continue;
+    const double turned = system.revolute_geometry(i, trial, target, begin, 1.0).turned;
+    if (std::abs(turned) <= most_turned) continue;
+    if (!is_short) {
+      ++path.solves;
+      return StepEnd::event_inside;
+    }
+    throw std::runtime_error("revolute '" + model.revolutes[index(i)].name +
+                             "' jumps across its play" + at_temperature(model, target) +
+                             ": its contact force vanishes there and statics does not determine "
+                             "the way to the next equilibrium");
+  }
+  if (opened) {
+    const std::string modes =
+        detail::mechanism(system, trial, target, trial_statuses, JointModel::friction);
+    if (!modes.empty()) {
+      throw std::runtime_error("the truss becomes a mechanism" + at_temperature(model, target) +
+                               ", where a revolute loses its contact: " + modes);
+    }
+  }
   note(report);
   system.account(z, time, trial, target, begin, state);
   for (int i = 0; i < sliders; ++i) {
@@ -323,7 +347,7 @@ TrussPath truss_path(const TrussModel& model, const TrussOptions& options) {
       const std::size_t events_before = walker.path.events.size();
       double stride = std::min(target - walker.time, convergent);
       bool locating = false;
-      while (walker.time < target) {
+      while (walker.time < target && walker.path.complete) {
         const double goal =
             std::max(std::nextafter(walker.time, target), std::min(target, walker.time + stride));
         const double shortest = std::nextafter(walker.time, target) - walker.time;
@@ -345,12 +369,10 @@ TrussPath truss_path(const TrussModel& model, const TrussOptions& options) {
           if (end == StepEnd::not_converged) convergent = stride;
           locating = end == StepEnd::event_inside;
         }
+        walker.path.complete = !options.progress || options.progress(walker.time / duration);
       }
+      if (!walker.path.complete) break;
       if (k > 0 && !options.cycle_ends_only) walker.path.states.push_back(walker.state);
-      if (options.progress && !options.progress(walker.time / duration)) {
-        walker.path.complete = false;
-        break;
-      }
     }
     if (walker.path.complete && times[b + 1] >= cycle * model.programs.front().period) {
       walker.path.cycle_ends.push_back(walker.state);

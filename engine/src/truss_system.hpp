@@ -109,8 +109,6 @@ class TrussSystem {
                                                const Statuses& statuses, JointModel joints) const;
   /// Rounding of a displacement at z [m].
   double length_rounding(const Eigen::VectorXd& z) const;
-  /// Largest force of links, springs and dead loads [N].
-  double largest_load(const Eigen::VectorXd& z, double time) const;
   int displacements() const { return displacements_; }
   /// Node of a free displacement.
   int node_of(int displacement) const;

@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Quasi-static solver of trusses against closed forms and the other reduced models."""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from statejump import _engine, reduced
+from statejump.case import load_case, parse_case
+from statejump.errors import StatejumpError
+from statejump.truss import generate, solve
+from statejump.truss.resolved import ResolvedTruss
+from statejump.umbrella import model as umbrella
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# Closed forms and solver round differently: 1e-16 times the condition of n bars in a row.
+CLOSED_FORM = 1e-10
+
+
+def resolved(document: dict[str, Any]) -> ResolvedTruss:
+    return parse_case(document, "test").resolve()
+
+
+def path(document: dict[str, Any], **options: Any) -> solve.TrussPath:
+    return solve.path(resolved(document), **options)
+
+
+def jump_m(found: solve.TrussPath) -> np.ndarray:
+    """Displacement of every node at the end less that at the start [m]."""
+    ends = found.cycle_ends["displacement_m"]
+    return ends[-1] - ends[0]
+
+
+def friction_N(truss: ResolvedTruss) -> np.ndarray:
+    return truss.sliders.friction_coefficient * truss.sliders.normal_force_N
+
+
+@pytest.mark.parametrize("n", [1, 10, 100, 1000])
+def test_chain_jumps_as_the_closed_form(n: int) -> None:
+    """Link i carries the friction of every block beyond it: jump = sum of l_i/(E A)_i sum_{j>=i} f_j."""
+    found = path(generate.chain(n, cycles=2), locate_events=False, increments_per_branch=1)
+    truss = found.truss
+    flexibility = truss.links.stress_free_length_m / (
+        truss.links.young_modulus_Pa * truss.links.cross_section_area_m2
+    )
+    exact = np.cumsum(flexibility * np.cumsum(friction_N(truss)[::-1])[::-1])
+    for cycle in (1, 2):
+        moved = found.cycle_ends["displacement_m"][cycle, 1:, 0]
+        assert moved == pytest.approx(exact, rel=CLOSED_FORM, abs=0)
+
+
+def iwan_platform_m(truss: ResolvedTruss, changes_K: np.ndarray) -> np.ndarray:
+    """Platform of the Iwan stack [m]: every block is a stop operator of the platform's motion, and the heated
+    drive balances their sum. Piecewise linear, solved between its corners."""
+    links = truss.links
+    rigidity = links.young_modulus_Pa * links.cross_section_area_m2
+    length, expansion = links.stress_free_length_m[0], links.thermal_expansion_per_K[0]
+    stiffness = rigidity[1:] / links.stress_free_length_m[1:]
+    limit = friction_N(truss)
+    at, force, found = 0.0, np.zeros(len(limit)), []
+    for change in changes_K:
+        drive = rigidity[0] / (length * (1 + expansion * change))
+
+        def out_of_balance(x: float) -> float:
+            blocks = np.clip(force + stiffness * (x - at), -limit, limit)
+            return float(drive * (length * expansion * change - x) - blocks.sum())
+
+        corners = np.sort(np.concatenate([at + (limit - force) / stiffness, at - (limit + force) / stiffness]))
+        values = np.array([out_of_balance(corner) for corner in corners])
+        after = int(np.searchsorted(-values, 0))
+        if after == 0:
+            moved = corners[0] + values[0] / drive
+        elif after == len(corners):
+            moved = corners[-1] + values[-1] / drive
+        else:
+            left, right = values[after - 1], values[after]
+            moved = corners[after - 1] + (corners[after] - corners[after - 1]) * left / (left - right)
+        force = np.clip(force + stiffness * (moved - at), -limit, limit)
+        at = float(moved)
+        found.append(at)
+    return np.array(found)
+
+
+@pytest.mark.parametrize("n", [1, 10, 100, 1000])
+def test_iwan_stack_follows_its_operator_for_ten_cycles_without_drift(n: int) -> None:
+    found = path(generate.iwan(n, cycles=10), locate_events=False, increments_per_branch=3)
+    platform = found.states["displacement_m"][:, 1, 0]
+    exact = iwan_platform_m(found.truss, found.states["temperature_change_K"][1:])
+    assert platform[1:] == pytest.approx(exact, rel=0, abs=CLOSED_FORM * np.abs(exact).max())
+    ends = found.cycle_ends["displacement_m"][1:, 1, 0]
+    assert np.ptp(ends) <= CLOSED_FORM * abs(ends[0])
+
+
+def one_bar(case_file: str) -> dict[str, Any]:
+    """The spring-slider case as a truss of one link and one slider."""
+    case = load_case(ROOT / "cases" / case_file)
+    document = generate.chain(1, friction_force_N=case.friction_force_N, shape="half_sine",
+                              cycles=case.thermal.cycles)
+    document["slider"][0].update(
+        clearance_minus_m=case.joint.clearance_minus_m, clearance_plus_m=case.joint.clearance_plus_m,
+    )
+    return document
+
+
+def test_one_bar_with_stops_is_the_paper_s_table_1() -> None:
+    exact = reduced.solve(load_case(ROOT / "cases" / "table1.toml"))
+    found = path(one_bar("table1.toml"))
+    assert jump_m(found)[1, 0] == pytest.approx(exact.state_jump_m, rel=1e-12)
+    located = [(event.temperature_change_K, event.after) for event in found.events]
+    # Located within 1e-9 of a branch, whose rate is at most pi times 100 K per branch.
+    slip, stop, stick_or_left = located[0], located[1], located[-1]
+    assert slip == (pytest.approx(2.035099, abs=2e-6), "slip_plus")
+    assert stop == (pytest.approx(87.509255, abs=2e-6), "stop_plus")
+    assert stick_or_left == (pytest.approx(83.431111, abs=2e-6), "slip_minus")
+
+
+def theta_rad(found: solve.TrussPath, at: int) -> np.ndarray:
+    position = found.truss.nodes.position_m + found.states["displacement_m"][at]
+    bearing, journal = position[2] - position[0], position[3] - position[1]
+    return np.array([np.arctan2(bearing[1], bearing[0]), np.arctan2(journal[1], journal[0])])
+
+
+def test_umbrella_rib_is_the_elastic_loop() -> None:
+    """Two solvers that share no line: Newton on a general truss, and on the rib's own closed equations."""
+    case = load_case(ROOT / "cases" / "umbrella_bias.toml")
+    loop = _engine.elastic_loop(umbrella.linkage(case), umbrella.thermal_program(case), samples=2000)
+    found = path(generate.umbrella(1), increments_per_branch=100)
+    jump = theta_rad(found, -1) - theta_rad(found, 0)
+    # The rolling of a step is of third order on both sides; 100 steps a branch leave 1e-8.
+    assert jump == pytest.approx([loop.theta2_jump_rad, loop.theta4_jump_rad], rel=1e-8)
+
+
+def test_ribs_without_coupling_are_one_rib_each() -> None:
+    single = jump_m(path(generate.umbrella(1), locate_events=False))
+    many = path(generate.umbrella(8), locate_events=False)
+    length = np.linalg.norm(jump_m(many), axis=1)
+    expected = np.linalg.norm(single, axis=1)
+    for name, moved in zip(many.truss.nodes.names, length):
+        of_one = expected["ACBJ".index(name[0])]
+        # The planes of the ribs are rounded to 1e-15 of a length of 0.1 m.
+        assert moved == pytest.approx(of_one, rel=1e-9, abs=1e-14)
+    assert many.states["revolute_dissipation_J"][-1].sum() == pytest.approx(
+        8 * path(generate.umbrella(1), locate_events=False).states["revolute_dissipation_J"][-1].sum(), rel=1e-9
+    )
+
+
+@pytest.mark.parametrize("document", [
+    generate.ring(12, contact="rigid"), generate.mast(4, contact="rigid"), generate.umbrella(4, cable_preload_N=1.0,
+                                                                                          contact="rigid"),
+], ids=["ring", "mast", "umbrella"])
+def test_increment_does_not_matter(document: dict[str, Any]) -> None:
+    """Rigid contacts are holonomic while they roll or slip, so only located changes remain: 1e-9 of a branch."""
+    few, many = (jump_m(path(document, locate_events=False, increments_per_branch=k)) for k in (4, 64))
+    assert few == pytest.approx(many, rel=0, abs=1e-6 * np.abs(many).max())
+
+
+def test_every_state_keeps_to_coulomb_and_the_play() -> None:
+    found = path(generate.ring(12), locate_events=False)
+    states, joints = found.states, found.truss.revolutes
+    bound = joints.friction_coefficient * states["normal_force_N"]
+    # Forces balance to 1e-12 of the largest one, about 1 kN here.
+    assert np.all(np.abs(states["friction_force_N"]) <= bound + 1e-8)
+    assert np.all(states["normal_force_N"] >= 0)
+    depth = np.linalg.norm(states["eccentricity_m"], axis=2) - joints.radial_clearance_m
+    hertz = (states["normal_force_N"] / solve.hertz_stiffness(found.truss)) ** (2 / 3)
+    assert depth == pytest.approx(hertz, rel=0, abs=1e-14)
+    assert found.largest_force_residual < 1e-11
+
+
+def test_energy_residue_is_of_second_order() -> None:
+    """Thermal work is summed by the trapezoidal rule between events: four times the points, a sixteenth."""
+    coarse, fine = (path(generate.umbrella(1), increments_per_branch=k).energy_residue_J for k in (10, 40))
+    assert abs(fine) < abs(coarse) / 8
+
+
+def test_path_repeats_bit_for_bit_whatever_the_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    histories = []
+    for threads in ("1", "2"):
+        monkeypatch.setenv("OMP_NUM_THREADS", threads)
+        monkeypatch.setenv("OPENBLAS_NUM_THREADS", threads)
+        histories.append(path(generate.ring(12), locate_events=False).states["displacement_m"].tobytes())
+    assert histories[0] == histories[1]
+
+
+def test_slack_cable_does_not_push() -> None:
+    document = generate.umbrella(2)
+    document["spring"] = [{"name": "tie", "nodes": ["B1", "B2"], "stiffness_N_per_m": 1e4,
+                           "free_length_m": 0.2, "cable": True}]
+    assert np.all(path(document, locate_events=False).states["tension_N"] == 0)
+
+
+def failure(document: dict[str, Any]) -> str:
+    with pytest.raises(StatejumpError) as caught:
+        path(document)
+    return str(caught.value)
+
+
+def test_mechanism_names_its_free_modes() -> None:
+    document = generate.mast(2)
+    del document["torsion_spring"]
+    message = failure(document)
+    assert "mechanism even with every joint held" in message
+    assert "4 free modes: node '" in message
+
+
+def test_unloaded_joint_is_named() -> None:
+    document = generate.umbrella(1)
+    document["torsion_spring"][0]["bias_rad"] = 0.0
+    assert "revolute 'joint' carries no force at the start" in failure(document)
+
+
+@pytest.mark.parametrize("bias_rad, change_K", [(0.01, -200.0), (-0.02, 400.0)])
+def test_joint_that_loses_its_contact_is_reported_with_the_temperature(bias_rad: float, change_K: float) -> None:
+    """The links open or close the flare angle beyond the spring's free one: nothing holds the journal then."""
+    message = failure(generate.umbrella(1, temperature_change_K=change_K, bias_rad=bias_rad))
+    assert "at a temperature change of" in message and "K (t = " in message
+    assert "jumps across its play" in message or "becomes a mechanism" in message
+
+
+def test_path_ends_when_progress_says_so() -> None:
+    found = path(generate.ring(6), progress=lambda share: share < 0.3)
+    assert not found.complete and 1 < len(found.states["time_s"])
