@@ -110,20 +110,24 @@ struct TrussPath {
 /// 1e-12 of the largest one and closures to rounding.
 ///
 /// **Why the increment does not matter.** With every status fixed, the state is an algebraic
-/// function of temperature: stick, stops and the cone |λ_t| = μ λ_n are holonomic (for radii that
-/// do not expand), so a step is exact however long. Memory enters only where a slip ends in a stick
-/// and where an open joint closes. Steps with such a change are shortened until it happens within
-/// `event_tolerance` of a branch, and so is the first step after each corner of a program, where
-/// slips turn into sticks. With `locate_events` this is done for every change of status.
+/// function of temperature: stick, stops and the cone |λ_t| = μ λ_n are holonomic, so a step is
+/// exact however long. (Rolling is so for rigid contacts and radii that do not expand; else its
+/// increment is of third order.) Memory enters only where a slip ends in a stick and where an open
+/// joint closes. Steps with such a change are shortened until it happens within `event_tolerance`
+/// of a branch, or until what the joint may have slid by then is below that share of its clearance
+/// plus rounding; and so is the first step after each corner of a program, where slips turn into
+/// sticks. With `locate_events` this is done for every change of status. A step that does not
+/// converge is shortened as well.
 ///
 /// **Start.** The drawn shape need not be in equilibrium: it is first relaxed at ΔT = 0 with
 /// bilateral pins in place of clearance revolutes; their pin forces say where each journal touches;
 /// then the clearances open with frictionless contacts. There friction begins, without force.
 ///
 /// Throws std::invalid_argument for a model or option out of range. Throws std::runtime_error that
-/// names joint or nodes and the temperature: for a mechanism (with its free modes), for a revolute
-/// that carries no force at the start (statics does not determine its position in the play) and
-/// where equilibrium is not found.
+/// names joint or nodes and the temperature: for a mechanism (with its free modes), also one that a
+/// joint makes that opens; for a revolute that carries no force at the start (statics does not
+/// determine its position in the play) or jumps across its play; where equilibrium is not found;
+/// and for a joint whose status changes without end.
 TrussPath truss_path(const TrussModel& model, const TrussOptions& options = {});
 
 }  // namespace statejump
