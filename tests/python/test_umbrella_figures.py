@@ -17,7 +17,9 @@ from statejump import _engine
 from statejump.case import load_case
 from statejump.dem import DemRun
 from statejump.errors import Interrupted, StatejumpError
-from statejump.umbrella import claims, dem, figures, model
+from statejump.umbrella import claims, dem, model
+from statejump.umbrella.figures import closed_forms, command
+from statejump.umbrella.figures.runs import Study
 
 RANDOM = np.random.default_rng(7)
 NOISE = RANDOM.normal(size=(8, 200))
@@ -152,10 +154,10 @@ def test_envelope(cases: Path) -> None:
     case = load_case(cases / "umbrella.toml")
     rigid = model.linkage(case)
     for change in (0.0, 37.0, 100.0):
-        low, high = (side[0] for side in figures.envelope(case, np.array([change])))
+        low, high = (side[0] for side in closed_forms.envelope(case, np.array([change])))
         rim = [_engine.joint_point(rigid, change, 1, phi)["theta2_rad"] for phi in np.linspace(0, 2 * np.pi, 1000)]
         assert low == pytest.approx(min(rim), abs=1e-7) and high == pytest.approx(max(rim), abs=1e-7)
-        wider = figures.envelope(case, np.array([change]), 1e-6)
+        wider = closed_forms.envelope(case, np.array([change]), 1e-6)
         assert wider[0] < low - 1e-5 and wider[1] > high + 1e-5
 
 
@@ -165,11 +167,11 @@ def test_static_deflection(cases: Path) -> None:
         "joint.friction_coefficient": 0.0, "start.mode": "matched", "damping.axial_damping_ratio": 0.1,
         "damping.pin_damping_N_m_s_per_rad": 0.05, "reduced.steps_per_cycle": 100_000, "thermal.period_s": 2.0,
     })
-    assert figures.static_deflection(case, 35.0) is None
-    rigid = figures.static_deflection(case, 100.0)
+    assert closed_forms.static_deflection(case, 35.0) is None
+    rigid = closed_forms.static_deflection(case, 100.0)
     for stiffness in (1.0, 100.0):
         sprung = model.changed(case, {"torsion_spring.stiffness_N_m_per_rad": stiffness})
-        elastic = figures.static_deflection_elastic(sprung, 100.0)
+        elastic = closed_forms.static_deflection_elastic(sprung, 100.0)
         assert 0 < rigid - elastic < 1e-6 * stiffness
         history = model.run(sprung).history
         warmest = int(np.argmax(history["temperature_change_K"]))
@@ -199,7 +201,7 @@ def tiny(edited: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def invoke(case_file: Path, results: Path) -> Any:
-    return CliRunner().invoke(figures.figures_command, [str(case_file), "--results", str(results)])
+    return CliRunner().invoke(command.figures_command, [str(case_file), "--results", str(results)])
 
 
 def test_command(tiny: Path, tmp_path: Path) -> None:
@@ -243,14 +245,14 @@ def test_command(tiny: Path, tmp_path: Path) -> None:
 def test_interruption_leaves_what_is_finished(
     tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    drawn = figures.figure_of
+    drawn = command.figure_of
 
-    def figure_of(study: figures.Study, *rest: Any) -> list[Path]:
+    def figure_of(study: Study, *rest: Any) -> list[Path]:
         if study.figure == "fig15":
             raise KeyboardInterrupt
         return drawn(study, *rest)
 
-    monkeypatch.setattr(figures, "figure_of", figure_of)
+    monkeypatch.setattr(command, "figure_of", figure_of)
     outcome = invoke(tiny, tmp_path / "out")
     folder = tmp_path / "out" / "umbrella"
     assert isinstance(outcome.exception, Interrupted)

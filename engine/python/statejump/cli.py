@@ -39,7 +39,7 @@ from .umbrella import dem as umbrella_dem
 from .umbrella import model as umbrella
 from .umbrella import plot as umbrella_plot
 from .umbrella.energy import energy_command
-from .umbrella.figures import figures_command
+from .umbrella.figures.command import figures_command
 from .umbrella.hold import hold_command
 from .umbrella.slow import slow_command
 
