@@ -14,7 +14,7 @@ from ..errors import Interrupted, StatejumpError, TolerancesMissed
 from ..output import results_folder
 from ..terminal import QUIET, make_console, number, print_comparison, progress
 from . import export_csv
-from .contents import Column, Result, Scalar
+from .contents import Answers, Column, Result, Scalar
 from .difference import RunDifference, case_differences, difference
 from .read import read
 
@@ -53,6 +53,8 @@ def info_command(file: Path) -> None:
     if result.comparison is not None:
         print_comparison(f"{result.title}: {'passed' if result.passed else 'a tolerance is missed'}",
                          result.comparison, console)
+    if result.answers is not None:
+        _print_answers(result.answers, console)
     _print_contents(result, console)
     for warning in result.warnings:
         console.print(f"warning: {warning}")
@@ -95,6 +97,20 @@ def _print_events(result: Result, console: Console) -> None:
         console.print(table)
         if len(run.events) > SHOWN_EVENTS:
             console.print(f"and {len(run.events) - SHOWN_EVENTS:,} more: statejump export --format csv")
+
+
+def _print_answers(answers: Answers, console: Console) -> None:
+    table = _table(f"answers: {answers.text}", "quantity", "unit", "value", left=("quantity", "unit"))
+    for name, scalar in sorted(answers.summary.items()):
+        table.add_row(name, scalar.unit, _value(scalar.value))
+    console.print(table)
+    console.print(f"{answers.verdict}: {answers.verdict_text}")
+    for note in answers.notes:
+        console.print(f"note: {note}")
+    table = _table("tables of answers", "table", "rows", "columns", left=("table", "columns"))
+    for name, rows in answers.tables.items():
+        table.add_row(name, f"{len(rows):,}", ", ".join(rows[0]) if rows else "")
+    console.print(table)
 
 
 def _shape(result: Result, column: Column) -> str:

@@ -69,6 +69,26 @@ class Scalar:
 
 
 @dataclass(frozen=True)
+class Answers:
+    """What a designer asks of a truss. ``tables`` has the rows of the CSV files of the same names; a value is
+    text, a whole number, a number or None."""
+
+    output: str  # what is traced to the joints: node:NAME, rms, tilt
+    text: str  # the same in words
+    unit: str
+    verdict: str
+    verdict_text: str
+    notes: list[str]
+    summary: dict[str, Scalar]
+    tables: dict[str, list[dict[str, Any]]]
+
+    def unit_of(self, column: str) -> str:
+        """Return the unit of a column of a table."""
+        own = {"contribution": self.unit, "jump_change_per_unit": f"{self.unit} per unit of the parameter"}
+        return own.get(column) or unit_of(column)
+
+
+@dataclass(frozen=True)
 class Mesh:
     """A surface that a part of type ``mesh`` refers to, in the part's own frame."""
 
@@ -126,6 +146,7 @@ class Result:
     comparison: Optional[list[Quantity]] = None
     warnings: list[str] = field(default_factory=list)
     meshes: dict[str, Mesh] = field(default_factory=dict)
+    answers: Optional[Answers] = None
 
     def case(self) -> Case:
         """Return the case; StatejumpError if this version does not understand it any more."""

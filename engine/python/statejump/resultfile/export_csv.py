@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CSV files of a result: ``<model>_history.csv``, ``<model>_events.csv``, ``comparison.csv``."""
+"""CSV files of a result: ``<model>_history.csv``, ``<model>_events.csv``, ``comparison.csv``, tables of answers."""
 from __future__ import annotations
 
 import csv
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Iterable, Iterator
+from typing import Any, Iterable, Iterator
 
 import numpy as np
 
 from ..compare import write_comparison_csv
 from ..history import common_order, write_columns
 from ..output import write_atomically
-from .contents import Column, Event, ModelRun, Result, history_of
+from .contents import Answers, Column, Event, ModelRun, Result, history_of
 
 AXES = ("x", "y", "z")
 
@@ -55,6 +55,24 @@ def write_histories(result: Result, folder: Path, mark: str = "") -> list[Path]:
     return written
 
 
+def _cell(value: Any) -> Any:
+    if value is None or value != value:
+        return ""
+    return repr(value) if isinstance(value, float) else value
+
+
+def write_answers(answers: Answers, folder: Path) -> list[Path]:
+    """Write a CSV file for every table of answers."""
+    written = []
+    for name, rows in answers.tables.items():
+        written.append(folder / f"{name}.csv")
+        with write_atomically(written[-1]) as stream:
+            writer = csv.writer(stream)
+            writer.writerow(rows[0] if rows else [])
+            writer.writerows([_cell(value) for value in row.values()] for row in rows)
+    return written
+
+
 def write_all(result: Result, folder: Path) -> list[Path]:
     """Write all CSV files of a result and return their paths."""
     written = write_histories(result, folder)
@@ -69,4 +87,6 @@ def write_all(result: Result, folder: Path) -> list[Path]:
         path = folder / "comparison.csv"
         write_comparison_csv(result.comparison, path)
         written.append(path)
+    if result.answers is not None:
+        written += write_answers(result.answers, folder)
     return written

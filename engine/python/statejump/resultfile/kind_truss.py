@@ -31,6 +31,7 @@ ITEMS = {
     "eccentricity_m": ("revolutes", True), "normal_force_N": ("revolutes", False),
     "friction_force_N": ("revolutes", False), "revolute_state": ("revolutes", False),
 }
+LOCATED = 1e-6  # of a cycle: an event within less has no uncertainty worth telling
 NOTES = {
     "displacement_m": "from the drawn shape", "axial_force_N": "compression positive",
     "slider_force_N": "friction and stop on the slider, against its axis",
@@ -219,12 +220,19 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> ModelR
     for event in path.events:
         name = joints[event.joint + (first_revolute if event.joint_kind == "revolute" else 0)]
         before, after = STATE_OF[event.before], STATE_OF[event.after]
+        # A path that does not locate all events has some of them somewhere within an increment.
+        half = event.interval_s / 2 if event.interval_s > LOCATED * case.period_s else 0.0
         if before != after:
-            events.append(Event(kind_of(before, after, name in slipped), event.time_s, event.temperature_change_K, name))
+            change = float(np.interp(event.time_s - half, at, states["temperature_change_K"])) if half else (
+                event.temperature_change_K)
+            events.append(Event(kind_of(before, after, name in slipped), event.time_s - half, change, name, half))
         if after == SLIP:
             slipped.add(name)
     summary = scalars({"energy_residue_J": path.energy_residue_J, "solves": path.solves, "unknowns": path.unknowns})
-    return _run(truss, energy, plain, items, events, summary)
+    run = _run(truss, energy, plain, items, events, summary)
+    of_joints = np.concatenate((states["slider_dissipation_J"], states["revolute_dissipation_J"]), axis=1)
+    run.contacts["dissipation_J"] = Column(sampled(of_joints), "J", "contacts", note="heat of friction since the start")
+    return run
 
 
 def dem_run(case: TrussCase, done: DemRun) -> ModelRun:

@@ -38,7 +38,7 @@ ENTRIES = (
     Entry("/@format", TEXT, f'"{FORMAT}"'),
     Entry("/@layout_version", "int64", f"{VERSION}; a reader refuses a newer one"),
     Entry("/@complete", "bool", "false: the run was interrupted, the file holds what there was"),
-    Entry("/@command", TEXT, "which command wrote the file: reduced, dem or compare"),
+    Entry("/@command", TEXT, "which command wrote the file: reduced, dem, compare or truss answers"),
     Entry("/case", "group", "what was asked"),
     Entry("/case@name", TEXT, "name of the case"),
     Entry("/case@kind", TEXT, "kind of the case"),
@@ -109,7 +109,37 @@ ENTRIES = (
     Entry("/comparison/difference", "float64 [rows]", "DEM less reduced; NaN: one is missing", required=False),
     Entry("/comparison/tolerance", "float64 [rows]", "allowed size of the difference", required=False),
     Entry("/comparison/passed", "bool [rows]", "whether it is kept", required=False),
+    Entry("/answers", "group", "what a designer asks of a truss; only in files of truss answers", required=False),
+    Entry("/answers@output", TEXT, "what is traced to the joints: node:NAME, rms or tilt", required=False),
+    Entry("/answers@text", TEXT, "the same in words", required=False),
+    Entry("/answers@unit", TEXT, "its unit", required=False),
+    Entry("/answers@verdict", TEXT, "no jump, one cycle, shakedown, ratcheting or not settled", required=False),
+    Entry("/answers@verdict_text", TEXT, "the same in words", required=False),
+    Entry("/answers/notes", "text [sentences]", "what was not found, or only so", required=False),
+    Entry("/answers/summary", "group", "numbers that sum up the answers: jump, sum_of_contributions, ...",
+          required=False),
+    Entry("/answers/summary/{name}", "float64", "one number", required=False),
+    Entry("/answers/{name}", "group", "a table, see below", required=False),
+    Entry("/answers/{name}/{name}", "text or int64 or float64 [rows]", "a column of it; NaN: there is no such number",
+          required=False),
 )
+
+# Tables of /answers: what a row is, and the columns in the order of the CSV file.
+_JUMP = ("jump_x_m", "jump_y_m", "jump_z_m", "jump_m")
+TABLES: dict[str, tuple[str, tuple[str, ...]]] = {
+    "cycles": ("a cycle: largest motion of a node over it, heat of friction", ("cycle", "largest_jump_m", "dissipation_J")),
+    "node_jumps": ("a node after a cycle, against the start", ("node", "cycle", *_JUMP)),
+    "joint_jumps": ("a joint after a cycle: jump of its slide or eccentricity, heat of friction",
+                    ("joint", "kind", "cycle", *_JUMP, "dissipation_of_cycle_J", "dissipation_J")),
+    "surface": ("the reflecting surface in a state against its best fit; changes since the start",
+                ("state", "temperature_change_K", "rms_error_m", "rms_of_change_m", "tilt_change_rad", "focal_length_m",
+                 "focal_shift_m", "depth_change_m")),
+    "contributions": ("a joint, the first holds most of the output's jump",
+                      ("rank", "joint", "kind", "contribution", "share")),
+    "sensitivities": ("a parameter; elasticity: relative change of the jump per relative change of it",
+                      ("parameter", "items", "value", "elasticity", "elasticity_half_step", "jump_change_per_unit",
+                       "verdict")),
+}
 
 # Attributes of data sets of numbers, wherever they stand.
 ATTRIBUTES = {
@@ -127,11 +157,14 @@ def entry_of(path: str) -> Optional[Entry]:
 
 
 def markdown() -> str:
-    """Return the layout as the two tables of docs/result_file.md."""
+    """Return the layout as the tables of docs/result_file.md."""
     lines = ["| place | type [shape] | meaning |", "|---|---|---|"]
     for entry in ENTRIES:
         always = "" if entry.required else " (not always there)"
         lines.append(f"| `{entry.path}` | {entry.form} | {entry.meaning}{always} |")
     lines += ["", "| attribute | meaning |", "|---|---|"]
     lines += [f"| `{name}` | {meaning} |" for name, meaning in ATTRIBUTES.items()]
+    lines += ["", "| table below `/answers` | a row is | columns |", "|---|---|---|"]
+    lines += [f"| `{name}` | {row} | {', '.join(f'`{column}`' for column in columns)} |"
+              for name, (row, columns) in TABLES.items()]
     return "\n".join(lines) + "\n"

@@ -12,8 +12,8 @@ import numpy as np
 
 from ..compare import Quantity
 from ..errors import StatejumpError
-from .contents import Column, Event, Mesh, ModelRun, Result, Scalar
-from .layout import ENTRIES, FORMAT, MODELS, SUFFIX, VERSION
+from .contents import Answers, Column, Event, Mesh, ModelRun, Result, Scalar
+from .layout import ENTRIES, FORMAT, MODELS, SUFFIX, TABLES, VERSION
 
 
 def is_result_file(path: Path) -> bool:
@@ -87,6 +87,7 @@ def _result(file: h5py.File) -> Result:
         meshes={
             name: Mesh(mesh["vertices_m"][()], mesh["triangles"][()]) for name, mesh in file.get("meshes", {}).items()
         },
+        answers=_answers(file["answers"]) if "answers" in file else None,
     )
 
 
@@ -106,10 +107,12 @@ def _model(group: h5py.Group) -> ModelRun:
                 _texts(events["joint"]), events["time_uncertainty_s"][()], strict=True,
             )
         ],
-        summary={
-            name: Scalar(float(value[()]), value.attrs["unit"]) for name, value in group["summary"].items()
-        },
+        summary=_scalars(group["summary"]),
     )
+
+
+def _scalars(group: h5py.Group) -> dict[str, Scalar]:
+    return {name: Scalar(float(value[()]), value.attrs["unit"]) for name, value in group.items()}
 
 
 def _column(dataset: h5py.Dataset, samples: int) -> Column:
@@ -134,6 +137,30 @@ def _comparison(group: h5py.Group) -> list[Quantity]:
             numbers("difference"), numbers("tolerance"), group["passed"][()], strict=True,
         )
     ]
+
+
+def _answers(group: h5py.Group) -> Answers:
+    return Answers(
+        **{key: group.attrs[key] for key in ("output", "text", "unit", "verdict", "verdict_text")},
+        notes=_texts(group["notes"]),
+        summary=_scalars(group["summary"]),
+        tables={name: _rows(name, table) for name, table in group.items() if name not in ("notes", "summary")},
+    )
+
+
+def _rows(name: str, group: h5py.Group) -> list[dict[str, Any]]:
+    """Return the rows of a table, its columns in the order of the CSV file."""
+    order = TABLES[name][1] if name in TABLES else ()
+    keys = [key for key in order if key in group] + [key for key in group if key not in order]
+    columns = [_cells(group[key]) for key in keys]
+    return [dict(zip(keys, values)) for values in zip(*columns, strict=True)]
+
+
+def _cells(dataset: h5py.Dataset) -> list[Any]:
+    if h5py.check_string_dtype(dataset.dtype):
+        return _texts(dataset)
+    values = dataset[()].tolist()
+    return [None if value != value else value for value in values]
 
 
 def _text(dataset: h5py.Dataset) -> str:

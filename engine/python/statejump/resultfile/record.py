@@ -12,14 +12,14 @@ from ..compare import Quantity
 from ..dem import DemRun
 from ..history import History
 from . import export_csv
-from .contents import ModelRun, Result
+from .contents import Answers, ModelRun, Result
 from .kinds import kind_of
 from .layout import SUFFIX
 from .provenance import provenance
 from .write import write
 
 # Name of the file that each command writes.
-FILES = {"reduced": "reduced", "dem": "dem", "compare": "comparison"}
+FILES = {"reduced": "reduced", "dem": "dem", "compare": "comparison", "truss answers": "answers"}
 
 
 def case_text(case_file: Path) -> str:
@@ -31,7 +31,7 @@ def case_text(case_file: Path) -> str:
 class Record:
     """The run of a command while it goes on.
 
-    :param command: ``reduced``, ``dem`` or ``compare``
+    :param command: ``reduced``, ``dem``, ``compare`` or ``truss answers``
     :param case: the case
     :param case_text: its file as given; "" if there is none
     :param folder: results folder, exists
@@ -44,6 +44,7 @@ class Record:
     models: dict[str, ModelRun] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
     dem_summary: Optional[dict[str, Any]] = None
+    answers: Optional[Answers] = None
 
     def add_dem(self, done: DemRun) -> None:
         """Take a DEM run."""
@@ -68,10 +69,11 @@ class Record:
             models=dict(self.models),
             comparison=rows,
             warnings=list(self.warnings),
+            answers=self.answers,
         )
 
     def save(self, rows: Optional[list[Quantity]] = None) -> Path:
-        """Write the result file of a finished run and the CSV files of its histories."""
+        """Write the result file of a finished run and the CSV files of its histories, or of its answers."""
         return self._write(self.result(rows), "")
 
     def keep(self, samples: History) -> Path:
@@ -82,5 +84,8 @@ class Record:
     def _write(self, result: Result, mark: str) -> Path:
         path = self.folder / f"{FILES[self.command]}{mark}{SUFFIX}"
         write(result, path)
-        export_csv.write_histories(result, self.folder, mark)
+        if result.answers is None:
+            export_csv.write_histories(result, self.folder, mark)
+        else:  # the histories beside it are those of a comparison
+            export_csv.write_answers(result.answers, self.folder)
         return path

@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 from ..output import replacing
-from .contents import Column, ModelRun, Result
+from .contents import Answers, Column, ModelRun, Result
 from .layout import FORMAT, VERSION
 
 COMPRESSED_FROM = 4096  # bytes; below, a chunk's administration is larger than what it saves
@@ -48,6 +48,8 @@ def write(result: Result, path: Path) -> None:
                 _model(models.create_group(model), run)
             if result.comparison is not None:
                 _comparison(file.create_group("comparison"), result)
+            if result.answers is not None:
+                _answers(file.create_group("answers"), result.answers)
 
 
 def _model(group: h5py.Group, run: ModelRun) -> None:
@@ -76,6 +78,26 @@ def _comparison(group: h5py.Group, result: Result) -> None:
         group.create_dataset(key, data=np.array([math.nan if value is None else value for value in values], float),
                              track_times=False)
     group.create_dataset("passed", data=np.array([row.passed for row in rows], dtype=bool), track_times=False)
+
+
+def _answers(group: h5py.Group, answers: Answers) -> None:
+    for key in ("output", "text", "unit", "verdict", "verdict_text"):
+        group.attrs[key] = getattr(answers, key)
+    _texts(group, "notes", answers.notes)
+    summary = group.create_group("summary")
+    for key, scalar in sorted(answers.summary.items()):
+        _numbers(summary, key, np.array(scalar.value, dtype=float), scalar.unit)
+    for name, rows in sorted(answers.tables.items()):
+        table = group.create_group(name)
+        for key in sorted(rows[0]) if rows else ():
+            values = [row[key] for row in rows]
+            if isinstance(values[0], str):
+                _texts(table, key, values)
+            elif all(isinstance(value, int) for value in values):
+                _numbers(table, key, np.array(values, dtype=np.int64), answers.unit_of(key))
+            else:
+                numbers = [math.nan if value is None else value for value in values]
+                _numbers(table, key, np.array(numbers, dtype=float), answers.unit_of(key))
 
 
 def _column(group: h5py.Group, name: str, column: Column) -> None:

@@ -2,10 +2,10 @@
 """``statejump truss answers``: jumps, verdict, ranking of joints, surface, energy, sensitivities."""
 from __future__ import annotations
 
-import csv
 import json
+import math
 from pathlib import Path
-from typing import Any, Iterable, Optional
+from typing import Any, Optional
 
 import click
 import numpy as np
@@ -13,6 +13,9 @@ import numpy as np
 from ..case_truss import TrussCase
 from ..errors import Interrupted, StatejumpError
 from ..output import results_folder, write_atomically
+from ..resultfile import kind_truss
+from ..resultfile.contents import Answers, Scalar
+from ..resultfile.record import Record, case_text
 from ..terminal import CASE, QUIET, RESULTS, load_kind, make_console, progress
 from . import answers, reflector
 from .answers import Contributions, Output, Verdict
@@ -23,17 +26,17 @@ from .solve import TrussPath
 NO_JUMP = 1e-9  # of the largest jump of a node: what is smaller is rounding
 RESOLVED = 0.01  # of the jump: what twice the increments may change
 MOST_ROWS = 15  # of a table in answers.md
+MOST_SAMPLES = 2000  # of the path in the result file; every cycle has at least its ends
 
 Row = dict[str, Any]
 
 
-def _write_csv(path: Path, rows: Iterable[Row]) -> None:
-    rows = list(rows)
-    with write_atomically(path) as stream:
-        writer = csv.writer(stream)
-        writer.writerow(rows[0] if rows else [])
-        writer.writerows([repr(value) if isinstance(value, float) else "" if value is None else value
-                          for value in row.values()] for row in rows)
+def cycle_rows(checked: Verdict) -> list[Row]:
+    """Return what happens over each cycle."""
+    return [
+        {"cycle": cycle, "largest_jump_m": float(jump), "dissipation_J": float(heat)}
+        for cycle, (jump, heat) in enumerate(zip(checked.cycle_jump_m, checked.dissipation_J), start=1)
+    ]
 
 
 def node_rows(found: TrussPath) -> list[Row]:
@@ -103,10 +106,15 @@ def contribution_rows(shares: Contributions) -> list[Row]:
 def sensitivity_rows(found: list[Sensitivity], jump: float) -> list[Row]:
     """Return the sensitivities; ``elasticity``: relative change of the jump per relative change."""
     return [
-        {"parameter": row.parameter, "items": row.items, "value": row.value, "elasticity": row.per_relative_change / jump,
-         "elasticity_half_step": row.half_step / jump, "jump_change_per_unit": row.per_unit, "verdict": row.verdict}
+        {"parameter": row.parameter, "items": row.items, "value": row.value,
+         "elasticity": _known(row.per_relative_change / jump), "elasticity_half_step": _known(row.half_step / jump),
+         "jump_change_per_unit": _known(row.per_unit), "verdict": row.verdict}
         for row in found
     ]
+
+
+def _known(value: Optional[float]) -> Optional[float]:
+    return None if value is None or math.isnan(value) else value
 
 
 def _cell(value: Any) -> str:
@@ -157,7 +165,7 @@ frictionless truss give the jump back to {abs(shares.reproduced / shares.jump - 
         text += "\n## Reflecting surface against its best fit\n\n" + _table(tables["surface"])
     text += "\n## Joints, by heat of friction\n\n" + _table(joints, MOST_ROWS, "joint_jumps.csv")
     if "sensitivities" in tables:
-        ranked = sorted(tables["sensitivities"], key=lambda row: -abs(row["elasticity"]))
+        ranked = sorted(tables["sensitivities"], key=lambda row: -abs(row["elasticity"] or 0.0))
         text += """
 ## Sensitivity of the jump
 
@@ -168,9 +176,19 @@ together; central differences, the second of half the step.
     return text
 
 
-def run(case: TrussCase, folder: Path, output_name: str, *, each: bool, step: float, skip_sensitivity: bool,
+def _sample_times(case: TrussCase) -> np.ndarray:
+    """Times [s] of the path in the result file."""
+    cycles = case.thermal.cycles
+    samples = max(1, min(case.samples_per_cycle, MOST_SAMPLES // cycles))
+    return np.linspace(0, case.period_s * cycles, samples * cycles + 1)
+
+
+def run(case: TrussCase, text: str, folder: Path, output_name: str, *, each: bool, step: float, skip_sensitivity: bool,
         frames: int, console: Any) -> list[Path]:
-    """Compute and write all answers; return the files."""
+    """Compute and write all answers; return the files.
+
+    :param text: the case file as given
+    """
     from . import answers_plot
 
     truss = case.resolve()
@@ -181,7 +199,9 @@ def run(case: TrussCase, folder: Path, output_name: str, *, each: bool, step: fl
     finer = answers.quick_path(truss, 2 * case.reduced.increments_per_branch, cycle_ends_only=True)
     checked = answers.verdict(found, answers.resolution_m(found, finer))
     jump, largest = output.jump(found), float(np.linalg.norm(answers.node_jumps(found)[-1], axis=1).max())
-    tables: dict[str, list[Row]] = {"node_jumps": node_rows(found), "joint_jumps": joint_rows(found)}
+    tables: dict[str, list[Row]] = {
+        "cycles": cycle_rows(checked), "node_jumps": node_rows(found), "joint_jumps": joint_rows(found),
+    }
     notes: list[str] = []
     surface = reflector.surface(truss)
     if surface is not None:
@@ -212,19 +232,20 @@ def run(case: TrussCase, folder: Path, output_name: str, *, each: bool, step: fl
             if any(row.verdict == "not differentiable" for row in rows):
                 notes.append("the jump has a kink here in some parameters, its slopes on both sides differ: see the "
                              "verdicts of the sensitivities")
-    written = []
-    for name, rows in tables.items():
-        written.append(folder / f"{name}.csv")
-        _write_csv(written[-1], rows)
+    numbers = {"jump": Scalar(jump, output.unit), "energy_residue_J": Scalar(found.energy_residue_J, "J")}
+    if shares is not None:
+        numbers["sum_of_contributions"] = Scalar(float(shares.contribution.sum()), output.unit)
+        numbers["sum_error_relative"] = Scalar(shares.sum_error)
+        numbers["jump_from_friction_forces"] = Scalar(shares.reproduced, output.unit)
+    record = Record("truss answers", case, text, folder, {"reduced": kind_truss.reduced_run(case, found, _sample_times(case))})
+    record.answers = Answers(output.name, output.text, output.unit, checked.word, checked.text, notes, numbers, tables)
+    written = [record.save(), *(folder / f"{name}.csv" for name in tables)]
     summary = {
         "case": case.name, "cycles": len(checked.cycle_jump_m), "output": output.name, "output_text": output.text,
-        "unit": output.unit, "jump": jump, "verdict": checked.word, "verdict_text": checked.text,
+        "unit": output.unit, "verdict": checked.word, "verdict_text": checked.text,
         "largest_jump_of_cycle_m": checked.cycle_jump_m.tolist(), "dissipation_of_cycle_J": checked.dissipation_J.tolist(),
-        "energy_residue_J": found.energy_residue_J, "notes": notes,
-        **({} if shares is None else {"sum_of_contributions": float(shares.contribution.sum()),
-                                      "sum_error_relative": shares.sum_error,
-                                      "jump_from_friction_forces": shares.reproduced}),
-        **{name: rows for name, rows in tables.items() if name not in ("node_jumps", "joint_jumps")},
+        "notes": notes, **{name: scalar.value for name, scalar in numbers.items()},
+        **{name: rows for name, rows in tables.items() if name not in ("cycles", "node_jumps", "joint_jumps")},
     }
     with write_atomically(folder / "answers.json") as stream:
         stream.write(json.dumps(summary, indent=1, ensure_ascii=False) + "\n")
@@ -270,7 +291,7 @@ def answers_command(
       statejump truss answers cases/trusses/mast_6.toml --cycles 5 --output node:R6 --each
     """
     console = make_console(quiet)
-    case = load_kind(case_file, TrussCase)
+    case, text = load_kind(case_file, TrussCase), case_text(case_file)
     if cycles is not None:
         if not 1 <= cycles <= 100_000:
             raise StatejumpError(f"--cycles = {cycles} is not allowed: must be between 1 and 100000")
@@ -283,7 +304,7 @@ def answers_command(
         raise StatejumpError(f"--frames = {frames} is not allowed: must be at least 0")
     folder = results_folder(results, case.name)
     try:
-        written = run(case, folder, output_name, each=each, step=step, skip_sensitivity=skip_sensitivity, frames=frames,
+        written = run(case, text, folder, output_name, each=each, step=step, skip_sensitivity=skip_sensitivity, frames=frames,
                       console=console)
     except KeyboardInterrupt:
         raise Interrupted("interrupted; nothing was written") from None
