@@ -85,10 +85,19 @@ GROUPS: dict[str, tuple[Mistake, ...]] = {
         Mistake("value out of the key's range", "campaigns/table1_friction", "start = 0", "start = -1", "sweep"),
     ),
 }
+# What only the run finds; command 'dem'.
+RUNS: tuple[Mistake, ...] = (
+    Mistake("too few steps", "umbrella_damped", "steps_per_cycle = 400000", "steps_per_cycle = 2000", "dem"),
+    Mistake("law of a contact beyond its range", "umbrella_damped", 'radial_clearance_m = 1e-4\nnormal_law = "hertz_internal"',
+            'radial_clearance_m = 1e-9\nnormal_law = "johnson"', "dem"),
+    Mistake("stop that holds the slider above its floor", "table1", "[joint]",
+            "[joint]\nslot_thermal_expansion_per_K = -1.5e-4", "dem"),
+)
 HEAD = """# Mistakes and what is said about them
 
 Every message is one sentence on standard error: file, key, value and what is allowed; a misspelt name gets
-the nearest known one. Nothing is run and nothing is written. This page is made by running each mistake:
+the nearest known one. Nothing is run and nothing is written. A run that cannot go on names joint, time,
+temperature and, where it is known, what helps; its samples are dropped. This page is made by running each mistake:
 `PYTHONPATH=build/python /usr/bin/python3 docs/make_mistakes.py`.
 
 | exit status | meaning |
@@ -96,7 +105,8 @@ the nearest known one. Nothing is run and nothing is written. This page is made 
 | 0 | done |
 | 1 | done, and a tolerance of the case file is missed |
 | 2 | bad input, or a run that could not be finished |
-| 130 | interrupted; the message says what was kept |
+| 130 | interrupted by Ctrl-C; the message says what was kept |
+| 143 | ended by SIGTERM: nothing half-written is left, nothing is said |
 
 With `--json` before the command (`statejump --json compare CASE`) a failure is one line of JSON on standard
 error instead; standard output stays as it is. Fields, present where known: `kind` (`usage`, `bad_input`,
@@ -134,6 +144,22 @@ def _code(text: str) -> str:
     return f"`{_cell(text)}`" if text else ""
 
 
+def _rows(group: str, mistakes: tuple[Mistake, ...]) -> list[str]:
+    """Make the mistakes of a group in the working folder and return its section."""
+    lines = [f"## {group}\n\n| mistake | command | in | instead of | message |\n|---|---|---|---|---|"]
+    for mistake in mistakes:
+        name = Path(mistake.case).name + ".toml"
+        Path(name).write_text(edited(mistake), encoding="utf-8")
+        status, message = said([*mistake.command.split(), name])
+        if status != 2:
+            raise ValueError(f"{mistake.what}: exit status {status}, {message!r}")
+        lines.append(
+            f"| {mistake.what} | {_code(mistake.command)} | {_code(mistake.new.strip()) or 'nothing'} | "
+            f"{_code(mistake.old.strip())} | {_cell(message)} |"
+        )
+    return [*lines, ""]
+
+
 def table() -> str:
     """Return the page: every mistake made, run, and its message."""
     here = Path.cwd()
@@ -142,18 +168,8 @@ def table() -> str:
         os.chdir(folder)
         try:
             for group, mistakes in GROUPS.items():
-                lines.append(f"## {group}\n\n| mistake | command | in | instead of | message |\n|---|---|---|---|---|")
-                for mistake in mistakes:
-                    name = Path(mistake.case).name + ".toml"
-                    Path(name).write_text(edited(mistake), encoding="utf-8")
-                    status, message = said([*mistake.command.split(), name])
-                    if status != 2:
-                        raise ValueError(f"{mistake.what}: exit status {status}, {message!r}")
-                    lines.append(
-                        f"| {mistake.what} | {_code(mistake.command)} | {_code(mistake.new.strip()) or 'nothing'} | "
-                        f"{_code(mistake.old.strip())} | {_cell(message)} |"
-                    )
-                lines.append("")
+                lines += _rows(group, mistakes)
+            lines += _rows("Runs in YADE", RUNS)
             lines += _as_json()
         finally:
             os.chdir(here)
@@ -161,7 +177,7 @@ def table() -> str:
 
 
 def _as_json() -> list[str]:
-    """Failures as JSON: a value, a mechanism."""
+    """Failures as JSON: a value, a mechanism, a run in YADE."""
     from statejump.case import load_case
     from statejump.errors import StatejumpError, to_json
     from statejump.truss.solve import solve
@@ -181,6 +197,12 @@ def _as_json() -> list[str]:
             "The solver names nodes or joint, and temperature and time if it failed on the way. Here a support of "
             f"`umbrella_rib.toml` is taken away:\n\n```\n{to_json(failure.fields())}\n```\n"
         )
+    Path("umbrella_damped.toml").write_text(edited(RUNS[1]), encoding="utf-8")
+    _, message = said(["--json", "dem", "umbrella_damped.toml"])
+    shown.append(
+        "A run in YADE names joint or contact as result files do; the temperature is that of the case's (first) "
+        f"program:\n\n```\nstatejump --json dem umbrella_damped.toml\n{message}\n```\n"
+    )
     return shown
 
 

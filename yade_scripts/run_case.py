@@ -3,7 +3,8 @@
     STATEJUMP_CASE_JSON=case.json STATEJUMP_OUTPUT=history.csv yade -n -x yade_scripts/run_case.py
 
 The resolved case comes as JSON. Samples go to ``<output>.partial`` as they are taken; at the end
-the file is renamed. Lines on standard output: ``PROGRESS <fraction>`` and ``ERROR <sentence>``.
+the file is renamed. Lines on standard output: ``PROGRESS <fraction>``; of a failure ``DETAILS <JSON>``, the
+fields of ``statejump.errors`` that are known, and ``ERROR <sentence>``.
 """
 import csv
 import json
@@ -15,6 +16,11 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
 import statejump_yade as sj
+from failures import described
+
+
+class CaseFailure(Exception):
+    """A failure in the case's names: a sentence and its fields."""
 
 
 def run(case, output):
@@ -35,9 +41,15 @@ def run(case, output):
         )
         built = kind.build(case, [recorder])
         reported = [-1.0]
+        refused = []  # what YADE hands on of an error in Python is a traceback
 
         def record():
-            writer.writerow([repr(value) for value in kind.sample(case, built)])
+            try:
+                row = kind.sample(case, built)
+            except Exception as error:
+                refused.append(error)
+                raise
+            writer.writerow([repr(value) for value in row])
             fraction = O.iter / steps
             if fraction - reported[0] >= 0.01:
                 reported[0] = fraction
@@ -46,10 +58,17 @@ def run(case, output):
 
         globals()["record"] = record
         started, started_cpu = time.perf_counter(), time.process_time()
-        O.run(steps + 1, True)  # the recorder sees the end of the program one step later
-        elapsed, elapsed_cpu = time.perf_counter() - started, time.process_time() - started_cpu
-        if O.iter != steps + 1:  # an error in the first steps can end the run without a word
-            raise RuntimeError(f"YADE stopped after {O.iter} of {steps + 1} steps")
+        try:
+            O.run(steps + 1, True)  # the recorder sees the end of the program one step later
+            elapsed, elapsed_cpu = time.perf_counter() - started, time.process_time() - started_cpu
+            if O.iter != steps + 1:  # an error in the first steps can end the run without a word
+                O.step()  # which here says it
+                raise RuntimeError(f"YADE stopped after {O.iter} of {steps + 1} steps")
+        except Exception as error:
+            raise CaseFailure(*described(
+                refused[0] if refused else error, kind.names(case, built), O.time, built.program.temperatureChange,
+                sj.stable_time_step, lambda stable: kind.step_remedy(case, stable),
+            )) from error
     os.replace(partial, output)
     summary = {
         "steps": O.iter,
@@ -70,6 +89,10 @@ try:
         json.loads(Path(os.environ["STATEJUMP_CASE_JSON"]).read_text()),
         Path(os.environ["STATEJUMP_OUTPUT"]),
     )
+except CaseFailure as failure:
+    sentence, fields = failure.args
+    print(f"\nDETAILS {json.dumps(fields)}\nERROR {sentence}", flush=True)  # YADE may have left a line open
+    os._exit(2)
 except Exception as error:  # one sentence for the caller, whatever went wrong
     print(f"ERROR {' '.join(str(error).split())}", flush=True)
     os._exit(2)

@@ -6,6 +6,7 @@ from math import atan, sqrt
 from typing import Any
 
 import statejump_yade as sj
+from failures import Names, SceneFailure, pair, rounded_down
 from scene import O, fixed_point, joint_engines, thermal_program
 from yade import wrapper
 
@@ -128,10 +129,7 @@ def sample(case: dict[str, Any], built: SpringSliderScene) -> tuple:
                 contacts[face] = contact.phys
     floor = contacts.get(built.floor)
     if floor is None:
-        raise RuntimeError(
-            f"the slider has left the floor of its slot at {O.time:.6g} s, temperature change "
-            f"{built.link.temperatureChange:.6g} K: the contact is lost"
-        )
+        raise SceneFailure("the slider has left the floor of its slot: the contact is lost", "floor")
     stops = [contacts[face] for face in (built.stop_minus, built.stop_plus) if face in contacts]
     energy = {name: O.energy[name] for name in O.energy.keys()}
     bar, preload = built.link, built.preload_link
@@ -159,6 +157,22 @@ def sample(case: dict[str, Any], built: SpringSliderScene) -> tuple:
         int(bool(stops)),
         floor.normalForce.norm(),
     )
+
+
+def names(case: dict[str, Any], built: SpringSliderScene) -> Names:
+    """Return what the case calls contacts and links; contacts as in result files."""
+    found = Names()
+    for contact in ("floor", "stop_minus", "stop_plus"):
+        found.joints[pair(built.slider, getattr(built, contact))] = (contact, contact)
+    found.add_link(built.link, "the bar")
+    if built.preload_link is not None:
+        found.add_link(built.preload_link, "the preload spring")
+    return found
+
+
+def step_remedy(case: dict[str, Any], stable_s: float) -> str:
+    """Return which key of the case file gives a step of at most ``stable_s``."""
+    return f"set dem.time_step_s to {rounded_down(stable_s):g} or less, stable in this state"
 
 
 def summary(case: dict[str, Any], built: SpringSliderScene) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from math import atan, atan2, cos, pi, sin
 from typing import Any
 
 import statejump_yade as sj
+from failures import Names, SceneFailure, pair, rounded_down
 from scene import O, fixed_point, joint_engines
 from yade import wrapper
 from yade.minieigenHP import Matrix3, Quaternion, Vector3
@@ -36,6 +37,7 @@ class TrussScene:
     start: list[Vector3] = field(default_factory=list)
     cables: list[int] = field(default_factory=list)
     pairs: set[tuple[int, int]] = field(default_factory=set)  # bodies that may touch
+    torsion_springs: list[sj.TorsionSpring] = field(default_factory=list)
 
 
 def columns(case: dict[str, Any]) -> list[str]:
@@ -194,6 +196,8 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
         ))
         if spring["cable"]:
             scene.cables.append(place)
+    for spring in _rows(case["torsion_spring"]):
+        scene.torsion_springs.append(_torsion_spring(spring, nodes, links, ids, common))
     expansions = [
         sj.ThermalExpansionEngine(program=programs.of(*key), ids=sorted({ids[node] for node in parts}))
         for key, parts in parts_of.items()
@@ -202,7 +206,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
     O.engines = joint_engines(
         scene.links + carriers + scene.springs, None, sj.Law2_JointGeom_JointPhys_HertzMindlin(),
         dem["contact_damping_ratio"], verletDist=0.1 * min(radii, default=1.0), recorders=recorders,
-        springs=tuple(_torsion_spring(spring, nodes, links, ids, common) for spring in _rows(case["torsion_spring"])),
+        springs=tuple(scene.torsion_springs),
         expansions=expansions,
         guides={
             ids[place]: node["guide_normal"] for place, node in enumerate(nodes)
@@ -266,7 +270,7 @@ def _slider(slider: dict[str, Any], body: int, faces: tuple[int, list[int]], ori
     axis = Vector3(slider["axis"])
     floor = _contact(body, faces[0])
     if floor is None:
-        raise RuntimeError(f"slider {slider['names']!r} has left its floor at {O.time:.6g} s: the contact is lost")
+        raise SceneFailure(f"slider {slider['names']!r} has left its floor: the contact is lost", slider["names"])
     # Forces of a contact act on the face: along the axis they are against the slider's.
     force = floor.phys.shearForce.dot(axis)
     at_stop = False
@@ -300,7 +304,7 @@ def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
         return sum(energy.get(name, 0.0) for name in names)
 
     if O.interactions.countReal() > sum(_contact(*pair) is not None for pair in built.pairs):
-        raise RuntimeError(f"parts of different joints touch at {O.time:.6g} s, the model has no such contact")
+        raise SceneFailure(f"{_strangers(case, built)} touch and are of different joints: the model has no such contact")
     states = [O.bodies[body].state for body in built.nodes]
     kinetic = sum(
         0.5 * states[node].mass * _velocity_now(built.nodes[node]).squaredNorm() for node in built.free
@@ -319,9 +323,9 @@ def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
     tensions = [-spring.axialForce for spring in built.springs]
     for place in built.cables:
         if tensions[place] < 0:
-            raise RuntimeError(
-                f"cable {case['spring']['names'][place]!r} has gone slack at {O.time:.6g} s, the DEM has no "
-                "element that only pulls"
+            raise SceneFailure(
+                f"cable {case['spring']['names'][place]!r} has gone slack, the DEM has no element that only pulls",
+                remedy="'statejump reduced' can run the case",
             )
     row += tensions
     sliders = [
@@ -337,6 +341,47 @@ def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
         row += list(offset)
     row += [values[k] for k in range(1, 4) for values in joints]
     return row
+
+
+def _bodies(case: dict[str, Any], built: TrussScene) -> dict[int, str]:
+    """Return the words for all bodies that may touch."""
+    found = {body: f"node {name!r}" for body, name in zip(built.nodes, case["node"]["names"])}
+    for slider, (floor, stops) in zip(_rows(case["slider"]), built.faces):
+        found[floor] = f"the floor of slider {slider['names']!r}"
+        sides = [side for side in ("minus", "plus") if slider[f"clearance_{side}_m"] is not None]
+        for side, stop in zip(sides, stops):
+            found[stop] = f"stop_{side} of slider {slider['names']!r}"
+    return found
+
+
+def _strangers(case: dict[str, Any], built: TrussScene) -> str:
+    """Return the words for two bodies that touch and may not."""
+    words, allowed = _bodies(case, built), {pair(*bodies) for bodies in built.pairs}
+    found = ((contact.id1, contact.id2) for contact in O.interactions if contact.isReal)
+    return next(f"{words[one]} and {words[other]}" for one, other in found if pair(one, other) not in allowed)
+
+
+def names(case: dict[str, Any], built: TrussScene) -> Names:
+    """Return what the case calls joints, links and springs."""
+    words, found = _bodies(case, built), Names()
+    for slider, (floor, stops) in zip(_rows(case["slider"]), built.faces):
+        for face in (floor, *stops):
+            found.joints[pair(built.nodes[slider["nodes"][0]], face)] = (slider["names"], words[face])
+    for joint in _rows(case["revolute"]):
+        bodies = pair(built.nodes[joint["journal_node"]], built.nodes[joint["bearing_node"]])
+        found.joints[bodies] = (joint["names"], f"revolute {joint['names']!r}")
+    for section, made in (("link", built.links), ("spring", built.springs)):
+        for name, link in zip(case[section]["names"], made):
+            found.add_link(link, f"{section} {name!r}")
+    for name, spring in zip(case["torsion_spring"]["names"], built.torsion_springs):
+        found.add_torsion_spring(spring, f"torsion_spring {name!r}")
+    return found
+
+
+def step_remedy(case: dict[str, Any], stable_s: float) -> str:
+    """Return which key of the case file gives a step of at most ``stable_s``."""
+    fraction = case["dem"]["time_step_fraction"] * stable_s / case["dem"]["time_step_s"]
+    return f"set dem.time_step_fraction to {rounded_down(fraction):g} or less, stable in this state"
 
 
 def summary(case: dict[str, Any], built: TrussScene) -> dict[str, Any]:

@@ -2,10 +2,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan, atan2, hypot
+from math import atan, atan2, ceil, hypot
 from typing import Any
 
 import statejump_yade as sj
+from failures import Names, pair
 from scene import O, fixed_point, joint_engines, thermal_program
 from yade import wrapper
 from yade.minieigenHP import Vector3
@@ -31,6 +32,7 @@ class UmbrellaScene:
     link_ab: sj.ThermalLink
     link_bc: sj.ThermalLink
     law: sj.Law2_JointGeom_JointPhys_JointLaw
+    springs: tuple[sj.TorsionSpring, ...]
 
 
 def joint_law(joint: dict[str, Any]) -> sj.Law2_JointGeom_JointPhys_JointLaw:
@@ -121,7 +123,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> UmbrellaScen
     )
     O.trackEnergy = True
     O.dt = case["dem"]["time_step_s"]
-    return UmbrellaScene(program, bearing, journal, *links, law)
+    return UmbrellaScene(program, bearing, journal, *links, law, tuple(springs))
 
 
 def velocity_now(body: int):
@@ -166,6 +168,23 @@ def sample(case: dict[str, Any], built: UmbrellaScene) -> tuple:
         energy.get("jointFriction", 0.0), energy.get("jointDamping", 0.0),
         energy.get("linkThermalWork", 0.0) + energy.get("jointThermalWork", 0.0),
     )
+
+
+def names(case: dict[str, Any], built: UmbrellaScene) -> Names:
+    """Return what the case calls joint, links and spring; the joint as in result files."""
+    found = Names({pair(built.bearing, built.journal): ("joint_b", "joint_b")})
+    found.add_link(built.link_ab, "link_ab")
+    found.add_link(built.link_bc, "link_bc")
+    for spring in built.springs:
+        found.add_torsion_spring(spring, "torsion_spring")
+    return found
+
+
+def step_remedy(case: dict[str, Any], stable_s: float) -> str:
+    """Return which key of the case file gives a step of at most ``stable_s``."""
+    samples = case["output"]["samples_per_cycle"]
+    steps = ceil(case["period_s"] / stable_s / samples) * samples
+    return f"set dem.steps_per_cycle to {steps} or more, stable in this state"
 
 
 def summary(case: dict[str, Any], built: UmbrellaScene) -> dict[str, Any]:

@@ -1,20 +1,43 @@
 #include "contact_parts.hpp"
 
+#include <set>
 #include <sstream>
 
 #include "failure.hpp"
 #include "statejump/kernel/contact_law.hpp"
+#include "thermal.hpp"
 
 namespace statejump::dem {
 
 using yade::Real;
 
-std::string where(const yade::Scene& scene, int id1, int id2, const std::string& more) {
+std::string when(const yade::Scene& scene) {
   std::ostringstream text;
   text.precision(9);
-  text << " (contact of bodies " << id1 << " and " << id2 << ", time " << scene.time << " s" << more
-       << ")";
+  text << "time " << scene.time << " s";
+  std::set<Real> changes;
+  for (const auto& engine : scene.engines) {
+    if (const auto* heater = dynamic_cast<const ThermalExpansionEngine*>(engine.get())) {
+      changes.insert(heater->temperatureChange);
+    } else if (const auto* group = dynamic_cast<const ThermalLinks*>(engine.get())) {
+      for (const auto& link : group->links) {
+        if (link && link->program && link->thermalExpansion != 0) {
+          changes.insert(link->program->temperature_change(scene.time));
+        }
+      }
+    }
+  }
+  const char* before = changes.size() > 1 ? ", temperature changes " : ", temperature change ";
+  for (const Real change : changes) {
+    text << before << change << " K";
+    before = ", ";
+  }
   return text.str();
+}
+
+std::string where(const yade::Scene& scene, int id1, int id2) {
+  return " (contact of bodies " + std::to_string(id1) + " and " + std::to_string(id2) + ", " +
+         when(scene) + ")";
 }
 
 void fail_closed(const char* inner, Real inner_radius, const char* outer, Real outer_radius,

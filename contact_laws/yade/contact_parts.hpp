@@ -1,6 +1,8 @@
 // What the geometry and law functors of all joints share.
 #pragma once
 
+#include <string>
+
 #include "statejump/kernel/joint_kinematics.hpp"
 #include "yade_api.hpp"
 
@@ -23,7 +25,10 @@ inline yade::Vector3r axis_of(const yade::Quaternionr& q) {
 [[gnu::cold]] void fail_tilted(const yade::Scene& scene, const yade::Interaction& contact);
 [[gnu::cold]] void fail_unstable(yade::Real effective_mass, yade::Real stiffness,
                                  const yade::Scene& scene, const yade::Interaction& contact);
-// The end of such a sentence: which bodies and when.
-std::string where(const yade::Scene& scene, int id1, int id2, const std::string& more = "");
+// "time 0.5 s, temperature change 40 K": every change that a thermal engine imposes, none if there
+// is no such engine.
+std::string when(const yade::Scene& scene);
+// The end of a sentence on a contact: which bodies and when.
+std::string where(const yade::Scene& scene, int id1, int id2);
 
 }  // namespace statejump::dem

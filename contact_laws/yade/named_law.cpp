@@ -1,12 +1,10 @@
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "contact_parts.hpp"
 #include "failure.hpp"
 #include "joint.hpp"
 #include "ranges.hpp"
-#include "thermal.hpp"
 
 namespace statejump::dem {
 namespace {
@@ -27,21 +25,9 @@ Law law_by_name(Law (*find)(const std::string&), const char* class_name, const c
   }
 }
 
-// Temperature changes that the engines of the scene impose, for messages.
-std::string temperatures(const yade::Scene& scene) {
-  std::ostringstream text;
-  text.precision(9);
-  for (const auto& engine : scene.engines) {
-    if (const auto* heater = dynamic_cast<const ThermalExpansionEngine*>(engine.get())) {
-      text << ", temperature change " << heater->temperatureChange << " K";
-    }
-  }
-  return text.str();
-}
-
 [[gnu::cold, gnu::noinline]] void fail_law(const std::string& sentence, const yade::Scene& scene,
                                            const yade::Interaction& contact) {
-  record_failure(sentence + where(scene, contact.id1, contact.id2, temperatures(scene)));
+  record_failure(sentence + where(scene, contact.id1, contact.id2));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "blocked_motion.hpp"
 #include "bore.hpp"
+#include "contact_parts.hpp"
 #include "failure.hpp"
 #include "joint.hpp"
 #include "ranges.hpp"
@@ -37,8 +38,17 @@ Real damping_coefficient(const ThermalLink& link, const yade::State& root, const
   std::ostringstream text;
   text.precision(6);
   text << "the time step " << scene.dt << " s is above the stable one of the link between bodies "
-       << link.id1 << " and " << link.id2 << ", " << stable << " s";
+       << link.id1 << " and " << link.id2 << ", " << stable << " s (" << when(scene) << ")";
   throw std::runtime_error(text.str());
+}
+
+// Coinciding ends, or positions that are no numbers any more.
+[[gnu::cold, gnu::noinline]] void fail_length(const yade::Scene& scene, const ThermalLink& link,
+                                              Real length) {
+  throw std::runtime_error(
+      (length == 0 ? "the two ends coincide of " : "the positions have no finite distance of ") +
+      ("the link between bodies " + std::to_string(link.id1)) + " and " + std::to_string(link.id2) +
+      " (" + when(scene) + ")");
 }
 
 }  // namespace
@@ -55,7 +65,7 @@ LinkEnds ends_of(const yade::Scene& scene, const ThermalLink& link) {
                 *body_of(scene, link.id2, "ThermalLink.id2").state, Vector3r::Zero(), 0};
   ends.direction = ends.tip.se3.position - ends.root.se3.position;
   ends.length = ends.direction.norm();
-  if (!(ends.length > 0)) throw std::runtime_error("ThermalLink: the two ends coincide");
+  if (!(ends.length > 0 && std::isfinite(ends.length))) fail_length(scene, link, ends.length);
   ends.direction /= ends.length;
   return ends;
 }

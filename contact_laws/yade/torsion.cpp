@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "blocked_motion.hpp"
+#include "contact_parts.hpp"
 #include "failure.hpp"
 #include "ranges.hpp"
 #include "statejump/kernel/contact_law.hpp"
@@ -17,7 +18,8 @@ constexpr Real pi = 3.14159265358979323846;
 // plane is far below it, and what it neglects is the square of it.
 constexpr Real largest_tilt = 1e-6;
 
-void require_planar(const ThermalLink& link, const Vector3r& direction, const Vector3r& axis) {
+void require_planar(const yade::Scene& scene, const ThermalLink& link, const Vector3r& direction,
+                    const Vector3r& axis) {
   const Real tilt = direction.dot(axis);
   if (std::abs(tilt) <= largest_tilt) return;
   std::ostringstream text;
@@ -26,7 +28,7 @@ void require_planar(const ThermalLink& link, const Vector3r& direction, const Ve
        << (axis == Vector3r::UnitZ() ? " leaves the x-y plane, z component of its direction "
                                      : " leaves the plane across the axis, component of its "
                                        "direction along it ")
-       << tilt << ", allowed is at most " << largest_tilt;
+       << tilt << ", allowed is at most " << largest_tilt << " (" << when(scene) << ")";
   throw std::invalid_argument(text.str());
 }
 
@@ -58,8 +60,8 @@ void TorsionSprings::act(TorsionSpring& spring) {
   if (!spring.link2) throw std::invalid_argument("TorsionSpring.link2 is missing");
   const LinkEnds first = ends_of(*scene, *spring.link1);
   const LinkEnds second = ends_of(*scene, *spring.link2);
-  require_planar(*spring.link1, first.direction, spring.axis);
-  require_planar(*spring.link2, second.direction, spring.axis);
+  require_planar(*scene, *spring.link1, first.direction, spring.axis);
+  require_planar(*scene, *spring.link2, second.direction, spring.axis);
 
   const Vector3r turn = first.direction.cross(second.direction);
   spring.angle = std::atan2(turn.dot(spring.axis), first.direction.dot(second.direction));
@@ -74,7 +76,7 @@ void TorsionSprings::act(TorsionSpring& spring) {
       text.precision(6);
       text << "the time step " << scene->dt << " s is above the stable one of the torsion spring "
            << "between the links of bodies " << spring.link1->id2 << " and " << spring.link2->id2
-           << ", " << stable << " s";
+           << ", " << stable << " s (" << when(*scene) << ")";
       throw std::runtime_error(text.str());
     }
   }

@@ -55,6 +55,32 @@ def test_every_mistake_has_its_fields(mistake: Any, tmp_path: Path, monkeypatch:
         assert failure["remedy"] == plain[plain.index("did you mean"):]
 
 
+@pytest.mark.parametrize(
+    "mistake, joint, remedy", zip(MAKER.RUNS, (None, "joint_b", "floor"), ("dem.steps_per_cycle", "", "")),
+    ids=lambda found: getattr(found, "what", ""),
+)
+def test_run_in_yade_that_cannot_go_on(
+    mistake: Any, joint: str | None, remedy: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name = Path(mistake.case).name + ".toml"
+    Path(name).write_text(MAKER.edited(mistake), encoding="utf-8")
+    status, line = MAKER.said(["--json", "dem", name])
+    failure = json.loads(line)
+    assert (status, failure["kind"], failure["exit_status"]) == (2, "failed_run", 2)
+    assert [field for field in errors.FIELDS if field in failure] == list(failure)
+    assert failure.get("joint") == joint and "bodies" not in failure["message"]
+    assert failure["cause"] in failure["message"] and failure["time_s"] >= 0
+    # The sentence says the same as the fields.
+    said = errors.read_sentence(failure["message"])
+    assert [said[key] for key in ("time_s", "temperature_change_K")] == [
+        failure[key] for key in ("time_s", "temperature_change_K")]
+    assert said.get("remedy") == failure.get("remedy")
+    assert remedy in failure["remedy"] if remedy else "remedy" not in failure
+    assert f"| {mistake.what} |" in MAKER.PAGE.read_text(encoding="utf-8")
+    assert not [*tmp_path.glob("results/*/*.h5"), *tmp_path.glob("results/*/*.partial")]
+
+
 SENTENCES = {
     "a.toml: link 'AB': young_modulus_Pa = -1.0 is not allowed: must be above 0":
         {"file": "a.toml", "item": "link 'AB'", "key": "young_modulus_Pa", "value": -1.0, "cause": "must be above 0"},
@@ -77,12 +103,14 @@ def test_what_a_sentence_says(sentence: str) -> None:
 
 
 def test_failed_run_of_the_dem(statejump, cases: Path, fake_yade) -> None:
-    yade = fake_yade("echo 'ERROR the clearance is closed (contact of bodies 0 and 1, time 0.5 s)'\nexit 2\n")
+    yade = fake_yade("echo 'DETAILS {\"joint\": \"floor\", \"cause\": \"the clearance is closed\"}'\n"
+                     "echo 'ERROR the clearance is closed (floor, time 0.5 s)'\nexit 2\n")
     outcome = statejump("--json", "dem", cases / "table1.toml", STATEJUMP_YADE=yade)
     failure = json.loads(outcome.errors)
     assert outcome.status == failure["exit_status"] == 2
-    assert (failure["kind"], failure["time_s"]) == ("failed_run", 0.5)
-    assert failure["cause"].startswith("the DEM run failed: the clearance is closed")
+    assert (failure["kind"], failure["joint"], failure["time_s"]) == ("failed_run", "floor", 0.5)
+    assert failure["cause"] == "the clearance is closed"
+    assert failure["message"] == "case table1: the DEM run failed: the clearance is closed (floor, time 0.5 s)"
 
 
 def test_missing_yade_says_what_to_do(statejump, cases: Path) -> None:

@@ -71,6 +71,7 @@ def test_stable_up_to_the_limit_and_refused_beyond(seen):
     assert inside["largest"] < 1e-6 / (1 - 0.95**2) ** 0.5 * 1.01
     assert beyond["error"][0] == "RuntimeError"
     assert "stable one of the torsion spring between the links of bodies 2 and 3" in beyond["error"][1]
+    assert beyond["error"][1].endswith(" s (time 0 s, temperature change 0 K)")
     # One end of four moves: the promise is the limit itself, less the soft axial spring.
     assert 0.99 * inside["true"] < inside["promised"] <= inside["true"]
 

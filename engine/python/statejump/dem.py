@@ -122,13 +122,13 @@ def execute(
             OMP_NUM_THREADS=str(threads),
         )
         try:
-            problem = _watch(command, environment, progress)
+            problem, details = _watch(command, environment, progress)
         except KeyboardInterrupt:
             raise Interrupted(_keep_partial(output, keep)) from None
         except OSError as error:
             raise FailedRun(f"YADE cannot be started: {command[0]}: {error.strerror}") from None
         if problem:
-            raise FailedRun(f"case {name}: {problem}", cause=problem)
+            raise FailedRun(f"case {name}: {problem}", **({"cause": problem} | details))
         try:
             history = History.read_csv(output)
             summary = json.loads(output.with_name(output.name + ".json").read_text(encoding="utf-8"))
@@ -137,9 +137,11 @@ def execute(
     return DemRun(history, summary)
 
 
-def _watch(command: list[str], environment: dict[str, str], progress: Callable[[float], None]) -> str:
-    """Run the command, pass progress on, return what went wrong or an empty string."""
-    sentence, finished, last = "", False, ""
+def _watch(
+    command: list[str], environment: dict[str, str], progress: Callable[[float], None]
+) -> tuple[str, dict[str, Any]]:
+    """Run the command, pass progress on, return what went wrong or an empty string, and its fields if it says them."""
+    sentence, details, finished, last = "", {}, False, ""
     with subprocess.Popen(
         command,
         env=environment,
@@ -157,6 +159,8 @@ def _watch(command: list[str], environment: dict[str, str], progress: Callable[[
                     fraction = float(rest)
                     finished = fraction >= 1
                     progress(fraction)
+                elif word == "DETAILS":
+                    details = json.loads(rest)
                 elif word == "ERROR":
                     sentence = rest
                 elif line.strip():
@@ -165,13 +169,13 @@ def _watch(command: list[str], environment: dict[str, str], progress: Callable[[
             os.killpg(process.pid, signal.SIGKILL)  # YADE and whatever it has started
             raise
     if sentence:
-        return f"the DEM run failed: {sentence}"
+        return f"the DEM run failed: {sentence}", details
     if process.returncode < 0:
-        return f"the DEM run was killed by signal {-process.returncode}; nothing was written"
+        return f"the DEM run was killed by signal {-process.returncode}; nothing was written", {}
     if process.returncode != 0 or not finished:
         detail = f": {last}" if last else ""
-        return f"YADE ended with status {process.returncode} before the run was finished{detail}"
-    return ""
+        return f"YADE ended with status {process.returncode} before the run was finished{detail}", {}
+    return "", {}
 
 
 def _keep_partial(output: Path, keep: Keep | None) -> str:

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Failures of runs in YADE name the joint of the case: every kind of case, every sort of part.
+
+What a case file cannot bring about is brought about in the values that go to YADE.
+"""
+from __future__ import annotations
+
+import copy
+import re
+import sys
+from pathlib import Path
+from typing import Any, Callable
+
+import pytest
+
+from conftest import REPOSITORY
+from statejump import dem
+from statejump.case import load_case
+from statejump.errors import FailedRun
+from statejump.truss import dem as truss_dem
+from statejump.truss.solve import solve
+from statejump.umbrella import dem as umbrella_dem
+
+sys.path.insert(0, str(REPOSITORY / "yade_scripts"))
+import failures  # noqa: E402 - needs no YADE
+
+Values = dict[str, Any]
+
+
+def resolved(name: str) -> Values:
+    case = load_case(REPOSITORY / "cases" / f"{name}.toml")
+    if case.case.kind == "truss":
+        return truss_dem.resolved(case, solve(case))
+    return (umbrella_dem if case.case.kind == "umbrella" else dem).resolved(case)
+
+
+@pytest.fixture(scope="module")
+def values() -> Callable[[str], Values]:
+    """Return what goes to YADE; every case is resolved once."""
+    known: dict[str, Values] = {}
+
+    def of(name: str) -> Values:
+        if name not in known:
+            known[name] = resolved(name)
+        return copy.deepcopy(known[name])
+
+    return of
+
+
+def coarse(found: Values) -> None:
+    """One step per sample: far above every stable step."""
+    times = found["dem"]["number_of_steps"] / found["number_of_samples"]
+    found["dem"]["number_of_steps"] = found["number_of_samples"]
+    found["dem"]["time_step_s"] *= times
+    found["dem"]["time_step_fraction"] = times * found["dem"].get("time_step_fraction", 0.1)
+
+
+def stiff_spring(found: Values) -> None:
+    found["spring"]["stiffness_N_per_m"][-1] *= 1e9
+
+
+def stiff_torsion_spring(found: Values) -> None:
+    found["torsion_spring"]["stiffness_N_m_per_rad"][0] *= 1e9
+
+
+def slack_cable(found: Values) -> None:
+    found["spring"]["cable"][-1] = True
+    found["spring"]["free_length_m"][-1] *= 1.5
+
+
+def above_the_floor(found: Values) -> None:
+    found["slider"]["depth_m"][3] = -1e-6
+
+
+def floors_everywhere(found: Values) -> None:
+    """All pads in one contact group, on floors that reach under their neighbours."""
+    count = len(found["slider"]["names"])
+    found["slider"].update(group=[0] * count, reach_m=[2.0] * count, pad_radius_m=[0.7] * count)
+
+
+SET_STEP = r"set dem\.(time_step_s|steps_per_cycle|time_step_fraction) to (\S+) or (less|more), stable in this state"
+# What is changed, the joint, words of the sentence, the remedy.
+FAILURES: dict[str, tuple[str, Callable[[Values], None], str | None, str, str]] = {
+    "floor": ("table1", coarse, "floor", "(floor, time", SET_STEP),
+    "link": ("umbrella_damped", coarse, None, "stable one of link_ab, ", SET_STEP),
+    "slider": ("trusses/chain_10", coarse, "S1", "(the floor of slider 'S1', time", SET_STEP),
+    "revolute": ("trusses/umbrella_rib", coarse, "joint", "(revolute 'joint', time", SET_STEP),
+    "spring": ("trusses/ring_12", stiff_spring, None, "stable one of spring 'spoke11', ", SET_STEP),
+    "torsion spring": ("trusses/umbrella_rib", stiff_torsion_spring, None, "stable one of torsion_spring 'spring', ",
+                       SET_STEP),
+    "cable": ("trusses/ring_12", slack_cable, None, "cable 'spoke11' has gone slack", "'statejump reduced' .*"),
+    "lost": ("trusses/chain_10", above_the_floor, "S4", "slider 'S4' has left its floor", ""),
+    "strangers": ("trusses/chain_10", floors_everywhere, "S1", "node 'N2' and the floor of slider 'S1' touch", ""),
+}
+
+
+@pytest.mark.parametrize("name", FAILURES)
+def test_failure_names_what_the_case_names(name: str, values: Callable[[str], Values]) -> None:
+    case, change, joint, words, remedy = FAILURES[name]
+    found = values(case)
+    change(found)
+    with pytest.raises(FailedRun) as caught:
+        dem.execute(found, lambda fraction: None)
+    failure = caught.value.fields()
+    message = failure["message"]
+    assert message.startswith(f"case {found['case']['name']}: the DEM run failed: ") and words in message
+    assert not re.search(r"\bbod(y|ies)\b", message)
+    assert failure.get("joint") == joint
+    # All of them fail at once, where every program begins.
+    assert (failure["time_s"], failure["temperature_change_K"]) == (0, 0)
+    assert "(" not in failure["cause"] and f": {failure['cause']} (" in message
+    assert re.fullmatch(remedy, failure.get("remedy", ""))
+    if remedy == SET_STEP:
+        key, number, _ = re.fullmatch(remedy, failure["remedy"]).groups()
+        step = {
+            "time_step_s": float(number),
+            "steps_per_cycle": found.get("period_s", 0) / float(number),
+            "time_step_fraction": float(number) / found["dem"].get("time_step_fraction", 1) * found["dem"]["time_step_s"],
+        }[key]
+        # Stable for the part that failed; the whole scene may need less.
+        assert step <= float(re.search(r", (\S+) s$", failure["cause"])[1])
+
+
+def test_remedy_of_a_step_helps(values: Callable[[str], Values]) -> None:
+    found = values("umbrella_damped")
+    coarse(found)
+    with pytest.raises(FailedRun) as caught:
+        dem.execute(found, lambda fraction: None)
+    steps = int(re.fullmatch(SET_STEP, caught.value.fields()["remedy"])[2])
+    found["dem"].update(number_of_steps=steps, time_step_s=found["period_s"] / steps)
+    assert len(dem.execute(found, lambda fraction: None).history["time_s"]) == found["number_of_samples"] + 1
+
+
+def described(sentence: str, **more: Any) -> tuple[str, dict[str, Any]]:
+    names = failures.Names({failures.pair(4, 7): ("J", "revolute 'J'")}, {failures.pair(1, 2): "link 'AB'"})
+    return failures.described(
+        more.get("error", RuntimeError(sentence)), names, 2.0, lambda time_s: 10 * time_s,
+        lambda: more.get("stable_s", 1e-5), lambda stable_s: f"set dem.time_step_s to {stable_s:g}",
+    )
+
+
+def test_sentence_keeps_its_own_time() -> None:
+    # The contact fails in one step, the engine that says it may act in the next.
+    for bodies in "7 and 4", "4 and 7":
+        assert described(f"too deep (contact of bodies {bodies}, time 1.5 s, temperature changes 3 K, 4 K)") == (
+            "too deep (revolute 'J', time 1.5 s, temperature change 15 K)",
+            {"time_s": 1.5, "temperature_change_K": 15.0, "joint": "J", "cause": "too deep"},
+        )
+
+
+def test_sentence_without_time_gets_that_of_the_scene() -> None:
+    sentence, fields = described("the link between bodies 2 and 1 leaves the x-y plane")
+    assert sentence == "link 'AB' leaves the x-y plane (time 2 s, temperature change 20 K)"
+    assert fields == {"time_s": 2.0, "temperature_change_K": 20.0, "cause": "link 'AB' leaves the x-y plane"}
+
+
+def test_unknown_bodies_keep_their_numbers() -> None:
+    sentence, fields = described("too deep (contact of bodies 1 and 4, time 1 s)")
+    assert sentence == "too deep (bodies 1 and 4, time 1 s, temperature change 10 K)" and "joint" not in fields
+
+
+@pytest.mark.parametrize("stable_s, wanted", [(1e-5, 1e-5), (5e-5, 2e-5), (float("nan"), 2e-5), (0.0, 2e-5)])
+def test_remedy_is_the_smaller_step(stable_s: float, wanted: float) -> None:
+    sentence = "the time step 0.001 s is above the stable one, 2e-05 s (contact of bodies 4 and 7, time 1 s)"
+    assert described(sentence, stable_s=stable_s)[1]["remedy"] == f"set dem.time_step_s to {wanted:g}"
+
+
+@pytest.mark.parametrize("value, wanted", [(2.199e-5, 2.1e-5), (0.0022, 0.0022), (9.99e-6, 9.9e-6), (1.0, 1.0)])
+def test_rounded_down(value: float, wanted: float) -> None:
+    assert failures.rounded_down(value) == wanted
