@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ``statejump`` command. Exit status: 0 done, 1 a tolerance is missed, 2 bad input or a failed
-run, 130 interrupted. With ``--json`` before the command a failure is one line of JSON on standard error."""
+"""The ``statejump`` command. With ``--json`` before the command a failure is one line of JSON on standard error.
+Exit statuses: docs/mistakes.md."""
 from __future__ import annotations
 
 import signal
