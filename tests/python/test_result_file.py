@@ -29,10 +29,10 @@ from statejump.resultfile.contents import AT_STOP, SEPARATED, SLIP, STICK, Mesh,
 from statejump.resultfile.difference import case_differences, difference
 from statejump.resultfile.events import from_states
 from statejump.resultfile.export_csv import write_histories
-from statejump.resultfile.export_vtk import frames_of
 from statejump.resultfile.export_vtk import write_all as write_vtk
 from statejump.resultfile.paraview_script import NAME, write_script
 from statejump.resultfile.record import Record
+from statejump.resultfile.vtk_data import frames_of
 
 # Short runs of every kind: what is compared is the file, not the models.
 SHORT = {

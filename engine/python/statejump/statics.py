@@ -16,7 +16,7 @@ from rich.table import Table
 from . import _engine
 from .case_statics import LoadCase, StaticsCase
 from .errors import FailedRun, StatejumpError
-from .output import replacing, results_folder, write_atomically
+from .output import results_folder, write_atomically
 from .terminal import CASE, QUIET, RESULTS, load_kind, make_console, number
 
 SPHERE_LEVEL = 4  # 5120 triangles
@@ -194,40 +194,21 @@ def write_vtp(statics: Statics, folder: Path, name: str) -> Path:
     array: ``cone_angle_rad``, the smallest angle(-F, N) over the forces.
     """
     try:
-        from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIntArray, vtkPoints
-        from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-        from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+        from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+        from .resultfile.vtk_data import add_array, cells, points, write
     except ImportError as failure:
         raise StatejumpError(f"{name}.vtp: VTK for Python is needed (python3-vtk9): {failure}") from None
-    angles = cone_angles(statics)
-    points, polygons, angle = vtkPoints(), vtkCellArray(), vtkDoubleArray()
-    points.SetDataTypeToDouble()
-    angle.SetName("cone_angle_rad")
-    stable, forces = vtkIntArray(), vtkIntArray()
-    stable.SetName("stable")
-    forces.SetName("forces")
-    at = 0
-    for polygon, count in zip(statics.pieces["polygons_m"], statics.pieces["polygon_forces"]):
-        polygons.InsertNextCell(len(polygon))
-        for point in polygon:
-            polygons.InsertCellPoint(points.InsertNextPoint(*point))
-            angle.InsertNextValue(float(angles[at]))
-            at += 1
-        stable.InsertNextValue(int(count > 0))
-        forces.InsertNextValue(int(count))
+    polygons, count = statics.pieces["polygons_m"], np.array(statics.pieces["polygon_forces"], dtype=np.int32)
+    corners = np.concatenate(polygons)
     data = vtkPolyData()
-    data.SetPoints(points)
-    data.SetPolys(polygons)
-    data.GetPointData().AddArray(angle)
-    data.GetCellData().AddArray(stable)
-    data.GetCellData().AddArray(forces)
+    data.SetPoints(points(corners))
+    data.SetPolys(cells([len(polygon) for polygon in polygons], np.arange(len(corners))))
+    add_array(data.GetPointData(), "cone_angle_rad", cone_angles(statics))
+    add_array(data.GetCellData(), "stable", (count > 0).astype(np.int32))
+    add_array(data.GetCellData(), "forces", count)
     target = folder / f"{name}.vtp"
-    with replacing(target) as aside:
-        writer = vtkXMLPolyDataWriter()
-        writer.SetFileName(str(aside))
-        writer.SetInputData(data)
-        if not writer.Write():
-            raise StatejumpError(f"{target}: cannot be written")
+    write(data, target)
     return target
 
 

@@ -8,60 +8,19 @@
 """
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
-from vtkmodules.vtkCommonDataModel import (
-    VTK_LINE, vtkCellArray, vtkDataObject, vtkFieldData, vtkPolyData, vtkUnstructuredGrid,
-)
-from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter, vtkXMLWriter
+from vtkmodules.vtkCommonDataModel import VTK_LINE, vtkDataObject, vtkPolyData, vtkUnstructuredGrid
 
-from ..errors import StatejumpError
-from ..output import replacing, write_atomically
 from .contents import ModelRun, Result
 from .outline import outlines, placed
 from .scene import PART_TYPES, growth, resolve, resolve_point
+from .vtk_data import add_array, cells, file_time, frames_of, points, write, write_series
 
 TYPE_NUMBERS = {name: number for number, name in enumerate(PART_TYPES, start=1)}
-
-
-def frames_of(samples: int, wanted: int) -> np.ndarray:
-    """Return the samples to write: all (0) or ``wanted`` evenly spread ones with first and last."""
-    if wanted == 0 or wanted >= samples:
-        return np.arange(samples)
-    return np.unique(np.round(np.linspace(0, samples - 1, max(wanted, 2))).astype(int))
-
-
-def _points(values: np.ndarray) -> vtkPoints:
-    points = vtkPoints()
-    points.SetDataTypeToDouble()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(values, dtype=float).reshape(-1, 3), deep=True))
-    return points
-
-
-def _cells(lengths: list[int], connectivity: np.ndarray) -> vtkCellArray:
-    cells = vtkCellArray()
-    offsets = np.concatenate(([0], np.cumsum(lengths, dtype=np.int64))).astype(np.int64)
-    cells.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True),
-                  numpy_to_vtkIdTypeArray(np.ascontiguousarray(connectivity, dtype=np.int64), deep=True))
-    return cells
-
-
-def _add(field: vtkFieldData, name: str, values: Any) -> None:
-    """Add an array; texts as texts."""
-    if isinstance(values, list):
-        array = vtkStringArray()
-        for text in values:
-            array.InsertNextValue(text)
-    else:
-        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
-    array.SetName(name)
-    field.AddArray(array)
 
 
 class _Lines:
@@ -90,12 +49,12 @@ class _Lines:
     def at(self, frame: int) -> vtkDataObject:
         data = vtkUnstructuredGrid()
         ends = [end[frame] for pair in self.ends for end in pair]
-        data.SetPoints(_points(np.array(ends)))
-        data.SetCells(VTK_LINE, _cells([2] * len(self.parts), np.arange(2 * len(self.parts))))
-        _add(data.GetCellData(), "part", [part["name"] for part in self.parts])
-        _add(data.GetCellData(), "type", np.array([TYPE_NUMBERS[part["type"]] for part in self.parts], dtype=np.int32))
+        data.SetPoints(points(np.array(ends)))
+        data.SetCells(VTK_LINE, cells([2] * len(self.parts), np.arange(2 * len(self.parts))))
+        add_array(data.GetCellData(), "part", [part["name"] for part in self.parts])
+        add_array(data.GetCellData(), "type", np.array([TYPE_NUMBERS[part["type"]] for part in self.parts], dtype=np.int32))
         for name, values in self.arrays.items():
-            _add(data.GetCellData(), name, values[frame])
+            add_array(data.GetCellData(), name, values[frame])
         return data
 
 
@@ -128,8 +87,8 @@ class _Parts:
         names, samples = result.names, len(run.time_s)
         change = resolve(part.get("temperature_change_K", result.scene["temperature_change_K"]), run, names)
         if part["type"] == "frame":
-            points = np.array([resolve_point(point, run, names)[0] for point in part["points"]])
-            return _Shape(part, [points], None, np.zeros((samples, 3)), np.zeros(samples), np.ones(samples), change)
+            outline = np.array([resolve_point(point, run, names)[0] for point in part["points"]])
+            return _Shape(part, [outline], None, np.zeros((samples, 3)), np.zeros(samples), np.ones(samples), change)
         triangles = None
         if part["type"] == "mesh":
             mesh = result.meshes[part["mesh"]]
@@ -140,7 +99,7 @@ class _Parts:
         )
 
     def at(self, frame: int) -> vtkDataObject:
-        points: list[np.ndarray] = []
+        all_points: list[np.ndarray] = []
         lines: list[np.ndarray] = []
         triangles: list[np.ndarray] = []
         drawn: list[_Shape] = []  # one per cell: lines before triangles, as VTK counts them
@@ -149,27 +108,27 @@ class _Parts:
         for shape in self.shapes:
             place = (shape.centre[frame], float(shape.angle_rad[frame]), float(shape.growth[frame]))
             for line in shape.lines:
-                points.append(placed(line, *place))
+                all_points.append(placed(line, *place))
                 lines.append(np.arange(count, count + len(line)))
                 drawn.append(shape)
                 count += len(line)
             if shape.triangles is not None:
                 vertices, corners = shape.triangles
-                points.append(placed(vertices, *place))
+                all_points.append(placed(vertices, *place))
                 triangles.append(corners + count)
                 faces += [shape] * len(corners)
                 count += len(vertices)
         data = vtkPolyData()
-        data.SetPoints(_points(np.concatenate(points) if points else np.zeros((0, 3))))
-        data.SetLines(_cells([len(line) for line in lines], np.concatenate(lines) if lines else np.zeros(0)))
+        data.SetPoints(points(np.concatenate(all_points) if all_points else np.zeros((0, 3))))
+        data.SetLines(cells([len(line) for line in lines], np.concatenate(lines) if lines else np.zeros(0)))
         if triangles:
             corners = np.concatenate(triangles)
-            data.SetPolys(_cells([3] * len(corners), corners.ravel()))
-        cells = drawn + faces
-        _add(data.GetCellData(), "part", [shape.part["name"] for shape in cells])
-        _add(data.GetCellData(), "type", np.array([TYPE_NUMBERS[shape.part["type"]] for shape in cells], dtype=np.int32))
-        _add(data.GetCellData(), "temperature_change_K", np.array([shape.change_K[frame] for shape in cells], dtype=float))
-        _add(data.GetCellData(), "thermal_strain", np.array([shape.growth[frame] - 1 for shape in cells], dtype=float))
+            data.SetPolys(cells([3] * len(corners), corners.ravel()))
+        shapes = drawn + faces
+        add_array(data.GetCellData(), "part", [shape.part["name"] for shape in shapes])
+        add_array(data.GetCellData(), "type", np.array([TYPE_NUMBERS[shape.part["type"]] for shape in shapes], dtype=np.int32))
+        add_array(data.GetCellData(), "temperature_change_K", np.array([shape.change_K[frame] for shape in shapes], dtype=float))
+        add_array(data.GetCellData(), "thermal_strain", np.array([shape.growth[frame] - 1 for shape in shapes], dtype=float))
         return data
 
 
@@ -185,11 +144,11 @@ class _Vertices:
 
     def at(self, frame: int) -> vtkDataObject:
         data = vtkPolyData()
-        data.SetPoints(_points(self.points[frame]))
-        data.SetVerts(_cells([1] * len(self.names), np.arange(len(self.names))))
-        _add(data.GetPointData(), "name", self.names)
+        data.SetPoints(points(self.points[frame]))
+        data.SetVerts(cells([1] * len(self.names), np.arange(len(self.names))))
+        add_array(data.GetPointData(), "name", self.names)
         for name, values in self.arrays.items():
-            _add(data.GetPointData(), name, values[frame])
+            add_array(data.GetPointData(), name, values[frame])
         return data
 
 
@@ -219,16 +178,6 @@ def _forces(result: Result, run: ModelRun) -> _Vertices | None:
     )
 
 
-def _write(data: vtkDataObject, time_s: float, path: Path) -> None:
-    _add(data.GetFieldData(), "time_s", np.array([time_s]))
-    writer: vtkXMLWriter = vtkXMLUnstructuredGridWriter() if path.suffix == ".vtu" else vtkXMLPolyDataWriter()
-    with replacing(path) as aside:
-        writer.SetFileName(str(aside))
-        writer.SetInputData(data)
-        if not writer.Write():
-            raise StatejumpError(f"{path}: cannot be written")
-
-
 def sorts(result: Result, model: str) -> dict[str, Any]:
     """Return what is drawn of a model: name of the sort and what makes its frames."""
     run = result.models[model]
@@ -244,25 +193,23 @@ def write_all(
 ) -> list[Path]:
     """Write the files of all models and return the paths of the series.
 
-    :param wanted_frames: how many samples to write, see :func:`frames_of`
+    :param wanted_frames: how many samples to write, see :func:`.vtk_data.frames_of`
     """
     written: list[Path] = []
     for place, (model, run) in enumerate(result.models.items()):
         sources = sorts(result, model)
         frames = frames_of(len(run.time_s), wanted_frames)
         digits = len(str(len(frames) - 1))
-        entries: dict[str, list[dict[str, Any]]] = {name: [] for name in sources}
+        entries: dict[str, list[tuple[str, float]]] = {name: [] for name in sources}
         for number, frame in enumerate(frames):
-            # Two models count the same time up in other steps: what rounding left is not another instant.
-            time_s = float(f"{run.time_s[frame]:.9g}")
+            time_s = file_time(run.time_s[frame])
             for name, source in sources.items():
                 path = folder / f"{model}_{name}.{number:0{digits}d}{source.suffix}"
-                _write(source.at(int(frame)), time_s, path)
-                entries[name].append({"name": path.name, "time": time_s})
+                write(source.at(int(frame)), path, time_s)
+                entries[name].append((path.name, time_s))
             progress((place + (number + 1) / len(frames)) / len(result.models))
         for name, source in sources.items():
             path = folder / f"{model}_{name}{source.suffix}.series"
-            with write_atomically(path) as stream:
-                stream.write(json.dumps({"file-series-version": "1.0", "files": entries[name]}, indent=1) + "\n")
+            write_series(path, entries[name])
             written.append(path)
     return written

@@ -2,7 +2,6 @@
 """VTK files of a truss' path: lines of links and springs and points of joints, a series with true times."""
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any, Callable
 
@@ -10,8 +9,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_VERTEX, vtkUnstructuredGrid
 
-from ..output import write_atomically
-from ..resultfile.export_vtk import _add, _cells, _points, _write, frames_of
+from ..resultfile.vtk_data import add_array, cells, file_time, frames_of, points, write, write_series
 from .resolved import ResolvedTruss
 from .solve import TrussPath, engine_program
 
@@ -40,7 +38,7 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
         truss.links, truss.springs, truss.sliders, truss.revolutes))
     lines = np.concatenate((truss.links.nodes, truss.springs.nodes)).ravel()
     places = np.concatenate((truss.sliders.nodes[:, 0], truss.revolutes.bearing_node))
-    cells = _cells([2] * (links + springs) + [1] * (sliders + revolutes), np.concatenate((lines, places)))
+    drawn = cells([2] * (links + springs) + [1] * (sliders + revolutes), np.concatenate((lines, places)))
     kinds = np.repeat([LINK, SPRING, SLIDER, REVOLUTE], [links, springs, sliders, revolutes]).astype(np.int32)
     names = [*truss.links.names, *truss.springs.names, *truss.sliders.names, *truss.revolutes.names]
     types = np.where(kinds < SLIDER, VTK_LINE, VTK_VERTEX).astype(np.uint8)
@@ -53,11 +51,11 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
     entries = []
     for number, frame in enumerate(frames):
         data = vtkUnstructuredGrid()
-        data.SetPoints(_points(truss.nodes.position_m))
-        data.SetCells(numpy_to_vtk(types, deep=True), cells)
-        _add(data.GetPointData(), "name", list(truss.nodes.names))
-        _add(data.GetPointData(), "displacement_m", states["displacement_m"][frame])
-        _add(data.GetPointData(), "since_start_m", states["displacement_m"][frame] - states["displacement_m"][0])
+        data.SetPoints(points(truss.nodes.position_m))
+        data.SetCells(numpy_to_vtk(types, deep=True), drawn)
+        add_array(data.GetPointData(), "name", list(truss.nodes.names))
+        add_array(data.GetPointData(), "displacement_m", states["displacement_m"][frame])
+        add_array(data.GetPointData(), "since_start_m", states["displacement_m"][frame] - states["displacement_m"][0])
         at = {key: values[frame] for key, values in states.items()}
         eccentricity = np.linalg.norm(at["eccentricity_m"], axis=1)
         for name_of, values in {
@@ -69,17 +67,16 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
             "friction_force_N": column(None, None, at["slider_force_N"], at["friction_force_N"]),
             "dissipation_J": column(None, None, at["slider_dissipation_J"], at["revolute_dissipation_J"]),
         }.items():
-            _add(data.GetCellData(), name_of, values)
+            add_array(data.GetCellData(), name_of, values)
         status = np.concatenate((np.full(links + springs, 255), at["slider_status"], at["revolute_status"]))
-        _add(data.GetCellData(), "status", status.astype(np.uint8))
-        _add(data.GetCellData(), "kind", kinds)
-        _add(data.GetCellData(), "name", names)
+        add_array(data.GetCellData(), "status", status.astype(np.uint8))
+        add_array(data.GetCellData(), "kind", kinds)
+        add_array(data.GetCellData(), "name", names)
         path = folder / f"{name}.{number:0{len(str(len(frames) - 1))}d}.vtu"
-        time_s = float(f"{at['time_s']:.9g}")
-        _write(data, time_s, path)
-        entries.append({"name": path.name, "time": time_s})
+        time_s = file_time(at["time_s"])
+        write(data, path, time_s)
+        entries.append((path.name, time_s))
         progress((number + 1) / len(frames))
     index = folder / f"{name}.vtu.series"
-    with write_atomically(index) as stream:
-        stream.write(json.dumps({"file-series-version": "1.0", "files": entries}, indent=1) + "\n")
+    write_series(index, entries)
     return index
