@@ -218,7 +218,7 @@ MISTAKES = {
     "nothing left between the limits": (
         ('"uniform"\nlow = 0.5e-3', '"truncated_normal"\nstandard_deviation = 1e-6\nlow = 1.4e-3'),
         "vary[2].mean = 0.001 is not allowed: practically nothing of the normal distribution is left"),
-    "not TOML": (("[campaign]", "[campaign"), "not TOML: "),
+    "not TOML": (("[campaign]", "[campaign"), "not TOML, line 1: "),
 }
 
 

@@ -8,8 +8,6 @@ and the range.
 from __future__ import annotations
 
 import difflib
-import re
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +25,7 @@ from .case_statics import StaticsCase
 from .case_truss import TrussCase
 from .case_umbrella import UmbrellaCase
 from .errors import StatejumpError
+from .toml_file import read_toml
 
 __all__ = [
     "Case", "SpringSliderCase", "StaticsCase", "TrussCase", "UmbrellaCase", "check_radii", "load_case", "parse_case",
@@ -70,19 +69,4 @@ def parse_case(data: dict[str, Any], name: str) -> Case:
 
 def load_case(path: str | Path) -> Case:
     """Return the validated case of a TOML file."""
-    try:
-        text = Path(path).read_bytes().decode("utf-8")
-    except FileNotFoundError:
-        raise StatejumpError(f"{path}: no such case file") from None
-    except UnicodeDecodeError:
-        raise StatejumpError(f"{path}: not TOML: the file is not UTF-8 text") from None
-    except OSError as failure:
-        raise StatejumpError(f"{path}: cannot be read: {failure.strerror}") from None
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as failure:
-        match = re.fullmatch(r"(.*) \(at (?:line (\d+), column \d+|end of document)\)", str(failure))
-        reason = match[1] if match else str(failure)
-        line = match[2] if match and match[2] else str(len(text.splitlines()))
-        raise StatejumpError(f"{path}: not TOML, line {line}: {reason}") from None
-    return parse_case(data, str(path))
+    return parse_case(read_toml(path, "case")[1], str(path))

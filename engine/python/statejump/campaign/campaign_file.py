@@ -6,7 +6,6 @@ import difflib
 import hashlib
 import json
 import math
-import tomllib
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Optional, Sequence, Union
@@ -23,6 +22,7 @@ from ..case_schema import (
 )
 from ..case_tables import is_tables, numbers
 from ..errors import StatejumpError
+from ..toml_file import read_toml
 from .outcomes import KINDS, MODELS
 from .sampling import (
     DISTRIBUTIONS, Distribution, Independent, Values, changed_data, montecarlo_draws, montecarlo_values,
@@ -187,7 +187,7 @@ def load_campaign(path: Path, command: str) -> Campaign:
     :param command: ``montecarlo`` or ``sweep``
     :raises StatejumpError: one sentence with file, key, value and what is allowed
     """
-    text, data = _toml(path)
+    text, data = read_toml(path, "campaign")
     tables = data.pop("vary", None)
     file = _MonteCarloFile if command == MONTECARLO else _SweepFile
     for key in ("samples", "seed"):
@@ -234,23 +234,8 @@ def load_campaign(path: Path, command: str) -> Campaign:
         samples, seed = header.samples, header.seed
     return Campaign(
         command, path, text, header.name, header.title or header.name, header.model, case,
-        tomllib.loads(case_file.read_text(encoding="utf-8")), tuple(vary), samples, seed,
+        read_toml(case_file, "case")[1], tuple(vary), samples, seed,
     )
-
-
-def _toml(path: Path) -> tuple[str, dict[str, Any]]:
-    try:
-        text = path.read_bytes().decode("utf-8")
-    except FileNotFoundError:
-        raise StatejumpError(f"{path}: no such campaign file") from None
-    except UnicodeDecodeError:
-        raise StatejumpError(f"{path}: not TOML: the file is not UTF-8 text") from None
-    except OSError as failure:
-        raise StatejumpError(f"{path}: cannot be read: {failure.strerror}") from None
-    try:
-        return text, tomllib.loads(text)
-    except tomllib.TOMLDecodeError as failure:
-        raise StatejumpError(f"{path}: not TOML: {failure}") from None
 
 
 def _pattern(path: str) -> str:
