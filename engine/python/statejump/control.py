@@ -13,9 +13,9 @@ from rich.table import Table
 from . import control_ensemble, control_loaded, control_plot, control_spring_slider
 from .case import Case, SpringSliderCase, load_case
 from .control_study import Progress, Study, number, write
-from .errors import Interrupted, StatejumpError
+from .errors import StatejumpError
 from .output import results_folder
-from .terminal import CASE, QUIET, RESULTS, make_console, progress
+from .terminal import CASE, QUIET, RESULTS, make_console, undivided
 
 
 def is_loaded(case: Case) -> bool:
@@ -116,11 +116,8 @@ def control_command(
     console = make_console(quiet)
     case = load_case(case_file)
     folder = results_folder(results, case.name)
-    try:
-        with progress(console, "control") as tell:
-            done = study(case, jump_below, runs, with_dem, tell)
-    except (KeyboardInterrupt, Interrupted):
-        raise Interrupted("interrupted; nothing was written") from None
+    with undivided(console, "control") as tell:
+        done = study(case, jump_below, runs, with_dem, tell)
     written = write(case.name, done, folder) + control_plot.figure(case.title, done, folder)
     _print(case, done, console)
     console.print(f"results: {', '.join(str(path) for path in written)}")

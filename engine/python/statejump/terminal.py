@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from itertools import count
 from pathlib import Path
 from typing import Any, Callable, Iterator, Optional, Sequence, TypeVar
 
@@ -14,7 +15,7 @@ from rich.table import Table
 from . import _paths
 from .case import Case, load_case
 from .compare import Quantity
-from .errors import StatejumpError
+from .errors import Interrupted, StatejumpError
 
 
 
@@ -100,3 +101,19 @@ def progress(console: Console, label: str) -> Iterator[Callable[[float], None]]:
             console.print(f"{label}: {100 * fraction:.0f} %")
 
     yield line
+
+
+@contextmanager
+def undivided(console: Console, label: str) -> Iterator[Callable[[float], None]]:
+    """As :func:`progress`, of runs that are written together at the end: Ctrl-C says that nothing was."""
+    try:
+        with progress(console, label) as tell:
+            yield tell
+    except (KeyboardInterrupt, Interrupted):
+        raise Interrupted("interrupted; nothing was written") from None
+
+
+def counted(tell: Callable[[float], None], total: int) -> Callable[[], None]:
+    """Return what to call after each of so many runs; it tells the finished fraction."""
+    finished = count(1)
+    return lambda: tell(next(finished) / total)

@@ -12,11 +12,11 @@ import click
 import numpy as np
 
 from ..case_umbrella import UmbrellaCase
-from ..errors import Interrupted, StatejumpError
+from ..errors import StatejumpError
 from ..history import History
 from ..output import results_folder, write_atomically
 from ..plot import DEM, REDUCED, STYLE, plt, save
-from ..terminal import QUIET, RESULTS, load_kind, make_console, progress
+from ..terminal import QUIET, RESULTS, counted, load_kind, make_console, undivided
 from . import dem, model
 from .compare import energy_residual
 
@@ -209,12 +209,7 @@ def study(
     found: dict[str, list[Run]] = {}
     finest: dict[str, model.ReducedRun] = {}
     total = len(chosen) * (len(reduced_steps) + len(dem_steps) + len(ADAPTIVE_TOLERANCES))
-    done = [0]
-
-    def finished() -> None:
-        done[0] += 1
-        report(min(1.0, done[0] / total))
-
+    finished = counted(report, total)
     for variant in chosen:
         runs = found[variant.name] = []
         for rate in reduced_steps:
@@ -367,11 +362,8 @@ def energy_command(case_file: Path, results: Path, quiet: bool) -> None:
     case = load_kind(case_file, UmbrellaCase)
     chosen = variants(case)
     folder = results_folder(results, case.name)
-    try:
-        with progress(console, "runs") as report:
-            found = study(chosen, report)
-    except (KeyboardInterrupt, Interrupted):
-        raise Interrupted("interrupted; nothing was written") from None
+    with undivided(console, "runs") as tell:
+        found = study(chosen, tell)
     written = write(case, found, folder) + figure(case, found, folder)
     for result in found:
         fits = {(row.model, row.instant): row.fit for row in result.rows if row.fit is not None}

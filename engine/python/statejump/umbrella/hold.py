@@ -13,11 +13,11 @@ import numpy as np
 
 from .. import _engine
 from ..case_umbrella import UmbrellaCase
-from ..errors import FailedRun, Interrupted, StatejumpError
+from ..errors import FailedRun, StatejumpError
 from ..history import History
 from ..output import results_folder, write_atomically
 from ..plot import DEM, REDUCED, STYLE, plt, save
-from ..terminal import QUIET, RESULTS, load_kind, make_console, progress
+from ..terminal import QUIET, RESULTS, counted, load_kind, make_console, undivided
 from . import dem, model
 
 PERIOD_s = 10.0
@@ -297,21 +297,13 @@ def hold_command(case_file: Path, results: Path, quiet: bool) -> None:
         raise FailedRun(f"case {case.name}: the joint cannot be loaded: {error}") from None
     folder = results_folder(results, case.name)
     wanted = [(law, rate) for law in LAWS for rate in STEPS_PER_SECOND]
-    done = [0]
-    try:
-        with progress(console, "runs") as report:
-
-            def finished() -> None:
-                done[0] += 1
-                report(done[0] / (2 * len(wanted)))
-
-            runs = []
-            for law, rate in wanted:
-                runs.append(run_reduced(case, law, rate))
-                finished()
-            runs += run_dem(wanted, case, finished)
-    except (KeyboardInterrupt, Interrupted):
-        raise Interrupted("interrupted; nothing was written") from None
+    with undivided(console, "runs") as tell:
+        finished = counted(tell, 2 * len(wanted))
+        runs = []
+        for law, rate in wanted:
+            runs.append(run_reduced(case, law, rate))
+            finished()
+        runs += run_dem(wanted, case, finished)
     written = write(case, runs, creep, folder) + figure(case, runs, creep, folder)
     for run in _shown(runs):
         console.print(

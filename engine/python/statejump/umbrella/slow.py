@@ -13,11 +13,11 @@ import numpy as np
 
 from .. import _engine
 from ..case_umbrella import UmbrellaCase
-from ..errors import Interrupted, StatejumpError
+from ..errors import StatejumpError
 from ..history import History
 from ..output import results_folder, write_atomically
 from ..plot import DEM, REDUCED, STYLE, plt, save
-from ..terminal import QUIET, RESULTS, load_kind, make_console, progress
+from ..terminal import QUIET, RESULTS, counted, load_kind, make_console, undivided
 from . import dem, model
 
 STEPS_PER_SECOND = 100_000
@@ -308,12 +308,7 @@ def study(
     pairs = [(block, period) for block in chosen for period in block.dem_periods_s]
     pairs.sort(key=lambda pair: -pair[1])
     total = sum(len(block.dem_periods_s) for block in chosen) + len(chosen) * len(reduced_periods_s)
-    done = [0]
-
-    def finished() -> None:
-        done[0] += 1
-        report(done[0] / total)
-
+    finished = counted(report, total)
     rows: list[Row] = []
     for block in chosen:
         found = []
@@ -436,11 +431,8 @@ def slow_command(case_file: Path, results: Path, quiet: bool) -> None:
     case = load_kind(case_file, UmbrellaCase)
     chosen = blocks(case)
     folder = results_folder(results, case.name)
-    try:
-        with progress(console, "runs") as report:
-            rows = study(chosen, report)
-    except (KeyboardInterrupt, Interrupted):
-        raise Interrupted("interrupted; nothing was written") from None
+    with undivided(console, "runs") as tell:
+        rows = study(chosen, tell)
     written = write(case, chosen, rows, folder) + figure(case, chosen, rows, folder)
     for block in chosen:
         console.print(f"{block.title}: {_closing(block, rows)}")

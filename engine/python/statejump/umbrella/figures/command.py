@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from functools import partial
-from itertools import count
 from pathlib import Path
 from typing import Callable, Iterator
 
@@ -14,7 +13,7 @@ from rich.console import Console
 from ...case_umbrella import UmbrellaCase
 from ...errors import Interrupted, StatejumpError
 from ...output import results_folder
-from ...terminal import QUIET, RESULTS, load_kind, make_console, progress
+from ...terminal import QUIET, RESULTS, counted, load_kind, make_console, progress
 from .. import claims, dem, model
 from .drawing import figure_13, figure_of
 from .files import write_claims, write_curves, write_ensembles
@@ -68,8 +67,7 @@ def _part(console: Console, text: str, runs: int) -> Iterator[Callable[[], None]
         yield lambda: None
         return
     with progress(console, f"{text}, {runs} runs") as tell:
-        finished = count(1)
-        yield lambda: tell(next(finished) / runs)
+        yield counted(tell, runs)
 
 
 @click.command("figures")
