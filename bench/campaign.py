@@ -7,8 +7,6 @@ results/bench/campaign.md and campaign.csv.
 from __future__ import annotations
 
 import argparse
-import csv
-import io
 import os
 import sys
 import tempfile
@@ -17,7 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 from statistics import median
 
-from run import BUSY_LOAD, REPOSITORY, BenchError, write
+from run import BUSY_LOAD, REPOSITORY, BenchError, parse, publish
 from statejump.campaign import execute, work
 from statejump.campaign.campaign_file import MONTECARLO, Campaign, load_campaign
 from statejump.campaign.journal import Journal
@@ -116,12 +114,7 @@ PYTHONPATH=build/python /usr/bin/python3 bench/campaign.py [--repetitions N]
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--repetitions", type=int, default=5, help="of every run (default 5)")
-    parser.add_argument("--output", type=Path, default=REPOSITORY / "results" / "bench")
-    arguments = parser.parse_args()
-    if arguments.repetitions < 1:
-        raise BenchError(f"--repetitions {arguments.repetitions}: must be 1 or more")
+    arguments = parse(argparse.ArgumentParser(description=__doc__.splitlines()[0]), 5)
     campaign = replace(load_campaign(CAMPAIGN, MONTECARLO), samples=SAMPLES)
     rows = []
     for repetition in range(arguments.repetitions):
@@ -130,13 +123,7 @@ def main() -> None:
             rows.append(measured("campaign", repetition, campaign, workers))
         for workers in (1, 2):
             rows.append(measured("scaling", repetition, replace(campaign, samples=SCALED), workers))
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    write(arguments.output / "campaign.csv", stream.getvalue())
-    write(arguments.output / "campaign.md", report(rows, arguments.repetitions))
-    print(report(rows, arguments.repetitions))
+    publish(arguments.output, "campaign", COLUMNS, rows, report(rows, arguments.repetitions))
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ import subprocess
 import sys
 from pathlib import Path
 from statistics import median
-from typing import Any
+from typing import Any, Sequence
 
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parent
@@ -207,12 +207,36 @@ def reduced_table(build: Path) -> str:
     return "\n".join(lines)
 
 
-def as_csv(rows: list[dict[str, Any]]) -> str:
+def as_csv(rows: list[dict[str, Any]], columns: Sequence[str] = COLUMNS) -> str:
     stream = io.StringIO()
-    writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
+    writer = csv.DictWriter(stream, columns, lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
     return stream.getvalue()
+
+
+# The frame of the benchmarks beside this one: umbrella.py, campaign.py, truss_dem.py.
+
+
+def parse(parser: argparse.ArgumentParser, repetitions: int) -> argparse.Namespace:
+    """Return the options, --repetitions and --output among them."""
+    parser.add_argument(
+        "--repetitions", type=int, default=repetitions, help=f"of every run (default {repetitions})"
+    )
+    parser.add_argument("--output", type=Path, default=REPOSITORY / "results" / "bench")
+    arguments = parser.parse_args()
+    if arguments.repetitions < 1:
+        raise BenchError(f"--repetitions {arguments.repetitions}: must be 1 or more")
+    return arguments
+
+
+def publish(
+    folder: Path, name: str, columns: Sequence[str], rows: list[dict[str, Any]], report: str
+) -> None:
+    """Write every run to ``<name>.csv`` and the report to ``<name>.md``; print the report."""
+    write(folder / f"{name}.csv", as_csv(rows, columns))
+    write(folder / f"{name}.md", report)
+    print(report)
 
 
 def readme(

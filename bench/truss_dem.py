@@ -8,14 +8,11 @@ Chains of blocks with friction from 100 to 10 000 joints, one thread, with energ
 from __future__ import annotations
 
 import argparse
-import csv
-import io
 import sys
-from pathlib import Path
 from statistics import median
 from typing import Any
 
-from run import REPOSITORY, BenchError, write
+from run import BenchError, parse, publish
 from statejump.case import parse_case
 from statejump.dem import execute
 from statejump.errors import StatejumpError
@@ -95,20 +92,9 @@ PYTHONPATH=build/python /usr/bin/python3 bench/truss_dem.py [--repetitions N]
 
 def main() -> None:
     """Measure and write."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--repetitions", type=int, default=3, help="of every run (default 3)")
-    parser.add_argument("--output", type=Path, default=REPOSITORY / "results" / "bench")
-    arguments = parser.parse_args()
-    if arguments.repetitions < 1:
-        raise BenchError(f"--repetitions {arguments.repetitions}: must be 1 or more")
+    arguments = parse(argparse.ArgumentParser(description=__doc__.splitlines()[0]), 3)
     rows = measure(arguments.repetitions)
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    write(arguments.output / "truss_dem.csv", stream.getvalue())
-    write(arguments.output / "truss_dem.md", report(rows, arguments.repetitions))
-    print(report(rows, arguments.repetitions))
+    publish(arguments.output, "truss_dem", COLUMNS, rows, report(rows, arguments.repetitions))
 
 
 if __name__ == "__main__":

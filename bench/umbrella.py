@@ -6,15 +6,13 @@
 from __future__ import annotations
 
 import argparse
-import csv
-import io
 import json
 import subprocess
 import sys
 from pathlib import Path
 from statistics import median
 
-from run import REPOSITORY, TIMEOUT_S, BenchError, write
+from run import REPOSITORY, TIMEOUT_S, BenchError, parse, publish
 from statejump.case import load_case
 from statejump.errors import StatejumpError
 from statejump.umbrella import dem, model
@@ -115,22 +113,12 @@ PYTHONPATH=build/python /usr/bin/python3 bench/umbrella.py --build build [--repe
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, default=REPOSITORY / "build", help="build folder")
-    parser.add_argument("--repetitions", type=int, default=7, help="of every run (default 7)")
-    parser.add_argument("--output", type=Path, default=REPOSITORY / "results" / "bench")
-    arguments = parser.parse_args()
+    arguments = parse(parser, 7)
     if not (arguments.build / "bench" / "engine" / "engine_bench").exists():
         raise BenchError(f"--build {arguments.build}: no engine_bench; run 'make build'")
-    if arguments.repetitions < 1:
-        raise BenchError(f"--repetitions {arguments.repetitions}: must be 1 or more")
     rows = reduced_rows(arguments.build.resolve(), arguments.repetitions)
     rows += dem_rows(arguments.repetitions)
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    write(arguments.output / "umbrella.csv", stream.getvalue())
-    write(arguments.output / "umbrella.md", report(rows, arguments.repetitions))
-    print(report(rows, arguments.repetitions))
+    publish(arguments.output, "umbrella", COLUMNS, rows, report(rows, arguments.repetitions))
 
 
 if __name__ == "__main__":
