@@ -141,6 +141,95 @@ const CHECKS = {
     await close();
   },
 
+  // Drawing and ranking of a truss show the same joint, and each other's choice.
+  async truss(browser) {
+    const { page, complaints, close } = await open(browser, file);
+    const part = page.locator(".truss").first(), rows = part.locator(".ranks button"), dots = part.locator("g.joint[data-joint]");
+    await part.scrollIntoViewIfNeeded();
+    await dots.first().waitFor();
+    const chosen = () => part.locator("g.joint.chosen").evaluateAll((found) => found.map((one) => one.dataset.joint));
+    const pressed = () => part.locator(".ranks button[aria-pressed=true]").evaluateAll((found) => found.map((one) => one.dataset.joint));
+    const told = () => part.locator("p.told").textContent();
+    assert.ok((await rows.count()) >= 8 && (await rows.count()) <= 15);
+    assert.deepEqual([await chosen(), await pressed()], [[], []]);
+
+    await rows.nth(2).click();
+    const third = await rows.nth(2).getAttribute("data-joint");
+    assert.deepEqual([await chosen(), await pressed()], [[third], [third]], "a chosen row shows its joint");
+    const name = await rows.nth(2).locator(".rank-name").textContent();
+    assert.ok((await told()).startsWith(`${name}, `) && /rank 3 of \d+: contribution .* jump of the joint .* heat /.test(await told()), await told());
+    assert.ok(await part.locator("g.joint.chosen").getByText(name, { exact: true }).count(), "its name stands in the drawing");
+
+    const first = await rows.first().getAttribute("data-joint");
+    await part.locator(`g.joint[data-joint="${first}"] .hit`).dispatchEvent("click");
+    assert.deepEqual([await chosen(), await pressed()], [[first], [first]], "a chosen joint shows its row");
+    await rows.nth(3).hover();
+    assert.match(await told(), /rank 4 of/, "pointing tells the numbers");
+    assert.deepEqual(await chosen(), [first], "and chooses nothing");
+    await rows.first().click();
+    assert.deepEqual(await chosen(), [], "choosing again lets go");
+
+    // All of it by keys.
+    await part.locator(".truss-drawing").focus();
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("ArrowRight");
+    assert.deepEqual(await chosen(), [await rows.nth(1).getAttribute("data-joint")]);
+    await page.keyboard.press("Escape");
+    assert.deepEqual(await chosen(), []);
+    await rows.nth(4).focus();
+    assert.match(await told(), /rank 5 of/, "the focus tells the numbers");
+    await page.keyboard.press("Enter");
+    assert.deepEqual(await chosen(), [await rows.nth(4).getAttribute("data-joint")]);
+
+    // Jumps are drawn as large as the slider says: twice the magnification, arrows twice as long.
+    const moved = () => part.locator(".truss-drawing .moved").last().getAttribute("d");
+    const times = () => part.locator(".truss-drawing").evaluate((holder) => Number(holder.dataset.magnification));
+    const slider = part.getByLabel("Magnification of the jumps");
+    const before = await moved(), factor = await times();
+    await slider.press("ArrowRight");
+    assert.ok((await times()) >= 2 * factor && (await moved()) !== before, "the slider magnifies the jumps");
+    assert.match(await part.locator(".truss-figure").textContent(), new RegExp(`${String(await times()).replace(/\B(?=(\d{3})+$)/g, "\u202f")} times as large`));
+    await slider.press("Home");
+    assert.equal(await times(), 1);
+    const asBuilt = await part.locator(".truss-drawing .as-built").getAttribute("d");
+    const places = (path) => path.match(/-?[\d.]+/g).map(Number);
+    const links = places(await moved());
+    assert.deepEqual(places(asBuilt).slice(0, links.length), links, "jumps of micrometres cannot be seen as they are");
+    await part.locator(".truss-drawing").focus();
+    await page.keyboard.press("+");
+    assert.equal(await times(), 2);
+
+    const ranked = () => rows.evaluateAll((found) => found.map((one) => one.dataset.joint).join(" "));
+    const byContribution = await ranked();
+    await part.getByLabel("Joints ranked by").selectOption("heat");
+    assert.notEqual(await ranked(), byContribution);
+    assert.match(await part.textContent(), /not what holds the jump/);
+    assert.deepEqual(complaints, []);
+    await close();
+  },
+
+  async truss_in_space(browser) {
+    const { page, complaints, close } = await open(browser, file);
+    const part = page.locator(".truss").first();
+    await part.scrollIntoViewIfNeeded();
+    await part.locator("g.joint").first().waitFor();
+    const seen = new Set();
+    for (const view of ["oblique", "xy", "xz", "yz"]) {
+      await part.getByLabel("View").selectOption(view);
+      seen.add(await part.locator(".truss-drawing .moved").last().getAttribute("d"));
+    }
+    assert.equal(seen.size, 4, "every view is another one");
+    // Labels of the replay do not cover each other.
+    await drawn(page);
+    await picture(page);
+    const tags = await page.locator(".stage .tag").evaluateAll((found) => found.filter((one) => one.offsetWidth).map((one) => one.getBoundingClientRect()).map(({ left, right, top, bottom }) => ({ left, right, top, bottom })));
+    assert.ok(tags.length >= 3);
+    tags.forEach((one, i) => tags.slice(0, i).forEach((other) => assert.ok(
+      one.right <= other.left || other.right <= one.left || one.bottom <= other.top + 1 || other.bottom <= one.top + 1, "labels overlap")));
+    assert.deepEqual(complaints, []);
+    await close();
+  },
+
   async several(browser) {
     const { page, complaints, close } = await open(browser, file);
     await drawn(page);

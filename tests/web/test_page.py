@@ -10,6 +10,7 @@ import pytest
 
 HERE = Path(__file__).resolve().parent
 CASES = ("table1", "umbrella_damped")
+TRUSSES = {"ring_12": ("--cycles", "2"), "umbrella_8": ("--no-sensitivity",)}
 
 
 def _run(*command: object, folder: Path) -> None:
@@ -22,13 +23,17 @@ def _run(*command: object, folder: Path) -> None:
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder with a page of each case, and one of both."""
+    """Folder with a page of each case, one of the first two, and pages of answers about trusses."""
     folder = tmp_path_factory.mktemp("pages")
     statejump = os.environ["STATEJUMP_COMMAND"]
     for case in CASES:
         _run(statejump, "compare", HERE.parents[1] / "cases" / f"{case}.toml", "--quiet", folder=folder)
         _run(statejump, "report", f"results/{case}", "-o", f"{case}.html", folder=folder)
     _run(statejump, "report", "results", "-o", "several.html", folder=folder)
+    for case, more in TRUSSES.items():
+        _run(statejump, "truss", "answers", HERE.parents[1] / "cases" / "trusses" / f"{case}.toml", *more, "--quiet",
+             folder=folder)
+        _run(statejump, "report", f"results/{case}", "-o", f"{case}.html", folder=folder)
     return folder
 
 
@@ -38,6 +43,8 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("table1", ["replay", "keyboard", "themes", "narrow", "names"]),
         ("umbrella_damped", ["replay", "narrow"]),
         ("table1", ["without_webgl"]),
+        ("ring_12", ["truss", "narrow", "names"]),
+        ("umbrella_8", ["truss_in_space", "narrow"]),
         ("several", ["several"]),
     ],
 )

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import * as THREE from "three";
 import { ForceData, SceneData } from "./payload";
-import { Measures, Pose } from "./parts";
+import { axisOf, Measures, Pose } from "./parts";
 
 /** Colours of the style by kind of force. */
 export const FORCE_KINDS: Record<string, string> = {
@@ -33,9 +33,13 @@ export class Arrow {
   }
 
   pose(pose: Pose): void {
-    const [x, y, z] = this.force.vector.map((component) => pose.value(component)) as [number, number, number];
-    const vector = new THREE.Vector3(x, y, z),
-      size = vector.length(),
+    const [x, y, z] = this.force.vector.map((component) => pose.value(component)) as [number, number?, number?];
+    const { from, point } = this.force;
+    const vector =
+      from === undefined
+        ? new THREE.Vector3(x, y, z)
+        : pose.point(point).clone().sub(pose.point(from)).normalize().multiplyScalar(x);
+    const size = vector.length(),
       largest = this.scene.largest_force_N;
     this.group.visible = size > NONE * largest;
     if (!this.group.visible) return;
@@ -50,7 +54,7 @@ export class Arrow {
       .copy(pose.point(this.force.point))
       .add(new THREE.Vector3(...arm))
       .addScaledVector(along, -(length + headLength));
-    this.group.position.z += 0.8 * this.measures.depth;
+    this.group.position.addScaledVector(axisOf(this.force), 0.8 * this.measures.depth);
     this.group.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along);
   }
 }

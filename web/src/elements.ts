@@ -17,6 +17,14 @@ export function element<Tag extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
+/** Makes an element of an SVG drawing. */
+export function shape(tag: string, attributes: Record<string, string | number> = {}, text = ""): SVGElement {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
+  made.textContent = text;
+  return made;
+}
+
 /** Writes a number without zeros at its end. */
 export function short(value: number, digits = 3): string {
   return String(Number(value.toPrecision(digits))).replace("-", "−");

@@ -7,6 +7,7 @@ import { Playhead } from "./playhead";
 import { setUpPlayers } from "./player";
 import { setUpStrips } from "./strips";
 import { setUpTheme } from "./theme";
+import { setUpTruss } from "./truss";
 
 setUpTheme();
 const { runs, campaigns } = loadPage();
@@ -15,6 +16,7 @@ const heads = runs.map((run) => new Playhead(run));
 setUpPlayers(runs, heads);
 runs.forEach((run, i) => {
   const head = heads[i]!;
+  setUpTruss(run);
   setUpStrips(run, head);
   setUpCharts(run, head);
   // Rows of the table of events bring the replay there.

@@ -35,6 +35,17 @@ export type Paint = (tone: Tone) => THREE.Material;
 
 const SIDES = 64;
 const X_AXIS = new THREE.Vector3(1, 0, 0);
+const Z_AXIS = new THREE.Vector3(0, 0, 1);
+
+/** Axis of a joint's part, z in the plane. */
+export function axisOf(part: { axis?: [number, number, number] } | null | undefined): THREE.Vector3 {
+  return part?.axis ? new THREE.Vector3(...part.axis) : Z_AXIS;
+}
+
+/** Turns a part about its axis. */
+function orient(group: THREE.Group, part: PartData, angle: number): void {
+  group.quaternion.setFromUnitVectors(Z_AXIS, axisOf(part)).multiply(new THREE.Quaternion().setFromAxisAngle(Z_AXIS, angle));
+}
 
 function mesh(geometry: THREE.BufferGeometry, material: THREE.Material): THREE.Mesh {
   const made = new THREE.Mesh(geometry, material);
@@ -70,7 +81,9 @@ function link(part: PartData, scene: SceneData, measures: Measures, paint: Paint
   const bar = mesh(unit, paint("link"));
   group.add(bar);
   // The link of a journal runs behind its bearing, so that the clearance stays in sight.
-  const behind = [first, second].some((place) => at(place, "journal"));
+  const carried = [first, second].map((place) => at(place, "journal")).find(Boolean);
+  const behind = carried !== undefined;
+  const axis = axisOf(carried);
   const layer = behind ? -(measures.depth + width) / 2 - 0.1 * width : 0;
   const ends = [first, second].map((place) => {
     const bearing = at(place, "bearing");
@@ -87,10 +100,10 @@ function link(part: PartData, scene: SceneData, measures: Measures, paint: Paint
       const tip = i === 0 ? from : to;
       if (end.bearing && !behind)
         tip.addScaledVector(along, (i === 0 ? 1 : -1) * outerRadius(end.bearing, pose, measures, 0.5));
-      end.eye?.position.copy(tip).setZ(tip.z + layer);
+      end.eye?.position.copy(tip).addScaledVector(axis, layer);
     });
-    from.z += layer;
-    to.z += layer;
+    from.addScaledVector(axis, layer);
+    to.addScaledVector(axis, layer);
     stretch(bar, from, to);
   });
 }
@@ -121,7 +134,7 @@ function bearing(part: PartData, measures: Measures, paint: Paint): Solid {
       }).translate(0, 0, -measures.depth / 2);
     }
     group.position.copy(pose.point(part.points[0]!));
-    group.rotation.z = pose.angle(part.angle);
+    orient(group, part, pose.angle(part.angle));
   });
 }
 
@@ -137,7 +150,7 @@ function journal(part: PartData, measures: Measures, paint: Paint): Solid {
     group,
     (pose) => {
       group.position.copy(pose.point(part.points[0]!));
-      group.rotation.z = pose.angle(part.angle);
+      orient(group, part, pose.angle(part.angle));
     },
     new Map([["", body]]),
   );

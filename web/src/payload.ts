@@ -58,6 +58,7 @@ export interface PartData {
   radius_m?: number;
   inner_m?: number;
   clearance?: Varying;
+  axis?: [number, number, number];
   half_width_m?: number;
   half_height_m?: number;
   inner_minus_m?: number;
@@ -80,7 +81,10 @@ export interface ForceData {
   kind: string;
   point: number;
   arm: [Varying, Varying, Varying];
-  vector: [Varying, Varying, Varying];
+  /** Three components, or one along the link from the point `from`. */
+  vector: Varying[];
+  from?: number;
+  axis?: [number, number, number];
 }
 export interface SceneData {
   points: PointData[];
@@ -94,6 +98,7 @@ export interface SceneData {
   clearance_m: number;
   shortest_link_m: number;
   magnification: number;
+  magnification_of_deformation: number;
   deforms: boolean;
 }
 export interface ReadoutData {
@@ -102,6 +107,39 @@ export interface ReadoutData {
   scale: number;
   start: number;
   unit: string;
+}
+export interface JointData {
+  name: string;
+  kind: string;
+  node: number;
+  jump?: number;
+  heat?: number;
+  contribution?: number;
+  /** Numbers with units: of the measures, of the share, of the heat in the last cycle. */
+  text: Record<string, string>;
+}
+export interface MeasureData {
+  key: "contribution" | "heat" | "jump";
+  label: string;
+  note: string;
+  signed: boolean;
+  scale: number;
+  unit: string;
+}
+export interface TrussData {
+  dimension: number;
+  nodes: string[];
+  start: Encoded;
+  lines: { nodes: [number, number]; kind: string; name: string }[];
+  held: number[];
+  guided: number[];
+  cycles: { cycle: number; jump: Encoded }[];
+  jumps: string[];
+  largest_m: number;
+  magnification: number;
+  joints: JointData[];
+  measures: MeasureData[];
+  most: number;
 }
 export interface RunData {
   id: string;
@@ -112,6 +150,7 @@ export interface RunData {
   stages: StageData[];
   readouts: ReadoutData[];
   scene: SceneData;
+  truss: TrussData | null;
 }
 
 export type Samples = Float32Array | Uint8Array;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+import { box, choice, slider, STEPS } from "./controls";
 import { element, number, short } from "./elements";
 import { FORCE_KINDS } from "./arrows";
 import { Run } from "./payload";
@@ -7,7 +8,6 @@ import { SceneView, View, VIEWS } from "./scene";
 import { swatchOf } from "./strips";
 import { onTheme } from "./theme";
 
-const STEPS = 1000; // of the sliders
 const LARGEST_MAGNIFICATION = 1000;
 const VIEW_NAMES: Record<View, string> = { oblique: "Oblique", front: "Front", top: "Top", joint: "Joint" };
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
@@ -25,56 +25,10 @@ const KEYS: [string, string][] = [
   ["F, L", "forces, labels on and off"],
 ];
 
-let count = 0;
-
 /** Sliders of magnification are logarithmic: from 1 to the largest. */
 const fromSlider = (value: number) =>
   Number(Math.exp((value / STEPS) * Math.log(LARGEST_MAGNIFICATION)).toPrecision(2));
 const toSlider = (magnification: number) => (STEPS * Math.log(magnification)) / Math.log(LARGEST_MAGNIFICATION);
-
-function slider(
-  label: string,
-  input: (value: number) => void,
-): { row: HTMLElement; input: HTMLInputElement; value: HTMLOutputElement } {
-  const id = `slider${++count}`;
-  const made = element("input", {
-    type: "range",
-    id,
-    min: 0,
-    max: STEPS,
-    step: "any",
-    input: () => input(Number(made.value)),
-  });
-  const value = element("output", { for: id });
-  return {
-    row: element("div", { class: "slide" }, element("label", { for: id }, label), made, value),
-    input: made,
-    value,
-  };
-}
-
-function choice(
-  label: string,
-  options: [string, string][],
-  chosen: string,
-  change: (value: string) => void,
-): { field: HTMLElement; select: HTMLSelectElement } {
-  const select = element(
-    "select",
-    { change: () => change(select.value) },
-    ...options.map(([value, text]) => element("option", { value, selected: value === chosen }, text)),
-  );
-  return { field: element("label", { class: "field" }, element("span", {}, label), select), select };
-}
-
-function box(
-  label: string,
-  checked: boolean,
-  change: (on: boolean) => void,
-): { field: HTMLElement; input: HTMLInputElement } {
-  const input = element("input", { type: "checkbox", checked, change: () => change(input.checked) });
-  return { field: element("label", { class: "check" }, input, label), input };
-}
 
 /** Whether the browser draws in three dimensions; asked first, as a refusal inside three.js is loud. */
 function hasWebGL(): boolean {
@@ -267,17 +221,19 @@ class Player {
     const { head, run } = this,
       { scene } = run.data;
     const clearance = slider("Clearance", (value) => head.change({ clearance: fromSlider(value) }));
-    const rows = [clearance.row];
+    const plays = scene.clearance_m > 0 || !scene.deforms;
+    const rows = plays ? [clearance.row] : [];
     const fields: HTMLElement[] = [];
     const shown: [typeof clearance, () => number, string][] = [[clearance, () => head.clearance, "clearance"]];
     if (scene.deforms) {
       const deformation = slider("Deformation", (value) => head.change({ deformation: fromSlider(value) }));
       rows.push(deformation.row);
       shown.push([deformation, () => head.deformation, "deformation"]);
-      fields.push(
-        box("magnify both alike", head.together, (on) => head.change({ together: on, clearance: head.clearance }))
-          .field,
-      );
+      if (plays)
+        fields.push(
+          box("magnify both alike", head.together, (on) => head.change({ together: on, clearance: head.clearance }))
+            .field,
+        );
     }
     if (run.models.length > 1) {
       const models = choice(
@@ -354,7 +310,7 @@ class Player {
     this.updates.push(() => {
       const { head } = this;
       text.textContent = [
-        `Magnified: the place of a journal in its bearing or of a block in its slot, and the clearance itself, ${short(head.clearance)} times; the smallest clearance, ${gap}\u202fmm, is drawn as ${short(1e3 * scene.clearance_m * head.clearance)}\u202fmm.`,
+        scene.clearance_m > 0 ? `Magnified: the place of a journal in its bearing or of a block in its slot, and the clearance itself, ${short(head.clearance)} times; the smallest clearance, ${gap}\u202fmm, is drawn as ${short(1e3 * scene.clearance_m * head.clearance)}\u202fmm.` : "",
         scene.deforms
           ? `The way of the links from where they started is magnified ${short(head.deformation)} times.`
           : "",
@@ -405,8 +361,10 @@ class Player {
   }
 
   private magnify(factor: number): void {
-    const next = Math.min(LARGEST_MAGNIFICATION, Math.max(1, Number((this.head.clearance * factor).toPrecision(2))));
-    this.head.change({ clearance: next });
+    const next = (now: number) =>
+      Math.min(LARGEST_MAGNIFICATION, Math.max(1, Number((now * factor).toPrecision(2))));
+    const { together, clearance, deformation } = this.head;
+    this.head.change(together ? { clearance: next(clearance) } : { clearance: next(clearance), deformation: next(deformation) });
   }
 
   private key(event: KeyboardEvent): void {

@@ -11,7 +11,7 @@ export class Playhead {
   model: Model;
   clearance: number;
   deformation: number;
-  together = true;
+  together: boolean;
   forces = true;
   labels = true;
   ghost: Ghost = "start";
@@ -22,7 +22,9 @@ export class Playhead {
     const first = run.models[run.models.length - 1];
     if (!first) throw new Error("a run without models");
     this.model = first;
-    this.clearance = this.deformation = run.data.scene.magnification;
+    this.clearance = run.data.scene.magnification;
+    this.deformation = run.data.scene.magnification_of_deformation;
+    this.together = this.clearance === this.deformation;
   }
 
   get end(): number {

@@ -32,7 +32,12 @@ const BAR_OF_LINK = 0.1;
 const ARROW = 0.2;
 const ARROW_OF_LINK = 0.8;
 const LOOKS = 40; // moments that the camera is placed for
+const LABEL_STEPS = [0, -1, 1]; // heights by which a label may be off its place
 const MOST_LABELS = 8; // contacts beyond which labels would hide the parts
+// A contact whose parts would be lost in a large scene gets a bead in the colour of its state: its radius as a
+// share of the scene's size, of the shortest link at most.
+const BEAD = 0.006;
+const BEAD_OF_LINK = 0.3;
 
 /** A moment of a model as it is drawn: places magnified. */
 class Moment implements Pose {
@@ -141,6 +146,7 @@ export class SceneView {
   private readonly bodies: Assembly;
   private readonly ghost: Assembly;
   private readonly arrows: Arrow[];
+  private readonly beads = new Map<number, THREE.Mesh>();
   private readonly paints = new Map<string, THREE.MeshStandardMaterial>();
   private readonly labels: HTMLElement[];
   private readonly world = new THREE.Group();
@@ -185,7 +191,13 @@ export class SceneView {
     );
     this.world.scale.setScalar(this.scale);
     this.world.position.copy(this.centre).multiplyScalar(-this.scale);
-    this.world.add(this.bodies.group, this.ghost.group, ...this.arrows.map((arrow) => arrow.group));
+    const bead = Math.min(BEAD * size, BEAD_OF_LINK * scene.shortest_link_m);
+    for (const { on } of scene.contacts) {
+      const { radius_m: radius, half_width_m: half } = scene.parts[on]!;
+      if ((radius ?? half ?? bead) < bead)
+        this.beads.set(on, new THREE.Mesh(new THREE.SphereGeometry(bead, 20, 14), new THREE.MeshStandardMaterial()));
+    }
+    this.world.add(this.bodies.group, this.ghost.group, ...this.arrows.map((arrow) => arrow.group), ...this.beads.values());
     const key = new THREE.DirectionalLight(0xffffff, 2.2),
       fill = new THREE.DirectionalLight(0xffffff, 0.7);
     key.position.set(-4, 9, 10);
@@ -349,6 +361,10 @@ export class SceneView {
   private draw(): void {
     const now = this.moment();
     this.bodies.pose(now);
+    for (const [part, bead] of this.beads) {
+      bead.visible = this.followed === null; // seen from near the joint itself tells it
+      bead.position.copy(now.point(this.run.data.scene.parts[part]!.points[0]!));
+    }
     this.colourContacts();
     const other = this.run.models.find((model) => model !== this.head.model);
     this.ghost.group.visible = this.head.ghost !== "none" && (this.head.ghost === "start" || other !== undefined);
@@ -398,13 +414,15 @@ export class SceneView {
     }
     for (const [part, state] of worst) {
       const face = this.bodies.solids[part]?.faces.get("");
-      if (face) (face.material as THREE.MeshStandardMaterial).color.set(scene.states[state]!.colour);
+      for (const surface of [face, this.beads.get(part)])
+        if (surface) (surface.material as THREE.MeshStandardMaterial).color.set(scene.states[state]!.colour);
     }
   }
 
   private tag(now: Moment): void {
     const { scene } = this.run.data,
       at = this.head.model.cursor(this.head.time);
+    const taken: { left: number; top: number; half: number }[] = [];
     for (const label of this.labels) {
       const part = Number(label.dataset["part"]);
       const seen = scene.contacts.length <= MOST_LABELS || (this.followed && part === this.joints[this.shown]);
@@ -425,7 +443,18 @@ export class SceneView {
       const width = this.holder.clientWidth,
         half = label.offsetWidth / 2 + 6;
       const left = Math.min(width - half, Math.max(half, ((place.x + 1) / 2) * width));
-      const top = Math.max(label.offsetHeight + 6, ((1 - place.y) / 2) * this.holder.clientHeight);
+      const wanted = Math.max(label.offsetHeight + 6, ((1 - place.y) / 2) * this.holder.clientHeight);
+      // Above its joint, or a little off, where no other label is; else not at all.
+      const top = LABEL_STEPS.map((step) => wanted + step * (label.offsetHeight + 2)).find(
+        (y) =>
+          y >= label.offsetHeight &&
+          !taken.some((other) => Math.abs(other.left - left) < other.half + half && Math.abs(other.top - y) < label.offsetHeight),
+      );
+      if (top === undefined) {
+        label.hidden = true;
+        continue;
+      }
+      taken.push({ left, top, half });
       label.style.transform = `translate(${left}px, ${top}px) translate(-50%, -100%)`;
     }
   }

@@ -18,7 +18,7 @@ BUDGET_BYTES = 7e6  # of the histories of all runs; a page stays below 10 MB
 
 def result_files(run: Path) -> list[Path]:
     """Return the result files that an argument means: a file itself, those of a results folder, or
-    of the folders in it. A comparison stands for the single models' files beside it.
+    of the folders in it. A comparison stands for the single models' files beside it, not for the answers.
 
     :raises StatejumpError: there is nothing
     """
@@ -28,7 +28,7 @@ def result_files(run: Path) -> list[Path]:
         found = sorted(run.glob(pattern))
         if found:
             compared = {path.parent for path in found if path.stem == "comparison"}
-            return [path for path in found if path.parent not in compared or path.stem == "comparison"]
+            return [path for path in found if path.parent not in compared or path.stem in ("comparison", "answers")]
     raise StatejumpError(f"{run}: no result file (*{SUFFIX}) in this folder; 'statejump compare CASE' writes one")
 
 

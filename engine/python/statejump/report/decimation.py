@@ -51,14 +51,18 @@ def kept_samples(
     return np.array(sorted(kept))
 
 
-def largest_error(time_s: np.ndarray, columns: Iterable[np.ndarray], kept: np.ndarray) -> float:
-    """Return by how much straight lines between kept samples miss any column, as a fraction of its
+def errors(time_s: np.ndarray, columns: Iterable[np.ndarray], kept: np.ndarray) -> np.ndarray:
+    """Return by how much straight lines between kept samples miss each column, as a fraction of its
     range; only finite values count."""
-    largest = 0.0
+    found = []
     for column in columns:
         values = np.where(np.isfinite(column), column, 0.0)
         span = float(np.ptp(values))
-        if span > 0:
-            missed = np.max(np.abs(np.interp(time_s, time_s[kept], values[kept]) - values))
-            largest = max(largest, float(missed) / span)
-    return largest
+        missed = np.max(np.abs(np.interp(time_s, time_s[kept], values[kept]) - values)) if span > 0 else 0.0
+        found.append(float(missed) / span if span > 0 else 0.0)
+    return np.array(found)
+
+
+def largest_error(time_s: np.ndarray, columns: Iterable[np.ndarray], kept: np.ndarray) -> float:
+    """Return the largest of the :func:`errors`, 0 without columns."""
+    return float(errors(time_s, columns, kept).max(initial=0.0))

@@ -18,9 +18,10 @@ import numpy as np
 from ..compare import Quantity
 from ..resultfile import Event, ModelRun, Result
 from . import charts, words
-from .decimation import kept_samples, largest_error
+from .decimation import errors, kept_samples
 from .drawing import Drawing
 from .energy import Account, account
+from .truss import part_of
 from .units import scale_of, text
 
 TOLERANCE = 2e-4  # of a column's range, what decimation may cost
@@ -59,7 +60,8 @@ class Document:
         self.case: dict[str, Any] = json.loads(result.case_json)
         self.accounts: dict[str, Account] = {model: account(run) for model, run in result.models.items()}
         self._drawing = Drawing(result)
-        self._charts = charts.charts_of(result)
+        self.truss = part_of(result, self.case)
+        self._charts = charts.charts_of(result) if self.truss is None else self.truss.charts()
         self._columns = {model: self._full_columns(model, run) for model, run in result.models.items()}
         self.kept: list[Kept] = []
         self._thin: dict[str, dict[str, np.ndarray]] = {}
@@ -87,6 +89,9 @@ class Document:
         rows = self.result.comparison
         if not self.result.complete:
             return "fail", "The run was interrupted: this is what there was of it."
+        if self.truss is not None and self.truss.answers is not None:
+            told = self.truss.answers.verdict_text
+            return "none", f"{told[:1].upper()}{told[1:]}."
         if rows is None:
             only = " and ".join(words.MODELS[model] for model in self.result.models)
             return "none", f"{only}: one model alone, nothing is compared."
@@ -111,6 +116,10 @@ class Document:
             }
             for name in names
         ]
+        if self.truss is not None and self.truss.answers is not None:
+            answers = self.truss.answers
+            cards.insert(0, {"label": f"Jump of the output {answers.output}",
+                             "values": [(answers.verdict, text(answers.summary["jump"].value, answers.unit))]})
         for kind in ("first_contact", "first_slip"):
             found = {model: self._first(run, kind) for model, run in models.items()}
             if any(found.values()):
@@ -132,7 +141,12 @@ class Document:
         """Sections of the case file with all defaults: key, value."""
         sections = []
         for section, keys in self.case.items():
+            if isinstance(keys, list) and keys and isinstance(keys[0], dict):
+                sections.append((f"[{section}]", _summed_up(keys)))
+                continue
             if not isinstance(keys, dict):
+                if keys is None or keys == []:
+                    continue
                 sections.append((section, [("", f"{len(keys)} entries" if isinstance(keys, list) else str(keys))]))
                 continue
             rows = [(key, self._shown(value)) for key, value in keys.items() if value is not None]
@@ -232,6 +246,8 @@ class Document:
         """Data for the page's script."""
         run = next(iter(self.result.models.values()))
         units = {name: column.unit for name, column in run.history.items()}
+        if self.truss is not None:
+            units.update(self.truss.UNITS)
         marks = [
             {"time_s": event.time_s, "label": words.EVENTS[kind], "value": text(event.temperature_change_K, "K", 4),
              "role": "event"}
@@ -257,6 +273,7 @@ class Document:
             "energy": self._energy_chart(),
             "stages": self.stages(),
             "readouts": self._readouts(shown),
+            "truss": None if self.truss is None else self.truss.payload(_encoded),
             "scene": {**self._drawing.scene, "parts": [_packed(part) for part in self._drawing.scene["parts"]]},
         }
 
@@ -267,7 +284,8 @@ class Document:
             name: run.history[name].values for name in sorted(names)
             if name in run.history and run.history[name].values.ndim == 1
         }
-        return {**history, **self.accounts[model].columns, **self._drawing.columns[model]}
+        curves = {} if self.truss is None else self.truss.columns[model]
+        return {**history, **curves, **self.accounts[model].columns, **self._drawing.columns[model]}
 
     def _thin_out(self, model: str, budget_bytes: float) -> None:
         columns = self._columns[model]
@@ -275,9 +293,18 @@ class Document:
         affordable = int(budget_bytes / (BYTES_PER_VALUE * max(1, len(moving))))
         most = min(MOST_SAMPLES, max(FEWEST_SAMPLES, affordable))
         time_s = columns["time_s"]
-        guides = moving[:: math.ceil(len(moving) / MOST_GUIDES)]
-        chosen = kept_samples(time_s, np.stack(guides, axis=1).astype(float), most, TOLERANCE)
-        error = largest_error(time_s, moving, chosen)
+        # Straight lines cannot follow a state: both samples of its change stay, if there is room.
+        states = [values for values in moving if values.dtype == np.uint8]
+        turns = np.flatnonzero(np.any([np.diff(values) != 0 for values in states], axis=0)) if states else np.zeros(0, int)
+        always = np.unique(np.concatenate((turns, turns + 1)))
+        chosen, guides = always if len(always) <= most else always[:0], moving[:: math.ceil(len(moving) / MOST_GUIDES)]
+        for _ in range(2):  # the second time by the columns that the first ones do not stand for
+            chosen = kept_samples(time_s, np.stack(guides, axis=1).astype(float), most, TOLERANCE, chosen.tolist())
+            missed = errors(time_s, moving, chosen)
+            if missed.max(initial=0.0) <= TOLERANCE or len(chosen) >= most:
+                break
+            guides = [moving[place] for place in np.argsort(-missed)[:MOST_GUIDES]]
+        error = float(missed.max(initial=0.0))
         self._thin[model] = {name: values[chosen] for name, values in columns.items()}
         self.kept.append(Kept(words.MODELS[model], len(time_s), len(chosen), error))
 
@@ -315,6 +342,17 @@ def _encoded(values: np.ndarray) -> Any:
     if np.ptp(values) == 0:
         return float(values[0])
     return {"f": base64.b64encode(values.tobytes()).decode("ascii")}
+
+
+def _summed_up(items: list[dict[str, Any]]) -> list[tuple[str, str]]:
+    """Return the items of a list of a case, as nodes or links, in a few rows: where their numbers go from and to."""
+    rows = [("", f"{len(items)} {'entry' if len(items) == 1 else 'entries'}")]
+    for key in items[0]:
+        values = [item[key] for item in items if item.get(key) is not None]
+        if values and all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
+            low, high = min(values), max(values)
+            rows.append((key, f"{low:g}" if low == high else f"{low:g} to {high:g}"))
+    return rows
 
 
 def _packed(part: dict[str, Any]) -> dict[str, Any]:

@@ -21,6 +21,8 @@ from . import words
 # shortest link no more than can be told from the link.
 SHOWN_GAP = 0.03
 SHOWN_GAP_OF_LINK = 0.15
+# What the largest way of a point takes of the scene at most at first: expansion is far larger than a clearance.
+SHOWN_WAY = 0.1
 AXES = "xyz"
 
 
@@ -45,6 +47,7 @@ class Drawing:
         self._points: dict[str, int] = {}
         self._parts = {part["name"]: part for part in result.scene["parts"]}
         self._expressions: list[Any] = []
+        self._arms: dict[str, list[str]] = {}
         for part in result.scene["parts"]:
             for expression in _points_of(part):
                 key = json.dumps(expression, sort_keys=True)
@@ -133,7 +136,7 @@ class Drawing:
     def _part(self, part: dict[str, Any]) -> dict[str, Any]:
         drawn: dict[str, Any] = {"name": part["name"], "label": words.plain(part["name"]), "type": part["type"]}
         drawn["points"] = [self._points[json.dumps(point, sort_keys=True)] for point in _points_of(part)]
-        for key in ("width_m", "radius_m", "half_width_m", "half_height_m"):
+        for key in ("width_m", "radius_m", "half_width_m", "half_height_m", "axis"):
             if key in part:
                 drawn[key] = part[key]
         if "angle_rad" in part:
@@ -175,18 +178,25 @@ class Drawing:
     def _force(
         self, place: int, label: str, kind: str, on: str, at: Any, vector: Callable[[ModelRun], np.ndarray]
     ) -> dict[str, Any]:
-        centre = self._parts[on].get("centre")
-
-        def arm(run: ModelRun) -> np.ndarray:
-            return self._at(at, run) - self._at(centre, run) if centre is not None else np.zeros((len(run.time_s), 3))
-
-        return {
+        part = self._parts[on]
+        centre = part.get("centre")
+        drawn = {
             "label": label,
             "kind": kind,
             "point": self._points[json.dumps(at if centre is None else centre, sort_keys=True)],
-            "arm": self._vector(f"arm{place}", arm),
+            "arm": [0.0, 0.0, 0.0] if centre is None else self._arm(at, centre),
             "vector": self._vector(f"force{place}", vector),
         }
+        return {**drawn, "axis": part["axis"]} if "axis" in part else drawn
+
+    def _arm(self, at: Any, centre: Any) -> list[str]:
+        """Return the columns from a part's centre to where a force acts; normal and tangential one share them."""
+        key = json.dumps([at, centre], sort_keys=True)
+        if key not in self._arms:
+            self._arms[key] = self._vector(
+                f"arm{len(self._arms)}", lambda run: self._at(at, run) - self._at(centre, run)
+            )
+        return self._arms[key]
 
     def _forces(self) -> list[dict[str, Any]]:
         names = self.result.names
@@ -204,17 +214,14 @@ class Drawing:
         return [force for force in drawn if self._largest(force) > 0]
 
     def _axial(self, place: int, link: dict[str, Any], axial: Any) -> dict[str, Any]:
-        """Return the force of a link on what its second end holds; compression pushes outward."""
-
-        def vector(run: ModelRun) -> np.ndarray:
-            first, second = (self._at(end, run) for end in link["ends"])
-            along = second - first
-            along = along / np.linalg.norm(along, axis=1, keepdims=True)
-            return along * resolve(axial, run, self.result.names)[:, None]
-
-        return self._force(
-            place, f"Axial force of {words.plain(link['name'])}", "axial", link["name"], link["ends"][1], vector
-        )
+        """Return the force of a link on what its second end holds; compression pushes outward. Its direction is
+        that of the link as drawn."""
+        first, second = (self._points[json.dumps(end, sort_keys=True)] for end in link["ends"])
+        return {
+            "label": f"Axial force of {words.plain(link['name'])}", "kind": "axial", "point": second,
+            "arm": [0.0, 0.0, 0.0], "from": first,
+            "vector": [self._column(f"force{place}", lambda run: resolve(axial, run, self.result.names))],
+        }
 
     def _largest(self, force: dict[str, Any]) -> float:
         return max(
@@ -243,21 +250,32 @@ class Drawing:
         ]
         shortest = min((length for length in lengths if length > 0), default=size)
         shown = min(SHOWN_GAP * size, SHOWN_GAP_OF_LINK * shortest)
+        way = self._largest_way()
+        deformation = round_down(SHOWN_WAY * size / way) if way > 0 else 1.0
+        magnification = round_down(shown / clearance) if clearance > 0 else deformation
         self.scene.update(
             low=low.tolist(),
             high=high.tolist(),
             largest_force_N=max((self._largest(force) for force in self.scene["forces"]), default=0.0),
             clearance_m=clearance,
             shortest_link_m=shortest,
-            magnification=round_down(shown / clearance) if clearance > 0 else 1.0,
+            magnification=magnification,
+            magnification_of_deformation=min(magnification, deformation) if way > 0 else magnification,
             # Whether anything but relative places moves: else there is no deformation to magnify.
-            deforms=any(
-                "of" not in point and any(
-                    isinstance(name, str) and np.ptp(columns[name]) > 0
-                    for name in point["at"] for columns in self.columns.values()
-                )
-                for point in self.scene["points"]
+            deforms=way > 0,
+        )
+
+    def _largest_way(self) -> float:
+        """Return how far [m] a point goes from its start at most; those that are relative to others left out."""
+        return max(
+            (
+                float(np.max(np.sqrt(sum(
+                    (columns[name] - columns[name][0]) ** 2 for name in point["at"] if isinstance(name, str)
+                ))))
+                for point in self.scene["points"] if "of" not in point and isinstance(point["at"][0], str)
+                for columns in self.columns.values()
             ),
+            default=0.0,
         )
 
 

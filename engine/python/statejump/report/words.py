@@ -2,7 +2,7 @@
 """Words for what result files name by keys: columns, events, states, and a case in sentences."""
 from __future__ import annotations
 
-from typing import Any, Callable
+from typing import Any, Callable, Iterable
 
 from .units import text
 
@@ -54,7 +54,7 @@ def plain(name: str) -> str:
 def parameter(path: str) -> str:
     """Return a key of a case file, or a name alone, as words: ``link.young_modulus_Pa``."""
     section, _, key = path.rpartition(".")
-    for ending in ("_per_K", "_m2", "_Pa", "_kg", "_kg_per_m3", "_N_per_m"):
+    for ending in ("_N_m_per_rad", "_per_K", "_m2", "_Pa", "_kg", "_kg_per_m3", "_N_per_m"):
         key = key.removesuffix(ending)
     named = plain(key).replace("temperature change", "ΔT")
     return f"{named} of {plain(section).lower() if section not in NAMES else NAMES[section]}" if section else named
@@ -116,8 +116,62 @@ def _umbrella(case: dict[str, Any]) -> list[str]:
     return sentences
 
 
+def _count(items: list[Any], one: str, many: str = "") -> str:
+    return f"{len(items)} {one if len(items) == 1 else many or one + 's'}"
+
+
+def spread(values: Iterable[float], unit: str = "-", digits: int = 4) -> str:
+    """Return the one value of many items, or from where to where their values go."""
+    known = [float(value) for value in values]
+    low, high = min(known), max(known)
+    return text(low, unit, digits) if low == high else f"{text(low, unit, digits)} to {text(high, unit, digits)}"
+
+
+def is_held(node: dict[str, Any], case: dict[str, Any]) -> bool:
+    """Whether a node of a truss cannot move at all."""
+    return len(set(node.get("fixed") or [])) == case["truss"]["dimension"]
+
+
+def _truss(case: dict[str, Any]) -> list[str]:
+    of = {key: case.get(key) or [] for key in ("node", "link", "slider", "revolute", "spring", "torsion_spring", "program")}
+    kind = {2: "plane", 3: "spatial"}[case["truss"]["dimension"]]
+    held = [node for node in of["node"] if is_held(node, case)]
+    guided = [node for node in of["node"] if node not in held and (node.get("fixed") or node.get("guide_normal"))]
+    sentences = [
+        f"A {kind} truss of {_count(of['node'], 'node')} and {_count(of['link'], 'link')}; {_count(held, 'node')} "
+        f"{'is' if len(held) == 1 else 'are'} held" + (f", {len(guided)} guided" if guided else "") + "."
+    ]
+    if of["revolute"]:
+        sentences.append(
+            f"{_count(of['revolute'], 'revolute joint')} with clearance: radial clearance "
+            f"{spread((joint['radial_clearance_m'] for joint in of['revolute']), 'm')}, journal radius "
+            f"{spread((joint['journal_radius_m'] for joint in of['revolute']), 'm')}, friction coefficient "
+            f"{spread(joint['friction_coefficient'] for joint in of['revolute'])}."
+        )
+    if of["slider"]:
+        stops = sum(joint.get(key) is not None for joint in of["slider"] for key in ("clearance_minus_m", "clearance_plus_m"))
+        limits = (joint["friction_coefficient"] * joint["normal_force_N"] for joint in of["slider"])
+        sentences.append(f"{_count(of['slider'], 'sliding joint')} held by friction up to {spread(limits, 'N')}, "
+                         f"{f'with {stops} stops' if stops else 'without stops'}.")
+    cables = [spring for spring in of["spring"] if spring.get("cable")]
+    springs = [spring for spring in of["spring"] if not spring.get("cable")]
+    tied = [_count(found, name) for found, name in ((springs, "spring"), (cables, "cable"),
+                                                   (of["torsion_spring"], "torsion spring")) if found]
+    if tied:
+        sentences.append(f"It has {' and '.join(filter(None, [', '.join(tied[:-1]), tied[-1]]))}.")
+    loads = [sum(part**2 for part in node["force_N"]) ** 0.5 for node in of["node"] if node.get("force_N")]
+    if any(loads):
+        sentences.append(f"Dead loads of {spread(loads, 'N')} on {_count(loads, 'node')}.")
+    shares = [link["temperature_fraction"] for link in of["link"]]
+    if set(shares) != {1.0}:
+        sentences.append(f"Links are shaded: they take {spread(shares, digits=3)} of the temperature change.")
+    if of["program"]:
+        sentences.append(f"{_count(of['program'], 'further temperature program')} for members that name one.")
+    return sentences
+
+
 DESCRIPTIONS: dict[str, Callable[[dict[str, Any]], list[str]]] = {
-    "spring_slider": _spring_slider, "umbrella": _umbrella,
+    "spring_slider": _spring_slider, "umbrella": _umbrella, "truss": _truss,
 }
 
 
@@ -126,4 +180,5 @@ def describe(kind: str, case: dict[str, Any]) -> list[str]:
 
     :param case: sections and keys as in the case file, with all defaults
     """
-    return [*DESCRIPTIONS.get(kind, lambda _: [])(case), _temperature(case)]
+    told = DESCRIPTIONS.get(kind) if case else None
+    return [*(told(case) if told else []), _temperature(case)]

@@ -92,16 +92,19 @@ def scene(case: TrussCase) -> dict[str, Any]:
             if label in drawn:
                 continue
             drawn.add(label)
-            angle = 0.0 if link == GROUND else drawing.ref("links/angle_rad", truss.links.names[link])
+            # About an axis in space a link's view along z has no angle of its own to tell.
+            turns = link != GROUND and truss.dimension == 2
+            angle = drawing.ref("links/angle_rad", truss.links.names[link]) if turns else 0.0
+            axis = {} if truss.dimension == 2 else {"axis": revolutes.axis[place].tolist()}
             parts.append({
                 "name": label, "type": part, "centre": nodes[node], "angle_rad": angle,
                 "radius_m": float(getattr(revolutes, f"{part}_radius_m")[place]),
-                "thermal_expansion_per_K": float(getattr(revolutes, f"{part}_thermal_expansion_per_K")[place]),
+                "thermal_expansion_per_K": float(getattr(revolutes, f"{part}_thermal_expansion_per_K")[place]), **axis,
             })
         contacts.append((name, pair[0], pair[1]))
     clearances = [*revolutes.radial_clearance_m, *truss.sliders.clearance_minus_m, *truss.sliders.clearance_plus_m]
-    smallest = min((float(value) for value in clearances if np.isfinite(value)), default=1.0)
-    return drawing.description(parts, contacts, smallest)
+    smallest = min((float(value) for value in clearances if np.isfinite(value)), default=0.0)
+    return {**drawing.description(parts, contacts, smallest), "plane": "xy" if truss.dimension == 2 else "xyz"}
 
 
 class _Section:

@@ -87,7 +87,7 @@ def description(
     """Return a whole description.
 
     :param contacts: name, part that the forces act on, the other part
-    :param smallest_clearance_m: what a viewer may have to magnify
+    :param smallest_clearance_m: what a viewer may have to magnify; 0: there is none
     :param forces: further ones
     """
     return {

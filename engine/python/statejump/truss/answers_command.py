@@ -26,7 +26,7 @@ from .solve import TrussPath
 NO_JUMP = 1e-9  # of the largest jump of a node: what is smaller is rounding
 RESOLVED = 0.01  # of the jump: what twice the increments may change
 MOST_ROWS = 15  # of a table in answers.md
-MOST_SAMPLES = 2000  # of the path in the result file; every cycle has at least its ends
+MOST_SAMPLES = 1000  # of the path in the result file; every cycle has at least its ends
 
 Row = dict[str, Any]
 

@@ -1,0 +1,357 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a page says of a truss: how far its nodes jump, which joints hold that, what would change it.
+
+All of it comes from the answers in a file of ``statejump truss answers``. Without them jumps are read off
+the histories, and joints are ranked by how far they move and by their heat: not by what they contribute.
+"""
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Callable, Optional
+
+import numpy as np
+
+from ..resultfile import ModelRun, Result
+from ..resultfile.contents import unit_of
+from . import words
+from .charts import TEMPERATURE, Axis, Chart
+from .drawing import round_down
+from .units import scale_of, text
+
+SHOWN_JUMP = 0.12  # of the truss' size: how large the largest jump is drawn at first
+MOST_CYCLES = 12  # that the drawing offers, of more the first and the last ones
+MOST_BARS = 15
+MOST_SENSITIVITIES = 20
+LEAST_PERCENT = 5e-3
+ROUNDED = 1e-9  # of the largest joint's: below is rounding, not a number to read
+ROUNDED_SURFACE = 1e-12  # of the truss' size, in metres and in radians
+ROUNDING = "≈ 0"
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Measure:
+    """Something joints are ranked by."""
+
+    key: str
+    label: str
+    unit: str
+    note: str
+    signed: bool = False
+
+
+def _vectors(rows: list[Row], cycles: int) -> np.ndarray:
+    """Return the jumps (cycles, items, 3) of rows that are in order of cycles."""
+    found = np.array([[row[f"jump_{axis}_m"] for axis in "xyz"] for row in rows], dtype=float)
+    return found.reshape(cycles, -1, 3)
+
+
+class TrussPart:
+    """The part of a page that only trusses have.
+
+    :param result: a truss with the history of its nodes, see :func:`part_of`
+    :param case: its case as in the file, with all defaults
+    """
+
+    def __init__(self, result: Result, case: dict[str, Any]) -> None:
+        self.result, self.case, self.answers = result, case, result.answers
+        self.model = next(iter(result.models))
+        self._run = result.models[self.model]
+        self.nodes = result.names["nodes"]
+        self._number = {name: place for place, name in enumerate(self.nodes)}
+        self.cycles = int(case["thermal"]["cycles"])
+        self._ends = self._cycle_ends(self._run)
+        if self.answers is None:
+            self.cycles = max(len(self._ends) - 1, 1)
+            self.node_jumps = self._since_start(self._run, "history", "displacement_m")
+        else:
+            self.node_jumps = _vectors(self.answers.tables["node_jumps"], self.cycles)
+        self._size_m = np.linalg.norm(self.node_jumps[-1], axis=1)
+        self.joints = self._joints()
+        self.measures = self._measures()
+        self.columns = {model: self._curves(run) for model, run in result.models.items()}
+
+    def _cycle_ends(self, run: ModelRun) -> np.ndarray:
+        """Samples at the start and nearest to the ends of the cycles that the run has."""
+        time, period = run.time_s, float(self.case["thermal"]["period_s"])
+        whole = int(math.floor(float(time[-1]) / period + 1e-6))
+        wanted = period * np.arange(min(self.cycles, whole) + 1) if whole else time[[0, -1]]
+        return np.abs(time[:, None] - wanted).argmin(axis=0)
+
+    def _since_start(self, run: ModelRun, group: str, name: str) -> np.ndarray:
+        values = getattr(run, group)[name].values[self._cycle_ends(run)]
+        return values[1:] - values[0]
+
+    @property
+    def _first(self) -> int:
+        """Node whose jump is spoken of: that of the answers if it is one, else the most moved one."""
+        named = self.answers.output.partition("node:")[2] if self.answers is not None else ""
+        return self._number[named] if named in self._number else int(np.argmax(self._size_m))
+
+    # ---------------------------------------------------------------- joints
+
+    def _joints(self) -> list[Row]:
+        """Every joint: name, kind, node, and what it is ranked by; in the order of the file."""
+        found: list[Row] = [
+            {"name": item["name"], "kind": kind, "node": self._number[item["nodes"][0] if kind == "slider" else
+                                                                      item["bearing_node"]]}
+            for kind in ("slider", "revolute") for item in self.case.get(kind) or []
+        ]
+        if self.answers is None:
+            self._read_off(found)
+            return found
+        moved = {(row["kind"], row["joint"]): row for row in self.answers.tables["joint_jumps"]
+                 if row["cycle"] == self.cycles}
+        held = {(row["kind"], row["joint"]): row for row in self.answers.tables.get("contributions", [])}
+        for joint in found:
+            key = (joint["kind"], joint["name"])
+            joint["jump"], joint["heat"] = moved[key]["jump_m"], moved[key]["dissipation_J"]
+            joint["heat_of_cycle"] = moved[key]["dissipation_of_cycle_J"]
+            if held:
+                joint["contribution"], joint["share"] = held[key]["contribution"], held[key]["share"]
+        return found
+
+    def _read_off(self, joints: list[Row]) -> None:
+        run, place = self._run, {"slider": 0, "revolute": 0}
+        jumps = {}
+        for kind, name in (("slider", "slide_m"), ("revolute", "eccentricity_m")):
+            if name in run.history:
+                moved = self._since_start(run, "history", name)[-1]
+                jumps[kind] = np.abs(moved) if moved.ndim == 1 else np.linalg.norm(moved, axis=1)
+        heat = self._since_start(run, "contacts", "dissipation_J") if "dissipation_J" in run.contacts else None
+        for number, joint in enumerate(joints):
+            kind = joint["kind"]
+            joint["jump"] = float(jumps[kind][place[kind]]) if kind in jumps else 0.0
+            place[kind] += 1
+            if heat is not None:
+                joint["heat"] = float(heat[-1, number])
+                before = heat[-2, number] if len(heat) > 1 else 0.0
+                joint["heat_of_cycle"] = float(heat[-1, number] - before)
+
+    def _measures(self) -> list[Measure]:
+        keys = set().union(*self.joints)
+        unit = self.answers.unit if self.answers is not None else "m"
+        every = [
+            Measure("contribution", "Contribution to the jump", unit,
+                    "What the friction of a joint holds of the output's jump, with its sign; all together give the jump.",
+                    True),
+            Measure("heat", "Heat of friction", "J", "Heat of the joint's friction over all cycles: where it slips, "
+                    "not what holds the jump."),
+            Measure("jump", "Jump of the joint", "m", "How far a slider, or a journal in its bearing, is from where it "
+                    "started: where it moved, not what holds the jump."),
+        ]
+        return [measure for measure in every
+                if measure.key in keys and any(joint[measure.key] for joint in self.joints)]
+
+    def ranking(self) -> list[Row]:
+        """Rows of the table of joints, by the first measure, ready to print."""
+        if not self.measures:
+            return []
+        first = self.measures[0].key
+        order = sorted(self.joints, key=lambda joint: -abs(joint[first]))
+        return [{**joint, "text": self._texts(joint)} for joint in order[:MOST_BARS]]
+
+    def _texts(self, joint: Row) -> dict[str, str]:
+        found = {}
+        for measure in self.measures:
+            value, largest = joint[measure.key], max(abs(other[measure.key]) for other in self.joints)
+            rounding = abs(value) < ROUNDED * largest
+            found[measure.key] = ROUNDING if rounding else text(value, measure.unit, 4)
+            found[f"{measure.key}_short"] = ROUNDING if rounding else text(value, measure.unit, 3)
+        if "share" in joint:
+            share = 100 * joint["share"]
+            shown = f"{share:.3g}" if abs(share) >= 1 else f"{share:.2f}"
+            found["share"] = f"{shown}\u202f%".replace("-", "−") if abs(share) >= LEAST_PERCENT else ROUNDING
+        if "heat_of_cycle" in joint and self.cycles > 1:
+            found["heat_of_cycle"] = text(joint["heat_of_cycle"], "J", 4)
+        return found
+
+    # ---------------------------------------------------------------- words and tables
+
+    @property
+    def sentences(self) -> list[str]:
+        """What was found, in words."""
+        if self.answers is None:
+            return self._without_answers()
+        numbers, unit = self.answers.summary, self.answers.unit
+        found = [f"Output: {self.answers.text}. It jumps by {text(numbers['jump'].value, unit, 4)} over "
+                 f"{_cycles(self.cycles)}."]
+        verdict = self.answers.verdict_text
+        found.append(f"Over the cycles: {verdict}.")
+        if "sum_of_contributions" in numbers:
+            found.append(f"The contributions of all joints add up to {text(numbers['sum_of_contributions'].value, unit, 4)}, "
+                         f"the jump but for {numbers['sum_error_relative'].value:.1g} of it.")
+        return found
+
+    def _without_answers(self) -> list[str]:
+        name = self.nodes[self._first]
+        jumps = [f"{text(float(np.linalg.norm(self._since_start(run, 'history', 'displacement_m')[-1, self._first])), 'm', 4)} "
+                 f"in the {words.inside(words.MODELS[model])}" for model, run in self.result.models.items()]
+        found = [f"The node that jumps most, {name}, is after {_cycles(self.cycles)} away from where it began by "
+                 f"{' and '.join(jumps)}."]
+        if self.joints:
+            by = "how far they moved" + (" and by the heat of their friction" if any(
+                measure.key == "heat" for measure in self.measures) else "")
+            found.append(f"This file has no contributions of joints: they are ranked by {by}, which is not what holds the "
+                         "jump. 'statejump truss answers' finds the contributions.")
+        return found
+
+    @property
+    def notes(self) -> list[str]:
+        """What the answers say of themselves."""
+        return [note[:1].upper() + note[1:] + "." for note in (self.answers.notes if self.answers is not None else [])]
+
+    def cycle_rows(self) -> list[Row]:
+        """Rows of the table of cycles: of many the first and the last ones."""
+        rows = self.answers.tables.get("cycles", []) if self.answers is not None else []
+        return [rows[place] for place in _some(len(rows), MOST_CYCLES)] if len(rows) > 1 else []
+
+    def surface(self) -> list[Row]:
+        """Rows of the table of the reflecting surface."""
+        rows = self.answers.tables.get("surface", []) if self.answers is not None else []
+        size = float(np.ptp(self._run.history["position_m"].values[0], axis=0).max())
+
+        def shown(key: str, value: Any) -> str:
+            if not isinstance(value, float):
+                return value or "–"
+            unit = unit_of(key)
+            return ROUNDING if unit in ("m", "rad") and 0 < abs(value) < ROUNDED_SURFACE * size else text(value, unit, 5)
+
+        places = (*range(min(2, len(rows))), *(2 + place for place in _some(len(rows) - 2, 6)))
+        return [{key: shown(key, value) for key, value in rows[place].items()} for place in places]
+
+    @property
+    def focuses(self) -> bool:
+        """Whether the surface has a focal length."""
+        rows = self.answers.tables.get("surface", []) if self.answers is not None else []
+        return any(row["focal_length_m"] is not None for row in rows)
+
+    def sensitivities(self) -> tuple[list[Row], int]:
+        """Rows of the table of sensitivities, the strongest first, and how many were left off."""
+        rows = self.answers.tables.get("sensitivities", []) if self.answers is not None else []
+        ranked = sorted(rows, key=lambda row: -abs(row["elasticity"] or 0.0))
+        most = max((abs(row["elasticity"] or 0.0) for row in ranked), default=0.0)
+        shown = [
+            {**row, "name": _parameter(row["parameter"]), "key": row["parameter"],
+             "bar": 100 * (row["elasticity"] or 0.0) / most if most else 0.0,
+             "text": "–" if row["elasticity"] is None else f"{row['elasticity']:+.3g}".replace("-", "−"),
+             "given": "differs" if row["value"] is None else text(row["value"], unit_of(row["parameter"]), 4)}
+            for row in ranked[:MOST_SENSITIVITIES]
+        ]
+        return shown, len(ranked) - len(shown)
+
+    # ---------------------------------------------------------------- curves
+
+    def charts(self) -> list[Chart]:
+        """Loops: of the node, of the joint that comes first, of the link with the largest force."""
+        found = [Chart(TEMPERATURE, Axis("truss_node_m", f"Node {self.nodes[self._first]} along its jump"),
+                       f"Loop of node {self.nodes[self._first]}", marks=True)]
+        joint = self._leading()
+        if joint is not None and joint["kind"] == "slider":
+            found.append(Chart(TEMPERATURE, Axis("truss_slide_m", f"Slide of {joint['name']}"), f"Loop of slider {joint['name']}"))
+        elif joint is not None and self.case["truss"]["dimension"] == 2:
+            clearance = next(item["radial_clearance_m"] for item in self.case["revolute"] if item["name"] == joint["name"])
+            found.append(Chart(
+                Axis("truss_journal_x_m", "Journal − bearing centre, along x"), Axis("truss_journal_y_m", "along y"),
+                f"Journal of {joint['name']} in its clearance", equal=True, rings_m=(clearance,),
+            ))
+        elif joint is not None:
+            found.append(Chart(TEMPERATURE, Axis("truss_journal_m", f"Journal − bearing centre, {joint['name']}"),
+                               f"Way of the journal of {joint['name']} from its start"))
+        link = self._hardest_link()
+        if link is not None:
+            found.append(Chart(TEMPERATURE, Axis("truss_link_N", f"Axial force of {link}"),
+                               f"Largest axial force, link {link}: compression positive"))
+        return found
+
+    def _leading(self) -> Optional[Row]:
+        if not self.measures:
+            return None
+        first = self.measures[0].key
+        return max(self.joints, key=lambda joint: abs(joint[first]))
+
+    def _hardest_link(self) -> Optional[str]:
+        force = self._run.links["axial_force_N"]
+        if not force.values.size or not np.abs(force.values).max() > 0:
+            return None
+        return self.result.names["links"][int(np.argmax(np.abs(force.values).max(axis=0)))]
+
+    def _curves(self, run: ModelRun) -> dict[str, np.ndarray]:
+        names, way = self.result.names, self.node_jumps[-1, self._first]
+        size = float(np.linalg.norm(way))
+        moved = run.history["displacement_m"].values[:, self._first]
+        found = {"truss_node_m": (moved - moved[0]) @ (way / size if size > 0 else np.array([1.0, 0.0, 0.0]))}
+        joint, link = self._leading(), self._hardest_link()
+        if joint is not None and joint["kind"] == "slider":
+            found["truss_slide_m"] = run.history["slide_m"].values[:, names["sliders"].index(joint["name"])]
+        elif joint is not None:
+            place = run.history["eccentricity_m"].values[:, names["revolutes"].index(joint["name"])]
+            found.update({f"truss_journal_{axis}_m": place[:, number] for number, axis in enumerate("xy")})
+            found["truss_journal_m"] = np.linalg.norm(place - place[0], axis=1)
+        if link is not None:
+            found["truss_link_N"] = run.links["axial_force_N"].values[:, names["links"].index(link)]
+        return found
+
+    UNITS = {"truss_node_m": "m", "truss_slide_m": "m", "truss_journal_x_m": "m", "truss_journal_y_m": "m",
+             "truss_journal_m": "m", "truss_link_N": "N"}
+
+    # ---------------------------------------------------------------- drawing
+
+    def payload(self, encoded: Callable[[np.ndarray], Any]) -> Row:
+        """Data for the page's script.
+
+        :param encoded: makes a column of the page of an array
+        """
+        start = self._run.history["position_m"].values[0]
+        size = float(np.ptp(start, axis=0).max())
+        largest = float(self._size_m.max())
+        lines = [{"nodes": [self._number[name] for name in item["nodes"]], "kind": kind, "name": item["name"]}
+                 for kind in ("link", "spring") for item in self.case.get(kind) or []]
+        return {
+            "dimension": self.case["truss"]["dimension"],
+            "nodes": self.nodes,
+            "start": encoded(np.ascontiguousarray(start).ravel()),
+            "lines": lines,
+            "held": [place for place, item in enumerate(self.case["node"]) if words.is_held(item, self.case)],
+            "guided": [place for place, item in enumerate(self.case["node"])
+                       if (item.get("fixed") or item.get("guide_normal")) and not words.is_held(item, self.case)],
+            "cycles": [{"cycle": place + 1, "jump": encoded(self.node_jumps[place].ravel())}
+                       for place in _some(len(self.node_jumps), MOST_CYCLES)],
+            "jumps": [text(float(size), "m", 4) for size in self._size_m],
+            "largest_m": largest,
+            "magnification": round_down(SHOWN_JUMP * size / largest) if largest > 0 else 1.0,
+            "joints": [{**joint, "text": self._texts(joint)} for joint in self.joints],
+            "measures": [
+                {"key": measure.key, "label": measure.label, "note": measure.note, "signed": measure.signed,
+                 **dict(zip(("scale", "unit"), scale_of(measure.unit, max(abs(joint[measure.key]) for joint in self.joints))))}
+                for measure in self.measures
+            ],
+            "most": MOST_BARS,
+        }
+
+
+def _some(count: int, most: int) -> list[int]:
+    """Return places of the first and the last of many, all if they are few."""
+    return list(range(count)) if count <= most else [*range(most // 2), *range(count - most + most // 2, count)]
+
+
+def _cycles(count: int) -> str:
+    return "one cycle" if count == 1 else f"{count} cycles"
+
+
+def _parameter(key: str) -> str:
+    """Return ``revolute.*.radial_clearance_m`` as words."""
+    section, name, column = key.split(".", 2) if key.count(".") >= 2 else ("", "", key)
+    of = f"all {words.plain(section).lower()}s" if name == "*" else f"{words.plain(section).lower()} {name}"
+    return f"{words.parameter(column)} of {of}"
+
+
+def part_of(result: Result, case: dict[str, Any]) -> Optional[TrussPart]:
+    """Return the part of a page for a truss; None for other kinds, or without a history of its nodes."""
+    if result.kind != "truss" or not case.get("node") or not result.models:
+        return None
+    run = next(iter(result.models.values()))
+    if not {"position_m", "displacement_m"} <= set(run.history) or not len(run.time_s):
+        return None
+    return TrussPart(result, case)
