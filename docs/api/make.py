@@ -21,7 +21,8 @@ sys.dont_write_bytecode = True
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[1]
 sys.path.insert(0, str(HERE))
-HEADERS = ("contact_laws/kernel/include", "engine/include", "geometry/include")
+import cpp_pages  # noqa: E402 - beside this file
+
 DOXYFILE = """
 QUIET = YES
 WARNINGS = NO
@@ -48,31 +49,31 @@ def heading(text: str, mark: str = "=") -> str:
 
 def doxygen(folder: Path) -> Path:
     """Run Doxygen on the public headers; return the folder of its XML."""
-    inputs = " ".join(f'"{REPOSITORY / place}"' for place in HEADERS)
+    inputs = " ".join(f'"{REPOSITORY / place}"' for place in cpp_pages.FOLDERS)
     settings = f'{DOXYFILE}INPUT = {inputs}\nOUTPUT_DIRECTORY = "{folder}"\n'
     settings += f"STRIP_FROM_PATH = {inputs}\n"
     subprocess.run(["doxygen", "-"], input=settings, text=True, check=True)
     return folder / "xml"
 
 
-def cpp_page() -> str:
-    """Return the page of the C++ headers: everything is in one namespace and those inside of it."""
-    return "\n".join([
-        heading("C++ headers"), f"``{'``, ``'.join(HEADERS)}``.\n", ".. doxygennamespace:: statejump\n   :members:\n",
-    ])
-
-
-def python_page(build: Path) -> str:
-    """Return the page of the Python package, one section per module."""
-    lines = [heading("Python package")]
+def python_pages(build: Path) -> dict[str, str]:
+    """Return the pages of the Python package: name to text, one page per sub-package and ``index`` for the package."""
     package = build / "python" / "statejump"
-    names = ["statejump"] + sorted(
-        module.name for module in pkgutil.walk_packages([str(package)], "statejump.")
-        if not module.name.rsplit(".", 1)[1].startswith("_")
-    )
-    for name in names:
-        lines += [heading(name, "-"), f".. automodule:: {name}\n   :members:\n   :ignore-module-all:\n"]
-    return "\n".join(lines)
+    found = [module for module in pkgutil.walk_packages([str(package)], "statejump.")
+             if not module.name.rsplit(".", 1)[1].startswith("_")]
+    packages = ["statejump"] + [module.name for module in found if module.ispkg]
+    made = {}
+    for name in packages:
+        modules = [name] + sorted(module.name for module in found
+                                  if not module.ispkg and module.name.rpartition(".")[0] == name)
+        title = "Python package" if name == "statejump" else name
+        lines = [heading(title)]
+        if name == "statejump":
+            lines += [".. toctree::\n   :maxdepth: 1\n", *(f"   {other}" for other in packages[1:]), ""]
+        for module in modules:
+            lines += [heading(module, "-"), f".. automodule:: {module}\n   :members:\n   :ignore-module-all:\n"]
+        made["index" if name == "statejump" else name] = "\n".join(lines)
+    return made
 
 
 def main() -> None:
@@ -98,8 +99,10 @@ def main() -> None:
     )
     if not (source / "yade.rst").exists():
         sys.exit("the page of the YADE classes was not written: does the plugin load?")
-    (source / "cpp.rst").write_text(cpp_page(), encoding="utf-8")
-    (source / "python.rst").write_text(python_page(build), encoding="utf-8")
+    for part, pages in ("cpp", cpp_pages.pages(REPOSITORY, members)), ("python", python_pages(build)):
+        (source / part).mkdir()
+        for name, text in pages.items():
+            (source / part / f"{name}.rst").write_text(text, encoding="utf-8")
     (source / "keys.rst").write_text(key_pages.keys_page(), encoding="utf-8")
     (source / "symbols.rst").write_text(
         key_pages.symbols_page(
@@ -108,18 +111,18 @@ def main() -> None:
         ), encoding="utf-8",
     )
     done = subprocess.run(
-        ["/usr/bin/python3", "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html",
+        ["/usr/bin/python3", "-m", "sphinx", "-q", "-W", "--keep-going", "-j", "auto", "-b", "html",
          "-D", f"breathe_projects.statejump={members}", str(source), str(folder / "html")],
     )
     if done.returncode:
         sys.exit("the reference has warnings")
     # A reference that leads nowhere is shown as text without a word.
     symbols = (folder / "html" / "symbols.html").read_text(encoding="utf-8")
-    for domain, page in (("cpp", "cpp"), ("py", "yade")):
+    for domain, page in (("cpp", r"cpp/\w+"), ("py", "yade")):
         wanted = len(re.findall(f'class="xref {domain} ', symbols))
         found = len(re.findall(f'<a class="reference internal" href="{page}\\.html#[^>]*><code class="xref {domain} ', symbols))
         if not 0 < found == wanted:
-            sys.exit(f"symbols: {found} of {wanted} references to {page}.html lead somewhere")
+            sys.exit(f"symbols: {found} of {wanted} references to {domain} lead somewhere")
     print(folder / "html" / "index.html")
 
 
