@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures of a report page for the documentation: node screenshots.mjs PAGE FOLDER NAME [TIME].
+// The narrow one is of the replay, of a truss of its jumps.
 import path from "node:path";
 import { drawn, launch, NARROW, open, picture, slide } from "./browser.mjs";
 
@@ -12,9 +13,14 @@ for (const [kind, options] of [
   await drawn(page);
   await slide(page, "Time", Number(time));
   await picture(page);
+  const truss = page.locator("section:has(> .truss)");
+  if (await truss.count()) {
+    await truss.locator(".ranks button").first().click();
+    await page.mouse.move(0, 0);
+  }
   const target = path.join(folder, `${name}_${kind}.png`);
   if (kind === "narrow") {
-    await page.locator(".player").first().screenshot({ path: target });
+    await ((await truss.count()) ? truss : page.locator(".player")).first().screenshot({ path: target });
   } else {
     await page.setViewportSize({ width: 1180, height: 2150 });
     await page.evaluate(() => scrollTo(0, 0));
