@@ -8,6 +8,7 @@
 #include "bore.hpp"
 #include "contact_parts.hpp"
 #include "failure.hpp"
+#include "joint_exchange.hpp"
 #include "ranges.hpp"
 #include "shapes.hpp"
 
@@ -170,43 +171,20 @@ void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
     yade::Interaction* contact) {
   const auto& geometry = static_cast<const JointGeom&>(*geometry_pointer);
   auto& physics = static_cast<JointPhys&>(*physics_pointer);
-  const Real dt = scene->dt;
 
-  const kernel::ContactParameters parameters{
-      {physics.effectiveYoungModulus, physics.effectiveShearModulus},
-      physics.tangensOfFrictionAngle,
-      physics.normalDampingRatio,
-      physics.tangentialDampingRatio,
-      physics.effectiveMass};
-  kernel::ContactHistory history;
-  history.tangential_force = kernel::transport(-physics.shearForce, geometry.previousNormal,
-                                               geometry.normal, geometry.twistAngle);
-  history.tangential_stiffness = physics.ks;
-  history.slipping = physics.slipping;
+  kernel::ContactHistory history = contact_history(geometry, physics);
   const kernel::ContactKinematics kinematics{geometry.normal, geometry.penetrationDepth,
                                              geometry.effectiveRadius, geometry.relativeVelocity,
-                                             dt};
-  const kernel::ContactResponse response = kernel::hertz_mindlin(parameters, kinematics, history);
+                                             scene->dt};
+  const kernel::ContactResponse response =
+      kernel::hertz_mindlin(contact_parameters(physics), kinematics, history);
   if (scene->trackEnergy) account(response, geometry, physics);
   if (geometry.penetrationDepth <= 0) return false;
 
-  // Leapfrog is unstable beyond omega dt = 2 of the stiffest contact alone, whatever else acts.
-  if (dt * dt * response.normal_stiffness > 4 * physics.effectiveMass &&
-      physics.effectiveMass > 0) {
-    fail_unstable(physics.effectiveMass, response.normal_stiffness, *scene, *contact);
-  }
-  physics.kn = response.normal_stiffness;
-  physics.ks = history.tangential_stiffness;
-  physics.slipping = history.slipping;
-  physics.normalForce = response.normal_force * geometry.normal;
-  physics.shearForce = -history.tangential_force;
-
-  const kernel::Wrench wrench =
-      kernel::contact_wrench(response.force_on_1, geometry.arm1, geometry.arm2);
-  scene->forces.addForce(contact->id1, wrench.force_1);
-  scene->forces.addTorque(contact->id1, wrench.torque_1);
-  scene->forces.addForce(contact->id2, wrench.force_2);
-  scene->forces.addTorque(contact->id2, wrench.torque_2);
+  check_time_step(response.normal_stiffness, physics, *scene, *contact);
+  store(response, history, geometry.normal, physics);
+  apply(kernel::contact_wrench(response.force_on_1, geometry.arm1, geometry.arm2), *scene,
+        *contact);
   return true;
 }
 

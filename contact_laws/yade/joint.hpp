@@ -6,7 +6,6 @@
 
 #include "joint_energies.hpp"
 #include "registered.hpp"
-#include "statejump/kernel/frame.hpp"
 #include "statejump/kernel/joint_kinematics.hpp"
 #include "statejump/kernel/laws/joint_response.hpp"
 

@@ -4,6 +4,7 @@
 #include "contact_parts.hpp"
 #include "failure.hpp"
 #include "joint.hpp"
+#include "joint_exchange.hpp"
 #include "ranges.hpp"
 
 namespace statejump::dem {
@@ -74,7 +75,6 @@ void NamedJointLaw::begin(const JointGeom& geometry, JointPhys& physics, const y
 
 bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
                          const yade::Interaction& contact, yade::Scene& scene) {
-  const Real dt = scene.dt;
   const bool flat = geometry.bearingRadius == 0;
   if (geometry.bearingRadius < 0 && !std::holds_alternative<laws::HertzInternal>(law_.normal)) {
     fail_law("a wall that bulges needs normalLaw 'hertz_internal', not '" + normalLaw + "'", scene,
@@ -93,17 +93,7 @@ bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
   const bool touching = geometry.penetrationDepth > 0;
   if (touching && physics.impactSpeed == -1) begin(geometry, physics, scene);
 
-  const kernel::ContactParameters parameters{
-      {physics.effectiveYoungModulus, physics.effectiveShearModulus},
-      physics.tangensOfFrictionAngle,
-      physics.normalDampingRatio,
-      physics.tangentialDampingRatio,
-      physics.effectiveMass};
-  kernel::ContactHistory history;
-  history.tangential_force = kernel::transport(-physics.shearForce, geometry.previousNormal,
-                                               geometry.normal, geometry.twistAngle);
-  history.tangential_stiffness = physics.ks;
-  history.slipping = physics.slipping;
+  kernel::ContactHistory history = contact_history(geometry, physics);
   const auto& state1 = *body_at(scene, static_cast<std::size_t>(contact.id1))->state;
   const auto& state2 = *body_at(scene, static_cast<std::size_t>(contact.id2))->state;
   const laws::JointKinematics kinematics{
@@ -116,31 +106,20 @@ bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
       geometry.axis,
       physics.impactSpeed,
       geometry.clearanceRate,
-      dt};
+      scene.dt};
   try {
     const laws::JointResponse response =
-        laws::joint_response(law_, parameters, kinematics, history);
+        laws::joint_response(law_, contact_parameters(physics), kinematics, history);
     if (scene.trackEnergy) account(response, kinematics.geometry, geometry, physics, scene);
     if (!touching) return false;
 
-    const Real normal_stiffness = response.contact.normal_stiffness;
-    if (dt * dt * normal_stiffness > 4 * physics.effectiveMass && physics.effectiveMass > 0) {
-      fail_unstable(physics.effectiveMass, normal_stiffness, scene, contact);
-    }
-    physics.kn = normal_stiffness;
-    physics.ks = history.tangential_stiffness;
-    physics.slipping = history.slipping;
-    physics.normalForce = response.contact.normal_force * geometry.normal;
+    check_time_step(response.contact.normal_stiffness, physics, scene, contact);
+    store(response.contact, history, geometry.normal, physics);
     // 'ambrosio' remembers nothing: what it gives is force, not history.
-    physics.shearForce = physics.ks > 0 ? Vector3r(-history.tangential_force)
-                                        : Vector3r(-response.contact.tangential_force);
+    if (!(physics.ks > 0)) physics.shearForce = -response.contact.tangential_force;
     physics.dissipationSlope = response.dissipation_slope;
     physics.frictionSlope = response.friction_slope;
-    const kernel::Wrench& wrench = response.wrench;
-    scene.forces.addForce(contact.id1, wrench.force_1);
-    scene.forces.addTorque(contact.id1, wrench.torque_1);
-    scene.forces.addForce(contact.id2, wrench.force_2);
-    scene.forces.addTorque(contact.id2, wrench.torque_2);
+    apply(response.wrench, scene, contact);
   } catch (const std::exception& error) {
     fail_law(error.what(), scene, contact);
   }

@@ -1,0 +1,58 @@
+// What every law of the joints reads from a contact's JointGeom and JointPhys for the kernel, and
+// writes back. On the path of every step: inline.
+#pragma once
+
+#include "contact_parts.hpp"
+#include "joint.hpp"
+#include "statejump/kernel/contact_law.hpp"
+#include "statejump/kernel/frame.hpp"
+
+namespace statejump::dem {
+
+inline kernel::ContactParameters contact_parameters(const JointPhys& physics) {
+  return {{physics.effectiveYoungModulus, physics.effectiveShearModulus},
+          physics.tangensOfFrictionAngle,
+          physics.normalDampingRatio,
+          physics.tangentialDampingRatio,
+          physics.effectiveMass};
+}
+
+// History of friction, carried into the tangent plane of this step. YADE's forces act on body 2,
+// the kernel's on body 1.
+inline kernel::ContactHistory contact_history(const JointGeom& geometry, const JointPhys& physics) {
+  kernel::ContactHistory history;
+  history.tangential_force = kernel::transport(-physics.shearForce, geometry.previousNormal,
+                                               geometry.normal, geometry.twistAngle);
+  history.tangential_stiffness = physics.ks;
+  history.slipping = physics.slipping;
+  return history;
+}
+
+// What the contact keeps until the next step: stiffnesses, forces and history.
+inline void store(const kernel::ContactResponse& response, const kernel::ContactHistory& history,
+                  const Vector3r& normal, JointPhys& physics) {
+  physics.kn = response.normal_stiffness;
+  physics.ks = history.tangential_stiffness;
+  physics.slipping = history.slipping;
+  physics.normalForce = response.normal_force * normal;
+  physics.shearForce = -history.tangential_force;
+}
+
+// Leapfrog is unstable beyond omega dt = 2 of the stiffest contact alone, whatever else acts.
+inline void check_time_step(Real normal_stiffness, const JointPhys& physics,
+                            const yade::Scene& scene, const yade::Interaction& contact) {
+  if (scene.dt * scene.dt * normal_stiffness > 4 * physics.effectiveMass &&
+      physics.effectiveMass > 0) {
+    fail_unstable(physics.effectiveMass, normal_stiffness, scene, contact);
+  }
+}
+
+inline void apply(const kernel::Wrench& wrench, yade::Scene& scene,
+                  const yade::Interaction& contact) {
+  scene.forces.addForce(contact.id1, wrench.force_1);
+  scene.forces.addTorque(contact.id1, wrench.torque_1);
+  scene.forces.addForce(contact.id2, wrench.force_2);
+  scene.forces.addTorque(contact.id2, wrench.torque_2);
+}
+
+}  // namespace statejump::dem
