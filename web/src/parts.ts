@@ -44,7 +44,9 @@ export function axisOf(part: { axis?: [number, number, number] } | null | undefi
 
 /** Turns a part about its axis. */
 function orient(group: THREE.Group, part: PartData, angle: number): void {
-  group.quaternion.setFromUnitVectors(Z_AXIS, axisOf(part)).multiply(new THREE.Quaternion().setFromAxisAngle(Z_AXIS, angle));
+  group.quaternion
+    .setFromUnitVectors(Z_AXIS, axisOf(part))
+    .multiply(new THREE.Quaternion().setFromAxisAngle(Z_AXIS, angle));
 }
 
 function mesh(geometry: THREE.BufferGeometry, material: THREE.Material): THREE.Mesh {

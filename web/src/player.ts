@@ -310,7 +310,9 @@ class Player {
     this.updates.push(() => {
       const { head } = this;
       text.textContent = [
-        scene.clearance_m > 0 ? `Magnified: the place of a journal in its bearing or of a block in its slot, and the clearance itself, ${short(head.clearance)} times; the smallest clearance, ${gap}\u202fmm, is drawn as ${short(1e3 * scene.clearance_m * head.clearance)}\u202fmm.` : "",
+        scene.clearance_m > 0
+          ? `Magnified: the place of a journal in its bearing or of a block in its slot, and the clearance itself, ${short(head.clearance)} times; the smallest clearance, ${gap}\u202fmm, is drawn as ${short(1e3 * scene.clearance_m * head.clearance)}\u202fmm.`
+          : "",
         scene.deforms
           ? `The way of the links from where they started is magnified ${short(head.deformation)} times.`
           : "",
@@ -361,10 +363,11 @@ class Player {
   }
 
   private magnify(factor: number): void {
-    const next = (now: number) =>
-      Math.min(LARGEST_MAGNIFICATION, Math.max(1, Number((now * factor).toPrecision(2))));
+    const next = (now: number) => Math.min(LARGEST_MAGNIFICATION, Math.max(1, Number((now * factor).toPrecision(2))));
     const { together, clearance, deformation } = this.head;
-    this.head.change(together ? { clearance: next(clearance) } : { clearance: next(clearance), deformation: next(deformation) });
+    this.head.change(
+      together ? { clearance: next(clearance) } : { clearance: next(clearance), deformation: next(deformation) },
+    );
   }
 
   private key(event: KeyboardEvent): void {

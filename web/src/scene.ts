@@ -197,7 +197,12 @@ export class SceneView {
       if ((radius ?? half ?? bead) < bead)
         this.beads.set(on, new THREE.Mesh(new THREE.SphereGeometry(bead, 20, 14), new THREE.MeshStandardMaterial()));
     }
-    this.world.add(this.bodies.group, this.ghost.group, ...this.arrows.map((arrow) => arrow.group), ...this.beads.values());
+    this.world.add(
+      this.bodies.group,
+      this.ghost.group,
+      ...this.arrows.map((arrow) => arrow.group),
+      ...this.beads.values(),
+    );
     const key = new THREE.DirectionalLight(0xffffff, 2.2),
       fill = new THREE.DirectionalLight(0xffffff, 0.7);
     key.position.set(-4, 9, 10);
@@ -448,7 +453,9 @@ export class SceneView {
       const top = LABEL_STEPS.map((step) => wanted + step * (label.offsetHeight + 2)).find(
         (y) =>
           y >= label.offsetHeight &&
-          !taken.some((other) => Math.abs(other.left - left) < other.half + half && Math.abs(other.top - y) < label.offsetHeight),
+          !taken.some(
+            (other) => Math.abs(other.left - left) < other.half + half && Math.abs(other.top - y) < label.offsetHeight,
+          ),
       );
       if (top === undefined) {
         label.hidden = true;

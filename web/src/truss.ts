@@ -14,7 +14,9 @@ function told(state: TrussState, place: number | null): string {
   const parts = [
     text["contribution"] ? `contribution ${text["contribution"]}, ${text["share"]} of the jump` : "",
     text["jump"] ? `jump of the joint ${text["jump"]}` : "",
-    text["heat"] ? `heat ${text["heat"]}${text["heat_of_cycle"] ? `, ${text["heat_of_cycle"]} in the last cycle` : ""}` : "",
+    text["heat"]
+      ? `heat ${text["heat"]}${text["heat_of_cycle"] ? `, ${text["heat_of_cycle"]} in the last cycle` : ""}`
+      : "",
   ].filter(Boolean);
   const rank = state.order.indexOf(place!) + 1;
   return `${joint.name}, ${joint.kind} at node ${state.data.nodes[joint.node]}, rank ${rank} of ${state.data.joints.length}: ${parts.join("; ")}.`;
@@ -65,7 +67,9 @@ class Ranking {
     this.drawn = measure;
     if (!measure) {
       this.list.replaceChildren();
-      this.note.textContent = data.joints.length ? "No joint moved." : "This truss has no joints with friction or clearance.";
+      this.note.textContent = data.joints.length
+        ? "No joint moved."
+        : "This truss has no joints with friction or clearance.";
       return;
     }
     const values = data.joints.map((joint) => state.value(joint));
@@ -80,7 +84,8 @@ class Ranking {
     this.more.textContent = more > 0 ? `${more} more in the file and in the drawing.` : "";
     this.more.hidden = more <= 0;
     this.note.textContent =
-      measure.note + (measure.key !== "heat" && hottest > 0 ? " The thin bar is the heat of friction, of the hottest joint's." : "");
+      measure.note +
+      (measure.key !== "heat" && hottest > 0 ? " The thin bar is the heat of friction, of the hottest joint's." : "");
   }
 
   private row(place: number, rank: number, zero: number, scale: number, hottest: number): HTMLElement {

@@ -211,7 +211,10 @@ export class TrussDrawing {
       shape("path", { class: "moved", d: linesOf(data, moved, "link") }),
       ...this.nodes(moved),
       ...this.joints(moved, [width / 2, (drawn + beside) / 2]),
-      ...this.arrows(before.map((place) => onPage(place, beside)), moved),
+      ...this.arrows(
+        before.map((place) => onPage(place, beside)),
+        moved,
+      ),
       ...this.ruler(scale, width, height),
     );
     this.holder.replaceChildren(picture);
@@ -283,14 +286,20 @@ export class TrussDrawing {
               x: ((reach * (x - middle[0])) / away).toFixed(1),
               y: (away > 1 ? (reach * (y - middle[1])) / away : -reach).toFixed(1),
               dy: "0.35em",
-              "text-anchor": joint !== told ? "middle" : x > middle[0] + 20 ? "start" : x < middle[0] - 20 ? "end" : "middle",
+              "text-anchor":
+                joint !== told ? "middle" : x > middle[0] + 20 ? "start" : x < middle[0] - 20 ? "end" : "middle",
             },
             joint === told ? found.name : String(rank + 1),
           ),
         );
       }
-      group.addEventListener("pointerenter", () => this.state.pointed !== joint && this.state.change({ pointed: joint }));
-      group.addEventListener("click", () => this.state.change({ chosen: joint === chosen ? null : joint, pointed: null }));
+      group.addEventListener(
+        "pointerenter",
+        () => this.state.pointed !== joint && this.state.change({ pointed: joint }),
+      );
+      group.addEventListener("click", () =>
+        this.state.change({ chosen: joint === chosen ? null : joint, pointed: null }),
+      );
       return group;
     });
     // Small dots above large ones, what is told above all.
@@ -306,7 +315,10 @@ export class TrussDrawing {
       right = left + real * scale,
       y = height - 9;
     return [
-      shape("path", { class: "ruler", d: `M${left},${y - 4}V${y + 4}M${left},${y}H${right.toFixed(1)}M${right.toFixed(1)},${y - 4}V${y + 4}` }),
+      shape("path", {
+        class: "ruler",
+        d: `M${left},${y - 4}V${y + 4}M${left},${y}H${right.toFixed(1)}M${right.toFixed(1)},${y - 4}V${y + 4}`,
+      }),
       shape(
         "text",
         { class: "ruler-text", x: (right + 8).toFixed(1), y, dy: "0.35em" },
