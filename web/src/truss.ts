@@ -29,7 +29,7 @@ class Ranking {
   private readonly numbers = element("p", { class: "told", role: "status" });
   private readonly note = element("p", { class: "fine" });
   private readonly more = element("p", { class: "fine" });
-  private drawn: unknown = null;
+  private drawn: unknown = undefined; // no measure is null: drawn as well
 
   constructor(private readonly state: TrussState) {
     const { measures } = state.data;
@@ -58,7 +58,7 @@ class Ranking {
       row.setAttribute("aria-pressed", String(place === state.chosen));
       row.classList.toggle("told", place === state.told);
     }
-    this.numbers.textContent = told(state, state.told);
+    this.numbers.textContent = state.measure ? told(state, state.told) : "";
   }
 
   private fill(): void {
