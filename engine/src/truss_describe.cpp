@@ -28,9 +28,7 @@ double torsion_angle(const TrussModel& model, const TrussTorsionSpring& spring,
 }  // namespace
 
 Axial TrussSystem::axial(const TrussLink& link, const VectorXd& z, double time) const {
-  const Vector3d drawn =
-      model_->nodes[index(link.second)].position - model_->nodes[index(link.first)].position;
-  const Lengths length = lengths(drawn, displacement(link.second, z) - displacement(link.first, z));
+  const Lengths length = lengths_between(link.first, link.second, z);
   return link_axial(link, length.growth, length.drawn,
                     model_->temperature_change(link.program, link.temperature_fraction, time));
 }
@@ -64,7 +62,7 @@ void TrussSystem::describe(const VectorXd& z, double time, const Statuses& statu
   }
   for (int i = 0; i < size(model.springs); ++i) {
     const AxialSpring& spring = model.springs[index(i)];
-    const Axial force = spring_axial(spring, between(spring.first, spring.second, z).norm());
+    const Axial force = spring_axial(spring, lengths_between(spring.first, spring.second, z));
     state.tension[i] = force.tension;
     if (force.stiffness > 0.0) {
       state.elastic_energy += 0.5 * force.tension * force.tension / force.stiffness;
@@ -121,19 +119,19 @@ void TrussSystem::account(const VectorXd& z_before, double time_before, const Ve
 
 Eigen::SparseMatrix<double> TrussSystem::joined_stiffness(const VectorXd& z, double time,
                                                           const Statuses& statuses,
-                                                          JointModel joints) const {
-  // The forces of the joints are condensed: a direction that a joint holds becomes a stiff spring,
-  // the largest stiffness of the truss. Rows that hold nothing drop out.
+                                                          JointModel joints, double held) const {
+  // The forces of the joints are condensed: a direction that a joint holds becomes a stiff spring.
+  // Rows that hold nothing drop out.
   VectorXd residual(unknowns_);
   Eigen::SparseMatrix<double> jacobian = pattern();
   evaluate(z, time, step_start(z, statuses), statuses, joints, 1.0, residual, jacobian);
   const Eigen::SparseMatrix<double> full = jacobian.block(0, 0, displacements_, displacements_);
   const int forces = unknowns_ - displacements_;
-  Eigen::SparseMatrix<double> held = jacobian.block(displacements_, 0, forces, displacements_);
+  Eigen::SparseMatrix<double> rows = jacobian.block(displacements_, 0, forces, displacements_);
   // Rows in metres have gradients of order one, whatever lever arms they have.
   Eigen::SparseMatrix<double> stiffness =
       0.5 * (full + Eigen::SparseMatrix<double>(full.transpose()));
-  stiffness += stiffness_scale_ * (held.transpose() * held);
+  stiffness += held * stiffness_scale_ * (rows.transpose() * rows);
   return stiffness;
 }
 

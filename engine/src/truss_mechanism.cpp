@@ -5,6 +5,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "truss_newton.hpp"
@@ -18,6 +19,10 @@ namespace {
 /// 1e-16, the softest mode of a ring of 100 000 bays 1e-12.
 constexpr double free_share = 1e-13;
 constexpr int most_modes = 6;
+
+/// Joints that are held for the question of stability, in the stiffest part's stiffness: their
+/// compliance is that of a hundredth of such a part, and rounding stays below the share above.
+constexpr double stiff_joint = 100.0;
 
 /// "node 'B' (x), node 'C' (y)": the nodes that move most in a mode.
 std::string movers(const TrussSystem& system, const VectorXd& mode) {
@@ -41,21 +46,18 @@ std::string movers(const TrussSystem& system, const VectorXd& mode) {
   return text.str();
 }
 
-}  // namespace
+using Factors = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
 
-std::string mechanism(const TrussSystem& system, const VectorXd& z, double time,
-                      const Statuses& statuses, JointModel joints) {
-  const int n = system.displacements();
-  if (n == 0) return "";
-  Eigen::SparseMatrix<double> shifted = system.joined_stiffness(z, time, statuses, joints);
-  const double scale = system.stiffness_scale();
-  Eigen::SparseMatrix<double> identity(n, n);
-  identity.setIdentity();
-  shifted += 0.05 * free_share * scale * identity;
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(shifted);
-  if (factors.info() != Eigen::Success) return "";
+/// Modes of a symmetric matrix nearest to zero, and their eigenvalues.
+struct Modes {
+  VectorXd eigenvalues;
+  Eigen::MatrixXd vectors;
+};
+
+Modes lowest_modes(const Eigen::SparseMatrix<double>& matrix, const Factors& factors) {
   // Inverse iteration on a block: free modes outgrow all others by 20 and more in a round.
-  const int count = std::min(most_modes, n);
+  const Eigen::Index n = matrix.rows();
+  const Eigen::Index count = std::min<Eigen::Index>(most_modes, n);
   Eigen::MatrixXd block(n, count);
   for (int j = 0; j < count; ++j) {
     for (int i = 0; i < n; ++i) block(i, j) = std::sin(1.0 + 1.7 * i * (j + 1) + j);
@@ -65,19 +67,69 @@ std::string mechanism(const TrussSystem& system, const VectorXd& z, double time,
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(block);
     block = qr.householderQ() * Eigen::MatrixXd::Identity(n, count);
   }
-  const Eigen::MatrixXd projected = block.transpose() * (shifted * block);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(projected);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> found(block.transpose() * (matrix * block));
+  return {found.eigenvalues(), block * found.eigenvectors()};
+}
+
+/// The stiffness of the truss with its joints held, see joined_stiffness(), and a share of that of
+/// its stiffest part everywhere.
+Eigen::SparseMatrix<double> shifted_stiffness(const TrussSystem& system, const VectorXd& z,
+                                              double time, const Statuses& statuses,
+                                              JointModel joints, double held, double share) {
+  Eigen::SparseMatrix<double> shifted = system.joined_stiffness(z, time, statuses, joints, held);
+  Eigen::SparseMatrix<double> identity(shifted.rows(), shifted.rows());
+  identity.setIdentity();
+  shifted += share * system.stiffness_scale() * identity;
+  return shifted;
+}
+
+/// Those of the modes whose eigenvalues are in a range, in words; their number.
+std::pair<int, std::string> modes_between(const TrussSystem& system, const Modes& modes,
+                                          double smallest, double largest) {
   std::ostringstream text;
-  int free = 0;
-  for (int j = 0; j < count; ++j) {
-    if (modes.eigenvalues()[j] > free_share * scale) break;
+  int count = 0;
+  for (Eigen::Index j = 0; j < modes.eigenvalues.size(); ++j) {
+    if (!(modes.eigenvalues[j] >= smallest && modes.eigenvalues[j] <= largest)) continue;
     VectorXd mode = VectorXd::Zero(system.unknowns());
-    mode.head(n) = block * modes.eigenvectors().col(j);
-    text << (free++ == 0 ? "" : "; ") << movers(system, mode);
+    mode.head(modes.vectors.rows()) = modes.vectors.col(j);
+    text << (count++ == 0 ? "" : "; ") << movers(system, mode);
   }
+  return {count, text.str()};
+}
+
+}  // namespace
+
+std::string mechanism(const TrussSystem& system, const VectorXd& z, double time,
+                      const Statuses& statuses, JointModel joints) {
+  if (system.displacements() == 0) return "";
+  const Eigen::SparseMatrix<double> shifted =
+      shifted_stiffness(system, z, time, statuses, joints, 1.0, 0.05 * free_share);
+  const Factors factors(shifted);
+  if (factors.info() != Eigen::Success) return "";
+  const double least = free_share * system.stiffness_scale();
+  const auto [free, text] = modes_between(system, lowest_modes(shifted, factors), -least, least);
   if (free == 0) return "";
   return std::to_string(free) + (free == most_modes ? " or more" : "") + " free mode" +
-         (free == 1 ? "" : "s") + ": " + text.str();
+         (free == 1 ? "" : "s") + ": " + text;
+}
+
+std::string buckling(const TrussSystem& system, const VectorXd& z, double time) {
+  if (system.displacements() == 0) return "";
+  const Statuses held{
+      std::vector<JointStatus>(system.model().sliders.size(), JointStatus::stick),
+      std::vector<JointStatus>(system.model().revolutes.size(), JointStatus::stick)};
+  const Eigen::SparseMatrix<double> shifted =
+      shifted_stiffness(system, z, time, held, JointModel::pins, stiff_joint, free_share);
+  const Factors factors(shifted);
+  // Sylvester: as many negative pivots as negative eigenvalues.
+  const Eigen::Index unstable =
+      factors.info() == Eigen::Success ? (factors.vectorD().array() < 0.0).count() : 0;
+  if (unstable == 0) return "";
+  const double lowest = -std::numeric_limits<double>::infinity();
+  const std::string text =
+      modes_between(system, lowest_modes(shifted, factors), lowest, 0.0).second;
+  return std::to_string(unstable) + " mode" + (unstable == 1 ? "" : "s") + " without resistance" +
+         (text.empty() ? "" : ": " + text);
 }
 
 }  // namespace statejump::detail

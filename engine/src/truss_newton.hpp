@@ -43,4 +43,9 @@ class TrussNewton {
 std::string mechanism(const TrussSystem& system, const Eigen::VectorXd& z, double time,
                       const Statuses& statuses, JointModel joints);
 
+/// Sentence that names the modes in which the equilibrium at z is unstable though every joint is
+/// held (so friction cannot help), or "". That a joint which slips or leaves its bearing makes the
+/// truss unstable is not seen.
+std::string buckling(const TrussSystem& system, const Eigen::VectorXd& z, double time);
+
 }  // namespace statejump::detail

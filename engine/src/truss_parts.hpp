@@ -42,23 +42,28 @@ inline Axial link_axial(const TrussLink& link, double elongation_from_drawn, dou
   return {stiffness * stretch, stiffness};
 }
 
-inline Axial spring_axial(const AxialSpring& spring, double length) {
-  const double stretch = length - spring.free_length;
-  if (spring.cable && stretch < 0.0) return {0.0, 0.0};
-  return {spring.stiffness * stretch, spring.stiffness};
-}
-
-/// Length of drawn + moved, and its growth, without the difference of two lengths.
+/// Vector drawn + moved, its length and that length's growth, without the difference of two
+/// lengths.
 struct Lengths {
+  Vector3d along;
   double drawn;
   double now;
   double growth;
 };
 
 inline Lengths lengths(const Vector3d& drawn, const Vector3d& moved) {
+  const Vector3d along = drawn + moved;
   const double before = drawn.norm();
-  const double now = (drawn + moved).norm();
-  return {before, now, moved.dot(2.0 * drawn + moved) / (before + now)};
+  const double now = along.norm();
+  return {along, before, now, moved.dot(2.0 * drawn + moved) / (before + now)};
+}
+
+/// A stiff spring would make noise of the rounding of its length: what is drawn is fixed, only the
+/// growth moves.
+inline Axial spring_axial(const AxialSpring& spring, const Lengths& length) {
+  const double stretch = (length.drawn - spring.free_length) + length.growth;
+  if (spring.cable && stretch < 0.0) return {0.0, 0.0};
+  return {spring.stiffness * stretch, spring.stiffness};
 }
 
 inline double depth_of(const ClearanceRevolute& revolute, double normal_force) {

@@ -87,6 +87,7 @@ struct Walker {
       throw std::runtime_error("the truss is a mechanism" + at_temperature(model, when) + ": " +
                                modes);
     }
+    refuse_buckled(when);
     throw std::runtime_error(
         doing + at_temperature(model, when) +
         (report.end == SolveEnd::singular ? ": the stiffness is singular" : ": not converged") +
@@ -104,6 +105,7 @@ struct Walker {
 
   void start();
   void open_clearances();
+  void refuse_buckled(double when) const;
   StepEnd step_to(double target, double tolerance);
   bool state_depends_on(int joint, JointStatus before, JointStatus after) const;
   bool slide_at_stake(int joint, JointStatus before, double target) const;
@@ -125,7 +127,16 @@ void Walker::start() {
   if (report.end != SolveEnd::converged) {
     fail(report, JointModel::pins, 0.0, "no equilibrium of the drawn shape");
   }
+  refuse_buckled(0.0);
   if (!model.revolutes.empty()) open_clearances();
+}
+
+/// Throws if the state is unstable whatever the joints do.
+void Walker::refuse_buckled(double when) const {
+  const std::string modes = detail::buckling(system, z, when);
+  if (modes.empty()) return;
+  throw std::runtime_error("the truss has buckled" + at_temperature(model, when) +
+                           ": with every joint held its equilibrium is unstable, " + modes);
 }
 
 void Walker::open_clearances() {
@@ -374,6 +385,7 @@ TrussPath truss_path(const TrussModel& model, const TrussOptions& options) {
       if (!walker.path.complete) break;
       if (k > 0 && !options.cycle_ends_only) walker.path.states.push_back(walker.state);
     }
+    if (walker.path.complete) walker.refuse_buckled(walker.time);
     if (walker.path.complete && times[b + 1] >= cycle * model.programs.front().period) {
       walker.path.cycle_ends.push_back(walker.state);
       ++cycle;

@@ -101,6 +101,11 @@ Vector3d TrussSystem::between(int from, int to, const VectorXd& z) const {
          (displacement(to, z) - displacement(from, z));
 }
 
+Lengths TrussSystem::lengths_between(int from, int to, const VectorXd& z) const {
+  return lengths(model_->nodes[index(to)].position - model_->nodes[index(from)].position,
+                 displacement(to, z) - displacement(from, z));
+}
+
 int TrussSystem::far_node(int link, int node) const {
   const TrussLink& part = model_->links[index(link)];
   return part.first == node ? part.second : part.first;
@@ -285,17 +290,15 @@ double TrussSystem::assemble(const VectorXd& z, double time, const StepStart& st
     largest = std::max(largest, std::abs(axial.tension));
   };
   for (const TrussLink& link : model.links) {
-    const Vector3d drawn =
-        model.nodes[index(link.second)].position - model.nodes[index(link.first)].position;
-    const Vector3d moved = displacement(link.second, z) - displacement(link.first, z);
-    const Lengths length = lengths(drawn, moved);
+    const Lengths length = lengths_between(link.first, link.second, z);
     const double change = link.temperature_fraction * changes[index(link.program)];
-    bar(link.first, link.second, (drawn + moved) / length.now, length.now,
+    bar(link.first, link.second, length.along / length.now, length.now,
         link_axial(link, length.growth, length.drawn, change));
   }
   for (const AxialSpring& spring : model.springs) {
-    const Vector3d v = between(spring.first, spring.second, z);
-    bar(spring.first, spring.second, v / v.norm(), v.norm(), spring_axial(spring, v.norm()));
+    const Lengths length = lengths_between(spring.first, spring.second, z);
+    bar(spring.first, spring.second, length.along / length.now, length.now,
+        spring_axial(spring, length));
   }
 
   for (std::size_t i = 0; i < model.torsion_springs.size(); ++i) {

@@ -16,6 +16,7 @@ using Matrix32 = Eigen::Matrix<double, 3, 2>;
 enum class JointModel : unsigned char { pins, frictionless, friction };
 
 struct Axial;
+struct Lengths;
 
 struct Statuses {
   std::vector<JointStatus> sliders;
@@ -104,9 +105,12 @@ class TrussSystem {
   }
 
   /// Symmetric stiffness of links and springs at z with joints closed (penalty), for the search for
-  /// mechanisms; free displacements only. A joint listed as open or slipping does not hold there.
+  /// mechanisms and instability; free displacements only. A joint listed as open or slipping does
+  /// not hold there.
+  /// @param held stiffness of a direction that a joint holds, in that of the stiffest part
   Eigen::SparseMatrix<double> joined_stiffness(const Eigen::VectorXd& z, double time,
-                                               const Statuses& statuses, JointModel joints) const;
+                                               const Statuses& statuses, JointModel joints,
+                                               double held) const;
   /// Rounding of a displacement at z [m].
   double length_rounding(const Eigen::VectorXd& z) const;
   int displacements() const { return displacements_; }
@@ -122,6 +126,7 @@ class TrussSystem {
                   Sink& sink) const;
   double surface_angle(const Eigen::Vector2d& before, const Eigen::Vector2d& now) const;
   Eigen::Vector3d between(int from, int to, const Eigen::VectorXd& z) const;
+  Lengths lengths_between(int from, int to, const Eigen::VectorXd& z) const;
   Eigen::Vector2d link_direction(int link, int at_node, const Matrix32& plane,
                                  const Eigen::VectorXd& z) const;
   int far_node(int link, int node) const;

@@ -125,9 +125,10 @@ struct TrussPath {
 ///
 /// Throws std::invalid_argument for a model or option out of range. Throws std::runtime_error that
 /// names joint or nodes and the temperature: for a mechanism (with its free modes), also one that a
-/// joint makes that opens; for a revolute that carries no force at the start (statics does not
-/// determine its position in the play) or jumps across its play; where equilibrium is not found;
-/// and for a joint whose status changes without end.
+/// joint makes that opens; for an equilibrium of the start or at a corner of the programs that is
+/// unstable though every joint is held (buckled, with the modes); for a revolute that carries no
+/// force at the start (statics does not determine its position in the play) or jumps across its
+/// play; where equilibrium is not found; and for a joint whose status changes without end.
 TrussPath truss_path(const TrussModel& model, const TrussOptions& options = {});
 
 }  // namespace statejump
