@@ -442,7 +442,7 @@ COUNTS = [
     ("chain", 1, [2, 1, 1, 0, 0, 0]), ("chain", 10, [11, 10, 10, 0, 0, 0]),
     ("iwan", 1, [3, 2, 1, 0, 0, 0]), ("iwan", 10, [12, 11, 10, 0, 0, 0]),
     ("umbrella", 1, [4, 2, 0, 1, 0, 1]), ("umbrella", 8, [32, 16, 0, 8, 0, 8]),
-    ("ring", 3, [10, 12, 0, 3, 3, 0]), ("ring", 12, [37, 48, 0, 12, 12, 0]),
+    ("ring", 3, [10, 15, 0, 3, 0, 0]), ("ring", 12, [37, 60, 0, 12, 0, 0]),
     ("mast", 1, [5, 4, 0, 0, 0, 2]), ("mast", 6, [30, 24, 0, 10, 0, 12]),
 ]
 
@@ -558,8 +558,8 @@ def stiffness_and_forces(truss: ResolvedTruss, temperature_change_K: float) -> t
         rigidity = links.young_modulus_Pa[index] * links.cross_section_area_m2[index]
         row((nodes[0], -along), (nodes[1], along))
         stiffness.append(rigidity / length)
-        stress.append(-rigidity * links.thermal_expansion_per_K[index] * links.temperature_fraction[index]
-                      * temperature_change_K)
+        heated = links.thermal_expansion_per_K[index] * links.temperature_fraction[index] * temperature_change_K
+        stress.append(rigidity * (length / links.stress_free_length_m[index] - 1 - heated))
     for index, nodes in enumerate(springs.nodes):
         along, _ = direction(nodes)
         row((nodes[0], -along), (nodes[1], along))
@@ -585,7 +585,8 @@ def stiffness_and_forces(truss: ResolvedTruss, temperature_change_K: float) -> t
 @pytest.mark.parametrize("n", (3, 4, 12, 50))
 @pytest.mark.parametrize("sunlit", (True, False))
 def test_ring_is_rigid_and_presses_every_joint(n: int, sunlit: bool) -> None:
-    truss = parsed(GENERATORS["ring"](n, sunlit=sunlit)).resolve()
+    # No length of the outer links for clearances, for there are none here.
+    truss = parsed(GENERATORS["ring"](n, sunlit=sunlit, radial_clearance_m=1e-12)).resolve()
     outer = [name.startswith("outer") for name in truss.links.names]
     # Every joint is between two links of the outer hoop, its own and the one before.
     names, joints = truss.links.names, truss.revolutes

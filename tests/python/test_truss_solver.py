@@ -12,6 +12,7 @@ from statejump import _engine, reduced
 from statejump.case import load_case, parse_case
 from statejump.errors import StatejumpError
 from statejump.truss import generate, solve
+from statejump.truss.document import document, finished, node
 from statejump.truss.resolved import ResolvedTruss
 from statejump.umbrella import model as umbrella
 
@@ -205,6 +206,76 @@ def test_mechanism_names_its_free_modes() -> None:
     message = failure(document)
     assert "mechanism even with every joint held" in message
     assert "4 free modes: node '" in message
+
+
+def column(load_N: float, temperature_change_K: float = 0.0) -> dict[str, Any]:
+    """Two bars in a line, 1 m each, whose middle a spring of 1000 N/m holds across: the bars buckle at
+    N = k L / 2 = 500 N. A load compresses them, or heating between fixed ends."""
+    made = document("column", "", "closed form", 2, temperature_change_K or 1.0, "triangle", 1, 1.0)
+    heated = bool(temperature_change_K)
+    load = {} if heated else {"force_N": [-load_N, 0.0]}
+    made["node"] += [
+        node("A", (0, 0), "xy"), node("B", (1, 0)), node("C", (2, 0), "xy" if heated else "y", **load),
+        node("D", (1, -1), "xy"),
+    ]
+    bar = {"young_modulus_Pa": 70e9, "cross_section_area_m2": 1e-4, "density_kg_per_m3": 2700.0,
+           "thermal_expansion_per_K": 1e-5 if heated else 0.0}
+    made["link"] += [{"name": name, "nodes": list(name), **bar} for name in ("AB", "BC")]
+    made["spring"].append({"name": "DB", "nodes": ["D", "B"], "stiffness_N_per_m": 1000.0, "preload_N": 0.0})
+    return finished(made)
+
+
+# The bars are shorter by N / E A = 7e-5 when they buckle, and turn the more easily.
+NEAR_BUCKLING = 1e-3
+
+
+def test_column_under_a_load_buckles_at_the_closed_form() -> None:
+    path(column(500 * (1 - NEAR_BUCKLING)))
+    message = failure(column(500 * (1 + NEAR_BUCKLING)))
+    assert "has buckled at a temperature change of 0 K" in message
+    assert "1 mode without resistance: node 'B' mostly along y" in message
+
+
+def test_heated_column_buckles_at_its_temperature() -> None:
+    """N = E A alpha dT / (1 + alpha dT) between fixed ends."""
+    critical_K = 500 / (7e6 - 500) / 1e-5
+    path(column(0.0, critical_K * (1 - NEAR_BUCKLING)))
+    highest_K = critical_K * (1 + NEAR_BUCKLING)
+    assert f"has buckled at a temperature change of {highest_K:.9g} K" in failure(column(0.0, highest_K))
+
+
+def test_slender_ring_buckles_when_its_spokes_are_too_soft() -> None:
+    """A ring on an elastic bed of k per bay buckles at 2 sqrt(k / bay E I). The generator's spokes make that four
+    times the hoop force H, so a sixteenth of k takes the margin away. Shear of the bays, H over 1.2 MN of a
+    diagonal, lowers it by 2 % of H or 4 % of k."""
+    bays, hoop_force_N = 1000, 25e3  # high, so that buckling and not the strain of the spokes chooses k
+
+    def ring(softer: float) -> dict[str, Any]:
+        made = generate.ring(bays, hoop_force_N=hoop_force_N, temperature_change_K=1.0)
+        length = 0.25 / np.sin(np.pi / bays) - 0.25
+        for link in made["link"]:
+            if link["name"].startswith("spoke"):
+                strain = length / link["stress_free_length_m"] - 1
+                link["cross_section_area_m2"] /= softer
+                link["stress_free_length_m"] = length / (1 + strain * softer)
+        return made
+
+    path(ring(16 * 0.92), increments_per_branch=1, locate_events=False)
+    assert "has buckled at a temperature change of 0 K" in failure(ring(16 * 1.02))
+
+
+@pytest.mark.parametrize("bays", [3, 5, 12, 50])
+@pytest.mark.parametrize("change_K", [0.1, 100.0])
+def test_generated_rings_start_in_contact_at_the_drawn_shape(bays: int, change_K: float) -> None:
+    """Links are made for the drawn shape under load with the clearances taken up, so every joint carries half of
+    the hoop force. Left is the Hertz depth, below 6 um up to 4 kN: it takes E A depth / bay, 84 N, away at most."""
+    found = path(generate.ring(bays, temperature_change_K=change_K), increments_per_branch=1, locate_events=False)
+    outer = 0.25 / np.sin(np.pi / bays)
+    hoop_force_N = max(1000.0, 7e6 * 23.4e-6 * change_K * min(0.25, outer / 2) / outer)
+    assert found.states["normal_force_N"][0] == pytest.approx(hoop_force_N / 2, abs=84)
+    start = found.cycle_ends["displacement_m"][0]
+    inner = [name.startswith("I") for name in found.truss.nodes.names]
+    assert np.linalg.norm(start[inner], axis=1).max() < bays * 6e-6 / (2 * np.pi)
 
 
 def test_unloaded_joint_is_named() -> None:

@@ -13,6 +13,7 @@ TUBE = {
     "density_kg_per_m3": 2700.0,
 }
 BAY_M = 0.5
+SPOKE_STRAIN = 1e-3  # of the spokes by their preload
 
 
 def ring(
@@ -31,17 +32,21 @@ def ring(
           |      .          |
         I[k] ------------ I[k+1] ----------      inner hoop
            .                .
-              .          .                       spokes: springs to the hub, in tension
+              .          .                       spokes: links to the hub, in tension
 
     A closed planar lattice of 4 n links on 2 n nodes is rigid with three self-stresses, so it stays
-    rigid while the joints, one per outer hoop link, are in contact. The spokes compress the hoops and
-    so load every joint; they also carry the ring like a wheel, without which a slender ring
-    of many bays is as good as loose (stiffness 1 / n^4 of its bars'). The hub is fixed and node I0 held
-    across its spoke: three supports, no force from uniform expansion other than the spokes'. The spokes'
-    stiffness is such that uniform heating by the largest temperature change adds half of the preload.
-    A sunlit ring has (1 + cos(angle)) / 2 of the temperature change, another all of it everywhere. The
-    hoops then bend, which takes compression from the joints on one side: the default hoop force,
-    E A alpha dT depth / radius and at least 1 kN, leaves two thirds of it in every joint.
+    rigid while the joints, one per outer hoop link, are in contact. The spokes compress the hoops, each
+    with half of the hoop force, and so load every joint. All links are so much longer or shorter, the
+    outer ones by the clearance too, that the drawn shape is the equilibrium with all joints in contact.
+    The hub is fixed and node I0 held across its spoke: three supports, no force from uniform expansion,
+    for spokes expand as their bays do. A sunlit ring has (1 + cos(angle)) / 2 of the temperature change,
+    another all of it everywhere. The hoops then bend, which takes compression from the joints on one
+    side: the default hoop force, E A alpha dT depth / radius and at least 1 kN, leaves two thirds of it in
+    every joint.
+
+    The spokes are stretched by a thousandth, and stiff enough to hold the ring like a wheel: a slender
+    ring under compression on an elastic bed k per bay buckles at 2 sqrt(k / bay E I), E I the bending
+    stiffness of both hoops; the spokes make that four times the hoop force.
 
     :param n: number of bays, at least 3
     :param name: name of the case
@@ -67,7 +72,10 @@ def ring(
     rigidity = TUBE["young_modulus_Pa"] * TUBE["cross_section_area_m2"]
     hoop = hoop_force_N or max(1000.0, rigidity * strain * depth / outer)
     preload = 2 * sin(pi / n) * hoop
-    stiffness = 0.5 * preload / (strain * inner) if strain else preload / inner
+    bending_stiffness = 2 * rigidity * (depth / 2) ** 2
+    stiffness = max(preload / (SPOKE_STRAIN * inner), 4 * hoop**2 * BAY_M / bending_stiffness)
+    inner_bay = 2 * inner * sin(pi / n)
+    radial = preload / 2  # tension that holds the outer hoop
 
     def lit(bay: float) -> dict[str, Any]:
         return {"temperature_fraction": tidy([(1 + cos(2 * pi * bay / n)) / 2])[0]} if sunlit else {}
@@ -80,19 +88,24 @@ def ring(
             node(f"I{k}", (inner * cos(angle), inner * sin(angle)), "y" if k == 0 else ""),
             node(f"O{k}", place), node(f"J{k}", place),
         ]
-        for kind, ends, bay in (
-            ("inner", [f"I{k}", f"I{after}"], k + 0.5), ("outer", [f"J{k}", f"O{after}"], k + 0.5),
-            ("radial", [f"I{k}", f"O{k}"], k), ("diagonal", [f"I{k}", f"O{after}"], k + 0.5),
+        for kind, ends, bay, length, tension in (
+            ("inner", [f"I{k}", f"I{after}"], k + 0.5, inner_bay, -hoop / 2),
+            ("outer", [f"J{k}", f"O{after}"], k + 0.5, BAY_M + radial_clearance_m, -hoop / 2),
+            ("radial", [f"I{k}", f"O{k}"], k, depth, radial),
+            ("diagonal", [f"I{k}", f"O{after}"], k + 0.5, 0.0, 0.0),
         ):
-            made["link"].append({"name": f"{kind}{k}", "nodes": ends, **TUBE, **lit(bay)})
+            free = {"stress_free_length_m": length / (1 + tension / rigidity)} if tension else {}
+            made["link"].append({"name": f"{kind}{k}", "nodes": ends, **TUBE, **free, **lit(bay)})
+        made["link"].append({
+            "name": f"spoke{k}", "nodes": ["hub", f"I{k}"], **TUBE,
+            "cross_section_area_m2": stiffness * inner / TUBE["young_modulus_Pa"],
+            "stress_free_length_m": inner / (1 + preload / (stiffness * inner)), **lit(k),
+        })
         made["revolute"].append({
             "name": f"joint{k}", "bearing_node": f"O{k}", "journal_node": f"J{k}",
             "bearing_link": f"outer{(k - 1) % n}", "journal_link": f"outer{k}", "journal_radius_m": journal_radius_m,
             "radial_clearance_m": radial_clearance_m, "friction_coefficient": friction_coefficient,
             "contact": contact, **lit(k),
-        })
-        made["spring"].append({
-            "name": f"spoke{k}", "nodes": ["hub", f"I{k}"], "stiffness_N_per_m": stiffness, "preload_N": preload,
         })
     return finished(made)
 
