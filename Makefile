@@ -7,7 +7,7 @@ demo: build
 	$(BUILD)/bin/statejump compare cases/table1.toml
 
 test: build
-	ctest --test-dir $(BUILD) --output-on-failure
+	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
 
 bench: build
 	PYTHONPATH=$(BUILD)/python /usr/bin/python3 bench/run.py --build $(BUILD)
@@ -29,7 +29,7 @@ setup:
 sanitize: setup
 	cmake --preset sanitize
 	cmake --build build-sanitize --parallel $(JOBS)
-	ctest --test-dir build-sanitize --output-on-failure
+	ctest --test-dir build-sanitize --output-on-failure --parallel $(JOBS)
 
 format:
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i
