@@ -630,6 +630,23 @@ def test_bodies_are_drawn_where_they_are(compared, tmp_path: Path) -> None:
     assert math.atan2(*(end - start)[1::-1]) == pytest.approx(dem["theta4_rad"][middle], abs=1e-12)
 
 
+def test_bodies_in_space_are_drawn_across_their_axis(compared, tmp_path: Path) -> None:
+    result = read(compared("umbrella_damped") / "comparison.h5")
+    axis = np.array([0.0, -0.6, 0.8])
+    for part in result.scene["parts"]:
+        if part["type"] == "bearing":
+            part["axis"], part["angle_rad"] = axis.tolist(), 0.0
+    write_vtk(result, tmp_path, 3)
+    _, data = series(tmp_path / "dem_parts.vtp.series")[0]
+    points = vtk_to_numpy(data.GetPoints().GetData())
+    ids = data.GetCell(texts(data.GetCellData(), "part").index("bearing")).GetPointIds()
+    circle = points[[ids.GetId(i) for i in range(ids.GetNumberOfIds() - 1)]]
+    about = circle - circle.mean(axis=0)
+    # Rounding of the radius and of the place.
+    assert np.abs(about @ axis).max() < 1e-15
+    assert np.linalg.norm(about, axis=1) == pytest.approx(0.0051, rel=1e-12)
+
+
 def test_meshes_and_further_forces(tmp_path: Path) -> None:
     result = truss_like()
     written = [path.name for path in write_vtk(result, tmp_path, 0)]

@@ -18,9 +18,22 @@ def _polyline(points: list[tuple[float, float]]) -> np.ndarray:
     return np.array([(x, y, 0.0) for x, y in points])
 
 
+def _frame(axis: list[float]) -> np.ndarray:
+    """Return a rotation (3, 3) whose third column is the axis."""
+    third = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
+    first = np.cross(np.eye(3)[np.argmin(np.abs(third))], third)
+    first /= np.linalg.norm(first)
+    return np.stack([first, np.cross(third, first), third], axis=1)
+
+
 def outlines(part: dict[str, Any]) -> list[np.ndarray]:
-    """Return polylines (points, 3) [m] of a part at ΔT = 0, about its centre; none for links, springs,
-    frames and meshes, whose points stand in the scene or in the file."""
+    """Return polylines (points, 3) [m] of a part at ΔT = 0, about its centre and across its axis, z unless it
+    has another; none for links, springs, frames and meshes, whose points stand in the scene or in the file."""
+    flat = _flat_outlines(part)
+    return [line @ _frame(part["axis"]).T for line in flat] if "axis" in part else flat
+
+
+def _flat_outlines(part: dict[str, Any]) -> list[np.ndarray]:
     kind = part["type"]
     if kind == "journal":  # the spoke shows how it turns
         return [_circle(part["radius_m"]), _polyline([(0, 0), (part["radius_m"], 0)])]
