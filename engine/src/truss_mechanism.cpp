@@ -97,20 +97,46 @@ std::pair<int, std::string> modes_between(const TrussSystem& system, const Modes
   return {count, text.str()};
 }
 
+/// "2 free modes: ...", "" without any; whether some direction has a negative stiffness.
+std::pair<std::string, bool> free_modes(const TrussSystem& system, const VectorXd& z, double time,
+                                        const Statuses& statuses, JointModel joints) {
+  const Eigen::SparseMatrix<double> shifted =
+      shifted_stiffness(system, z, time, statuses, joints, 1.0, 0.05 * free_share);
+  const Factors factors(shifted);
+  if (factors.info() != Eigen::Success) return {"", false};
+  const double least = free_share * system.stiffness_scale();
+  const auto [free, text] = modes_between(system, lowest_modes(shifted, factors), -least, least);
+  const bool pushed = (factors.vectorD().array() < 0.0).any();
+  if (free == 0) return {"", pushed};
+  return {std::to_string(free) + (free == most_modes ? " or more" : "") + " free mode" +
+              (free == 1 ? "" : "s") + ": " + text,
+          pushed};
+}
+
+/// The truss with parts that carry no force as drawn; slack cables stay slack.
+TrussModel without_stress(TrussModel model) {
+  const auto drawn = [&](const auto& part) {
+    return (model.nodes[index(part.second)].position - model.nodes[index(part.first)].position)
+        .norm();
+  };
+  for (TrussLink& link : model.links) link.stress_free_length = drawn(link);
+  for (AxialSpring& spring : model.springs) {
+    if (!spring.cable || spring.free_length < drawn(spring)) spring.free_length = drawn(spring);
+  }
+  for (TrussTorsionSpring& spring : model.torsion_springs) spring.free_angle = 0.0;
+  return model;
+}
+
 }  // namespace
 
 std::string mechanism(const TrussSystem& system, const VectorXd& z, double time,
                       const Statuses& statuses, JointModel joints) {
   if (system.displacements() == 0) return "";
-  const Eigen::SparseMatrix<double> shifted =
-      shifted_stiffness(system, z, time, statuses, joints, 1.0, 0.05 * free_share);
-  const Factors factors(shifted);
-  if (factors.info() != Eigen::Success) return "";
-  const double least = free_share * system.stiffness_scale();
-  const auto [free, text] = modes_between(system, lowest_modes(shifted, factors), -least, least);
-  if (free == 0) return "";
-  return std::to_string(free) + (free == most_modes ? " or more" : "") + " free mode" +
-         (free == 1 ? "" : "s") + ": " + text;
+  const auto [text, pushed] = free_modes(system, z, time, statuses, joints);
+  if (!text.empty() || !pushed || !z.isZero()) return text;
+  // Forces of the drawn shape may push a mechanism along its free mode; without them it is one.
+  const TrussModel slack = without_stress(system.model());
+  return free_modes(TrussSystem(slack), z, time, statuses, joints).first;
 }
 
 std::string buckling(const TrussSystem& system, const VectorXd& z, double time) {
