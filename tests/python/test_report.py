@@ -19,7 +19,8 @@ from conftest import BUILT, COMMAND, REPOSITORY, Outcome
 
 from statejump.compare import quantity
 from statejump.errors import StatejumpError
-from statejump.report import page, units
+from statejump import units
+from statejump.report import page
 from statejump.report.decimation import kept_samples, largest_error
 from statejump.report.document import TOLERANCE, Document
 from statejump.report.drawing import round_down

@@ -13,7 +13,8 @@ import pytest
 from conftest import COMMAND, REPOSITORY, Outcome
 from test_report import MEGABYTE, Page, decoded, pytestmark, written  # noqa: F401  (no page, no test)
 
-from statejump.report import units, words
+from statejump import units
+from statejump.report import words
 from statejump.report.command import result_files
 from statejump.report.document import Document
 from statejump.report.drawing import round_down

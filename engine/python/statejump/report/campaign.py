@@ -14,8 +14,8 @@ import numpy as np
 
 from ..campaign.summary import statistics, spearman
 from ..errors import StatejumpError
+from ..units import scale_of, text
 from . import words
-from .units import scale_of, text
 
 BARS = 60  # of a histogram, as in the figures of the commands
 QUANTILES = ("quantile_5", "median", "quantile_95")

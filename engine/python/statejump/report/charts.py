@@ -7,8 +7,9 @@ from typing import Any, Optional
 
 import numpy as np
 
+from .. import units
 from ..resultfile import Result
-from . import units, words
+from . import words
 
 
 @dataclass(frozen=True)

@@ -17,12 +17,12 @@ import numpy as np
 
 from ..compare import Quantity
 from ..resultfile import Event, ModelRun, Result
+from ..units import scale_of, text
 from . import charts, words
 from .decimation import errors, kept_samples
 from .drawing import Drawing
 from .energy import Account, account
 from .truss import part_of
-from .units import scale_of, text
 
 TOLERANCE = 2e-4  # of a column's range, what decimation may cost
 MOST_SAMPLES = 4000  # of a model on a page

@@ -10,9 +10,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from .. import __version__
+from .. import units
 from ..errors import StatejumpError
 from ..output import write_atomically
-from . import units, words
+from . import words
 from .campaign import CampaignDocument
 from .document import Document
 

@@ -14,10 +14,10 @@ import numpy as np
 
 from ..resultfile import ModelRun, Result
 from ..resultfile.contents import unit_of
+from ..units import scale_of, text
 from . import words
 from .charts import TEMPERATURE, Axis, Chart
 from .drawing import round_down
-from .units import scale_of, text
 
 SHOWN_JUMP = 0.12  # of the truss' size: how large the largest jump is drawn at first
 MOST_CYCLES = 12  # that the drawing offers, of more the first and the last ones
