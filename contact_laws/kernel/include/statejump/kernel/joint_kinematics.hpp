@@ -75,7 +75,8 @@ inline bool revolute_touches(const Vector3& journal_centre, double journal_radiu
 namespace detail {
 
 /// One contact of round parts, a journal or ball inside a bearing or socket.
-/// @param centres centre 1 minus centre 2, @param offset d, the part of it that closes the clearance
+/// @param centres centre 1 minus centre 2, @param offset d, the part of it that closes the
+/// clearance
 /// @param concentric_normal gives the normal when d is zero
 template <class Normal>
 JointContact round_contact(const BodyMotion& inner, double inner_radius, const BodyMotion& outer,
