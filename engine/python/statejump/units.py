@@ -41,3 +41,8 @@ def text(value: Optional[float], unit: str = "-", digits: int = 6) -> str:
         shown = f"{mantissa}·10{str(int(power)).translate(RAISED)}"
     shown = shown.replace("-", "−")
     return f"{shown}\u202f{written}" if written else shown
+
+
+def plain(value: Optional[float], unit: str = "-", digits: int = 6) -> str:
+    """Return the same for terminals and text files, where people search: common blank and minus sign."""
+    return text(value, unit, digits).replace("\u202f", " ").replace("−", "-")

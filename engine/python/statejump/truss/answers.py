@@ -120,10 +120,10 @@ def verdict(found: TrussPath, resolution: float = 0.0) -> Verdict:
         settled = int(np.flatnonzero(each > min(least, 0.5 * each.max()))[-1]) + 1
         slip = heat[-1] > SETTLED * heat.max() if heat.max() > 0 else False
         return made("shakedown", f"the jump settles after cycle {settled}; " + (
-            f"joints still slip there and back, {units.text(heat[-1], 'J', 4)} per cycle" if slip else "then no joint slips"))
+            f"joints still slip there and back, {units.plain(heat[-1], 'J', 4)} per cycle" if slip else "then no joint slips"))
     if len(each) > 2 and abs(last - before) <= STEADY * last:
-        return made("ratcheting", f"the jump grows by {units.text(last, 'm', 4)} per cycle (cycle {len(each)}; first cycle "
-                    f"{units.text(first, 'm', 4)})")
+        return made("ratcheting", f"the jump grows by {units.plain(last, 'm', 4)} per cycle (cycle {len(each)}; first cycle "
+                    f"{units.plain(first, 'm', 4)})")
     return made("not settled", f"the jump of cycle {len(each)} is {last / first:.4g} of the first cycle's: "
                 "neither settled nor steady, more cycles are needed")
 

@@ -146,7 +146,7 @@ def _markdown(case: TrussCase, output: Output, jump: float, checked: Verdict, ta
 Made by `statejump truss answers`: quasi-static path of {cycles} cycle{'s' if cycles > 1 else ''}; jumps are
 displacements at the end of a cycle less those at the start.
 
-- **Output**: {output.text}; its jump is {units.text(jump, output.unit)}.
+- **Output**: {output.text}; its jump is {units.plain(jump, output.unit)}.
 - **Over the cycles**: {checked.text}.
 - **Heat of friction**: {checked.dissipation_J.sum():.5g} J, {checked.dissipation_J[-1]:.5g} J of it in the last cycle.
 """
@@ -262,7 +262,7 @@ def run(case: TrussCase, text: str, folder: Path, output_name: str, *, each: boo
 
         with progress(console, f"{case.name}, files for ParaView") as tell:
             written.append(vtk.series(found, folder, "path", frames, tell))
-    console.print(f"{output.text}: jump {units.text(jump, output.unit)}")
+    console.print(f"{output.text}: jump {units.plain(jump, output.unit)}")
     console.print(checked.text)
     for note in notes:
         console.print(f"note: {note}")
