@@ -151,9 +151,11 @@ TrussModel make_model(const py::dict& nodes_, const py::dict& links_, const py::
     const auto friction = table.numbers("friction_force_N");
     const auto minus = table.numbers("clearance_minus_m");
     const auto plus = table.numbers("clearance_plus_m");
+    const auto tangential = table.numbers("tangential_stiffness_N_per_m");
     for (std::size_t i = 0; i < table.size(); ++i) {
       model.sliders.push_back({table.name(i), ends.data()[2 * i], ends.data()[2 * i + 1],
-                               row(axis, i), friction.data()[i], minus.data()[i], plus.data()[i]});
+                               row(axis, i), friction.data()[i], minus.data()[i], plus.data()[i],
+                               tangential.data()[i]});
     }
   }
   {
@@ -168,6 +170,7 @@ TrussModel make_model(const py::dict& nodes_, const py::dict& links_, const py::
     const auto bearing_expansion = table.numbers("bearing_thermal_expansion_per_K");
     const auto friction = table.numbers("friction_coefficient");
     const auto hertz = table.numbers("hertz_stiffness_N_per_m15");
+    const auto mindlin = table.numbers("mindlin_stiffness_N_per_m15");
     const auto axis = table.numbers("axis", 3);
     const auto program = table.indices("program");
     const auto fraction = table.numbers("temperature_fraction");
@@ -176,7 +179,8 @@ TrussModel make_model(const py::dict& nodes_, const py::dict& links_, const py::
                                  journal_link.data()[i], bearing_link.data()[i], radius.data()[i],
                                  clearance.data()[i], journal_expansion.data()[i],
                                  bearing_expansion.data()[i], friction.data()[i], hertz.data()[i],
-                                 row(axis, i), program.data()[i], fraction.data()[i]});
+                                 mindlin.data()[i], row(axis, i), program.data()[i],
+                                 fraction.data()[i]});
     }
   }
   return model;

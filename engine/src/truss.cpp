@@ -122,6 +122,8 @@ void TrussModel::validate() const {
           "friction_force", slider.friction_force, "finite, >= 0 N");
     check(slider.clearance_minus >= 0, item, "clearance_minus", slider.clearance_minus, ">= 0 m");
     check(slider.clearance_plus >= 0, item, "clearance_plus", slider.clearance_plus, ">= 0 m");
+    check(slider.tangential_stiffness > 0, item, "tangential_stiffness",
+          slider.tangential_stiffness, "> 0 N/m");
   }
   for (const ClearanceRevolute& revolute : revolutes) {
     const std::string item = named("revolute", revolute.name);
@@ -147,6 +149,10 @@ void TrussModel::validate() const {
           "friction_coefficient", revolute.friction_coefficient, "finite, >= 0");
     check(revolute.hertz_stiffness > 0, item, "hertz_stiffness", revolute.hertz_stiffness,
           "> 0 N/m^1.5");
+    check(revolute.mindlin_stiffness > 0, item, "mindlin_stiffness", revolute.mindlin_stiffness,
+          "> 0 N/m^1.5");
+    check(std::isinf(revolute.mindlin_stiffness) || std::isfinite(revolute.hertz_stiffness), item,
+          "mindlin_stiffness", revolute.mindlin_stiffness, "infinite, because hertz_stiffness is");
     check_axis(item, revolute.axis);
     const double growth =
         revolute.bearing_thermal_expansion * (revolute.journal_radius + revolute.radial_clearance) -

@@ -25,6 +25,20 @@ double torsion_angle(const TrussModel& model, const TrussTorsionSpring& spring,
   return spring.second_link < 0 ? first : turned(spring.second_link) - first;
 }
 
+/// Heat of micro-slip at the rim of a contact that sticks [J]: work of friction less the energy
+/// that stays in the bend. Loading, where the force F at compliance C goes to F' at C' along
+/// ΔF (C + C')/2: (F² + F'²) (C − C')/4; unloading, along F' C' − F C: F F' (C' − C)/2.
+double rim_slip(double friction_before, double compliance_before, double friction,
+                double compliance) {
+  if (compliance_before == 0.0) return 0.0;
+  if (compliance == 0.0) return 0.5 * compliance_before * friction_before * friction_before;
+  if (compliance > compliance_before) {
+    return 0.5 * friction_before * friction * (compliance - compliance_before);
+  }
+  return 0.25 * (friction_before * friction_before + friction * friction) *
+         (compliance_before - compliance);
+}
+
 }  // namespace
 
 Axial TrussSystem::axial(const TrussLink& link, const VectorXd& z, double time) const {
@@ -33,7 +47,7 @@ Axial TrussSystem::axial(const TrussLink& link, const VectorXd& z, double time) 
                     model_->temperature_change(link.program, link.temperature_fraction, time));
 }
 
-void TrussSystem::describe(const VectorXd& z, double time, const Statuses& statuses,
+void TrussSystem::describe(const VectorXd& z, double time, const StepStart& now,
                            TrussState& state) const {
   const TrussModel& model = *model_;
   const auto size = [](const auto& list) { return static_cast<Eigen::Index>(list.size()); };
@@ -47,8 +61,8 @@ void TrussSystem::describe(const VectorXd& z, double time, const Statuses& statu
   state.eccentricity.resize(3, size(model.revolutes));
   state.normal_force.resize(size(model.revolutes));
   state.friction_force.resize(size(model.revolutes));
-  state.slider_status = statuses.sliders;
-  state.revolute_status = statuses.revolutes;
+  state.slider_status = now.statuses.sliders;
+  state.revolute_status = now.statuses.revolutes;
   state.elastic_energy = 0.0;
   state.load_potential = 0.0;
   for (int i = 0; i < size(model.nodes); ++i) {
@@ -77,6 +91,11 @@ void TrussSystem::describe(const VectorXd& z, double time, const Statuses& statu
   for (int i = 0; i < size(model.sliders); ++i) {
     state.slide[i] = slide(i, z);
     state.slider_force[i] = slider_force(i, z);
+    const double stiffness = model.sliders[index(i)].tangential_stiffness;
+    if (std::isfinite(stiffness)) {
+      const double bend = state.slide[i] - now.slide[i];
+      state.elastic_energy += 0.5 * stiffness * bend * bend;
+    }
   }
   for (int i = 0; i < size(model.revolutes); ++i) {
     const ClearanceRevolute& revolute = model.revolutes[index(i)];
@@ -85,22 +104,25 @@ void TrussSystem::describe(const VectorXd& z, double time, const Statuses& statu
     state.normal_force[i] = force[0];
     state.friction_force[i] = force[1];
     state.elastic_energy += 0.4 * force[0] * depth_of(revolute, force[0]);  // 2/5 K δ^5/2
+    state.elastic_energy += 0.5 * now.compliance[i] * now.friction[i] * now.friction[i];
   }
 }
 
 void TrussSystem::account(const VectorXd& z_before, double time_before, const VectorXd& z,
-                          double time, const StepStart& start, TrussState& state) const {
+                          double time, const StepStart& start, const StepStart& after,
+                          TrussState& state) const {
   const TrussModel& model = *model_;
   for (int i = 0; i < static_cast<int>(model.sliders.size()); ++i) {
     // Whenever it slides, friction is f; a stop takes no heat.
     state.slider_dissipation[i] +=
-        model.sliders[index(i)].friction_force * std::abs(slide(i, z) - start.slide[i]);
+        model.sliders[index(i)].friction_force * std::abs(slider_slip(i, start, after));
   }
   for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
-    const RevoluteGeometry g = revolute_geometry(i, z, time, start, 1.0);
     const double normal = 0.5 * (revolute_force(i, z_before)[0] + revolute_force(i, z)[0]);
     state.revolute_dissipation[i] +=
-        model.revolutes[index(i)].friction_coefficient * normal * std::abs(g.surface_slide);
+        model.revolutes[index(i)].friction_coefficient * normal *
+            std::abs(revolute_slip(i, z, time, start)) +
+        rim_slip(start.friction[i], start.compliance[i], after.friction[i], after.compliance[i]);
   }
   for (const TrussLink& link : model.links) {
     if (link.thermal_expansion == 0.0) continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -66,9 +67,28 @@ inline Axial spring_axial(const AxialSpring& spring, const Lengths& length) {
   return {spring.stiffness * stretch, spring.stiffness};
 }
 
+/// Friction of a slider whose contact is bent by so much [N]; only if it is not rigid.
+inline double bent_friction(const TrussSlider& slider, double bend) {
+  const double f = slider.friction_force;
+  return std::clamp(slider.tangential_stiffness * bend, -f, f);
+}
+
+/// Normal force below which the depth is a millionth of the clearance: Hertz's compliance and
+/// Mindlin's, infinite without force, are taken there [N].
+inline double least_force(const ClearanceRevolute& revolute) {
+  return revolute.hertz_stiffness * std::pow(1e-6 * revolute.radial_clearance, 1.5);
+}
+
 inline double depth_of(const ClearanceRevolute& revolute, double normal_force) {
   if (std::isinf(revolute.hertz_stiffness) || normal_force <= 0.0) return 0.0;
   return std::pow(normal_force / revolute.hertz_stiffness, 2.0 / 3.0);
+}
+
+/// 1/k_t of a contact that sticks [m/N]; 0: rigid.
+inline double tangential_compliance(const ClearanceRevolute& revolute, double normal_force) {
+  if (std::isinf(revolute.mindlin_stiffness)) return 0.0;
+  const double loaded = std::max(normal_force, least_force(revolute));
+  return 1.0 / (revolute.mindlin_stiffness * std::sqrt(depth_of(revolute, loaded)));
 }
 
 }  // namespace statejump::detail

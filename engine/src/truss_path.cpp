@@ -75,6 +75,7 @@ struct Walker {
   TrussPath path;
   VectorXd z;
   Statuses statuses;
+  StepStart origin;  // the state as the start of the next step
   TrussState state;
   double time = 0.0;
   /// How fast every joint slid in the last step, sliders before revolutes [m/s].
@@ -212,12 +213,13 @@ bool Walker::state_depends_on(int joint, JointStatus before, JointStatus after) 
 }
 
 /// Whether a joint that stopped sliding before `target` may have slid by more than rounding until
-/// it did: slides of a step are lost when it ends in a stick.
+/// it did: slides of a step are lost when it ends in a stick. One that comes to rest smoothly
+/// slides so little at last that no shorter step would tell.
 bool Walker::slide_at_stake(int joint, JointStatus before, double target) const {
   if (before == JointStatus::open) return true;
   const int sliders = static_cast<int>(model.sliders.size());
-  double least = 1e3 * system.length_rounding(z);
-  if (joint >= sliders) {
+  double least = 1e3 * system.slide_rounding(joint, z);
+  if (joint >= sliders && !options.locate_events) {
     least += options.event_tolerance * model.revolutes[index(joint - sliders)].radial_clearance;
   }
   return slide_rate[joint] * (target - time) > least;
@@ -229,7 +231,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
   const bool is_short = target - time <= 1.5 * tolerance;
   VectorXd trial = z;
   Statuses trial_statuses = statuses;
-  const StepStart begin = system.step_start(z, statuses);
+  const StepStart& begin = origin;
   const SolveReport report = newton.solve(target, begin, JointModel::friction, 1.0,
                                           options.most_iterations, trial, trial_statuses);
   if (report.end != SolveEnd::converged) {
@@ -242,10 +244,10 @@ StepEnd Walker::step_to(double target, double tolerance) {
   std::vector<TrussEvent> events;
   const auto compare = [&](int joint, JointStatus before, JointStatus after) {
     if (before == after) return true;
-    if (!is_short && (options.locate_events || (state_depends_on(joint, before, after) &&
-                                                slide_at_stake(joint, before, target)))) {
-      return false;
-    }
+    const bool matters = state_depends_on(joint, before, after)
+                             ? slide_at_stake(joint, before, target)
+                             : options.locate_events;
+    if (!is_short && matters) return false;
     const bool is_revolute = joint >= sliders;
     events.push_back({target, target - time, model.temperature_change(0, 1.0, target), is_revolute,
                       is_revolute ? joint - sliders : joint, before, after});
@@ -289,18 +291,20 @@ StepEnd Walker::step_to(double target, double tolerance) {
     }
   }
   note(report);
-  system.account(z, time, trial, target, begin, state);
+  const StepStart after = system.step_start(trial, trial_statuses, &begin);
+  system.account(z, time, trial, target, begin, after, state);
   for (int i = 0; i < sliders; ++i) {
-    slide_rate[i] = std::abs(system.slide(i, trial) - begin.slide[i]) / (target - time);
+    slide_rate[i] = std::abs(system.slider_slip(i, begin, after)) / (target - time);
   }
   for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
-    const double slid = system.revolute_geometry(i, trial, target, begin, 1.0).surface_slide;
-    slide_rate[sliders + i] = std::abs(slid) / (target - time);
+    slide_rate[sliders + i] =
+        std::abs(system.revolute_slip(i, trial, target, begin)) / (target - time);
   }
   z = trial;
   statuses = trial_statuses;
+  origin = after;
   time = target;
-  system.describe(z, time, statuses, state);
+  system.describe(z, time, origin, state);
   path.events.insert(path.events.end(), events.begin(), events.end());
   if (!events.empty() && options.locate_events && !options.cycle_ends_only) {
     path.states.push_back(state);
@@ -327,7 +331,7 @@ TrussPath truss_path(const TrussModel& model, const TrussOptions& options) {
                   "event_tolerance", options.event_tolerance, "above 0 and at most 1");
   kernel::require(options.most_iterations >= 2, "most_iterations", options.most_iterations, ">= 2");
   const TrussSystem system(model);
-  Walker walker{model, system, options, TrussNewton(system), {}, {}, {}, {}, 0.0, {}};
+  Walker walker{model, system, options, TrussNewton(system), {}, {}, {}, {}, {}, 0.0, {}};
   walker.slide_rate =
       VectorXd::Zero(static_cast<Eigen::Index>(model.sliders.size() + model.revolutes.size()));
   walker.path.unknowns = system.unknowns();
@@ -335,13 +339,17 @@ TrussPath truss_path(const TrussModel& model, const TrussOptions& options) {
   walker.state.revolute_dissipation =
       VectorXd::Zero(static_cast<Eigen::Index>(model.revolutes.size()));
   walker.start();
-  system.describe(walker.z, 0.0, walker.statuses, walker.state);
+  walker.origin = system.step_start(walker.z, walker.statuses);
+  system.describe(walker.z, 0.0, walker.origin, walker.state);
   walker.path.states.push_back(walker.state);
   walker.path.cycle_ends.push_back(walker.state);
 
   const int sliders = static_cast<int>(model.sliders.size());
-  // A joint changes its status a few times in an increment; many more are no path but a flicker.
-  const std::size_t most_events = 1000 + 50 * (model.sliders.size() + model.revolutes.size());
+  // In an increment a joint changes its status a few times, in a long chain as often as another one
+  // starts to slide; many more are no path but a flicker.
+  const std::size_t joints = model.sliders.size() + model.revolutes.size();
+  const int most_changes = 200 + 2 * static_cast<int>(joints);
+  std::vector<int> changes(joints);
   const std::vector<double> times = corners(model);
   const double duration = model.programs.front().duration();
   int cycle = 1;
@@ -355,7 +363,8 @@ TrussPath truss_path(const TrussModel& model, const TrussOptions& options) {
                             : k == options.increments_per_branch
                                 ? times[b + 1]
                                 : times[b] + length * k / options.increments_per_branch;
-      const std::size_t events_before = walker.path.events.size();
+      std::size_t counted = walker.path.events.size();
+      std::fill(changes.begin(), changes.end(), 0);
       double stride = std::min(target - walker.time, convergent);
       bool locating = false;
       while (walker.time < target && walker.path.complete) {
@@ -367,13 +376,14 @@ TrussPath truss_path(const TrussModel& model, const TrussOptions& options) {
           convergent = std::max(2.0 * convergent, tolerance);
           // While a change is being located, the next one may be near.
           stride = std::min(target - walker.time, locating ? 8.0 * stride : convergent);
-          if (walker.path.events.size() - events_before > most_events) {
-            const TrussEvent& event = walker.path.events.back();
-            throw std::runtime_error(
-                joint_name(model, event.joint + (event.is_revolute ? sliders : 0)) +
-                " does not settle" + at_temperature(model, walker.time) +
-                ": its status changed from " + to_string(event.before) + " to " +
-                to_string(event.after) + " again and again");
+          for (; counted < walker.path.events.size(); ++counted) {
+            const TrussEvent& event = walker.path.events[counted];
+            const int joint = event.joint + (event.is_revolute ? sliders : 0);
+            if (++changes[index(joint)] <= most_changes) continue;
+            throw std::runtime_error(joint_name(model, joint) + " does not settle" +
+                                     at_temperature(model, walker.time) +
+                                     ": its status changed from " + to_string(event.before) +
+                                     " to " + to_string(event.after) + " again and again");
           }
         } else {
           stride = std::max(0.125 * (goal - walker.time), tolerance);

@@ -3,18 +3,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "truss_parts.hpp"
 
 namespace statejump::detail {
-
-using Eigen::Matrix3d;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
 
 namespace {
 
@@ -171,472 +165,28 @@ RevoluteGeometry TrussSystem::revolute_geometry(int i, const VectorXd& z, double
   return g;
 }
 
-namespace {
-
-/// Collects the places of the Jacobian's entries.
-class PatternSink {
- public:
-  void add(int row, int column, double) { places.emplace_back(row, column, 0.0); }
-  void residual(int, double) {}
-  std::vector<Eigen::Triplet<double>> places;
-};
-
-/// Adds up values.
-class ValueSink {
- public:
-  ValueSink(VectorXd& residual, Eigen::SparseMatrix<double>& jacobian)
-      : residual_(&residual), jacobian_(&jacobian) {
-    residual.setZero();
-    std::fill_n(jacobian.valuePtr(), jacobian.nonZeros(), 0.0);
+/// Mindlin's contact: what loads it meanwhile keeps the force, what unloads it keeps the bend.
+ElasticSlide TrussSystem::elastic_slide(int i, const VectorXd& z, const StepStart& start) const {
+  const ClearanceRevolute& part = model_->revolutes[index(i)];
+  if (std::isinf(part.mindlin_stiffness)) return {0.0, 0.0, 0.0};
+  const Vector2d force = revolute_force(i, z);
+  const double compliance = tangential_compliance(part, force[0]);
+  // k_t grows as the cube root of the force.
+  const double slope = force[0] > least_force(part) ? -compliance / (3.0 * force[0]) : 0.0;
+  const double before = start.compliance[i];
+  const double stored = start.friction[i];
+  if (before == 0.0) return {compliance * force[1], slope * force[1], compliance};
+  if (compliance > before) {
+    return {compliance * force[1] - before * stored, slope * force[1], compliance};
   }
-  void add(int row, int column, double value) {
-    const int* rows = jacobian_->innerIndexPtr();
-    const int* begin = rows + jacobian_->outerIndexPtr()[column];
-    const int* end = rows + jacobian_->outerIndexPtr()[column + 1];
-    jacobian_->valuePtr()[std::lower_bound(begin, end, row) - rows] += value;
-  }
-  void residual(int row, double value) { (*residual_)[row] += value; }
-
- private:
-  VectorXd* residual_;
-  Eigen::SparseMatrix<double>* jacobian_;
-};
-
-/// Adds forces on nodes and their derivatives, through the nodes' free directions.
-template <class Sink>
-class NodeWriter {
- public:
-  NodeWriter(const TrussModel& model, const std::vector<int>& rows, Sink& sink)
-      : model_(model), rows_(rows), sink_(sink) {}
-
-  void force(int node, const Vector3d& value) {
-    const TrussNode& part = model_.nodes[index(node)];
-    for (int i = 0; i < part.freedoms; ++i) {
-      sink_.residual(rows_[index(node)] + i, part.free_directions.col(i).dot(value));
-    }
-  }
-  void block(int row_node, int column_node, const Matrix3d& value) {
-    const TrussNode& row_part = model_.nodes[index(row_node)];
-    const TrussNode& column_part = model_.nodes[index(column_node)];
-    for (int j = 0; j < column_part.freedoms; ++j) {
-      const Vector3d image = value * column_part.free_directions.col(j);
-      for (int i = 0; i < row_part.freedoms; ++i) {
-        sink_.add(rows_[index(row_node)] + i, rows_[index(column_node)] + j,
-                  row_part.free_directions.col(i).dot(image));
-      }
-    }
-  }
-  void row(int row, int node, const Vector3d& gradient) {
-    const TrussNode& part = model_.nodes[index(node)];
-    for (int i = 0; i < part.freedoms; ++i) {
-      sink_.add(row, rows_[index(node)] + i, part.free_directions.col(i).dot(gradient));
-    }
-  }
-  void column(int node, int column, const Vector3d& gradient) {
-    const TrussNode& part = model_.nodes[index(node)];
-    for (int i = 0; i < part.freedoms; ++i) {
-      sink_.add(rows_[index(node)] + i, column, part.free_directions.col(i).dot(gradient));
-    }
-  }
-
- private:
-  const TrussModel& model_;
-  const std::vector<int>& rows_;
-  Sink& sink_;
-};
-
-/// Gradient and Hessian of the angle of an in-plane vector.
-struct AngleDerivatives {
-  Vector3d gradient;
-  Matrix3d hessian;
-};
-
-AngleDerivatives angle_derivatives(const Vector2d& v, const Matrix32& plane) {
-  const double length = v.norm();
-  const Vector3d along = plane * (v / length);
-  const Vector3d left = plane * (turned_left(v) / length);
-  return {left / length,
-          -(along * left.transpose() + left * along.transpose()) / (length * length)};
+  // ∫ dF/k_t by the trapezoidal rule.
+  const double mean = 0.5 * (before + compliance);
+  return {mean * (force[1] - stored), 0.5 * slope * (force[1] - stored), mean};
 }
 
-}  // namespace
-
-template <class Sink>
-double TrussSystem::assemble(const VectorXd& z, double time, const StepStart& start,
-                             const Statuses& statuses, JointModel joints, double clearance_scale,
-                             Sink& sink) const {
-  const TrussModel& model = *model_;
-  NodeWriter<Sink> nodes(model, node_row_, sink);
-  double largest = 0.0;
-  std::vector<double> changes;
-  for (const auto& program : model.programs) changes.push_back(program.temperature_change(time));
-
-  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
-    nodes.force(static_cast<int>(n), -model.nodes[n].load);
-    largest = std::max(largest, model.nodes[n].load.lpNorm<Eigen::Infinity>());
-  }
-
-  const auto bar = [&](int first, int second, const Vector3d& direction, double length,
-                       const Axial& axial) {
-    const Matrix3d along = direction * direction.transpose();
-    const Matrix3d stiffness =
-        axial.stiffness * along + axial.tension / length * (Matrix3d::Identity() - along);
-    nodes.force(first, -axial.tension * direction);
-    nodes.force(second, axial.tension * direction);
-    nodes.block(first, first, stiffness);
-    nodes.block(second, second, stiffness);
-    nodes.block(first, second, -stiffness);
-    nodes.block(second, first, -stiffness);
-    largest = std::max(largest, std::abs(axial.tension));
-  };
-  for (const TrussLink& link : model.links) {
-    const Lengths length = lengths_between(link.first, link.second, z);
-    const double change = link.temperature_fraction * changes[index(link.program)];
-    bar(link.first, link.second, length.along / length.now, length.now,
-        link_axial(link, length.growth, length.drawn, change));
-  }
-  for (const AxialSpring& spring : model.springs) {
-    const Lengths length = lengths_between(spring.first, spring.second, z);
-    bar(spring.first, spring.second, length.along / length.now, length.now,
-        spring_axial(spring, length));
-  }
-
-  for (std::size_t i = 0; i < model.torsion_springs.size(); ++i) {
-    const TrussTorsionSpring& spring = model.torsion_springs[i];
-    const Matrix32& plane = torsion_plane_[i];
-    std::array<int, 2> links{spring.first_link, spring.second_link};
-    // The angle runs from the first link to the second; that of a single link from the ground.
-    std::array<double, 2> sign{-1.0, 1.0};
-    if (spring.second_link < 0) sign[0] = 1.0;
-    double angle = 0.0;
-    std::array<AngleDerivatives, 2> turn;
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (links[k] < 0) continue;
-      const TrussLink& link = model.links[index(links[k])];
-      const Vector2d drawn = plane.transpose() * (model.nodes[index(link.second)].position -
-                                                  model.nodes[index(link.first)].position);
-      const Vector2d moved =
-          plane.transpose() * (displacement(link.second, z) - displacement(link.first, z));
-      angle += sign[k] * std::atan2(cross(drawn, moved), drawn.dot(drawn + moved));
-      turn[k] = angle_derivatives(drawn + moved, plane);
-    }
-    const double moment = spring.stiffness * (angle - spring.free_angle);
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (links[k] < 0) continue;
-      const TrussLink& link = model.links[index(links[k])];
-      const Vector3d force = moment * sign[k] * turn[k].gradient;
-      nodes.force(link.second, force);
-      nodes.force(link.first, -force);
-      largest = std::max(largest, force.norm());
-      for (std::size_t m = 0; m < 2; ++m) {
-        if (links[m] < 0) continue;
-        const TrussLink& other = model.links[index(links[m])];
-        Matrix3d block =
-            spring.stiffness * sign[k] * sign[m] * turn[k].gradient * turn[m].gradient.transpose();
-        if (k == m) block += moment * sign[k] * turn[k].hessian;
-        nodes.block(link.second, other.second, block);
-        nodes.block(link.first, other.first, block);
-        nodes.block(link.second, other.first, -block);
-        nodes.block(link.first, other.second, -block);
-      }
-    }
-  }
-
-  for (std::size_t i = 0; i < model.sliders.size(); ++i) {
-    const TrussSlider& slider = model.sliders[i];
-    const int row = slider_row_[i];
-    const double s = slide(static_cast<int>(i), z);
-    const double force = z[row];
-    largest = std::max(largest, std::abs(force));
-    nodes.force(slider.first, force * slider.axis);
-    nodes.column(slider.first, row, slider.axis);
-    if (slider.second >= 0) {
-      nodes.force(slider.second, -force * slider.axis);
-      nodes.column(slider.second, row, -slider.axis);
-    }
-    bool is_slip = false;
-    double closure = 0.0;
-    switch (statuses.sliders[i]) {
-      case JointStatus::stop_plus:
-        closure = s - slider.clearance_plus;
-        break;
-      case JointStatus::stop_minus:
-        closure = s + slider.clearance_minus;
-        break;
-      case JointStatus::slip_plus:
-        is_slip = true;
-        closure = force - slider.friction_force;
-        break;
-      case JointStatus::slip_minus:
-        is_slip = true;
-        closure = force + slider.friction_force;
-        break;
-      default:
-        closure = s - start.slide[static_cast<Eigen::Index>(i)];
-    }
-    const double slides = is_slip ? 0.0 : 1.0;
-    sink.residual(row, closure);
-    sink.add(row, row, is_slip ? 1.0 : 0.0);
-    nodes.row(row, slider.first, slides * slider.axis);
-    if (slider.second >= 0) nodes.row(row, slider.second, -slides * slider.axis);
-    for (std::size_t k = 0; k < slider_across_[i].size(); ++k) {
-      const Vector3d& across = slider_across_[i][k];
-      const int held = row + 1 + static_cast<int>(k);
-      const Vector3d moved = displacement(slider.first, z) - displacement(slider.second, z);
-      sink.residual(held, across.dot(moved));
-      nodes.row(held, slider.first, across);
-      nodes.row(held, slider.second, -across);
-      nodes.force(slider.first, z[held] * across);
-      nodes.force(slider.second, -z[held] * across);
-      nodes.column(slider.first, held, across);
-      nodes.column(slider.second, held, -across);
-      sink.add(held, held, 0.0);
-      largest = std::max(largest, std::abs(z[held]));
-    }
-  }
-
-  for (std::size_t i = 0; i < model.revolutes.size(); ++i) {
-    const ClearanceRevolute& revolute = model.revolutes[i];
-    const Matrix32& plane = revolute_plane_[i];
-    const int row = revolute_row_[i];
-    const int part = static_cast<int>(i);
-    const RevoluteGeometry g = revolute_geometry(part, z, time, start, clearance_scale);
-    const double first_force = z[row];
-    const double second_force = z[row + 1];
-    largest = std::max({largest, std::abs(first_force), std::abs(second_force)});
-
-    // Four nodes: journal, bearing, far ends of the links that turn them.
-    const std::array<int, 4> node{
-        revolute.journal_node, revolute.bearing_node,
-        revolute.journal_link < 0 ? -1 : far_node(revolute.journal_link, revolute.journal_node),
-        revolute.bearing_link < 0 ? -1 : far_node(revolute.bearing_link, revolute.bearing_node)};
-    std::array<Vector3d, 4> normal_gradient;
-    std::array<Vector3d, 4> slide_gradient;  // virtual work of friction
-    std::array<Vector3d, 4> friction_row;    // derivative of Δσ
-    std::array<std::array<Matrix3d, 4>, 4> hessian;
-    normal_gradient.fill(Vector3d::Zero());
-    slide_gradient.fill(Vector3d::Zero());
-    friction_row.fill(Vector3d::Zero());
-    for (auto& line : hessian) line.fill(Matrix3d::Zero());
-    double first_closure = 0.0;
-    double second_closure = 0.0;
-    std::array<double, 4> corner{};  // d(first row)/d(forces), d(second row)/d(forces)
-    bool first_geometric = false;
-    bool second_geometric = false;
-
-    if (joints == JointModel::pins) {
-      normal_gradient[0] = plane.col(0);
-      normal_gradient[1] = -plane.col(0);
-      slide_gradient[0] = plane.col(1);
-      slide_gradient[1] = -plane.col(1);
-      friction_row = slide_gradient;
-      first_closure = g.eccentricity.x();
-      second_closure = g.eccentricity.y();
-      first_geometric = second_geometric = true;
-    } else {
-      const double distance = g.eccentricity.norm();
-      const Vector2d n = g.eccentricity / distance;
-      const Vector3d along = plane * n;
-      const Vector3d left = plane * turned_left(n);
-      normal_gradient[0] = along;
-      normal_gradient[1] = -along;
-      slide_gradient[0] = left;
-      slide_gradient[1] = -left;
-      const Matrix3d bend =
-          (first_force * left - second_force * along) * left.transpose() / distance;
-      hessian[0][0] += bend;
-      hessian[1][1] += bend;
-      hessian[0][1] -= bend;
-      hessian[1][0] -= bend;
-      const Vector2d before = start.eccentricity.col(part);
-      friction_row[0] = (0.5 * (before.norm() / distance + 1.0)) * left + 0.5 * g.turned * along;
-      friction_row[1] = -friction_row[0];
-      const auto turn = [&](std::size_t at, std::size_t far, const Vector2d& direction,
-                            double radius) {
-        const AngleDerivatives angle = angle_derivatives(direction, plane);
-        slide_gradient[at] += radius * angle.gradient;
-        slide_gradient[far] -= radius * angle.gradient;
-        friction_row[at] += radius * angle.gradient;
-        friction_row[far] -= radius * angle.gradient;
-        const Matrix3d block = second_force * radius * angle.hessian;
-        hessian[at][at] += block;
-        hessian[far][far] += block;
-        hessian[at][far] -= block;
-        hessian[far][at] -= block;
-      };
-      if (node[2] >= 0) turn(0, 2, g.journal_direction, g.journal_radius);
-      if (node[3] >= 0) turn(1, 3, g.bearing_direction, -g.bearing_radius);
-
-      const JointStatus status = statuses.revolutes[i];
-      if (status == JointStatus::open) {
-        first_closure = first_force;
-        second_closure = second_force;
-        corner = {1.0, 0.0, 0.0, 1.0};
-      } else {
-        first_geometric = true;
-        first_closure = distance - g.clearance - depth_of(revolute, first_force);
-        if (!std::isinf(revolute.hertz_stiffness)) {
-          // The slope of the depth is infinite without force: taken where the depth is a
-          // millionth of the clearance.
-          const double least =
-              revolute.hertz_stiffness * std::pow(1e-6 * revolute.radial_clearance, 1.5);
-          const double loaded = std::max(first_force, least);
-          corner[0] = -2.0 / 3.0 * depth_of(revolute, loaded) / loaded;
-        }
-        const double mu = joints == JointModel::friction ? revolute.friction_coefficient : 0.0;
-        if (status == JointStatus::stick && joints == JointModel::friction) {
-          second_geometric = true;
-          second_closure = g.surface_slide;
-        } else {
-          const double sense = status == JointStatus::slip_minus ? -1.0 : 1.0;
-          second_closure = second_force - sense * mu * first_force;
-          corner[2] = -sense * mu;
-          corner[3] = 1.0;
-        }
-      }
-    }
-
-    for (std::size_t a = 0; a < 4; ++a) {
-      if (node[a] < 0) continue;
-      nodes.force(node[a], first_force * normal_gradient[a] + second_force * slide_gradient[a]);
-      nodes.column(node[a], row, normal_gradient[a]);
-      nodes.column(node[a], row + 1, slide_gradient[a]);
-      nodes.row(row, node[a], (first_geometric ? 1.0 : 0.0) * normal_gradient[a]);
-      nodes.row(row + 1, node[a], (second_geometric ? 1.0 : 0.0) * friction_row[a]);
-      for (std::size_t b = 0; b < 4; ++b) {
-        if (node[b] >= 0) nodes.block(node[a], node[b], hessian[a][b]);
-      }
-    }
-    sink.residual(row, first_closure);
-    sink.residual(row + 1, second_closure);
-    sink.add(row, row, corner[0]);
-    sink.add(row, row + 1, corner[1]);
-    sink.add(row + 1, row, corner[2]);
-    sink.add(row + 1, row + 1, corner[3]);
-    if (revolute_holds_axis_[i]) {
-      const int held = row + 2;
-      const Vector3d axis = revolute.axis;
-      sink.residual(held, axis.dot(between(revolute.bearing_node, revolute.journal_node, z)));
-      nodes.row(held, revolute.journal_node, axis);
-      nodes.row(held, revolute.bearing_node, -axis);
-      nodes.force(revolute.journal_node, z[held] * axis);
-      nodes.force(revolute.bearing_node, -z[held] * axis);
-      nodes.column(revolute.journal_node, held, axis);
-      nodes.column(revolute.bearing_node, held, -axis);
-      sink.add(held, held, 0.0);
-    }
-  }
-  return largest;
-}
-
-double TrussSystem::evaluate(const VectorXd& z, double time, const StepStart& start,
-                             const Statuses& statuses, JointModel joints, double clearance_scale,
-                             VectorXd& residual, Eigen::SparseMatrix<double>& jacobian) const {
-  ValueSink sink(residual, jacobian);
-  return assemble(z, time, start, statuses, joints, clearance_scale, sink);
-}
-
-Eigen::SparseMatrix<double> TrussSystem::pattern() const {
-  PatternSink sink;
-  Statuses statuses;
-  statuses.sliders.assign(model_->sliders.size(), JointStatus::stick);
-  statuses.revolutes.assign(model_->revolutes.size(), JointStatus::stick);
-  const VectorXd z = VectorXd::Zero(unknowns_);
-  assemble(z, 0.0, step_start(z, statuses), statuses, JointModel::pins, 1.0, sink);
-  Eigen::SparseMatrix<double> matrix(unknowns_, unknowns_);
-  matrix.setFromTriplets(sink.places.begin(), sink.places.end());
-  matrix.makeCompressed();
-  return matrix;
-}
-
-int TrussSystem::correct_statuses(const VectorXd& z, double time, const StepStart& start,
-                                  JointModel joints, double clearance_scale, Statuses& statuses,
-                                  int& last_changed) const {
-  int changed = 0;
-  // Inequalities are violated when rounding cannot be the reason; forces are as round as the
-  // stiffest part makes them.
-  const double length_slack = length_rounding(z);
-  const double force_slack = 16.0 * stiffness_scale_ * length_slack;
-  const auto become = [&](JointStatus& status, JointStatus next, int joint) {
-    if (status == next) return;
-    status = next;
-    last_changed = joint;
-    ++changed;
-  };
-  for (std::size_t i = 0; i < model_->sliders.size(); ++i) {
-    const TrussSlider& slider = model_->sliders[i];
-    const int joint = static_cast<int>(i);
-    const double s = slide(joint, z);
-    const double step = s - start.slide[joint];
-    const double force = slider_force(joint, z);
-    const double f = slider.friction_force;
-    const double beyond = f + force_slack;
-    JointStatus& status = statuses.sliders[i];
-    const JointStatus before = start.statuses.sliders[i];
-    switch (status) {
-      case JointStatus::stick:
-        if (force > beyond) become(status, JointStatus::slip_plus, joint);
-        if (force < -beyond) become(status, JointStatus::slip_minus, joint);
-        break;
-      case JointStatus::slip_plus:
-        if (s > slider.clearance_plus + length_slack) {
-          become(status, JointStatus::stop_plus, joint);
-        } else if (step < -length_slack) {
-          become(status, before == JointStatus::stop_minus ? before : JointStatus::stick, joint);
-        }
-        break;
-      case JointStatus::slip_minus:
-        if (s < -slider.clearance_minus - length_slack) {
-          become(status, JointStatus::stop_minus, joint);
-        } else if (step > length_slack) {
-          become(status, before == JointStatus::stop_plus ? before : JointStatus::stick, joint);
-        }
-        break;
-      case JointStatus::stop_plus:
-        // Rested there already: friction helps to stay. Arrived in this step: friction pushes back.
-        if (before == JointStatus::stop_plus) {
-          if (force < -beyond) become(status, JointStatus::slip_minus, joint);
-        } else if (force < f - force_slack) {
-          become(status, JointStatus::slip_plus, joint);
-        }
-        break;
-      case JointStatus::stop_minus:
-        if (before == JointStatus::stop_minus) {
-          if (force > beyond) become(status, JointStatus::slip_plus, joint);
-        } else if (force > -f + force_slack) {
-          become(status, JointStatus::slip_minus, joint);
-        }
-        break;
-      case JointStatus::open:
-        break;
-    }
-  }
-  if (joints == JointModel::pins) return changed;
-  for (std::size_t i = 0; i < model_->revolutes.size(); ++i) {
-    const ClearanceRevolute& revolute = model_->revolutes[i];
-    const int part = static_cast<int>(i);
-    const int joint = static_cast<int>(model_->sliders.size()) + part;
-    const RevoluteGeometry g = revolute_geometry(part, z, time, start, clearance_scale);
-    const Vector2d force = revolute_force(part, z);
-    JointStatus& status = statuses.revolutes[i];
-    const double mu = joints == JointModel::friction ? revolute.friction_coefficient : 0.0;
-    const JointStatus resting = mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
-    if (status == JointStatus::open) {
-      if (g.eccentricity.norm() > g.clearance + length_slack) become(status, resting, joint);
-    } else if (force[0] < -force_slack) {
-      become(status, JointStatus::open, joint);
-    } else if (mu == 0.0) {
-      continue;  // slips freely either way
-    } else if (status == JointStatus::stick) {
-      const double bound = mu * force[0] + force_slack;
-      if (force[1] > bound) become(status, JointStatus::slip_plus, joint);
-      if (force[1] < -bound) become(status, JointStatus::slip_minus, joint);
-    } else {
-      const double sense = status == JointStatus::slip_plus ? 1.0 : -1.0;
-      if (sense * g.surface_slide < -length_slack) become(status, JointStatus::stick, joint);
-    }
-  }
-  return changed;
+double TrussSystem::revolute_slip(int i, const VectorXd& z, double time,
+                                  const StepStart& start) const {
+  return revolute_geometry(i, z, time, start, 1.0).surface_slide - elastic_slide(i, z, start).slide;
 }
 
 double TrussSystem::length_rounding(const VectorXd& z) const {
@@ -644,24 +194,41 @@ double TrussSystem::length_rounding(const VectorXd& z) const {
   return 4.0 * std::numeric_limits<double>::epsilon() * reach;
 }
 
-StepStart TrussSystem::step_start(const VectorXd& z, const Statuses& statuses) const {
+double TrussSystem::slide_rounding(int joint, const VectorXd& z) const {
+  const int sliders = static_cast<int>(model_->sliders.size());
+  const double compliance = joint < sliders
+                                ? 1.0 / model_->sliders[index(joint)].tangential_stiffness
+                                : tangential_compliance(model_->revolutes[index(joint - sliders)],
+                                                        revolute_force(joint - sliders, z)[0]);
+  return length_rounding(z) + compliance * force_rounding(z);
+}
+
+StepStart TrussSystem::step_start(const VectorXd& z, const Statuses& statuses,
+                                  const StepStart* last) const {
   StepStart start;
   start.statuses = statuses;
   start.slide.resize(static_cast<Eigen::Index>(model_->sliders.size()));
   for (int i = 0; i < start.slide.size(); ++i) {
     const TrussSlider& slider = model_->sliders[index(i)];
     // At a stop the slide is the clearance itself: rounding must not add up.
-    start.slide[i] = slide(i, z);
-    if (statuses.sliders[index(i)] == JointStatus::stop_plus)
-      start.slide[i] = slider.clearance_plus;
-    if (statuses.sliders[index(i)] == JointStatus::stop_minus) {
-      start.slide[i] = -slider.clearance_minus;
+    const JointStatus status = statuses.sliders[index(i)];
+    const bool plus = status == JointStatus::stop_plus;
+    if (!plus && status != JointStatus::stop_minus) {
+      start.slide[i] = slide(i, z) - slider_force(i, z) / slider.tangential_stiffness;
+      continue;
     }
+    const double stop = plus ? slider.clearance_plus : -slider.clearance_minus;
+    const double friction = last == nullptr || std::isinf(slider.tangential_stiffness)
+                                ? 0.0
+                                : bent_friction(slider, stop - last->slide[i]);
+    start.slide[i] = stop - friction / slider.tangential_stiffness;
   }
   const auto count = static_cast<Eigen::Index>(model_->revolutes.size());
   start.eccentricity.resize(2, count);
   start.journal_direction.resize(2, count);
   start.bearing_direction.resize(2, count);
+  start.friction.resize(count);
+  start.compliance.resize(count);
   for (int i = 0; i < count; ++i) {
     const ClearanceRevolute& part = model_->revolutes[index(i)];
     const Matrix32& plane = revolute_plane_[index(i)];
@@ -669,6 +236,10 @@ StepStart TrussSystem::step_start(const VectorXd& z, const Statuses& statuses) c
         plane.transpose() * between(part.bearing_node, part.journal_node, z);
     start.journal_direction.col(i) = link_direction(part.journal_link, part.journal_node, plane, z);
     start.bearing_direction.col(i) = link_direction(part.bearing_link, part.bearing_node, plane, z);
+    const bool open = statuses.revolutes[index(i)] == JointStatus::open;
+    const Vector2d force = revolute_force(i, z);
+    start.friction[i] = open ? 0.0 : force[1];
+    start.compliance[i] = open ? 0.0 : tangential_compliance(part, force[0]);
   }
   return start;
 }

@@ -28,10 +28,19 @@ struct Statuses {
 /// components along its two plane directions.
 struct StepStart {
   Statuses statuses;
-  Eigen::VectorXd slide;               ///< Of sliders [m].
-  Eigen::Matrix2Xd eccentricity;       ///< [m]
+  Eigen::VectorXd slide;          ///< Of sliders, less what their friction bends elastically [m].
+  Eigen::Matrix2Xd eccentricity;  ///< [m]
   Eigen::Matrix2Xd journal_direction;  ///< Journal link, journal minus far node; zero without [m].
   Eigen::Matrix2Xd bearing_direction;  ///< Bearing link, likewise [m].
+  Eigen::VectorXd friction;            ///< Of revolutes, on the journal against the slide [N].
+  Eigen::VectorXd compliance;          ///< Of revolutes, 1/k_t [m/N]; 0 for rigid and open ones.
+};
+
+/// Elastic part of a revolute's surface slide in a step, and its derivatives.
+struct ElasticSlide {
+  double slide;        ///< [m]
+  double by_normal;    ///< By the normal force [m/N].
+  double by_friction;  ///< By friction [m/N].
 };
 
 /// A revolute as the equations see it at one state.
@@ -76,15 +85,29 @@ class TrussSystem {
                        int& last_changed) const;
 
   /// The state as the start of the next step.
-  StepStart step_start(const Eigen::VectorXd& z, const Statuses& statuses) const;
+  /// @param last start of the step that led here: it tells how far friction is bent at a stop, else
+  /// taken as not at all
+  StepStart step_start(const Eigen::VectorXd& z, const Statuses& statuses,
+                       const StepStart* last = nullptr) const;
 
-  /// Friction's heat of a step, added to the state's; elastic energy and load potential set.
+  /// Friction's heat of a step and the temperature's work, added to the state's.
+  /// @param after the state at z as the start of the next step
   void account(const Eigen::VectorXd& z_before, double time_before, const Eigen::VectorXd& z,
-               double time, const StepStart& start, TrussState& state) const;
+               double time, const StepStart& start, const StepStart& after,
+               TrussState& state) const;
 
   /// Displacements, forces and energies at z; dissipation and thermal work are left alone.
-  void describe(const Eigen::VectorXd& z, double time, const Statuses& statuses,
+  /// @param now the state at z as the start of the next step
+  void describe(const Eigen::VectorXd& z, double time, const StepStart& now,
                 TrussState& state) const;
+
+  /// Slide of a step that friction turned into heat [m].
+  /// @param after the state at its end as the start of the next step
+  double slider_slip(int slider, const StepStart& start, const StepStart& after) const {
+    return after.slide[slider] - start.slide[slider];
+  }
+  double revolute_slip(int revolute, const Eigen::VectorXd& z, double time,
+                       const StepStart& start) const;
 
   RevoluteGeometry revolute_geometry(int revolute, const Eigen::VectorXd& z, double time,
                                      const StepStart& start, double clearance_scale) const;
@@ -111,8 +134,13 @@ class TrussSystem {
   Eigen::SparseMatrix<double> joined_stiffness(const Eigen::VectorXd& z, double time,
                                                const Statuses& statuses, JointModel joints,
                                                double held) const;
-  /// Rounding of a displacement at z [m].
+  /// Rounding of a displacement at z [m], and of the forces that come of it [N].
   double length_rounding(const Eigen::VectorXd& z) const;
+  double force_rounding(const Eigen::VectorXd& z) const {
+    return 16.0 * stiffness_scale_ * length_rounding(z);
+  }
+  /// Rounding of a joint's slide less what friction bends, sliders before revolutes [m].
+  double slide_rounding(int joint, const Eigen::VectorXd& z) const;
   int displacements() const { return displacements_; }
   /// Node of a free displacement.
   int node_of(int displacement) const;
@@ -124,6 +152,7 @@ class TrussSystem {
   double assemble(const Eigen::VectorXd& z, double time, const StepStart& start,
                   const Statuses& statuses, JointModel joints, double clearance_scale,
                   Sink& sink) const;
+  ElasticSlide elastic_slide(int revolute, const Eigen::VectorXd& z, const StepStart& start) const;
   double surface_angle(const Eigen::Vector2d& before, const Eigen::Vector2d& now) const;
   Eigen::Vector3d between(int from, int to, const Eigen::VectorXd& z) const;
   Lengths lengths_between(int from, int to, const Eigen::VectorXd& z) const;

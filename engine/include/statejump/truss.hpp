@@ -64,6 +64,8 @@ struct TrussSlider {
   double friction_force = 0.0;                                       ///< f [N], >= 0.
   double clearance_minus = std::numeric_limits<double>::infinity();  ///< [m], >= 0.
   double clearance_plus = std::numeric_limits<double>::infinity();   ///< [m], >= 0.
+  /// k_t of the contact while it sticks [N/m], > 0; infinity: rigid.
+  double tangential_stiffness = std::numeric_limits<double>::infinity();
 };
 
 /// Revolute joint with clearance and dry friction about a fixed axis: a journal on the end of one
@@ -81,6 +83,9 @@ struct ClearanceRevolute {
   double friction_coefficient = 0.0;     ///< μ, >= 0.
   /// K of Hertz's F_N = K δ^1.5 [N/m^1.5]; infinity: rigid.
   double hertz_stiffness = std::numeric_limits<double>::infinity();
+  /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ), by which the contact gives way while it sticks
+  /// [N/m^1.5]; infinity: rigid. Finite only if `hertz_stiffness` is.
+  double mindlin_stiffness = std::numeric_limits<double>::infinity();
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   int program = 0;
   double temperature_fraction = 1;

@@ -104,15 +104,20 @@ struct TrussPath {
 ///     open    λ_n = λ_t = 0, |d| <= c    contact |d| = c + (λ_n/K)^(2/3), λ_n >= 0
 ///     stick   Δσ = 0, |λ_t| <= μ λ_n     slip±   λ_t = ±μ λ_n, ±Δσ >= 0
 ///
-/// A joint that sticks therefore rolls. One step is the implicit Euler step of this evolution,
-/// solved by Newton's method with an active set: each iteration changes the status of every joint
-/// that violates its inequality, and the solve has converged when none does, forces balance to
-/// 1e-12 of the largest one and closures to rounding.
+/// A joint that sticks therefore rolls. With a finite tangential stiffness k_t a joint that sticks
+/// gives way elastically, as bodies of a DEM do: s and Δσ then are the slides less what friction
+/// bends, λ/k_t and ∫ dλ_t/k_t. k_t of a revolute follows its depth (Mindlin, k_t = 8 G* √(R δ)):
+/// what loads the contact keeps λ_t, what unloads it keeps λ_t/k_t; energy lost either way is heat
+/// at the contact's rim. One step is the implicit Euler step of this evolution, solved by Newton's
+/// method with an active set: each iteration changes the status of every joint that violates its
+/// inequality, and the solve has converged when none does, forces balance to 1e-12 of the largest
+/// one and closures to rounding.
 ///
 /// **Why the increment does not matter.** With every status fixed, the state is an algebraic
 /// function of temperature: stick, stops and the cone |λ_t| = μ λ_n are holonomic, so a step is
 /// exact however long. (Rolling is so for rigid contacts and radii that do not expand; else its
-/// increment is of third order.) Memory enters only where a slip ends in a stick and where an open
+/// increment is of third order; the k_t of a revolute that sticks is taken by the trapezoidal rule,
+/// of second order.) Memory enters only where a slip ends in a stick and where an open
 /// joint closes. Steps with such a change are shortened until it happens within `event_tolerance`
 /// of a branch, or until what the joint may have slid by then is below that share of its clearance
 /// plus rounding; and so is the first step after each corner of a program, where slips turn into

@@ -67,9 +67,9 @@ class Slider(Item):
     normal_force_N: float = parameter(..., "N", 0, 1e9, USER)
     clearance_minus_m: Optional[float] = parameter(None, "m", 0, 1e2, "against the axis; no stop", above=True)
     clearance_plus_m: Optional[float] = parameter(None, "m", 0, 1e2, "along the axis; no stop", above=True)
-    pad_radius_m: float = parameter(0.05, "m", 0, 1e2, CHOICE + "; DEM only", above=True)
-    young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM + "; DEM only", above=True)
-    poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM + "; DEM only")
+    pad_radius_m: float = parameter(0.05, "m", 0, 1e2, CHOICE + "; DEM and elastic sticking only", above=True)
+    young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM + "; DEM and elastic sticking only", above=True)
+    poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM + "; DEM and elastic sticking only")
 
 
 class Revolute(Item):
@@ -140,6 +140,7 @@ class TrussReduced(Section):
 
     increments_per_branch: int = parameter(50, "-", 1, 1_000_000, CHOICE)
     locate_events: bool = Field(True, description="whether events are located between increments")
+    sticking: str = choice("rigid", ("rigid", "elastic"), "Coulomb's law; elastic: gives way by k_t, as in the DEM")
     event_tolerance: float = parameter(1e-9, "-", 0, 0.1, CHOICE + "; of a branch", above=True)
 
 

@@ -86,7 +86,7 @@ _PART = re.compile(r"(?P<kind>node|revolute|slider) '(?P<name>[^']*)'")
 _NUMBER = r"(?P<number>[-+]?\d[-+\d.e]*)"
 _TEMPERATURE = re.compile(rf"\btemperature[ _]change(?: of| =)? {_NUMBER} K\b")
 _TIME = re.compile(rf"\b(?:t =|time|time =) {_NUMBER} s\b")
-_REMEDY = re.compile(r"(?:^|[;:] )(?P<remedy>(?:did you mean|install|choose|load it|set dem\.\w+ to|--\w+ drops|the same command) .*)")
+_REMEDY = re.compile(r"(?:^|[;:] )(?P<remedy>(?:did you mean|install|choose|load it|set (?:dem|reduced)\.\w+ to|--\w+ drops|the same command) .*)")
 
 
 def _value(text: str) -> Any:

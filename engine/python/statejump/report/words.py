@@ -153,6 +153,8 @@ def _truss(case: dict[str, Any]) -> list[str]:
         limits = (joint["friction_coefficient"] * joint["normal_force_N"] for joint in of["slider"])
         sentences.append(f"{_count(of['slider'], 'sliding joint')} held by friction up to {spread(limits, 'N')}, "
                          f"{f'with {stops} stops' if stops else 'without stops'}.")
+    if (case.get("reduced") or {}).get("sticking") == "elastic":
+        sentences.append("Joints of the reduced model stick elastically, as those of the DEM.")
     cables = [spring for spring in of["spring"] if spring.get("cable")]
     springs = [spring for spring in of["spring"] if not spring.get("cable")]
     tied = [_count(found, name) for found, name in ((springs, "spring"), (cables, "cable"),

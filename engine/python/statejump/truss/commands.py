@@ -12,7 +12,7 @@ import click
 
 from ..case import parse_case
 from ..case_schema import Thermal
-from ..case_truss import Revolute, TrussCase
+from ..case_truss import Revolute, TrussCase, TrussReduced
 from ..errors import StatejumpError
 from ..output import results_folder
 from ..schema import head_line
@@ -27,6 +27,7 @@ LARGEST = 1_000_000
 _NAMES = {
     "shape": [name for name in Thermal.__fields__["shape"].field_info.extra["names"] if name != "table"],
     "contact": list(Revolute.__fields__["contact"].field_info.extra["names"]),
+    "sticking": list(TrussReduced.__fields__["sticking"].field_info.extra["names"]),
 }
 
 

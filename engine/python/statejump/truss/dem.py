@@ -8,7 +8,6 @@ model whatever else loads the supports.
 """
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import ceil, inf, pi
 from pathlib import Path
 from typing import Any, Callable
@@ -20,21 +19,13 @@ from .. import dem
 from ..case_truss import TrussCase
 from ..errors import StatejumpError
 from .checks import SAME_DIRECTION
+from .contacts import pads, revolute_stiffness
 from .resolved import GROUND, ResolvedTruss
 from .solve import TrussPath
 
 CONTACT_GROUPS = 30  # bits of a body's mask in YADE that are free to use
 # Friction may double a contact's force for a moment; Hertz's stiffness grows with its cube root.
 IMPACT = 2 ** (1 / 3)
-
-
-@dataclass(frozen=True)
-class Pad:
-    """Contact stiffness of sliders: pads of a sphere on a plane, both of one material."""
-
-    depth_m: np.ndarray  # at which the floor carries the normal force
-    normal_N_per_m: np.ndarray  # tangent stiffnesses at that depth
-    tangential_N_per_m: np.ndarray
 
 
 def refuse(case: TrussCase, sentence: str) -> StatejumpError:
@@ -51,30 +42,6 @@ def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
         mass[ends] += share
     mass[held] = 0
     return mass
-
-
-def _shear_over_young(poisson_ratio: np.ndarray) -> np.ndarray:
-    """k_t/k_n = 4 G*/E* of two equal materials: 2 (1 - nu)/(2 - nu)."""
-    return 2 * (1 - poisson_ratio) / (2 - poisson_ratio)
-
-
-def pads(truss: ResolvedTruss) -> Pad:
-    """Return the contacts of the sliders' pads with their floors."""
-    sliders = truss.sliders
-    modulus = sliders.young_modulus_Pa / (2 * (1 - sliders.poisson_ratio**2))
-    depth = (sliders.normal_force_N / (4 / 3 * modulus * np.sqrt(sliders.pad_radius_m))) ** (2 / 3)
-    normal = 2 * modulus * np.sqrt(sliders.pad_radius_m * depth)
-    return Pad(depth, normal, normal * _shear_over_young(sliders.poisson_ratio))
-
-
-def revolute_stiffness(truss: ResolvedTruss, force_N: np.ndarray) -> np.ndarray:
-    """Return the sum of both tangent stiffnesses [N/m] of revolutes at these normal forces [N]."""
-    joints = truss.revolutes
-    modulus = joints.young_modulus_Pa / (2 * (1 - joints.poisson_ratio**2))
-    radius = joints.journal_radius_m * joints.bearing_radius_m / joints.radial_clearance_m
-    hertz = 4 / 3 * modulus * np.sqrt(radius)
-    normal = 1.5 * hertz ** (2 / 3) * np.cbrt(force_N)
-    return normal * (1 + _shear_over_young(joints.poisson_ratio))
 
 
 def stable_time_step(case: TrussCase, path: TrussPath) -> float:

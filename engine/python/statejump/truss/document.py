@@ -23,7 +23,7 @@ _LISTS = ("node", "link", "slider", "revolute", "spring", "torsion_spring")
 
 def document(
     name: str, title: str, source: str, dimension: int, temperature_change_K: float, shape: str, cycles: int,
-    period_s: float,
+    period_s: float, sticking: str = "rigid",
 ) -> Document:
     """Return a case document with header and temperature program and without items."""
     header = {"name": name, "kind": "truss", "title": title, "source": source}
@@ -35,11 +35,12 @@ def document(
             "shape": shape, "temperature_change_max_K": float(temperature_change_K), "cycles": cycles,
             "period_s": float(period_s),
         },
+        "reduced": {"sticking": sticking} if sticking != "rigid" else [],
     }
 
 
 def finished(made: Document) -> Document:
-    """Return the document without the lists that stayed empty."""
+    """Return the document without what stayed empty."""
     return {section: content for section, content in made.items() if content != []}
 
 

@@ -110,8 +110,9 @@ RIB_BAR = {
 
 def umbrella(
     n: int, *, name: str = "", friction_coefficient: float = 0.15, journal_radius_m: float = 5e-3,
-    radial_clearance_m: float = 1e-4, contact: str = "hertz", torsion_stiffness_N_m_per_rad: float = 1.0,
-    bias_rad: float = 0.05, cable_preload_N: float = 0.0, cable_stiffness_N_per_m: float = 1e3,
+    radial_clearance_m: float = 1e-4, contact: str = "hertz", sticking: str = "rigid",
+    torsion_stiffness_N_m_per_rad: float = 1.0, bias_rad: float = 0.05, cable_preload_N: float = 0.0,
+    cable_stiffness_N_per_m: float = 1e3,
     temperature_change_K: float = 100.0, shape: str = "triangle", cycles: int = 1, period_s: float = 16.0,
 ) -> Document:
     """Ribs of the umbrella antenna around its axis AC, which is x.
@@ -126,6 +127,7 @@ def umbrella(
     :param journal_radius_m: radius of the journals [m]
     :param radial_clearance_m: radial clearance of the joints [m]
     :param contact: contact of the reduced model, hertz or rigid
+    :param sticking: how joints of the reduced model stick, rigid or elastic (as in the DEM)
     :param torsion_stiffness_N_m_per_rad: torsion spring between AB and CB [N m/rad]
     :param bias_rad: free flare angle beyond the drawn one [rad]
     :param cable_preload_N: tension of cables between neighbouring ribs [N]; 0: no cables
@@ -141,6 +143,7 @@ def umbrella(
     made = document(
         name or f"umbrella_{n}", f"Umbrella antenna, {n} ribs" if n > 1 else "Umbrella rib as a truss",
         f"{PAPER}, Tables 2 and 3, section 4", 2 if n == 1 else 3, temperature_change_K, shape, cycles, period_s,
+        sticking,
     )
     x = (FRAME_M**2 + AB_M**2 - BC_M**2) / (2 * FRAME_M)
     height = sqrt(AB_M**2 - x**2)

@@ -18,7 +18,7 @@ SPOKE_STRAIN = 1e-3  # of the spokes by their preload
 
 def ring(
     n: int, *, name: str = "", sunlit: bool = True, friction_coefficient: float = 0.1,
-    journal_radius_m: float = 0.01, radial_clearance_m: float = 2e-5, contact: str = "hertz",
+    journal_radius_m: float = 0.01, radial_clearance_m: float = 2e-5, contact: str = "hertz", sticking: str = "rigid",
     hoop_force_N: float = 0.0, temperature_change_K: float = 100.0, shape: str = "triangle", cycles: int = 1,
     period_s: float = 1.0,
 ) -> Document:
@@ -55,6 +55,7 @@ def ring(
     :param journal_radius_m: radius of the journals [m]
     :param radial_clearance_m: radial clearance of the joints [m]
     :param contact: contact of the reduced model, hertz or rigid
+    :param sticking: how joints of the reduced model stick, rigid or elastic (as in the DEM)
     :param hoop_force_N: compression of both hoops together by the spokes [N]; 0: as above
     :param temperature_change_K: largest temperature change [K]
     :param shape: temperature program
@@ -63,7 +64,7 @@ def ring(
     """
     made = document(
         name or f"ring_{n}", f"Ring of {n} bays with a clearance joint each", "statejump truss ring", 2,
-        temperature_change_K, shape, cycles, period_s,
+        temperature_change_K, shape, cycles, period_s, sticking,
     )
     outer = BAY_M / (2 * sin(pi / n))
     depth = min(BAY_M / 2, outer / 2)
@@ -112,9 +113,10 @@ def ring(
 
 def mast(
     n: int, *, name: str = "", radial_clearance_m: float = 1e-4, friction_coefficient: float = 0.1,
-    journal_radius_m: float = 0.01, contact: str = "hertz", tip_load_N: float = 0.0, cable_preload_N: float = 0.0,
-    cable_stiffness_N_per_m: float = 1e4, second_moment_m4: float = 2e-8, shaded_fraction: float = 0.5,
-    temperature_change_K: float = 100.0, shape: str = "triangle", cycles: int = 1, period_s: float = 1.0,
+    journal_radius_m: float = 0.01, contact: str = "hertz", sticking: str = "rigid", tip_load_N: float = 0.0,
+    cable_preload_N: float = 0.0, cable_stiffness_N_per_m: float = 1e4, second_moment_m4: float = 2e-8,
+    shaded_fraction: float = 0.5, temperature_change_K: float = 100.0, shape: str = "triangle", cycles: int = 1,
+    period_s: float = 1.0,
 ) -> Document:
     """Scissor mast of square bays, one above the other, with clearance joints between them.
 
@@ -142,6 +144,7 @@ def mast(
     :param friction_coefficient: of the clearance joints
     :param journal_radius_m: radius of the journals [m]
     :param contact: contact of the reduced model, hertz or rigid
+    :param sticking: how joints of the reduced model stick, rigid or elastic (as in the DEM)
     :param tip_load_N: load at the tip, downwards [N]; 0: 6 N / n
     :param cable_preload_N: tension of a cable across every level [N]; 0: no cables
     :param cable_stiffness_N_per_m: stiffness of these cables [N/m]
@@ -154,7 +157,7 @@ def mast(
     """
     made = document(
         name or f"mast_{n}", f"Scissor mast of {n} bays", "statejump truss mast", 2, temperature_change_K, shape,
-        cycles, period_s,
+        cycles, period_s, sticking,
     )
     bending = 3 * TUBE["young_modulus_Pa"] * second_moment_m4 / hypot(BAY_M, BAY_M)
     load = (tip_load_N or 6.0 / n) / 2

@@ -145,6 +145,7 @@ class ResolvedTruss:
     programs: tuple["TrussThermal", ...]
     program_names: tuple[str, ...]  # "thermal" and those of the file
     reflector: Optional[ReflectorSurface]
+    sticking: str  # "rigid" or "elastic": contacts of the reduced model
 
 
 def column(items: Sequence["Item"], key: str) -> np.ndarray:
@@ -279,4 +280,5 @@ def resolve(case: "TrussCase") -> ResolvedTruss:
         name=case.name, dimension=dimension, nodes=nodes, links=links, sliders=sliders, revolutes=revolutes,
         springs=springs, torsion_springs=torsion_springs, programs=tuple(case.programs),
         program_names=("thermal", *names(case.program)), reflector=reflector,
+        sticking=case.reduced.sticking,
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
 from typing import Any, Callable, Optional
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from .. import _engine
 from ..case_truss import TrussCase, TrussThermal
 from ..errors import FailedRun
+from .contacts import solver_stiffness
 from .resolved import ResolvedTruss
 
 # Bytes of the states of a whole path beyond which only the ends of cycles are kept.
@@ -56,15 +56,6 @@ class TrussPath:
         return float((states["thermal_work_J"] - (stored - stored[0]) - heat)[-1])
 
 
-def hertz_stiffness(truss: ResolvedTruss) -> np.ndarray:
-    """Return K of F = K δ^1.5 [N/m^1.5] of every revolute: 4/3 E* sqrt(R), E* = E/(2 (1 - ν²)) of two equal
-    parts, R = R1 R2/(R2 - R1); infinity for rigid contacts. Hertz's formula, not the DEM's contact law."""
-    joints = truss.revolutes
-    modulus = joints.young_modulus_Pa / (2 * (1 - joints.poisson_ratio**2))
-    radius = joints.journal_radius_m * joints.bearing_radius_m / joints.radial_clearance_m
-    return np.where(joints.rigid, inf, 4 / 3 * modulus * np.sqrt(radius))
-
-
 def engine_program(thermal: TrussThermal) -> _engine.ThermalProgram:
     """Return a temperature program of a truss as the engine's; a table is stretched to the period."""
     if thermal.shape != "table":
@@ -103,6 +94,7 @@ def path(
     :raises StatejumpError: for a mechanism, an unloaded joint, no equilibrium: with names and temperature
     """
     sliders, springs, torsion = truss.sliders, truss.springs, truss.torsion_springs
+    hertz, mindlin, tangential = solver_stiffness(truss)
     try:
         found = _engine.truss_path(
             _table(truss.nodes, "position_m", "fixed", "guide_normal", "force_N"),
@@ -112,17 +104,22 @@ def path(
             _table(springs, "nodes", "stiffness_N_per_m", "free_length_m", "cable"),
             _table(torsion, "links", "stiffness_N_m_per_rad", "bias_rad", "axis"),
             _table(sliders, "nodes", "axis", "clearance_minus_m", "clearance_plus_m",
-                   friction_force_N=sliders.friction_coefficient * sliders.normal_force_N),
+                   friction_force_N=sliders.friction_coefficient * sliders.normal_force_N,
+                   tangential_stiffness_N_per_m=tangential),
             _table(truss.revolutes, "journal_node", "bearing_node", "journal_link", "bearing_link",
                    "journal_radius_m", "radial_clearance_m", "journal_thermal_expansion_per_K",
                    "bearing_thermal_expansion_per_K", "friction_coefficient", "axis", "program",
-                   "temperature_fraction", hertz_stiffness_N_per_m15=hertz_stiffness(truss)),
+                   "temperature_fraction", hertz_stiffness_N_per_m15=hertz,
+                   mindlin_stiffness_N_per_m15=mindlin),
             [engine_program(program) for program in truss.programs],
             increments_per_branch=increments_per_branch, locate_events=locate_events,
             event_tolerance=event_tolerance, cycle_ends_only=cycle_ends_only, progress=progress,
         )
     except (ValueError, RuntimeError) as failure:
-        raise FailedRun(f"{truss.name}: {failure}", cause=str(failure)) from None
+        sentence = str(failure)
+        if "does not settle" in sentence and locate_events:
+            sentence += "; set reduced.locate_events to false, which takes such changes together"
+        raise FailedRun(f"{truss.name}: {sentence}", cause=str(failure)) from None
     names = {"slider": sliders.names, "revolute": truss.revolutes.names}
     events = tuple(
         TrussEvent(name=names[event["joint_kind"]][event["joint"]], **event) for event in found.pop("events")
