@@ -353,6 +353,30 @@ def test_same_bytes_with_any_workers(tmp_path: Path, write: Callable[..., Path])
         assert [repr(value) for value in sample.values] == [rows[index][name] for name in campaign.units]
 
 
+def test_workers_that_vanish_end_the_campaign_and_keep_what_is_finished(
+    tmp_path: Path, write: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from distributed import LocalCluster
+
+    from statejump.campaign.cluster import _no_main_file, kill_workers
+
+    campaign = load_campaign(write(samples=50_000), MONTECARLO)
+    monkeypatch.setattr(execute, "LOOK_S", 0.1)
+    monkeypatch.setattr(execute, "NO_WORKERS_S", 0.2)  # the cluster starts another worker, in more than half a second
+    (tmp_path / "trial").mkdir()
+    with _no_main_file(), LocalCluster(
+        n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0", local_directory=str(tmp_path)
+    ) as cluster, journal.Journal(tmp_path / "trial", campaign, restart=False) as kept:
+        def tell(fraction: float) -> None:
+            if fraction > 0:
+                kill_workers(cluster)
+
+        with pytest.raises(StatejumpError) as failure:
+            execute.run_missing(campaign, kept, cluster.scheduler_address, None, tell)
+    assert str(failure.value).startswith("the dask scheduler has had no workers for 0.2 s; finished samples are kept")
+    assert 0 < len(kept.finished) < campaign.samples
+
+
 def _samples_in(content: bytes) -> int:
     whole = content[: content.rfind(b"\n") + 1].splitlines()[1:]
     return sum(len(json.loads(line)["samples"]) for line in whole)

@@ -85,8 +85,8 @@ def _local(workers: int, model: str) -> Iterator[Client]:
             yield client
 
 
-def _close(cluster: LocalCluster) -> None:
-    """End the cluster at once, also in the middle of a run."""
+def kill_workers(cluster: LocalCluster) -> None:
+    """End the workers at once, also in the middle of a run."""
     for nanny in list(cluster.workers.values()):
         process = getattr(getattr(nanny, "process", None), "process", None)
         nanny.auto_restart = False
@@ -95,6 +95,10 @@ def _close(cluster: LocalCluster) -> None:
                 os.kill(process.pid, signal.SIGKILL)
             except ProcessLookupError:
                 pass
+
+
+def _close(cluster: LocalCluster) -> None:
+    kill_workers(cluster)
     cluster.close(timeout=10)
 
 

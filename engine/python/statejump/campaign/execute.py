@@ -14,11 +14,13 @@ from .cluster import open_client
 from .journal import Journal
 from .work import Batch, Sample, batch_of, run_samples
 
-from distributed import Client, Future, KilledWorker, as_completed  # noqa: E402, after cluster set it up
+from distributed import Client, Future, KilledWorker, wait  # noqa: E402, after cluster set it up
 
 BATCH_S = 0.5  # wanted length of a task: long against the millisecond that a task costs
 MOST_IN_BATCH = 20_000
 QUEUED = 2  # tasks per worker, so that none waits for the next
+LOOK_S = 5.0  # how often workers are counted while none of them has finished a task
+NO_WORKERS_S = 60.0  # how long a cluster whose workers are all gone is waited for
 
 
 @dataclass
@@ -103,7 +105,8 @@ def _finished(
     """Yield finished batches. Samples whose worker died go one by one, each alone, at the end: only a
     sample that kills its worker also then is to blame."""
     batches = _Batches(missing, campaign.model)
-    running = as_completed(loop=client.loop)
+    watch = _Watch(client)
+    running: set[Future] = set()
     asked: dict[str, list[int]] = {}
     suspects: list[int] = []
 
@@ -117,31 +120,73 @@ def _finished(
 
     while len(asked) < QUEUED * _slots(client) and submit():
         pass
-    for future in running:
-        batch = asked.pop(future.key)
-        answer = _answer(future)
-        future.release()
-        if answer is None:
-            suspects += batch
-        else:
-            batches.learn(len(batch), answer[0])
-            yield answer
+    while running:
+        for future in _some_of(watch, running):
+            running.remove(future)
+            batch = asked.pop(future.key)
+            answer = _answer(watch, future)
+            future.release()
+            if answer is None:
+                suspects += batch
+            else:
+                batches.learn(len(batch), answer[0])
+                yield answer
         while len(asked) < QUEUED * _slots(client) and submit():
             pass
     for index in suspects:
         future = client.submit(run_samples, campaign, [index], pure=False)
         lost = Sample(index, None, "the run ended its worker process, time and again")
-        yield _answer(future) or (0.0, batch_of([lost], len(campaign.units)))
+        yield _answer(watch, future) or (0.0, batch_of([lost], len(campaign.units)))
 
 
-def _answer(future: Future) -> Optional[tuple[float, Batch]]:
-    """Result of a batch; None: its worker died. :raises StatejumpError: the cluster is gone"""
-    try:
-        return future.result()
-    except KilledWorker:
-        return None
-    except (CancelledError, OSError) as problem:
-        raise StatejumpError(
-            f"the connection to the dask scheduler was lost ({type(problem).__name__}); finished samples are kept, "
-            "the same command goes on with the others"
-        ) from None
+class _Watch:
+    """Notices when all workers are gone, for as long as nothing else happens."""
+
+    def __init__(self, client: Client) -> None:
+        self.client = client
+        self.alone_since: Optional[float] = None
+
+    def look(self) -> None:
+        """To be called every few seconds. :raises StatejumpError: there have been no workers for too long"""
+        now = time.monotonic()
+        self.alone_since = None if self.client.scheduler_info()["workers"] else self.alone_since or now
+        if self.alone_since is not None and now - self.alone_since >= NO_WORKERS_S:
+            raise StatejumpError(
+                f"the dask scheduler has had no workers for {NO_WORKERS_S:g} s; finished samples are kept, the same "
+                "command goes on with the others"
+            )
+
+
+def _some_of(watch: _Watch, running: set[Future]) -> set[Future]:
+    """Wait for at least one future. :raises StatejumpError: the cluster is gone, or all its workers are"""
+    while True:
+        try:
+            with watch.client.as_current():
+                return set(wait(running, timeout=LOOK_S, return_when="FIRST_COMPLETED").done)
+        except TimeoutError:
+            watch.look()
+        except (CancelledError, OSError) as problem:
+            raise _lost(problem) from None
+
+
+def _answer(watch: _Watch, future: Future) -> Optional[tuple[float, Batch]]:
+    """Result of a batch; None: its worker died. A result is lost with the worker that has it, and is then
+    computed again. :raises StatejumpError: the cluster is gone, or all its workers are"""
+    while True:
+        try:
+            answer = future.result(timeout=LOOK_S)
+            watch.alone_since = None
+            return answer
+        except KilledWorker:
+            return None
+        except TimeoutError:
+            watch.look()
+        except (CancelledError, OSError) as problem:
+            raise _lost(problem) from None
+
+
+def _lost(problem: BaseException) -> StatejumpError:
+    return StatejumpError(
+        f"the connection to the dask scheduler was lost ({type(problem).__name__}); finished samples are kept, "
+        "the same command goes on with the others"
+    )
