@@ -109,7 +109,7 @@ struct Walker {
   void refuse_buckled(double when) const;
   StepEnd step_to(double target, double tolerance);
   bool state_depends_on(int joint, JointStatus before, JointStatus after) const;
-  bool slide_at_stake(int joint, JointStatus before, double target) const;
+  bool slide_at_stake(int joint, JointStatus before, double target, double rounding) const;
 };
 
 /// Relaxes the drawn shape at ΔT = 0; see truss_path().
@@ -215,10 +215,11 @@ bool Walker::state_depends_on(int joint, JointStatus before, JointStatus after) 
 /// Whether a joint that stopped sliding before `target` may have slid by more than rounding until
 /// it did: slides of a step are lost when it ends in a stick. One that comes to rest smoothly
 /// slides so little at last that no shorter step would tell.
-bool Walker::slide_at_stake(int joint, JointStatus before, double target) const {
+/// @param rounding of a displacement [m]
+bool Walker::slide_at_stake(int joint, JointStatus before, double target, double rounding) const {
   if (before == JointStatus::open) return true;
   const int sliders = static_cast<int>(model.sliders.size());
-  double least = 1e3 * system.slide_rounding(joint, z);
+  double least = 1e3 * system.slide_rounding(joint, z, rounding);
   if (joint >= sliders && !options.locate_events) {
     least += options.event_tolerance * model.revolutes[index(joint - sliders)].radial_clearance;
   }
@@ -242,10 +243,11 @@ StepEnd Walker::step_to(double target, double tolerance) {
   }
   const int sliders = static_cast<int>(model.sliders.size());
   std::vector<TrussEvent> events;
+  const double rounding = system.length_rounding(z);
   const auto compare = [&](int joint, JointStatus before, JointStatus after) {
     if (before == after) return true;
     const bool matters = state_depends_on(joint, before, after)
-                             ? slide_at_stake(joint, before, target)
+                             ? slide_at_stake(joint, before, target, rounding)
                              : options.locate_events;
     if (!is_short && matters) return false;
     const bool is_revolute = joint >= sliders;

@@ -13,7 +13,7 @@ int TrussSystem::correct_statuses(const VectorXd& z, double time, const StepStar
   // Inequalities are violated when rounding cannot be the reason; forces are as round as the
   // stiffest part makes them.
   const double length_slack = length_rounding(z);
-  const double force_slack = force_rounding(z);
+  const double force_slack = force_rounding(length_slack);
   const auto become = [&](JointStatus& status, JointStatus next, int joint) {
     if (status == next) return;
     status = next;
@@ -28,7 +28,7 @@ int TrussSystem::correct_statuses(const VectorXd& z, double time, const StepStar
     const double f = slider.friction_force;
     const double beyond = f + force_slack;
     const bool elastic = std::isfinite(slider.tangential_stiffness);
-    const double bend_slack = slide_rounding(joint, z);
+    const double bend_slack = slide_rounding(joint, z, length_slack);
     // While it slips, its friction is the force.
     const double step = s - force / slider.tangential_stiffness - start.slide[joint];
     const auto friction_at = [&](double stop) {
@@ -115,7 +115,7 @@ int TrussSystem::correct_statuses(const VectorXd& z, double time, const StepStar
     } else {
       const double sense = status == JointStatus::slip_plus ? 1.0 : -1.0;
       const ElasticSlide elastic = elastic_slide(part, z, start);
-      if (sense * (g.surface_slide - elastic.slide) < -slide_rounding(joint, z)) {
+      if (sense * (g.surface_slide - elastic.slide) < -slide_rounding(joint, z, length_slack)) {
         become(status, JointStatus::stick, joint);
       }
     }

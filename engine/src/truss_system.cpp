@@ -194,13 +194,13 @@ double TrussSystem::length_rounding(const VectorXd& z) const {
   return 4.0 * std::numeric_limits<double>::epsilon() * reach;
 }
 
-double TrussSystem::slide_rounding(int joint, const VectorXd& z) const {
+double TrussSystem::slide_rounding(int joint, const VectorXd& z, double length_rounding) const {
   const int sliders = static_cast<int>(model_->sliders.size());
   const double compliance = joint < sliders
                                 ? 1.0 / model_->sliders[index(joint)].tangential_stiffness
                                 : tangential_compliance(model_->revolutes[index(joint - sliders)],
                                                         revolute_force(joint - sliders, z)[0]);
-  return length_rounding(z) + compliance * force_rounding(z);
+  return length_rounding + compliance * force_rounding(length_rounding);
 }
 
 StepStart TrussSystem::step_start(const VectorXd& z, const Statuses& statuses,

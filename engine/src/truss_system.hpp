@@ -136,11 +136,12 @@ class TrussSystem {
                                                double held) const;
   /// Rounding of a displacement at z [m], and of the forces that come of it [N].
   double length_rounding(const Eigen::VectorXd& z) const;
-  double force_rounding(const Eigen::VectorXd& z) const {
-    return 16.0 * stiffness_scale_ * length_rounding(z);
+  double force_rounding(double length_rounding) const {
+    return 16.0 * stiffness_scale_ * length_rounding;
   }
   /// Rounding of a joint's slide less what friction bends, sliders before revolutes [m].
-  double slide_rounding(int joint, const Eigen::VectorXd& z) const;
+  /// @param length_rounding that of a displacement at z, which costs as much as the truss is large
+  double slide_rounding(int joint, const Eigen::VectorXd& z, double length_rounding) const;
   int displacements() const { return displacements_; }
   /// Node of a free displacement.
   int node_of(int displacement) const;
