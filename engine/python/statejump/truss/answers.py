@@ -124,7 +124,7 @@ def verdict(found: TrussPath, resolution: float = 0.0) -> Verdict:
     if len(each) > 2 and abs(last - before) <= STEADY * last:
         return made("ratcheting", f"the jump grows by {units.plain(last, 'm', 4)} per cycle (cycle {len(each)}; first cycle "
                     f"{units.plain(first, 'm', 4)})")
-    return made("not settled", f"the jump of cycle {len(each)} is {last / first:.4g} of the first cycle's: "
+    return made("not settled", f"the jump of cycle {len(each)} is {100 * last / first:.3g} % of the first cycle's: "
                 "neither settled nor steady, more cycles are needed")
 
 
