@@ -78,6 +78,17 @@ class NodeWriter {
       sink_.add(rows_[index(node)] + i, column, part.free_directions.col(i).dot(gradient));
     }
   }
+  /// Holds two nodes together along a direction by a force; its closure stands in its own row.
+  void hold(int first, int second, const Vector3d& along, int held, double force, double closure) {
+    sink_.residual(held, closure);
+    row(held, first, along);
+    row(held, second, -along);
+    this->force(first, force * along);
+    this->force(second, -force * along);
+    column(first, held, along);
+    column(second, held, -along);
+    sink_.add(held, held, 0.0);
+  }
 
  private:
   const TrussModel& model_;
@@ -226,14 +237,7 @@ double TrussSystem::assemble(const VectorXd& z, double time, const StepStart& st
       const Vector3d& across = slider_across_[i][k];
       const int held = row + 1 + static_cast<int>(k);
       const Vector3d moved = displacement(slider.first, z) - displacement(slider.second, z);
-      sink.residual(held, across.dot(moved));
-      nodes.row(held, slider.first, across);
-      nodes.row(held, slider.second, -across);
-      nodes.force(slider.first, z[held] * across);
-      nodes.force(slider.second, -z[held] * across);
-      nodes.column(slider.first, held, across);
-      nodes.column(slider.second, held, -across);
-      sink.add(held, held, 0.0);
+      nodes.hold(slider.first, slider.second, across, held, z[held], across.dot(moved));
       largest = std::max(largest, std::abs(z[held]));
     }
   }
@@ -357,15 +361,9 @@ double TrussSystem::assemble(const VectorXd& z, double time, const StepStart& st
     sink.add(row + 1, row + 1, corner[3]);
     if (revolute_holds_axis_[i]) {
       const int held = row + 2;
-      const Vector3d axis = revolute.axis;
-      sink.residual(held, axis.dot(between(revolute.bearing_node, revolute.journal_node, z)));
-      nodes.row(held, revolute.journal_node, axis);
-      nodes.row(held, revolute.bearing_node, -axis);
-      nodes.force(revolute.journal_node, z[held] * axis);
-      nodes.force(revolute.bearing_node, -z[held] * axis);
-      nodes.column(revolute.journal_node, held, axis);
-      nodes.column(revolute.bearing_node, held, -axis);
-      sink.add(held, held, 0.0);
+      const Vector3d apart = between(revolute.bearing_node, revolute.journal_node, z);
+      nodes.hold(revolute.journal_node, revolute.bearing_node, revolute.axis, held, z[held],
+                 revolute.axis.dot(apart));
     }
   }
   return largest;
@@ -380,9 +378,7 @@ double TrussSystem::evaluate(const VectorXd& z, double time, const StepStart& st
 
 Eigen::SparseMatrix<double> TrussSystem::pattern() const {
   PatternSink sink;
-  Statuses statuses;
-  statuses.sliders.assign(model_->sliders.size(), JointStatus::stick);
-  statuses.revolutes.assign(model_->revolutes.size(), JointStatus::stick);
+  const Statuses statuses = all_stick();
   const VectorXd z = VectorXd::Zero(unknowns_);
   assemble(z, 0.0, step_start(z, statuses), statuses, JointModel::pins, 1.0, sink);
   Eigen::SparseMatrix<double> matrix(unknowns_, unknowns_);

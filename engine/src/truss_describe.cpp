@@ -110,18 +110,17 @@ void TrussSystem::describe(const VectorXd& z, double time, const StepStart& now,
 
 void TrussSystem::account(const VectorXd& z_before, double time_before, const VectorXd& z,
                           double time, const StepStart& start, const StepStart& after,
-                          TrussState& state) const {
+                          const VectorXd& slips, TrussState& state) const {
   const TrussModel& model = *model_;
-  for (int i = 0; i < static_cast<int>(model.sliders.size()); ++i) {
+  const int sliders = static_cast<int>(model.sliders.size());
+  for (int i = 0; i < sliders; ++i) {
     // Whenever it slides, friction is f; a stop takes no heat.
-    state.slider_dissipation[i] +=
-        model.sliders[index(i)].friction_force * std::abs(slider_slip(i, start, after));
+    state.slider_dissipation[i] += model.sliders[index(i)].friction_force * std::abs(slips[i]);
   }
   for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
     const double normal = 0.5 * (revolute_force(i, z_before)[0] + revolute_force(i, z)[0]);
     state.revolute_dissipation[i] +=
-        model.revolutes[index(i)].friction_coefficient * normal *
-            std::abs(revolute_slip(i, z, time, start)) +
+        model.revolutes[index(i)].friction_coefficient * normal * std::abs(slips[sliders + i]) +
         rim_slip(start.friction[i], start.compliance[i], after.friction[i], after.compliance[i]);
   }
   for (const TrussLink& link : model.links) {

@@ -141,11 +141,8 @@ std::string mechanism(const TrussSystem& system, const VectorXd& z, double time,
 
 std::string buckling(const TrussSystem& system, const VectorXd& z, double time) {
   if (system.displacements() == 0) return "";
-  const Statuses held{
-      std::vector<JointStatus>(system.model().sliders.size(), JointStatus::stick),
-      std::vector<JointStatus>(system.model().revolutes.size(), JointStatus::stick)};
-  const Eigen::SparseMatrix<double> shifted =
-      shifted_stiffness(system, z, time, held, JointModel::pins, stiff_joint, free_share);
+  const Eigen::SparseMatrix<double> shifted = shifted_stiffness(
+      system, z, time, system.all_stick(), JointModel::pins, stiff_joint, free_share);
   const Factors factors(shifted);
   // Sylvester: as many negative pivots as negative eigenvalues.
   const Eigen::Index unstable =

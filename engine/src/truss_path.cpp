@@ -74,8 +74,7 @@ struct Walker {
   TrussNewton newton;
   TrussPath path;
   VectorXd z;
-  Statuses statuses;
-  StepStart origin;  // the state as the start of the next step
+  StepStart origin;  ///< The state as the start of the next step.
   TrussState state;
   double time = 0.0;
   /// How fast every joint slid in the last step, sliders before revolutes [m/s].
@@ -83,7 +82,7 @@ struct Walker {
 
   [[noreturn]] void fail(const SolveReport& report, JointModel joints, double when,
                          const std::string& doing) const {
-    const std::string modes = detail::mechanism(system, z, when, statuses, joints);
+    const std::string modes = detail::mechanism(system, z, when, origin.statuses, joints);
     if (!modes.empty()) {
       throw std::runtime_error("the truss is a mechanism" + at_temperature(model, when) + ": " +
                                modes);
@@ -114,16 +113,15 @@ struct Walker {
 
 /// Relaxes the drawn shape at ΔT = 0; see truss_path().
 void Walker::start() {
-  statuses.sliders.assign(model.sliders.size(), JointStatus::stick);
-  statuses.revolutes.assign(model.revolutes.size(), JointStatus::stick);
+  origin.statuses = system.all_stick();
   z = VectorXd::Zero(system.unknowns());
-  const std::string modes = detail::mechanism(system, z, 0.0, statuses, JointModel::pins);
+  const std::string modes = detail::mechanism(system, z, 0.0, origin.statuses, JointModel::pins);
   if (!modes.empty()) {
     throw std::runtime_error("the truss is a mechanism even with every joint held, " + modes);
   }
-  const StepStart begin = system.step_start(z, statuses);
+  const StepStart begin = system.step_start(z, origin.statuses);
   const SolveReport report =
-      newton.solve(0.0, begin, JointModel::pins, 1.0, options.most_iterations, z, statuses);
+      newton.solve(0.0, begin, JointModel::pins, 1.0, options.most_iterations, z, origin.statuses);
   note(report);
   if (report.end != SolveEnd::converged) {
     fail(report, JointModel::pins, 0.0, "no equilibrium of the drawn shape");
@@ -155,12 +153,12 @@ void Walker::open_clearances() {
   // from the last equilibrium, because the links turn as they open.
   double opened = 0.0;
   double share = 0.125;
-  statuses.revolutes.assign(model.revolutes.size(), JointStatus::slip_plus);
+  origin.statuses.revolutes.assign(model.revolutes.size(), JointStatus::slip_plus);
   while (opened < 1.0) {
     const double next = std::min(1.0, opened + share);
     VectorXd trial = z;
-    Statuses trial_statuses = statuses;
-    const StepStart last = system.step_start(z, statuses);
+    Statuses trial_statuses = origin.statuses;
+    const StepStart last = system.step_start(z, origin.statuses);
     for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
       const Vector2d force = system.revolute_force(i, z);
       const Vector2d eccentricity = last.eccentricity.col(i);
@@ -176,7 +174,7 @@ void Walker::open_clearances() {
     note(report);
     if (report.end == SolveEnd::converged) {
       z = trial;
-      statuses = trial_statuses;
+      origin.statuses = trial_statuses;
       opened = next;
       continue;
     }
@@ -186,13 +184,13 @@ void Walker::open_clearances() {
     }
   }
   for (std::size_t i = 0; i < model.revolutes.size(); ++i) {
-    if (statuses.revolutes[i] == JointStatus::open) {
+    if (origin.statuses.revolutes[i] == JointStatus::open) {
       throw std::runtime_error("revolute '" + model.revolutes[i].name +
                                "' has no contact at the start: statics does not determine its "
                                "position in the play");
     }
     if (model.revolutes[i].friction_coefficient > 0.0) {
-      statuses.revolutes[i] = JointStatus::stick;
+      origin.statuses.revolutes[i] = JointStatus::stick;
     }
   }
 }
@@ -231,14 +229,14 @@ StepEnd Walker::step_to(double target, double tolerance) {
   // The sum time + tolerance is rounded.
   const bool is_short = target - time <= 1.5 * tolerance;
   VectorXd trial = z;
-  Statuses trial_statuses = statuses;
+  Statuses trial_statuses = origin.statuses;
   const StepStart& begin = origin;
   const SolveReport report = newton.solve(target, begin, JointModel::friction, 1.0,
                                           options.most_iterations, trial, trial_statuses);
   if (report.end != SolveEnd::converged) {
     ++path.solves;
     if (!is_short) return StepEnd::not_converged;
-    statuses = trial_statuses;
+    origin.statuses = trial_statuses;
     fail(report, JointModel::friction, target, "no equilibrium");
   }
   const int sliders = static_cast<int>(model.sliders.size());
@@ -256,20 +254,21 @@ StepEnd Walker::step_to(double target, double tolerance) {
     return true;
   };
   for (int i = 0; i < sliders; ++i) {
-    if (!compare(i, statuses.sliders[index(i)], trial_statuses.sliders[index(i)])) {
+    if (!compare(i, origin.statuses.sliders[index(i)], trial_statuses.sliders[index(i)])) {
       ++path.solves;
       return StepEnd::event_inside;
     }
   }
   for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
-    if (!compare(sliders + i, statuses.revolutes[index(i)], trial_statuses.revolutes[index(i)])) {
+    if (!compare(sliders + i, origin.statuses.revolutes[index(i)],
+                 trial_statuses.revolutes[index(i)])) {
       ++path.solves;
       return StepEnd::event_inside;
     }
   }
   bool opened = false;
   for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
-    const JointStatus before = statuses.revolutes[index(i)];
+    const JointStatus before = origin.statuses.revolutes[index(i)];
     const JointStatus after = trial_statuses.revolutes[index(i)];
     opened = opened || (before != JointStatus::open && after == JointStatus::open);
     if (before == JointStatus::open || after == JointStatus::open) continue;
@@ -294,16 +293,10 @@ StepEnd Walker::step_to(double target, double tolerance) {
   }
   note(report);
   const StepStart after = system.step_start(trial, trial_statuses, &begin);
-  system.account(z, time, trial, target, begin, after, state);
-  for (int i = 0; i < sliders; ++i) {
-    slide_rate[i] = std::abs(system.slider_slip(i, begin, after)) / (target - time);
-  }
-  for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
-    slide_rate[sliders + i] =
-        std::abs(system.revolute_slip(i, trial, target, begin)) / (target - time);
-  }
+  const VectorXd slips = system.slips(trial, target, begin, after);
+  system.account(z, time, trial, target, begin, after, slips, state);
+  slide_rate = slips.cwiseAbs() / (target - time);
   z = trial;
-  statuses = trial_statuses;
   origin = after;
   time = target;
   system.describe(z, time, origin, state);
@@ -333,7 +326,7 @@ TrussPath truss_path(const TrussModel& model, const TrussOptions& options) {
                   "event_tolerance", options.event_tolerance, "above 0 and at most 1");
   kernel::require(options.most_iterations >= 2, "most_iterations", options.most_iterations, ">= 2");
   const TrussSystem system(model);
-  Walker walker{model, system, options, TrussNewton(system), {}, {}, {}, {}, {}, 0.0, {}};
+  Walker walker{model, system, options, TrussNewton(system), {}, {}, {}, {}, 0.0, {}};
   walker.slide_rate =
       VectorXd::Zero(static_cast<Eigen::Index>(model.sliders.size() + model.revolutes.size()));
   walker.path.unknowns = system.unknowns();
@@ -341,7 +334,7 @@ TrussPath truss_path(const TrussModel& model, const TrussOptions& options) {
   walker.state.revolute_dissipation =
       VectorXd::Zero(static_cast<Eigen::Index>(model.revolutes.size()));
   walker.start();
-  walker.origin = system.step_start(walker.z, walker.statuses);
+  walker.origin = system.step_start(walker.z, walker.origin.statuses);
   system.describe(walker.z, 0.0, walker.origin, walker.state);
   walker.path.states.push_back(walker.state);
   walker.path.cycle_ends.push_back(walker.state);

@@ -6,6 +6,27 @@
 
 namespace statejump::detail {
 
+namespace {
+
+/// One of the two ways in which a slider may go.
+struct Sense {
+  double sign;
+  JointStatus slip;
+  JointStatus stop;
+  JointStatus other_slip;
+  JointStatus other_stop;
+  double clearance(const TrussSlider& slider) const {
+    return sign > 0.0 ? slider.clearance_plus : slider.clearance_minus;
+  }
+};
+
+constexpr Sense plus{1.0, JointStatus::slip_plus, JointStatus::stop_plus, JointStatus::slip_minus,
+                     JointStatus::stop_minus};
+constexpr Sense minus{-1.0, JointStatus::slip_minus, JointStatus::stop_minus,
+                      JointStatus::slip_plus, JointStatus::stop_plus};
+
+}  // namespace
+
 int TrussSystem::correct_statuses(const VectorXd& z, double time, const StepStart& start,
                                   JointModel joints, double clearance_scale, Statuses& statuses,
                                   int& last_changed) const {
@@ -26,67 +47,57 @@ int TrussSystem::correct_statuses(const VectorXd& z, double time, const StepStar
     const double s = slide(joint, z);
     const double force = slider_force(joint, z);
     const double f = slider.friction_force;
-    const double beyond = f + force_slack;
     const bool elastic = std::isfinite(slider.tangential_stiffness);
     const double bend_slack = slide_rounding(joint, z, length_slack);
     // While it slips, its friction is the force.
     const double step = s - force / slider.tangential_stiffness - start.slide[joint];
-    const auto friction_at = [&](double stop) {
-      return bent_friction(slider, stop - start.slide[joint]);
-    };
     JointStatus& status = statuses.sliders[i];
     const JointStatus before = start.statuses.sliders[i];
+    const auto is_beyond_stop = [&](const Sense& way) {
+      return way.sign * s > way.clearance(slider) + length_slack;
+    };
+    const auto slips = [&](const Sense& way) {
+      if (is_beyond_stop(way)) {
+        become(status, way.stop, joint);
+      } else if (way.sign * step < -bend_slack) {
+        become(status, before == way.other_stop && !elastic ? before : JointStatus::stick, joint);
+      }
+    };
+    const auto rests = [&](const Sense& way) {
+      // Rested there already: friction helps to stay. Arrived in this step: friction pushes back.
+      const double pushed = way.sign * force;
+      if (elastic) {
+        const double bend = way.sign * way.clearance(slider) - start.slide[joint];
+        if (pushed < way.sign * bent_friction(slider, bend) - force_slack) {
+          become(status, JointStatus::stick, joint);
+        }
+      } else if (before == way.stop) {
+        if (pushed < -(f + force_slack)) become(status, way.other_slip, joint);
+      } else if (pushed < f - force_slack) {
+        become(status, way.slip, joint);
+      }
+    };
     switch (status) {
       case JointStatus::stick:
-        if (force > beyond) become(status, JointStatus::slip_plus, joint);
-        if (force < -beyond) become(status, JointStatus::slip_minus, joint);
-        // It may get to a stop while it bends.
-        if (elastic && s > slider.clearance_plus + length_slack) {
-          become(status, JointStatus::stop_plus, joint);
+        for (const Sense& way : {plus, minus}) {
+          if (way.sign * force > f + force_slack) become(status, way.slip, joint);
         }
-        if (elastic && s < -slider.clearance_minus - length_slack) {
-          become(status, JointStatus::stop_minus, joint);
+        // It may get to a stop while it bends.
+        for (const Sense& way : {plus, minus}) {
+          if (elastic && is_beyond_stop(way)) become(status, way.stop, joint);
         }
         break;
       case JointStatus::slip_plus:
-        if (s > slider.clearance_plus + length_slack) {
-          become(status, JointStatus::stop_plus, joint);
-        } else if (step < -bend_slack) {
-          become(status,
-                 before == JointStatus::stop_minus && !elastic ? before : JointStatus::stick,
-                 joint);
-        }
+        slips(plus);
         break;
       case JointStatus::slip_minus:
-        if (s < -slider.clearance_minus - length_slack) {
-          become(status, JointStatus::stop_minus, joint);
-        } else if (step > bend_slack) {
-          become(status, before == JointStatus::stop_plus && !elastic ? before : JointStatus::stick,
-                 joint);
-        }
+        slips(minus);
         break;
       case JointStatus::stop_plus:
-        // Rested there already: friction helps to stay. Arrived in this step: friction pushes back.
-        if (elastic) {
-          if (force < friction_at(slider.clearance_plus) - force_slack) {
-            become(status, JointStatus::stick, joint);
-          }
-        } else if (before == JointStatus::stop_plus) {
-          if (force < -beyond) become(status, JointStatus::slip_minus, joint);
-        } else if (force < f - force_slack) {
-          become(status, JointStatus::slip_plus, joint);
-        }
+        rests(plus);
         break;
       case JointStatus::stop_minus:
-        if (elastic) {
-          if (force > friction_at(-slider.clearance_minus) + force_slack) {
-            become(status, JointStatus::stick, joint);
-          }
-        } else if (before == JointStatus::stop_minus) {
-          if (force > beyond) become(status, JointStatus::slip_plus, joint);
-        } else if (force > -f + force_slack) {
-          become(status, JointStatus::slip_minus, joint);
-        }
+        rests(minus);
         break;
       case JointStatus::open:
         break;

@@ -184,9 +184,16 @@ ElasticSlide TrussSystem::elastic_slide(int i, const VectorXd& z, const StepStar
   return {mean * (force[1] - stored), 0.5 * slope * (force[1] - stored), mean};
 }
 
-double TrussSystem::revolute_slip(int i, const VectorXd& z, double time,
-                                  const StepStart& start) const {
-  return revolute_geometry(i, z, time, start, 1.0).surface_slide - elastic_slide(i, z, start).slide;
+VectorXd TrussSystem::slips(const VectorXd& z, double time, const StepStart& start,
+                            const StepStart& after) const {
+  const auto sliders = static_cast<Eigen::Index>(model_->sliders.size());
+  VectorXd found(sliders + static_cast<Eigen::Index>(model_->revolutes.size()));
+  found.head(sliders) = after.slide - start.slide;
+  for (int i = 0; i < static_cast<int>(model_->revolutes.size()); ++i) {
+    found[sliders + i] =
+        revolute_geometry(i, z, time, start, 1.0).surface_slide - elastic_slide(i, z, start).slide;
+  }
+  return found;
 }
 
 double TrussSystem::length_rounding(const VectorXd& z) const {

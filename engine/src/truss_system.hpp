@@ -75,6 +75,11 @@ class TrussSystem {
                   const Statuses& statuses, JointModel joints, double clearance_scale,
                   Eigen::VectorXd& residual, Eigen::SparseMatrix<double>& jacobian) const;
 
+  Statuses all_stick() const {
+    return {std::vector<JointStatus>(model_->sliders.size(), JointStatus::stick),
+            std::vector<JointStatus>(model_->revolutes.size(), JointStatus::stick)};
+  }
+
   /// Jacobian with the right pattern and zeros.
   Eigen::SparseMatrix<double> pattern() const;
 
@@ -90,24 +95,21 @@ class TrussSystem {
   StepStart step_start(const Eigen::VectorXd& z, const Statuses& statuses,
                        const StepStart* last = nullptr) const;
 
-  /// Friction's heat of a step and the temperature's work, added to the state's.
+  /// Slides of a step that friction turned into heat, sliders before revolutes [m].
   /// @param after the state at z as the start of the next step
+  Eigen::VectorXd slips(const Eigen::VectorXd& z, double time, const StepStart& start,
+                        const StepStart& after) const;
+
+  /// Friction's heat of a step and the temperature's work, added to the state's.
+  /// @param after the state at z as the start of the next step, @param slips see slips()
   void account(const Eigen::VectorXd& z_before, double time_before, const Eigen::VectorXd& z,
                double time, const StepStart& start, const StepStart& after,
-               TrussState& state) const;
+               const Eigen::VectorXd& slips, TrussState& state) const;
 
   /// Displacements, forces and energies at z; dissipation and thermal work are left alone.
   /// @param now the state at z as the start of the next step
   void describe(const Eigen::VectorXd& z, double time, const StepStart& now,
                 TrussState& state) const;
-
-  /// Slide of a step that friction turned into heat [m].
-  /// @param after the state at its end as the start of the next step
-  double slider_slip(int slider, const StepStart& start, const StepStart& after) const {
-    return after.slide[slider] - start.slide[slider];
-  }
-  double revolute_slip(int revolute, const Eigen::VectorXd& z, double time,
-                       const StepStart& start) const;
 
   RevoluteGeometry revolute_geometry(int revolute, const Eigen::VectorXd& z, double time,
                                      const StepStart& start, double clearance_scale) const;
