@@ -11,7 +11,7 @@ from math import inf
 
 import numpy as np
 
-from .resolved import ResolvedTruss
+from .resolved import ResolvedTruss, Revolutes, Sliders
 
 
 @dataclass(frozen=True)
@@ -23,37 +23,53 @@ class Pad:
     tangential_N_per_m: np.ndarray
 
 
-def _shear_over_young(poisson_ratio: np.ndarray) -> np.ndarray:
+def _effective_modulus(parts: Sliders | Revolutes) -> np.ndarray:
+    """E* [Pa]."""
+    return parts.young_modulus_Pa / (2 * (1 - parts.poisson_ratio**2))
+
+
+def _hertz(parts: Sliders | Revolutes, radius_m: np.ndarray) -> np.ndarray:
+    """K of F = K δ^1.5 [N/m^1.5], 4/3 E* sqrt(R)."""
+    return 4 / 3 * _effective_modulus(parts) * np.sqrt(radius_m)
+
+
+def _shear_over_normal(parts: Sliders | Revolutes) -> np.ndarray:
     """k_t/k_n."""
-    return 2 * (1 - poisson_ratio) / (2 - poisson_ratio)
+    return 2 * (1 - parts.poisson_ratio) / (2 - parts.poisson_ratio)
+
+
+def tangent_stiffness(hertz: np.ndarray, force_N: np.ndarray) -> np.ndarray:
+    """Return dF/dδ [N/m] of contacts with F = K δ^1.5 at these forces [N]."""
+    return 1.5 * hertz ** (2 / 3) * np.cbrt(force_N)
+
+
+def pad_hertz_stiffness(truss: ResolvedTruss) -> np.ndarray:
+    """Return K of F = K δ^1.5 [N/m^1.5] of every slider's pad on a plane, its floor or a stop."""
+    return _hertz(truss.sliders, truss.sliders.pad_radius_m)
 
 
 def pads(truss: ResolvedTruss) -> Pad:
     """Return the contacts of the sliders' pads with their floors."""
     sliders = truss.sliders
-    modulus = sliders.young_modulus_Pa / (2 * (1 - sliders.poisson_ratio**2))
-    depth = (sliders.normal_force_N / (4 / 3 * modulus * np.sqrt(sliders.pad_radius_m))) ** (2 / 3)
-    normal = 2 * modulus * np.sqrt(sliders.pad_radius_m * depth)
-    return Pad(depth, normal, normal * _shear_over_young(sliders.poisson_ratio))
+    depth = (sliders.normal_force_N / pad_hertz_stiffness(truss)) ** (2 / 3)
+    normal = 2 * _effective_modulus(sliders) * np.sqrt(sliders.pad_radius_m * depth)
+    return Pad(depth, normal, normal * _shear_over_normal(sliders))
 
 
 def hertz_stiffness(truss: ResolvedTruss) -> np.ndarray:
-    """Return K of F = K δ^1.5 [N/m^1.5] of every revolute, 4/3 E* sqrt(R)."""
+    """Return K of F = K δ^1.5 [N/m^1.5] of every revolute."""
     joints = truss.revolutes
-    modulus = joints.young_modulus_Pa / (2 * (1 - joints.poisson_ratio**2))
-    radius = joints.journal_radius_m * joints.bearing_radius_m / joints.radial_clearance_m
-    return 4 / 3 * modulus * np.sqrt(radius)
+    return _hertz(joints, joints.journal_radius_m * joints.bearing_radius_m / joints.radial_clearance_m)
 
 
 def mindlin_stiffness(truss: ResolvedTruss) -> np.ndarray:
     """Return k_t over the root of the depth [N/m^1.5] of every revolute, 8 G* sqrt(R)."""
-    return 1.5 * hertz_stiffness(truss) * _shear_over_young(truss.revolutes.poisson_ratio)
+    return 1.5 * hertz_stiffness(truss) * _shear_over_normal(truss.revolutes)
 
 
 def revolute_stiffness(truss: ResolvedTruss, force_N: np.ndarray) -> np.ndarray:
     """Return the sum of both tangent stiffnesses [N/m] of revolutes at these normal forces [N]."""
-    normal = 1.5 * hertz_stiffness(truss) ** (2 / 3) * np.cbrt(force_N)
-    return normal * (1 + _shear_over_young(truss.revolutes.poisson_ratio))
+    return tangent_stiffness(hertz_stiffness(truss), force_N) * (1 + _shear_over_normal(truss.revolutes))
 
 
 def solver_stiffness(truss: ResolvedTruss) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

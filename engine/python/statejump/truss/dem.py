@@ -19,7 +19,7 @@ from .. import dem
 from ..case_truss import TrussCase
 from ..errors import StatejumpError
 from .checks import SAME_DIRECTION
-from .contacts import pads, revolute_stiffness
+from .contacts import pad_hertz_stiffness, pads, revolute_stiffness, tangent_stiffness
 from .resolved import GROUND, ResolvedTruss
 from .solve import TrussPath
 
@@ -81,9 +81,7 @@ def stable_time_step(case: TrussCase, path: TrussPath) -> float:
         pad = pads(truss)
         at_stop = np.isfinite(truss.sliders.clearance_minus_m) | np.isfinite(truss.sliders.clearance_plus_m)
         force = IMPACT**3 * np.abs(path.states["slider_force_N"]).max(axis=0)
-        modulus = truss.sliders.young_modulus_Pa / (2 * (1 - truss.sliders.poisson_ratio**2))
-        hertz = 4 / 3 * modulus * np.sqrt(truss.sliders.pad_radius_m)
-        stop = np.where(at_stop, 1.5 * hertz ** (2 / 3) * np.cbrt(force), 0.0)
+        stop = np.where(at_stop, tangent_stiffness(pad_hertz_stiffness(truss), force), 0.0)
         touch(truss.sliders.nodes[:, :1], pad.tangential_N_per_m + stop, contact)
     if len(truss.revolutes.names):
         force = IMPACT**3 * path.states["normal_force_N"].max(axis=0)

@@ -35,13 +35,13 @@ def document(
             "shape": shape, "temperature_change_max_K": float(temperature_change_K), "cycles": cycles,
             "period_s": float(period_s),
         },
-        "reduced": {"sticking": sticking} if sticking != "rigid" else [],
+        "reduced": {"sticking": sticking} if sticking != "rigid" else {},
     }
 
 
 def finished(made: Document) -> Document:
     """Return the document without what stayed empty."""
-    return {section: content for section, content in made.items() if content != []}
+    return {section: content for section, content in made.items() if content}
 
 
 def tidy(values: Iterable[float]) -> list[float]:

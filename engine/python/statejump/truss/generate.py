@@ -112,8 +112,8 @@ def umbrella(
     n: int, *, name: str = "", friction_coefficient: float = 0.15, journal_radius_m: float = 5e-3,
     radial_clearance_m: float = 1e-4, contact: str = "hertz", sticking: str = "rigid",
     torsion_stiffness_N_m_per_rad: float = 1.0, bias_rad: float = 0.05, cable_preload_N: float = 0.0,
-    cable_stiffness_N_per_m: float = 1e3,
-    temperature_change_K: float = 100.0, shape: str = "triangle", cycles: int = 1, period_s: float = 16.0,
+    cable_stiffness_N_per_m: float = 1e3, temperature_change_K: float = 100.0, shape: str = "triangle",
+    cycles: int = 1, period_s: float = 16.0,
 ) -> Document:
     """Ribs of the umbrella antenna around its axis AC, which is x.
 
