@@ -6,7 +6,7 @@ import os
 import time
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
-from typing import Callable, Iterator, Optional
+from typing import Callable, Iterator, Optional, TypeVar
 
 from ..errors import StatejumpError
 from .campaign_file import Campaign
@@ -105,7 +105,6 @@ def _finished(
     """Yield finished batches. Samples whose worker died go one by one, each alone, at the end: only a
     sample that kills its worker also then is to blame."""
     batches = _Batches(missing, campaign.model)
-    watch = _Watch(client)
     running: set[Future] = set()
     asked: dict[str, list[int]] = {}
     suspects: list[int] = []
@@ -121,10 +120,10 @@ def _finished(
     while len(asked) < QUEUED * _slots(client) and submit():
         pass
     while running:
-        for future in _some_of(watch, running):
+        for future in _some_of(client, running):
             running.remove(future)
             batch = asked.pop(future.key)
-            answer = _answer(watch, future)
+            answer = _answer(client, future)
             future.release()
             if answer is None:
                 suspects += batch
@@ -136,57 +135,44 @@ def _finished(
     for index in suspects:
         future = client.submit(run_samples, campaign, [index], pure=False)
         lost = Sample(index, None, "the run ended its worker process, time and again")
-        yield _answer(watch, future) or (0.0, batch_of([lost], len(campaign.units)))
+        yield _answer(client, future) or (0.0, batch_of([lost], len(campaign.units)))
 
 
-class _Watch:
-    """Notices when all workers are gone, for as long as nothing else happens."""
+Given = TypeVar("Given")
 
-    def __init__(self, client: Client) -> None:
-        self.client = client
-        self.alone_since: Optional[float] = None
 
-    def look(self) -> None:
-        """To be called every few seconds. :raises StatejumpError: there have been no workers for too long"""
-        now = time.monotonic()
-        self.alone_since = None if self.client.scheduler_info()["workers"] else self.alone_since or now
-        if self.alone_since is not None and now - self.alone_since >= NO_WORKERS_S:
+def _patiently(client: Client, ask: Callable[[], Given]) -> Given:
+    """Ask until there is an answer; TimeoutError means not yet. :raises StatejumpError: the cluster is gone, or
+    all its workers have been for too long"""
+    alone_since: Optional[float] = None
+    while True:
+        try:
+            return ask()
+        except TimeoutError:
+            now = time.monotonic()
+            alone_since = None if client.scheduler_info()["workers"] else alone_since or now
+            if alone_since is not None and now - alone_since >= NO_WORKERS_S:
+                raise StatejumpError(
+                    f"the dask scheduler has had no workers for {NO_WORKERS_S:g} s; finished samples are kept, the same "
+                    "command goes on with the others"
+                ) from None
+        except (CancelledError, OSError) as problem:
             raise StatejumpError(
-                f"the dask scheduler has had no workers for {NO_WORKERS_S:g} s; finished samples are kept, the same "
-                "command goes on with the others"
-            )
+                f"the connection to the dask scheduler was lost ({type(problem).__name__}); finished samples are kept, "
+                "the same command goes on with the others"
+            ) from None
 
 
-def _some_of(watch: _Watch, running: set[Future]) -> set[Future]:
-    """Wait for at least one future. :raises StatejumpError: the cluster is gone, or all its workers are"""
-    while True:
-        try:
-            with watch.client.as_current():
-                return set(wait(running, timeout=LOOK_S, return_when="FIRST_COMPLETED").done)
-        except TimeoutError:
-            watch.look()
-        except (CancelledError, OSError) as problem:
-            raise _lost(problem) from None
+def _some_of(client: Client, running: set[Future]) -> set[Future]:
+    """Wait for at least one future. :raises StatejumpError: see :func:`_patiently`"""
+    with client.as_current():
+        return set(_patiently(client, lambda: wait(running, timeout=LOOK_S, return_when="FIRST_COMPLETED")).done)
 
 
-def _answer(watch: _Watch, future: Future) -> Optional[tuple[float, Batch]]:
+def _answer(client: Client, future: Future) -> Optional[tuple[float, Batch]]:
     """Result of a batch; None: its worker died. A result is lost with the worker that has it, and is then
-    computed again. :raises StatejumpError: the cluster is gone, or all its workers are"""
-    while True:
-        try:
-            answer = future.result(timeout=LOOK_S)
-            watch.alone_since = None
-            return answer
-        except KilledWorker:
-            return None
-        except TimeoutError:
-            watch.look()
-        except (CancelledError, OSError) as problem:
-            raise _lost(problem) from None
-
-
-def _lost(problem: BaseException) -> StatejumpError:
-    return StatejumpError(
-        f"the connection to the dask scheduler was lost ({type(problem).__name__}); finished samples are kept, "
-        "the same command goes on with the others"
-    )
+    computed again. :raises StatejumpError: see :func:`_patiently`"""
+    try:
+        return _patiently(client, lambda: future.result(timeout=LOOK_S))
+    except KilledWorker:
+        return None
