@@ -157,7 +157,8 @@ def test_figure_repeats_bit_for_bit(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("radius, clearance", [(1e-3, 50.0), (50.0, 1e-6), (1e-9, 1e-12)])
 def test_figure_of_odd_joints(tmp_path: Path, radius: float, clearance: float) -> None:
-    laws.figure(laws.Joint("odd", radius, radius + clearance, 1.0, 1e3, 1e-6), tmp_path, "odd")
+    written = laws.figure(laws.Joint("odd", radius, radius + clearance, 1.0, 1e3, 1e-6), tmp_path, "odd")
+    assert written and all(path.stat().st_size > 0 for path in written)
 
 
 def test_command(statejump, cases: Path, tmp_path: Path) -> None:

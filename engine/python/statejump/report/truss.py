@@ -314,8 +314,7 @@ class TrussPart:
             "start": encoded(np.ascontiguousarray(start).ravel()),
             "lines": lines,
             "held": [place for place, item in enumerate(self.case["node"]) if words.is_held(item, self.case)],
-            "guided": [place for place, item in enumerate(self.case["node"])
-                       if (item.get("fixed") or item.get("guide_normal")) and not words.is_held(item, self.case)],
+            "guided": [place for place, item in enumerate(self.case["node"]) if words.is_guided(item, self.case)],
             "cycles": [{"cycle": place + 1, "jump": encoded(self.node_jumps[place].ravel())}
                        for place in _some(len(self.node_jumps), MOST_CYCLES)],
             "jumps": [text(float(size), "m", 4) for size in self._size_m],

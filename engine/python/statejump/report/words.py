@@ -132,11 +132,16 @@ def is_held(node: dict[str, Any], case: dict[str, Any]) -> bool:
     return len(set(node.get("fixed") or [])) == case["truss"]["dimension"]
 
 
+def is_guided(node: dict[str, Any], case: dict[str, Any]) -> bool:
+    """Whether a node of a truss can move in some directions only."""
+    return bool(node.get("fixed") or node.get("guide_normal")) and not is_held(node, case)
+
+
 def _truss(case: dict[str, Any]) -> list[str]:
     of = {key: case.get(key) or [] for key in ("node", "link", "slider", "revolute", "spring", "torsion_spring", "program")}
     kind = {2: "plane", 3: "spatial"}[case["truss"]["dimension"]]
     held = [node for node in of["node"] if is_held(node, case)]
-    guided = [node for node in of["node"] if node not in held and (node.get("fixed") or node.get("guide_normal"))]
+    guided = [node for node in of["node"] if is_guided(node, case)]
     sentences = [
         f"A {kind} truss of {_count(of['node'], 'node')} and {_count(of['link'], 'link')}; {_count(held, 'node')} "
         f"{'is' if len(held) == 1 else 'are'} held" + (f", {len(guided)} guided" if guided else "") + "."
