@@ -1,32 +1,50 @@
-# Thin front end: every target first makes sure that what it needs is installed and built.
+# Thin front end: every target first makes sure that what it needs is installed, configured and built,
+# and no more. A part that another target has switched on stays on.
 BUILD := build
 JOBS  ?= $(shell nproc)
+PYTHON := /usr/bin/python3
 
-.PHONY: demo test bench build package docs setup sanitize format clean
-demo: build
+# $(call configure,PART ...): the build tree, with these parts besides what the demo needs.
+configure = { test -e $(BUILD)/build.ninja || cmake --preset demo -B $(BUILD); } && \
+            cmake $(foreach part,$(1),-DSTATEJUMP_BUILD_$(part)=ON) $(BUILD) >/dev/null
+compile = cmake --build $(BUILD) --parallel $(JOBS)
+
+.PHONY: demo build test bench package docs sanitize format clean
+demo:
+	./scripts/setup.sh run build
+	$(call configure)
+	$(compile) --target demo
 	$(BUILD)/bin/statejump compare cases/table1.toml
 
-test: build
+build:
+	./scripts/setup.sh run build page
+	$(call configure,REPORT)
+	$(compile)
+
+test:
+	./scripts/setup.sh run build page test docs
+	$(call configure,REPORT TESTS)
+	$(compile)
 	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
 
-bench: build
-	PYTHONPATH=$(BUILD)/python /usr/bin/python3 bench/run.py --build $(BUILD)
-	PYTHONPATH=$(BUILD)/python /usr/bin/python3 bench/umbrella.py --build $(BUILD)
-
-build: setup
-	cmake --preset release
-	cmake --build $(BUILD) --parallel $(JOBS)
+bench:
+	./scripts/setup.sh run build bench
+	$(call configure,BENCH)
+	$(compile)
+	PYTHONPATH=$(BUILD)/python $(PYTHON) bench/run.py --build $(BUILD)
+	PYTHONPATH=$(BUILD)/python $(PYTHON) bench/umbrella.py --build $(BUILD)
 
 package: build
 	cd $(BUILD) && cpack
 
-docs: build
-	/usr/bin/python3 docs/api/make.py --build $(BUILD)
+docs:
+	./scripts/setup.sh run build docs
+	$(call configure)
+	$(compile) --target demo
+	$(PYTHON) docs/api/make.py --build $(BUILD)
 
-setup:
-	./scripts/setup.sh
-
-sanitize: setup
+sanitize:
+	./scripts/setup.sh build test
 	cmake --preset sanitize
 	cmake --build build-sanitize --parallel $(JOBS)
 	ctest --test-dir build-sanitize --output-on-failure --parallel $(JOBS)

@@ -1,6 +1,6 @@
 # `make package`: a Debian package for the Debian and the YADE that it was built on.
 #
-# Python packages and yade are the run-time list of scripts/setup.sh, libraries are found by
+# Python packages and yade are the group run of scripts/setup.sh, libraries are found by
 # dpkg-shlibdeps. The plugin is built for one binary of YADE, so its version is required exactly.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME statejump)
@@ -16,7 +16,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_SET_DESTDIR ON)
 set(CPACK_INSTALL_PREFIX /usr)
 
-file(STRINGS "${PROJECT_SOURCE_DIR}/scripts/runtime_packages.txt" _depends)
+file(STRINGS "${PROJECT_SOURCE_DIR}/scripts/packages/run.txt" _depends)
 if(STATEJUMP_BUILD_YADE)
   execute_process(COMMAND dpkg-query --show "--showformat=\${Version}" yade
     OUTPUT_VARIABLE _yade_version RESULT_VARIABLE _status ERROR_QUIET)

@@ -1,27 +1,32 @@
 #!/usr/bin/env bash
-# Installs, with apt, the Debian packages that the build, the tests and the demo need.
-# Does nothing when all of them are there. Root and sudo alike.
+# Installs, with apt, the Debian packages of the groups that are named; without a name, of all groups:
+#
+#     scripts/setup.sh run build
+#
+#     run     what the command needs, and so what the Debian package depends on
+#     build   compiling                             test    tests and checks
+#     page    bundling the page of the report       bench   benchmarks
+#                                                   docs    documentation
+#
+# A group is a file in scripts/packages. Does nothing when everything is there. Root and sudo alike.
 set -euo pipefail
 
-# What running needs, and so what the Debian package depends on.
-mapfile -t packages <"$(dirname "${BASH_SOURCE[0]}")/runtime_packages.txt"
-packages+=(
-  build-essential cmake ninja-build clang-format git
-  libboost-dev libboost-python-dev libboost-serialization-dev libboost-math-dev libboost-system-dev
-  libcgal-dev libgmp-dev libmpfr-dev
-  libeigen3-dev libsuitesparse-dev libgl-dev pybind11-dev python3-dev
-  python3-pytest python3-jsonschema
-  doxygen python3-sphinx python3-breathe furo
-  libgtest-dev libbenchmark-dev xvfb xauth chromium
-)
-# Any Node of version 18 or later that is there will do for the page of the report.
-command -v node >/dev/null || packages+=(nodejs)
-command -v npm >/dev/null || packages+=(npm)
-
+lists=$(dirname "${BASH_SOURCE[0]}")/packages
+groups=("$@")
+if [[ $# -eq 0 ]]; then
+  for list in "$lists"/*.txt; do groups+=("$(basename "$list" .txt)"); done
+fi
 missing=()
-for package in "${packages[@]}"; do
-  status=$(dpkg-query --show --showformat='${db:Status-Abbrev}' "$package" 2>/dev/null || true)
-  [[ $status == ii* ]] || missing+=("$package")
+for group in "${groups[@]}"; do
+  [[ -f $lists/$group.txt ]] || { echo "set-up: no group $group in $lists" >&2; exit 2; }
+  while read -r package; do
+    case $package in # any Node of version 18 or later that is there will do
+      nodejs) ! command -v node >/dev/null || continue ;;
+      npm) ! command -v npm >/dev/null || continue ;;
+    esac
+    status=$(dpkg-query --show --showformat='${db:Status-Abbrev}' "$package" 2>/dev/null || true)
+    [[ $status == ii* ]] || missing+=("$package")
+  done <"$lists/$group.txt"
 done
 [[ ${#missing[@]} -eq 0 ]] && exit 0
 
