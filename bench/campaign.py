@@ -19,7 +19,7 @@ from run import BUSY_LOAD, REPOSITORY, BenchError, parse, publish
 from statejump.campaign import execute, work
 from statejump.campaign.campaign_file import MONTECARLO, Campaign, load_campaign
 from statejump.campaign.journal import Journal
-from statejump.errors import StatejumpError
+from statejump.core.errors import StatejumpError
 
 CAMPAIGN = REPOSITORY / "cases" / "campaigns" / "table1_tolerances.toml"
 SAMPLES = 10_000

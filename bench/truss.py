@@ -19,9 +19,10 @@ from typing import Any
 
 import numpy as np
 
-from statejump.case import parse_case
-from statejump.output import write_atomically
-from statejump.truss import generate, solve
+from statejump.kinds.registry import parse_case
+from statejump.core.output import write_atomically
+from statejump.kinds.truss import solve
+from statejump.kinds.truss.generate import planar as generate
 
 SIZES = (10, 100, 1_000, 10_000, 100_000)
 TRUSSES = ("ring", "umbrella")

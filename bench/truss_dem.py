@@ -13,11 +13,12 @@ from statistics import median
 from typing import Any
 
 from run import BenchError, parse, publish
-from statejump.case import parse_case
-from statejump.dem import execute
-from statejump.errors import StatejumpError
-from statejump.truss import dem, generate
-from statejump.truss.solve import path
+from statejump.kinds.registry import parse_case
+from statejump.core.yade_process import execute
+from statejump.core.errors import StatejumpError
+from statejump.kinds.truss import dem
+from statejump.kinds.truss.generate import planar as generate
+from statejump.kinds.truss.solve import path
 
 SIZES = (100, 1_000, 10_000)  # joints
 JOINT_STEPS = 3_000_000  # of the shorter run; the longer one has three times as many

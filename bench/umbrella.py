@@ -13,9 +13,9 @@ from pathlib import Path
 from statistics import median
 
 from run import REPOSITORY, TIMEOUT_S, BenchError, parse, publish
-from statejump.case import load_case
-from statejump.errors import StatejumpError
-from statejump.umbrella import dem, model
+from statejump.kinds.registry import load_case
+from statejump.core.errors import StatejumpError
+from statejump.kinds.umbrella import dem, reduced as model
 
 STEPS = 100_000  # of one run of the reduced model, the paper's number
 DEM_STEPS = 400_000

@@ -129,7 +129,7 @@ def edited(mistake: Mistake) -> str:
 
 def said(arguments: list[str]) -> tuple[int, str]:
     """Run the command in this process; return its exit status and what it wrote to standard error."""
-    from statejump import cli
+    from statejump.cli import main as cli
 
     with contextlib.redirect_stderr(io.StringIO()) as errors, contextlib.redirect_stdout(io.StringIO()):
         status = cli.run(arguments)
@@ -178,9 +178,9 @@ def table() -> str:
 
 def _as_json() -> list[str]:
     """Failures as JSON: a value, a mechanism, a run in YADE."""
-    from statejump.case import load_case
-    from statejump.errors import StatejumpError, to_json
-    from statejump.truss.solve import solve
+    from statejump.kinds.registry import load_case
+    from statejump.core.errors import StatejumpError, to_json
+    from statejump.kinds.truss.solve import solve
 
     shown = ["## As JSON\n"]
     first = GROUPS["Values"][2]

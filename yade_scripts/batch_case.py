@@ -15,7 +15,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
 from statejump.campaign.yade_batch import BatchSample
-from statejump.errors import StatejumpError
+from statejump.core.errors import StatejumpError
 from yade import utils
 
 utils.readParamsFromTable(unknownOk=True, noTableOk=False)

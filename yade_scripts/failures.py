@@ -59,7 +59,7 @@ def described(
     error: Exception, names: Names, now_s: float, temperature_change: Callable[[float], float],
     stable_time_step: Callable[[], float], step_remedy: Callable[[float], str],
 ) -> tuple[str, dict[str, Any]]:
-    """Return a failure as one sentence and as fields, those of ``statejump.errors`` that are known.
+    """Return a failure as one sentence and as fields, those of ``statejump.core.errors`` that are known.
 
     :param now_s: time of a failure that does not say its own
     :param temperature_change: temperature change [K] of the case's (first) program at a time [s]

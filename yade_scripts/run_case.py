@@ -4,7 +4,7 @@
 
 The resolved case comes as JSON. Samples go to ``<output>.partial`` as they are taken; at the end
 the file is renamed. Lines on standard output: ``PROGRESS <fraction>``; of a failure ``DETAILS <JSON>``, the
-fields of ``statejump.errors`` that are known, and ``ERROR <sentence>``.
+fields of ``statejump.core.errors`` that are known, and ``ERROR <sentence>``.
 """
 import csv
 import json

@@ -20,7 +20,7 @@ PLAIN = (
     "damping_dissipation_J", "thermal_work_J", "external_work_J",
 )
 GROUND = -1
-STICK, SLIP, AT_STOP, SEPARATED = 1, 2, 3, 0  # as statejump.resultfile.contents has them
+STICK, SLIP, AT_STOP, SEPARATED = 1, 2, 3, 0  # as statejump.results.contents has them
 
 
 @dataclass
@@ -101,7 +101,7 @@ def _give(body: wrapper.Body, shape, material, group: int) -> None:
 def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
     """Build the scene in the equilibrium in which the quasi-static path starts.
 
-    :param case: what ``statejump.truss.dem.resolved`` returns
+    :param case: what ``statejump.kinds.truss.dem.resolved`` returns
     :param recorders: engines that read the state, run before the motion of each step
     """
     dem = case["dem"]

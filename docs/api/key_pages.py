@@ -7,7 +7,7 @@ import xml.etree.ElementTree as xml
 from pathlib import Path
 from typing import Any, Iterator
 
-from statejump import schema
+from statejump.schema import json_schema as schema
 
 # Names of the README's table that are YADE's own, or say in words how to get a value.
 YADES_OWN = {"young", "poisson", "frictionAngle", "state.pos", "kn", "ks", "state.mass"}
@@ -152,7 +152,8 @@ def symbols_page(readme: str, members: Path, yade_page: str) -> str:
 
 def history_columns() -> set[str]:
     """Return the columns of histories and the arguments that the engine's module documents."""
-    from statejump import _engine, history
+    from statejump import _engine
+    from statejump.core import history
 
     found: set[str] = set()
     for value in vars(history).values():

@@ -3,8 +3,8 @@
 
 The command line is :mod:`statejump.cli`; everything that it does can be called from Python::
 
-    from statejump.case import load_case
-    from statejump import reduced
+    from statejump.kinds.registry import load_case
+    from statejump.kinds.spring_slider import reduced
     path = reduced.solve(load_case("cases/table1.toml"))
     print(path.state_jump_m)
 """

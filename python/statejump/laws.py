@@ -8,9 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from . import _engine, plot
-from .case_umbrella import UmbrellaCase
-from .plot import plt
+from statejump import _engine
+from statejump.kinds.spring_slider import figure as plot
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.kinds.spring_slider.figure import plt
 
 KINDS = ("normal", "dissipation", "friction", "tangential_velocity")
 IMPACT_LAW = "hertz_internal"

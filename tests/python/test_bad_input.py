@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from conftest import COMMAND
-from statejump.history import SPRING_SLIDER_COLUMNS
-from statejump.resultfile import read
+from statejump.core.history import SPRING_SLIDER_COLUMNS
+from statejump.results import read
 
 E_LINE, NU = "young_modulus_Pa = 70e9\nstress", "friction_coefficient = 0.3"
 

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from statejump import _engine, bore
-from statejump.errors import StatejumpError
+from statejump import _engine
+from statejump.bore import bore
+from statejump.core.errors import StatejumpError
 
 RADIUS = 5.1e-3
 JOURNAL = 5e-3

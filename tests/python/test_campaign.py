@@ -23,7 +23,7 @@ from statejump.campaign import execute, journal, summary, tables, work
 from statejump.campaign.campaign_file import MONTECARLO, SWEEP, Campaign, load_campaign
 from statejump.campaign.sampling import Distribution, Values, montecarlo_values, sweep_values
 from statejump.campaign.yade_batch import write_table
-from statejump.errors import StatejumpError
+from statejump.core.errors import StatejumpError
 
 # As the launcher: without a guard, so that processes that import it would run it again.
 LAUNCHER = f"""
@@ -510,8 +510,8 @@ def test_either_model_and_yade_batch(
 
 
 def test_largest_force_is_that_of_the_whole_path(write: Callable[..., Path]) -> None:
-    from statejump import reduced
-    from statejump.case import parse_case
+    from statejump.kinds.spring_slider import reduced
+    from statejump.kinds.registry import parse_case
 
     campaign = load_campaign(write(), MONTECARLO)
     for index in range(50):

@@ -11,13 +11,15 @@ import click
 import numpy as np
 import pytest
 
-from statejump import (
-    control, control_ensemble, control_loaded, control_plot, control_spring_slider, control_study,
+from statejump.control import (
+    command as control, ensemble as control_ensemble, loaded as control_loaded, plot as control_plot,
+    study as control_study,
 )
-from statejump.case import load_case
-from statejump.control_umbrella import FRICTION, SPRING
-from statejump.errors import StatejumpError
-from statejump.umbrella.model import changed
+from statejump.kinds.spring_slider import control as control_spring_slider
+from statejump.kinds.registry import load_case
+from statejump.kinds.umbrella.control import FRICTION, SPRING
+from statejump.core.errors import StatejumpError
+from statejump.kinds.umbrella.reduced import changed
 
 PRELOAD = control_spring_slider.PRELOAD
 TABLE1_JUMP = 30 / 1.26e6

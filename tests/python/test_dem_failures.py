@@ -14,12 +14,12 @@ from typing import Any, Callable
 import pytest
 
 from conftest import REPOSITORY
-from statejump import dem
-from statejump.case import load_case
-from statejump.errors import FailedRun
-from statejump.truss import dem as truss_dem
-from statejump.truss.solve import solve
-from statejump.umbrella import dem as umbrella_dem
+from statejump.core import yade_process as dem
+from statejump.kinds.registry import load_case
+from statejump.core.errors import FailedRun
+from statejump.kinds.truss import dem as truss_dem
+from statejump.kinds.truss.solve import solve
+from statejump.kinds.umbrella import dem as umbrella_dem
 
 sys.path.insert(0, str(REPOSITORY / "yade_scripts"))
 import failures  # noqa: E402 - needs no YADE

@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 
 from conftest import REPOSITORY
-from statejump import cli, errors
+from statejump.cli import main as cli
+from statejump.core import errors
 
 SCRIPT = REPOSITORY / "docs" / "make_mistakes.py"
 

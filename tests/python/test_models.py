@@ -10,11 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from statejump import _engine, compare, dem, plot, reduced, stable_step
-from statejump.case import Case, load_case
-from statejump.errors import StatejumpError
-from statejump.history import History
-from statejump.output import replacing, write_atomically
+from statejump import _engine
+from statejump.core import comparison as compare, yade_process as dem
+from statejump.kinds.spring_slider import figure as plot, reduced, stable_step
+from statejump.kinds.registry import Case, load_case
+from statejump.core.errors import StatejumpError
+from statejump.core.history import History
+from statejump.core.output import replacing, write_atomically
 
 E, A, L0, ALPHA, FRICTION, CLEARANCE = 70e9, 9e-6, 0.5, 23.4e-6, 30.0, 1e-3
 # Closed forms of a handful of operations: rounding of a few units in the last place each.

@@ -17,16 +17,16 @@ import pytest
 
 from conftest import BUILT, COMMAND, REPOSITORY, Outcome
 
-from statejump.compare import quantity
-from statejump.errors import StatejumpError
-from statejump import units
+from statejump.core.comparison import quantity
+from statejump.core.errors import StatejumpError
+from statejump.core import units
 from statejump.report import page
 from statejump.report.decimation import kept_samples, largest_error
 from statejump.report.document import TOLERANCE, Document
 from statejump.report.drawing import round_down
-from statejump.resultfile import Column, Event, ModelRun, Result, Scalar, read
-from statejump.resultfile import scene as drawing
-from statejump.resultfile.contents import CONTACT_STATES
+from statejump.results import Column, Event, ModelRun, Result, Scalar, read
+from statejump.results import scene as drawing
+from statejump.results.contents import CONTACT_STATES
 
 MEGABYTE = 1_000_000
 

@@ -13,13 +13,13 @@ import pytest
 from conftest import COMMAND, REPOSITORY, Outcome
 from test_report import MEGABYTE, Page, decoded, pytestmark, written  # noqa: F401  (no page, no test)
 
-from statejump import units
+from statejump.core import units
 from statejump.report import words
-from statejump.report.command import result_files
+from statejump.cli.report import result_files
 from statejump.report.document import Document
 from statejump.report.drawing import round_down
 from statejump.report.truss import SHOWN_JUMP
-from statejump.resultfile import Result, read
+from statejump.results import Result, read
 
 TRUSSES = REPOSITORY / "cases" / "trusses"
 
@@ -159,7 +159,7 @@ def test_a_hundred_joints_in_space(tmp_path: Path, statejump: Callable[..., Outc
                  "Joints of the reduced model stick elastically, as those of the DEM."]),
 ])
 def test_case_in_words(kind: str, sentences: list[str]) -> None:
-    from statejump.case import load_case
+    from statejump.kinds.registry import load_case
 
     described = words.describe("truss", load_case(TRUSSES / f"{kind}.toml").dict())
     for sentence in sentences:

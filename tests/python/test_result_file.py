@@ -17,22 +17,22 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
 from conftest import COMMAND, REPOSITORY
-from statejump import compare, reduced
-from statejump.case import load_case
-from statejump.dem import DemRun
-from statejump.errors import StatejumpError
-from statejump.history import History
-from statejump.resultfile import (
-    Column, Event, ModelRun, Result, Scalar, kind_spring_slider, layout, read, scene, write,
-)
-from statejump.resultfile.contents import AT_STOP, SEPARATED, SLIP, STICK, Mesh, history_of
-from statejump.resultfile.difference import case_differences, difference
-from statejump.resultfile.events import from_states
-from statejump.resultfile.export_csv import write_histories
-from statejump.resultfile.export_vtk import write_all as write_vtk
-from statejump.resultfile.paraview_script import NAME, write_script
-from statejump.resultfile.record import Record
-from statejump.resultfile.vtk_data import frames_of
+from statejump.core import comparison as compare
+from statejump.kinds.spring_slider import reduced
+from statejump.kinds.registry import load_case
+from statejump.core.yade_process import DemRun
+from statejump.core.errors import StatejumpError
+from statejump.core.history import History
+from statejump.kinds.spring_slider import result as kind_spring_slider
+from statejump.results import Column, Event, ModelRun, Result, Scalar, layout, read, scene, write
+from statejump.results.contents import AT_STOP, SEPARATED, SLIP, STICK, Mesh, history_of
+from statejump.results.difference import case_differences, difference
+from statejump.results.events import from_states
+from statejump.results.export_csv import write_histories
+from statejump.results.export_vtk import write_all as write_vtk
+from statejump.results.paraview_script import NAME, write_script
+from statejump.results.record import Record
+from statejump.results.vtk_data import frames_of
 
 # Short runs of every kind: what is compared is the file, not the models.
 SHORT = {
@@ -125,7 +125,7 @@ def test_every_place_is_in_the_layout_and_the_other_way_round(compared, name: st
 
 def test_documentation_has_the_layout() -> None:
     text = (REPOSITORY / "docs" / "result_file.md").read_text()
-    assert layout.markdown() in text, "make the tables again: statejump.resultfile.layout.markdown()"
+    assert layout.markdown() in text, "make the tables again: statejump.results.layout.markdown()"
     assert f"Version {layout.VERSION}." in text
     for kind in (*scene.PART_TYPES, *scene.FORCE_KINDS):
         assert f"`{kind}`" in text, kind

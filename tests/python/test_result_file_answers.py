@@ -14,9 +14,9 @@ import pytest
 from conftest import REPOSITORY
 from test_result_file import check_layout, run
 
-from statejump.errors import StatejumpError
-from statejump.resultfile import layout, read, write
-from statejump.resultfile.contents import Scalar
+from statejump.core.errors import StatejumpError
+from statejump.results import layout, read, write
+from statejump.results.contents import Scalar
 
 CASE = REPOSITORY / "cases" / "trusses" / "umbrella_8.toml"
 

@@ -13,10 +13,11 @@ import numpy as np
 import pytest
 
 from conftest import COMMAND, damaged
-from statejump import compare, reduced
-from statejump.case import Case, check_radii, load_case, parse_case
-from statejump.errors import StatejumpError
-from statejump.history import History
+from statejump.core import comparison as compare
+from statejump.kinds.spring_slider import reduced
+from statejump.kinds.registry import Case, check_radii, load_case, parse_case
+from statejump.core.errors import StatejumpError
+from statejump.core.history import History
 
 HUGE = 10**400
 FRICTION = "friction_coefficient = 0.3"

@@ -12,9 +12,10 @@ import jsonschema
 import pytest
 
 from conftest import REPOSITORY
-from statejump import _paths, schema
-from statejump.case import KINDS, load_case
-from statejump.case_schema import Section, StatejumpError
+from statejump import _paths
+from statejump.schema import json_schema as schema
+from statejump.kinds.registry import KINDS, load_case
+from statejump.schema.fields import Section, StatejumpError
 from statejump.campaign.campaign_file import load_campaign
 from test_bad_input import MISTAKES as SPRING_SLIDER_MISTAKES
 

@@ -12,9 +12,9 @@ from click.testing import CliRunner
 
 from conftest import REPOSITORY
 from statejump import _engine
-from statejump.case import StaticsCase, load_case
-from statejump.errors import StatejumpError
-from statejump.statics import can_mesh, cone_angles, solve, statics_command
+from statejump.kinds.registry import StaticsCase, load_case
+from statejump.core.errors import StatejumpError
+from statejump.kinds.statics.solve import can_mesh, cone_angles, solve, statics_command
 
 C = 1e-4
 CASES = REPOSITORY / "cases"

@@ -16,13 +16,13 @@ from conftest import Outcome
 from statejump.campaign import execute, journal, tables, work
 from statejump.campaign.campaign_file import MONTECARLO, SWEEP, Campaign, load_campaign
 from statejump.campaign.sampling import montecarlo_draws
-from statejump.case import load_case, parse_case
-from statejump.errors import StatejumpError
-from statejump.truss import answers, reflector
-from statejump.truss.generate import GENERATORS
-from statejump.truss.resolved import ResolvedTruss
-from statejump.truss.sensitivity import sensitivities
-from statejump.truss.solve import TrussPath
+from statejump.kinds.registry import load_case, parse_case
+from statejump.core.errors import StatejumpError
+from statejump.kinds.truss.answers import answers, reflector
+from statejump.kinds.truss.generate.planar import GENERATORS
+from statejump.kinds.truss.resolved import ResolvedTruss
+from statejump.kinds.truss.answers.sensitivity import sensitivities
+from statejump.kinds.truss.solve import TrussPath
 
 
 def made(kind: str, n: int, **keys: Any) -> ResolvedTruss:
@@ -165,7 +165,7 @@ def test_fit_finds_what_the_surface_did(dimension: int) -> None:
 
 
 def reflector_of(nodes: np.ndarray, axis: np.ndarray) -> Any:
-    from statejump.truss.resolved import ReflectorSurface
+    from statejump.kinds.truss.resolved import ReflectorSurface
 
     return ReflectorSurface(nodes=nodes, axis=axis, focal_length_m=None)
 

@@ -12,11 +12,11 @@ from typing import Any, Callable
 import numpy as np
 import pytest
 
-from statejump.case import TrussCase, load_case, parse_case
-from statejump.errors import StatejumpError
-from statejump.truss.document import to_toml, write
-from statejump.truss.generate import GENERATORS
-from statejump.truss.resolved import GROUND, ResolvedTruss, distances
+from statejump.kinds.registry import TrussCase, load_case, parse_case
+from statejump.core.errors import StatejumpError
+from statejump.kinds.truss.generate.document import to_toml, write
+from statejump.kinds.truss.generate.planar import GENERATORS
+from statejump.kinds.truss.resolved import GROUND, ResolvedTruss, distances
 
 BAR = {"young_modulus_Pa": 70e9, "cross_section_area_m2": 9e-6, "thermal_expansion_per_K": 2e-5, "mass_kg": 1}
 EXAMPLES = ("chain_10", "iwan_10", "mast_6", "ring_12", "umbrella_8", "umbrella_rib")
@@ -646,7 +646,7 @@ def test_draw(name: str, cases: Path, tmp_path: Path, statejump: Callable[..., A
 
 
 def test_draw_every_symbol_and_many_bays(tmp_path: Path) -> None:
-    from statejump.truss import draw
+    from statejump.kinds.truss import draw
 
     data = frame()
     data["slider"][0]["clearance_minus_m"] = 1e-3

@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from statejump.case import parse_case
-from statejump.dem import execute
-from statejump.errors import StatejumpError
-from statejump.resultfile.read import read
-from statejump.truss import dem, generate
-from statejump.truss.document import write
-from statejump.truss.solve import solve
+from statejump.kinds.registry import parse_case
+from statejump.core.yade_process import execute
+from statejump.core.errors import StatejumpError
+from statejump.results.read import read
+from statejump.kinds.truss import dem
+from statejump.kinds.truss.generate import planar as generate
+from statejump.kinds.truss.generate.document import write
+from statejump.kinds.truss.solve import solve
 
 K = 70e9 * 9e-6 / 0.5  # stiffness of a bar of Table 1 [N/m]
 

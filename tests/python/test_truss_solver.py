@@ -8,13 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from statejump import _engine, reduced
-from statejump.case import load_case, parse_case
-from statejump.errors import StatejumpError
-from statejump.truss import contacts, generate, solve
-from statejump.truss.document import document, finished, node
-from statejump.truss.resolved import ResolvedTruss
-from statejump.umbrella import model as umbrella
+from statejump import _engine
+from statejump.kinds.spring_slider import reduced
+from statejump.kinds.registry import load_case, parse_case
+from statejump.core.errors import StatejumpError
+from statejump.kinds.truss import contacts, solve
+from statejump.kinds.truss.generate import planar as generate
+from statejump.kinds.truss.generate.document import document, finished, node
+from statejump.kinds.truss.resolved import ResolvedTruss
+from statejump.kinds.umbrella import reduced as umbrella
 
 ROOT = Path(__file__).resolve().parents[2]
 

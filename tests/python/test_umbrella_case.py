@@ -9,9 +9,12 @@ from pathlib import Path
 import pytest
 
 from conftest import damaged
-from statejump import _engine, reduced
-from statejump.case import KINDS, SpringSliderCase, StaticsCase, TrussCase, UmbrellaCase, load_case, parse_case
-from statejump.errors import StatejumpError
+from statejump import _engine
+from statejump.kinds.spring_slider import reduced
+from statejump.kinds.registry import (
+    KINDS, SpringSliderCase, StaticsCase, TrussCase, UmbrellaCase, load_case, parse_case,
+)
+from statejump.core.errors import StatejumpError
 
 NORMAL = " or ".join(repr(name) for name in _engine.law_names("normal"))
 HOT = ("temperature_change_max_K = 100", "temperature_change_max_K = 9000")

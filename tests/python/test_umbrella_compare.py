@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from statejump.case import load_case
-from statejump.errors import StatejumpError
-from statejump.umbrella import dem, model
+from statejump.kinds.registry import load_case
+from statejump.core.errors import StatejumpError
+from statejump.kinds.umbrella import dem, reduced as model
 
 
 def quantities(folder: Path) -> dict[str, dict]:

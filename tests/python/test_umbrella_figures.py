@@ -14,12 +14,13 @@ import pytest
 from click.testing import CliRunner
 
 from statejump import _engine
-from statejump.case import load_case
-from statejump.dem import DemRun
-from statejump.errors import Interrupted, StatejumpError
-from statejump.umbrella import claims, dem, model
-from statejump.umbrella.figures import closed_forms, command
-from statejump.umbrella.figures.runs import Study
+from statejump.kinds.registry import load_case
+from statejump.core.yade_process import DemRun
+from statejump.core.errors import Interrupted, StatejumpError
+from statejump.kinds.umbrella import dem, reduced as model
+from statejump.paper import claims
+from statejump.paper.figures import closed_forms, command
+from statejump.paper.figures.runs import Study
 
 RANDOM = np.random.default_rng(7)
 NOISE = RANDOM.normal(size=(8, 200))

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from statejump.case import load_case
-from statejump.errors import StatejumpError
-from statejump.umbrella import dem, energy, hold, model, slow
+from statejump.kinds.registry import load_case
+from statejump.core.errors import StatejumpError
+from statejump.kinds.umbrella import dem, reduced as model
+from statejump.paper import energy, hold, slow
 
 
 @pytest.fixture(scope="module")

@@ -14,17 +14,17 @@ import numpy as np
 from pydantic import Field, validator
 from pydantic.fields import ModelField
 
-from .. import __version__
-from ..case import KINDS as CASE_KINDS
-from ..case import Case, load_case
-from ..case_schema import (
+from statejump import __version__
+from statejump.kinds.registry import KINDS as CASE_KINDS
+from statejump.kinds.registry import Case, load_case
+from statejump.schema.fields import (
     CHOICE, Section, check_folder_name, check_name, check_number, choice, folder_name, parameter, parsed,
 )
-from ..case_tables import is_tables, numbers
-from ..errors import StatejumpError
-from ..toml_file import read_toml
-from .outcomes import KINDS, MODELS
-from .sampling import (
+from statejump.schema.items import is_tables, numbers
+from statejump.core.errors import StatejumpError
+from statejump.schema.toml import read_toml
+from statejump.campaign.outcomes import KINDS, MODELS
+from statejump.campaign.sampling import (
     DISTRIBUTIONS, Distribution, Independent, Values, changed_data, montecarlo_draws, montecarlo_values,
     number_of_points, split_path, sweep_values,
 )

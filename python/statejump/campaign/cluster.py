@@ -27,8 +27,9 @@ dask.config.set(_QUIET)
 
 from distributed import Client, LocalCluster  # noqa: E402
 
-from .. import __version__, dem  # noqa: E402
-from ..errors import StatejumpError  # noqa: E402
+from statejump import __version__  # noqa: E402
+from statejump.core import yade_process as dem  # noqa: E402
+from statejump.core.errors import StatejumpError  # noqa: E402
 
 CONNECT_S = 5
 WORKERS_S = 10  # how long a scheduler without workers is waited for

@@ -8,11 +8,11 @@ from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
 from typing import Callable, Iterator, Optional, TypeVar
 
-from ..errors import StatejumpError
-from .campaign_file import Campaign
-from .cluster import open_client
-from .journal import Journal
-from .work import Batch, Sample, batch_of, run_samples
+from statejump.core.errors import StatejumpError
+from statejump.campaign.campaign_file import Campaign
+from statejump.campaign.cluster import open_client
+from statejump.campaign.journal import Journal
+from statejump.campaign.work import Batch, Sample, batch_of, run_samples
 
 from distributed import Client, Future, KilledWorker, wait  # noqa: E402, after cluster set it up
 

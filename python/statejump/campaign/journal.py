@@ -16,9 +16,9 @@ from typing import IO, Any
 
 import numpy as np
 
-from ..errors import StatejumpError
-from .campaign_file import Campaign
-from .work import Batch
+from statejump.core.errors import StatejumpError
+from statejump.campaign.campaign_file import Campaign
+from statejump.campaign.work import Batch
 
 NAME = "samples.journal.jsonl"
 

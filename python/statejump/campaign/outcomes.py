@@ -10,14 +10,15 @@ from typing import Any, Callable, Optional
 
 import numpy as np
 
-from .. import compare, dem, reduced
-from ..case import Case, SpringSliderCase, TrussCase, UmbrellaCase
-from ..history import History
-from ..truss.outcomes import UNITS as TRUSS_UNITS
-from ..truss.outcomes import outcomes as truss_outcomes
-from ..umbrella import compare as umbrella_compare
-from ..umbrella import dem as umbrella_dem
-from ..umbrella import model as umbrella
+from statejump.core import comparison as compare, yade_process as dem
+from statejump.kinds.spring_slider import reduced
+from statejump.kinds.registry import Case, SpringSliderCase, TrussCase, UmbrellaCase
+from statejump.core.history import History
+from statejump.kinds.truss.outcomes import UNITS as TRUSS_UNITS
+from statejump.kinds.truss.outcomes import outcomes as truss_outcomes
+from statejump.kinds.umbrella import compare as umbrella_compare
+from statejump.kinds.umbrella import dem as umbrella_dem
+from statejump.kinds.umbrella import reduced as umbrella
 
 MODELS = ("reduced", "dem")
 

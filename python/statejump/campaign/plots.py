@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ..plot import STYLE, plt, save
-from .campaign_file import SWEEP, Campaign
-from .summary import spearman
-from .tables import Table
+from statejump.kinds.spring_slider.figure import STYLE, plt, save
+from statejump.campaign.campaign_file import SWEEP, Campaign
+from statejump.campaign.summary import spearman
+from statejump.campaign.tables import Table
 
 BLUE, ORANGE, DARK = "#0072B2", "#D55E00", "#000000"
 LINES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")

@@ -11,11 +11,11 @@ from typing import Any, Optional
 import numpy as np
 from scipy.stats import rankdata
 
-from .. import __version__
-from ..output import write_atomically
-from .campaign_file import Campaign
-from .sampling import Independent
-from .tables import Table
+from statejump import __version__
+from statejump.core.output import write_atomically
+from statejump.campaign.campaign_file import Campaign
+from statejump.campaign.sampling import Independent
+from statejump.campaign.tables import Table
 
 QUANTILES = (0.05, 0.5, 0.95)
 # A decimal number where sentences have what was sampled or when it happened, not an allowed range.

@@ -10,10 +10,10 @@ from typing import Iterable
 import h5py
 import numpy as np
 
-from .. import __version__
-from ..output import replacing, write_atomically
-from .campaign_file import Campaign
-from .work import Batch
+from statejump import __version__
+from statejump.core.output import replacing, write_atomically
+from statejump.campaign.campaign_file import Campaign
+from statejump.campaign.work import Batch
 
 
 @dataclass(frozen=True)

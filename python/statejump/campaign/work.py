@@ -8,10 +8,10 @@ from typing import Optional, Sequence
 
 import numpy as np
 
-from ..case import parse_case
-from ..errors import StatejumpError
-from .campaign_file import Campaign
-from .outcomes import outcome
+from statejump.kinds.registry import parse_case
+from statejump.core.errors import StatejumpError
+from statejump.campaign.campaign_file import Campaign
+from statejump.campaign.outcomes import outcome
 
 NAME = "sample"
 

@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote, unquote
 
-from .. import dem
-from ..case import parse_case
-from ..errors import StatejumpError
-from ..history import History
-from ..output import write_atomically
-from .campaign_file import MONTECARLO, Campaign, load_campaign
-from .outcomes import KINDS
-from .work import NAME
+from statejump.core import yade_process as dem
+from statejump.kinds.registry import parse_case
+from statejump.core.errors import StatejumpError
+from statejump.core.history import History
+from statejump.core.output import write_atomically
+from statejump.campaign.campaign_file import MONTECARLO, Campaign, load_campaign
+from statejump.campaign.outcomes import KINDS
+from statejump.campaign.work import NAME
 
 
 def column_of(path: str) -> str:

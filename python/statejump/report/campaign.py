@@ -12,10 +12,10 @@ from typing import Any, Optional
 import h5py
 import numpy as np
 
-from ..campaign.summary import statistics, spearman
-from ..errors import StatejumpError
-from ..units import scale_of, text
-from . import words
+from statejump.campaign.summary import statistics, spearman
+from statejump.core.errors import StatejumpError
+from statejump.core.units import scale_of, text
+from statejump.report import words
 
 BARS = 60  # of a histogram, as in the figures of the commands
 QUANTILES = ("quantile_5", "median", "quantile_95")

@@ -7,9 +7,9 @@ from typing import Any, Optional
 
 import numpy as np
 
-from .. import units
-from ..resultfile import Result
-from . import words
+from statejump.core import units
+from statejump.results import Result
+from statejump.report import words
 
 
 @dataclass(frozen=True)

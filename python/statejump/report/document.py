@@ -15,14 +15,14 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..compare import Quantity
-from ..resultfile import Event, ModelRun, Result
-from ..units import scale_of, text
-from . import charts, words
-from .decimation import errors, kept_samples
-from .drawing import Drawing
-from .energy import Account, account
-from .truss import part_of
+from statejump.core.comparison import Quantity
+from statejump.results import Event, ModelRun, Result
+from statejump.core.units import scale_of, text
+from statejump.report import charts, words
+from statejump.report.decimation import errors, kept_samples
+from statejump.report.drawing import Drawing
+from statejump.report.energy import Account, account
+from statejump.report.truss import part_of
 
 TOLERANCE = 2e-4  # of a column's range, what decimation may cost
 MOST_SAMPLES = 4000  # of a model on a page

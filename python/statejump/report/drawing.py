@@ -13,9 +13,9 @@ from typing import Any, Callable
 
 import numpy as np
 
-from ..resultfile import ModelRun, Result
-from ..resultfile.scene import growth, resolve, resolve_point
-from . import words
+from statejump.results import ModelRun, Result
+from statejump.results.scene import growth, resolve, resolve_point
+from statejump.report import words
 
 # What the default magnification gives the smallest clearance: a share of the scene's size, but of the
 # shortest link no more than can be told from the link.

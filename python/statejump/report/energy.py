@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..resultfile import ModelRun
-from . import words
+from statejump.results import ModelRun
+from statejump.report import words
 
 # The end of a column's name tells its side of the account.
 ROLES = {"_work_J": "supplied", "_energy_J": "stored", "_dissipation_J": "dissipated"}

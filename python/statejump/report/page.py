@@ -9,13 +9,13 @@ from typing import Any, Sequence
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from .. import __version__
-from .. import units
-from ..errors import StatejumpError
-from ..output import write_atomically
-from . import words
-from .campaign import CampaignDocument
-from .document import Document
+from statejump import __version__
+from statejump.core import units
+from statejump.core.errors import StatejumpError
+from statejump.core.output import write_atomically
+from statejump.report import words
+from statejump.report.campaign import CampaignDocument
+from statejump.report.document import Document
 
 HERE = Path(__file__).resolve().parent
 SCRIPT, STYLE, NOTICES = "page.js", "page.css", "notices.txt"

@@ -12,12 +12,12 @@ from typing import Any, Callable, Optional
 
 import numpy as np
 
-from ..resultfile import ModelRun, Result
-from ..resultfile.contents import unit_of
-from ..units import scale_of, text
-from . import words
-from .charts import TEMPERATURE, Axis, Chart
-from .drawing import round_down
+from statejump.results import ModelRun, Result
+from statejump.results.contents import unit_of
+from statejump.core.units import scale_of, text
+from statejump.report import words
+from statejump.report.charts import TEMPERATURE, Axis, Chart
+from statejump.report.drawing import round_down
 
 SHOWN_JUMP = 0.12  # of the truss' size: how large the largest jump is drawn at first
 MOST_CYCLES = 12  # that the drawing offers, of more the first and the last ones

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Iterable
 
-from ..units import text
+from statejump.core.units import text
 
 MODELS = {"reduced": "Reduced model", "dem": "DEM (YADE)"}
 STATES = {"separated": "gap", "stick": "stick", "slip": "slip", "at_stop": "at the stop"}

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command ``report``."""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Optional
+
+import click
+
+from statejump.core.errors import StatejumpError
+from statejump.results import read
+from statejump.results.layout import SUFFIX
+from statejump.cli.terminal import QUIET, make_console
+
+PAGE = "report.html"
+BUDGET_BYTES = 7e6  # of the histories of all runs; a page stays below 10 MB
+
+
+def result_files(run: Path) -> list[Path]:
+    """Return the result files that an argument means: a file itself, those of a results folder, or
+    of the folders in it. A comparison stands for the single models' files beside it, not for the answers.
+
+    :raises StatejumpError: there is nothing
+    """
+    if not run.is_dir():
+        return [run]
+    for pattern in (f"*{SUFFIX}", f"*/*{SUFFIX}"):
+        found = sorted(run.glob(pattern))
+        if found:
+            compared = {path.parent for path in found if path.stem == "comparison"}
+            return [path for path in found if path.parent not in compared or path.stem in ("comparison", "answers")]
+    raise StatejumpError(f"{run}: no result file (*{SUFFIX}) in this folder; 'statejump compare CASE' writes one")
+
+
+def _target(output: Optional[Path], runs: tuple[Path, ...], files: list[Path]) -> Path:
+    if output is not None:
+        return output / PAGE if output.is_dir() else output
+    if len(runs) == 1 and runs[0].is_dir():
+        return runs[0] / PAGE
+    return files[0].parent / PAGE if len(files) == 1 else Path(PAGE)
+
+
+@click.command("report")
+@click.argument("runs", metavar="RUN...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path),
+    help=f"The page.  [default: {PAGE} beside the run, of several runs in the current folder]",
+)
+@QUIET
+def report_command(runs: tuple[Path, ...], output: Optional[Path], quiet: bool) -> None:
+    """One HTML page of RUN...: comparison, loops, events, energies, 3-D replay; of a campaign its
+    distributions. A RUN is a result file, a campaign's samples.h5 or a results folder; the page
+    needs nothing beside it, no network either.
+
+    \b
+    Example:
+      statejump report results/table1
+    """
+    from statejump.report import page  # the template engine takes a while to load: only here
+    from statejump.report.campaign import CampaignDocument, is_campaign
+    from statejump.report.document import Document
+
+    console = make_console(quiet)
+    files = list(dict.fromkeys(path for run in runs for path in result_files(run)))
+    documents = [
+        CampaignDocument(path, f"run{place}") if is_campaign(path)
+        else Document(read(path), path.name, f"run{place}", BUDGET_BYTES / len(files))
+        for place, path in enumerate(files, start=1)
+    ]
+    target = _target(output, runs, files)
+    page.write(documents, target)
+    for document in documents:
+        if isinstance(document, CampaignDocument):
+            console.print(f"{document.title}: {document.samples:,} samples, {len(document.failed):,} failed")
+            continue
+        for kept in document.kept:
+            console.print(
+                f"{document.result.name}, {kept.model}: {kept.kept:,} of {kept.samples:,} samples kept, "
+                f"error {kept.error:.2g} of a column's range"
+            )
+    console.print(f"page: {target} ({target.stat().st_size / 1e6:.2f} MB)")

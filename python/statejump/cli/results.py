@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``statejump info``, ``statejump export`` and ``statejump compare FILE FILE``."""
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Optional, Sequence
+
+import click
+from rich.console import Console
+from rich.table import Table
+
+from statejump.core.errors import Interrupted, StatejumpError, TolerancesMissed
+from statejump.core.output import results_folder
+from statejump.cli.terminal import QUIET, make_console, number, print_comparison, progress
+from statejump.results import export_csv
+from statejump.results.contents import Answers, Column, Result, Scalar
+from statejump.results.difference import RunDifference, case_differences, difference
+from statejump.results.read import read
+
+FILE = click.argument("file", metavar="FILE", type=click.Path(path_type=Path))
+FORMATS = ("csv", "vtu", "paraview", "all")
+MODEL_NAMES = {"reduced": "reduced", "dem": "DEM"}
+FRAMES = 200
+SHOWN_EVENTS = 12
+
+
+def _table(title: str, *headings: str, left: Sequence[str] = ()) -> Table:
+    table = Table(title=title)
+    for heading in headings:
+        table.add_column(heading, justify="left" if heading in left else "right")
+    return table
+
+
+def _value(value: Optional[float]) -> str:
+    return number(None if value is None or math.isnan(value) else value)
+
+
+@click.command("info")
+@FILE
+def info_command(file: Path) -> None:
+    """What is in a result FILE: case, provenance, numbers, events, verdict, columns.
+
+    \b
+    Example:
+      statejump info results/table1/comparison.h5
+    """
+    console = make_console(False)
+    result = read(file)
+    _print_header(result, console)
+    _print_summary(result, console)
+    _print_events(result, console)
+    if result.comparison is not None:
+        print_comparison(f"{result.title}: {'passed' if result.passed else 'a tolerance is missed'}",
+                         result.comparison, console)
+    if result.answers is not None:
+        _print_answers(result.answers, console)
+    _print_contents(result, console)
+    for warning in result.warnings:
+        console.print(f"warning: {warning}")
+    if not result.complete:
+        console.print("warning: not complete: the run was interrupted, the file holds what there was")
+
+
+def _print_header(result: Result, console: Console) -> None:
+    table = _table(result.title, "", "value", left=("", "value"))
+    rows = {
+        "case": f"{result.name}, kind {result.kind}", "source": result.source, "written by": f"statejump {result.command}",
+        "complete": "yes" if result.complete else "no",
+        **{key.replace("_", " "): str(value) for key, value in sorted(result.provenance.items())},
+        "parts": ", ".join(f"{part['name']} ({part['type']})" for part in result.scene["parts"][:SHOWN_EVENTS])
+        + (" ..." if len(result.scene["parts"]) > SHOWN_EVENTS else ""),
+    }
+    for key, value in rows.items():
+        table.add_row(key, value or "not known")
+    console.print(table)
+
+
+def _print_summary(result: Result, console: Console) -> None:
+    table = _table("summary", "quantity", "unit", *(MODEL_NAMES[model] for model in result.models),
+                   left=("quantity", "unit"))
+    names = dict.fromkeys(name for run in result.models.values() for name in run.summary)
+    for name in sorted(names):
+        scalars: list[Optional[Scalar]] = [run.summary.get(name) for run in result.models.values()]
+        unit = next(scalar.unit for scalar in scalars if scalar is not None)
+        table.add_row(name, unit, *("" if scalar is None else _value(scalar.value) for scalar in scalars))
+    console.print(table)
+
+
+def _print_events(result: Result, console: Console) -> None:
+    for model, run in result.models.items():
+        table = _table(f"events, {MODEL_NAMES[model]}", "event", "joint", "ΔT [K]", "time [s]", "± [s]",
+                       left=("event", "joint"))
+        for event in run.events[:SHOWN_EVENTS]:
+            table.add_row(event.kind, event.joint, f"{event.temperature_change_K:.6f}", f"{event.time_s:.6f}",
+                          f"{event.time_uncertainty_s:.2g}")
+        console.print(table)
+        if len(run.events) > SHOWN_EVENTS:
+            console.print(f"and {len(run.events) - SHOWN_EVENTS:,} more: statejump export --format csv")
+
+
+def _print_answers(answers: Answers, console: Console) -> None:
+    table = _table(f"answers: {answers.text}", "quantity", "unit", "value", left=("quantity", "unit"))
+    for name, scalar in sorted(answers.summary.items()):
+        table.add_row(name, scalar.unit, _value(scalar.value))
+    console.print(table)
+    console.print(f"{answers.verdict}: {answers.verdict_text}")
+    for note in answers.notes:
+        console.print(f"note: {note}")
+    table = _table("tables of answers", "table", "rows", "columns", left=("table", "columns"))
+    for name, rows in answers.tables.items():
+        table.add_row(name, f"{len(rows):,}", ", ".join(rows[0]) if rows else "")
+    console.print(table)
+
+
+def _shape(result: Result, column: Column) -> str:
+    parts = [f"{column.values.shape[0]:,} samples"]
+    if column.items:
+        parts.append(f"{column.values.shape[1]:,} {column.items}")
+    if column.values.ndim == 3:
+        parts.append("3")
+    return " × ".join(parts)
+
+
+def _print_contents(result: Result, console: Console) -> None:
+    for model, run in result.models.items():
+        table = _table(f"columns, {MODEL_NAMES[model]}", "place", "unit", "shape", "smallest", "largest",
+                       left=("place", "unit", "shape"))
+        for group in ("history", "energy", "links", "contacts"):
+            for name, column in sorted(getattr(run, group).items()):
+                table.add_row(f"{group}/{name}", column.unit, _shape(result, column), *_extremes(column))
+        console.print(table)
+
+
+def _extremes(column: Column) -> tuple[str, str]:
+    if column.labels:
+        return ", ".join(column.labels), ""
+    known = column.values[~(column.values != column.values)]  # without NaN
+    return (number(float(known.min())), number(float(known.max()))) if known.size else ("none", "none")
+
+
+@click.command("export")
+@FILE
+@click.option("--format", "form", type=click.Choice(FORMATS), default="all", show_default=True,
+              help="csv: tables; vtu: VTK series; paraview: VTK series and a script that opens them.")
+@click.option("--to", "folder", type=click.Path(path_type=Path), default=None,
+              help="Folder that gets the files. [default: FILE without its suffix]")
+@click.option("--frames", type=click.IntRange(min=0), default=FRAMES, show_default=True,
+              help="Samples in the VTK series, evenly spread; 0: all.")
+@QUIET
+def export_command(file: Path, form: str, folder: Optional[Path], frames: int, quiet: bool) -> None:
+    """CSV tables and ParaView files of a result FILE.
+
+    \b
+    Example:
+      statejump export results/table1/comparison.h5 --format paraview
+    """
+    console = make_console(quiet)
+    result = read(file)
+    target = folder if folder is not None else file.with_suffix("")
+    if target == file:
+        raise StatejumpError(f"{file}: has no suffix to leave out: choose a folder with --to")
+    target = results_folder(target.parent, target.name)
+    written: list[Path] = []
+    if form in ("csv", "all"):
+        written += export_csv.write_all(result, target)
+    if form != "csv":
+        from statejump.results import export_vtk, paraview_script  # VTK takes half a second to load
+
+        try:
+            with progress(console, "VTK files") as report:
+                written += export_vtk.write_all(result, target, frames, report)
+        except KeyboardInterrupt:
+            raise Interrupted(f"interrupted; the files so far are in {target}, without their series") from None
+        if form != "vtu":
+            written.append(paraview_script.write_script(result, target))
+    console.print(f"written: {', '.join(str(path) for path in written)}")
+
+
+def compare_files(files: Sequence[Path], console: Console) -> None:
+    """Print two result files of the same case beside each other.
+
+    :raises TolerancesMissed: a tolerance of the case in the first file is missed
+    :raises StatejumpError: not two result files of the same case
+    """
+    if len(files) != 2:
+        raise StatejumpError(
+            f"{len(files)} file(s) given: 'statejump compare' takes a case file or two result files; what is in "
+            "one shows 'statejump info'"
+        )
+    first, second = (read(file) for file in files)
+    found = difference(first, second)
+    for place, file in zip(("first", "second"), files):
+        console.print(f"{place}: {file}")
+    for text in case_differences(first, second)[1]:
+        console.print(f"computed otherwise: {text}")
+    for key in sorted({*first.provenance} & {*second.provenance}):
+        if first.provenance[key] != second.provenance[key]:
+            console.print(f"computed otherwise: {key} = {first.provenance[key]} and {second.provenance[key]}")
+    missed: list[str] = []
+    for runs in found:
+        _print_difference(first.title, runs, console)
+        missed += [row.name for row in runs.rows or () if not row.passed]
+    if not (first.complete and second.complete):
+        console.print("not judged: a run is not complete; its common time is compared")
+    if missed:
+        raise TolerancesMissed(f"{files[0]}, {files[1]}: tolerance missed: {', '.join(missed)}")
+
+
+def _print_difference(title: str, runs: RunDifference, console: Console) -> None:
+    names = (f"first, {MODEL_NAMES[runs.names[0]]}", f"second, {MODEL_NAMES[runs.names[1]]}")
+    table = _table(f"{title}: summary", "quantity", "unit", *names, "difference", left=("quantity", "unit"))
+    for name, unit, one, other in runs.summary:
+        table.add_row(name, unit, _value(one), _value(other), _value(other - one))
+    console.print(table)
+    table = _table("largest difference over time", "column", "unit", "difference", "at [s]", "range of the first",
+                   left=("column", "unit"))
+    for column in runs.columns:
+        table.add_row(column.name, column.unit, number(column.largest), number(column.time_s), number(column.range))
+    console.print(table)
+    table = _table("events", "event", "first: count", "second: count", "first: ΔT [K]", "second: ΔT [K]",
+                   left=("event",))
+    for event in runs.events:
+        table.add_row(event.kind, *map(str, event.counts), *map(_value, event.first_K))
+    console.print(table)
+    if runs.rows is not None:
+        print_comparison("against the tolerances of the case", runs.rows, console, names)

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``statejump truss``: case files of trusses made by generators, and their drawings."""
+from __future__ import annotations
+
+import inspect
+import re
+import shlex
+from pathlib import Path
+from typing import Any, Callable
+
+import click
+
+from statejump.kinds.registry import parse_case
+from statejump.schema.fields import Thermal
+from statejump.kinds.truss.case import Revolute, TrussCase, TrussReduced
+from statejump.core.errors import StatejumpError
+from statejump.core.output import results_folder
+from statejump.schema.json_schema import head_line
+from statejump.cli.terminal import CASE, QUIET, RESULTS, load_kind, make_console
+from statejump.cli.truss_answers import answers_command
+from statejump.kinds.truss.generate.document import Document, write
+from statejump.kinds.truss.generate.planar import GENERATORS
+
+LEAST = {"ring": 3}
+LARGEST = 1_000_000
+# Keys that take one of several names.
+_NAMES = {
+    "shape": [name for name in Thermal.__fields__["shape"].field_info.extra["names"] if name != "table"],
+    "contact": list(Revolute.__fields__["contact"].field_info.extra["names"]),
+    "sticking": list(TrussReduced.__fields__["sticking"].field_info.extra["names"]),
+}
+
+
+@click.group("truss")
+def truss_command() -> None:
+    """Trusses of many joints: make case files of a size N, draw them, answer a designer's questions.
+
+    \b
+    Example:
+      statejump truss ring 12 -o ring_12.toml
+    """
+
+
+def _shown(key: str) -> str:
+    """Return the option of a key: the unit is in the help text."""
+    return "--" + re.sub(r"_(N_m_per_rad|N_per_m|N|K|m4|m|s|rad)$", "", key).replace("_", "-")
+
+
+def _summary(function: Callable[..., Document]) -> tuple[str, dict[str, str]]:
+    """Return the docstring without its parameters, and those."""
+    text = inspect.getdoc(function) or ""
+    described = dict(re.findall(r"^:param (\w+): (.*)$", text, re.MULTILINE))
+    return text.split(":param", 1)[0].strip(), described
+
+
+def _help(function: Callable[..., Document], kind: str) -> str:
+    text, _ = _summary(function)
+    blocks = ["\b\n" + block if block.startswith("    ") else block.replace("::", ":")
+              for block in re.split(r"\n\n(?! )|\n\n(?=    )", text)]
+    return "\n\n".join([*blocks, f"\b\nExample:\n  statejump truss {kind} {max(LEAST.get(kind, 1), 6)} -o {kind}.toml"])
+
+
+def _generator_command(kind: str, function: Callable[..., Document]) -> click.Command:
+    """Return the command that writes what a generator makes; its options are the function's keys."""
+    keys = {key: parameter.default for key, parameter in inspect.signature(function).parameters.items()
+            if key not in ("n", "name")}
+    _, described = _summary(function)
+
+    def make(n: int, output: Path, force: bool, quiet: bool, **values: Any) -> None:
+        console = make_console(quiet)
+        if output.exists() and not force:
+            raise StatejumpError(f"{output}: exists already; --force overwrites it")
+        if not output.parent.is_dir():
+            raise StatejumpError(f"{output}: cannot be written: there is no folder {output.parent}")
+        made = function(n, name=output.stem, **values)
+        case = parse_case(made, str(output))
+        given = [
+            _shown(key) + (f" {value}" if not isinstance(value, bool) else "") if value is not False
+            else "--no-" + _shown(key)[2:]
+            for key, value in values.items() if value != keys[key]
+        ]
+        line = " ".join(["statejump truss", kind, str(n), *given, "-o", shlex.quote(output.name)])
+        write(made, output, [head_line(case.kind, output), f"# Made by: {line}", "# Units are in the names."])
+        assert isinstance(case, TrussCase)
+        joints = len(case.slider) + len(case.revolute)
+        console.print(f"{output}: nodes {len(case.node)}, links {len(case.link)}, joints {joints}")
+
+    command = click.Command(kind, callback=make, help=_help(function, kind))
+    command.params = [
+        click.Argument(["n"], metavar="N", type=click.IntRange(LEAST.get(kind, 1), LARGEST)),
+        click.Option(["-o", "--output", "output"], required=True, metavar="FILE", type=click.Path(path_type=Path),
+                     help="Case file to write; its name is that of the case."),
+        click.Option(["--force"], is_flag=True, help="Overwrite the file."),
+    ]
+    for key, default in keys.items():
+        help_text = described[key][0].upper() + described[key][1:] + "."
+        if isinstance(default, bool):
+            option = click.Option([f"{_shown(key)}/--no-{_shown(key)[2:]}", key], default=default, help=help_text)
+        else:
+            kind_of = click.Choice(_NAMES[key]) if key in _NAMES else type(default)
+            option = click.Option([_shown(key), key], default=default, type=kind_of, help=help_text, show_default=True)
+        command.params.append(option)
+    return QUIET(command)
+
+
+for _kind, _function in GENERATORS.items():
+    truss_command.add_command(_generator_command(_kind, _function))
+
+
+@truss_command.command("draw")
+@CASE
+@RESULTS
+@QUIET
+def draw_command(case_file: Path, results: Path, quiet: bool) -> None:
+    """Draw CASE: nodes, links by temperature, supports, joints, springs, loads.
+
+    \b
+    Example:
+      statejump truss draw cases/trusses/ring_12.toml
+    """
+    from statejump.kinds.truss import draw
+
+    console = make_console(quiet)
+    case = load_kind(case_file, TrussCase)
+    folder = results_folder(results, case.name)
+    written = draw.figure(case, folder)
+    console.print(f"drawing: {', '.join(str(path) for path in written)}")
+
+
+truss_command.add_command(answers_command)

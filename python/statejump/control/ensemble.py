@@ -1,0 +1,314 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Control of the state jump of a rib whose joint is free in its play: statistics of an ensemble."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import acos, floor, lgamma, log, log10
+from typing import Any, Callable, Iterable, Optional
+
+import numpy as np
+
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.control.study import Progress, Row, Study, Sweep, bisect, grid, number, ranges_that_pass
+from statejump.kinds.umbrella.control import AREA, CLEARANCE, DAMPING, FRICTION, SPRING, changes
+from statejump.core.errors import StatejumpError
+from statejump.kinds.umbrella import dem, reduced as model
+
+RUNS = 40
+QUANTILE = 0.95
+CONFIDENCE = 0.95
+BISECTIONS = 5  # finer than the scatter of a quantile
+CHECK = 5  # a spring is checked on so many times more runs, from other starts
+
+ENSEMBLE_RESULTS = {
+    "jump_mean_rad": "mean |jump| [mrad]",
+    "jump_quantile_rad": "95 % |jump| [mrad]",
+    "deflection_mean_rad": "mean largest |deflection| [mrad]",
+    "deflection_quantile_rad": "95 % largest |deflection| [mrad]",
+}
+
+
+def quantile(values: np.ndarray) -> float:
+    """95 % quantile: the smallest of the values that at least 95 % do not exceed."""
+    return float(np.quantile(np.abs(values), QUANTILE, method="higher"))
+
+
+def upper_bound(values: np.ndarray) -> float:
+    """Value below which the 95 % quantile lies with 95 % confidence, whatever the distribution.
+
+    It is the r-th of n sorted values, with the smallest r for which at most r − 1 of n values are
+    below the quantile with that probability; the largest value if n < 59 are too few.
+    """
+    count = len(values)
+    logarithms = [
+        lgamma(count + 1) - lgamma(k + 1) - lgamma(count - k + 1) + k * log(QUANTILE) + (count - k) * log(1 - QUANTILE)
+        for k in range(count)
+    ]
+    rank = int(np.searchsorted(np.cumsum(np.exp(logarithms)), CONFIDENCE))
+    return float(np.sort(np.abs(values))[min(rank, count - 1)])
+
+
+def ensemble_measure(
+    case: UmbrellaCase, runs: int, progress: Callable[[], None] = lambda: None
+) -> dict[str, float]:
+    """Mean, 95 % quantile and its bound of |jump| and of the largest |deflection| of θ2 [rad].
+
+    The starts depend on the case's seed alone: the same numbers every time.
+    """
+    together = model.ensemble(case, runs, progress)
+    jump, deflection = np.abs(together.jump_rad), np.max(np.abs(together.deflection_rad), axis=1)
+    return {
+        "jump_mean_rad": float(np.mean(jump)),
+        "jump_quantile_rad": quantile(jump),
+        "deflection_mean_rad": float(np.mean(deflection)),
+        "deflection_quantile_rad": quantile(deflection),
+        "jump_bound_rad": upper_bound(jump),
+        "deflection_bound_rad": upper_bound(deflection),
+    }
+
+
+def static_deflection_rad(case: UmbrellaCase) -> float:
+    """Largest |θ2 − θ2(0)| that the torsion spring asks for in statics, rigid links, contact on AC.
+
+    The centres of the joint are d apart, so the triangle of the links closes on a base |AC| − d: on
+    |AC| + c when the free flare angle asks for more, on |AC| − c when for less.
+    """
+    largest, frame = 0.0, case.frame.length_m
+    for change in case.temperature_range_K:
+        ab, bc = (
+            link.stress_free_length_m * (1 + link.thermal_expansion_per_K * change)
+            for link in (case.link_ab, case.link_bc)
+        )
+        play = case.clearance_m(change)
+        free = np.sqrt(ab**2 + bc**2 - 2 * ab * bc * np.cos(case.free_flare_angle_rad))
+        base = min(max(free, frame - play), frame + play)
+        angle = acos((base**2 + ab**2 - bc**2) / (2 * base * ab))
+        largest = max(largest, abs(angle - case.theta2_rad))
+    return largest
+
+
+class _Ensembles:
+    """Ensemble measures of changed cases, each computed once, with progress."""
+
+    def __init__(self, case: UmbrellaCase, runs: int, progress: Progress) -> None:
+        self.case, self.runs, self.known = case, runs, {}
+        self.expected, self.done, self.progress = 1, 0, progress
+
+    def check(self, values: dict[str, Any]) -> dict[str, float]:
+        """Measure on a larger ensemble from other starts. :raises StatejumpError: a run failed"""
+        return self({**values, "ensemble.seed": self.case.ensemble.seed + 1}, CHECK * self.runs)
+
+    def __call__(self, values: dict[str, Any], runs: Optional[int] = None) -> dict[str, float]:
+        """:raises StatejumpError: a run failed"""
+        runs = runs or self.runs
+        # A change to the own value is no change: the case itself is run once.
+        real = {
+            path: value for path, value in values.items()
+            if getattr(getattr(self.case, path.split(".")[0]), path.split(".")[1]) != value
+        }
+        key = (runs, *sorted(real.items()))
+        if key not in self.known:
+            self.known[key] = ensemble_measure(model.changed(self.case, real), runs, self._step)
+        return self.known[key]
+
+    def _step(self) -> None:
+        self.done += 1
+        self.progress(min(1.0, self.done / (self.expected * self.runs)))
+
+
+def _ensemble_plan(case: UmbrellaCase) -> list[tuple]:
+    joint, area = case.joint, case.link_ab.cross_section_area_m2
+    friction, clearance = joint.friction_coefficient, joint.radial_clearance_m
+    # A link turned against its own axial stiffness: the largest torsion stiffness of the rib.
+    decade = floor(log10(case.link_ab.young_modulus_Pa * area * case.link_ab.stress_free_length_m))
+    stiffness, damping = case.torsion_spring.stiffness_N_m_per_rad, case.damping.axial_damping_ratio
+    springs = sorted({0.0, stiffness, *(10.0 ** (decade - 6 + half / 2) for half in range(11))})
+    frictions = sorted({0.0, friction, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0})
+    dampings = sorted({0.0, damping, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3})
+    least = max(clearance / 10, case.ensemble.start_spread_m, case.start.eccentricity_m)
+    return [
+        (FRICTION, "Friction coefficient μ", "-", 1.0, friction, frictions, "linear"),
+        (SPRING, "Torsion spring K_M", "N m/rad", 1.0, stiffness, springs, "log"),
+        (AREA, "Section of AB, BC with it; E acts alike", "mm²", 1e6, area,
+         grid(area, area / 10, 10 * area, 9), "log"),
+        (CLEARANCE, "Radial clearance c", "mm", 1e3, clearance,
+         grid(clearance, least, 4 * clearance, 9), "log"),
+        (DAMPING, "Axial damping ratio ζ", "-", 1.0, damping, dampings, "log"),
+    ]
+
+
+def study(
+    case: UmbrellaCase, wanted: Optional[float], runs: int, with_dem: bool, progress: Progress
+) -> Study:
+    """Study a joint that is free in its play."""
+    plan = _ensemble_plan(case)
+    measured = _Ensembles(case, runs, (lambda part: progress(0.7 * part)) if with_dem else progress)
+    # Guessed: how many springs are checked shows only as they pass.
+    measured.expected = sum(len(entry[5]) - 1 for entry in plan) + 1 + (10 + BISECTIONS) * CHECK
+    now = measured({})
+    if wanted is None and now["jump_quantile_rad"] > 0:
+        wanted = now["jump_quantile_rad"] / 2
+    result = Study(
+        "ensemble",
+        "no biased spring loads the joint from the start, so one run means nothing: statistics of "
+        f"{runs} runs of the reduced dynamics from starts within {case.ensemble.start_spread_m:g} m "
+        f"(seed {case.ensemble.seed}); jump and largest deflection are those of theta2, the 95 % "
+        "quantile is a value that occurred",
+        "rad", "mrad", 1e3, ENSEMBLE_RESULTS, now["jump_quantile_rad"], wanted,
+    )
+    result.static_deflection_rad = static_deflection_rad(case)
+    for key, label, unit, scale, own, values, axis in plan:
+        rows = []
+        for value in values:
+            try:
+                rows.append(Row(value, dict(measured(changes(case, key, value)))))
+            except StatejumpError as problem:
+                rows.append(Row(value, {}, str(problem)))
+        result.sweeps.append(Sweep(key, label, unit, scale, own, rows, axis))
+    if wanted is None:
+        result.sentences.append("The case has no jump: there is nothing to control.")
+    else:
+        for sweep in result.sweeps:
+            sweep.meets = ranges_that_pass(
+                [row.value for row in sweep.rows],
+                [row.results.get("jump_quantile_rad", np.inf) <= wanted for row in sweep.rows],
+            )
+        _ensemble_springs(measured, result, wanted)
+    result.remarks.append(
+        f"a 95 % quantile of {runs} runs scatters; with a recommended spring its upper bound from {CHECK} times "
+        "more runs is below the wanted value too; the ranges that meet the wanted jump end at scanned values"
+    )
+    if with_dem:
+        dem_runs = min(runs, case.ensemble.dem_runs)
+        _ensemble_dem(case, result, dem_runs, lambda part: progress(0.7 + 0.3 * part))
+    return result
+
+
+@dataclass(frozen=True)
+class SpringFound:
+    """Smallest spring that passes on a fixed ensemble."""
+
+    stiffness: float
+    below: Optional[float]  # a spring just below it that fails; None: it is the smallest scanned
+    up_to: float  # every scanned spring from it to here passes
+    passes_all_stiffer: bool
+
+
+def smallest_spring(
+    passes: Callable[[float], bool], scanned: Iterable[float]
+) -> Optional[SpringFound]:
+    """Scan, then bisect below the first spring that passes; None: none does.
+
+    A statistic of chaotic runs need not fall with the spring: what is found is the edge next to the
+    first scanned spring that passes.
+    """
+    springs = sorted(scanned)
+    flags = [passes(spring) for spring in springs]
+    if True not in flags:
+        return None
+    first = flags.index(True)
+    last = first
+    while last + 1 < len(springs) and flags[last + 1]:
+        last += 1
+    all_stiffer = last == len(springs) - 1
+    if first == 0:
+        return SpringFound(springs[0], None, springs[last], all_stiffer)
+    below = springs[first - 1] or springs[first] * 1e-3  # geometric from above zero
+    if passes(below):
+        return SpringFound(below, 0.0, springs[last], all_stiffer)
+    below, stiffness = bisect(passes, below, springs[first], 0.0, BISECTIONS)
+    return SpringFound(stiffness, below, springs[last], all_stiffer)
+
+
+def _ensemble_springs(measured: _Ensembles, result: Study, wanted: float) -> None:
+    sweep = result.sweep(SPRING)
+    # Those that the sweep could not run fail; the recommended one is not scanned.
+    scanned = [row.value for row in sweep.rows if row.results]
+    static = result.static_deflection_rad or 0.0
+    asked = f"{number(wanted * 1e3)} mrad"
+    beyond = (
+        f"the 95 % quantile of the largest |deflection| less its static value {number(static * 1e3)} mrad "
+        "(contact on AC)"
+    )
+    result.recommendation["static_deflection_rad"] = static
+    for name, what, rest in (("jump", "the 95 % quantile of |jump|", 0.0), ("deflection", beyond, static)):
+
+        def value_of(spring: float, name: str = name, rest: float = rest) -> float:
+            return measured({SPRING: spring})[f"{name}_quantile_rad"] - rest
+
+        def checked(spring: float, name: str = name, rest: float = rest) -> float:
+            return measured.check({SPRING: spring})[f"{name}_bound_rad"] - rest
+
+        found = smallest_spring(
+            lambda spring: value_of(spring) <= wanted and checked(spring) <= wanted, scanned
+        )
+        entry: dict[str, Any] = {"stiffness_N_m_per_rad": None}
+        result.recommendation[f"for_{name}"] = entry
+        if found is None:
+            best = min(scanned, key=value_of)
+            entry.update(best_stiffness_N_m_per_rad=best, best_value_rad=value_of(best))
+            result.sentences.append(
+                f"No torsion spring from {number(scanned[0])} to {number(scanned[-1])} N m/rad brings "
+                f"{what} to or below {asked}: the best, {number(best)} N m/rad, leaves "
+                f"{number(value_of(best) * 1e3)} mrad in {measured.runs} runs."
+            )
+            continue
+        entry.update(
+            stiffness_N_m_per_rad=found.stiffness,
+            value_with_it_rad=value_of(found.stiffness),
+            next_smaller_that_fails_N_m_per_rad=found.below,
+            every_scanned_passes_up_to_N_m_per_rad=found.up_to,
+        )
+        if found.stiffness == 0:
+            result.sentences.append(
+                f"No torsion spring is needed: without one {what} is {number(value_of(0.0) * 1e3)} mrad, "
+                f"not above {asked}."
+            )
+            continue
+        again = checked(found.stiffness)
+        entry.update(bound_on_check_ensemble_rad=again, check_ensemble_runs=CHECK * measured.runs)
+        sentence = (
+            f"The smallest torsion spring that brings {what} to or below {asked} has "
+            f"{number(found.stiffness)} N m/rad: {number(value_of(found.stiffness) * 1e3)} mrad, and "
+            f"by {CHECK * measured.runs} runs from other starts below {number(again * 1e3)} mrad with "
+            f"{100 * min(CONFIDENCE, 1 - QUANTILE ** (CHECK * measured.runs)):.0f} % confidence"
+        )
+        if not found.passes_all_stiffer:
+            sentence += f"; stiffer is not always better, beyond {number(found.up_to)} N m/rad it fails again"
+        result.sentences.append(sentence + ".")
+        sweep.insert(Row(found.stiffness, dict(measured({SPRING: found.stiffness}))))
+        if name == "jump":
+            sweep.recommended = found.stiffness
+
+
+def _ensemble_dem(case: UmbrellaCase, result: Study, runs: int, progress: Progress) -> None:
+    spring = result.sweep(SPRING)
+    points = sorted({spring.own, spring.own if spring.recommended is None else spring.recommended})
+    done = [0]
+
+    def step() -> None:
+        done[0] += 1
+        progress(done[0] / (runs * len(points)))
+
+    wanted = result.wanted or 0.0
+    for stiffness in points:
+        together = dem.ensemble(model.changed(case, {SPRING: stiffness}), runs, step)
+        deflection = np.max(np.abs(together.deflection_rad), axis=1)
+        jump = quantile(together.jump_rad)
+        reduced = spring.row(stiffness).results
+        result.dem.append({
+            SPRING: stiffness, "runs": runs,
+            "reduced_jump_mean_rad": reduced["jump_mean_rad"],
+            "dem_jump_mean_rad": float(np.mean(np.abs(together.jump_rad))),
+            "reduced_jump_quantile_rad": reduced["jump_quantile_rad"], "dem_jump_quantile_rad": jump,
+            "reduced_deflection_quantile_rad": reduced["deflection_quantile_rad"],
+            "dem_deflection_quantile_rad": quantile(deflection),
+        })
+        for sweep in result.sweeps if stiffness == spring.own else [spring]:
+            sweep.row(stiffness if sweep is spring else sweep.own).dem_jump = jump
+        result.remarks.append(
+            f"DEM, {runs} runs, {number(stiffness)} N m/rad: 95 % quantile of |jump| {number(jump * 1e3)} mrad "
+            f"({'not ' if jump <= wanted else ''}above the wanted value), mean "
+            f"{number(float(np.mean(np.abs(together.jump_rad))) * 1e3)} mrad; reduced model "
+            f"{number(reduced['jump_quantile_rad'] * 1e3)} and {number(reduced['jump_mean_rad'] * 1e3)} mrad"
+        )

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a control study is made of, whatever the case: swept parameters, wanted value, searches."""
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Callable, Optional
+
+import numpy as np
+
+from statejump.core.output import write_atomically
+
+Progress = Callable[[float], None]
+
+
+@dataclass
+class Row:
+    """One value of one parameter and what comes out; None: the model has no answer, see ``note``."""
+
+    value: float
+    results: dict[str, Optional[float]]
+    note: str = ""
+    dem_jump: Optional[float] = None
+
+
+@dataclass
+class Sweep:
+    """A parameter over a range, everything else as in the case."""
+
+    parameter: str  # section.key, with the unit in the key
+    label: str  # for the axis, without unit
+    display_unit: str
+    display_scale: float
+    own: float
+    rows: list[Row]
+    scale: str = "log"  # of the axis: log, linear; zero is shown on either
+    meets: list[tuple[float, float]] = field(default_factory=list)  # ranges that meet the wanted value
+    recommended: Optional[float] = None
+
+    def row(self, value: float) -> Row:
+        """Return the row of a value."""
+        return next(row for row in self.rows if row.value == value)
+
+    def insert(self, row: Row) -> None:
+        """Add a row in its place; one of the same value is replaced."""
+        self.rows = sorted([kept for kept in self.rows if kept.value != row.value] + [row], key=lambda r: r.value)
+
+    def column(self, name: str) -> np.ndarray:
+        """Results of all rows, NaN where there is none."""
+        return np.array([np.nan if row.results.get(name) is None else row.results[name] for row in self.rows])
+
+    def shown(self, most: int = 7) -> list[Row]:
+        """Return the rows for a table: own, recommended, and some of the others."""
+        stride = max(1, -(-len(self.rows) // most))
+        return [
+            row for i, row in enumerate(self.rows)
+            if i % stride == 0 or row.value in (self.own, self.recommended) or row.dem_jump is not None
+            or row is self.rows[-1]
+        ]
+
+
+@dataclass
+class Study:
+    """A finished study."""
+
+    kind: str  # spring_slider, loaded, ensemble
+    measure: str  # sentence: what is measured and how
+    unit: str
+    display_unit: str
+    display_scale: float
+    results: dict[str, str]  # columns: name with unit -> heading
+    jump: float  # of the case as it is
+    wanted: Optional[float]  # None: there is no jump to control
+    sweeps: list[Sweep] = field(default_factory=list)
+    recommendation: dict[str, Any] = field(default_factory=dict)
+    sentences: list[str] = field(default_factory=list)  # the recommendation in words
+    remarks: list[str] = field(default_factory=list)
+    dem: list[dict[str, Any]] = field(default_factory=list)
+    static_deflection_rad: Optional[float] = None
+
+    def sweep(self, parameter: str) -> Sweep:
+        """Return the sweep of a parameter."""
+        return next(sweep for sweep in self.sweeps if sweep.parameter == parameter)
+
+
+def bisect(
+    passes: Callable[[float], bool], bad: float, good: float, relative: float = 1e-12, steps: int = 200
+) -> tuple[float, float]:
+    """Narrow a bracket: ``bad`` does not pass, ``good`` does. Geometric between positive ends.
+
+    :return: the bracket, narrower than ``relative`` times its larger end
+    """
+    for _ in range(steps):
+        if abs(good - bad) <= relative * max(abs(good), abs(bad)):
+            break
+        middle = float(np.sqrt(bad) * np.sqrt(good)) if bad > 0 and good > 0 else (bad + good) / 2
+        if middle in (bad, good):
+            break
+        if passes(middle):
+            good = middle
+        else:
+            bad = middle
+    return bad, good
+
+
+def ranges_that_pass(
+    values: list[float], flags: list[bool], passes: Callable[[float], bool] | None = None
+) -> list[tuple[float, float]]:
+    """Return the ranges of neighbouring values that pass; with ``passes`` their ends are refined."""
+    found: list[tuple[float, float]] = []
+    i = 0
+    while i < len(values):
+        if not flags[i]:
+            i += 1
+            continue
+        j = i
+        while j + 1 < len(values) and flags[j + 1]:
+            j += 1
+        low, high = values[i], values[j]
+        if passes is not None and i > 0:
+            low = bisect(passes, values[i - 1], low, 1e-9)[1]
+        if passes is not None and j + 1 < len(values):
+            high = bisect(passes, values[j + 1], high, 1e-9)[1]
+        found.append((low, high))
+        i = j + 1
+    return found
+
+
+def grid(own: float, low: float, high: float, count: int, zero: bool = False) -> list[float]:
+    """Geometric grid from ``low`` to ``high`` with the case's own value, with zero if wanted."""
+    values = {float(value) for value in np.geomspace(low, high, count)}
+    # The own value as written in the case, and no other so near that it says nothing.
+    values = {value for value in values if abs(value - own) > 0.02 * abs(value)}
+    values.add(float(own))
+    if zero:
+        values.add(0.0)
+    return sorted(values)
+
+
+def number(value: Optional[float], digits: int = 4) -> str:
+    """Return a number for a sentence or a table."""
+    return "none" if value is None else f"{value:.{digits}g}"
+
+
+def write(case_name: str, study: Study, folder: Path) -> list[Path]:
+    """Write ``control.csv`` and ``control.json``."""
+    table, summary = folder / "control.csv", folder / "control.json"
+    names = list(study.results)
+    with write_atomically(table) as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["parameter", "value", "is_own_value", "is_recommended", *names,
+                         f"dem_jump_{study.unit}", "note"])
+        for sweep in study.sweeps:
+            for row in sweep.rows:
+                writer.writerow([
+                    sweep.parameter, repr(row.value), int(row.value == sweep.own),
+                    int(row.value == sweep.recommended),
+                    *("" if row.results.get(name) is None else repr(row.results[name]) for name in names),
+                    "" if row.dem_jump is None else repr(row.dem_jump), row.note,
+                ])
+    content = {
+        "case": case_name,
+        "measure": study.measure,
+        f"jump_{study.unit}": study.jump,
+        f"jump_wanted_below_{study.unit}": study.wanted,
+        "recommendation": {**study.recommendation, "sentence": " ".join(study.sentences)},
+        "ranges_that_meet_the_wanted_jump": {
+            sweep.parameter: {
+                "scanned": [sweep.rows[0].value, sweep.rows[-1].value],
+                "meet": [list(ends) for ends in sweep.meets],
+            }
+            for sweep in study.sweeps
+        },
+        "dem": study.dem,
+        "remarks": study.remarks,
+    }
+    with write_atomically(summary) as stream:
+        stream.write(json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+    return [table, summary]

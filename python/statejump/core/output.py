@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files appear whole or not at all: written aside, then renamed."""
+from __future__ import annotations
+
+import os
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Iterator
+
+from statejump.core.errors import NotWritten
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Yield a path beside ``path`` to write to; rename on success, remove on failure."""
+    aside = path.with_name(f".{path.stem}.partial{path.suffix}")
+    try:
+        yield aside
+        os.replace(aside, path)
+    except OSError as error:
+        raise NotWritten(f"{path}: cannot be written: {error.strerror or error}") from None
+    finally:
+        aside.unlink(missing_ok=True)
+
+
+@contextmanager
+def write_atomically(path: Path) -> Iterator[IO[str]]:
+    """Open a text file that appears under its name when it is complete."""
+    with replacing(path) as aside:
+        with aside.open("w", encoding="utf-8", newline="") as stream:
+            yield stream
+
+
+def results_folder(root: Path, name: str) -> Path:
+    """Make (if needed) and return ``root/name``; StatejumpError if it cannot be written to."""
+    folder = root / name
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / ".writable.partial"
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise NotWritten(
+            f"results folder {folder}: cannot be written: {error.strerror or error}; "
+            "choose another with --results"
+        ) from None
+    return folder

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cases of kind ``spring_slider``: a heated bar that pushes a block with friction between stops."""
+from __future__ import annotations
+
+from typing import ClassVar, Optional
+
+from pydantic import Field
+
+from statejump.kinds.spring_slider import stable_step
+from statejump.schema.fields import CHOICE, Case, Section, no_length_left, parameter
+
+PAPER = "Chen et al. (2021), Table 1"
+
+
+class Link(Section):
+    """The bar that expands."""
+
+    young_modulus_Pa: float = parameter(..., "Pa", 0, 1e13, PAPER, above=True)
+    stress_free_length_m: float = parameter(..., "m", 0, 1e3, PAPER, above=True)
+    cross_section_area_m2: float = parameter(..., "m2", 0, 1e2, PAPER, above=True)
+    thermal_expansion_per_K: float = parameter(..., "1/K", -1e-3, 1e-3, PAPER)
+    density_kg_per_m3: float = parameter(2700.0, "kg/m3", 0, 1e5, CHOICE + ": aluminium", above=True)
+    poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, PAPER)
+
+
+class Joint(Section):
+    """The block at the tip of the bar, in a slot with a floor and two stops."""
+
+    normal_force_N: float = parameter(..., "N", 0, 1e9, PAPER, above=True)
+    friction_coefficient: float = parameter(..., "-", 0, 10, PAPER)
+    clearance_minus_m: float = parameter(..., "m", 0, 1e2, PAPER, above=True)
+    clearance_plus_m: float = parameter(..., "m", 0, 1e2, PAPER, above=True)
+    preload_stiffness_N_per_m: float = parameter(0.0, "N/m", 0, 1e15, "none in the paper's case")
+    pad_radius_m: float = parameter(0.05, "m", 0, 1e2, CHOICE + "; DEM only", above=True)
+    young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, CHOICE + ": as the link", above=True)
+    poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, CHOICE + ": as the link")
+    pad_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, CHOICE)
+    slot_thermal_expansion_per_K: float = parameter(
+        0.0, "1/K", -1e-3, 1e-3, "the paper's frame does not expand"
+    )
+
+
+class Dem(Section):
+    """How the DEM runs the case; the reduced model takes only times and samples from here."""
+
+    period_s: float = parameter(1.0, "s", 0, 1e6, CHOICE + ": slow enough", above=True)
+    time_step_s: Optional[float] = parameter(None, "s", 0, 1.0, "from the fraction", above=True)
+    time_step_fraction: float = parameter(0.1, "-", 0, 1.0, "of the stable step", above=True)
+    link_damping_ratio: float = parameter(0.1, "-", 0, 10, CHOICE)
+    contact_damping_ratio: float = parameter(0.1, "-", 0, 10, CHOICE)
+    slider_mass_kg: float = parameter(0.0, "kg", 0, 1e6, "the paper's link is its own mass")
+    samples_per_cycle: int = parameter(2000, "-", 10, 1_000_000, CHOICE)
+    threads: int = parameter(1, "-", 1, 1024, CHOICE)
+
+
+class Tolerance(Section):
+    """How close the two models must be for ``compare`` to pass."""
+
+    state_jump_relative: float = parameter(0.005, "-", 0, 1, CHOICE, above=True)
+    event_temperature_K: float = parameter(0.5, "K", 0, 1e3, CHOICE, above=True)
+    displacement_rms_relative: float = parameter(0.01, "-", 0, 1, CHOICE, above=True)
+    energy_balance_relative: float = parameter(0.001, "-", 0, 1, CHOICE, above=True)
+    state_jump_absolute_m: float = parameter(1e-9, "m", 0, 1, CHOICE + "; no friction", above=True)
+    drift_relative: float = parameter(0.001, "-", 0, 1, CHOICE + "; several cycles", above=True)
+
+
+class SpringSliderCase(Case):
+    """A bar with a clearance joint, the paper's section 3."""
+
+    KIND: ClassVar[str] = "spring_slider"
+
+    link: Link
+    joint: Joint
+    dem: Dem = Field(default_factory=Dem)
+    tolerance: Tolerance = Field(default_factory=Tolerance)
+
+    @property
+    def period_s(self) -> float:
+        """Length of one cycle [s]."""
+        return self.dem.period_s
+
+    @property
+    def samples_per_cycle(self) -> int:
+        """Samples per cycle of both models."""
+        return self.dem.samples_per_cycle
+
+    @property
+    def friction_force_N(self) -> float:
+        """Friction limit f = μ N [N]."""
+        return self.joint.friction_coefficient * self.joint.normal_force_N
+
+    def clearance_m(self, side: int, temperature_change_K: float) -> float:
+        """Return the clearance [m] on side +1 or −1 at ΔT: stop distance minus pad radius, each
+        with its own expansion from the total ΔT."""
+        joint = self.joint
+        start = joint.clearance_plus_m if side > 0 else joint.clearance_minus_m
+        stop = joint.slot_thermal_expansion_per_K * (joint.pad_radius_m + start)
+        pad = joint.pad_thermal_expansion_per_K * joint.pad_radius_m
+        return start + (stop - pad) * temperature_change_K
+
+    def problem(self) -> str | None:
+        """Return what is wrong between several keys, without the file's name."""
+        coldest, hottest = self.temperature_range_K
+        problem = no_length_left("link.thermal_expansion_per_K", self.link.thermal_expansion_per_K, self)
+        if problem is not None:
+            return problem
+        for side, key in ((-1, "clearance_minus_m"), (1, "clearance_plus_m")):
+            for change in (coldest, hottest):
+                if not self.clearance_m(side, change) > 0:
+                    return (
+                        f"joint.{key} = {getattr(self.joint, key)!r} is not allowed: the expansion of "
+                        f"pad and slot closes it at a temperature change of {change:g} K, it must stay "
+                        "above 0 [m] within the program"
+                    )
+        if self.joint.clearance_minus_m >= self.link.stress_free_length_m:
+            return (
+                f"joint.clearance_minus_m = {self.joint.clearance_minus_m!r} is not allowed: "
+                f"must be below link.stress_free_length_m = {self.link.stress_free_length_m!r} [m]"
+            )
+        rigidity = self.link.young_modulus_Pa * self.link.cross_section_area_m2
+        if self.friction_force_N >= rigidity:
+            return (
+                f"joint.friction_coefficient = {self.joint.friction_coefficient!r} is not allowed: "
+                f"the friction force {self.friction_force_N:g} N must be below E A = {rigidity:g} N"
+            )
+        if self.dem.time_step_s is not None:
+            stable = stable_step.stable_time_step(self)
+            if self.dem.time_step_s > stable:
+                return (
+                    f"dem.time_step_s = {self.dem.time_step_s!r} is not allowed: must be above 0 and "
+                    f"at most the stable time step {stable:.4g} [s]"
+                )
+        return None

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Control of the state jump of a ``spring_slider`` case: exact, with the closed form beside it."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Optional
+
+import numpy as np
+
+from statejump.core import yade_process as dem
+from statejump.kinds.spring_slider import reduced
+from statejump.kinds.spring_slider.case import Joint, SpringSliderCase
+from statejump.control.study import Progress, Row, Study, Sweep, bisect, grid, number, ranges_that_pass
+from statejump.kinds.umbrella.reduced import changed
+
+POINTS = 49
+PRELOAD = "joint.preload_stiffness_N_per_m"
+RESULTS = {"jump_m": "|jump| [µm]", "closed_form_m": "closed form [µm]"}
+MEASURE = (
+    "exact quasi-static path of the reduced model; closed form f/(k + k_p), without preload "
+    "f l0/(E A), valid for a cycle that ends sliding at ΔT = 0"
+)
+
+
+@dataclass(frozen=True)
+class Jump:
+    """State jump of one design."""
+
+    size_m: float
+    closed_form_m: Optional[float]  # None: the cycle does not end sliding at ΔT = 0
+    slips: bool
+
+
+def jump_of(case: SpringSliderCase) -> Jump:
+    """Solve a case for its jump. :raises ValueError: a changed case is out of range"""
+    path = reduced.solve(case)
+    slips = any(segment.motion == "slide" for segment in path.segments)
+    last = path.segments[-1]
+    closed = last.motion == "slide" and last.end_temperature_change_K == 0
+    # A block that has not moved keeps the zero that it started from.
+    return Jump(abs(path.state_jump_m), path.model.state_jump_m if closed else None, slips)
+
+
+def link_stiffness(case: SpringSliderCase) -> float:
+    """k = E A/l0 [N/m]."""
+    link = case.link
+    return link.young_modulus_Pa * link.cross_section_area_m2 / link.stress_free_length_m
+
+
+@dataclass(frozen=True)
+class Spring:
+    """The smallest preload spring that keeps the jump at or below a value."""
+
+    stiffness_N_per_m: float
+    jump_m: float  # solved with the spring
+    by: str  # none, closed form, bisection
+
+
+def smallest_preload(case: SpringSliderCase, wanted_m: float) -> Optional[Spring]:
+    """Return the spring, or None if the largest allowed one is too soft.
+
+    The jump never grows with k_p: a stiffer spring slides less far and back earlier.
+    """
+
+    def solved(stiffness: float) -> Jump:
+        return jump_of(changed(case, {PRELOAD: stiffness}))
+
+    def passes(stiffness: float) -> bool:
+        return solved(stiffness).size_m <= wanted_m
+
+    if passes(0.0):
+        return Spring(0.0, solved(0.0).size_m, "none")
+    largest = Joint.__fields__["preload_stiffness_N_per_m"].field_info.extra["high"]
+    closed = case.friction_force_N / wanted_m - link_stiffness(case)
+    if 0 < closed <= largest and solved(closed).closed_form_m is not None:
+        # A few roundings up, so that the solved jump is not above the wanted one.
+        stiffness = closed
+        for _ in range(8):
+            if passes(stiffness):
+                return Spring(stiffness, solved(stiffness).size_m, "closed form")
+            stiffness = float(np.nextafter(stiffness, np.inf)) + 1e-16 * link_stiffness(case)
+    upper = 1e-6 * link_stiffness(case)
+    while not passes(upper):
+        if upper == largest:
+            return None
+        upper = min(10 * upper, largest)
+    stiffness = bisect(passes, 0.0, upper, 1e-13)[1]
+    return Spring(stiffness, solved(stiffness).size_m, "bisection")
+
+
+def _changes(case: SpringSliderCase, parameter: str, value: float) -> dict[str, Any]:
+    if parameter == "joint.clearance_plus_m":  # both sides by the same factor
+        other = case.joint.clearance_minus_m * (value / case.joint.clearance_plus_m)
+        return {parameter: value, "joint.clearance_minus_m": other}
+    return {parameter: value}
+
+
+def _row(case: SpringSliderCase, parameter: str, value: float) -> Row:
+    try:
+        jump = jump_of(changed(case, _changes(case, parameter, value)))
+    except ValueError as problem:
+        return Row(value, {}, str(problem))
+    note = "" if jump.closed_form_m is not None else (
+        "cycle does not end sliding" if jump.slips else "no slip: no jump"
+    )
+    return Row(value, {"jump_m": jump.size_m, "closed_form_m": jump.closed_form_m}, note)
+
+
+def _sweeps(case: SpringSliderCase) -> list[Sweep]:
+    joint, link = case.joint, case.link
+    rigidity = link.young_modulus_Pa * link.cross_section_area_m2
+    friction = joint.friction_coefficient or 0.3
+    most_friction = 0.99 * min(10.0, rigidity / joint.normal_force_N)
+    least_area = 1.01 * case.friction_force_N / link.young_modulus_Pa
+    clearance, k = joint.clearance_plus_m, link_stiffness(case)
+    far = min(100.0, 0.99 * link.stress_free_length_m / joint.clearance_minus_m)
+    area = link.cross_section_area_m2
+    plan = (
+        ("joint.friction_coefficient", f"Friction coefficient μ (force {joint.normal_force_N:g} N × μ)", "-", 1.0,
+         joint.friction_coefficient, min(friction / 30, most_friction / 900),
+         min(30 * friction, most_friction), False),
+        ("link.cross_section_area_m2", "Section of the link; E acts alike", "mm²", 1e6, area,
+         max(area / 30, least_area), 30 * area, False),
+        (PRELOAD, "Preload spring k_p", "N/m", 1.0, joint.preload_stiffness_N_per_m, 1e-3 * k, 1e3 * k, True),
+        ("joint.clearance_plus_m", "Clearance c⁺, c⁻ with it", "mm", 1e3, clearance, clearance / 100,
+         far * clearance, False),
+    )
+    return [
+        Sweep(key, label, unit, scale, own,
+              [_row(case, key, value) for value in grid(own, low, high, POINTS, zero)])
+        for key, label, unit, scale, own, low, high, zero in plan
+    ]
+
+
+def study(case: SpringSliderCase, wanted: Optional[float], with_dem: bool, progress: Progress) -> Study:
+    """Sweep, search and, if wanted, check by DEM."""
+    now = jump_of(case)
+    if wanted is None and now.size_m > 0:
+        wanted = now.size_m / 2
+    result = Study("spring_slider", MEASURE, "m", "µm", 1e6, RESULTS, now.size_m, wanted)
+    result.sweeps = _sweeps(case)
+    if wanted is None:
+        result.sentences.append("The case has no jump: there is nothing to control.")
+    else:
+        for sweep in result.sweeps:
+            _find_ranges(case, sweep, wanted)
+        _recommend(case, result, wanted)
+    result.remarks += [*reduced.solve(case).warnings, *reduced.warnings(case)]
+    if with_dem:
+        _check_by_dem(case, result, progress)
+    return result
+
+
+def _find_ranges(case: SpringSliderCase, sweep: Sweep, wanted: float) -> None:
+    def passes(value: float) -> bool:
+        size = _row(case, sweep.parameter, value).results.get("jump_m")
+        return size is not None and size <= wanted
+
+    values = [row.value for row in sweep.rows]
+    sweep.meets = ranges_that_pass(values, [passes(value) for value in values], passes)
+
+
+def _recommend(case: SpringSliderCase, result: Study, wanted: float) -> None:
+    spring = smallest_preload(case, wanted)
+    asked = f"{number(wanted * 1e6)} µm"
+    if spring is None:
+        largest = Joint.__fields__["preload_stiffness_N_per_m"].field_info.extra["high"]
+        result.recommendation["preload_stiffness_N_per_m"] = None
+        result.sentences.append(
+            f"No preload spring up to {largest:g} N/m, the largest that a case may have, keeps the jump "
+            f"at or below {asked}."
+        )
+        return
+    result.recommendation.update(
+        preload_stiffness_N_per_m=spring.stiffness_N_per_m, jump_with_it_m=spring.jump_m, found_by=spring.by
+    )
+    sweep = result.sweep(PRELOAD)
+    sweep.recommended = spring.stiffness_N_per_m
+    sweep.insert(_row(case, PRELOAD, spring.stiffness_N_per_m))
+    if spring.by == "none":
+        result.sentences.append(
+            f"No preload spring is needed: without one the jump is {number(spring.jump_m * 1e6)} µm, "
+            f"not above {asked}."
+        )
+        return
+    how = {
+        "closed form": "closed form f/jump − k",
+        "bisection": "bisection, for the cycle does not end sliding and the closed form does not hold",
+    }[spring.by]
+    result.sentences.append(
+        f"The smallest preload spring that keeps the jump at or below {asked} has "
+        f"{spring.stiffness_N_per_m:.6g} N/m ({how}); solved with it, the jump is "
+        f"{spring.jump_m * 1e6:.6g} µm."
+    )
+
+
+def _check_by_dem(case: SpringSliderCase, result: Study, progress: Progress) -> None:
+    preload = result.sweep(PRELOAD)
+    wanted = {preload.own, preload.own if preload.recommended is None else preload.recommended}
+    for done, stiffness in enumerate(sorted(wanted)):
+        design = changed(case, {PRELOAD: stiffness})
+        run = dem.execute(dem.resolved(design), lambda part: progress((done + part) / len(wanted)))
+        position = run.history["displacement_m"]
+        jump, exact = abs(float(position[-1] - position[0])), jump_of(design).size_m
+        result.dem.append({PRELOAD: stiffness, "reduced_jump_m": exact, "dem_jump_m": jump})
+        preload.row(stiffness).dem_jump = jump
+        result.remarks.append(
+            f"DEM with k_p = {stiffness:.6g} N/m: jump {jump * 1e6:.5g} µm, reduced model {exact * 1e6:.5g} µm"
+        )
+        if stiffness == preload.own:
+            for sweep in result.sweeps:
+                sweep.row(sweep.own).dem_jump = jump

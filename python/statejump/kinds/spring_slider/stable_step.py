@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stable time step of the spring-slider scene.
+
+Leapfrog with a damping force from the lagged velocity is stable for omega dt <= 2 (sqrt(1 + zeta^2)
+- zeta) with omega^2 = k/m and zeta = c / (2 sqrt(k m)) of a mode. The slider moves along two axes:
+
+- across the floor (y): the floor's normal stiffness k_n, and k_t of a stop that it touches;
+- along the bar (x): the link, k_t of the floor and k_n of a stop.
+
+Contacts are Hertz-Mindlin, k_n = 2 E* a, k_t = 8 G* a, a = sqrt(R delta), delta =
+(F / (4/3 E* sqrt(R)))^(2/3), at the largest force they can see: the floor at twice the normal force
+(a load applied at once overshoots to twice its value), a stop at the force that would hold the whole
+thermal overlap rigidly, doubled for impact. Dashpots of all contacts of an axis are added.
+"""
+from __future__ import annotations
+
+from math import sqrt
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from statejump.kinds.spring_slider.case import SpringSliderCase
+
+
+def tip_mass(case: SpringSliderCase) -> float:
+    """Mass at the tip [kg]: a third of the bar's (exact for a uniform rod) and the slider's."""
+    link = case.link
+    bar = link.density_kg_per_m3 * link.cross_section_area_m2 * link.stress_free_length_m
+    return bar / 3 + case.dem.slider_mass_kg
+
+
+def largest_stop_force(case: SpringSliderCase) -> float:
+    """Force [N] that would hold the thermal overlap with a rigid stop."""
+    link = case.link
+    stiffness = link.young_modulus_Pa * link.cross_section_area_m2 / link.stress_free_length_m
+    overlap = 0.0
+    for change in case.temperature_range_K:
+        stroke = link.stress_free_length_m * link.thermal_expansion_per_K * change
+        overlap = max(overlap, stroke - case.clearance_m(1, change), -stroke - case.clearance_m(-1, change))
+    return stiffness * overlap
+
+
+def contact_stiffness(case: SpringSliderCase, force_N: float) -> tuple[float, float]:
+    """Tangent stiffnesses k_n, k_t [N/m] of one pad under a force [N]."""
+    joint = case.joint
+    nu = joint.poisson_ratio
+    effective_modulus = joint.young_modulus_Pa / (2 * (1 - nu**2))
+    shear_modulus = joint.young_modulus_Pa / (2 * (1 + nu))
+    effective_shear = shear_modulus / (2 * (2 - nu))
+    hertz = 4 / 3 * effective_modulus * sqrt(joint.pad_radius_m)
+    contact_radius = sqrt(joint.pad_radius_m * (force_N / hertz) ** (2 / 3))
+    return 2 * effective_modulus * contact_radius, 8 * effective_shear * contact_radius
+
+
+def stable_time_step(case: SpringSliderCase) -> float:
+    """Largest stable time step [s] of the DEM run of a case."""
+    floor_normal, floor_tangential = contact_stiffness(case, 2 * case.joint.normal_force_N)
+    stop_normal, stop_tangential = contact_stiffness(case, 2 * largest_stop_force(case))
+    bar = case.link
+    link = bar.young_modulus_Pa * bar.cross_section_area_m2 / bar.stress_free_length_m
+    link += case.joint.preload_stiffness_N_per_m
+    mass = tip_mass(case)
+    axes = (
+        (0.0, (floor_normal, stop_tangential)),
+        (link, (floor_tangential, stop_normal)),
+    )
+    steps = []
+    for spring, contacts in axes:
+        stiffness = spring + sum(contacts)
+        # c / m of all dashpots, each 2 zeta sqrt(k m)
+        damping = 2 * sqrt(1 / mass) * (
+            case.dem.link_damping_ratio * sqrt(spring)
+            + case.dem.contact_damping_ratio * sum(sqrt(k) for k in contacts)
+        )
+        omega = sqrt(stiffness / mass)
+        ratio = damping / (2 * omega)
+        steps.append(2 / omega * (sqrt(1 + ratio**2) - ratio))
+    return min(steps)

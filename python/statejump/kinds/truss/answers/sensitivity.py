@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How the jump of an output follows friction, clearances, stiffnesses and preloads: central differences."""
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Callable, Optional
+
+import numpy as np
+
+from statejump.core.errors import StatejumpError
+from statejump.kinds.truss.answers.answers import Output, quick_path
+from statejump.kinds.truss.resolved import ResolvedTruss, distances
+from statejump.kinds.truss.solve import TrussPath
+
+STEP = 1e-2  # of the value; the second difference takes half of it
+AGREE = 0.02  # differences of both steps, relative to the larger of them
+NOISE = 1e-6  # of the jump: what a share of a branch of 1e-9 may leave at a hundred events, with room
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """Derivative of the jump with respect to the logarithm of a parameter: change per change of 100 %."""
+
+    parameter: str  # "revolute.*.radial_clearance_m", "revolute.joint3.radial_clearance_m"
+    items: int
+    value: Optional[float]  # None: the items differ
+    per_relative_change: float  # in the output's unit
+    half_step: float
+    verdict: str  # "smooth", "no influence", "steps disagree", "not differentiable", "failed: ..."
+
+    @property
+    def per_unit(self) -> Optional[float]:
+        """Change of the jump per unit of the parameter; None if the items differ."""
+        return None if self.value is None else self.per_relative_change / self.value
+
+
+def parameters(truss: ResolvedTruss) -> list[tuple[str, str, np.ndarray]]:
+    """Return section, key and the values (items,) of every parameter that a jump may follow."""
+    parts = (
+        ("slider", truss.sliders, ("friction_coefficient", "normal_force_N", "clearance_minus_m", "clearance_plus_m")),
+        ("revolute", truss.revolutes, ("friction_coefficient", "radial_clearance_m", "journal_radius_m")),
+        ("link", truss.links, ("young_modulus_Pa", "cross_section_area_m2")),
+        ("spring", truss.springs, ("stiffness_N_per_m", "preload_N")),
+        ("torsion_spring", truss.torsion_springs, ("stiffness_N_m_per_rad", "bias_rad")),
+    )
+    found = [(section, key, getattr(part, key)) for section, part, keys in parts for key in keys]
+    hertz = ~truss.revolutes.rigid
+    if hertz.any():
+        found.append(("revolute", "young_modulus_Pa", np.where(hertz, truss.revolutes.young_modulus_Pa, 0.0)))
+    return found
+
+
+def changed(truss: ResolvedTruss, section: str, key: str, factor: np.ndarray) -> ResolvedTruss:
+    """Return the truss with one parameter of every item times a factor (items,). The stiffness of a spring
+    changes at constant preload, the preload at constant stiffness."""
+    field = {"slider": "sliders", "revolute": "revolutes", "link": "links", "spring": "springs",
+             "torsion_spring": "torsion_springs"}[section]
+    part = getattr(truss, field)
+    part = replace(part, **{key: getattr(part, key) * factor})
+    if section == "spring":
+        drawn = distances(truss.nodes.position_m, part.nodes)
+        part = replace(part, free_length_m=drawn - part.preload_N / part.stiffness_N_per_m)
+    return replace(truss, **{field: part})
+
+
+def _histories(found: TrussPath) -> dict[tuple[str, int], list[str]]:
+    """Return the statuses that every joint goes through. Those of different joints within one increment
+    have no order of their own."""
+    histories: dict[tuple[str, int], list[str]] = {}
+    for event in found.events:
+        histories.setdefault((event.joint_kind, event.joint), [event.before]).append(event.after)
+    return histories
+
+
+def sensitivities(
+    found: TrussPath, output: Output, *, each: bool = False, step: float = STEP,
+    progress: Callable[[float], Any] = lambda fraction: None,
+) -> list[Sensitivity]:
+    """Return the sensitivities of an output's jump, parameters without value (0 or no stop) left out.
+
+    A parameter is changed by ±step and ±step/2 of its value, all items of a section together or, with
+    ``each``, one by one. "not differentiable": the slopes on both sides differ by more than AGREE, at half
+    the step as at the whole, or both steps disagree and a joint goes through other statuses with one change
+    than with another; "steps disagree": the slopes of both steps differ by more than AGREE, for another reason.
+    """
+    truss, own_jump = found.truss, output.jump(found)
+    names = {"slider": truss.sliders.names, "revolute": truss.revolutes.names, "link": truss.links.names,
+             "spring": truss.springs.names, "torsion_spring": truss.torsion_springs.names}
+    asked: list[tuple[str, str, str, np.ndarray, np.ndarray]] = []
+    for section, key, values in parameters(truss):
+        there = np.isfinite(values) & (values != 0)
+        if not there.any():
+            continue
+        if not each:
+            asked.append((section, key, "*", there, values))
+            continue
+        for index in np.flatnonzero(there):
+            asked.append((section, key, names[section][index], np.arange(len(values)) == index, values))
+    rows = []
+    for place, (section, key, name, which, values) in enumerate(asked):
+        own = values[which]
+        same = float(own[0]) if np.ptp(own) <= 1e-12 * abs(own[0]) else None
+        label = f"{section}.{name}.{key}"
+        try:
+            found_of = _differences(truss, section, key, which, output, own_jump, step)
+            rows.append(Sensitivity(label, len(own), same, *found_of))
+        except StatejumpError as problem:
+            rows.append(Sensitivity(label, len(own), same, float("nan"), float("nan"), f"failed: {problem}"))
+        progress((place + 1) / len(asked))
+    return rows
+
+
+def _differences(
+    truss: ResolvedTruss, section: str, key: str, which: np.ndarray, output: Output, own_jump: float, step: float
+) -> tuple[float, float, str]:
+    jumps, slopes, gaps, histories = [], [], [], []
+    for size in (step, step / 2):
+        pair = [quick_path(changed(truss, section, key, np.where(which, 1 + sign * size, 1.0)), cycle_ends_only=True)
+                for sign in (1, -1)]
+        values = [output.jump(one) for one in pair]
+        jumps += values
+        slopes.append((values[0] - values[1]) / (2 * size))
+        gaps.append(abs(values[0] + values[1] - 2 * own_jump) / size)  # of a smooth function as small as the step
+        histories += [_histories(one) for one in pair]
+    whole, half = slopes
+    largest = max(abs(whole), abs(half))
+    noise = NOISE * max(map(abs, jumps)) / step
+    # A kink may have slopes that cancel each other.
+    if gaps[1] > max(AGREE * largest, 0.75 * gaps[0], noise):
+        word = "not differentiable"
+    elif largest <= noise:
+        word = "no influence"
+    elif abs(whole - half) <= AGREE * largest:
+        word = "smooth"
+    else:
+        same = all(history == histories[0] for history in histories)
+        word = "steps disagree" if same else "not differentiable"
+    return whole, half, word

@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cases of kind ``truss``: bars, frictional joints and springs between nodes, planar or spatial.
+
+One file describes the truss for the quasi-static solver and for the DEM. Items have names and refer to
+each other by name; :meth:`TrussCase.resolve` turns names into indices and keys into arrays. What is
+wrong between several keys is found by :mod:`statejump.kinds.truss.checks`.
+"""
+from __future__ import annotations
+
+from math import pi
+from typing import Any, ClassVar, Optional
+
+from pydantic import Field, validator
+from pydantic.fields import ModelField
+
+from statejump.schema.fields import CHOICE, Case, Section, Thermal, choice, parameter, thermal_range_K
+from statejump.schema.items import Item, is_tables, numbers, read_tables, tables, texts
+from statejump.kinds.truss import checks
+from statejump.kinds.truss.resolved import ResolvedTruss, resolve
+
+USER = "no default: the truss decides"
+ALUMINIUM = CHOICE + ": aluminium"
+AXES = ("x", "y", "z")
+LARGEST_LENGTH_M = 1e6
+
+
+class Truss(Section):
+    """What holds for the truss as a whole."""
+
+    dimension: int = parameter(..., "-", 2, 3, "2: x and y; 3: x, y and z")
+
+
+class Node(Item):
+    """A point that moves, where bars, joints and springs end. Positions are those at ΔT = 0."""
+
+    position_m: list[float] = numbers(..., "m", -LARGEST_LENGTH_M, LARGEST_LENGTH_M, USER)
+    fixed: list[str] = texts([], "directions without motion", AXES)
+    guide_normal: Optional[list[float]] = numbers(None, "-", -1e9, 1e9, "no motion along it; of any length")
+    force_N: Optional[list[float]] = numbers(None, "N", -1e12, 1e12, "dead load; none")
+
+
+class Link(Item):
+    """A straight bar between two nodes that carries axial force only."""
+
+    nodes: list[str] = texts(..., "its two nodes")
+    young_modulus_Pa: float = parameter(..., "Pa", 0, 1e13, USER, above=True)
+    cross_section_area_m2: float = parameter(..., "m2", 0, 1e2, USER, above=True)
+    thermal_expansion_per_K: float = parameter(..., "1/K", -1e-3, 1e-3, USER)
+    stress_free_length_m: Optional[float] = parameter(
+        None, "m", 0, LARGEST_LENGTH_M, "at ΔT = 0; the distance of its nodes", above=True
+    )
+    density_kg_per_m3: Optional[float] = parameter(None, "kg/m3", 0, 1e5, "this or mass_kg; DEM only", above=True)
+    mass_kg: Optional[float] = parameter(None, "kg", 0, 1e6, "this or density_kg_per_m3; DEM only", above=True)
+    poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM)
+    temperature_fraction: float = parameter(1.0, "-", -10, 10, "of its program's ΔT; fully sunlit")
+    program: Optional[str] = Field(None, description="name of a [[program]]; the common [thermal]")
+
+
+class Slider(Item):
+    """A frictional prismatic joint: the first node slides along an axis fixed in space, on ground or on
+    the second node. Between two nodes it also holds them together across the axis; on ground the
+    supports of the node do."""
+
+    nodes: list[str] = texts(..., "one node, on ground, or two")
+    axis: list[float] = numbers(..., "-", -1e9, 1e9, "of any length")
+    friction_coefficient: float = parameter(..., "-", 0, 10, USER)
+    normal_force_N: float = parameter(..., "N", 0, 1e9, USER)
+    clearance_minus_m: Optional[float] = parameter(None, "m", 0, 1e2, "against the axis; no stop", above=True)
+    clearance_plus_m: Optional[float] = parameter(None, "m", 0, 1e2, "along the axis; no stop", above=True)
+    pad_radius_m: float = parameter(0.05, "m", 0, 1e2, CHOICE + "; DEM and elastic sticking only", above=True)
+    young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM + "; DEM and elastic sticking only", above=True)
+    poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM + "; DEM and elastic sticking only")
+
+
+class Revolute(Item):
+    """A clearance revolute joint with Coulomb friction: the journal, at one node, plays in the bearing, at
+    another. A link carries and turns each; without a link a part does not turn."""
+
+    bearing_node: str = Field(..., description="where the bearing's centre is")
+    journal_node: str = Field(..., description="where the journal's centre is")
+    bearing_link: Optional[str] = Field(None, description="whose end carries the bearing; none: it does not turn")
+    journal_link: Optional[str] = Field(None, description="whose end carries the journal; none: it does not turn")
+    journal_radius_m: float = parameter(..., "m", 0, 1e2, USER, above=True)
+    radial_clearance_m: float = parameter(..., "m", 0, 1e2, USER + "; at ΔT = 0", above=True)
+    friction_coefficient: float = parameter(..., "-", 0, 10, USER)
+    axis: Optional[list[float]] = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
+    journal_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, CHOICE + ": constant radii")
+    bearing_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, CHOICE + ": constant radii")
+    temperature_fraction: float = parameter(1.0, "-", -10, 10, "of its program's ΔT; fully sunlit")
+    program: Optional[str] = Field(None, description="name of a [[program]]; the common [thermal]")
+    young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM, above=True)
+    poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM)
+    contact: str = choice("hertz", ("hertz", "rigid"), CHOICE + "; of the reduced model, DEM is always elastic")
+
+
+class Spring(Item):
+    """A linear spring between two nodes, or a cable that only pulls."""
+
+    nodes: list[str] = texts(..., "its two nodes")
+    stiffness_N_per_m: float = parameter(..., "N/m", 0, 1e15, USER, above=True)
+    preload_N: Optional[float] = parameter(None, "N", -1e12, 1e12, "tension of the drawn truss; 0")
+    free_length_m: Optional[float] = parameter(None, "m", 0, LARGEST_LENGTH_M, "instead of preload_N")
+    cable: bool = Field(False, description="whether it only pulls")
+
+
+class TrussTorsionSpring(Item):
+    """A spring on the angle from the first link to the second, or on the angle of one link in space.
+
+    Links point from their first to their second node, angles are anticlockwise about the axis (z in the
+    plane). The moment K (angle - drawn angle - bias) turns the links back to the drawn angle + bias.
+    """
+
+    links: list[str] = texts(..., "two links that share a place, or one")
+    stiffness_N_m_per_rad: float = parameter(..., "N m/rad", 0, 1e12, USER, above=True)
+    bias_rad: float = parameter(0.0, "rad", -pi, pi, "free angle beyond the drawn one")
+    axis: Optional[list[float]] = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
+
+
+class TrussThermal(Thermal):
+    """The common temperature program."""
+
+    period_s: float = parameter(1.0, "s", 0, 1e6, CHOICE, above=True)
+
+
+class Program(Item, Thermal):
+    """Another temperature program, for links and joints that name it; it lasts as long as the common one."""
+
+    cycles: Optional[int] = parameter(None, "-", 1, 100_000, "as [thermal]")
+    period_s: Optional[float] = parameter(None, "s", 0, 1e6, "as [thermal]", above=True)
+
+
+class Output(Section):
+    """What both models write."""
+
+    samples_per_cycle: int = parameter(200, "-", 10, 1_000_000, CHOICE)
+
+
+class TrussReduced(Section):
+    """How the quasi-static solver follows the path."""
+
+    increments_per_branch: int = parameter(50, "-", 1, 1_000_000, CHOICE)
+    locate_events: bool = Field(True, description="whether events are located between increments")
+    sticking: str = choice("rigid", ("rigid", "elastic"), "Coulomb's law; elastic: gives way by k_t, as in the DEM")
+    event_tolerance: float = parameter(1e-9, "-", 0, 0.1, CHOICE + "; of a branch", above=True)
+
+
+class TrussDem(Section):
+    """How the DEM is integrated."""
+
+    time_step_fraction: float = parameter(0.1, "-", 0, 1.0, "of the stable step", above=True)
+    link_damping_ratio: float = parameter(0.1, "-", 0, 10, CHOICE)
+    contact_damping_ratio: float = parameter(0.1, "-", 0, 10, CHOICE)
+    pin_damping_N_m_s_per_rad: float = parameter(0.0, "N m s/rad", 0, 1e9, CHOICE)
+    threads: int = parameter(1, "-", 1, 1024, CHOICE)
+
+
+class Reflector(Section):
+    """The nodes that carry a reflecting surface: its error is that against the best-fit paraboloid."""
+
+    nodes: list[str] = texts(..., "nodes of the surface")
+    axis: list[float] = numbers(..., "-", -1e9, 1e9, "of the paraboloid; of any length")
+    focal_length_m: Optional[float] = parameter(None, "m", 0, LARGEST_LENGTH_M, "best fit", above=True)
+
+
+class TrussTolerance(Section):
+    """How close the two models must be for ``compare`` to pass."""
+
+    displacement_relative: float = parameter(0.01, "-", 0, 1, CHOICE, above=True)
+    jump_relative: float = parameter(0.01, "-", 0, 1, CHOICE, above=True)
+    force_relative: float = parameter(0.01, "-", 0, 1, CHOICE, above=True)
+    energy_balance_relative: float = parameter(0.001, "-", 0, 1, CHOICE, above=True)
+
+
+class TrussCase(Case):
+    """A truss with frictional and clearance joints under one or several temperature programs."""
+
+    KIND: ClassVar[str] = "truss"
+
+    truss: Truss
+    node: list[Node] = tables(..., "sections [[node]]")
+    link: list[Link] = tables(..., "sections [[link]]")
+    program: list[Program] = tables([], "sections [[program]]")
+    slider: list[Slider] = tables([], "sections [[slider]]")
+    revolute: list[Revolute] = tables([], "sections [[revolute]]")
+    spring: list[Spring] = tables([], "sections [[spring]]")
+    torsion_spring: list[TrussTorsionSpring] = tables([], "sections [[torsion_spring]]")
+    thermal: TrussThermal
+    output: Output = Field(default_factory=Output)
+    reduced: TrussReduced = Field(default_factory=TrussReduced)
+    dem: TrussDem = Field(default_factory=TrussDem)
+    reflector: Optional[Reflector] = Field(None, description="none")
+    tolerance: TrussTolerance = Field(default_factory=TrussTolerance)
+
+    @validator("*", pre=True)
+    def _strict(cls, value: Any, field: ModelField) -> Any:
+        if is_tables(field):
+            return read_tables(field.type_, field.name, value)
+        return Section._strict(value, field)
+
+    @property
+    def period_s(self) -> float:
+        """Length of one cycle [s]."""
+        return self.thermal.period_s
+
+    @property
+    def samples_per_cycle(self) -> int:
+        """Samples per cycle of both models."""
+        return self.output.samples_per_cycle
+
+    @property
+    def programs(self) -> list[TrussThermal]:
+        """The temperature programs, the common one first, cycles and period filled in."""
+        return [self.thermal] + [
+            TrussThermal.construct(**{
+                **program.dict(exclude={"name"}),
+                "cycles": program.cycles or self.thermal.cycles,
+                "period_s": program.period_s or self.thermal.period_s,
+            })
+            for program in self.program
+        ]
+
+    @property
+    def temperature_ranges_K(self) -> list[tuple[float, float]]:
+        """Smallest and largest ΔT [K] of every program."""
+        return [thermal_range_K(program) for program in self.programs]
+
+    def resolve(self) -> ResolvedTruss:
+        """Return the truss as arrays: names turned into indices, defaults filled in, axes of length 1."""
+        return resolve(self)
+
+    def problem(self) -> str | None:
+        """Return what is wrong between several keys, without the file's name."""
+        return checks.problem(self)

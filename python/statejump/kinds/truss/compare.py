@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Comparison of the DEM run of a ``truss`` case with its quasi-static path."""
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from statejump.kinds.truss.case import TrussCase
+from statejump.core.comparison import Quantity, quantity
+
+if TYPE_CHECKING:
+    from statejump.results.contents import Column, ModelRun
+
+
+def energy_residual(energy: "dict[str, Column]") -> float:
+    """Supplied minus stored minus dissipated energy over the whole run [J]."""
+
+    def change(name: str) -> float:
+        values = energy[f"{name}_J"].values if f"{name}_J" in energy else np.zeros(1)
+        return float(values[-1] - values[0])
+
+    supplied = change("thermal_work") + change("external_work")
+    stored = change("elastic_energy") + change("kinetic_energy")
+    return supplied - stored - change("friction_dissipation") - change("damping_dissipation")
+
+
+def jumps_m(run: "ModelRun") -> np.ndarray:
+    """State jump of every node [m] (nodes, 3): displacement at the end less that at the start."""
+    displacement = run.history["displacement_m"].values
+    return displacement[-1] - displacement[0]
+
+
+def loop_width_m(case: TrussCase, run: "ModelRun") -> float:
+    """Width of the first cycle's loop [m]: largest motion of a node between heating and cooling at one
+    temperature. 0 where these are not one branch each, as in a sine."""
+    end = case.samples_per_cycle + 1
+    change = run.history["temperature_change_K"].values[:end]
+    displacement = run.history["displacement_m"].values[:end]
+    peak = int(np.argmax(np.abs(change)))
+    size = np.abs(change)
+    if not 0 < peak < len(change) - 1 or np.any(np.diff(size[: peak + 1]) < 0) or np.any(np.diff(size[peak:]) > 0):
+        return 0.0
+    back_size, back = size[peak:][::-1], displacement[peak:][::-1]
+    width = 0.0
+    for node in range(displacement.shape[1]):
+        gap = [displacement[: peak + 1, node, axis] - np.interp(size[: peak + 1], back_size, back[:, node, axis])
+               for axis in range(3)]
+        width = max(width, float(np.linalg.norm(gap, axis=0).max()))
+    return width
+
+
+def jump_scale_m(case: TrussCase, run: "ModelRun") -> float:
+    """What differences of jumps are measured by [m]: the largest jump or the loop's width, the larger."""
+    jumps = np.linalg.norm(jumps_m(run), axis=1)
+    return max(float(jumps.max()), loop_width_m(case, run))
+
+
+def _relative(name: str, difference: float, scale: float, tolerance: float) -> Quantity:
+    """Return one row; two models without any motion or force agree."""
+    value = 0.0 if difference == 0 else difference / scale if scale > 0 else math.inf
+    return quantity(name, "-", 0.0, value, tolerance)
+
+
+def history_rows(case: TrussCase, first: "ModelRun", second: "ModelRun") -> list[Quantity]:
+    """Compare two runs at the same times; the first gives the scales."""
+    tolerance = case.tolerance
+    ours, other = (run.history["displacement_m"].values for run in (first, second))
+    largest = float(np.linalg.norm(ours, axis=2).max())
+    peak = int(np.argmax(np.abs(first.history["temperature_change_K"].values)))
+    apart = np.linalg.norm(other - ours, axis=2)
+    rows = [
+        _relative("displacement_at_peak_largest_difference_over_largest", float(apart[peak].max()), largest,
+                  tolerance.displacement_relative),
+        _relative("displacement_largest_rms_over_largest", float(np.sqrt((apart**2).mean(axis=0)).max()), largest,
+                  tolerance.displacement_relative),
+    ]
+    jumps = [jumps_m(run) for run in (first, second)]
+    node = int(np.argmax(np.linalg.norm(jumps[0], axis=1)))
+    scale = jump_scale_m(case, first)
+    lengths = [float(np.linalg.norm(jump[node])) for jump in jumps]
+    name = first_name(case, node)
+    rows.append(quantity(f"jump_of_node_{name}", "m", *lengths, tolerance.jump_relative * scale))
+    rows.append(_relative("jump_largest_difference_over_largest_jump_or_loop",
+                          float(np.linalg.norm(jumps[1] - jumps[0], axis=1).max()), scale, tolerance.jump_relative))
+    forces = [run.links["axial_force_N"].values for run in (first, second)]
+    rows.append(_relative(
+        "axial_force_largest_rms_over_largest", float(np.sqrt(((forces[1] - forces[0]) ** 2).mean(axis=0)).max()),
+        float(np.abs(forces[0]).max()), tolerance.force_relative,
+    ))
+    return rows
+
+
+def first_name(case: TrussCase, node: int) -> str:
+    """Return the name of a node."""
+    return case.node[node].name
+
+
+def loop_drift_m(case: TrussCase, run: "ModelRun") -> float:
+    """Largest distance of a node in any later cycle from where it was in the second at the same phase [m]."""
+    samples, displacement = case.samples_per_cycle, run.history["displacement_m"].values
+    loops = [displacement[k * samples : (k + 1) * samples + 1] for k in range(1, case.thermal.cycles)]
+    return float(max(np.linalg.norm(loop - loops[0], axis=2).max() for loop in loops))
+
+
+def _energy_row(case: TrussCase, dem: "ModelRun") -> Quantity:
+    """Residue over the work of friction; without friction over the energy that is stored and spent."""
+    residual = energy_residual(dem.energy)
+    friction = dem.energy["friction_dissipation_J"].values
+    scale = float(friction[-1] - friction[0])
+    name = "energy_residual_over_friction_work"
+    if not scale > 0:
+        scale = float(np.ptp(dem.energy["elastic_energy_J"].values) + dem.energy["damping_dissipation_J"].values[-1])
+        name = "energy_residual_over_largest_stored"
+    return quantity(name, "-", 0.0, residual / scale if scale > 0 else 0.0, case.tolerance.energy_balance_relative)
+
+
+def compare(case: TrussCase, reduced: "ModelRun", dem: "ModelRun") -> list[Quantity]:
+    """Compare a DEM run with the quasi-static path at the same times."""
+    rows = history_rows(case, reduced, dem)
+    rows.append(_energy_row(case, dem))
+    if case.thermal.cycles > 2:
+        displacement = reduced.history["displacement_m"].values
+        rows.append(_relative("loop_drift_over_largest_displacement", loop_drift_m(case, dem),
+                              float(np.linalg.norm(displacement, axis=2).max()), case.tolerance.displacement_relative))
+    return rows
+
+
+def jump_table(case: TrussCase, run: "ModelRun", most: int = 8) -> list[tuple[Any, ...]]:
+    """Return name, jump along x, y, z and its length [m] of the nodes that jump most."""
+    jumps = jumps_m(run)
+    length = np.linalg.norm(jumps, axis=1)
+    order = np.argsort(-length, kind="stable")[:most]
+    return [(case.node[node].name, *jumps[node], length[node]) for node in order if length[node] > 0]

@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A truss as the YADE script needs it: bodies, masses, contact groups, time step, loaded start.
+
+Nodes are bodies. A link's mass is lumped: a third at the tip of a link whose other end is fixed (exact
+for a uniform rod on a pin), else half at each end. A slider's pad is held by the node's supports at the
+depth at which its floor carries the normal force, so that the friction limit is that of the quasi-static
+model whatever else loads the supports.
+"""
+from __future__ import annotations
+
+from math import ceil, inf, pi
+from pathlib import Path
+from typing import Any, Callable
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from statejump.core import yade_process as dem
+from statejump.kinds.truss.case import TrussCase
+from statejump.core.errors import StatejumpError
+from statejump.kinds.truss.checks import SAME_DIRECTION
+from statejump.kinds.truss.contacts import pad_hertz_stiffness, pads, revolute_stiffness, tangent_stiffness
+from statejump.kinds.truss.resolved import GROUND, ResolvedTruss
+from statejump.kinds.truss.solve import TrussPath
+
+CONTACT_GROUPS = 30  # bits of a body's mask in YADE that are free to use
+# Friction may double a contact's force for a moment; Hertz's stiffness grows with its cube root.
+IMPACT = 2 ** (1 / 3)
+
+
+def refuse(case: TrussCase, sentence: str) -> StatejumpError:
+    """Return the error for what the DEM cannot represent."""
+    return StatejumpError(f"{case.name}: {sentence}; 'statejump reduced' can run the case")
+
+
+def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
+    """Return the mass of every node [kg]."""
+    mass = np.zeros(len(truss.nodes.names))
+    held = truss.nodes.fixed.all(axis=1)
+    for ends, link in zip(truss.links.nodes, truss.links.mass_kg):
+        share = link / 3 if held[ends].any() else link / 2
+        mass[ends] += share
+    mass[held] = 0
+    return mass
+
+
+def stable_time_step(case: TrussCase, path: TrussPath) -> float:
+    """Return a stable time step [s] for the largest forces of the quasi-static path.
+
+    The square of a spring's stretch is at most the number of its ends that move times the sum of their
+    squares. With k the sum over one body of stiffness times that number over its mass, and c that of the
+    dashpots, the largest eigenvalue is at most the largest k, and leapfrog with a lagged dashpot is
+    stable up to 4/(c + sqrt(c^2 + 4 k)).
+    """
+    truss, mass = path.truss, lumped_mass_kg(path.truss)
+    inverse = np.divide(1, mass, out=np.zeros_like(mass), where=mass > 0)
+    stiffness, damping = np.zeros(len(mass)), np.zeros(len(mass))
+
+    def touch(nodes: np.ndarray, k: np.ndarray, ratio: float, extra: Any = 0.0) -> None:
+        pair, moving = inverse[nodes].sum(axis=1), (inverse[nodes] > 0).sum(axis=1)
+        dashpot = 2 * ratio * np.sqrt(np.divide(k, pair, out=np.zeros_like(k), where=pair > 0)) + extra
+        for side in range(nodes.shape[1]):
+            np.add.at(stiffness, nodes[:, side], moving * k * inverse[nodes[:, side]])
+            np.add.at(damping, nodes[:, side], moving * dashpot * inverse[nodes[:, side]])
+
+    links, springs, torsion = truss.links, truss.springs, truss.torsion_springs
+    ratio, contact = case.dem.link_damping_ratio, case.dem.contact_damping_ratio
+    ranges = np.array(case.temperature_ranges_K)[links.program] * links.temperature_fraction[:, None]
+    shortest = links.stress_free_length_m * (1 + links.thermal_expansion_per_K[:, None] * ranges).T.min(axis=0)
+    axial = links.young_modulus_Pa * links.cross_section_area_m2 / shortest
+    touch(links.nodes, axial, ratio, case.dem.pin_damping_N_m_s_per_rad / shortest**2)
+    touch(springs.nodes, springs.stiffness_N_per_m, ratio)
+    for ends, moment in zip(torsion.links, torsion.stiffness_N_m_per_rad):
+        # The angle is a sum over all ends of both links.
+        turned = ends[ends != GROUND]
+        moving = (inverse[links.nodes[turned]] > 0).sum()
+        for link in turned:
+            for node in links.nodes[link]:
+                stiffness[node] += moving * moment / shortest[link] ** 2 * inverse[node]
+    if len(truss.sliders.names):
+        pad = pads(truss)
+        at_stop = np.isfinite(truss.sliders.clearance_minus_m) | np.isfinite(truss.sliders.clearance_plus_m)
+        force = IMPACT**3 * np.abs(path.states["slider_force_N"]).max(axis=0)
+        stop = np.where(at_stop, tangent_stiffness(pad_hertz_stiffness(truss), force), 0.0)
+        touch(truss.sliders.nodes[:, :1], pad.tangential_N_per_m + stop, contact)
+    if len(truss.revolutes.names):
+        force = IMPACT**3 * path.states["normal_force_N"].max(axis=0)
+        nodes = np.stack((truss.revolutes.bearing_node, truss.revolutes.journal_node), axis=1)
+        touch(nodes, revolute_stiffness(truss, force), contact)
+    with np.errstate(divide="ignore"):
+        steps = 4 / (damping + np.sqrt(damping**2 + 4 * stiffness))
+    return float(steps.min(initial=inf))
+
+
+def number_of_steps(case: TrussCase, path: TrussPath) -> int:
+    """Steps of the whole run: a multiple of the samples, so that the last sample is the end."""
+    wanted = case.dem.time_step_fraction * stable_time_step(case, path)
+    return ceil(case.period_s / wanted / case.samples_per_cycle) * case.samples_per_cycle * case.thermal.cycles
+
+
+def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) -> np.ndarray:
+    """Return a number per joint (sliders first), different for joints whose bodies could meet.
+
+    YADE looks for contacts between all bodies that are near; only those of one joint may touch.
+    """
+    sliders, joints = truss.sliders, truss.revolutes
+    where = truss.nodes.position_m[np.concatenate((sliders.nodes[:, 0], joints.bearing_node)).astype(int)]
+    owner = np.arange(len(where))
+    # Journals in one bearing, and bearings around one journal, are one group.
+    seen: dict[int, int] = {}
+    for place, (bearing, journal) in enumerate(zip(joints.bearing_node, joints.journal_node), len(sliders.names)):
+        known = {owner[seen[node]] for node in (bearing, journal) if node in seen}
+        for other in known:
+            owner[owner == other] = place
+        owner[place] = place
+        seen[bearing] = seen[journal] = place
+    group = np.full(len(where), -1)
+    if not len(where):
+        return group
+    tree = cKDTree(where)
+    # Boxes of YADE's collider are cubes, on each side a tenth of the smallest radius larger than the parts.
+    near = tree.query_ball_point(where, 2.3 * reach_m.max(), p=inf)
+    for place, others in enumerate(near):
+        if group[place] >= 0:
+            continue
+        members = np.flatnonzero(owner == owner[place]) if place >= len(sliders.names) else np.array([place])
+        taken = {group[other] for member in members for other in near[member] if other not in members}
+        free = next((number for number in range(CONTACT_GROUPS) if number not in taken), None)
+        if free is None:
+            name = (*sliders.names, *joints.names)[place]
+            raise refuse(case, f"joint {name!r} is within reach of more than {CONTACT_GROUPS} other joints, "
+                               "the DEM cannot keep their contacts apart")
+        group[members] = free
+    return group
+
+
+def pressing_directions(truss: ResolvedTruss) -> np.ndarray:
+    """Return for every slider the unit normal of its floor, across its axis (s, 3)."""
+    if truss.dimension == 2:
+        return np.tile([0.0, 0.0, -1.0], (len(truss.sliders.names), 1))
+    found = []
+    for axis in truss.sliders.axis:
+        across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+        found.append(across / np.linalg.norm(across))
+    return np.array(found).reshape(-1, 3)
+
+
+def check(case: TrussCase) -> None:
+    """Raise StatejumpError if the DEM cannot represent an item, before anything is solved."""
+    truss = case.resolve()
+    mass = lumped_mass_kg(truss)
+    nodes, sliders, joints, springs = truss.nodes, truss.sliders, truss.revolutes, truss.springs
+    for index in np.flatnonzero(sliders.nodes[:, 1] != GROUND)[:1]:
+        raise refuse(case, f"slider {sliders.names[index]!r} is between two nodes, the DEM has sliders on ground only")
+    free = ~_blocked(truss).all(axis=1)
+    for index in np.flatnonzero(free & (mass <= 0))[:1]:
+        raise refuse(case, f"node {nodes.names[index]!r} has no mass because no link ends there, the DEM needs one")
+    roles: dict[int, tuple[Any, ...]] = {}
+    for kind, items, node_of, shape in (
+        ("slider", sliders, sliders.nodes[:, 0], sliders.pad_radius_m),
+        ("revolute", joints, joints.bearing_node, joints.bearing_radius_m),
+        ("revolute", joints, joints.journal_node, joints.journal_radius_m),
+    ):
+        part = "pad" if kind == "slider" else "journal" if node_of is joints.journal_node else "bearing"
+        link = joints.bearing_link if part == "bearing" else joints.journal_link
+        for index, node in enumerate(node_of):
+            role = (part, float(shape[index]), float(items.friction_coefficient[index]),
+                    float(items.young_modulus_Pa[index]), int(link[index]) if part != "pad" else None)
+            if int(node) in roles and (roles[int(node)] != role or part == "pad"):
+                raise refuse(case, f"{kind} {items.names[index]!r} gives node {nodes.names[node]!r} a second contact "
+                                   "part, in the DEM a node has one")
+            roles[int(node)] = role
+    for index in np.flatnonzero(springs.free_length_m <= 0)[:1]:
+        raise refuse(case, f"spring {springs.names[index]!r} has the free length {springs.free_length_m[index]:.6g} m, "
+                           "the DEM needs one above 0")
+    if truss.dimension == 3:
+        _refuse_tilted_springs(case, truss)
+
+
+def _refuse_slack(case: TrussCase, path: TrussPath) -> None:
+    """A cable that never goes slack is a spring; the run itself watches that it does not."""
+    springs, tension = path.truss.springs, path.states["tension_N"]
+    for index in np.flatnonzero(springs.cable & (tension.min(axis=0, initial=inf) <= 0))[:1]:
+        raise refuse(case, f"cable {springs.names[index]!r} goes slack, the DEM has no element that only pulls")
+
+
+def _refuse_tilted_springs(case: TrussCase, truss: ResolvedTruss) -> None:
+    """A torsion spring of the DEM acts in the plane across its axis, of the solver on views of links."""
+    springs, links, position = truss.torsion_springs, truss.links, truss.nodes.position_m
+    for index, (ends, axis) in enumerate(zip(springs.links, springs.axis)):
+        for link in ends[ends != GROUND]:
+            start, end = position[links.nodes[link]]
+            if abs((end - start) @ axis) > SAME_DIRECTION * np.linalg.norm(end - start):
+                raise refuse(case, f"torsion_spring {springs.names[index]!r} has link {links.names[link]!r} that is not "
+                                   "across its axis, the DEM has torsion springs in a plane only")
+
+
+def _blocked(truss: ResolvedTruss) -> np.ndarray:
+    """Return along which axes (n, 3) a node does not move: supports, and guides along an axis."""
+    return truss.nodes.fixed | (np.abs(truss.nodes.guide_normal) >= 1 - SAME_DIRECTION)
+
+
+def _programs(case: TrussCase, truss: ResolvedTruss) -> list[dict[str, Any]]:
+    found = []
+    for program in truss.programs:
+        values = {"shape": program.shape, "period_s": program.period_s, "cycles": program.cycles}
+        if program.shape == "table":
+            times = program.table_time_s
+            values["table_time_s"] = [program.period_s * (time / times[-1]) for time in times]
+            values["table_temperature_change_K"] = program.table_temperature_change_K
+        else:
+            values["temperature_change_max_K"] = program.temperature_change_max_K
+        found.append(values)
+    return found
+
+
+def _lists(part: Any, **more: Any) -> dict[str, Any]:
+    values = {**vars(part), **more}
+    return {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in values.items()}
+
+
+def resolved(case: TrussCase, path: TrussPath) -> dict[str, Any]:
+    """Return everything that the YADE script needs, as plain values.
+
+    :param path: the quasi-static path of the case: its first state is the start, its forces give the
+        time step, its slides the size of the floors
+    :raises StatejumpError: the DEM cannot represent an item, which the sentence names
+    """
+    check(case)
+    truss, mass = path.truss, lumped_mass_kg(path.truss)
+    if path.cycle_ends and len(path.states["time_s"]) <= len(path.cycle_ends["time_s"]):
+        raise refuse(case, "the path is too large to be kept as a whole")
+    _refuse_slack(case, path)
+    pad = pads(truss)
+    # A floor ends where no pad gets to: twice as far as in the quasi-static model, and the pad itself.
+    reach = truss.sliders.pad_radius_m + 2 * np.abs(path.states["slide_m"]).max(axis=0)
+    groups = _contact_groups(truss, case, np.concatenate((reach, np.sqrt(2) * truss.revolutes.bearing_radius_m)))
+    count = len(truss.sliders.names)
+    steps = number_of_steps(case, path)
+    torsion = truss.torsion_springs
+    if len(torsion.links) and np.abs(torsion.bias_rad).max() > pi / 2:
+        raise refuse(case, "a torsion spring has a bias above π/2, beyond what the DEM can tell from its opposite")
+    start = path.states["displacement_m"][0]
+    return {
+        **{key: case.dict()[key] for key in ("case", "dem")} | {"number_of_samples": case.samples_per_cycle * case.thermal.cycles},
+        "dem": {**case.dem.dict(), "number_of_steps": steps,
+                "time_step_s": case.period_s * case.thermal.cycles / steps},
+        "dimension": truss.dimension,
+        "programs": _programs(case, truss),
+        "node": _lists(truss.nodes, blocked=_blocked(truss), mass_kg=mass, start_m=truss.nodes.position_m + start),
+        "link": _lists(truss.links),
+        "slider": _lists(truss.sliders, depth_m=pad.depth_m, reach_m=reach, floor_normal=pressing_directions(truss),
+                         clearance_minus_m=_finite(truss.sliders.clearance_minus_m),
+                         clearance_plus_m=_finite(truss.sliders.clearance_plus_m), group=groups[:count]),
+        "revolute": _lists(truss.revolutes, bearing_radius_m=truss.revolutes.bearing_radius_m, group=groups[count:]),
+        "spring": _lists(truss.springs),
+        "torsion_spring": _lists(torsion),
+    }
+
+
+def _finite(values: np.ndarray) -> list[float | None]:
+    return [float(value) if np.isfinite(value) else None for value in values]
+
+
+def run(
+    case: TrussCase, path: TrussPath, folder: Path, progress: Callable[[float], None], keep: dem.Keep | None = None
+) -> dem.DemRun:
+    """Run the case in YADE; see :func:`statejump.core.yade_process.run_resolved`."""
+    return dem.run_resolved(resolved(case, path), folder, progress, keep)

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Case files of trusses as documents: what generators share, and writing them as TOML."""
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any, Iterable, Sequence
+
+import tomli_w
+
+from statejump.core.output import write_atomically
+
+Document = dict[str, Any]
+
+# The bar of the paper's Table 1.
+TABLE1_BAR = {
+    "young_modulus_Pa": 70e9, "cross_section_area_m2": 9e-6, "thermal_expansion_per_K": 23.4e-6,
+    "density_kg_per_m3": 2700.0,
+}
+TABLE1_LENGTH_M = 0.5
+_LISTS = ("node", "link", "slider", "revolute", "spring", "torsion_spring")
+
+
+def document(
+    name: str, title: str, source: str, dimension: int, temperature_change_K: float, shape: str, cycles: int,
+    period_s: float, sticking: str = "rigid",
+) -> Document:
+    """Return a case document with header and temperature program and without items."""
+    header = {"name": name, "kind": "truss", "title": title, "source": source}
+    return {
+        "case": header,
+        "truss": {"dimension": dimension},
+        **{section: [] for section in _LISTS},
+        "thermal": {
+            "shape": shape, "temperature_change_max_K": float(temperature_change_K), "cycles": cycles,
+            "period_s": float(period_s),
+        },
+        "reduced": {"sticking": sticking} if sticking != "rigid" else {},
+    }
+
+
+def finished(made: Document) -> Document:
+    """Return the document without what stayed empty."""
+    return {section: content for section, content in made.items() if content}
+
+
+def tidy(values: Iterable[float]) -> list[float]:
+    """Return numbers without the rounding of sines and cosines: 0 instead of 6e-17 or -0."""
+    return [round(value, 15) + 0.0 for value in values]
+
+
+def node(name: str, position_m: Sequence[float], fixed: str = "", **more: Any) -> dict[str, Any]:
+    """Return a node; ``fixed`` holds the letters of the directions."""
+    made: dict[str, Any] = {"name": name, "position_m": tidy(map(float, position_m))}
+    if fixed:
+        made["fixed"] = list(fixed)
+    return made | more
+
+
+def to_toml(made: Document) -> str:
+    """Return a document as TOML, short lists on one line."""
+    text = tomli_w.dumps(made)
+    # The writer puts every item of a list on a line of its own; texts have no line ends.
+    return re.sub(r"\[\n((?:    [^\n]*,\n)+)\]", _on_one_line, text)
+
+
+def _on_one_line(match: re.Match[str]) -> str:
+    items = [line.strip().rstrip(",") for line in match[1].splitlines()]
+    line = "[" + ", ".join(items) + "]"
+    return line if len(line) <= 100 else match[0]
+
+
+def write(made: Document, path: Path, header: Sequence[str]) -> None:
+    """Write a document to a file.
+
+    :param header: comment lines at its head
+    :raises StatejumpError: the file cannot be written
+    """
+    with write_atomically(path) as stream:
+        stream.writelines(f"{line}\n" for line in header)
+        stream.write(to_toml(made))

@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a result file says of a ``truss`` case: both models have the same columns, by item."""
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy as np
+
+from statejump.kinds.truss.case import TrussCase
+from statejump.core.comparison import Quantity
+from statejump.core.yade_process import DemRun
+from statejump.core.history import TRUSS_COLUMNS, History
+from statejump.kinds.truss import compare
+from statejump.kinds.truss.dem import pressing_directions
+from statejump.kinds.truss.resolved import GROUND, ResolvedTruss
+from statejump.kinds.truss.solve import TrussPath, engine_program
+from statejump.results import scene as drawing
+from statejump.results.contents import (
+    AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Event, ModelRun, Scalar, columns_of, scalars, unit_of,
+)
+from statejump.results.events import from_states, kind_of
+
+# Of the engine's statuses stick, slip_plus, slip_minus, stop_plus, stop_minus, open.
+STATES = np.array([STICK, SLIP, SLIP, AT_STOP, AT_STOP, SEPARATED], dtype=np.uint8)
+STATE_OF = {"stick": STICK, "slip_plus": SLIP, "slip_minus": SLIP, "stop_plus": AT_STOP, "stop_minus": AT_STOP,
+            "open": SEPARATED}
+# Columns by item: what it is of, whether it is a vector. Names and order are those of the DEM's samples.
+ITEMS = {
+    "displacement_m": ("nodes", True), "axial_force_N": ("links", False), "tension_N": ("springs", False),
+    "slide_m": ("sliders", False), "slider_force_N": ("sliders", False), "slider_state": ("sliders", False),
+    "eccentricity_m": ("revolutes", True), "normal_force_N": ("revolutes", False),
+    "friction_force_N": ("revolutes", False), "revolute_state": ("revolutes", False),
+}
+LOCATED = 1e-6  # of a cycle: an event within less has no uncertainty worth telling
+NOTES = {
+    "displacement_m": "from the drawn shape", "axial_force_N": "compression positive",
+    "slider_force_N": "friction and stop on the slider, against its axis",
+    "eccentricity_m": "journal minus bearing centre", "friction_force_N": "on the journal, clockwise about the axis",
+}
+
+
+def _joints(truss: ResolvedTruss) -> list[str]:
+    """Names of all contacts, sliders first; with their kind where a slider and a revolute share one."""
+    sliders, revolutes = truss.sliders.names, truss.revolutes.names
+    if set(sliders) & set(revolutes):
+        return [f"slider {name}" for name in sliders] + [f"revolute {name}" for name in revolutes]
+    return [*sliders, *revolutes]
+
+
+def names(case: TrussCase) -> dict[str, list[str]]:
+    """Names of the items of columns."""
+    truss = case.resolve()
+    of = {key: list(getattr(truss, key).names) for key in ("nodes", "links", "springs", "sliders", "revolutes")}
+    return {**of, "contacts": _joints(truss)}
+
+
+def scene(case: TrussCase) -> dict[str, Any]:
+    """Links and springs between the nodes; blocks of sliders; journals and bearings."""
+    truss = case.resolve()
+    nodes = [drawing.ref("history/position_m", name) for name in truss.nodes.names]
+    parts: list[dict[str, Any]] = [
+        drawing.link(link.name, [nodes[end] for end in ends], _Section(truss, place))
+        for place, (link, ends) in enumerate(zip(case.link, truss.links.nodes))
+    ]
+    for name, ends, stiffness in zip(truss.springs.names, truss.springs.nodes, truss.springs.stiffness_N_per_m):
+        parts.append({"name": f"spring {name}", "type": "spring", "ends": [nodes[end] for end in ends],
+                      "stiffness_N_per_m": float(stiffness)})
+    contacts = []
+    joints = _joints(truss)
+    for place, (ends, axis, radius) in enumerate(
+        zip(truss.sliders.nodes, truss.sliders.axis, truss.sliders.pad_radius_m)
+    ):
+        block = f"block {joints[place]}"
+        parts.append({
+            "name": block, "type": "block", "centre": nodes[ends[0]], "angle_rad": float(np.arctan2(axis[1], axis[0])),
+            "half_width_m": float(radius), "half_height_m": float(radius), "pad_radius_m": float(radius),
+        })
+        held = truss.nodes.position_m[ends[0]]
+        floor = f"floor {joints[place]}"
+        parts.append({"name": floor, "type": "frame", "points": [(held - radius * axis).tolist(),
+                                                                 (held + radius * axis).tolist()]})
+        contacts.append((joints[place], block, floor))
+    revolutes = truss.revolutes
+    drawn: set[str] = set()
+    for place in range(len(revolutes.names)):
+        name = joints[len(truss.sliders.names) + place]
+        pair = []
+        for part in ("journal", "bearing"):
+            node, link = (int(getattr(revolutes, f"{part}_{what}")[place]) for what in ("node", "link"))
+            label = f"{part} {truss.nodes.names[node]}"
+            pair.append(label)
+            if label in drawn:
+                continue
+            drawn.add(label)
+            # About an axis in space a link's view along z has no angle of its own to tell.
+            turns = link != GROUND and truss.dimension == 2
+            angle = drawing.ref("links/angle_rad", truss.links.names[link]) if turns else 0.0
+            axis = {} if truss.dimension == 2 else {"axis": revolutes.axis[place].tolist()}
+            parts.append({
+                "name": label, "type": part, "centre": nodes[node], "angle_rad": angle,
+                "radius_m": float(getattr(revolutes, f"{part}_radius_m")[place]),
+                "thermal_expansion_per_K": float(getattr(revolutes, f"{part}_thermal_expansion_per_K")[place]), **axis,
+            })
+        contacts.append((name, pair[0], pair[1]))
+    clearances = [*revolutes.radial_clearance_m, *truss.sliders.clearance_minus_m, *truss.sliders.clearance_plus_m]
+    smallest = min((float(value) for value in clearances if np.isfinite(value)), default=0.0)
+    return {**drawing.description(parts, contacts, smallest), "plane": "xy" if truss.dimension == 2 else "xyz"}
+
+
+class _Section:
+    """Section of a link as the drawing wants it."""
+
+    def __init__(self, truss: ResolvedTruss, place: int) -> None:
+        for key in ("cross_section_area_m2", "stress_free_length_m", "young_modulus_Pa", "thermal_expansion_per_K"):
+            setattr(self, key, float(getattr(truss.links, key)[place]))
+
+
+def _changes(truss: ResolvedTruss, time_s: np.ndarray, part: Any) -> np.ndarray:
+    """Temperature change [K] of every item (samples, items)."""
+    programs = [engine_program(program) for program in truss.programs]
+    used = sorted(set(np.asarray(part.program).tolist()))
+    found = {number: np.array([programs[number].temperature_change(time) for time in time_s]) for number in used}
+    if not len(part.names):
+        return np.zeros((len(time_s), 0))
+    return np.stack([found[number] for number in part.program], axis=1) * part.temperature_fraction
+
+
+def _run(
+    truss: ResolvedTruss, energy: dict[str, Column], plain: dict[str, Column], items: dict[str, np.ndarray],
+    events: Optional[list[Event]], summary: dict[str, Scalar],
+) -> ModelRun:
+    time = plain["time_s"].values
+    samples = len(time)
+    history = dict(plain)
+    for key, (of, _) in ITEMS.items():
+        if key not in ("slider_state", "revolute_state", "axial_force_N") and items[key].shape[1]:
+            history[key] = Column(items[key], unit_of(key), of, note=NOTES.get(key, ""))
+    position = truss.nodes.position_m + items["displacement_m"]
+    history["position_m"] = Column(position, "m", "nodes")
+
+    expansion = truss.links.thermal_expansion_per_K * _changes(truss, time, truss.links)
+    along = position[:, truss.links.nodes[:, 1]] - position[:, truss.links.nodes[:, 0]]
+    links = {
+        "axial_force_N": Column(items["axial_force_N"], "N", "links", note=NOTES["axial_force_N"]),
+        "thermal_strain": Column(expansion, "-", "links"),
+        "angle_rad": Column(np.arctan2(along[:, :, 1], along[:, :, 0]), "rad", "links", note="of its view along z"),
+    }
+    contacts = _contacts(truss, time, position, items)
+    change = plain["temperature_change_K"].values
+    if events is None:
+        events = from_states(time, change, contacts["state"].values, _joints(truss)) if samples else []
+    return ModelRun(history, energy, links, contacts, events, {**_jumps(truss, items["displacement_m"]), **summary})
+
+
+def _jumps(truss: ResolvedTruss, displacement: np.ndarray) -> dict[str, Scalar]:
+    jump = np.linalg.norm(displacement[-1] - displacement[0], axis=1)
+    return {"largest_jump_m": Scalar(float(jump.max()), "m")}
+
+
+def _contacts(
+    truss: ResolvedTruss, time: np.ndarray, position: np.ndarray, items: dict[str, np.ndarray]
+) -> dict[str, Column]:
+    sliders, revolutes = truss.sliders, truss.revolutes
+    samples = len(time)
+    state = np.concatenate((items["slider_state"], items["revolute_state"]), axis=1).astype(np.uint8)
+    slide = items["slide_m"]
+    stops = np.minimum(slide + sliders.clearance_minus_m, sliders.clearance_plus_m - slide)
+    offset = items["eccentricity_m"]
+    distance = np.linalg.norm(offset, axis=2)
+    clearance = revolutes.clearance_m(_changes(truss, time, revolutes))
+    gap = np.concatenate((np.where(np.isfinite(stops), stops, np.nan), clearance - distance), axis=1)
+    normal = np.divide(offset, distance[:, :, None], out=np.zeros_like(offset), where=distance[:, :, None] > 0)
+    floor = pressing_directions(truss)
+    pads = position[:, sliders.nodes[:, 0]] + sliders.pad_radius_m[:, None] * floor
+    bearings = position[:, revolutes.bearing_node] + revolutes.bearing_radius_m[:, None] * normal
+    push = np.tile(-sliders.normal_force_N[:, None] * floor, (samples, 1, 1))
+    friction = -items["slider_force_N"][:, :, None] * sliders.axis
+    across = np.cross(revolutes.axis, normal) if len(revolutes.names) else normal
+    return {
+        "state": Column(state, items="contacts", labels=CONTACT_STATES),
+        "gap_m": Column(gap, "m", "contacts", note="of sliders: to the nearer stop; NaN: there is none"),
+        "point_m": Column(np.concatenate((pads, bearings), axis=1), "m", "contacts"),
+        "normal_force_N": Column(np.concatenate((push, -items["normal_force_N"][:, :, None] * normal), axis=1), "N",
+                                 "contacts", note="on pad or journal"),
+        "tangential_force_N": Column(
+            np.concatenate((friction, -items["friction_force_N"][:, :, None] * across), axis=1), "N", "contacts",
+            note="on pad (with the stops' force) or journal"),
+    }
+
+
+def _energies(columns: dict[str, np.ndarray]) -> tuple[dict[str, Column], dict[str, Column]]:
+    return columns_of(History({name: columns[name] for name in TRUSS_COLUMNS if name in columns}))
+
+
+def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> ModelRun:
+    """The quasi-static path at these times [s], linear between its states."""
+    truss, states = path.truss, path.states
+    at = states["time_s"]
+
+    def sampled(values: np.ndarray) -> np.ndarray:
+        place = np.clip(np.searchsorted(at, times_s, side="right") - 1, 0, max(len(at) - 2, 0))
+        length = np.diff(at)[place]
+        share = np.clip(np.divide(times_s - at[place], length, out=np.zeros_like(times_s), where=length > 0), 0, 1)
+        share = share.reshape(-1, *(1,) * (values.ndim - 1))
+        return (1 - share) * values[place] + share * values[place + 1]
+
+    # The status of a state is that of the increment which ends there.
+    ending = np.clip(np.searchsorted(at, times_s, side="left"), 0, len(at) - 1)
+    items = {key: sampled(states[key]) for key in ITEMS if not key.endswith("_state")}
+    for kind in ("slider", "revolute"):
+        items[f"{kind}_state"] = STATES[states[f"{kind}_status"].astype(int)][ending]
+    heat = states["slider_dissipation_J"].sum(axis=1) + states["revolute_dissipation_J"].sum(axis=1)
+    plain, energy = _energies({
+        "time_s": np.asarray(times_s, dtype=float),
+        "temperature_change_K": sampled(states["temperature_change_K"]),
+        "elastic_energy_J": sampled(states["elastic_energy_J"]),
+        "friction_dissipation_J": sampled(heat),
+        "thermal_work_J": sampled(states["thermal_work_J"]),
+        "external_work_J": sampled(states["load_potential_J"][0] - states["load_potential_J"]),
+    })
+    joints, slipped = _joints(truss), set()
+    first_revolute, events = len(truss.sliders.names), []
+    for event in path.events:
+        name = joints[event.joint + (first_revolute if event.joint_kind == "revolute" else 0)]
+        before, after = STATE_OF[event.before], STATE_OF[event.after]
+        # A path that does not locate all events has some of them somewhere within an increment.
+        half = event.interval_s / 2 if event.interval_s > LOCATED * case.period_s else 0.0
+        if before != after:
+            change = float(np.interp(event.time_s - half, at, states["temperature_change_K"])) if half else (
+                event.temperature_change_K)
+            events.append(Event(kind_of(before, after, name in slipped), event.time_s - half, change, name, half))
+        if after == SLIP:
+            slipped.add(name)
+    summary = scalars({"energy_residue_J": path.energy_residue_J, "solves": path.solves, "unknowns": path.unknowns})
+    run = _run(truss, energy, plain, items, events, summary)
+    of_joints = np.concatenate((states["slider_dissipation_J"], states["revolute_dissipation_J"]), axis=1)
+    run.contacts["dissipation_J"] = Column(sampled(of_joints), "J", "contacts", note="heat of friction since the start")
+    return run
+
+
+def dem_run(case: TrussCase, done: DemRun) -> ModelRun:
+    """The DEM: events between samples."""
+    truss, history = case.resolve(), done.history
+    items = {}
+    for key, (of, vector) in ITEMS.items():
+        ends = (".x", ".y", ".z") if vector else ("",)
+        columns = [history[f"{key}[{name}]{end}"] for name in getattr(truss, of).names for end in ends]
+        values = np.stack(columns, axis=1) if columns else np.zeros((len(history), 0))
+        items[key] = values.reshape(len(history), -1, 3) if vector else values
+    plain, energy = _energies(history.columns)
+    summary = {**scalars(done.summary), "energy_residue_J": Scalar(compare.energy_residual(energy), "J")}
+    return _run(truss, energy, plain, items, None, summary)
+
+
+def difference_rows(case: TrussCase, first: ModelRun, second: ModelRun) -> list[Quantity]:
+    """Two runs of the case at the same times against its tolerances."""
+    return compare.history_rows(case, first, second)

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Quasi-static path of a truss case: the reduced model."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Callable, Optional
+
+import numpy as np
+
+from statejump import _engine
+from statejump.kinds.truss.case import TrussCase, TrussThermal
+from statejump.core.errors import FailedRun
+from statejump.kinds.truss.contacts import solver_stiffness
+from statejump.kinds.truss.resolved import ResolvedTruss
+
+# Bytes of the states of a whole path beyond which only the ends of cycles are kept.
+LARGEST_PATH = 1 << 30
+
+
+@dataclass(frozen=True)
+class TrussEvent:
+    """Change of a joint's status, located within interval_s before time_s."""
+
+    time_s: float
+    interval_s: float
+    temperature_change_K: float
+    joint_kind: str  # "slider" or "revolute"
+    joint: int
+    name: str
+    before: str
+    after: str
+
+
+@dataclass(frozen=True)
+class TrussPath:
+    """What the solver found. ``states`` and ``cycle_ends`` map a name with unit to an array whose first
+    axis is the state: (states, nodes, 3), (states, links), ... Axial force is positive in compression."""
+
+    truss: ResolvedTruss
+    states: dict[str, np.ndarray]
+    cycle_ends: dict[str, np.ndarray]
+    events: tuple[TrussEvent, ...]
+    complete: bool
+    solves: int
+    factorizations: int
+    unknowns: int
+    largest_force_residual: float
+    largest_closure_residual_m: float
+
+    @property
+    def energy_residue_J(self) -> float:
+        """Thermal work less elastic energy, load potential and friction's heat since the start [J]."""
+        states = self.states
+        stored = states["elastic_energy_J"] + states["load_potential_J"]
+        heat = states["slider_dissipation_J"].sum(axis=1) + states["revolute_dissipation_J"].sum(axis=1)
+        return float((states["thermal_work_J"] - (stored - stored[0]) - heat)[-1])
+
+
+def engine_program(thermal: TrussThermal) -> _engine.ThermalProgram:
+    """Return a temperature program of a truss as the engine's; a table is stretched to the period."""
+    if thermal.shape != "table":
+        return _engine.ThermalProgram(
+            shape=thermal.shape, temperature_change_max_K=thermal.temperature_change_max_K,
+            period_s=thermal.period_s, cycles=thermal.cycles,
+        )
+    times = thermal.table_time_s
+    return _engine.ThermalProgram(
+        shape="table", period_s=thermal.period_s, cycles=thermal.cycles,
+        table_time_s=[thermal.period_s * (time / times[-1]) for time in times],
+        table_temperature_change_K=thermal.table_temperature_change_K,
+    )
+
+
+def _table(part: Any, *keys: str, **more: Any) -> dict[str, Any]:
+    return {"names": list(part.names), **{key: getattr(part, key) for key in keys}, **more}
+
+
+def path(
+    truss: ResolvedTruss,
+    *,
+    increments_per_branch: int = 50,
+    locate_events: bool = True,
+    event_tolerance: float = 1e-9,
+    cycle_ends_only: bool = False,
+    progress: Optional[Callable[[float], Optional[bool]]] = None,
+) -> TrussPath:
+    """Return the quasi-static path of a truss.
+
+    :param increments_per_branch: points of the path per monotone branch of the temperature
+    :param locate_events: locate every change of a joint's status, else only those that matter
+    :param event_tolerance: share of a branch within which a change is located
+    :param cycle_ends_only: keep the states at the ends of cycles only
+    :param progress: called with the share that is done; returning False ends the path
+    :raises StatejumpError: for a mechanism, an unloaded joint, no equilibrium: with names and temperature
+    """
+    sliders, springs, torsion = truss.sliders, truss.springs, truss.torsion_springs
+    hertz, mindlin, tangential = solver_stiffness(truss)
+    try:
+        found = _engine.truss_path(
+            _table(truss.nodes, "position_m", "fixed", "guide_normal", "force_N"),
+            _table(truss.links, "nodes", "stress_free_length_m", "thermal_expansion_per_K", "program",
+                   "temperature_fraction",
+                   axial_stiffness_N=truss.links.young_modulus_Pa * truss.links.cross_section_area_m2),
+            _table(springs, "nodes", "stiffness_N_per_m", "free_length_m", "cable"),
+            _table(torsion, "links", "stiffness_N_m_per_rad", "bias_rad", "axis"),
+            _table(sliders, "nodes", "axis", "clearance_minus_m", "clearance_plus_m",
+                   friction_force_N=sliders.friction_coefficient * sliders.normal_force_N,
+                   tangential_stiffness_N_per_m=tangential),
+            _table(truss.revolutes, "journal_node", "bearing_node", "journal_link", "bearing_link",
+                   "journal_radius_m", "radial_clearance_m", "journal_thermal_expansion_per_K",
+                   "bearing_thermal_expansion_per_K", "friction_coefficient", "axis", "program",
+                   "temperature_fraction", hertz_stiffness_N_per_m15=hertz,
+                   mindlin_stiffness_N_per_m15=mindlin),
+            [engine_program(program) for program in truss.programs],
+            increments_per_branch=increments_per_branch, locate_events=locate_events,
+            event_tolerance=event_tolerance, cycle_ends_only=cycle_ends_only, progress=progress,
+        )
+    except (ValueError, RuntimeError) as failure:
+        sentence = str(failure)
+        if "does not settle" in sentence and locate_events:
+            sentence += "; set reduced.locate_events to false, which takes such changes together"
+        raise FailedRun(f"{truss.name}: {sentence}", cause=str(failure)) from None
+    names = {"slider": sliders.names, "revolute": truss.revolutes.names}
+    events = tuple(
+        TrussEvent(name=names[event["joint_kind"]][event["joint"]], **event) for event in found.pop("events")
+    )
+    return TrussPath(truss=truss, events=events, **found)
+
+
+def solve(case: TrussCase, progress: Optional[Callable[[float], Optional[bool]]] = None) -> TrussPath:
+    """Return the path of a case, with the settings of its [reduced]."""
+    truss = case.resolve()
+    items = 3 * len(truss.nodes.names) + len(truss.links.names) + 8 * len(truss.revolutes.names)
+    states = 2 * case.thermal.cycles * case.reduced.increments_per_branch
+    return path(
+        truss, increments_per_branch=case.reduced.increments_per_branch,
+        locate_events=case.reduced.locate_events, event_tolerance=case.reduced.event_tolerance,
+        cycle_ends_only=8 * items * states > LARGEST_PATH, progress=progress,
+    )

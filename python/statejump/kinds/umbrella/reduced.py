@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reduced model of an ``umbrella`` case: single runs, ensembles, the quasi-static path."""
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any, Callable, Iterator, Optional
+
+import numpy as np
+
+from statejump import _engine
+from statejump.kinds.umbrella.case import UmbrellaCase, UmbrellaLink
+from statejump.core.errors import FailedRun
+from statejump.core.history import History
+from statejump.kinds.spring_slider.reduced import thermal_program
+
+
+def changed(case: UmbrellaCase, changes: dict[str, Any]) -> UmbrellaCase:
+    """Return the case with other values; keys as ``section.key``. Not checked again."""
+    sections: dict[str, dict[str, Any]] = {}
+    for path, value in changes.items():
+        section, key = path.split(".")
+        sections.setdefault(section, {})[key] = value
+    return case.copy(
+        update={name: getattr(case, name).copy(update=values) for name, values in sections.items()}
+    )
+
+
+def _link(link: UmbrellaLink) -> _engine.ThermalLink:
+    return _engine.ThermalLink(**link.dict())
+
+
+def linkage(case: UmbrellaCase) -> _engine.Linkage:
+    """Engine model of a case. :raises ValueError: a changed case is out of range"""
+    joint = case.joint.dict()
+    del joint["radial_clearance_m"]
+    return _engine.Linkage(
+        frame_length_m=case.frame.length_m,
+        link_ab=_link(case.link_ab),
+        link_bc=_link(case.link_bc),
+        bearing_radius_m=case.bearing_radius_m,
+        torsion_stiffness_N_m_per_rad=case.torsion_spring.stiffness_N_m_per_rad,
+        torsion_free_angle_rad=case.free_flare_angle_rad,
+        **case.damping.dict(),
+        **joint,
+    )
+
+
+def start_state(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engine.LinkageState:
+    """State at t = 0.
+
+    :param offset_m: added to the journal's place in the play (2) [m]; not for ``loaded``
+    """
+    model, start = linkage(case), case.start
+    if start.mode == "loaded":
+        return _engine.loaded_state(model, start.contact_angle_rad)
+    angle = start.eccentricity_angle_rad
+    eccentricity = start.eccentricity_m * np.array([np.cos(angle), np.sin(angle)])
+    if offset_m is not None:
+        eccentricity = eccentricity + offset_m
+    rate = float(thermal_program(case).temperature_rate(0.0))
+    return _engine.initial_state(model, start.mode, rate, eccentricity)
+
+
+@dataclass(frozen=True)
+class ReducedRun:
+    """A run of the reduced model."""
+
+    history: History
+    first_contact_time_s: Optional[float]
+    first_contact_temperature_change_K: Optional[float]
+    contacts: int
+    steps: int
+    energy_residue_J: float  # thermal work less dissipation less stored energy
+
+
+def run(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> ReducedRun:
+    """Integrate a case over its whole program.
+
+    :raises StatejumpError: a law left its range or the steps are too long; with time and temperature
+    """
+    try:
+        model, program, start = linkage(case), thermal_program(case), start_state(case, offset_m)
+        cycles, samples = case.thermal.cycles, case.samples_per_cycle
+        if case.reduced.method == "adaptive":
+            done = _engine.simulate_adaptive(
+                model, program, start, case.reduced.relative_tolerance, samples * cycles
+            )
+        else:
+            steps = case.reduced.steps_per_cycle
+            done = _engine.simulate(model, program, start, steps * cycles, steps // samples)
+    except (ValueError, RuntimeError) as error:
+        raise FailedRun(f"case {case.name}: the reduced run failed: {error}", cause=str(error)) from None
+    return ReducedRun(
+        History(done.columns()),
+        done.first_contact_time_s,
+        done.first_contact_temperature_change_K,
+        done.contacts,
+        done.steps,
+        done.energy_residue_J,
+    )
+
+
+def quasi_static(case: UmbrellaCase, samples: int = 400) -> Optional[_engine.JointLoop]:
+    """Path of the loaded joint, rigid links and exact friction; None if statics leaves it open."""
+    try:
+        return _engine.joint_loop(
+            linkage(case), thermal_program(case), case.start.contact_angle_rad, samples
+        )
+    except ValueError:
+        return None
+
+
+def is_reproducible(case: UmbrellaCase) -> bool:
+    """Whether the whole history, not only the heating, can be compared point by point: with damping
+    of the links and of the pins small differences die out; without they grow to the size of the
+    play."""
+    damping = case.damping
+    return damping.axial_damping_ratio > 0 and damping.pin_damping_N_m_s_per_rad > 0
+
+
+def start_offsets(case: UmbrellaCase, count: int) -> Iterator[np.ndarray]:
+    """Yield places of the journal near the start (2) [m], evenly spread over a disc; the same for
+    the same seed, each independent of how many are asked for."""
+    for index in range(count):
+        generator = np.random.default_rng([case.ensemble.seed, index])
+        radius = case.ensemble.start_spread_m * np.sqrt(generator.random())
+        angle = 2 * np.pi * generator.random()
+        yield radius * np.array([np.cos(angle), np.sin(angle)])
+
+
+@dataclass(frozen=True)
+class EnsembleOfRuns:
+    """Runs from nearby starts, on common times."""
+
+    time_s: np.ndarray  # (samples)
+    temperature_change_K: np.ndarray  # (samples)
+    theta2_rad: np.ndarray  # (runs, samples)
+    end_eccentricity_m: np.ndarray  # (runs, 2)
+
+    @property
+    def deflection_rad(self) -> np.ndarray:
+        """θ2 − θ2(0) of every run (runs, samples)."""
+        return self.theta2_rad - self.theta2_rad[:, :1]
+
+    @property
+    def range_rad(self) -> np.ndarray:
+        """Largest less smallest θ2 of every run (runs)."""
+        return np.ptp(self.theta2_rad, axis=1)
+
+    @property
+    def jump_rad(self) -> np.ndarray:
+        """θ2 at the end less at the start of every run (runs)."""
+        return self.deflection_rad[:, -1]
+
+
+def for_ensemble(case: UmbrellaCase) -> UmbrellaCase:
+    """Return the case with the steps of its ensemble in both models."""
+    return changed(
+        case,
+        {
+            "reduced.steps_per_cycle": case.ensemble.reduced_steps_per_cycle,
+            "dem.steps_per_cycle": case.ensemble.dem_steps_per_cycle,
+        },
+    )
+
+
+def gather(histories: list[History]) -> EnsembleOfRuns:
+    """Stack the runs of an ensemble."""
+    first = histories[0]
+    return EnsembleOfRuns(
+        first["time_s"],
+        first["temperature_change_K"],
+        np.stack([history["theta2_rad"] for history in histories]),
+        np.array([[history["eccentricity_x_m"][-1], history["eccentricity_y_m"][-1]] for history in histories]),
+    )
+
+
+def ensemble(
+    case: UmbrellaCase, runs: int | None = None, progress: Callable[[], None] = lambda: None
+) -> EnsembleOfRuns:
+    """Run the reduced model from ``runs`` starts (default: as the case says), on all cores.
+
+    The result does not depend on the number of cores.
+    """
+    offsets = list(start_offsets(case, runs or case.ensemble.reduced_runs))
+    case = for_ensemble(case)
+
+    def one(offset: np.ndarray) -> History:
+        history = run(case, offset).history
+        progress()
+        return history
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return gather(list(pool.map(one, offsets)))

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a result file says of an ``umbrella`` case beside its histories."""
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy as np
+
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.core.comparison import Quantity, quantity
+from statejump.core.yade_process import DemRun
+from statejump.core.history import History
+from statejump.kinds.umbrella.compare import history_rows
+from statejump.kinds.umbrella.reduced import ReducedRun
+from statejump.results import scene as drawing
+from statejump.results.contents import (
+    CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Event, ModelRun, Scalar, columns_of, history_of, scalars,
+)
+from statejump.results.events import first_event_K, from_states
+
+CONTACTS = ("joint_b",)
+LINKS = ("link_ab", "link_bc")
+
+
+def names(case: UmbrellaCase) -> dict[str, list[str]]:
+    """Names of the items of columns."""
+    return {"links": list(LINKS), "contacts": list(CONTACTS)}
+
+
+def scene(case: UmbrellaCase) -> dict[str, Any]:
+    """Frame, two links, journal of BC in the bearing of AB; both turn with their links."""
+    joint, frame = case.joint, case.frame.length_m
+    pins = {"link_ab": [0.0, 0.0, 0.0], "link_bc": [frame, 0.0, 0.0]}
+    tips: dict[str, drawing.Point] = {
+        part: [drawing.ref(f"history/{part}_x_m"), drawing.ref(f"history/{part}_y_m"), 0.0]
+        for part in ("bearing", "journal")
+    }
+    parts: list[dict[str, Any]] = [
+        {"name": "frame", "type": "frame", "points": [pins["link_ab"], pins["link_bc"]]},
+        drawing.link("link_ab", [pins["link_ab"], tips["bearing"]], case.link_ab),
+        drawing.link("link_bc", [pins["link_bc"], tips["journal"]], case.link_bc),
+        {
+            "name": "bearing", "type": "bearing", "centre": tips["bearing"],
+            "angle_rad": drawing.ref("history/theta2_rad"), "radius_m": case.bearing_radius_m,
+            "thermal_expansion_per_K": joint.bearing_thermal_expansion_per_K,
+        },
+        {
+            "name": "journal", "type": "journal", "centre": tips["journal"],
+            "angle_rad": drawing.ref("history/theta4_rad"), "radius_m": joint.journal_radius_m,
+            "thermal_expansion_per_K": joint.journal_thermal_expansion_per_K,
+        },
+    ]
+    if case.torsion_spring.stiffness_N_m_per_rad > 0:
+        parts.append({
+            "name": "torsion_spring", "type": "spring", "ends": [tips["bearing"], tips["journal"]],
+            "stiffness_N_m_per_rad": case.torsion_spring.stiffness_N_m_per_rad,
+            "free_angle_rad": case.free_flare_angle_rad,
+        })
+    return drawing.description(parts, [("joint_b", "journal", "bearing")], joint.radial_clearance_m)
+
+
+def _contacts(case: UmbrellaCase, history: History) -> dict[str, Column]:
+    """Force, state and place of the contact. n points from the bearing's centre to the journal's; the
+    bearing pushes the journal along -n, friction acts along n turned by +90 degrees."""
+    change = history["temperature_change_K"]
+    offset = np.stack([history["eccentricity_x_m"], history["eccentricity_y_m"], np.zeros(len(change))], axis=1)
+    distance = np.linalg.norm(offset, axis=1, keepdims=True)
+    normal = np.divide(offset, distance, out=np.zeros_like(offset), where=distance > 0)
+    along = np.stack([-normal[:, 1], normal[:, 0], np.zeros(len(change))], axis=1)
+    centre = np.stack([history["bearing_x_m"], history["bearing_y_m"], np.zeros(len(change))], axis=1)
+    radius = case.bearing_radius_m * (1 + case.joint.bearing_thermal_expansion_per_K * change)
+    depth = history["penetration_depth_m"]
+    state = np.where(depth < 0, SEPARATED, np.where(history["slipping"] > 0.5, SLIP, STICK)).astype(np.uint8)
+    return {
+        "state": Column(state[:, None], items="contacts", labels=CONTACT_STATES),
+        "gap_m": Column(-depth[:, None], "m", "contacts"),
+        "point_m": Column((centre + radius[:, None] * normal)[:, None, :], "m", "contacts",
+                          note="on the bearing's surface, where the gap is smallest"),
+        "normal_force_N": Column((-history["normal_force_N"][:, None] * normal)[:, None, :], "N", "contacts",
+                                 note="on the journal"),
+        "tangential_force_N": Column((history["tangential_force_N"][:, None] * along)[:, None, :], "N",
+                                     "contacts", note="on the journal"),
+    }
+
+
+def _links(case: UmbrellaCase, history: History) -> dict[str, Column]:
+    change = history["temperature_change_K"]
+    forces, strains = [], []
+    for name in LINKS:
+        link = getattr(case, name)
+        strain = link.thermal_expansion_per_K * change
+        free = link.stress_free_length_m * (1 + strain)
+        rigidity = link.young_modulus_Pa * link.cross_section_area_m2
+        forces.append(rigidity * (free - history[f"length_{name[-2:]}_m"]) / free)
+        strains.append(strain)
+    return {
+        "axial_force_N": Column(np.stack(forces, axis=1), "N", "links",
+                                note="compression positive; of the spring E A/l, from the length, without the dashpot"),
+        "thermal_strain": Column(np.stack(strains, axis=1), "-", "links"),
+    }
+
+
+def _run(
+    case: UmbrellaCase, history: History, first_time: Optional[float], first_change: Optional[float],
+    summary: dict[str, Scalar],
+) -> ModelRun:
+    plain, energy = columns_of(history)
+    contacts = _contacts(case, history)
+    events = from_states(
+        history["time_s"], history["temperature_change_K"], contacts["state"].values, CONTACTS
+    )
+    if first_time is not None and first_change is not None:
+        # Both models locate it: better than between two samples, and there if the samples miss it.
+        seen = next((event for event in events if event.kind == "contact"), None)
+        if seen is not None and abs(seen.time_s - first_time) <= 2 * seen.time_uncertainty_s:
+            events.remove(seen)
+        events.append(Event("first_contact", first_time, first_change, CONTACTS[0]))
+        events.sort(key=lambda event: event.time_s)
+    jumps = {
+        f"{angle}_jump_rad": Scalar(float(history[f"{angle}_rad"][-1] - history[f"{angle}_rad"][0]), "rad")
+        for angle in ("theta2", "theta4")
+    }
+    return ModelRun(plain, energy, _links(case, history), contacts, events, {**jumps, **summary})
+
+
+def reduced_run(case: UmbrellaCase, done: ReducedRun) -> ModelRun:
+    """The reduced model."""
+    summary = scalars({
+        key: getattr(done, key)
+        for key in ("first_contact_time_s", "first_contact_temperature_change_K", "contacts", "steps", "energy_residue_J")
+    })
+    return _run(case, done.history, done.first_contact_time_s, done.first_contact_temperature_change_K, summary)
+
+
+def dem_run(case: UmbrellaCase, done: DemRun) -> ModelRun:
+    """The DEM."""
+    first = [done.summary.get(f"first_contact_{key}") for key in ("time_s", "temperature_change_K")]
+    return _run(case, done.history, first[0], first[1], scalars(done.summary))
+
+
+def difference_rows(case: UmbrellaCase, first: ModelRun, second: ModelRun) -> list[Quantity]:
+    """Two runs of the case at the same times against its tolerances."""
+    rows = []
+    if case.start.mode != "loaded":
+        changes = [first_event_K(run, "first_contact") for run in (first, second)]
+        rows.append(quantity("first_contact_temperature_change", "K", *changes, case.tolerance.first_contact_dem_K))
+    return rows + history_rows(case, history_of(first), history_of(second))

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Events of a run, read off the states of its contacts between two samples."""
+from __future__ import annotations
+
+import math
+from typing import Optional, Sequence
+
+import numpy as np
+
+from statejump.results.contents import AT_STOP, SEPARATED, SLIP, Event, ModelRun
+
+
+def kind_of(before: int, after: int, slipped: bool) -> str:
+    """Return the kind of event between two states; names as in the reduced spring-slider model.
+
+    :param slipped: whether the contact has slipped before
+    """
+    if after == AT_STOP:
+        return "stop_reached"
+    if before == AT_STOP:
+        return "stop_left"
+    if after == SEPARATED:
+        return "separation"
+    if before == SEPARATED:
+        return "contact"
+    if after == SLIP:
+        return "slip" if slipped else "first_slip"
+    return "stick"
+
+
+def from_states(
+    time_s: np.ndarray, temperature_change_K: np.ndarray, states: np.ndarray, contacts: Sequence[str]
+) -> list[Event]:
+    """Return the events of contacts in order of time, each half-way between two samples.
+
+    :param states: (samples, contacts), see ``CONTACT_STATES``
+    """
+    found: list[Event] = []
+    for place, contact in enumerate(contacts):
+        state = states[:, place]
+        slipped = bool(len(state)) and state[0] == SLIP
+        for after in np.flatnonzero(state[1:] != state[:-1]) + 1:
+            found.append(Event(
+                kind_of(int(state[after - 1]), int(state[after]), slipped),
+                float(0.5 * (time_s[after - 1] + time_s[after])),
+                float(0.5 * (temperature_change_K[after - 1] + temperature_change_K[after])),
+                contact,
+                float(0.5 * (time_s[after] - time_s[after - 1])),
+            ))
+            slipped = slipped or state[after] == SLIP
+    return sorted(found, key=lambda event: event.time_s)
+
+
+def first_event_K(run: ModelRun, kind: str, until_s: float = math.inf) -> Optional[float]:
+    """Return the temperature change [K] of the first event of a kind; None if there is none."""
+    return next(
+        (event.temperature_change_K for event in run.events if event.kind == kind and event.time_s <= until_s), None
+    )

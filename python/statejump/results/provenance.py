@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What computed a result: versions, threads, seed. Nothing of the machine, nothing of the day."""
+from __future__ import annotations
+
+import platform
+from typing import Any, Optional
+
+import h5py
+import numpy as np
+
+from statejump import __version__, _paths
+from statejump.kinds.registry import Case
+
+
+def provenance(case: Case, dem_summary: Optional[dict[str, Any]]) -> dict[str, Any]:
+    """Return the attributes of ``/provenance``.
+
+    :param dem_summary: what the DEM run says of itself (``dem_run.json``); None without a DEM run
+    """
+    found: dict[str, Any] = {
+        "statejump_version": __version__,
+        # A copy of the package that was configured by an older build has none.
+        "git_commit": getattr(_paths, "GIT_COMMIT", ""),
+        "python_version": platform.python_version(),
+        "numpy_version": np.__version__,
+        "h5py_version": h5py.__version__,
+        "hdf5_version": h5py.version.hdf5_version,
+    }
+    sections = case.dict()
+    seed = sections.get("ensemble", {}).get("seed")
+    if seed is not None:
+        found["seed"] = seed
+    if dem_summary is not None:
+        if "yade_version" in dem_summary:
+            found["yade_version"] = dem_summary["yade_version"]
+        found["threads"] = sections["dem"]["threads"]
+    return found

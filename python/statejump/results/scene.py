@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Generic description of what to draw: parts and forces, moved by the columns of a run.
+
+A description is plain JSON data, one for both models. A *value* is a number or a reference::
+
+    {"data": "history/displacement_m"}                      one value per sample
+    {"data": "links/axial_force_N", "item": "bar"}          of the column's item with that name
+    {"data": "history/temperature_change_K", "scale": 2e-5, "offset": 0.0}    offset + scale * value
+
+A *point* or *vector* is a list [x, y, z] of values, or one reference to data with three components.
+All numbers are SI units, angles anticlockwise from x. docs/result_file.md has the types of parts.
+"""
+from __future__ import annotations
+
+from typing import Any, Union
+
+import numpy as np
+
+from statejump.core.errors import StatejumpError
+from statejump.results.contents import CONTACT_STATES, Column, ModelRun, Result
+
+Value = Union[float, dict[str, Any]]
+Point = Union[list[Value], dict[str, Any]]
+
+# Okabe-Ito colours, different in lightness as well.
+STATE_COLOURS = dict(zip(CONTACT_STATES, ("#999999", "#0072B2", "#E69F00", "#D55E00"), strict=True))
+
+# Keys that a part of each type must have beside name and type; further ones are in the docs.
+PART_TYPES: dict[str, tuple[str, ...]] = {
+    "link": ("ends", "width_m"),
+    "spring": ("ends",),
+    "journal": ("centre", "angle_rad", "radius_m"),
+    "bearing": ("centre", "angle_rad", "radius_m"),
+    "block": ("centre", "angle_rad", "half_width_m", "half_height_m"),
+    "slot": ("centre", "angle_rad", "stop_minus_m", "stop_plus_m", "half_height_m"),
+    "frame": ("points",),
+    "mesh": ("centre", "angle_rad", "mesh"),
+}
+FORCE_KINDS = ("normal", "tangential", "axial", "external")
+TEMPERATURE = {"data": "history/temperature_change_K"}
+
+
+def ref(data: str, item: str = "", scale: float = 1.0, offset: float = 0.0) -> dict[str, Any]:
+    """Return a reference; see the module's description."""
+    found: dict[str, Any] = {"data": data}
+    if item:
+        found["item"] = item
+    if scale != 1:
+        found["scale"] = scale
+    if offset != 0:
+        found["offset"] = offset
+    return found
+
+
+def link(name: str, ends: list[Point], section: Any, item: str = "") -> dict[str, Any]:
+    """Return the part of a link whose columns are below ``links``.
+
+    :param section: has ``cross_section_area_m2``, ``stress_free_length_m``, ``young_modulus_Pa``,
+        ``thermal_expansion_per_K``
+    :param item: its name in those columns if another
+    """
+    return {
+        "name": name, "type": "link", "ends": ends, "width_m": section.cross_section_area_m2**0.5,
+        "stress_free_length_m": section.stress_free_length_m, "young_modulus_Pa": section.young_modulus_Pa,
+        "cross_section_area_m2": section.cross_section_area_m2,
+        "thermal_expansion_per_K": section.thermal_expansion_per_K,
+        "values": {key: ref(f"links/{key}", item or name) for key in ("axial_force_N", "thermal_strain")},
+    }
+
+
+def contact_forces(contact: str, on: str, other: str) -> list[dict[str, Any]]:
+    """Return the normal and tangential force of a contact, from its columns below ``contacts``."""
+    return [
+        {
+            "name": f"{kind} force at {contact} on {on}", "kind": kind, "on": on, "from": other, "contact": contact,
+            "at": ref("contacts/point_m", contact), "vector_N": ref(f"contacts/{kind}_force_N", contact),
+            "state": ref("contacts/state", contact),
+        }
+        for kind in ("normal", "tangential")
+    ]
+
+
+def description(
+    parts: list[dict[str, Any]], contacts: list[tuple[str, str, str]], smallest_clearance_m: float,
+    forces: list[dict[str, Any]] = [],
+) -> dict[str, Any]:
+    """Return a whole description.
+
+    :param contacts: name, part that the forces act on, the other part
+    :param smallest_clearance_m: what a viewer may have to magnify; 0: there is none
+    :param forces: further ones
+    """
+    return {
+        "plane": "xy",
+        "temperature_change_K": TEMPERATURE,
+        "smallest_clearance_m": smallest_clearance_m,
+        "states": STATE_COLOURS,
+        "parts": parts,
+        "contacts": [
+            {"name": name, "on": on, "from": other, "state": ref("contacts/state", name),
+             "gap_m": ref("contacts/gap_m", name)}
+            for name, on, other in contacts
+        ],
+        "forces": [force for names in contacts for force in contact_forces(*names)] + list(forces),
+    }
+
+
+def _item(column: Column, value: dict[str, Any], names: dict[str, list[str]]) -> np.ndarray:
+    values = column.values
+    if "item" not in value:
+        return values
+    if not column.items:
+        raise KeyError(f"{value['data']} has no items")
+    return values[:, names[column.items].index(value["item"])]
+
+
+def resolve(value: Value, run: ModelRun, names: dict[str, list[str]]) -> np.ndarray:
+    """Return a value or a reference over the samples: (samples) or (samples, 3).
+
+    :raises StatejumpError: the run has no such column or item
+    """
+    samples = len(run.time_s)
+    if not isinstance(value, dict):
+        return np.full(samples, float(value))
+    try:
+        found = _item(run.column(value["data"]), value, names)
+    except (KeyError, ValueError) as error:
+        raise StatejumpError(f"scene: {value} refers to nothing in the file: {error}") from None
+    return value.get("offset", 0.0) + value.get("scale", 1.0) * found
+
+
+def resolve_point(point: Point, run: ModelRun, names: dict[str, list[str]]) -> np.ndarray:
+    """Return a point or vector over the samples (samples, 3)."""
+    if isinstance(point, dict):
+        return resolve(point, run, names)
+    return np.stack([resolve(value, run, names) for value in point], axis=1)
+
+
+def growth(part: dict[str, Any], result: Result, model: str) -> np.ndarray:
+    """Return 1 + thermal strain of a part over the samples: factor of its radii and dimensions."""
+    run = result.models[model]
+    change = resolve(part.get("temperature_change_K", result.scene["temperature_change_K"]), run, result.names)
+    return 1 + part.get("thermal_expansion_per_K", 0.0) * change
+
+
+def problems(result: Result) -> list[str]:
+    """Return what is wrong with a result's description, one sentence each."""
+    found: list[str] = []
+    names = [part["name"] for part in result.scene["parts"]]
+    for part in result.scene["parts"]:
+        missing = set(PART_TYPES.get(part["type"], ("a known type",))) - set(part)
+        if missing:
+            found.append(f"part {part['name']} of type {part['type']} lacks {', '.join(sorted(missing))}")
+    for force in result.scene["forces"]:
+        for body in (force["on"], force.get("from", force["on"])):
+            if body not in names:
+                found.append(f"{force['name']}: {body} is not a part")
+        if force["kind"] not in FORCE_KINDS:
+            found.append(f"{force['name']}: {force['kind']} is not a kind of force")
+    for model, run in result.models.items():
+        for reference in _references(result.scene):
+            try:
+                resolve(reference, run, result.names)
+            except StatejumpError as error:
+                found.append(f"{model}: {error}")
+    return found
+
+
+def _references(tree: Any) -> list[dict[str, Any]]:
+    if isinstance(tree, dict):
+        return [tree] if "data" in tree else [found for value in tree.values() for found in _references(value)]
+    if isinstance(tree, list):
+        return [found for value in tree for found in _references(value)]
+    return []

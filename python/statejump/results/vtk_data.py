@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What all VTK files are made of: points, cells, named arrays, a file, a series of files with true times."""
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkFieldData
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter, vtkXMLWriter
+
+from statejump.core.errors import NotWritten
+from statejump.core.output import replacing, write_atomically
+
+
+def frames_of(samples: int, wanted: int) -> np.ndarray:
+    """Return the samples to write: all (0) or ``wanted`` evenly spread ones with first and last."""
+    if wanted == 0 or wanted >= samples:
+        return np.arange(samples)
+    return np.unique(np.round(np.linspace(0, samples - 1, max(wanted, 2))).astype(int))
+
+
+def file_time(time_s: float) -> float:
+    """Return a time [s] as files have it: what rounding left between two models is not another instant."""
+    return float(f"{time_s:.9g}")
+
+
+def points(values: np.ndarray) -> vtkPoints:
+    """Return points [m] (n, 3)."""
+    made = vtkPoints()
+    made.SetDataTypeToDouble()
+    made.SetData(numpy_to_vtk(np.ascontiguousarray(values, dtype=float).reshape(-1, 3), deep=True))
+    return made
+
+
+def cells(lengths: list[int], connectivity: np.ndarray) -> vtkCellArray:
+    """Return cells of so many points each; ``connectivity`` holds their numbers, one cell after another."""
+    made = vtkCellArray()
+    offsets = np.concatenate(([0], np.cumsum(lengths, dtype=np.int64))).astype(np.int64)
+    made.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True),
+                 numpy_to_vtkIdTypeArray(np.ascontiguousarray(connectivity, dtype=np.int64), deep=True))
+    return made
+
+
+def add_array(field: vtkFieldData, name: str, values: Any) -> None:
+    """Add an array; a list of texts as texts."""
+    if isinstance(values, list):
+        array = vtkStringArray()
+        for text in values:
+            array.InsertNextValue(text)
+    else:
+        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+    array.SetName(name)
+    field.AddArray(array)
+
+
+def write(data: vtkDataObject, path: Path, time_s: float | None = None) -> None:
+    """Write a .vtu or .vtp file aside and rename it; the time becomes the field array ``time_s``.
+
+    :raises NotWritten: VTK cannot write the file
+    """
+    if time_s is not None:
+        add_array(data.GetFieldData(), "time_s", np.array([time_s]))
+    writer: vtkXMLWriter = vtkXMLUnstructuredGridWriter() if path.suffix == ".vtu" else vtkXMLPolyDataWriter()
+    with replacing(path) as aside:
+        writer.SetFileName(str(aside))
+        writer.SetInputData(data)
+        if not writer.Write():
+            raise NotWritten(f"{path}: cannot be written")
+
+
+def write_series(path: Path, files: list[tuple[str, float]]) -> None:
+    """Write the ``.series`` file that ParaView opens: names of files and their times [s]."""
+    entries = [{"name": name, "time": time_s} for name, time_s in files]
+    with write_atomically(path) as stream:
+        stream.write(json.dumps({"file-series-version": "1.0", "files": entries}, indent=1) + "\n")
