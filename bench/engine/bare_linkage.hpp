@@ -5,16 +5,16 @@
 
 #include <cmath>
 
-#include "statejump/linkage.hpp"
+#include "statejump/linkage/model.hpp"
 
-namespace statejump::bench {
+namespace statejump::linkage::bench {
 
 struct BareResult {
   double state[8];  ///< tips of AB and BC, then their velocities
 };
 
 /// 0 → `peak` K → 0 in `duration` [s], `steps` steps from the state given.
-inline BareResult bare_run(const Linkage& m, const LinkageState& start, double peak,
+inline BareResult bare_run(const linkage::Linkage& m, const linkage::State& start, double peak,
                            double duration, int steps) {
   const double ea1 = m.link_ab.young_modulus * m.link_ab.cross_section_area;
   const double ea2 = m.link_bc.young_modulus * m.link_bc.cross_section_area;
@@ -84,4 +84,4 @@ inline BareResult bare_run(const Linkage& m, const LinkageState& start, double p
   return y;
 }
 
-}  // namespace statejump::bench
+}  // namespace statejump::linkage::bench

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bare_linkage.hpp"
-#include "statejump/linkage_run.hpp"
+#include "statejump/linkage/run.hpp"
 
 namespace {
 
@@ -14,8 +14,8 @@ using namespace statejump;
 
 constexpr int steps = 100000;
 
-Linkage rib(const std::string& friction = "none") {
-  Linkage model;
+linkage::Linkage rib(const std::string& friction = "none") {
+  linkage::Linkage model;
   model.frame_length = 0.12;
   model.link_ab = {0.050, 0.5, 70e9, 9e-6, 23.75e-6, 0.3};
   model.link_bc = {0.100, 1.0, 70e9, 9e-6, 23.75e-6, 0.3};
@@ -26,9 +26,9 @@ Linkage rib(const std::string& friction = "none") {
   return model;
 }
 
-kernel::ThermalProgram cycle() {
-  kernel::ThermalProgram program;
-  program.shape = kernel::ThermalShape::triangle;
+thermal::Program cycle() {
+  thermal::Program program;
+  program.shape = thermal::Shape::triangle;
   program.temperature_change_max = 100.0;
   program.period = 1.0;
   return program;
@@ -41,17 +41,18 @@ void per_step(benchmark::State& state, long taken) {
 }
 
 void bare_loop(benchmark::State& state) {
-  const Linkage model = rib();
-  const LinkageState start = initial_state(model, LinkageStart::rest, 0.0);
-  for (auto _ : state) benchmark::DoNotOptimize(bench::bare_run(model, start, 100.0, 1.0, steps));
+  const linkage::Linkage model = rib();
+  const linkage::State start = initial_state(model, linkage::Start::rest, 0.0);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(linkage::bench::bare_run(model, start, 100.0, 1.0, steps));
   per_step(state, steps);
 }
 BENCHMARK(bare_loop)->Unit(benchmark::kMillisecond);
 
 void engine(benchmark::State& state, const char* friction) {
-  const Linkage model = rib(friction);
-  const LinkageState start = initial_state(model, LinkageStart::rest, 0.0);
-  const kernel::ThermalProgram program = cycle();
+  const linkage::Linkage model = rib(friction);
+  const linkage::State start = initial_state(model, linkage::Start::rest, 0.0);
+  const thermal::Program program = cycle();
   for (auto _ : state) benchmark::DoNotOptimize(simulate(model, program, start, {steps, 0}));
   per_step(state, steps);
 }
@@ -60,9 +61,9 @@ BENCHMARK_CAPTURE(engine, ambrosio, "ambrosio")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(engine, mindlin, "mindlin")->Unit(benchmark::kMillisecond);
 
 void adaptive(benchmark::State& state) {
-  const Linkage model = rib();
-  const LinkageState start = initial_state(model, LinkageStart::rest, 0.0);
-  const kernel::ThermalProgram program = cycle();
+  const linkage::Linkage model = rib();
+  const linkage::State start = initial_state(model, linkage::Start::rest, 0.0);
+  const thermal::Program program = cycle();
   for (auto _ : state) {
     benchmark::DoNotOptimize(simulate_adaptive(model, program, start, {1e-8, 0}));
   }

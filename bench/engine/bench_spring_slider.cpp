@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <benchmark/benchmark.h>
 
-#include "statejump/spring_slider_history.hpp"
+#include "statejump/spring_slider/history.hpp"
 
 namespace {
 
 using namespace statejump;
+using namespace statejump::spring_slider;
 
 SpringSlider table1() {
   SpringSlider model;
@@ -19,8 +20,8 @@ SpringSlider table1() {
   return model;
 }
 
-kernel::ThermalProgram program(kernel::ThermalShape shape, int cycles) {
-  kernel::ThermalProgram result;
+thermal::Program program(thermal::Shape shape, int cycles) {
+  thermal::Program result;
   result.shape = shape;
   result.temperature_change_max = 100.0;
   result.cycles = cycles;
@@ -30,7 +31,7 @@ kernel::ThermalProgram program(kernel::ThermalShape shape, int cycles) {
 /// One full Table 1 cycle with all events, a fresh Path each time.
 void solve_fresh(benchmark::State& state) {
   const SpringSlider model = table1();
-  const auto cycle = program(kernel::ThermalShape::half_sine, 1);
+  const auto cycle = program(thermal::Shape::half_sine, 1);
   for (auto _ : state) {
     const Path path = solve(model, cycle);
     benchmark::DoNotOptimize(path.events.data());
@@ -41,7 +42,7 @@ BENCHMARK(solve_fresh);
 /// The same into one Path, as a campaign does.
 void solve_reused(benchmark::State& state) {
   const SpringSlider model = table1();
-  const auto cycle = program(kernel::ThermalShape::half_sine, 1);
+  const auto cycle = program(thermal::Shape::half_sine, 1);
   Path path;
   for (auto _ : state) {
     solve(model, cycle, path);
@@ -53,7 +54,7 @@ BENCHMARK(solve_reused);
 /// Sine with both stops, time per call of `range` cycles.
 void solve_cycles(benchmark::State& state) {
   const SpringSlider model = table1();
-  const auto cycles = program(kernel::ThermalShape::sine, static_cast<int>(state.range(0)));
+  const auto cycles = program(thermal::Shape::sine, static_cast<int>(state.range(0)));
   Path path;
   for (auto _ : state) {
     solve(model, cycles, path);
@@ -65,7 +66,7 @@ BENCHMARK(solve_cycles)->Arg(1)->Arg(10)->Arg(1000);
 
 /// Samples of one cycle; items are samples.
 void sample_cycle(benchmark::State& state) {
-  const Path path = solve(table1(), program(kernel::ThermalShape::half_sine, 1));
+  const Path path = solve(table1(), program(thermal::Shape::half_sine, 1));
   const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(state.range(0), 0.0, 1.0);
   for (auto _ : state) {
     const History history = sample(path, times);

@@ -71,8 +71,8 @@ LinkEnds ends_of(const yade::Scene& scene, const ThermalLink& link) {
 }
 
 void ThermalProgram::check() {
-  kernel::ThermalProgram program;
-  program.shape = kernel::thermal_shape(shape);
+  thermal::Program program;
+  program.shape = thermal::shape_of(shape);
   program.temperature_change_max = temperatureChangeMax;
   program.period = period;
   program.cycles = cycles;
@@ -82,7 +82,7 @@ void ThermalProgram::check() {
   program_ = program;
 }
 
-const kernel::ThermalProgram& ThermalProgram::program() const {
+const thermal::Program& ThermalProgram::program() const {
   if (!program_) throw std::logic_error("ThermalProgram: construct it with its attributes");
   return *program_;
 }

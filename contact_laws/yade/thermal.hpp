@@ -6,7 +6,7 @@
 
 #include "registered.hpp"
 #include "shapes.hpp"
-#include "statejump/kernel/thermal_program.hpp"
+#include "statejump/thermal/program.hpp"
 
 namespace statejump::dem {
 
@@ -49,8 +49,8 @@ struct ThermalProgram : Registered<ThermalProgram, yade::Serializable> {
   }
 
  private:
-  const kernel::ThermalProgram& program() const;
-  std::optional<kernel::ThermalProgram> program_;  // built by check()
+  const thermal::Program& program() const;
+  std::optional<thermal::Program> program_;  // built by check()
 };
 
 struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalEngine> {

@@ -8,16 +8,17 @@ from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
 
-FOLDERS = ("contact_laws/kernel/include", "engine/include", "geometry/include")
+FOLDERS = ("contact_laws/kernel/include", "thermal/include", "engine/include", "geometry/include")
 # Page, title, headers.
 SUBJECTS = (
     ("kernel", "Kernel: contact of joints", ("statejump/kernel/*.hpp",)),
     ("laws", "Kernel: catalogue of laws", ("statejump/kernel/laws/*.hpp",)),
-    ("spring_slider", "Engine: bar on a slider", ("statejump/spring_slider*.hpp",)),
-    ("linkage", "Engine: dynamics of the umbrella rib", ("statejump/linkage*.hpp",)),
-    ("loops", "Engine: quasi-static path of a loaded joint", ("statejump/joint_loop*.hpp", "statejump/elastic_loop*.hpp")),
-    ("truss", "Engine: trusses", ("statejump/truss*.hpp",)),
-    ("rest_sets", "Engine: rest sets", ("statejump/rest_set*.hpp",)),
+    ("thermal", "Temperature programs", ("statejump/thermal/*.hpp",)),
+    ("spring_slider", "Engine: bar on a slider", ("statejump/spring_slider/*.hpp",)),
+    ("linkage", "Engine: dynamics of the umbrella rib", ("statejump/linkage/*.hpp",)),
+    ("loops", "Engine: quasi-static path of a loaded joint", ("statejump/joint_loop/*.hpp",)),
+    ("truss", "Engine: trusses", ("statejump/truss/*.hpp",)),
+    ("rest_sets", "Engine: rest sets", ("statejump/rest_set/*.hpp",)),
     ("geometry", "Geometry: bores of triangles", ("statejump/geometry/*.hpp",)),
 )
 DIRECTIVES = {

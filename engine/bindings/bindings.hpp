@@ -14,7 +14,7 @@ void bind_spring_slider(pybind11::module_& module);
 /// Adds the catalogue of contact laws to the module.
 void bind_laws(pybind11::module_& module);
 
-/// Adds Linkage, its runs and the quasi-static loop. Call after bind_thermal_program.
+/// Adds linkage::Linkage, its runs and the quasi-static loop. Call after bind_thermal_program.
 void bind_linkage(pybind11::module_& module);
 
 /// Adds the rest sets of loaded joints to the module.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "statejump/linkage.hpp"
+#include "statejump/linkage/model.hpp"
 
 #include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
@@ -11,16 +11,15 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "statejump/elastic_loop.hpp"
-#include "statejump/joint_loop.hpp"
-#include "statejump/linkage_run.hpp"
+#include "statejump/joint_loop/elastic_loop.hpp"
+#include "statejump/joint_loop/rigid_loop.hpp"
+#include "statejump/linkage/run.hpp"
 
 namespace py = pybind11;
 
 namespace statejump::bindings {
 
 using Eigen::Vector2d;
-using kernel::ThermalProgram;
 
 namespace {
 
@@ -44,17 +43,17 @@ py::dict columns(std::size_t rows, RowOf&& row_of) {
 
 /// A run together with what its samples mean.
 struct BoundRun {
-  Linkage model;
-  ThermalProgram program;
-  LinkageRun run;
+  linkage::Linkage model;
+  thermal::Program program;
+  linkage::Run run;
 
   py::dict columns() const {
     return bindings::columns(run.samples.size(), [this](std::size_t i) -> Row {
-      const LinkageSample& s = run.samples[i];
-      const LinkageCoordinates q = coordinates(model, s.state);
-      const LinkageEnergy e = energy(model, s.state, s.temperature_change);
-      const LinkageJoint j =
-          joint_state(model, s.state, s.temperature_change, program.temperature_rate(s.time));
+      const linkage::Sample& s = run.samples[i];
+      const linkage::Coordinates q = coordinates(model, s.state);
+      const linkage::Energy e = energy(model, s.state, s.temperature_change);
+      const linkage::Joint j = linkage::joint_state(model, s.state, s.temperature_change,
+                                                    program.temperature_rate(s.time));
       return {
           {"time_s", s.time},
           {"temperature_change_K", s.temperature_change},
@@ -90,15 +89,17 @@ struct BoundRun {
   }
 };
 
-Linkage make_linkage(double frame_length, const ThermalLink& link_ab, const ThermalLink& link_bc,
-                     double journal_radius, double bearing_radius, double journal_expansion,
-                     double bearing_expansion, const std::string& normal_law,
-                     const std::string& dissipation_law, const std::string& friction_law,
-                     const std::string& tangential_velocity, double friction_coefficient, double v0,
-                     double v1, double restitution, double smallest_impact_speed,
-                     double contact_length, double axial_damping_ratio, double pin_damping,
-                     double torsion_stiffness, double torsion_free_angle) {
-  Linkage model;
+linkage::Linkage make_linkage(double frame_length, const linkage::ThermalLink& link_ab,
+                              const linkage::ThermalLink& link_bc, double journal_radius,
+                              double bearing_radius, double journal_expansion,
+                              double bearing_expansion, const std::string& normal_law,
+                              const std::string& dissipation_law, const std::string& friction_law,
+                              const std::string& tangential_velocity, double friction_coefficient,
+                              double v0, double v1, double restitution,
+                              double smallest_impact_speed, double contact_length,
+                              double axial_damping_ratio, double pin_damping,
+                              double torsion_stiffness, double torsion_free_angle) {
+  linkage::Linkage model;
   model.frame_length = frame_length;
   model.link_ab = link_ab;
   model.link_bc = link_bc;
@@ -120,9 +121,9 @@ Linkage make_linkage(double frame_length, const ThermalLink& link_ab, const Ther
   return model;
 }
 
-LinkageStart start_mode(const std::string& mode) {
-  if (mode == "rest") return LinkageStart::rest;
-  if (mode == "matched") return LinkageStart::matched;
+linkage::Start start_mode(const std::string& mode) {
+  if (mode == "rest") return linkage::Start::rest;
+  if (mode == "matched") return linkage::Start::matched;
   throw std::invalid_argument("mode = '" + mode + "', allowed is one of rest, matched");
 }
 
@@ -143,7 +144,7 @@ Row point_row(const Point& p) {
       {"journal_y_m", p.journal_centre.y()},
       {"spring_moment_N_m", p.spring_moment},
   };
-  if constexpr (std::is_same_v<Point, ElasticJointPoint>) {
+  if constexpr (std::is_same_v<Point, joint_loop::ElasticJointPoint>) {
     row.emplace_back("penetration_depth_m", p.depth);
     row.emplace_back("normal_force_N", p.normal_force);
     row.emplace_back("tangential_force_N", p.tangential_force);
@@ -189,30 +190,32 @@ py::class_<Loop> bind_path(py::module_& module, const char* name, const char* do
                              [](const Loop& self) { return Vector2d(self.journal_jump()); });
 }
 
-TangentialCompliance tangential_compliance(const std::string& name) {
-  if (name == "rigid") return TangentialCompliance::rigid;
-  if (name == "mindlin") return TangentialCompliance::mindlin;
+joint_loop::TangentialCompliance tangential_compliance(const std::string& name) {
+  if (name == "rigid") return joint_loop::TangentialCompliance::rigid;
+  if (name == "mindlin") return joint_loop::TangentialCompliance::mindlin;
   throw std::invalid_argument("tangential_compliance = '" + name +
                               "', allowed is one of rigid, mindlin");
 }
 
 void bind_models(py::module_& module) {
-  const Linkage standard;
-  py::class_<ThermalLink>(module, "ThermalLink",
-                          "A uniform link pinned to the frame; a third of its mass at its tip.")
+  const linkage::Linkage standard;
+  py::class_<linkage::ThermalLink>(
+      module, "ThermalLink", "A uniform link pinned to the frame; a third of its mass at its tip.")
       .def(py::init([](double length, double mass, double young_modulus, double area,
                        double expansion, double poisson_ratio) {
-             return ThermalLink{length, mass, young_modulus, area, expansion, poisson_ratio};
+             return linkage::ThermalLink{length, mass,      young_modulus,
+                                         area,   expansion, poisson_ratio};
            }),
            py::kw_only(), py::arg("stress_free_length_m"), py::arg("mass_kg"),
            py::arg("young_modulus_Pa"), py::arg("cross_section_area_m2"),
            py::arg("thermal_expansion_per_K"), py::arg("poisson_ratio") = 0.3);
 
-  py::class_<Linkage>(module, "Linkage",
-                      "One deployed rib of the umbrella antenna: links AB and BC on pins of the "
-                      "frame, a clearance\njoint between them at B, a torsion spring on the flare "
-                      "angle theta4 - theta2. Immutable.\nRaises ValueError for a value out of "
-                      "range.")
+  py::class_<linkage::Linkage>(
+      module, "Linkage",
+      "One deployed rib of the umbrella antenna: links AB and BC on pins of the "
+      "frame, a clearance\njoint between them at B, a torsion spring on the flare "
+      "angle theta4 - theta2. Immutable.\nRaises ValueError for a value out of "
+      "range.")
       .def(py::init(&make_linkage), py::kw_only(), py::arg("frame_length_m"), py::arg("link_ab"),
            py::arg("link_bc"), py::arg("journal_radius_m"), py::arg("bearing_radius_m"),
            py::arg("journal_thermal_expansion_per_K") = 0.0,
@@ -230,28 +233,29 @@ void bind_models(py::module_& module) {
            py::arg("axial_damping_ratio") = 0.0, py::arg("pin_damping_N_m_s_per_rad") = 0.0,
            py::arg("torsion_stiffness_N_m_per_rad") = 0.0,
            py::arg("torsion_free_angle_rad") = standard.torsion_free_angle)
-      .def_property_readonly("radial_clearance_m", &Linkage::radial_clearance)
-      .def_property_readonly("friction_coefficient", &Linkage::friction_coefficient,
+      .def_property_readonly("radial_clearance_m", &linkage::Linkage::radial_clearance)
+      .def_property_readonly("friction_coefficient", &linkage::Linkage::friction_coefficient,
                              "mu [-]; 0 without a friction law.")
-      .def_property_readonly("torsion_free_angle_rad", &Linkage::free_angle)
-      .def("first_contact_temperature_change", &first_contact_temperature,
+      .def_property_readonly("torsion_free_angle_rad", &linkage::Linkage::free_angle)
+      .def("first_contact_temperature_change", &linkage::first_contact_temperature,
            "Closed form of first contact on heating [K]; inf if there is none.");
 
-  py::class_<LinkageState>(module, "LinkageState", "Positions and velocities of the two tips.")
+  py::class_<linkage::State>(module, "LinkageState", "Positions and velocities of the two tips.")
       .def_property_readonly("bearing_centre_m",
-                             [](const LinkageState& s) { return Vector2d(s.bearing_centre); })
+                             [](const linkage::State& s) { return Vector2d(s.bearing_centre); })
       .def_property_readonly("journal_centre_m",
-                             [](const LinkageState& s) { return Vector2d(s.journal_centre); })
+                             [](const linkage::State& s) { return Vector2d(s.journal_centre); })
       .def_property_readonly("bearing_velocity_m_per_s",
-                             [](const LinkageState& s) { return Vector2d(s.bearing_velocity); })
+                             [](const linkage::State& s) { return Vector2d(s.bearing_velocity); })
       .def_property_readonly("journal_velocity_m_per_s",
-                             [](const LinkageState& s) { return Vector2d(s.journal_velocity); })
+                             [](const linkage::State& s) { return Vector2d(s.journal_velocity); })
       .def_property_readonly(
           "tangential_force_N",
-          [](const LinkageState& s) { return s.contact.tangential_force.x(); },
+          [](const linkage::State& s) { return s.contact.tangential_force.x(); },
           "Remembered friction on the journal along (-n_y, n_x) [N].")
-      .def_property_readonly("tangential_stiffness_N_per_m",
-                             [](const LinkageState& s) { return s.contact.tangential_stiffness; });
+      .def_property_readonly("tangential_stiffness_N_per_m", [](const linkage::State& s) {
+        return s.contact.tangential_stiffness;
+      });
 }
 
 void bind_runs(py::module_& module) {
@@ -277,7 +281,8 @@ void bind_runs(py::module_& module) {
 
   module.def(
       "initial_state",
-      [](const Linkage& model, const std::string& mode, double rate, const Vector2d& eccentricity) {
+      [](const linkage::Linkage& model, const std::string& mode, double rate,
+         const Vector2d& eccentricity) {
         return initial_state(model, start_mode(mode), rate, eccentricity);
       },
       py::arg("model"), py::arg("mode"), py::arg("temperature_rate_K_per_s") = 0.0,
@@ -286,8 +291,8 @@ void bind_runs(py::module_& module) {
       "'matched'.");
   module.def(
       "simulate",
-      [](const Linkage& model, const ThermalProgram& program, const LinkageState& start, int steps,
-         int sample_every) {
+      [](const linkage::Linkage& model, const thermal::Program& program,
+         const linkage::State& start, int steps, int sample_every) {
         const py::gil_scoped_release free;
         return BoundRun{model, program, simulate(model, program, start, {steps, sample_every})};
       },
@@ -297,50 +302,53 @@ void bind_runs(py::module_& module) {
       "temperature\nand value when a law leaves its range or the state ceases to be finite.");
   module.def(
       "simulate_adaptive",
-      [](const Linkage& model, const ThermalProgram& program, const LinkageState& start,
-         double tolerance, int samples) {
+      [](const linkage::Linkage& model, const thermal::Program& program,
+         const linkage::State& start, double tolerance, int samples) {
         const py::gil_scoped_release free;
         return BoundRun{model, program,
                         simulate_adaptive(model, program, start, {tolerance, samples})};
       },
       py::arg("model"), py::arg("program"), py::arg("start"),
-      py::arg("relative_tolerance") = AdaptiveRunOptions{}.relative_tolerance,
+      py::arg("relative_tolerance") = linkage::AdaptiveRunOptions{}.relative_tolerance,
       py::arg("samples") = 0, "Dormand-Prince with error control, for laws without memory.");
 }
 
 void bind_loops(py::module_& module) {
-  bind_path<JointLoop>(module, "JointLoop",
-                       "Quasi-static path of the loaded joint, rigid links, exact Coulomb.");
-  bind_path<ElasticLoop>(module, "ElasticLoop",
-                         "Quasi-static path of the loaded joint, elastic links and Hertz contact.")
-      .def_readonly("largest_force_residual", &ElasticLoop::largest_force_residual);
+  bind_path<joint_loop::RigidLoop>(
+      module, "JointLoop", "Quasi-static path of the loaded joint, rigid links, exact Coulomb.");
+  bind_path<joint_loop::ElasticLoop>(
+      module, "ElasticLoop",
+      "Quasi-static path of the loaded joint, elastic links and Hertz contact.")
+      .def_readonly("largest_force_residual", &joint_loop::ElasticLoop::largest_force_residual);
   module.def(
       "joint_point",
-      [](const Linkage& model, double change, int side, double contact_angle) {
-        return point_dict(joint_point(model, change, side, contact_angle));
+      [](const linkage::Linkage& model, double change, int side, double contact_angle) {
+        return point_dict(joint_loop::joint_point(model, change, side, contact_angle));
       },
       py::arg("model"), py::arg("temperature_change_K"), py::arg("side"),
       py::arg("contact_angle_rad"),
       "Equilibrium of rigid links in contact; side -1 when the spring closes the flare angle.");
   module.def(
-      "joint_loop", &joint_loop, py::arg("model"), py::arg("program"),
+      "joint_loop", &joint_loop::rigid_loop, py::arg("model"), py::arg("program"),
       py::arg("contact_angle_rad") = 0.0, py::arg("samples") = 200,
       "Quasi-static path from equilibrium at the given contact angle. Needs a torsion spring "
       "that loads the\njoint; raises ValueError otherwise.");
   module.def(
       "elastic_loop",
-      [](const Linkage& model, const ThermalProgram& program, double contact_angle, int samples,
-         const std::string& compliance) {
-        const ElasticLoopOptions options{samples, tangential_compliance(compliance)};
+      [](const linkage::Linkage& model, const thermal::Program& program, double contact_angle,
+         int samples, const std::string& compliance) {
+        const joint_loop::ElasticLoopOptions options{samples, tangential_compliance(compliance)};
         const py::gil_scoped_release free;
         return elastic_loop(model, program, options, contact_angle);
       },
       py::arg("model"), py::arg("program"), py::arg("contact_angle_rad") = 0.0,
-      py::arg("samples") = ElasticLoopOptions{}.samples, py::arg("tangential_compliance") = "rigid",
+      py::arg("samples") = joint_loop::ElasticLoopOptions{}.samples,
+      py::arg("tangential_compliance") = "rigid",
       "As joint_loop() with elastic links and Hertz contact; 'mindlin' is what slow dynamics and "
       "the DEM tend to.\nRaises ValueError as joint_loop(), RuntimeError if equilibrium is not "
       "found.");
-  module.def("loaded_state", &loaded_state, py::arg("model"), py::arg("contact_angle_rad") = 0.0,
+  module.def("loaded_state", &joint_loop::loaded_state, py::arg("model"),
+             py::arg("contact_angle_rad") = 0.0,
              "Equilibrium at dT = 0 in contact, at rest; a start for simulate().");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "statejump/rest_set.hpp"
+#include "statejump/rest_set/rest_set.hpp"
 
 #include <pybind11/eigen.h>
 #include <pybind11/functional.h>
@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "statejump/rest_set_curve.hpp"
-#include "statejump/rest_set_surface.hpp"
+#include "statejump/rest_set/curve.hpp"
+#include "statejump/rest_set/surface.hpp"
 
 namespace py = pybind11;
 
@@ -36,9 +36,9 @@ py::array_t<double> rows(const std::vector<Vector>& vectors) {
   return result;
 }
 
-py::dict set_dict(const RestSet& set) {
+py::dict set_dict(const rest_set::RestSet& set) {
   py::list parts;
-  for (const RestPart& part : set.parts) {
+  for (const rest_set::Part& part : set.parts) {
     py::dict one;
     one["area_m2"] = part.area;
     one["length_m"] = part.length;
@@ -61,9 +61,9 @@ py::dict set_dict(const RestSet& set) {
   return result;
 }
 
-py::dict study_dict(const RestStudy& study) {
+py::dict study_dict(const rest_set::Study& study) {
   py::list each;
-  for (const RestSet& set : study.each) each.append(set_dict(set));
+  for (const rest_set::RestSet& set : study.each) each.append(set_dict(set));
   py::dict result;
   result["each"] = each;
   result["any"] = set_dict(study.any);
@@ -71,11 +71,11 @@ py::dict study_dict(const RestStudy& study) {
   return result;
 }
 
-py::dict mesh_study(const RestMesh& mesh, const std::vector<Vector3d>& forces, double mu) {
-  const SurfaceRestStudy found = rest_on_mesh(mesh, forces, mu);
+py::dict mesh_study(const rest_set::Mesh& mesh, const std::vector<Vector3d>& forces, double mu) {
+  const rest_set::SurfaceStudy found = rest_on_mesh(mesh, forces, mu);
   py::dict result = study_dict(found.study);
   py::list polygons, triangles, counts;
-  for (const RestPiece& piece : found.pieces) {
+  for (const rest_set::Piece& piece : found.pieces) {
     polygons.append(rows(piece.polygon));
     triangles.append(piece.triangle);
     counts.append(piece.forces);
@@ -91,7 +91,7 @@ void bind_closed_forms(py::module_& module) {
   module.def(
       "rest_in_slot",
       [](double clearance, const std::vector<Vector3d>& forces, double mu) {
-        return study_dict(rest_in_slot(clearance, forces, mu));
+        return study_dict(rest_set::rest_in_slot(clearance, forces, mu));
       },
       py::arg("clearance_m"), py::arg("forces_N"), py::arg("friction_coefficient"),
       "Positions along x, -clearance to clearance, at which a block in a slot rests under each "
@@ -99,21 +99,21 @@ void bind_closed_forms(py::module_& module) {
   module.def(
       "rest_in_bearing",
       [](double clearance, const std::vector<Vector2d>& forces, double mu) {
-        return study_dict(rest_in_bearing(clearance, forces, mu));
+        return study_dict(rest_set::rest_in_bearing(clearance, forces, mu));
       },
       py::arg("clearance_m"), py::arg("forces_N"), py::arg("friction_coefficient"),
       "Rest positions of a journal's centre on the clearance circle; planar forces (x, y).");
   module.def(
       "rest_in_socket",
       [](double clearance, const std::vector<Vector3d>& forces, double mu) {
-        return study_dict(rest_in_socket(clearance, forces, mu));
+        return study_dict(rest_set::rest_in_socket(clearance, forces, mu));
       },
       py::arg("clearance_m"), py::arg("forces_N"), py::arg("friction_coefficient"),
       "Rest positions of a ball's centre on the clearance sphere.");
   module.def(
       "rest_in_bore",
       [](double clearance, double play, const std::vector<Vector3d>& forces, double mu) {
-        return study_dict(rest_in_bore(clearance, play, forces, mu));
+        return study_dict(rest_set::rest_in_bore(clearance, play, forces, mu));
       },
       py::arg("clearance_m"), py::arg("axial_play_m"), py::arg("forces_N"),
       py::arg("friction_coefficient"),
@@ -121,45 +121,45 @@ void bind_closed_forms(py::module_& module) {
 }
 
 void bind_curves(py::module_& module) {
-  py::class_<RestCurve>(module, "RestCurve", "A planar curve of the centre's positions.")
+  py::class_<rest_set::Curve>(module, "RestCurve", "A planar curve of the centre's positions.")
       .def_property_readonly("nodes_m",
-                             [](const RestCurve& self) {
+                             [](const rest_set::Curve& self) {
                                std::vector<Vector2d> points;
                                for (const auto& node : self.nodes) points.push_back(node.position);
                                return rows(points);
                              })
       .def_property_readonly("normals",
-                             [](const RestCurve& self) {
+                             [](const rest_set::Curve& self) {
                                std::vector<Vector2d> normals;
                                for (const auto& node : self.nodes) normals.push_back(node.normal);
                                return rows(normals);
                              })
-      .def_readonly("closed", &RestCurve::closed);
+      .def_readonly("closed", &rest_set::Curve::closed);
   module.def(
-      "implicit_curves", &implicit_curves, py::arg("gamma"), py::arg("gradient"), py::arg("low_m"),
-      py::arg("high_m"), py::arg("cells") = 200,
+      "implicit_curves", &rest_set::implicit_curves, py::arg("gamma"), py::arg("gradient"),
+      py::arg("low_m"), py::arg("high_m"), py::arg("cells") = 200,
       "Curves gamma(p) = 0 in a box; gamma < 0 where the centre is free. gradient(p) returns "
       "two numbers.");
-  module.def("lobed_curve", &lobed_curve, py::arg("clearance_m"), py::arg("amplitude"),
+  module.def("lobed_curve", &rest_set::lobed_curve, py::arg("clearance_m"), py::arg("amplitude"),
              py::arg("lobes"), py::arg("samples") = 720,
              "r(theta) = clearance (1 + amplitude cos(lobes theta)), free inside.");
-  module.def("journal_in_profile", &journal_in_profile, py::arg("rho"), py::arg("journal_radius_m"),
-             py::arg("samples") = 720,
+  module.def("journal_in_profile", &rest_set::journal_in_profile, py::arg("rho"),
+             py::arg("journal_radius_m"), py::arg("samples") = 720,
              "Curve of a journal's centre in a bore with the wall rho(theta) [m].");
   module.def(
       "rest_on_curves",
-      [](const std::vector<RestCurve>& curves, const std::vector<Vector2d>& forces, double mu) {
-        return study_dict(rest_on_curves(curves, forces, mu));
-      },
+      [](const std::vector<rest_set::Curve>& curves, const std::vector<Vector2d>& forces,
+         double mu) { return study_dict(rest_on_curves(curves, forces, mu)); },
       py::arg("curves"), py::arg("forces_N"), py::arg("friction_coefficient"),
       "Rest positions on planar curves.");
 }
 
 void bind_surfaces(py::module_& module) {
-  py::class_<RestMesh>(module, "RestMesh", "A triangulated surface of the centre's positions.")
+  py::class_<rest_set::Mesh>(module, "RestMesh",
+                             "A triangulated surface of the centre's positions.")
       .def(py::init([](std::vector<Vector3d> vertices, std::vector<std::array<int, 3>> triangles,
                        std::optional<std::vector<Vector3d>> normals) {
-             RestMesh mesh;
+             rest_set::Mesh mesh;
              mesh.vertices = std::move(vertices);
              mesh.triangles = std::move(triangles);
              if (normals) mesh.normals = std::move(*normals);
@@ -167,16 +167,18 @@ void bind_surfaces(py::module_& module) {
            }),
            py::arg("vertices_m"), py::arg("triangles"), py::arg("normals") = py::none(),
            "normals point to the free side; without them the triangles' right-hand normals do.")
-      .def_property_readonly("vertices_m", [](const RestMesh& self) { return rows(self.vertices); })
-      .def_property_readonly("normals", [](const RestMesh& self) { return rows(self.normals); })
-      .def_readonly("triangles", &RestMesh::triangles);
-  module.def("welded", &welded, py::arg("mesh"), py::arg("tolerance_m"),
+      .def_property_readonly("vertices_m",
+                             [](const rest_set::Mesh& self) { return rows(self.vertices); })
+      .def_property_readonly("normals",
+                             [](const rest_set::Mesh& self) { return rows(self.normals); })
+      .def_readonly("triangles", &rest_set::Mesh::triangles);
+  module.def("welded", &rest_set::welded, py::arg("mesh"), py::arg("tolerance_m"),
              "The mesh with coinciding vertices made one.");
-  module.def("implicit_surface", &implicit_surface, py::arg("gamma"), py::arg("gradient"),
+  module.def("implicit_surface", &rest_set::implicit_surface, py::arg("gamma"), py::arg("gradient"),
              py::arg("low_m"), py::arg("high_m"), py::arg("cells") = 40,
              "Surface gamma(p) = 0 in a box as a mesh; gamma < 0 where the centre is free.");
-  module.def("clearance_sphere", &clearance_sphere, py::arg("clearance_m"), py::arg("level"),
-             "Mesh of a ball's positions in its socket: 20 * 4^level triangles.");
+  module.def("clearance_sphere", &rest_set::clearance_sphere, py::arg("clearance_m"),
+             py::arg("level"), "Mesh of a ball's positions in its socket: 20 * 4^level triangles.");
   module.def("rest_on_mesh", &mesh_study, py::arg("mesh"), py::arg("forces_N"),
              py::arg("friction_coefficient"),
              "Rest positions on a mesh; besides the sets the mesh cut into polygons, each with the "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "statejump/spring_slider.hpp"
+#include "statejump/spring_slider/model.hpp"
 
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
@@ -8,8 +8,8 @@
 #include <string>
 
 #include "bindings.hpp"
-#include "statejump/spring_slider_history.hpp"
-#include "statejump/spring_slider_path.hpp"
+#include "statejump/spring_slider/history.hpp"
+#include "statejump/spring_slider/path.hpp"
 
 namespace py = pybind11;
 
@@ -19,7 +19,7 @@ namespace {
 
 void bind_model(py::module_& module) {
   constexpr double no_stop = std::numeric_limits<double>::infinity();
-  py::class_<SpringSlider>(
+  py::class_<spring_slider::SpringSlider>(
       module, "SpringSlider",
       "A heated link that pushes a block with dry friction between two stops (paper, section "
       "3).\n\n"
@@ -30,9 +30,9 @@ void bind_model(py::module_& module) {
       .def(py::init([](double young_modulus, double cross_section_area, double stress_free_length,
                        double thermal_expansion, double friction_force, double clearance_minus,
                        double clearance_plus, double preload_stiffness) {
-             const SpringSlider model{young_modulus,     cross_section_area, stress_free_length,
-                                      thermal_expansion, friction_force,     clearance_minus,
-                                      clearance_plus,    preload_stiffness};
+             const spring_slider::SpringSlider model{
+                 young_modulus,  cross_section_area, stress_free_length, thermal_expansion,
+                 friction_force, clearance_minus,    clearance_plus,     preload_stiffness};
              model.validate();
              return model;
            }),
@@ -40,29 +40,34 @@ void bind_model(py::module_& module) {
            py::arg("stress_free_length_m"), py::arg("thermal_expansion_per_K"),
            py::arg("friction_force_N"), py::arg("clearance_minus_m") = no_stop,
            py::arg("clearance_plus_m") = no_stop, py::arg("preload_stiffness_N_per_m") = 0.0)
-      .def_readonly("young_modulus_Pa", &SpringSlider::young_modulus)
-      .def_readonly("cross_section_area_m2", &SpringSlider::cross_section_area)
-      .def_readonly("stress_free_length_m", &SpringSlider::stress_free_length)
-      .def_readonly("thermal_expansion_per_K", &SpringSlider::thermal_expansion)
-      .def_readonly("friction_force_N", &SpringSlider::friction_force)
-      .def_readonly("clearance_minus_m", &SpringSlider::clearance_minus)
-      .def_readonly("clearance_plus_m", &SpringSlider::clearance_plus)
-      .def_readonly("preload_stiffness_N_per_m", &SpringSlider::preload_stiffness)
+      .def_readonly("young_modulus_Pa", &spring_slider::SpringSlider::young_modulus)
+      .def_readonly("cross_section_area_m2", &spring_slider::SpringSlider::cross_section_area)
+      .def_readonly("stress_free_length_m", &spring_slider::SpringSlider::stress_free_length)
+      .def_readonly("thermal_expansion_per_K", &spring_slider::SpringSlider::thermal_expansion)
+      .def_readonly("friction_force_N", &spring_slider::SpringSlider::friction_force)
+      .def_readonly("clearance_minus_m", &spring_slider::SpringSlider::clearance_minus)
+      .def_readonly("clearance_plus_m", &spring_slider::SpringSlider::clearance_plus)
+      .def_readonly("preload_stiffness_N_per_m", &spring_slider::SpringSlider::preload_stiffness)
       .def(
           "link_stiffness_N_per_m",
-          [](const SpringSlider& self, double change) { return link_stiffness(self, change); },
+          [](const spring_slider::SpringSlider& self, double change) {
+            return link_stiffness(self, change);
+          },
           py::arg("temperature_change_K") = 0.0, "k_T = E A/l_T [N/m] at dT [K].")
       .def_property_readonly(
-          "state_jump_m", [](const SpringSlider& self) { return state_jump(self); },
+          "state_jump_m", [](const spring_slider::SpringSlider& self) { return state_jump(self); },
           "f/(k + k_p) [m]: what one closed cycle leaves if it ends sliding at dT = 0.")
       .def(
           "euler_load_N",
-          [](const SpringSlider& self, const std::string& ends, double second_moment_of_area) {
+          [](const spring_slider::SpringSlider& self, const std::string& ends,
+             double second_moment_of_area) {
             if (ends == "clamped_clamped") {
-              return euler_load(self, EndCondition::clamped_clamped, second_moment_of_area);
+              return euler_load(self, spring_slider::EndCondition::clamped_clamped,
+                                second_moment_of_area);
             }
             if (ends == "pinned_pinned") {
-              return euler_load(self, EndCondition::pinned_pinned, second_moment_of_area);
+              return euler_load(self, spring_slider::EndCondition::pinned_pinned,
+                                second_moment_of_area);
             }
             throw py::value_error("ends = '" + ends +
                                   "', allowed is clamped_clamped or pinned_pinned");
@@ -74,45 +79,52 @@ void bind_model(py::module_& module) {
 }
 
 void bind_path_parts(py::module_& module) {
-  py::class_<Event>(module, "Event",
-                    "An instant at which the stage changes or a cycle ends.\n\n"
-                    "kind: 'first_slip', 'slip', 'stop_reached', 'stop_unloaded', 'stop_left',\n"
-                    "'reversal', 'force_sign_change' or 'cycle_end'.")
-      .def_property_readonly("kind", [](const Event& self) { return to_string(self.kind); })
-      .def_property_readonly("stage_before",
-                             [](const Event& self) { return to_string(self.stage_before); })
-      .def_property_readonly("stage_after",
-                             [](const Event& self) { return to_string(self.stage_after); })
-      .def_readonly("time_s", &Event::time)
-      .def_readonly("temperature_change_K", &Event::temperature_change)
-      .def_readonly("displacement_m", &Event::displacement)
-      .def_readonly("axial_force_N", &Event::axial_force, "Positive in compression.")
-      .def("__repr__", [](const Event& self) {
-        return "<Event " + std::string(to_string(self.kind)) +
+  py::class_<spring_slider::Event>(
+      module, "SpringSliderEvent",
+      "An instant at which the stage changes or a cycle ends.\n\n"
+      "kind: 'first_slip', 'slip', 'stop_reached', 'stop_unloaded', 'stop_left',\n"
+      "'reversal', 'force_sign_change' or 'cycle_end'.")
+      .def_property_readonly("kind",
+                             [](const spring_slider::Event& self) { return to_string(self.kind); })
+      .def_property_readonly(
+          "stage_before",
+          [](const spring_slider::Event& self) { return to_string(self.stage_before); })
+      .def_property_readonly(
+          "stage_after",
+          [](const spring_slider::Event& self) { return to_string(self.stage_after); })
+      .def_readonly("time_s", &spring_slider::Event::time)
+      .def_readonly("temperature_change_K", &spring_slider::Event::temperature_change)
+      .def_readonly("displacement_m", &spring_slider::Event::displacement)
+      .def_readonly("axial_force_N", &spring_slider::Event::axial_force, "Positive in compression.")
+      .def("__repr__", [](const spring_slider::Event& self) {
+        return "<SpringSliderEvent " + std::string(to_string(self.kind)) +
                " at dT = " + std::string(py::repr(py::float_(self.temperature_change))) + " K, " +
                to_string(self.stage_before) + " -> " + to_string(self.stage_after) + ">";
       });
-  py::class_<Segment>(module, "Segment",
-                      "Part of a path without an event inside; the temperature rises, falls or\n"
-                      "holds over it.\n\n"
-                      "stage: 'S1' to 'S5', 'at_stop_plus', 'at_stop_minus'; motion: 'stick',\n"
-                      "'slide', 'stop'; direction: sense of a slide or side of a stop, +1 or -1,\n"
-                      "0 for a stick; cycle: 0, 1, ...")
-      .def_property_readonly("stage", [](const Segment& self) { return to_string(self.stage); })
-      .def_property_readonly("motion", [](const Segment& self) { return to_string(self.motion); })
-      .def_readonly("direction", &Segment::direction)
-      .def_readonly("cycle", &Segment::cycle)
-      .def_readonly("start_time_s", &Segment::start_time)
-      .def_readonly("end_time_s", &Segment::end_time)
-      .def_readonly("start_temperature_change_K", &Segment::start_temperature_change)
-      .def_readonly("end_temperature_change_K", &Segment::end_temperature_change)
-      .def_readonly("start_displacement_m", &Segment::start_displacement)
-      .def_readonly("end_displacement_m", &Segment::end_displacement);
+  py::class_<spring_slider::Segment>(
+      module, "SpringSliderSegment",
+      "Part of a path without an event inside; the temperature rises, falls or\n"
+      "holds over it.\n\n"
+      "stage: 'S1' to 'S5', 'at_stop_plus', 'at_stop_minus'; motion: 'stick',\n"
+      "'slide', 'stop'; direction: sense of a slide or side of a stop, +1 or -1,\n"
+      "0 for a stick; cycle: 0, 1, ...")
+      .def_property_readonly(
+          "stage", [](const spring_slider::Segment& self) { return to_string(self.stage); })
+      .def_property_readonly(
+          "motion", [](const spring_slider::Segment& self) { return to_string(self.motion); })
+      .def_readonly("direction", &spring_slider::Segment::direction)
+      .def_readonly("cycle", &spring_slider::Segment::cycle)
+      .def_readonly("start_time_s", &spring_slider::Segment::start_time)
+      .def_readonly("end_time_s", &spring_slider::Segment::end_time)
+      .def_readonly("start_temperature_change_K", &spring_slider::Segment::start_temperature_change)
+      .def_readonly("end_temperature_change_K", &spring_slider::Segment::end_temperature_change)
+      .def_readonly("start_displacement_m", &spring_slider::Segment::start_displacement)
+      .def_readonly("end_displacement_m", &spring_slider::Segment::end_displacement);
 }
 
-py::dict to_dict(const History& history) {
+py::dict to_dict(const spring_slider::History& history) {
   py::list stage;
-  for (const Stage entry : history.stage) stage.append(to_string(entry));
+  for (const spring_slider::Stage entry : history.stage) stage.append(to_string(entry));
   py::dict result;
   result["time_s"] = history.time;
   result["temperature_change_K"] = history.temperature_change;
@@ -129,20 +141,22 @@ py::dict to_dict(const History& history) {
 }
 
 void bind_path(py::module_& module) {
-  py::class_<Path>(module, "Path", "Exact quasi-static path, the result of solve().")
-      .def_readonly("model", &Path::model)
-      .def_readonly("program", &Path::program)
-      .def_readonly("events", &Path::events, "List of Event, in order of time.")
-      .def_readonly("segments", &Path::segments, "List of Segment, without gaps in time.")
-      .def_property_readonly("state_jump_m", &Path::state_jump,
+  py::class_<spring_slider::Path>(module, "SpringSliderPath",
+                                  "Exact quasi-static path, the result of solve().")
+      .def_readonly("model", &spring_slider::Path::model)
+      .def_readonly("program", &spring_slider::Path::program)
+      .def_readonly("events", &spring_slider::Path::events, "List of Event, in order of time.")
+      .def_readonly("segments", &spring_slider::Path::segments,
+                    "List of Segment, without gaps in time.")
+      .def_property_readonly("state_jump_m", &spring_slider::Path::state_jump,
                              "Displacement at the end minus that at the start [m].")
-      .def("jump_after_cycle", &Path::jump_after_cycle, py::arg("cycle"),
+      .def("jump_after_cycle", &spring_slider::Path::jump_after_cycle, py::arg("cycle"),
            "Displacement [m] at the end of a cycle, counted from 1, minus that at the start.")
-      .def_property_readonly("warnings", &warnings,
+      .def_property_readonly("warnings", &spring_slider::warnings,
                              "Sentences on the limits of the model that this path leaves.")
       .def(
           "sample",
-          [](const Path& self, const Eigen::VectorXd& time_s) {
+          [](const spring_slider::Path& self, const Eigen::VectorXd& time_s) {
             return to_dict(sample(self, time_s));
           },
           py::arg("time_s"),
@@ -153,8 +167,8 @@ void bind_path(py::module_& module) {
           "thermal_work_J, and `stage`, a list of names. Every entry is exact: it does not\n"
           "depend on the other times.");
   module.def(
-      "solve",
-      [](const SpringSlider& model, const kernel::ThermalProgram& program) {
+      "solve_spring_slider",
+      [](const spring_slider::SpringSlider& model, const thermal::Program& program) {
         return solve(model, program);
       },
       py::arg("model"), py::arg("program"),

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "statejump/truss_path.hpp"
+#include "statejump/truss/path.hpp"
 
 namespace py = pybind11;
 
@@ -64,7 +64,7 @@ Vector3d row(const Numbers& array, std::size_t i) {
 }
 
 /// Gives the node the directions that neither a fixed coordinate nor a guide plane takes away.
-void set_free_directions(const bool* fixed, Vector3d normal, TrussNode& node) {
+void set_free_directions(const bool* fixed, Vector3d normal, truss::Node& node) {
   std::vector<Vector3d> held;
   for (int k = 0; k < 3; ++k) {
     if (fixed[k]) held.push_back(Vector3d::Unit(k));
@@ -88,10 +88,10 @@ void set_free_directions(const bool* fixed, Vector3d normal, TrussNode& node) {
   }
 }
 
-TrussModel make_model(const py::dict& nodes_, const py::dict& links_, const py::dict& springs_,
-                      const py::dict& torsion_springs_, const py::dict& sliders_,
-                      const py::dict& revolutes_, std::vector<kernel::ThermalProgram> programs) {
-  TrussModel model;
+truss::Model make_model(const py::dict& nodes_, const py::dict& links_, const py::dict& springs_,
+                        const py::dict& torsion_springs_, const py::dict& sliders_,
+                        const py::dict& revolutes_, std::vector<thermal::Program> programs) {
+  truss::Model model;
   model.programs = std::move(programs);
   {
     const Table table("nodes", nodes_);
@@ -100,7 +100,7 @@ TrussModel make_model(const py::dict& nodes_, const py::dict& links_, const py::
     const auto normal = table.numbers("guide_normal", 3);
     const auto force = table.numbers("force_N", 3);
     for (std::size_t i = 0; i < table.size(); ++i) {
-      TrussNode node;
+      truss::Node node;
       node.name = table.name(i);
       node.position = row(position, i);
       node.load = row(force, i);
@@ -188,7 +188,7 @@ TrussModel make_model(const py::dict& nodes_, const py::dict& links_, const py::
 
 /// One array (states, items) or (states, items, 3) of a member of every state.
 template <class Member>
-py::array_t<double> stacked(const std::vector<TrussState>& states, Member member,
+py::array_t<double> stacked(const std::vector<truss::State>& states, Member member,
                             py::ssize_t width) {
   const auto count = static_cast<py::ssize_t>(states.size());
   const py::ssize_t items = count == 0 ? 0 : (states.front().*member).size() / width;
@@ -196,7 +196,7 @@ py::array_t<double> stacked(const std::vector<TrussState>& states, Member member
   if (width > 1) shape.push_back(width);
   py::array_t<double> result(shape);
   double* to = result.mutable_data();
-  for (const TrussState& state : states) {
+  for (const truss::State& state : states) {
     const auto& values = state.*member;
     to = std::copy(values.data(), values.data() + values.size(), to);
   }
@@ -204,52 +204,53 @@ py::array_t<double> stacked(const std::vector<TrussState>& states, Member member
 }
 
 template <class Member>
-py::array_t<double> scalars(const std::vector<TrussState>& states, Member member) {
+py::array_t<double> scalars(const std::vector<truss::State>& states, Member member) {
   py::array_t<double> result(static_cast<py::ssize_t>(states.size()));
   for (std::size_t i = 0; i < states.size(); ++i) result.mutable_data()[i] = states[i].*member;
   return result;
 }
 
 template <class Member>
-py::array_t<unsigned char> statuses(const std::vector<TrussState>& states, Member member) {
+py::array_t<unsigned char> statuses(const std::vector<truss::State>& states, Member member) {
   const auto count = static_cast<py::ssize_t>(states.size());
   const auto items = static_cast<py::ssize_t>(count == 0 ? 0 : (states.front().*member).size());
   py::array_t<unsigned char> result({count, items});
   unsigned char* to = result.mutable_data();
-  for (const TrussState& state : states) {
-    for (const JointStatus status : state.*member) *to++ = static_cast<unsigned char>(status);
+  for (const truss::State& state : states) {
+    for (const truss::JointStatus status : state.*member)
+      *to++ = static_cast<unsigned char>(status);
   }
   return result;
 }
 
-py::dict states_dict(const std::vector<TrussState>& states) {
+py::dict states_dict(const std::vector<truss::State>& states) {
   py::dict d;
-  d["time_s"] = scalars(states, &TrussState::time);
-  d["temperature_change_K"] = scalars(states, &TrussState::temperature_change);
-  d["displacement_m"] = stacked(states, &TrussState::displacement, 3);
-  d["axial_force_N"] = stacked(states, &TrussState::axial_force, 1);
-  d["tension_N"] = stacked(states, &TrussState::tension, 1);
-  d["slide_m"] = stacked(states, &TrussState::slide, 1);
-  d["slider_force_N"] = stacked(states, &TrussState::slider_force, 1);
-  d["slider_status"] = statuses(states, &TrussState::slider_status);
-  d["slider_dissipation_J"] = stacked(states, &TrussState::slider_dissipation, 1);
-  d["eccentricity_m"] = stacked(states, &TrussState::eccentricity, 3);
-  d["normal_force_N"] = stacked(states, &TrussState::normal_force, 1);
-  d["friction_force_N"] = stacked(states, &TrussState::friction_force, 1);
-  d["revolute_status"] = statuses(states, &TrussState::revolute_status);
-  d["revolute_dissipation_J"] = stacked(states, &TrussState::revolute_dissipation, 1);
-  d["elastic_energy_J"] = scalars(states, &TrussState::elastic_energy);
-  d["load_potential_J"] = scalars(states, &TrussState::load_potential);
-  d["thermal_work_J"] = scalars(states, &TrussState::thermal_work);
+  d["time_s"] = scalars(states, &truss::State::time);
+  d["temperature_change_K"] = scalars(states, &truss::State::temperature_change);
+  d["displacement_m"] = stacked(states, &truss::State::displacement, 3);
+  d["axial_force_N"] = stacked(states, &truss::State::axial_force, 1);
+  d["tension_N"] = stacked(states, &truss::State::tension, 1);
+  d["slide_m"] = stacked(states, &truss::State::slide, 1);
+  d["slider_force_N"] = stacked(states, &truss::State::slider_force, 1);
+  d["slider_status"] = statuses(states, &truss::State::slider_status);
+  d["slider_dissipation_J"] = stacked(states, &truss::State::slider_dissipation, 1);
+  d["eccentricity_m"] = stacked(states, &truss::State::eccentricity, 3);
+  d["normal_force_N"] = stacked(states, &truss::State::normal_force, 1);
+  d["friction_force_N"] = stacked(states, &truss::State::friction_force, 1);
+  d["revolute_status"] = statuses(states, &truss::State::revolute_status);
+  d["revolute_dissipation_J"] = stacked(states, &truss::State::revolute_dissipation, 1);
+  d["elastic_energy_J"] = scalars(states, &truss::State::elastic_energy);
+  d["load_potential_J"] = scalars(states, &truss::State::load_potential);
+  d["thermal_work_J"] = scalars(states, &truss::State::thermal_work);
   return d;
 }
 
-py::dict path_dict(const TrussPath& path) {
+py::dict path_dict(const truss::Path& path) {
   py::dict result;
   result["states"] = states_dict(path.states);
   result["cycle_ends"] = states_dict(path.cycle_ends);
   py::list events;
-  for (const TrussEvent& event : path.events) {
+  for (const truss::Event& event : path.events) {
     py::dict one;
     one["time_s"] = event.time;
     one["interval_s"] = event.interval;
@@ -277,12 +278,11 @@ void bind_truss(py::module_& module) {
       "truss_path",
       [](const py::dict& nodes, const py::dict& links, const py::dict& springs,
          const py::dict& torsion_springs, const py::dict& sliders, const py::dict& revolutes,
-         std::vector<kernel::ThermalProgram> programs, int increments_per_branch,
-         bool locate_events, double event_tolerance, bool cycle_ends_only,
-         const py::object& progress) {
-        const TrussModel model = make_model(nodes, links, springs, torsion_springs, sliders,
-                                            revolutes, std::move(programs));
-        TrussOptions options;
+         std::vector<thermal::Program> programs, int increments_per_branch, bool locate_events,
+         double event_tolerance, bool cycle_ends_only, const py::object& progress) {
+        const truss::Model model = make_model(nodes, links, springs, torsion_springs, sliders,
+                                              revolutes, std::move(programs));
+        truss::Options options;
         options.increments_per_branch = increments_per_branch;
         options.locate_events = locate_events;
         options.event_tolerance = event_tolerance;
@@ -296,10 +296,10 @@ void bind_truss(py::module_& module) {
           }
           return progress.is_none() || !progress(done).is(py::bool_(false));
         };
-        TrussPath path;
+        truss::Path path;
         {
           py::gil_scoped_release unlocked;
-          path = truss_path(model, options);
+          path = truss::solve(model, options);
         }
         return path_dict(path);
       },

@@ -28,7 +28,7 @@ def table1(cases: Path) -> Case:
     return load_case(cases / "table1.toml")
 
 
-def first(path: _engine.Path, kind: str) -> float:
+def first(path: _engine.SpringSliderPath, kind: str) -> float:
     return next(event.temperature_change_K for event in path.events if event.kind == kind)
 
 

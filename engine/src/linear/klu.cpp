@@ -3,7 +3,7 @@
 
 #include "sparse_factor.hpp"
 
-namespace statejump::detail {
+namespace statejump::linear {
 
 struct SparseFactor::Factors {
   Factors() {
@@ -56,4 +56,4 @@ const char* SparseFactor::library() {
   return "KLU";
 }
 
-}  // namespace statejump::detail
+}  // namespace statejump::linear

@@ -5,7 +5,7 @@
 #include <Eigen/SparseCore>
 #include <memory>
 
-namespace statejump::detail {
+namespace statejump::linear {
 
 /// LU factors of a sparse square matrix whose pattern never changes. One source file per library:
 /// KLU where SuiteSparse is installed, else Eigen's SparseLU. (CHOLMOD factorises symmetric
@@ -30,4 +30,4 @@ class SparseFactor {
   std::unique_ptr<Factors> factors_;
 };
 
-}  // namespace statejump::detail
+}  // namespace statejump::linear

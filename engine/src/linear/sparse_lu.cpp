@@ -3,7 +3,7 @@
 
 #include "sparse_factor.hpp"
 
-namespace statejump::detail {
+namespace statejump::linear {
 
 struct SparseFactor::Factors {
   Eigen::SparseLU<Eigen::SparseMatrix<double>> lu;
@@ -28,4 +28,4 @@ const char* SparseFactor::library() {
   return "SparseLU";
 }
 
-}  // namespace statejump::detail
+}  // namespace statejump::linear

@@ -105,7 +105,7 @@ def displacement_row(case: SpringSliderCase, exact: History, other: History) -> 
                     case.tolerance.displacement_rms_relative)
 
 
-def compare(case: SpringSliderCase, path: _engine.Path, dem: History) -> list[Quantity]:
+def compare(case: SpringSliderCase, path: _engine.SpringSliderPath, dem: History) -> list[Quantity]:
     """Compare a DEM history with the exact path of the same case."""
     tolerance = case.tolerance
     samples = case.dem.samples_per_cycle

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "statejump/linkage.hpp"
+#include "statejump/linkage/model.hpp"
 
-namespace statejump::testing {
+namespace statejump::linkage {
 
 inline constexpr double frame = 0.120;
 inline constexpr double alpha = 23.75e-6;
@@ -20,12 +20,12 @@ inline Linkage umbrella(double clearance = 1e-4) {
 }
 
 /// 0 → 100 K → 0 within `duration` [s].
-inline kernel::ThermalProgram heating(double duration = 1.0, double peak = 100.0) {
-  kernel::ThermalProgram program;
-  program.shape = kernel::ThermalShape::triangle;
+inline thermal::Program heating(double duration = 1.0, double peak = 100.0) {
+  thermal::Program program;
+  program.shape = thermal::Shape::triangle;
   program.temperature_change_max = peak;
   program.period = duration;
   return program;
 }
 
-}  // namespace statejump::testing
+}  // namespace statejump::linkage

@@ -7,28 +7,28 @@
 #include <string>
 
 #include "statejump/kernel/mindlin.hpp"
-#include "statejump/truss_path.hpp"
-#include "truss_newton.hpp"
-#include "truss_system.hpp"
+#include "statejump/truss/path.hpp"
+#include "truss/newton.hpp"
+#include "truss/system.hpp"
 
-namespace statejump {
+namespace statejump::truss {
 namespace {
 
 using detail::JointModel;
 using detail::Statuses;
-using detail::TrussSystem;
+using detail::System;
 using Eigen::VectorXd;
 
-kernel::ThermalProgram triangle(double largest) {
-  kernel::ThermalProgram program;
-  program.shape = kernel::ThermalShape::triangle;
+thermal::Program triangle(double largest) {
+  thermal::Program program;
+  program.shape = thermal::Shape::triangle;
   program.temperature_change_max = largest;
   program.period = 1.0;
   return program;
 }
 
-TrussNode node(const std::string& name, double x, double y, int freedoms) {
-  TrussNode made;
+Node node(const std::string& name, double x, double y, int freedoms) {
+  Node made;
   made.name = name;
   made.position = {x, y, 0.0};
   made.freedoms = freedoms;
@@ -36,12 +36,12 @@ TrussNode node(const std::string& name, double x, double y, int freedoms) {
 }
 
 /// Bar on a block that slides on the ground.
-TrussModel bar() {
-  TrussModel model;
+Model bar() {
+  Model model;
   model.programs = {triangle(100.0)};
   model.nodes = {node("A", 0, 0, 0), node("B", 0.5, 0, 1)};
   model.links = {{"AB", 0, 1, 70e9 * 9e-6, 0.5, 23.4e-6, 0, 1.0}};
-  TrussSlider slider;
+  Slider slider;
   slider.name = "S";
   slider.first = 1;
   slider.friction_force = 30.0;
@@ -51,8 +51,8 @@ TrussModel bar() {
 
 /// Rib of two bars with a clearance joint, a torsion spring and a cable, at rest in no special
 /// shape.
-TrussModel rib() {
-  TrussModel model;
+Model rib() {
+  Model model;
   model.programs = {triangle(100.0)};
   model.nodes = {node("A", 0, 0, 0), node("C", 0.12, 0, 0), node("B", 0.02875, 0.0409, 2),
                  node("J", 0.02875, 0.0409, 2)};
@@ -75,9 +75,9 @@ TrussModel rib() {
   return model;
 }
 
-std::string message(const TrussModel& model) {
+std::string message(const Model& model) {
   try {
-    truss_path(model);
+    solve(model);
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -85,7 +85,7 @@ std::string message(const TrussModel& model) {
 }
 
 TEST(Truss, BarJumpsByFrictionOverStiffness) {
-  const TrussPath path = truss_path(bar());
+  const Path path = solve(bar());
   const double jump = path.cycle_ends.back().displacement(0, 1);
   EXPECT_NEAR(jump, 30.0 * 0.5 / (70e9 * 9e-6), 1e-12 * jump);
   EXPECT_TRUE(path.complete);
@@ -94,7 +94,7 @@ TEST(Truss, BarJumpsByFrictionOverStiffness) {
 TEST(Truss, SliderBetweenTwoNodesHoldsAcrossItsAxis) {
   // The same bar, its block on a carrier that a second bar holds upright: a load across the axis
   // goes into the carrier.
-  TrussModel model = bar();
+  Model model = bar();
   model.nodes[1].freedoms = 2;
   model.nodes.push_back(node("D", 0.5, 0, 2));
   model.nodes.push_back(node("E", 0.5, -1, 0));
@@ -103,17 +103,17 @@ TEST(Truss, SliderBetweenTwoNodesHoldsAcrossItsAxis) {
   model.links.push_back({"FD", 4, 2, 6.3e9, 1.0, 0.0, 0, 1.0});
   model.nodes[1].load = {0.0, -63.0, 0.0};
   model.sliders[0].second = 2;
-  const TrussPath path = truss_path(model);
-  const TrussState& end = path.states.back();
+  const Path path = solve(model);
+  const State& end = path.states.back();
   EXPECT_NEAR(end.axial_force[1], 63.0, 0.05);  // 0.05: the bars tilt by 1e-4
   EXPECT_NEAR(end.displacement(1, 1), end.displacement(1, 2), 1e-15);
   EXPECT_NEAR(std::abs(end.slider_force[0]), 30.0, 1e-9);
 }
 
 /// Heat of friction, elastic energy and the temperature's work since the start, over the heat.
-double relative_residue(const TrussPath& path) {
-  const TrussState& start = path.states.front();
-  const TrussState& end = path.states.back();
+double relative_residue(const Path& path) {
+  const State& start = path.states.front();
+  const State& end = path.states.back();
   const double heat = end.slider_dissipation.sum() + end.revolute_dissipation.sum();
   const double stored =
       end.elastic_energy + end.load_potential - start.elastic_energy - start.load_potential;
@@ -122,13 +122,13 @@ double relative_residue(const TrussPath& path) {
 
 TEST(Truss, ElasticSliderBendsBeforeItSlips) {
   // Bar and contact are springs in series until the friction is f: (E A/l_T) (l0 α ΔT − s) = k_t s.
-  TrussModel model = bar();
+  Model model = bar();
   const double stiffness = 1e7;
   model.sliders[0].tangential_stiffness = stiffness;
-  const TrussPath path = truss_path(model);
+  const Path path = solve(model);
   const double growth = 0.5 * 23.4e-6;
   const auto axial = [&](double change) { return 6.3e5 / (0.5 + growth * change); };
-  for (const TrussState& state : path.states) {
+  for (const State& state : path.states) {
     if (state.time >= path.events.front().time) break;
     const double change = state.temperature_change;
     const double expected = axial(change) * growth * change / (axial(change) + stiffness);
@@ -143,7 +143,7 @@ TEST(Truss, ElasticSliderBendsBeforeItSlips) {
   const double jump = 30.0 * 0.5 / 6.3e5;
   EXPECT_NEAR(path.states.back().slide[0], jump, 1e-12 * jump);
   double farthest = 0.0;
-  for (const TrussState& state : path.states) farthest = std::max(farthest, state.slide[0]);
+  for (const State& state : path.states) farthest = std::max(farthest, state.slide[0]);
   const double slid = 2.0 * farthest - jump - 3.0 * 30.0 / stiffness;
   // While it bends and creeps near a turn, the located changes miss 1e-9 of the slide.
   EXPECT_NEAR(path.states.back().slider_dissipation[0], 30.0 * slid, 1e-7 * 30.0 * slid);
@@ -154,17 +154,17 @@ TEST(Truss, ElasticSliderBendsBeforeItSlips) {
 
 TEST(Truss, ElasticSliderKeepsItsBendAtAStop) {
   // It arrives at the stop bent by f, leaves where the force is f again, and slips back at −f.
-  TrussModel model = bar();
+  Model model = bar();
   const double stiffness = 1e7;
   const double stop = 4e-4;
   model.sliders[0].tangential_stiffness = stiffness;
   model.sliders[0].clearance_plus = stop;
-  const TrussPath path = truss_path(model);
+  const Path path = solve(model);
   const std::vector<JointStatus> expected{JointStatus::slip_plus, JointStatus::stop_plus,
                                           JointStatus::stick, JointStatus::slip_minus};
   ASSERT_EQ(path.events.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(path.events[i].after, expected[i]);
-  for (const TrussState& state : path.states) {
+  for (const State& state : path.states) {
     EXPECT_LE(state.slide[0], stop * (1 + 1e-12));
     if (state.time == path.events[3].time) {
       // Located to 1e-9 of the branch, 100 K.
@@ -176,19 +176,19 @@ TEST(Truss, ElasticSliderKeepsItsBendAtAStop) {
 }
 
 /// Rib whose contact gives way, k_t/k_n of aluminium.
-TrussModel elastic_rib() {
-  TrussModel model = rib();
+Model elastic_rib() {
+  Model model = rib();
   model.revolutes[0].mindlin_stiffness = 1.5 * 2.6e10 * 1.4 / 1.7;
   return model;
 }
 
-/// Slide of the rib's surfaces between two of its states; see truss_path().
-double surface_slide(const TrussModel& model, const TrussState& from, const TrussState& to) {
+/// Slide of the rib's surfaces between two of its states; see solve().
+double surface_slide(const Model& model, const State& from, const State& to) {
   const ClearanceRevolute& joint = model.revolutes[0];
   const auto angle = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
   };
-  const auto link = [&](const TrussState& state, int far, int near) -> Eigen::Vector3d {
+  const auto link = [&](const State& state, int far, int near) -> Eigen::Vector3d {
     return model.nodes[static_cast<std::size_t>(near)].position + state.displacement.col(near) -
            model.nodes[static_cast<std::size_t>(far)].position - state.displacement.col(far);
   };
@@ -203,11 +203,11 @@ double surface_slide(const TrussModel& model, const TrussState& from, const Trus
 
 TEST(Truss, ElasticRevoluteIsTheHistorySpringOfTheDem) {
   // The law of the DEM, driven along the path that the solver found, carries the same friction.
-  const TrussModel model = elastic_rib();
-  TrussOptions options;
+  const Model model = elastic_rib();
+  Options options;
   options.increments_per_branch = 2000;
-  const TrussPath path = truss_path(model, options);
-  const auto stiffness = [&](const TrussState& state) {
+  const Path path = solve(model, options);
+  const auto stiffness = [&](const State& state) {
     const double depth = state.eccentricity.col(0).norm() - 1e-4;
     return model.revolutes[0].mindlin_stiffness * std::sqrt(depth);
   };
@@ -218,7 +218,7 @@ TEST(Truss, ElasticRevoluteIsTheHistorySpringOfTheDem) {
   double largest = 0.0;
   int sticks = 0;
   for (std::size_t i = 1; i < path.states.size(); ++i) {
-    const TrussState& state = path.states[i];
+    const State& state = path.states[i];
     const double slide = surface_slide(model, path.states[i - 1], state);
     const double before = history.tangential_stiffness;
     kernel::mindlin_step(stiffness(state), 0.15 * state.normal_force[0],
@@ -238,30 +238,30 @@ TEST(Truss, ElasticRevoluteIsTheHistorySpringOfTheDem) {
 
 TEST(Truss, ElasticRevoluteClosesItsBalance) {
   // Second order in the increments: twenty times as many leave less than a hundredth.
-  TrussOptions options;
+  Options options;
   options.increments_per_branch = 50;
-  const double coarse = relative_residue(truss_path(elastic_rib(), options));
+  const double coarse = relative_residue(solve(elastic_rib(), options));
   options.increments_per_branch = 1000;
-  const double fine = relative_residue(truss_path(elastic_rib(), options));
+  const double fine = relative_residue(solve(elastic_rib(), options));
   EXPECT_LT(std::abs(fine), 1e-6);
   EXPECT_LT(std::abs(fine), 1e-2 * std::abs(coarse) + 1e-9);
 }
 
 TEST(Truss, StiffContactsApproachRigidOnes) {
-  TrussModel model = rib();
-  const Eigen::Matrix3Xd rigid = truss_path(model).states.back().displacement;
+  Model model = rib();
+  const Eigen::Matrix3Xd rigid = solve(model).states.back().displacement;
   double last = 1.0;
   for (const double factor : {1.0, 10.0, 100.0}) {
     model.revolutes[0].mindlin_stiffness = factor * elastic_rib().revolutes[0].mindlin_stiffness;
-    const double apart = (truss_path(model).states.back().displacement - rigid).norm();
+    const double apart = (solve(model).states.back().displacement - rigid).norm();
     EXPECT_LT(apart, 0.3 * last) << factor;  // first order in 1/k_t: a tenth each, and higher ones
     last = apart;
   }
 }
 
 TEST(Truss, JacobianIsTheDerivativeOfTheResidual) {
-  const TrussModel model = elastic_rib();
-  const TrussSystem system(model);
+  const Model model = elastic_rib();
+  const System system(model);
   VectorXd z = VectorXd::LinSpaced(system.unknowns(), 1e-5, 6e-5);
   z[2] += 9e-5;  // in contact
   z[4] = 5.0;    // normal force, friction
@@ -306,16 +306,16 @@ TEST(Truss, JacobianIsTheDerivativeOfTheResidual) {
 }
 
 TEST(Truss, RibFollowsItsPathAndClosesItsBalance) {
-  const TrussPath path = truss_path(rib());
+  const Path path = solve(rib());
   EXPECT_LT(path.largest_force_residual, 1e-11);
-  for (const TrussState& state : path.states) {
+  for (const State& state : path.states) {
     EXPECT_LE(std::abs(state.friction_force[0]), 0.15 * state.normal_force[0] + 1e-9);
     EXPECT_GT(state.normal_force[0], 0.0);
   }
 }
 
 TEST(Truss, ItemsOutOfRangeAreNamed) {
-  TrussModel model = bar();
+  Model model = bar();
   model.links[0].axial_stiffness = -1.0;
   EXPECT_EQ(message(model), "link 'AB': axial_stiffness = -1, allowed is finite, > 0 N");
   model = bar();
@@ -333,11 +333,11 @@ TEST(Truss, ItemsOutOfRangeAreNamed) {
 }
 
 TEST(Truss, MechanismIsNamed) {
-  TrussModel model = rib();
+  Model model = rib();
   model.nodes[0].freedoms = 2;
   model.springs.clear();
   EXPECT_NE(message(model).find("mechanism even with every joint held"), std::string::npos);
 }
 
 }  // namespace
-}  // namespace statejump
+}  // namespace statejump::truss

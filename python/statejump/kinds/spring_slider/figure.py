@@ -27,7 +27,7 @@ STYLE = {"svg.hashsalt": "statejump", "font.size": 9, "axes.grid": True, "grid.c
 MOST_NAMED_CYCLES = 3  # beyond it names of stages would cover each other
 
 
-def figure(case: SpringSliderCase, path: _engine.Path, dem: History, folder: Path) -> list[Path]:
+def figure(case: SpringSliderCase, path: _engine.SpringSliderPath, dem: History, folder: Path) -> list[Path]:
     """Write ``<case>.png`` and ``<case>.svg`` into the folder and return their paths."""
     dense = np.linspace(0, dem["time_s"][-1], 4001)
     event_times = [event.time_s for event in path.events]
@@ -64,7 +64,7 @@ def save(drawing: plt.Figure, folder: Path, name: str) -> list[Path]:
     return written
 
 
-def _mark_stages(panels: np.ndarray, path: _engine.Path) -> None:
+def _mark_stages(panels: np.ndarray, path: _engine.SpringSliderPath) -> None:
     """Shade the stages over time; name them in the first cycle when they are wide enough."""
     end = path.segments[-1].end_time_s
     spans: list[list] = []
@@ -90,7 +90,7 @@ def _mark_stages(panels: np.ndarray, path: _engine.Path) -> None:
         panel.set_xlim(0, end)
 
 
-def _mark_events(panel: plt.Axes, path: _engine.Path) -> None:
+def _mark_events(panel: plt.Axes, path: _engine.SpringSliderPath) -> None:
     """Points at the first cycle's events on the loop, with their temperatures."""
     labels = {"first_slip": ("first slip", (14, 0), "left"),
               "stop_reached": ("stop reached", (38, -34), "right"),
@@ -107,7 +107,7 @@ def _mark_events(panel: plt.Axes, path: _engine.Path) -> None:
                            ha=side, va="center")
 
 
-def _mark_jump(panel: plt.Axes, path: _engine.Path) -> None:
+def _mark_jump(panel: plt.Axes, path: _engine.SpringSliderPath) -> None:
     jump = path.state_jump_m
     if jump:
         last = path.segments[-1].end_displacement_m * 1e3

@@ -57,12 +57,12 @@ def warnings(case: SpringSliderCase) -> list[str]:
     ]
 
 
-def solve(case: SpringSliderCase) -> _engine.Path:
+def solve(case: SpringSliderCase) -> _engine.SpringSliderPath:
     """Exact path of a case: segments, events, state jump."""
-    return _engine.solve(spring_slider(case), thermal_program(case))
+    return _engine.solve_spring_slider(spring_slider(case), thermal_program(case))
 
 
-def sample(path: _engine.Path, times_s: np.ndarray) -> History:
+def sample(path: _engine.SpringSliderPath, times_s: np.ndarray) -> History:
     """History of a path at the given times [s]; exact at any sampling."""
     columns = path.sample(np.asarray(times_s, dtype=float))
     return History({name: np.asarray(values) for name, values in columns.items()})

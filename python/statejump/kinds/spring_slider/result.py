@@ -124,7 +124,7 @@ def _run(
     return ModelRun(plain, energy, links, contacts, events, summary)
 
 
-def reduced_run(case: SpringSliderCase, path: _engine.Path, history: History) -> ModelRun:
+def reduced_run(case: SpringSliderCase, path: _engine.SpringSliderPath, history: History) -> ModelRun:
     """The reduced model: exact events."""
     side = {1: "stop_plus", -1: "stop_minus"}
     events = []

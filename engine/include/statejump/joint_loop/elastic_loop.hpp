@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "statejump/joint_loop/rigid_loop.hpp"
+#include "statejump/linkage/model.hpp"
+
+namespace statejump::joint_loop {
+
+/// How the contact yields to a tangential force below Coulomb's limit.
+///
+/// `rigid`: not at all; the joint rolls without slide, the force is whatever equilibrium asks for.
+/// `mindlin`: a spring k_t = 8 G* sqrt(R δ) that follows the normal load: on loading the force
+/// stays, on unloading the elastic slide stays and the force falls with k_t. This is the spring of
+/// the dynamics and of the DEM law in the limit of small increments.
+enum class TangentialCompliance : unsigned char { rigid, mindlin };
+
+struct ElasticLoopOptions {
+  int samples = 2000;  ///< steps per monotone branch of the program, >= 1
+  TangentialCompliance compliance = TangentialCompliance::rigid;
+};
+
+/// Equilibrium in contact at one temperature.
+struct ElasticJointPoint {
+  double temperature_change;       ///< ΔT [K]
+  double theta2;                   ///< [rad]
+  double theta4;                   ///< [rad]
+  Eigen::Vector2d bearing_centre;  ///< [m]
+  Eigen::Vector2d journal_centre;  ///< [m]
+  double depth;                    ///< δ [m], > 0
+  double normal_force;             ///< F_N [N], > 0; pushes the bearing along n
+  double tangential_force;         ///< F_t [N] on the journal along (−n_y, n_x)
+  double contact_angle;            ///< φ [rad] from the joint force's axis AC to n
+  double spring_moment;            ///< K_M (α − α0) [N m]
+  JointMotion motion;              ///< from this point on; `roll`: no slip
+  bool slipping() const { return motion == JointMotion::slip; }
+};
+
+/// Quasi-static path: events (first, last, changes of motion, corners of the program) and, between
+/// them, samples.
+struct ElasticLoop {
+  std::vector<ElasticJointPoint> points;
+  std::vector<ElasticJointPoint> events;
+  /// True if the contact force vanished. The path ends there: the position within the play is not
+  /// determined by statics.
+  bool separated = false;
+  double largest_force_residual = 0.0;    ///< of all points, over the joint force there [-]
+  double largest_closure_residual = 0.0;  ///< of all points, closure and friction's slide [m]
+  int most_iterations = 0;                ///< of one Newton solve that converged
+  double theta2_jump() const { return points.back().theta2 - points.front().theta2; }  ///< [rad]
+  double theta4_jump() const { return points.back().theta4 - points.front().theta4; }  ///< [rad]
+  Eigen::Vector2d bearing_jump() const {                                               ///< [m]
+    return points.back().bearing_centre - points.front().bearing_centre;
+  }
+  Eigen::Vector2d journal_jump() const {  ///< [m]
+    return points.back().journal_centre - points.front().journal_centre;
+  }
+};
+
+/// Equilibrium at ΔT = 0 with the contact at φ from the joint force's axis, at rest: both motions
+/// of the model can start here. The contact history holds F_t along (−n_y, n_x) and the k_t of
+/// TangentialCompliance::mindlin.
+/// @param contact_angle φ [rad], |φ| <= atan μ; tan φ = F_t/F_N
+/// Throws as elastic_loop() does.
+linkage::State loaded_state(const linkage::Linkage& model, double contact_angle = 0.0);
+
+/// Path of the joint through the program with elastic links, Hertz's contact and Coulomb's
+/// friction, from loaded_state(). rigid_loop() is its limit for E → ∞.
+///
+/// Unknowns are the two tips, as angle θ and elongation e = L − l_T of each link, the contact's
+/// depth δ and normal n = (cos ψ, sin ψ), and F_t. With u the direction of a link, u' = du/dθ,
+/// F = F_N n − F_t n' the force on the bearing, F_N = 4/3 E* sqrt(R) δ^1.5, M the spring's moment
+/// and the one contact point half-way between the two surfaces, hence arms r1 = R1 − δ/2 and
+/// r2 = R2 + δ/2:
+///
+///     F·u2 = k_T1 e1,      (M − r2 F_t)/L1 + F·u2' = 0          tip of AB
+///     F·u4 = −k_T2 e2,     (r1 F_t − M)/L2 − F·u4' = 0          tip of BC
+///     AC + L2 u4 − L1 u2 = (R2 − R1 + δ) n                      closure
+///
+/// and one line for friction: F_t = ±μ F_N in slip, else the slide of the step
+/// ∫ (R2 − R1 + δ) dψ + r1 dθ4 − r2 dθ2 is that of the spring, or 0. Its integrand is taken at the
+/// mean of the step's ends, so one increment is of third order and the path of second order; in
+/// slip the state depends on ΔT alone. Elongation and depth as unknowns keep the forces free of the
+/// rounding of positions, E A times 1e-16.
+///
+/// Newton's method with the analytic Jacobian, converged when force rows are below 1e-12 of the
+/// joint force (plus the rounding of K_M θ/L) and rows in metres below 4 ε (a + l1 + l2); one
+/// further step polishes. A step that does not converge is halved.
+///
+/// Slip starts where |F_t| reaches μ F_N and ends where its rate, from the derivative of the
+/// equations by ΔT, turns round; both are roots within a step. μ = 0 slips throughout. The path
+/// ends with the contact force, at the last point where F_N exceeds 4e-13 K_M/l: below, the force's
+/// direction drowns in rounding.
+///
+/// Of the friction law only μ counts; damping and masses do not matter. Radii may expand. Limits:
+/// those of linkage::Linkage and of Hertz's contact.
+/// Throws std::invalid_argument for a model, program or option out of range, for a normal law other
+/// than Hertz's or a tangential velocity other than `material`, a spring that is absent or unloaded
+/// at the start (the position is then undetermined), radii without clearance somewhere in the
+/// program and |contact_angle| > atan μ; std::runtime_error with temperature and residual if
+/// equilibrium is not found.
+ElasticLoop elastic_loop(const linkage::Linkage& model, const thermal::Program& program,
+                         const ElasticLoopOptions& options = {}, double contact_angle = 0.0);
+
+}  // namespace statejump::joint_loop

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+
+#include "statejump/kernel/laws/joint_law.hpp"
+#include "statejump/kernel/mindlin.hpp"
+#include "statejump/thermal/program.hpp"
+
+namespace statejump::linkage {
+
+/// A uniform link pinned to the frame at one end. With uniform axial strain its kinetic energy is
+/// T = 1/2 (m/3)(L² θ̇² + L̇²): a point mass m/3 at the tip of a massless spring k_T = E A/l_T (4).
+struct ThermalLink {
+  double stress_free_length = 0.0;  ///< l0 at ΔT = 0 [m], > 0
+  double mass = 0.0;                ///< m of the whole link [kg], > 0
+  double young_modulus = 0.0;       ///< E [Pa], > 0; also of the joint's half that it carries
+  double cross_section_area = 0.0;  ///< A [m²], > 0
+  double thermal_expansion = 0.0;   ///< α [1/K], any finite value
+  double poisson_ratio = 0.3;       ///< ν [-], in (-1, 0.5]; of the joint's half that it carries
+};
+
+/// One rib of the umbrella antenna, deployed: the paper's section 4 (Figs 10 and 11).
+///
+/// Links AB and BC are pinned to the frame at A = (0, 0) and C = (a, 0), ideal pins. At B the
+/// journal (radius R1) of BC plays in the bearing (radius R2) of AB: with d = r_journal − r_bearing
+/// (11), δ = |d| − (R2 − R1) (12), n = d/|d| (13), the normal force of the chosen law, as
+/// F_N = K δ^1.5 (6) to (8), pushes the bearing along +n. Coordinates are the two tip positions
+/// (Cartesian: no trigonometry), which with m/3 at each tip is the same ODE as (5) in the paper's
+/// six coordinates.
+///
+/// Each link pulls its tip towards its pin with k_T (L − l_T) + c (L̇ − l̇_T), c = 2 ζ sqrt(k m/3)
+/// with k at ΔT = 0. A couple M on a link acts on its tip as M/L across the link: the pins'
+/// −c_p θ̇, the torsion spring's ±K_M (α − α0) (17) with the flare angle α = θ4 − θ2, and the moment
+/// (arm × F) of friction at the one contact point half-way between the two of eq. (14), with the
+/// velocity of the material there; with the tangential velocity law `paper` there is no such
+/// moment, see kernel::laws::PaperVelocity.
+///
+/// Angles: θ2 of AB from A to B, θ4 of BC from C to B, anticlockwise from AC.
+/// Limits: planar, small strain, no bending; B above AC; those of the laws. A plain value:
+/// validate() once.
+struct Linkage {
+  double frame_length = 0.0;               ///< a = |AC| [m], > 0; the frame does not expand
+  ThermalLink link_ab;                     ///< carries the bearing
+  ThermalLink link_bc;                     ///< carries the journal
+  double journal_radius = 0.0;             ///< R1 at ΔT = 0 [m], > 0
+  double bearing_radius = 0.0;             ///< R2 at ΔT = 0 [m], > R1
+  double journal_thermal_expansion = 0.0;  ///< [1/K], any finite value; 0: R1 constant
+  double bearing_thermal_expansion = 0.0;  ///< [1/K], any finite value; 0: R2 constant
+  kernel::laws::JointLaw law;              ///< by default hertz_internal without friction
+  double axial_damping_ratio = 0.0;        ///< ζ of both links [-], >= 0
+  double pin_damping = 0.0;                ///< c_p at A and at C [N m s/rad], >= 0
+  double torsion_stiffness = 0.0;          ///< K_M [N m/rad], >= 0
+  /// α0 [rad], in (0, π); NaN, the default, stands for the flare angle of the ideal position.
+  double torsion_free_angle = std::numeric_limits<double>::quiet_NaN();
+
+  /// Throws std::invalid_argument that names the first field out of range, its value and the range.
+  void validate() const;
+
+  double radial_clearance() const { return bearing_radius - journal_radius; }  ///< c [m]
+  /// μ [-]; 0 without a friction law.
+  double friction_coefficient() const;
+  /// α0 with the default resolved [rad].
+  double free_angle() const;
+};
+
+/// Positions and velocities of the two tips, and what friction remembers. World frame, A at zero.
+struct State {
+  Eigen::Vector2d bearing_centre = Eigen::Vector2d::Zero();    ///< tip of AB [m]
+  Eigen::Vector2d journal_centre = Eigen::Vector2d::Zero();    ///< tip of BC [m]
+  Eigen::Vector2d bearing_velocity = Eigen::Vector2d::Zero();  ///< [m/s]
+  Eigen::Vector2d journal_velocity = Eigen::Vector2d::Zero();  ///< [m/s]
+  /// Of a friction law that remembers. Its tangential_force is (force on the journal along
+  /// (−n_y, n_x), 0, 0) [N]: a planar force turns with the contact by itself.
+  kernel::ContactHistory contact;
+  double impact_speed = 0.0;  ///< approach speed when the contact began [m/s]; 0: out of contact
+};
+
+/// Angles, lengths and the paper's six coordinates of one state.
+struct Coordinates {
+  Eigen::Vector2d centroid_ab;   ///< X_G1, Y_G1 [m]
+  Eigen::Vector2d centroid_bc;   ///< X_G2, Y_G2 [m]
+  double theta2;                 ///< [rad]
+  double theta4;                 ///< [rad]
+  double length_ab;              ///< L of AB [m]
+  double length_bc;              ///< L of BC [m]
+  Eigen::Vector2d eccentricity;  ///< d, journal minus bearing centre [m]
+};
+
+Coordinates coordinates(const Linkage& model, const State& state);
+
+/// How the links move at t = 0. `rest`: all velocities zero, as in the paper; the links then ring.
+/// `matched`: L̇ = l̇_T, no ringing.
+enum class Start : unsigned char { rest, matched };
+
+/// Unstrained links at ΔT = 0 with the journal at `eccentricity` d [m] from the bearing's centre;
+/// concentric by default. `temperature_rate` [K/s] is used by `matched`. Throws
+/// std::invalid_argument if the model is out of range or |d| above the clearance.
+State initial_state(const Linkage& model, Start start, double temperature_rate,
+                    const Eigen::Vector2d& eccentricity = Eigen::Vector2d::Zero());
+
+/// What the joint does in one state.
+struct Joint {
+  double penetration_depth;  ///< δ [m]; negative: gap
+  double approach_speed;     ///< δ̇ [m/s]
+  double normal_force;       ///< F_N with dissipation [N], >= 0
+  double tangential_force;   ///< friction on the journal along (−n_y, n_x) [N]
+  bool slipping;             ///< at Coulomb's limit; false for a law without memory
+};
+
+/// `temperature_rate` [K/s] matters for laws that see velocities, if the radii expand. Throws
+/// std::domain_error if the depth is outside the normal law's range.
+Joint joint_state(const Linkage& model, const State& state, double temperature_change,
+                  double temperature_rate);
+
+/// Stored energy by term [J].
+struct Energy {
+  double kinetic;
+  double axial;       ///< 1/2 k_T (L − l_T)² of both links
+  double contact;     ///< of the normal law
+  double tangential;  ///< spring of the friction history
+  double torsion;
+  double sum() const { return kinetic + axial + contact + tangential + torsion; }
+};
+
+Energy energy(const Linkage& model, const State& state, double temperature_change);
+
+/// ΔT_c = c/(α a) [K] of first contact on heating from the concentric position, when both links
+/// have the expansion α and nothing moves but their lengths: l_T1 u2 − l_T2 u4 = (1 + α ΔT) AC, so
+/// the centres part along AC by α ΔT a. With expanding radii the root of
+/// α ΔT a = R2 (1 + α2 ΔT) − R1 (1 + α1 ΔT). Infinity if there is none at ΔT > 0.
+/// Throws std::invalid_argument if the links expand differently.
+double first_contact_temperature(const Linkage& model);
+
+}  // namespace statejump::linkage

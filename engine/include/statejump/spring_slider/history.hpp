@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "statejump/spring_slider/path.hpp"
+
+namespace statejump::spring_slider {
+
+/// A path at given times, one array entry per time. Forces act on the block, positive towards +x,
+/// and F − k_p x + friction_force + stop_force = 0.
+struct History {
+  Eigen::VectorXd time;                  ///< [s]
+  Eigen::VectorXd temperature_change;    ///< ΔT [K]
+  Eigen::VectorXd displacement;          ///< x [m]
+  Eigen::VectorXd axial_force;           ///< F = k_T (x_T − x) [N], positive in compression
+  Eigen::VectorXd friction_force;        ///< Force of the ground on the block [N]
+  Eigen::VectorXd stop_force;            ///< Force of a stop on the block [N]; see SpringSlider
+  Eigen::VectorXd elastic_energy;        ///< Energy F²/(2 k_T) in the link [J]
+  Eigen::VectorXd preload_energy;        ///< Energy k_p x²/2 in the preload spring [J]
+  Eigen::VectorXd friction_dissipation;  ///< Heat of friction since the start, ∫ f |dx| [J]
+  Eigen::VectorXd thermal_work;          ///< Work of the temperature since the start [J]
+  std::vector<Stage> stage;
+};
+
+/// The path at `times` [s], in any order; after its end the last state holds. Every entry is
+/// evaluated from the path's closed forms, so it does not depend on the other times. At the time of
+/// an event the stage is the one after it, at the end of the program the last one.
+/// Throws std::invalid_argument if a time is negative or not finite.
+/// The energies obey thermal_work = elastic_energy + preload_energy + friction_dissipation within
+/// rounding; see thermal_work() for why that is a check.
+History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times);
+
+}  // namespace statejump::spring_slider

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <limits>
+
+#include "statejump/thermal/program.hpp"
+
+namespace statejump::spring_slider {
+
+/// A heated link that pushes a block with dry friction between two stops: the paper's reduced model
+/// of a one-dimensional clearance joint (section 3, Figs 4 and 5).
+///
+/// The link is a massless spring between the fixed frame and the block. Unloaded it has the length
+/// l_T = l0 (1 + α ΔT) and so the thermal displacement x_T = l_T − l0 (2). With the block at x
+///
+///     F = k_T (x_T − x),   k_T = E A / l_T   (4)
+///
+/// is the axial force, positive in compression: it pushes the block towards +x. A preload spring to
+/// the ground adds −k_p x. Friction R with |R| <= f and a stop force W, at x = +c⁺ or x = −c⁻,
+/// balance the rest, F − k_p x + R + W = 0, at every instant: the path is quasi-static and
+/// rate-independent, a function of the sequence of ΔT alone.
+///
+///   stick   |F − k_p x| < f, x stays
+///   slide   F − k_p x = s f with the sense s of the motion, hence
+///           x = (E A x_T − s f l_T)/(E A + k_p l_T); for k_p = 0, x = x_T − s f l_T/(E A)
+///   stop    x = s c and s (F − k_p x) > f
+///
+/// A cycle that ends sliding leaves |x| = f/(k_T + k_p), the state jump.
+///
+/// Against a rigid stop equilibrium leaves R and W undetermined within −f <= R <= f. Assumed here
+/// is the smallest stop force, |W| = max(0, |F − k_p x| − f): friction keeps the value that it had
+/// when the block arrived, the stop takes the remainder. With an elastic stop the split depends on
+/// its stiffness; x, F and every energy do not, because the block does not move.
+///
+/// Limits: no inertia, no buckling (see euler_load), constant f, rigid stops, E and α independent
+/// of temperature. A plain value: validate() once; the functions below do not check.
+struct SpringSlider {
+  /// Young's modulus E of the link [Pa], > 0.
+  double young_modulus = 0.0;
+  /// Cross-sectional area A of the link [m²], > 0.
+  double cross_section_area = 0.0;
+  /// Length l0 of the unloaded link at ΔT = 0 [m], > 0.
+  double stress_free_length = 0.0;
+  /// Coefficient α of linear thermal expansion [1/K], any finite value.
+  double thermal_expansion = 0.0;
+  /// Friction limit f [N], >= 0 and < E A.
+  double friction_force = 0.0;
+  /// Distance c⁻ from the block's start to the stop at negative x [m], > 0 and < l0, or infinity.
+  double clearance_minus = std::numeric_limits<double>::infinity();
+  /// Distance c⁺ from the block's start to the stop at positive x [m], > 0, or infinity.
+  double clearance_plus = std::numeric_limits<double>::infinity();
+  /// Stiffness k_p of the spring from block to ground, unloaded at x = 0 [N/m], >= 0.
+  double preload_stiffness = 0.0;
+
+  /// Throws std::invalid_argument that names the first field out of range, its value and the range.
+  void validate() const;
+
+  /// E A [N].
+  double axial_rigidity() const { return young_modulus * cross_section_area; }
+
+  /// Distance to the stop on side `side` (+1 or −1) [m], infinity if there is none.
+  double clearance(int side) const { return side > 0 ? clearance_plus : clearance_minus; }
+};
+
+/// Unloaded length l_T [m] at ΔT [K], eq. (2).
+double free_length(const SpringSlider& model, double temperature_change);
+
+/// Thermal displacement x_T = l0 α ΔT [m], computed without the difference l_T − l0.
+double thermal_displacement(const SpringSlider& model, double temperature_change);
+
+/// Stiffness k_T = E A/l_T of the link [N/m], eq. (4).
+double link_stiffness(const SpringSlider& model, double temperature_change);
+
+/// Axial force F = k_T (x_T − x) [N] of the link, positive in compression, with the block at x [m].
+double axial_force(const SpringSlider& model, double temperature_change, double displacement);
+
+/// Position x [m] of the block that slides in sense `direction` (+1 or −1), stops left aside.
+double sliding_displacement(const SpringSlider& model, double temperature_change, int direction);
+
+/// ΔT [K] at which F − k_p x = direction·f with the block at x [m], the inverse of
+/// sliding_displacement: onset of sliding from x, and arrival at x while sliding.
+/// NaN if no temperature does it (α = 0, or k_p x + direction·f >= E A).
+double sliding_temperature(const SpringSlider& model, double displacement, int direction);
+
+/// Displacement f/(k_T + k_p) [m] that one closed cycle leaves if it ends sliding at ΔT = 0;
+/// positive for a cycle that heats. Independent of the clearance and of the largest temperature
+/// (paper 3.4).
+double state_jump(const SpringSlider& model);
+
+/// How the ends of a link are held, for its buckling load.
+enum class EndCondition { clamped_clamped, pinned_pinned };
+
+/// Euler's buckling load E I π² β/l0² [N] of the unguided link at ΔT = 0 with β = 4 for clamped and
+/// β = 1 for pinned ends. `second_moment_of_area` I [m⁴]; NaN, the default, stands for a square
+/// section, I = A²/12. The model itself never buckles: it assumes a guided link.
+double euler_load(const SpringSlider& model, EndCondition ends,
+                  double second_moment_of_area = std::numeric_limits<double>::quiet_NaN());
+
+}  // namespace statejump::spring_slider

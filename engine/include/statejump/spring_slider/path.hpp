@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "statejump/spring_slider/model.hpp"
+
+namespace statejump::spring_slider {
+
+/// Stage of the loading process, the paper's S1 to S5 (section 3.2) and the two stops.
+///
+/// The paper's five stages are those of one heating and cooling. For later cycles and for negative
+/// ΔT they mean, with "axial force" F and "last slide" the sense in which the block last slid:
+///
+///   S1  stick, the block has never slid
+///   S2  slide in the sense of the first slide
+///   S3  stick after a slide, F still pushes in the sense of the last slide (the link unloads)
+///   S4  stick after a slide, F pushes against the sense of the last slide
+///   S5  slide against the sense of the first slide
+///
+/// A second cycle therefore runs S3, S4, S2, S3, S4, S5. With a preload spring F may change sign
+/// during a slide; S3 or S4 may then be missing.
+enum class Stage : unsigned char { S1, S2, S3, S4, S5, at_stop_plus, at_stop_minus };
+
+/// What the block does, whatever the stage is called. `stop`: it rests against a loaded stop.
+enum class Motion : unsigned char { stick, slide, stop };
+
+/// Instants at which the stage changes or ends.
+enum class EventKind : unsigned char {
+  first_slip,     ///< The block starts to slide for the first time.
+  slip,           ///< It starts to slide again, away from the stops.
+  stop_reached,   ///< A stop begins to carry force: the block arrives, or is loaded there again.
+  stop_unloaded,  ///< The stop's force falls to zero; the block stays, held by friction.
+  stop_left,      ///< The block starts to slide away from a stop.
+  reversal,       ///< The temperature turns while the block slides; it sticks.
+  force_sign_change,  ///< The axial force passes zero during a stick after a slide.
+  cycle_end           ///< A cycle of the thermal program ends.
+};
+
+/// "S1", …, "S5", "at_stop_plus", "at_stop_minus".
+const char* to_string(Stage stage);
+/// "stick", "slide", "stop".
+const char* to_string(Motion motion);
+/// "first_slip", "slip", "stop_reached", …: the enumerator's name.
+const char* to_string(EventKind kind);
+
+/// One event of a path. Both stages are equal where only the cycle ends.
+struct Event {
+  EventKind kind;
+  Stage stage_before;
+  Stage stage_after;
+  double time;                ///< [s]
+  double temperature_change;  ///< ΔT [K]
+  double displacement;        ///< x [m]
+  double axial_force;         ///< F [N], positive in compression
+};
+
+/// Part of a path without an event inside, over which ΔT rises, falls or holds. x is a closed form
+/// of ΔT there: see displacement().
+struct Segment {
+  Stage stage;
+  Motion motion;
+  /// Sense of a slide, side of a stop (+1 or −1); 0 for a stick.
+  int direction;
+  /// Cycle that the segment belongs to, 0, 1, …
+  int cycle;
+  double start_time;                ///< [s]
+  double end_time;                  ///< [s]
+  double start_temperature_change;  ///< ΔT [K]
+  double end_temperature_change;    ///< ΔT [K]
+  double start_displacement;        ///< x [m]
+  double end_displacement;          ///< x [m]
+  double friction_dissipation;      ///< Heat of friction from the program's start to start_time [J]
+  double thermal_work;              ///< Work of the temperature over the same time [J]
+};
+
+/// Exact quasi-static path of a spring-slider under a thermal program: what solve() returns.
+struct Path {
+  SpringSlider model;
+  thermal::Program program;
+  /// Consecutive; the first starts at t = 0, the last ends at program.duration(). Never empty.
+  std::vector<Segment> segments;
+  std::vector<Event> events;
+  /// Displacement at the end of every cycle [m].
+  std::vector<double> cycle_end_displacements;
+
+  /// Displacement at the end minus that at the start, x = 0 [m].
+  double state_jump() const { return cycle_end_displacements.back(); }
+
+  /// Displacement at the end of cycle `cycle`, counted from 1, minus that at the start [m].
+  /// Throws std::invalid_argument unless 1 <= cycle <= program.cycles.
+  double jump_after_cycle(int cycle) const;
+};
+
+/// Exact path from rest at x = 0, ΔT = 0. Every event is the root of an equation linear in ΔT, and
+/// its time the closed-form inverse of the program: nothing is stepped over or iterated.
+/// Throws std::invalid_argument if model or program is out of range, or if the program takes the
+/// link to a length l_T <= 0.
+/// Limits: events are ordered by ΔT within rounding, so two that coincide exactly may come in
+/// either order. Without friction a stick has no duration: its events stand at one temperature.
+Path solve(const SpringSlider& model, const thermal::Program& program);
+
+/// The same into an existing path, whose memory is used again. On error `path` is unspecified.
+void solve(const SpringSlider& model, const thermal::Program& program, Path& path);
+
+/// x [m] on the segment at ΔT [K] within the segment: constant in a stick and at a stop, else
+/// sliding_displacement().
+double displacement(const SpringSlider& model, const Segment& segment, double temperature_change);
+
+/// Work of the temperature [J] from the segment's start to ΔT [K].
+///
+/// The link stores V = E A (x − x_T)²/(2 l_T). With x held, heating changes x_T and the stiffness:
+/// ∂V/∂l_T = −N − N²/(2 E A), N = (E A/l_T)(x − x_T) the tension, hence the power
+/// P = −N l̇_T − ½ (E A/l_T²)(x − x_T)² l̇_T. It is integrated over the segment's own x(ΔT) by
+/// Gauss-Legendre with five points; the integrand is analytic up to l_T = 0, so the relative error
+/// is below 1e-15 for |α ΔT| < 0.1. Neither the energies nor the friction enter: the balance
+/// thermal work = elastic energy + dissipation is a check, not a definition.
+double thermal_work(const SpringSlider& model, const Segment& segment, double temperature_change);
+
+/// What the user should know about a path, one sentence each: at present an axial force beyond the
+/// Euler load of an unguided link of square section. Empty if there is nothing.
+std::vector<std::string> warnings(const Path& path);
+
+}  // namespace statejump::spring_slider

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "statejump/thermal/program.hpp"
+
+namespace statejump::truss {
+
+/// Point where links end.
+struct Node {
+  std::string name;                                    ///< For messages.
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< Drawn shape, ΔT = 0 [m].
+  /// Orthonormal directions in which the node may move: the first `freedoms` columns.
+  Eigen::Matrix3d free_directions = Eigen::Matrix3d::Identity();
+  int freedoms = 3;                                ///< 0: fixed.
+  Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< Dead load [N].
+};
+
+/// Uniform straight bar between two nodes, free to turn at both: N = (E A/l_T) (L − l_T).
+struct Link {
+  std::string name;
+  int first = 0;                    ///< Node.
+  int second = 0;                   ///< Node.
+  double axial_stiffness = 0.0;     ///< E A [N], > 0.
+  double stress_free_length = 0.0;  ///< l0 at ΔT = 0 [m], > 0.
+  double thermal_expansion = 0.0;   ///< α [1/K].
+  int program = 0;                  ///< Temperature program.
+  double temperature_fraction = 1;  ///< The link's ΔT over that of its program [-].
+};
+
+/// Spring between two nodes, tension k (L − free_length); a cable does not push.
+struct AxialSpring {
+  std::string name;
+  int first = 0;
+  int second = 0;
+  double stiffness = 0.0;    ///< [N/m], >= 0.
+  double free_length = 0.0;  ///< [m]; negative for a preload that no length of it relieves.
+  bool cable = false;
+};
+
+/// Torsion spring, moment K (α − α0) on the angle α from one link to another about a fixed axis,
+/// measured from the drawn shape. Without a second link: from the ground.
+struct TorsionSpring {
+  std::string name;
+  int first_link = 0;
+  int second_link = -1;     ///< −1: ground; the angle is then that of the first link.
+  double stiffness = 0.0;   ///< K [N m/rad], >= 0.
+  double free_angle = 0.0;  ///< α0 [rad] beyond the drawn shape.
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+};
+
+/// Prismatic joint with dry friction and stops: the first node slides along a fixed axis relative
+/// to the second and is held across it; without a second node it slides relative to the ground, and
+/// its own free directions hold it across.
+struct Slider {
+  std::string name;
+  int first = 0;
+  int second = -1;  ///< −1: ground.
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  double friction_force = 0.0;                                       ///< f [N], >= 0.
+  double clearance_minus = std::numeric_limits<double>::infinity();  ///< [m], >= 0.
+  double clearance_plus = std::numeric_limits<double>::infinity();   ///< [m], >= 0.
+  /// k_t of the contact while it sticks [N/m], > 0; infinity: rigid.
+  double tangential_stiffness = std::numeric_limits<double>::infinity();
+};
+
+/// Revolute joint with clearance and dry friction about a fixed axis: a journal on the end of one
+/// link within a bearing on the end of another.
+struct ClearanceRevolute {
+  std::string name;
+  int journal_node = 0;
+  int bearing_node = 0;
+  int journal_link = -1;                 ///< Turns the journal; −1: it does not turn.
+  int bearing_link = -1;                 ///< Turns the bearing; −1: it does not turn.
+  double journal_radius = 0.0;           ///< R1 at ΔT = 0 [m], > 0.
+  double radial_clearance = 0.0;         ///< c = R2 − R1 at ΔT = 0 [m], > 0.
+  double journal_thermal_expansion = 0;  ///< [1/K].
+  double bearing_thermal_expansion = 0;  ///< [1/K].
+  double friction_coefficient = 0.0;     ///< μ, >= 0.
+  /// K of Hertz's F_N = K δ^1.5 [N/m^1.5]; infinity: rigid.
+  double hertz_stiffness = std::numeric_limits<double>::infinity();
+  /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ), by which the contact gives way while it sticks
+  /// [N/m^1.5]; infinity: rigid. Finite only if `hertz_stiffness` is.
+  double mindlin_stiffness = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  int program = 0;
+  double temperature_fraction = 1;
+};
+
+/// Truss of bars with springs, frictional joints and loads, for quasi-static paths.
+struct Model {
+  std::vector<Node> nodes;
+  std::vector<Link> links;
+  std::vector<AxialSpring> springs;
+  std::vector<TorsionSpring> torsion_springs;
+  std::vector<Slider> sliders;
+  std::vector<ClearanceRevolute> revolutes;
+  std::vector<thermal::Program> programs;  ///< At least one; all of one duration.
+
+  /// Throws std::invalid_argument that names the item, its value and the range: indices, numbers
+  /// out of range, links without length somewhere in their program, a revolute whose link does not
+  /// end at its node.
+  void validate() const;
+
+  /// ΔT [K] of a part at time t [s].
+  double temperature_change(int program, double fraction, double t) const {
+    return fraction * programs[static_cast<std::size_t>(program)].temperature_change(t);
+  }
+};
+
+}  // namespace statejump::truss

@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/joint_loop/elastic_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "elastic_loop_equations.hpp"
+#include "statejump/kernel/require.hpp"
+
+namespace statejump::joint_loop {
+
+using Eigen::Vector2d;
+using kernel::require;
+using namespace detail;
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr int halving_limit = 40;
+/// Part of μ F_N by which F_t may miss the limit and count as at it: above the errors of Newton's
+/// criterion and of roots, so that a path which only grazes the limit does not slip.
+constexpr double limit_rounding = 1e-10;
+
+/// Refuses a law of the catalogue that the equations here do not have.
+void require_law(bool holds, const char* field, const kernel::laws::LawInfo& info,
+                 const char* allowed) {
+  if (holds) return;
+  throw std::invalid_argument(std::string(field) + " = '" + info.name + "', allowed is " + allowed);
+}
+
+void validate_laws(const linkage::Linkage& model) {
+  const kernel::laws::NormalLaw& normal = model.law.normal;
+  require_law(std::holds_alternative<kernel::laws::HertzInternal>(normal) ||
+                  std::holds_alternative<kernel::laws::HertzPaper>(normal),
+              "normal", law_info(normal), "hertz_internal or hertz_paper in the elastic loop");
+  const kernel::laws::TangentialVelocityLaw& velocity = model.law.tangential_velocity;
+  require_law(std::holds_alternative<kernel::laws::MaterialVelocity>(velocity),
+              "tangential_velocity", law_info(velocity),
+              "material in the elastic loop: friction's moments act on the links");
+}
+
+[[noreturn]] void fail(const Equilibrium& at) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "no equilibrium found at temperature_change = %.9g K: residual %g of the joint "
+                "force, %g m in the "
+                "closure",
+                at.p.temperature_change, at.force_residual, at.closure_residual);
+  throw std::runtime_error(text);
+}
+
+Equilibrium start(const linkage::Linkage& model, const Equations& equations, double contact_angle) {
+  model.validate();
+  validate_laws(model);
+  const int side = loaded_side(model, contact_angle);
+  // Rigid bodies first; then the force (f, 0) of moments about A, and what it does to each spring.
+  const JointPoint rigid = joint_point(model, 0.0, side, contact_angle);
+  Equilibrium at;
+  at.p = parameters(model, 0.0);
+  at.z[th2] = rigid.theta2;
+  at.z[th4] = rigid.theta4;
+  at.z[psi] = std::atan2(rigid.eccentricity.y(), rigid.eccentricity.x());
+  const double f =
+      rigid.spring_moment / (rigid.bearing_centre.y() + at.p.r2.value * std::sin(at.z[psi]));
+  const double normal = std::abs(f) * std::cos(contact_angle);
+  at.z[e1] = f * std::cos(at.z[th2]) / at.p.k1.value;
+  at.z[e2] = -f * std::cos(at.z[th4]) / at.p.k2.value;
+  at.z[dep] = std::cbrt(normal / at.p.hertz.value) * std::cbrt(normal / at.p.hertz.value);
+  at.z[ft] = normal * std::tan(contact_angle);
+  FrictionLine line;
+  line.ratio = std::tan(contact_angle);
+  if (!equations.solve(line, at) || !equations.touches(at)) fail(at);
+  return at;
+}
+
+/// Root of a function that is < 0 at `before` and >= 0 at `after`: false position (Illinois).
+/// `value(x, y)` says whether y could be had. Returns a point on the far side, or NaN.
+template <class Value>
+double root(double before, double value_before, double after, double value_after, Value&& value) {
+  double low = std::min(value_before, 0.0);
+  double high = std::max(value_after, 0.0);
+  int same = 0;
+  for (int i = 0; i < 100; ++i) {
+    double x = i % 8 == 7 || !(high - low > 0.0) ? 0.5 * (before + after)
+                                                 : before - low / (high - low) * (after - before);
+    if (x == before || x == after) x = 0.5 * (before + after);
+    if (x == before || x == after) break;
+    if (std::abs(after - before) <= 4.0 * epsilon * std::abs(after)) break;
+    double y;
+    if (!value(x, y)) return std::numeric_limits<double>::quiet_NaN();
+    if (y == 0.0) return x;
+    if (y < 0.0) {
+      before = x;
+      low = y;
+      if (same == -1) high *= 0.5;
+      same = -1;
+    } else {
+      after = x;
+      high = y;
+      if (same == 1) low *= 0.5;
+      same = 1;
+    }
+  }
+  return after;
+}
+
+/// Walks along the path.
+class Walk {
+ public:
+  Walk(const linkage::Linkage& model, const ElasticLoopOptions& options, double contact_angle,
+       ElasticLoop& loop)
+      : model_(model),
+        equations_(model),
+        compliance_(options.compliance),
+        mu_(model.friction_coefficient()),
+        loop_(loop),
+        now_(start(model, equations_, contact_angle)) {
+    slips_ = mu_ == 0.0 || std::abs(contact_angle) >= std::atan(mu_);
+    sign_ = contact_angle < 0.0 ? -1.0 : 1.0;
+    side_ = equations_.moment(now_.z) < 0.0 ? -1.0 : 1.0;
+    stick_from_here();
+    note(now_);
+    loop_.points.push_back(point());
+  }
+
+  /// Settles which way the joint goes when ΔT starts to change towards `to`.
+  void turn(double to) {
+    heading_ = to > now_.p.temperature_change ? 1.0 : -1.0;
+    if (slips_ && mu_ > 0.0 && !(slip_rate(now_) < 0.0)) slips_ = false;
+    loop_.points.back() = point();
+    event();
+  }
+
+  /// Goes to ΔT = `to`; false if contact is lost on the way.
+  bool advance(double to) {
+    double target = to;
+    int failures = 0;
+    while (now_.p.temperature_change != to) {
+      const double from = now_.p.temperature_change;
+      Equilibrium next;
+      const Outcome outcome = attempt(target, next);
+      if (outcome == Outcome::fails) {
+        target = from + 0.5 * (target - from);
+        if (++failures > halving_limit || target == from) fail(next);
+        continue;
+      }
+      if (next.p.temperature_change != from) failures = 0;
+      accept(next);
+      target = to;
+      if (outcome == Outcome::arrives) continue;
+      if (outcome == Outcome::separates) loop_.separated = true;
+      if (outcome == Outcome::turns) {
+        if (++failures > halving_limit) fail(next);  // turns on the spot
+        slips_ = !slips_;
+      }
+      if (next.p.temperature_change != from) {
+        sample();
+      } else {
+        loop_.points.back() = point();
+      }
+      event();
+      if (loop_.separated) return false;
+    }
+    return true;
+  }
+
+  void sample() { loop_.points.push_back(point()); }
+  void event() { loop_.events.push_back(point()); }
+
+ private:
+  FrictionLine line() const {
+    FrictionLine result;
+    result.sticks = !slips_;
+    result.ratio = sign_ * mu_;
+    result.compliance = compliance_;
+    result.from = &now_;
+    result.arc = arc_;
+    result.past = past_;
+    return result;
+  }
+
+  enum class Outcome : unsigned char { arrives, turns, separates, fails };
+
+  /// Step towards `to` in the present motion, up to the first event; sets sign_ where slip starts.
+  Outcome attempt(double to, Equilibrium& next) {
+    next = now_;
+    if (!reach(to, next)) return Outcome::fails;
+    Outcome outcome = Outcome::arrives;
+    if (!equations_.touches(next)) {
+      outcome = Outcome::separates;
+      next = last_contact(to);
+    }
+    if (mu_ == 0.0) return outcome;
+    if (slips_) {
+      if (slip_rate(next) < 0.0) return outcome;
+      if (!(slip_rate(now_) < 0.0)) {
+        next = now_;
+        return Outcome::turns;
+      }
+      return find(next, [this](const Equilibrium& at) { return slip_rate(at); });
+    }
+    // Of the limit that is exceeded: at the start the force may stand at the other one.
+    const double sign = next.z[ft] < 0.0 ? -1.0 : 1.0;
+    if (!(excess(sign, next) > limit_rounding * mu_ * next.normal())) return outcome;
+    sign_ = sign;
+    if (excess(sign, now_) > -limit_rounding * mu_ * now_.normal()) {
+      // At the limit already: it slips from here, or first leaves the limit and comes back.
+      if (!(slip_rate(now_) < 0.0)) return Outcome::fails;
+      next = now_;
+      return Outcome::turns;
+    }
+    return find(next, [&](const Equilibrium& at) { return excess(sign, at); });
+  }
+
+  /// Equilibrium at ΔT = `to` from the guess in `next`.
+  bool reach(double to, Equilibrium& next) const {
+    next.p = parameters(model_, to);
+    return equations_.solve(line(), next);
+  }
+
+  /// Force along `sign` beyond Coulomb's limit [N].
+  double excess(double sign, const Equilibrium& at) const {
+    return sign * at.z[ft] - mu_ * at.normal();
+  }
+
+  /// Plastic slide along F_t per kelvin of travel [m/K]; friction resists, so it is < 0 in slip.
+  double slip_rate(const Equilibrium& at) const {
+    const double ratio = sign_ * mu_;
+    const Vector rate = equations_.slipping_rate(ratio, at);
+    double slide = equations_.slide().rate(at, rate);
+    if (compliance_ == TangentialCompliance::mindlin) {
+      const Parameters& p = at.p;
+      const double stiffness = at.stiffness();
+      const double grows = 0.5 * rate[dep] / at.z[dep] + p.shear.rate / p.shear.value;  // relative
+      double spring = rate[ft];
+      if (heading_ * grows < 0.0) spring -= at.z[ft] * grows;
+      slide += spring / stiffness;
+    }
+    return sign_ * heading_ * slide;
+  }
+
+  /// Last point in contact on the way to `to`, by bisection. The force's direction loses its
+  /// meaning with the force: no convergence counts as no contact.
+  Equilibrium last_contact(double to) const {
+    Equilibrium last = now_;
+    for (int i = 0; i < 200; ++i) {
+      const double middle = 0.5 * (last.p.temperature_change + to);
+      if (middle == last.p.temperature_change || middle == to) break;
+      Equilibrium trial = last;
+      if (reach(middle, trial) && equations_.touches(trial)) {
+        last = trial;
+      } else {
+        to = middle;
+      }
+    }
+    return last;
+  }
+
+  /// Replaces `next`, where `value` >= 0, by the point where it ceases to be < 0.
+  template <class Value>
+  Outcome find(Equilibrium& next, Value&& value) const {
+    Equilibrium trial = now_;
+    const double at = root(now_.p.temperature_change, value(now_), next.p.temperature_change,
+                           value(next), [&](double x, double& y) {
+                             if (!reach(x, trial)) return false;
+                             y = value(trial);
+                             return true;
+                           });
+    next = trial;
+    const bool found = std::isfinite(at) && reach(at, next) && equations_.touches(next);
+    return found ? Outcome::turns : Outcome::fails;
+  }
+
+  void accept(const Equilibrium& next) {
+    const bool rigid = compliance_ == TangentialCompliance::rigid;
+    if (!slips_ && rigid) past_ += equations_.slide().rest(now_, next.p, next.z);
+    now_ = next;
+    if (slips_ || !rigid) stick_from_here();
+    note(now_);
+  }
+
+  void stick_from_here() {
+    arc_ = equations_.slide().arc(now_.z);
+    past_ = 0.0;
+  }
+
+  void note(const Equilibrium& at) {
+    loop_.largest_force_residual = std::max(loop_.largest_force_residual, at.force_residual);
+    loop_.largest_closure_residual = std::max(loop_.largest_closure_residual, at.closure_residual);
+    loop_.most_iterations = std::max(loop_.most_iterations, at.iterations);
+  }
+
+  ElasticJointPoint point() const {
+    const Vector& z = now_.z;
+    ElasticJointPoint result;
+    result.temperature_change = now_.p.temperature_change;
+    result.theta2 = z[th2];
+    result.theta4 = z[th4];
+    result.bearing_centre = (now_.p.l1.value + z[e1]) * direction(z[th2]);
+    result.journal_centre =
+        Vector2d(model_.frame_length, 0.0) + (now_.p.l2.value + z[e2]) * direction(z[th4]);
+    result.depth = z[dep];
+    result.normal_force = now_.normal();
+    result.tangential_force = z[ft];
+    result.contact_angle = std::atan2(side_ * std::sin(z[psi]), side_ * std::cos(z[psi]));
+    result.spring_moment = equations_.moment(z);
+    result.motion = loop_.separated ? JointMotion::separated
+                    : slips_        ? JointMotion::slip
+                                    : JointMotion::roll;
+    return result;
+  }
+
+  const linkage::Linkage& model_;
+  Equations equations_;
+  TangentialCompliance compliance_;
+  double mu_;
+  ElasticLoop& loop_;
+  Equilibrium now_;
+  bool slips_ = false;
+  double sign_ = 1.0;     ///< of F_t in slip
+  double side_ = 1.0;     ///< of the joint force along AC
+  double heading_ = 1.0;  ///< of dΔT
+  double arc_ = 0.0;      ///< see FrictionLine
+  double past_ = 0.0;
+};
+
+}  // namespace
+
+linkage::State loaded_state(const linkage::Linkage& model, double contact_angle) {
+  const Equilibrium at = start(model, Equations(model), contact_angle);
+  linkage::State state;
+  state.bearing_centre = (at.p.l1.value + at.z[e1]) * direction(at.z[th2]);
+  state.journal_centre =
+      Vector2d(model.frame_length, 0.0) + (at.p.l2.value + at.z[e2]) * direction(at.z[th4]);
+  state.contact.tangential_force.x() = at.z[ft];
+  state.contact.tangential_stiffness = at.stiffness();
+  state.impact_speed = model.law.smallest_impact_speed;
+  return state;
+}
+
+ElasticLoop elastic_loop(const linkage::Linkage& model, const thermal::Program& program,
+                         const ElasticLoopOptions& options, double contact_angle) {
+  model.validate();
+  program.validate();
+  require(options.samples >= 1, "samples", options.samples, ">= 1");
+  const std::vector<thermal::Branch> branches = thermal::monotone_branches(program);
+  for (const thermal::Branch& branch : branches) {
+    const Parameters p = parameters(model, branch.end);
+    require(p.r1.value > 0.0 && p.clearance() > 0.0, "radial clearance", p.clearance(),
+            "> 0 m at every temperature of the program");
+  }
+  ElasticLoop loop;
+  Walk walk(model, options, contact_angle, loop);
+  for (const thermal::Branch& branch : branches) {
+    if (branch.end == branch.start) continue;
+    walk.turn(branch.end);
+    for (int i = 1; i <= options.samples; ++i) {
+      const double part = static_cast<double>(i) / options.samples;
+      const double to =
+          i == options.samples ? branch.end : branch.start + part * (branch.end - branch.start);
+      if (!walk.advance(to)) return loop;
+      walk.sample();
+    }
+  }
+  walk.event();
+  return loop;
+}
+
+}  // namespace statejump::joint_loop

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equilibrium of the elastic loop at one temperature: unknowns, equations, Newton's method. For
+// elastic_loop() only; not installed.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "statejump/joint_loop/elastic_loop.hpp"
+
+namespace statejump::joint_loop::detail {
+
+/// Unknowns, in this order; the equations are in that of elastic_loop()'s documentation with the
+/// axial ones first.
+enum Unknown { e1, e2, th2, th4, dep, psi, ft };
+enum Equation { axial1, axial2, across1, across2, closure_x, closure_y, friction };
+using Vector = Eigen::Matrix<double, 7, 1>;
+using Matrix = Eigen::Matrix<double, 7, 7>;
+
+/// A quantity that depends on ΔT, and its derivative [per K].
+struct Thermal {
+  double value, rate;
+};
+
+/// The model at one temperature.
+struct Parameters {
+  double temperature_change;
+  Thermal l1, l2, k1, k2, r1, r2;
+  Thermal hertz;  ///< F_N/δ^1.5 [N/m^1.5]
+  Thermal shear;  ///< k_t/sqrt(δ) [N/m^1.5]
+  double clearance() const { return r2.value - r1.value; }
+};
+
+Parameters parameters(const linkage::Linkage& model, double temperature_change);
+
+inline Eigen::Vector2d direction(double angle) {
+  return {std::cos(angle), std::sin(angle)};
+}
+inline Eigen::Vector2d across(const Eigen::Vector2d& u) {
+  return {-u.y(), u.x()};
+}
+
+/// Hertz's force. A negative depth gives the mirrored pull: it has no meaning but a root, which
+/// shows that contact was lost on the way.
+inline double normal_force(const Parameters& p, double depth) {
+  return p.hertz.value * depth * std::sqrt(std::abs(depth));
+}
+inline double tangential_stiffness(const Parameters& p, double depth) {
+  return p.shear.value * std::sqrt(std::abs(depth));
+}
+
+/// Solution at one temperature.
+struct Equilibrium {
+  Parameters p;
+  Vector z;
+  double force_residual = 0.0;    ///< largest, over the joint force
+  double closure_residual = 0.0;  ///< largest [m]
+  int iterations = 0;
+  double normal() const { return normal_force(p, z[dep]); }
+  double stiffness() const { return tangential_stiffness(p, z[dep]); }
+};
+
+/// Slide of journal against bearing, ∫ (R2 − R1 + δ) dψ + (R1 − δ/2) dθ4 − (R2 + δ/2) dθ2, with its
+/// derivatives at the end. The part with the radii at ΔT = 0 is a function of the state and taken
+/// as one: no rounding piles up. The rest is small; trapezium's rule.
+class Slide {
+ public:
+  explicit Slide(const linkage::Linkage& model)
+      : r1_(model.journal_radius), r2_(model.bearing_radius) {}
+
+  double arc(const Vector& z) const { return (r2_ - r1_) * z[psi] + r1_ * z[th4] - r2_ * z[th2]; }
+
+  double rest(const Equilibrium& from, const Parameters& p, const Vector& z) const {
+    const Weights w = mean(from, p, z);
+    return w.psi * (z[psi] - from.z[psi]) + w.th4 * (z[th4] - from.z[th4]) -
+           w.th2 * (z[th2] - from.z[th2]);
+  }
+
+  /// Derivative of arc + rest by z.
+  void derivative(const Equilibrium& from, const Parameters& p, const Vector& z,
+                  Matrix::RowXpr row) const {
+    const Weights w = mean(from, p, z);
+    row[psi] += r2_ - r1_ + w.psi;
+    row[th4] += r1_ + w.th4;
+    row[th2] -= r2_ + w.th2;
+    row[dep] += 0.5 * (z[psi] - from.z[psi]) - 0.25 * (z[th4] - from.z[th4] + z[th2] - from.z[th2]);
+  }
+
+  /// Slide per change of the state, exact.
+  double rate(const Equilibrium& at, const Vector& z_rate) const {
+    const Weights w = weights(at.p, at.z);
+    return (r2_ - r1_ + w.psi) * z_rate[psi] + (r1_ + w.th4) * z_rate[th4] -
+           (r2_ + w.th2) * z_rate[th2];
+  }
+
+ private:
+  struct Weights {
+    double psi, th4, th2;
+  };
+  /// Beyond the radii at ΔT = 0.
+  Weights weights(const Parameters& p, const Vector& z) const {
+    const double grow1 = p.r1.value - r1_;
+    const double grow2 = p.r2.value - r2_;
+    return {grow2 - grow1 + z[dep], grow1 - 0.5 * z[dep], grow2 + 0.5 * z[dep]};
+  }
+  Weights mean(const Equilibrium& from, const Parameters& p, const Vector& z) const {
+    const Weights a = weights(from.p, from.z);
+    const Weights b = weights(p, z);
+    return {0.5 * (a.psi + b.psi), 0.5 * (a.th4 + b.th4), 0.5 * (a.th2 + b.th2)};
+  }
+  double r1_, r2_;
+};
+
+/// The friction line: F_t = ratio F_N, or no slip since `from`.
+struct FrictionLine {
+  bool sticks = false;
+  double ratio = 0.0;
+  TangentialCompliance compliance = TangentialCompliance::rigid;
+  const Equilibrium* from = nullptr;  ///< start of the step
+  double arc = 0.0;                   ///< Slide::arc() that counts as no slide
+  double past = 0.0;                  ///< Slide::rest() since then, up to `from` [m]
+};
+
+class Equations {
+ public:
+  explicit Equations(const linkage::Linkage& model);
+
+  /// Whether the bodies press on each other, by more than rounding: with a hundred times the
+  /// rounding of the spring's force its direction is known to a hundredth.
+  bool touches(const Equilibrium& at) const { return at.normal() > 100.0 * force_rounding_; }
+
+  const Slide& slide() const { return slide_; }
+  double moment(const Vector& z) const { return torsion_ * (z[th4] - z[th2] - free_angle_); }
+
+  /// Newton's method from at.z; true when converged.
+  bool solve(const FrictionLine& line, Equilibrium& at) const;
+
+  /// dz/dΔT while F_t = ratio F_N.
+  Vector slipping_rate(double ratio, const Equilibrium& at) const;
+
+ private:
+  void evaluate(const FrictionLine& line, const Parameters& p, const Vector& z, Vector& residual,
+                Matrix& jacobian) const;
+  bool judge(const FrictionLine& line, const Vector& residual, Equilibrium& at) const;
+
+  double a_, torsion_, free_angle_;
+  Slide slide_;
+  double length_tolerance_, force_rounding_;
+};
+
+}  // namespace statejump::joint_loop::detail

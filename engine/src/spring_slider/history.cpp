@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/spring_slider/history.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "statejump/kernel/require.hpp"
+
+namespace statejump::spring_slider {
+
+namespace {
+
+/// Segment that holds `time`: the one with start_time <= time < end_time, else the last. Tried
+/// first is `hint`, the answer for the time before, because times usually ascend.
+const Segment& segment_at(const std::vector<Segment>& segments, double time, std::size_t& hint) {
+  const auto holds = [&](std::size_t i) {
+    return segments[i].start_time <= time && time < segments[i].end_time;
+  };
+  if (!holds(hint)) {
+    const auto later = [](double t, const Segment& segment) { return t < segment.start_time; };
+    const auto after = std::upper_bound(segments.begin() + 1, segments.end(), time, later);
+    hint = static_cast<std::size_t>(after - segments.begin()) - 1;
+  }
+  return segments[hint];
+}
+
+}  // namespace
+
+History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times) {
+  const SpringSlider& model = path.model;
+  const Eigen::Index n = times.size();
+  History history;
+  for (Eigen::VectorXd* column :
+       {&history.time, &history.temperature_change, &history.displacement, &history.axial_force,
+        &history.friction_force, &history.stop_force, &history.elastic_energy,
+        &history.preload_energy, &history.friction_dissipation, &history.thermal_work}) {
+    column->resize(n);
+  }
+  history.stage.reserve(static_cast<std::size_t>(n));
+  std::size_t hint = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double time = times[i];
+    kernel::require(std::isfinite(time) && time >= 0.0, "time", time, "finite, >= 0 s");
+    const Segment& segment = segment_at(path.segments, time, hint);
+    // The time of an event is rounded, so ΔT may lie an ulp outside; kept inside, x stays within
+    // the stops and |F| within the friction limit.
+    const auto [lowest, highest] =
+        std::minmax(segment.start_temperature_change, segment.end_temperature_change);
+    const double change = std::clamp(path.program.temperature_change(time), lowest, highest);
+    const double x = displacement(model, segment, change);
+    const double preload_force = -model.preload_stiffness * x;
+    // Sliding, the block carries exactly the friction limit; a difference of x and x_T would not.
+    const double force = segment.motion == Motion::slide
+                             ? segment.direction * model.friction_force - preload_force
+                             : axial_force(model, change, x);
+    const double load = force + preload_force;
+    const double friction =
+        segment.motion == Motion::stick ? -load : -segment.direction * model.friction_force;
+    const double slid = std::abs(x - segment.start_displacement);
+    history.time[i] = time;
+    history.temperature_change[i] = change;
+    history.displacement[i] = x;
+    history.axial_force[i] = force;
+    history.friction_force[i] = friction;
+    history.stop_force[i] = segment.motion == Motion::stop ? -(load + friction) : 0.0;
+    history.elastic_energy[i] = 0.5 * force * force / link_stiffness(model, change);
+    history.preload_energy[i] = 0.5 * model.preload_stiffness * x * x;
+    history.friction_dissipation[i] = segment.friction_dissipation + model.friction_force * slid;
+    history.thermal_work[i] = segment.thermal_work + thermal_work(model, segment, change);
+    history.stage.push_back(segment.stage);
+  }
+  return history;
+}
+
+}  // namespace statejump::spring_slider

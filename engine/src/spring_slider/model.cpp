@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/spring_slider/model.hpp"
+
+#include <cmath>
+
+#include "statejump/kernel/require.hpp"
+
+namespace statejump::spring_slider {
+
+using kernel::require;
+
+void SpringSlider::validate() const {
+  require(std::isfinite(young_modulus) && young_modulus > 0.0, "young_modulus", young_modulus,
+          "finite, > 0 Pa");
+  require(std::isfinite(cross_section_area) && cross_section_area > 0.0, "cross_section_area",
+          cross_section_area, "finite, > 0 m^2");
+  require(std::isfinite(stress_free_length) && stress_free_length > 0.0, "stress_free_length",
+          stress_free_length, "finite, > 0 m");
+  require(std::isfinite(thermal_expansion), "thermal_expansion", thermal_expansion, "finite [1/K]");
+  require(friction_force >= 0.0 && friction_force < axial_rigidity(), "friction_force",
+          friction_force, ">= 0 N and below young_modulus * cross_section_area");
+  const bool minus_ok = clearance_minus > 0.0 &&
+                        (clearance_minus < stress_free_length || std::isinf(clearance_minus));
+  require(minus_ok, "clearance_minus", clearance_minus,
+          "> 0 m and below stress_free_length, or infinity");
+  require(clearance_plus > 0.0, "clearance_plus", clearance_plus, "> 0 m, or infinity");
+  require(std::isfinite(preload_stiffness) && preload_stiffness >= 0.0, "preload_stiffness",
+          preload_stiffness, "finite, >= 0 N/m");
+}
+
+double free_length(const SpringSlider& model, double temperature_change) {
+  return thermal::length(model.stress_free_length, model.thermal_expansion, temperature_change);
+}
+
+double thermal_displacement(const SpringSlider& model, double temperature_change) {
+  return model.stress_free_length * model.thermal_expansion * temperature_change;
+}
+
+double link_stiffness(const SpringSlider& model, double temperature_change) {
+  return model.axial_rigidity() / free_length(model, temperature_change);
+}
+
+double axial_force(const SpringSlider& model, double temperature_change, double displacement) {
+  return link_stiffness(model, temperature_change) *
+         (thermal_displacement(model, temperature_change) - displacement);
+}
+
+double sliding_displacement(const SpringSlider& model, double temperature_change, int direction) {
+  const double rigidity = model.axial_rigidity();
+  const double length = free_length(model, temperature_change);
+  return (rigidity * thermal_displacement(model, temperature_change) -
+          direction * model.friction_force * length) /
+         (rigidity + model.preload_stiffness * length);
+}
+
+double sliding_temperature(const SpringSlider& model, double displacement, int direction) {
+  // E A (x_T − x) = g l_T with g = s f + k_p x is linear in ΔT: x_T = l0 α ΔT, l_T = l0 + x_T.
+  const double rigidity = model.axial_rigidity();
+  const double force = direction * model.friction_force + model.preload_stiffness * displacement;
+  const double slope = model.stress_free_length * model.thermal_expansion * (rigidity - force);
+  if (slope == 0.0 || force >= rigidity) return std::numeric_limits<double>::quiet_NaN();
+  return (rigidity * displacement + force * model.stress_free_length) / slope;
+}
+
+double state_jump(const SpringSlider& model) {
+  return model.friction_force / (link_stiffness(model, 0.0) + model.preload_stiffness);
+}
+
+double euler_load(const SpringSlider& model, EndCondition ends, double second_moment_of_area) {
+  const double square = model.cross_section_area * model.cross_section_area / 12.0;
+  const double moment = std::isnan(second_moment_of_area) ? square : second_moment_of_area;
+  const double fixity = ends == EndCondition::clamped_clamped ? 4.0 : 1.0;
+  constexpr double pi = thermal::detail::pi;
+  return fixity * pi * pi * model.young_modulus * moment /
+         (model.stress_free_length * model.stress_free_length);
+}
+
+}  // namespace statejump::spring_slider

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/spring_slider/path.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "statejump/kernel/require.hpp"
+
+namespace statejump::spring_slider {
+
+namespace {
+
+constexpr double never = std::numeric_limits<double>::quiet_NaN();
+
+int sign(double value) {
+  return (value > 0.0) - (value < 0.0);
+}
+
+/// Follows the program branch by branch and writes the path. The state between two branches is the
+/// open segment, the last event and the sense of the last slide.
+class Follower {
+ public:
+  explicit Follower(Path& path) : path_(path), model_(path.model) {}
+
+  void follow(const thermal::Branch& branch) {
+    const int heating = sign(branch.end - branch.start);
+    if (heating != heating_) close();
+    heating_ = heating;
+    // The link pushes the block towards +x while its unloaded length grows.
+    drive_ = heating * sign(model_.thermal_expansion);
+    branch_ = &branch;
+    if (drive_ != 0) {
+      if (open_.motion == Motion::slide && open_.direction != drive_) turn_back();
+      while (pass_next_event()) {
+      }
+    }
+    move_to(branch.end, branch.end_time);
+  }
+
+  void end_cycle() {
+    close();
+    add_event(EventKind::cycle_end, open_.stage, open_.stage);
+    path_.cycle_end_displacements.push_back(open_.end_displacement);
+    ++open_.cycle;
+  }
+
+ private:
+  /// Carries the open segment on to ΔT at `time`.
+  void move_to(double temperature_change, double time) {
+    open_.end_temperature_change = temperature_change;
+    open_.end_time = std::max(open_.start_time, time);
+    open_.end_displacement = displacement(model_, open_, temperature_change);
+  }
+
+  /// Ends the open segment where it is and opens the next one there in the same stage.
+  void close() {
+    const double end = open_.end_temperature_change;
+    const double work = thermal_work(model_, open_, end);
+    const double slid = std::abs(open_.end_displacement - open_.start_displacement);
+    if (open_.end_time > open_.start_time) path_.segments.push_back(open_);
+    open_.thermal_work += work;
+    open_.friction_dissipation += model_.friction_force * slid;
+    open_.start_time = open_.end_time;
+    open_.start_temperature_change = end;
+    open_.start_displacement = open_.end_displacement;
+  }
+
+  void add_event(EventKind kind, Stage before, Stage after) {
+    path_.events.push_back({kind, before, after, open_.start_time, open_.start_temperature_change,
+                            open_.start_displacement,
+                            spring_slider::axial_force(model_, open_.start_temperature_change,
+                                                       open_.start_displacement)});
+  }
+
+  void enter(EventKind kind, Stage stage, Motion motion, int direction) {
+    close();
+    add_event(kind, open_.stage, stage);
+    open_.stage = stage;
+    open_.motion = motion;
+    open_.direction = direction;
+  }
+
+  void start_slide() {
+    const double x = open_.end_displacement;
+    EventKind kind = EventKind::slip;
+    if (first_slide_ == 0) {
+      kind = EventKind::first_slip;
+      first_slide_ = drive_;
+    } else if (x == -drive_ * model_.clearance(-drive_)) {
+      kind = EventKind::stop_left;
+    }
+    last_slide_ = drive_;
+    enter(kind, drive_ == first_slide_ ? Stage::S2 : Stage::S5, Motion::slide, drive_);
+  }
+
+  void load_stop() {
+    // Snapped, so that x is the clearance itself and leaving the stop can be told by equality.
+    open_.end_displacement = drive_ * model_.clearance(drive_);
+    enter(EventKind::stop_reached, drive_ > 0 ? Stage::at_stop_plus : Stage::at_stop_minus,
+          Motion::stop, drive_);
+  }
+
+  void turn_back() {
+    const double force = axial_force(model_, open_.end_temperature_change, open_.end_displacement);
+    const bool unloads = last_slide_ * force >= 0.0;
+    enter(EventKind::reversal, unloads ? Stage::S3 : Stage::S4, Motion::stick, 0);
+  }
+
+  /// Is ΔT before the end of the branch, or already passed? False for NaN: no such event.
+  bool is_due(double temperature_change) const {
+    return heating_ * (branch_->end - temperature_change) > 0.0;
+  }
+
+  /// Carries the segment to the event's ΔT; one that rounding or a kink of the program puts behind
+  /// the present ΔT happens now.
+  void move_to_event(double temperature_change) {
+    const double now = open_.end_temperature_change;
+    if (heating_ * (temperature_change - now) > 0.0) {
+      move_to(temperature_change, thermal::time_at(*branch_, temperature_change));
+    }
+  }
+
+  /// Passes the next event of the branch. False if there is none left. Under one drive the motion
+  /// only ever goes loaded stop → stick → slide → stop, so this ends.
+  bool pass_next_event() {
+    const double x = open_.end_displacement;
+    if (open_.motion == Motion::stop) {
+      if (open_.direction == drive_) return false;
+      const double unload = sliding_temperature(model_, x, open_.direction);
+      if (!is_due(unload)) return false;
+      move_to_event(unload);
+      enter(EventKind::stop_unloaded, Stage::S3, Motion::stick, 0);
+      return true;
+    }
+    if (open_.motion == Motion::slide) {
+      const double clearance = model_.clearance(drive_);
+      if (std::isinf(clearance)) return false;
+      const double arrival = sliding_temperature(model_, drive_ * clearance, drive_);
+      if (!is_due(arrival)) return false;
+      move_to_event(arrival);
+      load_stop();
+      return true;
+    }
+    // Without friction every force moves the block: no rounded onset, no sliver of stick.
+    const double onset = model_.friction_force == 0.0 ? open_.end_temperature_change
+                                                      : sliding_temperature(model_, x, drive_);
+    const double zero = force_zero();
+    if (is_due(zero) && !(heating_ * (onset - zero) <= 0.0)) {
+      move_to_event(zero);
+      enter(EventKind::force_sign_change, open_.stage == Stage::S3 ? Stage::S4 : Stage::S3,
+            Motion::stick, 0);
+      return true;
+    }
+    if (!is_due(onset)) return false;
+    move_to_event(onset);
+    if (x == drive_ * model_.clearance(drive_)) {
+      load_stop();
+    } else {
+      start_slide();
+    }
+    return true;
+  }
+
+  /// ΔT at which the axial force of a stick after a slide will pass zero, x_T = x; NaN if the drive
+  /// takes it away from zero.
+  double force_zero() const {
+    const Stage towards_zero = drive_ == last_slide_ ? Stage::S4 : Stage::S3;
+    if (open_.stage != towards_zero) return never;
+    return open_.end_displacement / (model_.stress_free_length * model_.thermal_expansion);
+  }
+
+  Path& path_;
+  const SpringSlider& model_;
+  const thermal::Branch* branch_ = nullptr;
+  Segment open_{Stage::S1, Motion::stick, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  int heating_ = 0;
+  int drive_ = 0;
+  int first_slide_ = 0;
+  int last_slide_ = 0;
+};
+
+/// Throws unless l_T stays positive over the program.
+void require_positive_length(const SpringSlider& model, const thermal::Program& program) {
+  thermal::for_each_branch(program, 0, [&model](const thermal::Branch& branch) {
+    kernel::require(free_length(model, branch.end) > 0.0, "temperature change", branch.end,
+                    "one that keeps stress_free_length * (1 + thermal_expansion * change) > 0");
+  });
+}
+
+}  // namespace
+
+const char* to_string(Stage stage) {
+  constexpr std::array names{"S1", "S2", "S3", "S4", "S5", "at_stop_plus", "at_stop_minus"};
+  return names[static_cast<std::size_t>(stage)];
+}
+
+const char* to_string(Motion motion) {
+  constexpr std::array names{"stick", "slide", "stop"};
+  return names[static_cast<std::size_t>(motion)];
+}
+
+const char* to_string(EventKind kind) {
+  constexpr std::array names{"first_slip", "slip",     "stop_reached",      "stop_unloaded",
+                             "stop_left",  "reversal", "force_sign_change", "cycle_end"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+double Path::jump_after_cycle(int cycle) const {
+  kernel::require(cycle >= 1 && cycle <= program.cycles, "cycle", cycle,
+                  "1 to the program's number of cycles");
+  return cycle_end_displacements[static_cast<std::size_t>(cycle) - 1];
+}
+
+void solve(const SpringSlider& model, const thermal::Program& program, Path& path) {
+  model.validate();
+  program.validate();
+  require_positive_length(model, program);
+  path.model = model;
+  path.program = program;
+  path.segments.clear();
+  path.events.clear();
+  path.cycle_end_displacements.clear();
+  // A cycle that touches both stops has 12 events; more only in a table with many turns.
+  const auto cycles = static_cast<std::size_t>(program.cycles);
+  path.segments.reserve(12 * cycles);
+  path.events.reserve(12 * cycles);
+  path.cycle_end_displacements.reserve(cycles);
+  Follower follower(path);
+  for (int cycle = 0; cycle < program.cycles; ++cycle) {
+    thermal::for_each_branch(
+        program, cycle, [&follower](const thermal::Branch& branch) { follower.follow(branch); });
+    follower.end_cycle();
+  }
+}
+
+Path solve(const SpringSlider& model, const thermal::Program& program) {
+  Path path;
+  solve(model, program, path);
+  return path;
+}
+
+double displacement(const SpringSlider& model, const Segment& segment, double temperature_change) {
+  if (segment.motion != Motion::slide) return segment.start_displacement;
+  const double x = sliding_displacement(model, temperature_change, segment.direction);
+  return std::clamp(x, -model.clearance_minus, model.clearance_plus);
+}
+
+double thermal_work(const SpringSlider& model, const Segment& segment, double temperature_change) {
+  constexpr std::array<double, 5> nodes{-0.90617984593866399280, -0.53846931010568309104, 0.0,
+                                        0.53846931010568309104, 0.90617984593866399280};
+  constexpr std::array<double, 5> weights{0.23692688505618908751, 0.47862867049936646804,
+                                          0.56888888888888888889, 0.47862867049936646804,
+                                          0.23692688505618908751};
+  const double start = segment.start_temperature_change;
+  const double half_span = 0.5 * (temperature_change - start);
+  const double middle = 0.5 * (temperature_change + start);
+  double mean = 0.0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const double at = middle + half_span * nodes[i];
+    const double length = free_length(model, at);
+    double strain = 0.0;  // (x − x_T)/l_T
+    if (segment.motion == Motion::slide) {
+      // Written out: the difference of x and x_T would lose the digits that the balance is about.
+      strain = -(segment.direction * model.friction_force +
+                 model.preload_stiffness * thermal_displacement(model, at)) /
+               (model.axial_rigidity() + model.preload_stiffness * length);
+    } else {
+      strain = (segment.start_displacement - thermal_displacement(model, at)) / length;
+    }
+    mean += weights[i] * (-strain - 0.5 * strain * strain);
+  }
+  const double growth = model.stress_free_length * model.thermal_expansion * half_span;
+  return model.axial_rigidity() * growth * mean;
+}
+
+std::vector<std::string> warnings(const Path& path) {
+  double largest = 0.0;
+  double at = 0.0;
+  for (const Segment& segment : path.segments) {
+    const double force =
+        axial_force(path.model, segment.end_temperature_change, segment.end_displacement);
+    if (force > largest) {
+      largest = force;
+      at = segment.end_temperature_change;
+    }
+  }
+  const double clamped = euler_load(path.model, EndCondition::clamped_clamped);
+  const double pinned = euler_load(path.model, EndCondition::pinned_pinned);
+  if (largest <= pinned) return {};
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "axial force %.4g N at a temperature change of %.4g K exceeds the %s Euler load of "
+                "an unguided link of square section (%.4g N clamped-clamped, %.4g N "
+                "pinned-pinned): the model assumes a guided link",
+                largest, at, largest > clamped ? "clamped-clamped" : "pinned-pinned", clamped,
+                pinned);
+  return {text};
+}
+
+}  // namespace statejump::spring_slider

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "newton.hpp"
+#include "parts.hpp"
+
+namespace statejump::truss::detail {
+
+namespace {
+
+/// Modes softer than this share of the stiffest part count as free: rounding of the stiffness is
+/// 1e-16, the softest mode of a ring of 100 000 bays 1e-12.
+constexpr double free_share = 1e-13;
+constexpr int most_modes = 6;
+
+/// Joints that are held for the question of stability, in the stiffest part's stiffness: their
+/// compliance is that of a hundredth of such a part, and rounding stays below the share above.
+constexpr double stiff_joint = 100.0;
+
+/// "node 'B' (x), node 'C' (y)": the nodes that move most in a mode.
+std::string movers(const System& system, const VectorXd& mode) {
+  const Model& model = system.model();
+  std::vector<std::pair<double, int>> nodes;
+  for (int n = 0; n < static_cast<int>(model.nodes.size()); ++n) {
+    nodes.emplace_back(system.displacement(n, mode).norm(), n);
+  }
+  std::stable_sort(nodes.begin(), nodes.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::ostringstream text;
+  for (std::size_t k = 0; k < std::min<std::size_t>(3, nodes.size()); ++k) {
+    if (nodes[k].first < 0.1 * nodes[0].first) break;
+    const Vector3d moved = system.displacement(nodes[k].second, mode);
+    Eigen::Index along = 0;
+    moved.cwiseAbs().maxCoeff(&along);
+    text << (k == 0 ? "" : ", ") << "node '" << model.nodes[index(nodes[k].second)].name
+         << "' mostly along "
+         << "xyz"[along];
+  }
+  return text.str();
+}
+
+using Factors = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+
+/// Modes of a symmetric matrix nearest to zero, and their eigenvalues.
+struct Modes {
+  VectorXd eigenvalues;
+  Eigen::MatrixXd vectors;
+};
+
+Modes lowest_modes(const Eigen::SparseMatrix<double>& matrix, const Factors& factors) {
+  // Inverse iteration on a block: free modes outgrow all others by 20 and more in a round.
+  const Eigen::Index n = matrix.rows();
+  const Eigen::Index count = std::min<Eigen::Index>(most_modes, n);
+  Eigen::MatrixXd block(n, count);
+  for (int j = 0; j < count; ++j) {
+    for (int i = 0; i < n; ++i) block(i, j) = std::sin(1.0 + 1.7 * i * (j + 1) + j);
+  }
+  for (int round = 0; round < 5; ++round) {
+    block = factors.solve(block).eval();
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(block);
+    block = qr.householderQ() * Eigen::MatrixXd::Identity(n, count);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> found(block.transpose() * (matrix * block));
+  return {found.eigenvalues(), block * found.eigenvectors()};
+}
+
+/// The stiffness of the truss with its joints held, see joined_stiffness(), and a share of that of
+/// its stiffest part everywhere.
+Eigen::SparseMatrix<double> shifted_stiffness(const System& system, const VectorXd& z, double time,
+                                              const Statuses& statuses, JointModel joints,
+                                              double held, double share) {
+  Eigen::SparseMatrix<double> shifted = system.joined_stiffness(z, time, statuses, joints, held);
+  Eigen::SparseMatrix<double> identity(shifted.rows(), shifted.rows());
+  identity.setIdentity();
+  shifted += share * system.stiffness_scale() * identity;
+  return shifted;
+}
+
+/// Those of the modes whose eigenvalues are in a range, in words; their number.
+std::pair<int, std::string> modes_between(const System& system, const Modes& modes, double smallest,
+                                          double largest) {
+  std::ostringstream text;
+  int count = 0;
+  for (Eigen::Index j = 0; j < modes.eigenvalues.size(); ++j) {
+    if (!(modes.eigenvalues[j] >= smallest && modes.eigenvalues[j] <= largest)) continue;
+    VectorXd mode = VectorXd::Zero(system.unknowns());
+    mode.head(modes.vectors.rows()) = modes.vectors.col(j);
+    text << (count++ == 0 ? "" : "; ") << movers(system, mode);
+  }
+  return {count, text.str()};
+}
+
+/// "2 free modes: ...", "" without any; whether some direction has a negative stiffness.
+std::pair<std::string, bool> free_modes(const System& system, const VectorXd& z, double time,
+                                        const Statuses& statuses, JointModel joints) {
+  const Eigen::SparseMatrix<double> shifted =
+      shifted_stiffness(system, z, time, statuses, joints, 1.0, 0.05 * free_share);
+  const Factors factors(shifted);
+  if (factors.info() != Eigen::Success) return {"", false};
+  const double least = free_share * system.stiffness_scale();
+  const auto [free, text] = modes_between(system, lowest_modes(shifted, factors), -least, least);
+  const bool pushed = (factors.vectorD().array() < 0.0).any();
+  if (free == 0) return {"", pushed};
+  return {std::to_string(free) + (free == most_modes ? " or more" : "") + " free mode" +
+              (free == 1 ? "" : "s") + ": " + text,
+          pushed};
+}
+
+/// The truss with parts that carry no force as drawn; slack cables stay slack.
+Model without_stress(Model model) {
+  const auto drawn = [&](const auto& part) {
+    return (model.nodes[index(part.second)].position - model.nodes[index(part.first)].position)
+        .norm();
+  };
+  for (Link& link : model.links) link.stress_free_length = drawn(link);
+  for (AxialSpring& spring : model.springs) {
+    if (!spring.cable || spring.free_length < drawn(spring)) spring.free_length = drawn(spring);
+  }
+  for (TorsionSpring& spring : model.torsion_springs) spring.free_angle = 0.0;
+  return model;
+}
+
+}  // namespace
+
+std::string mechanism(const System& system, const VectorXd& z, double time,
+                      const Statuses& statuses, JointModel joints) {
+  if (system.displacements() == 0) return "";
+  const auto [text, pushed] = free_modes(system, z, time, statuses, joints);
+  if (!text.empty() || !pushed || !z.isZero()) return text;
+  // Forces of the drawn shape may push a mechanism along its free mode; without them it is one.
+  const Model slack = without_stress(system.model());
+  return free_modes(System(slack), z, time, statuses, joints).first;
+}
+
+std::string buckling(const System& system, const VectorXd& z, double time) {
+  if (system.displacements() == 0) return "";
+  const Eigen::SparseMatrix<double> shifted = shifted_stiffness(
+      system, z, time, system.all_stick(), JointModel::pins, stiff_joint, free_share);
+  const Factors factors(shifted);
+  // Sylvester: as many negative pivots as negative eigenvalues.
+  const Eigen::Index unstable =
+      factors.info() == Eigen::Success ? (factors.vectorD().array() < 0.0).count() : 0;
+  if (unstable == 0) return "";
+  const double lowest = -std::numeric_limits<double>::infinity();
+  const std::string text =
+      modes_between(system, lowest_modes(shifted, factors), lowest, 0.0).second;
+  return std::to_string(unstable) + " mode" + (unstable == 1 ? "" : "s") + " without resistance" +
+         (text.empty() ? "" : ": " + text);
+}
+
+}  // namespace statejump::truss::detail

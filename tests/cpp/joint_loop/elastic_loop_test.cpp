@@ -1,0 +1,481 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/joint_loop/elastic_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+#include "linkage/umbrella.hpp"
+#include "statejump/linkage/run.hpp"
+
+namespace statejump::joint_loop {
+namespace {
+
+using linkage::alpha;
+using linkage::frame;
+using linkage::heating;
+using linkage::umbrella;
+
+using Eigen::Vector2d;
+
+constexpr auto rigid = TangentialCompliance::rigid;
+constexpr auto mindlin = TangentialCompliance::mindlin;
+
+/// A spring whose free angle is off the ideal flare angle loads the joint throughout.
+linkage::Linkage biased(double mu, double bias = 0.05, double stiffer = 1.0) {
+  linkage::Linkage model = umbrella();
+  model.law.friction = kernel::laws::friction_law(mu > 0.0 ? "mindlin" : "none");
+  model.law.friction_parameters.friction_coefficient = mu;
+  model.torsion_stiffness = 1.0;
+  model.torsion_free_angle = umbrella().free_angle() + bias;
+  model.link_ab.young_modulus *= stiffer;
+  model.link_bc.young_modulus *= stiffer;
+  return model;
+}
+
+/// Everything that a default hides: the other radius, expanding radii, unequal links.
+linkage::Linkage expanding(double mu) {
+  linkage::Linkage model = biased(mu, -0.05);
+  model.law.normal = kernel::laws::normal_law("hertz_paper");
+  model.journal_thermal_expansion = 0.5 * alpha;
+  model.bearing_thermal_expansion = 2.0 * alpha;
+  model.link_bc.thermal_expansion = 0.8 * alpha;
+  model.link_bc.young_modulus = 50e9;
+  return model;
+}
+
+// Angles of order 1 carry 1e-16 each, the closure 1e-16 m over links of 0.05 m.
+constexpr double angle_rounding = 1e-14;
+
+/// Virtual work at a point: the gradient of the potential, from energy(), by each tip coordinate
+/// equals F_t times that of the slide of the material at the contact. Largest difference [N].
+double out_of_balance(const linkage::Linkage& model, const ElasticJointPoint& point) {
+  linkage::State at;
+  at.bearing_centre = point.bearing_centre;
+  at.journal_centre = point.journal_centre;
+  const auto coordinate = [](linkage::State& state, int i) -> double& {
+    return i < 2 ? state.bearing_centre[i] : state.journal_centre[i - 2];
+  };
+  const auto potential = [&](int i, double shift) {
+    linkage::State state = at;
+    coordinate(state, i) += shift;
+    return energy(model, state, point.temperature_change).sum();
+  };
+  const Vector2d d = at.journal_centre - at.bearing_centre;
+  const Vector2d n = d.normalized();
+  const Vector2d t(-n.y(), n.x());
+  const auto turn = [](const Vector2d& r) -> Vector2d {  // ∂θ/∂(tip)
+    return Vector2d(-r.y(), r.x()) / r.squaredNorm();
+  };
+  const double r1 =
+      model.journal_radius * (1.0 + model.journal_thermal_expansion * point.temperature_change);
+  const double r2 =
+      model.bearing_radius * (1.0 + model.bearing_thermal_expansion * point.temperature_change);
+  const double half = 0.5 * (d.norm() - (r2 - r1));
+  Eigen::Vector4d slide;
+  slide << -t - (r2 + half) * turn(at.bearing_centre),
+      t + (r1 - half) * turn(at.journal_centre - Vector2d(model.frame_length, 0.0));
+  double largest = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    // Central differences with h and 2h, δ = 1e-7 m. Truncation h^4/30 V'''''(δ^-2.5) is 1e-8 N;
+    // rounding, positions of 1e-17 m in forces of 1 N and 1e-19 J of the spring's energy, over h.
+    const double h = 1e-9;
+    const double gradient = (8.0 * (potential(i, h) - potential(i, -h)) -
+                             (potential(i, 2.0 * h) - potential(i, -2.0 * h))) /
+                            (12.0 * h);
+    largest = std::max(largest, std::abs(gradient - point.tangential_force * slide[i]));
+  }
+  return largest;
+}
+
+TEST(ElasticLoop, PointsAreEquilibriaByVirtualWork) {
+  for (const linkage::Linkage& model : {biased(0.0), biased(0.3), expanding(0.0), expanding(0.3)}) {
+    for (const TangentialCompliance compliance : {rigid, mindlin}) {
+      const ElasticLoop loop = elastic_loop(model, heating(), {8, compliance});
+      for (const ElasticJointPoint& point : loop.points) {
+        EXPECT_GT(point.normal_force, 0.5);
+        EXPECT_LT(out_of_balance(model, point), 1e-7);
+        // A single contact point makes the joint force parallel to AC, links elastic or not.
+        EXPECT_NEAR(std::atan2(point.tangential_force, point.normal_force), point.contact_angle,
+                    1e-12);
+        EXPECT_LE(std::abs(point.tangential_force),
+                  model.friction_coefficient() * point.normal_force * (1.0 + 1e-12));
+      }
+      EXPECT_LT(loop.largest_force_residual, 1e-12);
+      EXPECT_LT(loop.largest_closure_residual, 2.4e-16);
+      // 12 K per step; with a wrong entry in the Jacobian Newton's method turns linear.
+      EXPECT_LE(loop.most_iterations, 6);
+    }
+  }
+}
+
+TEST(ElasticLoop, LoadedStateIsAtRestForTheDynamics) {
+  for (linkage::Linkage model : {biased(0.3), expanding(0.3)}) {
+    for (const double phi : {-0.2, 0.0, 0.1}) {
+      const linkage::State state = loaded_state(model, phi);
+      const linkage::Joint joint = joint_state(model, state, 0.0, 0.0);
+      EXPECT_NEAR(std::atan2(state.contact.tangential_force.x(), joint.normal_force), phi, 1e-9);
+      EXPECT_EQ(state.impact_speed, model.law.smallest_impact_speed);  // long in contact
+      model.axial_damping_ratio = 0.1;
+      const thermal::Program hold = heating(0.02, 0.0);
+      const linkage::State end = simulate(model, hold, state, {2000, 0}).samples.back().state;
+      // Positions rounded to 1e-17 m are off balance by k_T times that, 1e-10 N, which bends the
+      // softest spring, that of the contact's angle with some F/c = 1e4 N/m, by 1e-14 m.
+      EXPECT_LT((end.bearing_centre - state.bearing_centre).norm(), 1e-13);
+      EXPECT_LT((end.journal_centre - state.journal_centre).norm(), 1e-13);
+      EXPECT_NEAR(end.contact.tangential_force.x(), state.contact.tangential_force.x(), 1e-6);
+    }
+  }
+}
+
+TEST(ElasticLoop, TendsToTheRigidLoop) {
+  // δ ~ E^(-2/3) and the elongation e ~ E^(-1), comparable at E: the distance D to the rigid loop
+  // is A s^(-2/3) (1 + B s^(-1/3)), |B| of the order of 1; allowed 1.5. A tenfold s divides D by
+  // 10^(2/3) (1 + B s^(-1/3))/(1 + B (10 s)^(-1/3)).
+  for (const double mu : {0.15, 0.3}) {
+    const RigidLoop limit = rigid_loop(biased(mu), heating());
+    const auto distance = [&](double stiffer) -> Eigen::Array3d {
+      const ElasticLoop loop = elastic_loop(biased(mu, 0.05, stiffer), heating());
+      EXPECT_EQ(loop.events.size(), limit.events.size());
+      return {loop.theta2_jump() - limit.theta2_jump(), loop.theta4_jump() - limit.theta4_jump(),
+              loop.events[1].temperature_change - limit.events[1].temperature_change};
+    };
+    const Eigen::Array3d soft = distance(1e3);
+    const Eigen::Array3d stiff = distance(1e4);
+    const Eigen::Array3d stiffest = distance(1e5);
+    const double power = std::pow(10.0, 2.0 / 3.0);
+    const double step = 1.5 * (1.0 - std::pow(10.0, -1.0 / 3.0));
+    for (int i = 0; i < 3; ++i) {
+      std::printf("mu %.2f: distance %.4g %.4g %.4g, ratios %.4f %.4f\n", mu, soft[i], stiff[i],
+                  stiffest[i], soft[i] / stiff[i], stiff[i] / stiffest[i]);
+      EXPECT_NEAR(soft[i] / stiff[i], power, power * step * std::pow(1e3, -1.0 / 3.0));
+      EXPECT_NEAR(stiff[i] / stiffest[i], power, power * step * std::pow(1e4, -1.0 / 3.0));
+    }
+  }
+}
+
+TEST(ElasticLoop, EnoughFrictionLeavesNoJump) {
+  for (const linkage::Linkage& model : {biased(0.6), expanding(0.6)}) {
+    const ElasticLoop loop = elastic_loop(model, heating());
+    double largest = 0.0;
+    for (const ElasticJointPoint& point : loop.points) {
+      EXPECT_EQ(point.motion, JointMotion::roll);
+      largest = std::max(largest, std::abs(point.contact_angle));
+    }
+    EXPECT_GT(largest, 0.1);
+    EXPECT_NEAR(loop.theta2_jump(), 0.0, angle_rounding);
+    EXPECT_NEAR(loop.theta4_jump(), 0.0, angle_rounding);
+    EXPECT_EQ(loop.events.size(), 3u);
+  }
+  // No drift: what it rolled is measured from where the roll began, not step by step.
+  EXPECT_NEAR(elastic_loop(biased(0.6), heating(), {100000, rigid}).theta2_jump(), 0.0, 1e-15);
+  // The tangential spring leaves a little: on loading it keeps its force, on unloading its slide.
+  const ElasticLoop loop = elastic_loop(biased(0.6), heating(), {2000, mindlin});
+  EXPECT_GT(std::abs(loop.theta2_jump()), 1e-10);
+  EXPECT_LT(std::abs(loop.theta2_jump()), 1e-8);
+}
+
+TEST(ElasticLoop, WithoutFrictionThereIsNoJump) {
+  for (const linkage::Linkage& model : {biased(0.0), expanding(0.0)}) {
+    const ElasticLoop loop = elastic_loop(model, heating());
+    for (const ElasticJointPoint& point : loop.points) EXPECT_EQ(point.tangential_force, 0.0);
+    EXPECT_NEAR(loop.theta2_jump(), 0.0, angle_rounding);
+    EXPECT_NEAR(loop.theta4_jump(), 0.0, angle_rounding);
+    EXPECT_LT(loop.journal_jump().norm(), 1e-15);
+  }
+}
+
+double theta2_of(const linkage::State& state) {
+  return std::atan2(state.bearing_centre.y(), state.bearing_centre.x());
+}
+
+TEST(ElasticLoop, JumpThatEndsInSlipIsThatBetweenTwoEquilibria) {
+  // In slip the state depends on ΔT alone: what came before, and how finely, does not matter.
+  const linkage::Linkage model = biased(0.15);
+  const double expected =
+      theta2_of(loaded_state(model, -std::atan(0.15))) - theta2_of(loaded_state(model));
+  for (const TangentialCompliance compliance : {rigid, mindlin}) {
+    for (const int samples : {1, 100, 2000}) {
+      const ElasticLoop loop = elastic_loop(model, heating(), {samples, compliance});
+      EXPECT_NEAR(loop.theta2_jump(), expected, angle_rounding) << samples;
+      ASSERT_EQ(loop.events.size(), 5u);  // roll, slip, corner: roll, slip, end
+      EXPECT_EQ(loop.events[1].motion, JointMotion::slip);
+      EXPECT_EQ(loop.events[2].motion, JointMotion::roll);
+      EXPECT_EQ(loop.events[3].motion, JointMotion::slip);
+      for (const ElasticJointPoint& point : loop.points) {
+        const double limit = 0.15 * point.normal_force;
+        const bool corner = point.temperature_change == 100.0;
+        EXPECT_EQ(point.slipping(),
+                  !corner && std::abs(std::abs(point.tangential_force) - limit) < 1e-9 * limit)
+            << point.temperature_change;
+      }
+      if (samples < 2000) continue;
+      for (const ElasticJointPoint& event : loop.events) {
+        std::printf("%-5s %13.9f K  phi %9.6f  depth %.6g m  F_N %.6f N  F_t %9.6f N\n",
+                    to_string(event.motion), event.temperature_change, event.contact_angle,
+                    event.depth, event.normal_force, event.tangential_force);
+      }
+      std::printf("jump theta2 %.9g theta4 %.9g rad\n", loop.theta2_jump(), loop.theta4_jump());
+    }
+  }
+}
+
+TEST(ElasticLoop, StepsMayBeLongerThanTheRollBetweenTwoLimits) {
+  // At a corner the force stands at one limit, at the end of the step beyond the other. Cycles
+  // after the first repeat it: roll, slip, roll, slip, each event at its temperature.
+  constexpr int cycles = 20;
+  for (const double mu : {0.002, 0.005, 0.01, 0.02, 0.05}) {
+    for (const TangentialCompliance compliance : {rigid, mindlin}) {
+      thermal::Program program = heating();
+      program.cycles = cycles;
+      const ElasticLoop loop = elastic_loop(biased(mu), program, {3, compliance});
+      ASSERT_EQ(loop.events.size(), 4u * cycles + 1u) << mu;
+      for (std::size_t i = 4; i < loop.events.size(); ++i) {
+        const ElasticJointPoint& event = loop.events[i];
+        EXPECT_EQ(event.slipping(), i % 2 == 1 || i == 4u * cycles);
+        if (i < 8) continue;
+        // φ, good to 1e-14, turns by 4e-3 rad/K, F_t/F_N by as much: 1e-11 K.
+        EXPECT_NEAR(event.temperature_change, loop.events[i - 4].temperature_change, 1e-10);
+      }
+    }
+  }
+}
+
+TEST(ElasticLoop, IncrementsAreOfSecondOrder) {
+  // It ends in a roll, so the whole path counts. Differences of successive halvings fall by 4; a
+  // last step before slip that is cut short changes one part in N, the steps up to slip.
+  for (const TangentialCompliance compliance : {rigid, mindlin}) {
+    Eigen::Array2d values[4];
+    for (int i = 0; i < 4; ++i) {
+      const ElasticLoop loop = elastic_loop(biased(0.3), heating(), {20 << i, compliance});
+      ASSERT_EQ(loop.events.size(), 4u);  // roll, slip, corner: roll, end
+      values[i] = {loop.theta2_jump(), loop.events[1].temperature_change};
+    }
+    for (int i = 0; i < 2; ++i) {
+      const Eigen::Array2d ratio = (values[i] - values[i + 1]) / (values[i + 1] - values[i + 2]);
+      std::printf("ratios %.4f %.4f\n", ratio[0], ratio[1]);
+      const double band = 4.0 / (0.81 * (20 << i));  // slip starts at 81 K
+      EXPECT_NEAR(ratio[0], 4.0, band);
+      EXPECT_NEAR(ratio[1], 4.0, band);
+    }
+    const ElasticLoop loop = elastic_loop(biased(0.3), heating(), {2000, compliance});
+    std::printf("slip %.9f K, jump theta2 %.9g theta4 %.9g rad\n",
+                loop.events[1].temperature_change, loop.theta2_jump(), loop.theta4_jump());
+  }
+}
+
+linkage::Linkage with_radii_at(const linkage::Linkage& model, double temperature_change) {
+  linkage::Linkage now = model;
+  now.journal_radius *= 1.0 + model.journal_thermal_expansion * temperature_change;
+  now.bearing_radius *= 1.0 + model.bearing_thermal_expansion * temperature_change;
+  now.journal_thermal_expansion = now.bearing_thermal_expansion = 0.0;
+  return now;
+}
+
+/// Plastic part of the slide between two close points [m].
+double plastic_slide(const linkage::Linkage& model, const ElasticJointPoint& a,
+                     const ElasticJointPoint& b, TangentialCompliance compliance) {
+  const linkage::Linkage middle =
+      with_radii_at(model, 0.5 * (a.temperature_change + b.temperature_change));
+  const double depth = 0.5 * (a.depth + b.depth);
+  const double slide = (middle.radial_clearance() + depth) * (b.contact_angle - a.contact_angle) +
+                       (middle.journal_radius - 0.5 * depth) * (b.theta4 - a.theta4) -
+                       (middle.bearing_radius + 0.5 * depth) * (b.theta2 - a.theta2);
+  if (compliance == rigid) return slide;
+  const auto stiffness = [&](const ElasticJointPoint& point) {  // G* = G/(2 (2 - nu))
+    const linkage::Linkage now = with_radii_at(model, point.temperature_change);
+    const double radius = now.journal_radius * now.bearing_radius / now.radial_clearance();
+    return 8.0 * 70e9 / (2.6 * 3.4) * std::sqrt(radius * point.depth);
+  };
+  const double k_a = stiffness(a);
+  const double k_b = stiffness(b);
+  return slide + (k_b < k_a ? b.tangential_force / k_b - a.tangential_force / k_a
+                            : 2.0 * (b.tangential_force - a.tangential_force) / (k_a + k_b));
+}
+
+/// `model` with the expansion of BC at which a slip at φ turns round at 50 K, in the rigid limit:
+/// the joint then slips at the rate R1 dθ4/dΔT − R2 dθ2/dΔT.
+linkage::Linkage turning_at_50_kelvin(linkage::Linkage model, double phi) {
+  const linkage::Linkage middle = with_radii_at(model, 50.0);
+  const auto turns = [&](double heat) {
+    const JointPoint point = joint_point(with_radii_at(model, heat), heat, -1, phi);
+    return middle.journal_radius * point.theta4 - middle.bearing_radius * point.theta2;
+  };
+  double low = -10.0;
+  double high = 10.0;
+  for (int i = 0; i < 60; ++i) {
+    const double expansion = 0.5 * (low + high);
+    model.link_bc.thermal_expansion = expansion * alpha;
+    const double slope =
+        8.0 * (turns(51.0) - turns(49.0)) - (turns(52.0) - turns(48.0));  // of fourth order
+    (slope > 0.0 ? low : high) = expansion;
+  }
+  return model;
+}
+
+TEST(ElasticLoop, SlipMayEndWithinABranch) {
+  const double phi = -std::atan(0.15);
+  const auto run = [phi](const linkage::Linkage& model, int samples,
+                         TangentialCompliance compliance) {
+    const ElasticLoop loop = elastic_loop(model, heating(), {samples, compliance}, phi);
+    EXPECT_EQ(loop.events.size(), 4u);  // slip, roll, corner, end
+    EXPECT_EQ(loop.events[0].motion, JointMotion::slip);
+    EXPECT_EQ(loop.events[1].motion, JointMotion::roll);
+    return loop;
+  };
+  linkage::Linkage grows = biased(0.15);
+  grows.bearing_thermal_expansion = -2.0 * alpha;
+  grows.journal_thermal_expansion = -2.5 * alpha;
+  for (const linkage::Linkage& start : {biased(0.15), grows}) {
+    const linkage::Linkage model = turning_at_50_kelvin(start, phi);
+    for (const TangentialCompliance compliance : {rigid, mindlin}) {
+      const ElasticLoop loop = run(model, 100, compliance);
+      const double end = loop.events[1].temperature_change;
+      const int last = static_cast<int>(end) - 1;
+      ASSERT_EQ(loop.points[last].temperature_change, last);
+      // ΔT by rate of plastic slide, a parabola through three steps, at rate zero. Radii change the
+      // rate's slope by their α ΔT of R/c = 50, some 1e-3 per kelvin: the third order is 1e-4 K.
+      Eigen::Matrix3d powers;
+      Eigen::Vector3d heats;
+      for (int i = 0; i < 3; ++i) {
+        const int from = last - 1 - 4 * i;
+        const double rate =
+            plastic_slide(model, loop.points[from], loop.points[from + 1], compliance);
+        EXPECT_LT(rate * loop.points[from].tangential_force, 0.0);  // friction resists
+        heats[i] = from + 0.5;
+        powers.row(i) << 1.0, rate * 1e11, rate * rate * 1e22;
+      }
+      const double expected = powers.partialPivLu().solve(heats)[0];
+      std::printf("slip ends at %.9f K, from the slide %.9f K\n", end, expected);
+      EXPECT_NEAR(end, expected, 2e-4);
+      // A root of the rate, not of increments: rounding alone, 1e-18 m/K by 1e-12 m/K².
+      EXPECT_NEAR(run(model, 7, compliance).events[1].temperature_change, end, 1e-5);
+    }
+    // δ/c = 1e-7 against a slope that changes by α ΔT = 1e-3 in 50 K: 5e-3 K if nothing cancels.
+    linkage::Linkage stiff = model;
+    stiff.link_ab.young_modulus *= 1e6;
+    stiff.link_bc.young_modulus *= 1e6;
+    EXPECT_NEAR(run(stiff, 100, rigid).events[1].temperature_change, 50.0, 5e-3);
+  }
+}
+
+TEST(ElasticLoop, SeparatesWhereTheForceVanishes) {
+  // Without force nothing is deformed: the rigid closed form holds. F_N falls by
+  // K_M d(α)/dΔT / height, about 5e-3 N/K, so the smallest resolved force, 7e-12 N, is reached
+  // 2e-9 K early; twice that is allowed, and 1e-10 K of rounding.
+  const double bias = 4e-3;
+  const RigidLoop limit = rigid_loop(biased(0.0, bias), heating(1.0, -100.0));
+  const ElasticLoop loop = elastic_loop(biased(0.0, bias), heating(1.0, -100.0));
+  const double slope = loop.points.front().normal_force / -limit.points.back().temperature_change;
+  ASSERT_TRUE(loop.separated);
+  ASSERT_TRUE(limit.separated);
+  EXPECT_EQ(loop.events.back().motion, JointMotion::separated);
+  EXPECT_NEAR(loop.points.back().temperature_change, limit.points.back().temperature_change,
+              2.0 * loop.points.back().normal_force / slope + 1e-10);
+  EXPECT_LT(loop.points.back().normal_force, 1e-11);
+  // While it slips, too: no spurious end of slip where the force fades, whatever the step. Newton's
+  // method gives up some times earlier there than the smallest force: ten times is allowed.
+  for (const double mu : {0.005, 0.05}) {
+    const RigidLoop slips = rigid_loop(biased(mu, bias), heating(1.0, -100.0));
+    for (const int samples : {3, 200}) {
+      const ElasticLoop slipping =
+          elastic_loop(biased(mu, bias), heating(1.0, -100.0), {samples, rigid});
+      ASSERT_EQ(slipping.events.size(), 3u);
+      EXPECT_NEAR(slipping.points.back().temperature_change, slips.points.back().temperature_change,
+                  2e-8);
+    }
+  }
+  // With more friction it rolls there; the slide over the depth, δ/c = 2.5e-4 of the angle,
+  // differs.
+  for (const TangentialCompliance compliance : {rigid, mindlin}) {
+    const RigidLoop rolls = rigid_loop(biased(0.6, bias), heating(1.0, -100.0));
+    const ElasticLoop rolling =
+        elastic_loop(biased(0.6, bias), heating(1.0, -100.0), {2000, compliance});
+    ASSERT_TRUE(rolling.separated);
+    ASSERT_EQ(rolling.events.size(), 2u);
+    EXPECT_NEAR(rolling.points.back().contact_angle, rolls.points.back().contact_angle,
+                1e-3 * std::abs(rolls.points.back().contact_angle));
+  }
+}
+
+TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
+  // Velocities vanish as 1/T: the error is A/T + B/T^2 + ... B/T is taken to be to A no more than
+  // A/T is to the jump: the lag behind the path, twice over. (Not so where the static path comes
+  // near to the limit without slipping: there the dynamics slips or not.)
+  for (linkage::Linkage model : {biased(0.15), biased(0.3), expanding(0.2)}) {
+    model.axial_damping_ratio = 0.1;
+    model.pin_damping = 0.1;
+    const ElasticLoop loop = elastic_loop(model, heating(), {2000, mindlin});
+    const double jump = loop.theta2_jump();
+    const double other = elastic_loop(model, heating(), {2000, rigid}).theta2_jump();
+    const linkage::State start = loaded_state(model);
+    double error[3];
+    for (int i = 0; i < 3; ++i) {
+      const double duration = 4 << i;
+      const linkage::Run run =
+          simulate(model, heating(duration), start, {static_cast<int>(duration / 4e-5), 0});
+      EXPECT_EQ(run.contacts, 0);  // never left
+      error[i] = theta2_of(run.samples.back().state) - theta2_of(start) - jump;
+    }
+    std::printf(
+        "jump %.9g (rigid compliance %.9g): dynamics off by %.4g %.4g %.4g, ratios %.4f "
+        "%.4f, extrapolated %.2g\n",
+        jump, other, error[0], error[1], error[2], error[0] / error[1], error[1] / error[2],
+        2.0 * error[2] - error[1]);
+    EXPECT_NEAR(error[0] / error[1], 2.0, 2.0 * std::abs(error[0] / jump));
+    EXPECT_NEAR(error[1] / error[2], 2.0, 2.0 * std::abs(error[1] / jump));
+    // Without the leading term. Where the cycle ends in a roll that tells the compliances apart.
+    const double rest = error[1] * error[1] / std::abs(jump);
+    EXPECT_LT(std::abs(2.0 * error[2] - error[1]), rest);
+    if (loop.events.back().motion == JointMotion::roll) {
+      EXPECT_GT(std::abs(other - jump), 5.0 * rest);
+    } else {
+      EXPECT_NEAR(other, jump, angle_rounding);
+    }
+  }
+}
+
+void expect_refused(const linkage::Linkage& model, const thermal::Program& program,
+                    double contact_angle, const std::string& text,
+                    const ElasticLoopOptions& options = {}) {
+  try {
+    elastic_loop(model, program, options, contact_angle);
+    FAIL() << "accepted, expected: " << text;
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
+  }
+}
+
+TEST(ElasticLoop, RefusesWhatItCannotAnswer) {
+  expect_refused(umbrella(), heating(), 0.0, "torsion_stiffness = 0,");
+  expect_refused(biased(0.1, 0.0), heating(), 0.0, "torsion_free_angle");
+  expect_refused(biased(0.1), heating(), 0.2, "contact_angle = 0.2,");
+  expect_refused(biased(0.1), heating(), 0.0, "samples = 0,", {0, rigid});
+  linkage::Linkage model = biased(0.1);
+  model.law.normal = kernel::laws::normal_law("persson");
+  expect_refused(model, heating(), 0.0, "normal = 'persson'");
+  model = biased(0.1);
+  model.law.tangential_velocity = kernel::laws::tangential_velocity_law("paper");
+  expect_refused(model, heating(), 0.0, "tangential_velocity = 'paper'");
+  model = biased(0.1);
+  model.journal_thermal_expansion = 1e-3;  // 0.5 mm in 100 K
+  expect_refused(model, heating(), 0.0, "radial clearance = -");
+  // A spring that would crush the links: not a wrong number.
+  model = biased(0.1);
+  model.torsion_stiffness = 1e9;
+  try {
+    loaded_state(model);
+    FAIL() << "accepted";
+  } catch (const std::runtime_error& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("temperature_change = 0 K: residual "), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace statejump::joint_loop

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every law of the catalogue in the rib's dynamics, and the adaptive method beside the fixed steps.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+#include "statejump/linkage/run.hpp"
+#include "umbrella.hpp"
+
+namespace statejump::linkage {
+namespace {
+
+Linkage with_laws(const kernel::laws::JointLawNames& names, double restitution = 0.8) {
+  Linkage model = umbrella();
+  model.law = kernel::laws::joint_law(names);
+  model.law.restitution = restitution;
+  model.law.friction_parameters = {0.3, 1e-5, 1e-4};
+  model.axial_damping_ratio = 0.1;
+  return model;
+}
+
+linkage::Run run(const Linkage& model, int steps, double duration = 0.05) {
+  return simulate(model, heating(duration), initial_state(model, Start::rest, 0.0), {steps, 0});
+}
+
+TEST(LinkageLaws, AccountClosesForEveryCombination) {
+  using namespace kernel::laws;
+  for (const std::string& normal : law_names<NormalLaw>()) {
+    for (const std::string& dissipation : law_names<DissipationLaw>()) {
+      for (const std::string& friction : law_names<FrictionLaw>()) {
+        for (const std::string& velocity : law_names<TangentialVelocityLaw>()) {
+          const Linkage model = with_laws({normal, dissipation, friction, velocity});
+          const std::string which = normal + " " + dissipation + " " + friction + " " + velocity;
+          const linkage::Run fine = run(model, 40000);
+          ASSERT_GT(fine.contacts, 0) << which;
+          // The impact speed and the slip limit are met within a step, so the account is of second
+          // order in ω h = 0.0125, ω = 1e4 rad/s being that of journal and links in contact.
+          const double scale = fine.samples.back().account.dissipation();
+          EXPECT_LT(std::abs(fine.energy_residue), 1.6e-4 * scale) << which;
+          EXPECT_EQ(fine.samples.back().account.impact_dissipation > 0.0, dissipation != "none")
+              << which;
+          EXPECT_EQ(fine.samples.back().account.friction_dissipation > 0.0, friction != "none")
+              << which;
+        }
+      }
+    }
+  }
+}
+
+TEST(LinkageLaws, PaperVelocityDoesNotSeeTheSpins) {
+  // Concentric bodies apart, journal and bearing turn against each other: only `material` rubs.
+  Linkage model = with_laws({"hertz_internal", "none", "ambrosio", "paper"});
+  State state = initial_state(model, Start::rest, 0.0, {1e-4, 0.0});
+  const Eigen::Vector2d ab = state.bearing_centre;
+  state.journal_centre.x() += 1e-8;
+  state.bearing_velocity = {-ab.y(), ab.x()};  // 1 rad/s about A, both tips alike
+  state.journal_velocity = state.bearing_velocity;
+  EXPECT_DOUBLE_EQ(joint_state(model, state, 0.0, 0.0).tangential_force, 0.0);
+  model.law.tangential_velocity = kernel::laws::MaterialVelocity{};
+  const Joint joint = joint_state(model, state, 0.0, 0.0);
+  EXPECT_GT(joint.normal_force, 0.0);
+  EXPECT_DOUBLE_EQ(std::abs(joint.tangential_force), 0.3 * joint.normal_force);
+}
+
+TEST(LinkageLaws, StateSaysWhatTheJointDoes) {
+  const Linkage model = with_laws({"hertz_internal", "hunt_crossley", "mindlin", "material"});
+  State state = initial_state(model, Start::rest, 0.0, {1e-4, 0.0});
+  state.journal_centre.x() += 1e-8;
+  state.contact.tangential_force = {0.5, 0.0, 0.0};
+  for (const bool slipping : {false, true}) {
+    state.contact.slipping = slipping;
+    const Joint joint = joint_state(model, state, 0.0, 0.0);
+    EXPECT_EQ(joint.slipping, slipping);
+    EXPECT_EQ(joint.tangential_force, 0.5);
+    EXPECT_NEAR(joint.penetration_depth, 1e-8, 1e-15);
+  }
+  // Of a run: an impact speed while in contact and at no other time.
+  const linkage::Run done =
+      simulate(model, heating(0.05), initial_state(model, Start::rest, 0.0), {20000, 1});
+  int touching = 0;
+  for (const Sample& s : done.samples) {
+    const Joint joint = joint_state(model, s.state, s.temperature_change, 0.0);
+    touching += joint.penetration_depth > 0.0;
+    ASSERT_EQ(s.state.impact_speed > 0.0, joint.penetration_depth > 0.0) << s.time;
+  }
+  EXPECT_GT(touching, 10);
+}
+
+TEST(LinkageLaws, DepthOutsideTheRangeStopsWithTheInstant) {
+  // Johnson's formula ends at 4 e^-2 ΔR = 0.54 ΔR; a journal that arrives at 30 m/s goes beyond.
+  const Linkage model = with_laws({"johnson", "none", "none", "material"});
+  State state = initial_state(model, Start::rest, 0.0);
+  state.journal_velocity = {200.0, 0.0};
+  try {
+    simulate(model, heating(0.05), state, {100000, 0});
+    FAIL() << "no error";
+  } catch (const std::domain_error& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("johnson: penetration_depth = "), std::string::npos) << text;
+    EXPECT_NE(text.find("time = "), std::string::npos) << text;
+    EXPECT_NE(text.find("temperature_change = "), std::string::npos) << text;
+  }
+}
+
+TEST(LinkageAdaptive, AgreesWithFixedStepsUntilTheLargestTemperature) {
+  // Damped, so that errors do not grow: both converge to one solution.
+  for (const char* friction : {"none", "ambrosio"}) {
+    const Linkage model = with_laws({"hertz_internal", "hunt_crossley", friction, "material"});
+    const State start = initial_state(model, Start::rest, 0.0);
+    const linkage::Run fixed = simulate(model, heating(0.05, 50.0), start, {400000, 4000});
+    const linkage::Run adaptive =
+        simulate_adaptive(model, heating(0.05, 50.0), start, {1e-10, 100});
+    ASSERT_EQ(fixed.samples.size(), adaptive.samples.size());
+    double largest = 0.0;
+    for (std::size_t i = 0; i < fixed.samples.size(); ++i) {
+      EXPECT_NEAR(fixed.samples[i].time, adaptive.samples[i].time, 1e-12);
+      largest = std::max(largest, (fixed.samples[i].state.journal_centre -
+                                   adaptive.samples[i].state.journal_centre)
+                                      .norm());
+    }
+    std::printf("%s: %g m apart, %ld steps, %d and %d contacts, residue %g J\n", friction, largest,
+                adaptive.steps, adaptive.contacts, fixed.contacts, adaptive.energy_residue);
+    EXPECT_EQ(fixed.contacts, adaptive.contacts);
+    // The fixed steps scale dissipation by a speed that is off by O(h): 1e-7 s of 1e-3 s.
+    EXPECT_LT(largest, 1e-4 * model.radial_clearance());
+  }
+}
+
+TEST(LinkageAdaptive, FirstContactAndEnergy) {
+  for (const double c : {0.05e-3, 0.10e-3, 0.15e-3, 0.20e-3}) {
+    const Linkage model = umbrella(c);
+    const linkage::Run result = simulate_adaptive(
+        model, heating(), initial_state(model, Start::matched, 200.0), {1e-10, 0});
+    ASSERT_TRUE(result.first_contact);
+    EXPECT_NEAR(result.first_contact->temperature_change, c / (alpha * frame), 1e-6) << c;
+    EXPECT_EQ(result.samples.size(), 2u);
+  }
+  // The error of a step is as the tolerance and steps grow as its -1/5th power: 250 times less over
+  // three decades, less what the contacts' random phases take.
+  double coarse = 0.0;
+  for (const double tolerance : {1e-7, 1e-10}) {
+    const Linkage model = umbrella();
+    const linkage::Run result = simulate_adaptive(
+        model, heating(0.05), initial_state(model, Start::rest, 0.0), {tolerance, 0});
+    std::printf("tolerance %g: %ld steps, residue %g J\n", tolerance, result.steps,
+                result.energy_residue);
+    if (coarse > 0.0) {
+      EXPECT_LT(std::abs(result.energy_residue), coarse / 20.0);
+    }
+    coarse = std::abs(result.energy_residue);
+  }
+}
+
+TEST(LinkageAdaptive, RefusesFrictionThatRemembers) {
+  const Linkage model = with_laws({"hertz_internal", "none", "mindlin", "material"});
+  const State start = initial_state(model, Start::rest, 0.0);
+  EXPECT_THROW(simulate_adaptive(model, heating(), start), std::invalid_argument);
+  EXPECT_THROW(simulate_adaptive(umbrella(), heating(), start, {1e-20, 0}), std::invalid_argument);
+}
+
+TEST(Start, RefusesPenetration) {
+  EXPECT_THROW(initial_state(umbrella(), Start::rest, 0.0, {1.1e-4, 0.0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace statejump::linkage

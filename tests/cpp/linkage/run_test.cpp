@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/linkage/run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "umbrella.hpp"
+
+namespace statejump::linkage {
+namespace {
+
+linkage::Run matched(const Linkage& model, const thermal::Program& program, int steps,
+                     int sample_every = 0) {
+  return simulate(model, program,
+                  initial_state(model, Start::matched, program.temperature_rate(0.0)),
+                  {steps, sample_every});
+}
+
+TEST(Run, MatchedStartMeetsFirstContact) {
+  for (const double c : {0.05e-3, 0.10e-3, 0.15e-3, 0.20e-3}) {
+    const linkage::Run run = matched(umbrella(c), heating(), 20000);
+    ASSERT_TRUE(run.first_contact);
+    EXPECT_NEAR(run.first_contact->temperature_change, c / (alpha * frame), 1e-6) << c;
+    EXPECT_NEAR(run.first_contact->time, 0.005 * c / (alpha * frame), 1e-8) << c;
+  }
+  EXPECT_FALSE(matched(umbrella(0.30e-3), heating(), 20000).first_contact);
+}
+
+TEST(Run, ExpandingRadiiMoveFirstContact) {
+  Linkage model = umbrella();
+  model.journal_thermal_expansion = alpha;
+  model.bearing_thermal_expansion = 2.0 * alpha;
+  const linkage::Run run = matched(model, heating(), 20000);
+  ASSERT_TRUE(run.first_contact);
+  EXPECT_NEAR(run.first_contact->temperature_change, first_contact_temperature(model), 1e-6);
+}
+
+TEST(Run, StartFromRestRingsAsTheClosedFormSays) {
+  // x'' = −ω² (x − v t) from rest: x = v t − v/ω sin ω t along each link, so the centres part along
+  // AC by less or more than the thermal part, at most a few v/ω.
+  const Linkage model = umbrella();
+  const linkage::Run run = simulate(model, heating(), initial_state(model, Start::rest, 0.0));
+  ASSERT_TRUE(run.first_contact);
+  const double shift = run.first_contact->temperature_change - first_contact_temperature(model);
+  EXPECT_NE(shift, 0.0);
+  EXPECT_LT(std::abs(shift), 0.03);
+}
+
+double residue(const Linkage& model, double peak, int steps) {
+  const linkage::Run run =
+      simulate(model, heating(0.02, peak), initial_state(model, Start::rest, 0.0), {steps, 0});
+  return std::abs(run.energy_residue);
+}
+
+TEST(Run, EnergyResidueOutOfContactIsOfFifthOrder) {
+  // The error of one RK4 step of a linear oscillator is a phase at (ω h)^5 and an amplitude at
+  // (ω h)^6: its energy drifts as h^5, one order better than its position.
+  const double coarse = residue(umbrella(), 20.0, 1000);
+  const double fine = residue(umbrella(), 20.0, 2000);
+  const double order = std::log2(coarse / fine);
+  std::printf("residue %.3g %.3g J, order %.2f\n", coarse, fine, order);
+  EXPECT_GT(order, 4.8);
+  EXPECT_LT(fine, 1e-6);
+}
+
+TEST(Run, EnergyResidueThroughContact) {
+  // A step over the edge of contact leaves h^2.5, where it falls in the step being random: at least
+  // second order over a factor 4.
+  const double coarse = residue(umbrella(), 60.0, 8000);
+  const double fine = residue(umbrella(), 60.0, 32000);
+  const double order = 0.5 * std::log2(coarse / fine);
+  std::printf("residue %.3g %.3g J, order %.2f\n", coarse, fine, order);
+  EXPECT_GT(order, 2.0);
+}
+
+TEST(Run, AccountClosesWithEveryTerm) {
+  Linkage model = umbrella();
+  model.law.friction = kernel::laws::MindlinFriction{};
+  model.law.friction_parameters.friction_coefficient = 0.3;
+  model.axial_damping_ratio = 0.1;
+  model.pin_damping = 0.01;
+  model.torsion_stiffness = 1.0;
+  model.journal_thermal_expansion = 0.5 * alpha;
+  model.bearing_thermal_expansion = 0.6 * alpha;
+  double previous = 0.0;
+  for (const int steps : {10000, 40000}) {
+    const linkage::Run run =
+        simulate(model, heating(0.05), initial_state(model, Start::rest, 0.0), {steps, 0});
+    const Account& account = run.samples.back().account;
+    std::printf("steps %d: work %.4g axial %.3g pin %.3g friction %.3g residue %.3g J\n", steps,
+                account.thermal_work, account.axial_dissipation, account.pin_dissipation,
+                account.friction_dissipation, run.energy_residue);
+    EXPECT_GT(account.axial_dissipation, 0.0);
+    EXPECT_GT(account.pin_dissipation, 0.0);
+    EXPECT_GT(account.friction_dissipation, 0.0);
+    EXPECT_GT(run.contacts, 0);
+    // First order at least: four times the steps leave at most half of the residue.
+    if (previous > 0.0) {
+      EXPECT_LT(std::abs(run.energy_residue), 0.5 * previous);
+    }
+    previous = std::abs(run.energy_residue);
+  }
+}
+
+TEST(Run, RepeatsBitForBitAndStopsWhenUnstable) {
+  const linkage::Run first = matched(umbrella(), heating(), 20000, 100);
+  const linkage::Run second = matched(umbrella(), heating(), 20000, 100);
+  ASSERT_EQ(first.samples.size(), 201u);
+  EXPECT_EQ(first.samples.back().state.journal_centre, second.samples.back().state.journal_centre);
+  // ω = 8695 rad/s of AB: 2.78/ω = 0.32 ms. A step longer is refused, one a little shorter runs.
+  const State rest = initial_state(umbrella(), Start::rest, 0.0);
+  EXPECT_THROW(simulate(umbrella(), heating(), rest, {3120, 0}), std::invalid_argument);
+  EXPECT_NO_THROW(simulate(umbrella(0.3e-3), heating(), rest, {3135, 0}));
+  EXPECT_THROW(matched(umbrella(), heating(), 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace statejump::linkage

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/spring_slider/path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "table1.hpp"
+
+namespace statejump::spring_slider {
+namespace {
+
+struct Expected {
+  EventKind kind;
+  Stage before;
+  Stage after;
+  double temperature_change;
+};
+
+void expect_events(const Path& path, const std::vector<Expected>& expected) {
+  ASSERT_EQ(path.events.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const Event& event = path.events[i];
+    EXPECT_STREQ(to_string(event.kind), to_string(expected[i].kind)) << i;
+    EXPECT_STREQ(to_string(event.stage_before), to_string(expected[i].before)) << i;
+    EXPECT_STREQ(to_string(event.stage_after), to_string(expected[i].after)) << i;
+    EXPECT_NEAR(event.temperature_change, expected[i].temperature_change,
+                close(expected[i].temperature_change))
+        << i;
+  }
+}
+
+// Roots of E A (α l0 ΔT − x) = s f l0 (1 + α ΔT), written out by hand.
+double root(double x, double s) {
+  return (EA * x + s * f * l0) / (alpha * l0 * (EA - s * f));
+}
+
+TEST(SpringSliderPath, Table1MeetsItsClosedForms) {
+  const Path path = solve(table1(), cycle());
+  const double zero = c / (alpha * l0);
+  expect_events(path, {{EventKind::first_slip, Stage::S1, Stage::S2, root(0.0, 1)},
+                       {EventKind::stop_reached, Stage::S2, Stage::at_stop_plus, root(c, 1)},
+                       {EventKind::stop_unloaded, Stage::at_stop_plus, Stage::S3, root(c, 1)},
+                       {EventKind::force_sign_change, Stage::S3, Stage::S4, zero},
+                       {EventKind::stop_left, Stage::S4, Stage::S5, root(c, -1)},
+                       {EventKind::cycle_end, Stage::S5, Stage::S5, 0.0}});
+  EXPECT_NEAR(path.state_jump(), f * l0 / EA, close(f * l0 / EA));
+  // The digits that the project publishes.
+  EXPECT_NEAR(path.events[0].temperature_change, 2.035099, 5e-7);
+  EXPECT_NEAR(path.events[1].temperature_change, 87.509255, 5e-7);
+  EXPECT_NEAR(path.events[4].temperature_change, 83.431111, 5e-7);
+  EXPECT_NEAR(path.state_jump(), 2.380952e-5, 5e-12);
+  EXPECT_EQ(path.events[1].displacement, c);
+  EXPECT_EQ(path.events[4].displacement, c);
+  EXPECT_NEAR(path.events[1].axial_force, f, close(f));
+  EXPECT_NEAR(path.events[4].axial_force, -f, close(f));
+}
+
+TEST(SpringSliderPath, EventsStandAtTheTimeOfTheirTemperature) {
+  for (const thermal::Shape shape :
+       {thermal::Shape::triangle, thermal::Shape::half_sine, thermal::Shape::sine}) {
+    const Path path = solve(table1(), cycle(shape, 3, 0.7));
+    double before = 0.0;
+    for (const Event& event : path.events) {
+      EXPECT_NEAR(path.program.temperature_change(event.time), event.temperature_change, 1e-11);
+      EXPECT_GE(event.time, before);
+      before = event.time;
+    }
+  }
+}
+
+TEST(SpringSliderPath, WideClearanceRunsTheFiveStages) {
+  const Path path = solve(table1(2e-3), cycle());
+  // At the peak x = x_T − f l_T/(E A); it stays while the force goes from f to −f.
+  const double peak = l0 * alpha * 100.0 - f * l0 * (1.0 + alpha * 100.0) / EA;
+  expect_events(path, {{EventKind::first_slip, Stage::S1, Stage::S2, root(0.0, 1)},
+                       {EventKind::reversal, Stage::S2, Stage::S3, 100.0},
+                       {EventKind::force_sign_change, Stage::S3, Stage::S4, peak / (alpha * l0)},
+                       {EventKind::slip, Stage::S4, Stage::S5, root(peak, -1)},
+                       {EventKind::cycle_end, Stage::S5, Stage::S5, 0.0}});
+  EXPECT_NEAR(path.events[1].displacement, peak, close(peak));
+  EXPECT_NEAR(path.state_jump(), f * l0 / EA, close(f * l0 / EA));
+}
+
+TEST(SpringSliderPath, JumpDoesNotDependOnThePath) {
+  const double jump = f * l0 / EA;
+  for (const double clearance : {1e-4, 5e-4, 2e-3}) {
+    for (const double peak : {30.0, 100.0, 350.0}) {
+      thermal::Program program = cycle();
+      program.temperature_change_max = peak;
+      EXPECT_NEAR(solve(table1(clearance), program).state_jump(), jump, close(jump));
+    }
+  }
+  thermal::Program cold = cycle();
+  cold.temperature_change_max = -100.0;
+  EXPECT_NEAR(solve(table1(), cold).state_jump(), -jump, close(jump));
+}
+
+TEST(SpringSliderPath, PreloadReducesTheJump) {
+  SpringSlider model = table1();
+  const double kp = 1e5;
+  model.preload_stiffness = kp;
+  const Path path = solve(model, cycle());
+  const auto preloaded_root = [&](double x, double s) {
+    const double g = s * f + kp * x;
+    return (EA * x + g * l0) / (alpha * l0 * (EA - g));
+  };
+  // k_p c = 100 N keeps the link compressed: the force never changes sign, S4 is missing.
+  expect_events(path,
+                {{EventKind::first_slip, Stage::S1, Stage::S2, root(0.0, 1)},
+                 {EventKind::stop_reached, Stage::S2, Stage::at_stop_plus, preloaded_root(c, 1)},
+                 {EventKind::stop_unloaded, Stage::at_stop_plus, Stage::S3, preloaded_root(c, 1)},
+                 {EventKind::stop_left, Stage::S3, Stage::S5, preloaded_root(c, -1)},
+                 {EventKind::cycle_end, Stage::S5, Stage::S5, 0.0}});
+  const double jump = f / (EA / l0 + kp);
+  EXPECT_NEAR(path.state_jump(), jump, close(jump));
+}
+
+TEST(SpringSliderPath, WithoutFrictionNothingRemains) {
+  SpringSlider model = table1();
+  model.friction_force = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    model.preload_stiffness = 1e4 * i;
+    model.clearance_plus = model.clearance_minus = 1e-4 * (1 + i);
+    for (const thermal::Shape shape : {thermal::Shape::half_sine, thermal::Shape::sine}) {
+      thermal::Program program = cycle(shape, 2);
+      program.temperature_change_max = 100.0 + 0.7 * i;
+      const Path path = solve(model, program);
+      EXPECT_EQ(path.state_jump(), 0.0);
+      for (const Segment& segment : path.segments) {
+        EXPECT_NE(segment.motion, Motion::stick);  // no sliver of stick from rounding
+        EXPECT_EQ(segment.friction_dissipation, 0.0);
+      }
+    }
+  }
+}
+
+TEST(SpringSliderPath, BelowTheFirstSlipNothingMoves) {
+  thermal::Program program = cycle(thermal::Shape::sine, 2);
+  program.temperature_change_max = 2.0;
+  const Path path = solve(table1(), program);
+  EXPECT_EQ(path.state_jump(), 0.0);
+  for (const Segment& segment : path.segments) EXPECT_EQ(segment.stage, Stage::S1);
+  for (const Event& event : path.events) EXPECT_EQ(event.kind, EventKind::cycle_end);
+}
+
+TEST(SpringSliderPath, TenCyclesRepeatBitForBit) {
+  for (const thermal::Shape shape :
+       {thermal::Shape::triangle, thermal::Shape::half_sine, thermal::Shape::sine}) {
+    const Path path = solve(table1(), cycle(shape, 10));
+    std::vector<std::vector<Segment>> by_cycle(10);
+    for (const Segment& segment : path.segments) {
+      by_cycle[static_cast<std::size_t>(segment.cycle)].push_back(segment);
+    }
+    for (std::size_t k = 2; k < 10; ++k) {
+      ASSERT_EQ(by_cycle[k].size(), by_cycle[1].size());
+      for (std::size_t i = 0; i < by_cycle[k].size(); ++i) {
+        EXPECT_EQ(by_cycle[k][i].stage, by_cycle[1][i].stage);
+        EXPECT_EQ(by_cycle[k][i].end_temperature_change, by_cycle[1][i].end_temperature_change);
+        EXPECT_EQ(by_cycle[k][i].end_displacement, by_cycle[1][i].end_displacement);
+      }
+      EXPECT_EQ(path.jump_after_cycle(static_cast<int>(k) + 1), path.jump_after_cycle(2));
+    }
+    EXPECT_EQ(path.jump_after_cycle(1), path.jump_after_cycle(2));
+    EXPECT_NE(refusal([&path] { path.jump_after_cycle(0); }), "");
+    EXPECT_NE(refusal([&path] { path.jump_after_cycle(11); }), "");
+  }
+}
+
+TEST(SpringSliderPath, SineVisitsBothStops) {
+  const Path path = solve(table1(), cycle(thermal::Shape::sine));
+  const double zero = c / (alpha * l0);
+  expect_events(path, {{EventKind::first_slip, Stage::S1, Stage::S2, root(0.0, 1)},
+                       {EventKind::stop_reached, Stage::S2, Stage::at_stop_plus, root(c, 1)},
+                       {EventKind::stop_unloaded, Stage::at_stop_plus, Stage::S3, root(c, 1)},
+                       {EventKind::force_sign_change, Stage::S3, Stage::S4, zero},
+                       {EventKind::stop_left, Stage::S4, Stage::S5, root(c, -1)},
+                       {EventKind::stop_reached, Stage::S5, Stage::at_stop_minus, root(-c, -1)},
+                       {EventKind::stop_unloaded, Stage::at_stop_minus, Stage::S3, root(-c, -1)},
+                       {EventKind::force_sign_change, Stage::S3, Stage::S4, -zero},
+                       {EventKind::stop_left, Stage::S4, Stage::S2, root(-c, 1)},
+                       {EventKind::cycle_end, Stage::S2, Stage::S2, 0.0}});
+  EXPECT_NEAR(path.state_jump(), -f * l0 / EA, close(f * l0 / EA));
+}
+
+TEST(SpringSliderPath, TableOfATriangleIsTheTriangle) {
+  // Many collinear points: the events may not depend on where the table is cut.
+  const thermal::Program points =
+      table({0.0, 0.1, 0.25, 0.5, 0.6, 0.9, 1.0}, {0.0, 20.0, 50.0, 100.0, 80.0, 20.0, 0.0});
+  const Path expected = solve(table1(), cycle(thermal::Shape::triangle));
+  const Path path = solve(table1(), points);
+  ASSERT_EQ(path.events.size(), expected.events.size());
+  for (std::size_t i = 0; i < path.events.size(); ++i) {
+    EXPECT_EQ(path.events[i].kind, expected.events[i].kind);
+    EXPECT_EQ(path.events[i].temperature_change, expected.events[i].temperature_change);
+    EXPECT_NEAR(path.events[i].time, expected.events[i].time, 1e-15);
+    EXPECT_EQ(path.events[i].displacement, expected.events[i].displacement);
+  }
+  EXPECT_EQ(path.segments.size(), expected.segments.size());
+}
+
+TEST(SpringSliderPath, ReloadingAStopAndHoldingKeepTheState) {
+  // Against the stop, unloaded but not left, loaded again, held, then home.
+  const thermal::Program points =
+      table({0.0, 1.0, 2.0, 3.0, 4.0, 5.0}, {0.0, 95.0, 84.0, 95.0, 95.0, 0.0});
+  const Path path = solve(table1(), points);
+  std::vector<EventKind> kinds;
+  for (const Event& event : path.events) kinds.push_back(event.kind);
+  const std::vector<EventKind> expected{EventKind::first_slip,        EventKind::stop_reached,
+                                        EventKind::stop_unloaded,     EventKind::force_sign_change,
+                                        EventKind::force_sign_change, EventKind::stop_reached,
+                                        EventKind::stop_unloaded,     EventKind::force_sign_change,
+                                        EventKind::stop_left,         EventKind::cycle_end};
+  EXPECT_EQ(kinds, expected);
+  EXPECT_NEAR(path.state_jump(), f * l0 / EA, close(f * l0 / EA));
+}
+
+TEST(SpringSliderPath, ReusedPathEqualsAFreshOne) {
+  Path path = solve(table1(2e-3), cycle(thermal::Shape::sine, 4));
+  solve(table1(), cycle(), path);
+  const Path fresh = solve(table1(), cycle());
+  EXPECT_EQ(path.segments.size(), fresh.segments.size());
+  EXPECT_EQ(path.events.size(), fresh.events.size());
+  EXPECT_EQ(path.cycle_end_displacements, fresh.cycle_end_displacements);
+}
+
+/// Steps ΔT and corrects the trial state, as a finite-element code would: an answer that shares no
+/// formula with solve(). Linear in x at fixed ΔT, so one correction is the solution.
+double return_mapping(const SpringSlider& model, double change, double x) {
+  const double length = model.stress_free_length * (1.0 + model.thermal_expansion * change);
+  const double stiffness = model.young_modulus * model.cross_section_area / length;
+  const double trial =
+      stiffness * (length - model.stress_free_length - x) - model.preload_stiffness * x;
+  const double excess = std::abs(trial) - model.friction_force;
+  if (excess > 0.0) x += std::copysign(excess, trial) / (stiffness + model.preload_stiffness);
+  return std::min(std::max(x, -model.clearance_minus), model.clearance_plus);
+}
+
+TEST(SpringSliderPath, EqualsSmallStepsForRandomModels) {
+  std::mt19937_64 random(20210211);
+  const auto uniform = [&random](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  for (int run = 0; run < 200; ++run) {
+    SpringSlider model = table1();
+    model.thermal_expansion = uniform(-3e-5, 3e-5);
+    model.friction_force = run % 10 == 0 ? 0.0 : uniform(1.0, 200.0);
+    model.clearance_plus = uniform(1e-4, 2e-3);
+    model.clearance_minus = uniform(1e-4, 2e-3);
+    model.preload_stiffness = run % 2 == 0 ? 0.0 : uniform(0.0, 2e6);
+    std::vector<double> times{0.0};
+    std::vector<double> changes{0.0};
+    for (int i = 1; i < 8; ++i) {
+      times.push_back(i);
+      changes.push_back(i % 4 == 3 ? changes.back() : uniform(-150.0, 150.0));
+    }
+    const Path path = solve(model, table(times, changes));
+    // Every turn of the program is a step, so the stepped path lags nowhere: between turns the map
+    // is a clamp onto monotone bounds and its result does not depend on the steps. What is left is
+    // rounding of l_T − l0, an ulp of 0.5 m, in every step that slides.
+    const int steps = 400;
+    const double tolerance = 7 * steps * 2e-16;
+    double x = 0.0;
+    std::size_t at = 0;
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      for (int step = 1; step <= steps; ++step) {
+        const double part = static_cast<double>(step) / steps;
+        const double change = changes[i - 1] + part * (changes[i] - changes[i - 1]);
+        x = return_mapping(model, change, x);
+        const double time = times[i - 1] + part;
+        while (at + 1 < path.segments.size() && path.segments[at].end_time < time) ++at;
+        ASSERT_NEAR(displacement(model, path.segments[at], change), x, tolerance)
+            << "run " << run << " time " << time;
+      }
+    }
+  }
+}
+
+TEST(SpringSliderPath, WarnsBeyondTheEulerLoad) {
+  const std::vector<std::string> loaded = warnings(solve(table1(), cycle()));
+  ASSERT_EQ(loaded.size(), 1u);
+  EXPECT_NE(loaded[0].find("axial force 213.7 N"), std::string::npos) << loaded[0];
+  EXPECT_NE(loaded[0].find("the clamped-clamped Euler load"), std::string::npos) << loaded[0];
+  EXPECT_NE(loaded[0].find("74.61 N"), std::string::npos) << loaded[0];
+  const std::vector<std::string> free = warnings(solve(table1(2e-3), cycle()));
+  ASSERT_EQ(free.size(), 1u);  // 30 N lie between the two loads
+  EXPECT_NE(free[0].find("the pinned-pinned Euler load"), std::string::npos) << free[0];
+  SpringSlider slippery = table1(2e-3);
+  slippery.friction_force = 10.0;
+  EXPECT_TRUE(warnings(solve(slippery, cycle())).empty());
+}
+
+TEST(SpringSliderPath, RefusesALinkOfNegativeLength) {
+  SpringSlider model = table1();
+  model.thermal_expansion = -0.02;
+  EXPECT_NE(refusal([&model] { solve(model, cycle()); }), "");
+}
+
+}  // namespace
+}  // namespace statejump::spring_slider
