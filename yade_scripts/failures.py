@@ -58,8 +58,9 @@ def rounded_down(value: float) -> float:
 def described(
     error: Exception, names: Names, now_s: float, temperature_change: Callable[[float], float],
     stable_time_step: Callable[[], float], step_remedy: Callable[[float], str],
-) -> tuple[str, dict[str, Any]]:
-    """Return a failure as one sentence and as fields, those of ``statejump.core.errors`` that are known.
+) -> dict[str, Any]:
+    """Return a failure by the names of its fields: cause, time, temperature; joint, words for its place and remedy
+    where they are known.
 
     :param now_s: time of a failure that does not say its own
     :param temperature_change: temperature change [K] of the case's (first) program at a time [s]
@@ -84,8 +85,6 @@ def described(
         joint, remedy = error.joint, error.remedy
     time_s = float(f"{time_s:.9g}")
     change = float(f"{temperature_change(time_s):.9g}")
-    place = f"{words}, " if words else ""
-    sentence = f"{cause} ({place}time {time_s:.9g} s, temperature change {change:.9g} K)"
-    fields = {"time_s": time_s, "temperature_change_K": change, "joint": joint, "cause": cause, "remedy": remedy}
-    known = {key: value for key, value in fields.items() if value != ""}
-    return f"{sentence}; {remedy}" if remedy else sentence, known
+    fields = {"time_s": time_s, "temperature_change_K": change, "joint": joint, "place": words, "cause": cause,
+              "remedy": remedy}
+    return {key: value for key, value in fields.items() if value != ""}

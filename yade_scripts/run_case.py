@@ -3,8 +3,8 @@
     STATEJUMP_CASE_JSON=case.json STATEJUMP_OUTPUT=history.csv yade -n -x yade_scripts/run_case.py
 
 The resolved case comes as JSON. Samples go to ``<output>.partial`` as they are taken; at the end
-the file is renamed. Lines on standard output: ``PROGRESS <fraction>``; of a failure ``DETAILS <JSON>``, the
-fields of ``statejump.core.errors`` that are known, and ``ERROR <sentence>``.
+the file is renamed. What the caller is told stands on lines of standard output that begin with ``STATEJUMP``:
+``{"progress": share}``, or ``{"failure": {...}}`` by the names of a failure's fields.
 """
 import csv
 import json
@@ -12,6 +12,7 @@ import os
 import sys
 import time
 from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
 sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
@@ -20,12 +21,27 @@ from failures import described
 
 
 class CaseFailure(Exception):
-    """A failure in the case's names: a sentence and its fields."""
+    """A failure in the case's names: its fields."""
+
+
+def tell(message):
+    """Tell the caller; YADE may have left a line open."""
+    print(f"\nSTATEJUMP {json.dumps(message)}", flush=True)
+
+
+def scene_of(name):
+    """Return the module that builds the scene: one beside this script, or a file of its own."""
+    if not name.endswith(".py"):
+        return import_module(name)
+    specification = spec_from_file_location(Path(name).stem, name)
+    module = module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module
 
 
 def run(case, output):
     """Build the scene, run it, write the history and its summary."""
-    kind = import_module(f"scene_{case['case']['kind']}")
+    kind = scene_of(case["scene"])
     steps = case["dem"]["number_of_steps"]
     # The caller makes the steps a multiple of the samples, so that the last one is the end.
     every, rest = divmod(steps, case["number_of_samples"])
@@ -54,7 +70,7 @@ def run(case, output):
             if fraction - reported[0] >= 0.01:
                 reported[0] = fraction
                 stream.flush()
-                print(f"PROGRESS {fraction:.4f}", flush=True)
+                tell({"progress": fraction})
 
         globals()["record"] = record
         started, started_cpu = time.perf_counter(), time.process_time()
@@ -65,7 +81,7 @@ def run(case, output):
                 O.step()  # which here says it
                 raise RuntimeError(f"YADE stopped after {O.iter} of {steps + 1} steps")
         except Exception as error:
-            raise CaseFailure(*described(
+            raise CaseFailure(described(
                 refused[0] if refused else error, kind.names(case, built), O.time, built.program.temperatureChange,
                 sj.stable_time_step, lambda stable: kind.step_remedy(case, stable),
             )) from error
@@ -90,10 +106,9 @@ try:
         Path(os.environ["STATEJUMP_OUTPUT"]),
     )
 except CaseFailure as failure:
-    sentence, fields = failure.args
-    print(f"\nDETAILS {json.dumps(fields)}\nERROR {sentence}", flush=True)  # YADE may have left a line open
+    tell({"failure": failure.args[0]})
     os._exit(2)
-except Exception as error:  # one sentence for the caller, whatever went wrong
-    print(f"ERROR {' '.join(str(error).split())}", flush=True)
+except Exception as error:  # whatever went wrong, the caller is told
+    tell({"failure": {"cause": " ".join(str(error).split())}})
     os._exit(2)
-print("PROGRESS 1.0000", flush=True)
+tell({"progress": 1.0})

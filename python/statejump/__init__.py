@@ -1,12 +1,61 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""State jump of deployable structures: case files, reduced model, DEM runs and their comparison.
+"""State jump of deployable structures: an exact reduced model and a DEM model in YADE.
 
-The command line is :mod:`statejump.cli`; everything that it does can be called from Python::
+::
 
-    from statejump.kinds.registry import load_case
-    from statejump.kinds.spring_slider import reduced
-    path = reduced.solve(load_case("cases/table1.toml"))
-    print(path.state_jump_m)
+    import statejump as sj
+
+    case = sj.load("cases/table1.toml")
+    run = case.reduced()
+    run.frame(), run.events, run.summary, run.plot()
+    sj.compare(run, case.dem(progress=True)).passed
+
+What is listed in ``__all__`` is the public interface; it is loaded when it is first used.
 """
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from statejump.api import (
+        bore as bore,
+        compare as compare,
+        load as load,
+        montecarlo as montecarlo,
+        read as read,
+        statics as statics,
+        sweep as sweep,
+    )
+    from statejump.core.case import Case as Case
+    from statejump.core.comparison import Comparison as Comparison, Quantity as Quantity
+    from statejump.core.errors import StatejumpError as StatejumpError
+    from statejump.core.run import Column as Column, Event as Event, Run as Run
+    from statejump.kinds.protocol import Kind as Kind
 
 __version__ = "0.1.0"
+
+# Where each name of the public interface is.
+_PLACES = {
+    **dict.fromkeys(("bore", "compare", "load", "montecarlo", "read", "statics", "sweep"), "statejump.api"),
+    "Case": "statejump.core.case",
+    **dict.fromkeys(("Comparison", "Quantity"), "statejump.core.comparison"),
+    "StatejumpError": "statejump.core.errors",
+    **dict.fromkeys(("Column", "Event", "Run"), "statejump.core.run"),
+    "Kind": "statejump.kinds.protocol",
+}
+_MODULES = {"errors": "statejump.core.errors", "kinds": "statejump.kinds", "laws": "statejump.laws",
+            "truss": "statejump.truss"}
+__all__ = ["__version__", *_PLACES, *_MODULES]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _PLACES:
+        return getattr(import_module(_PLACES[name]), name)
+    if name in _MODULES:
+        return import_module(_MODULES[name])
+    raise AttributeError(f"module 'statejump' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

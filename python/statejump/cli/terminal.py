@@ -1,22 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What commands share on the terminal: console, options, progress."""
+"""What commands share on the terminal: console, options, progress, tables."""
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from itertools import count
 from pathlib import Path
-from typing import Any, Callable, Iterator, Optional, Sequence, TypeVar
+from typing import Any
 
 import click
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
 
-from statejump import _paths
-from statejump.kinds.registry import Case, load_case
-from statejump.core.comparison import Quantity
-from statejump.core.errors import Interrupted, StatejumpError
+from statejump.core.case import Case
+from statejump.core.comparison import SIDES, Quantity
+from statejump.core.errors import Interrupted
+from statejump.core.progress import counted, on_console
+from statejump.core.tables import Shown
+from statejump.kinds.loading import found_case, load_case
 
+__all__ = ["CASE", "QUIET", "RESULTS", "CaseFile", "counted", "loaded", "make_console", "number", "print_comparison",
+           "print_shown", "print_table", "progress", "undivided"]
 
 
 class CaseFile(click.Path):
@@ -26,10 +29,8 @@ class CaseFile(click.Path):
     def __init__(self) -> None:
         super().__init__(path_type=Path)
 
-    def convert(self, value: Any, param: Optional[click.Parameter], ctx: Optional[click.Context]) -> Any:
-        path = super().convert(value, param, ctx)
-        shipped = _paths.SHARE / path
-        return shipped if path.parts[:1] == ("cases",) and not path.exists() and shipped.exists() else path
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        return found_case(super().convert(value, param, ctx))
 
 
 CASE = click.argument("case_file", metavar="CASE", type=CaseFile())
@@ -38,8 +39,6 @@ RESULTS = click.option(
     help="Folder that gets one folder per case.",
 )
 QUIET = click.option("--quiet", is_flag=True, help="Print errors only.")
-
-CaseType = TypeVar("CaseType", bound=Case)
 
 
 def make_console(quiet: bool) -> Console:
@@ -51,56 +50,58 @@ def make_console(quiet: bool) -> Console:
     return console
 
 
-def load_kind(case_file: Path, *kinds: type[CaseType]) -> CaseType:
-    """Load a case of one of the kinds that the command is for; StatejumpError for any other."""
+def loaded(case_file: Path, *abilities: str) -> Case:
+    """Load a case and refuse it if its kind lacks an ability that the command needs."""
     case = load_case(case_file)
-    if not isinstance(case, kinds):
-        command = click.get_current_context().info_name
-        allowed = " and ".join(repr(kind.KIND) for kind in kinds)
-        raise StatejumpError(
-            f"{case_file}: case.kind = {case.kind!r} is not allowed: 'statejump {command}' is for "
-            f"{allowed}"
-        )
+    for ability in abilities:
+        case.behaviour.ability(ability, case)
     return case
 
 
-def number(value: Optional[float]) -> str:
+def number(value: float | None) -> str:
     """Return a number for a table."""
     return "none" if value is None else f"{value:.6g}"
 
 
-def print_comparison(
-    title: str, rows: Sequence[Quantity], console: Console, names: tuple[str, str] = ("reduced", "DEM")
-) -> None:
-    """Print rows of a comparison; ``names`` head the two columns of values."""
+def print_table(shown: Shown, console: Console) -> None:
+    """Print a table."""
+    table = Table(title=shown.title)
+    for heading in shown.header:
+        table.add_column(heading, justify="left" if heading in shown.left else "right")
+    for row in shown.rows:
+        table.add_row(*row)
+    console.print(table)
+
+
+def print_shown(parts: Sequence[Shown | str], console: Console) -> None:
+    """Print tables and lines."""
+    for part in parts:
+        if isinstance(part, Shown):
+            print_table(part, console)
+        else:
+            console.print(part)
+
+
+def print_comparison(title: str, rows: Sequence[Quantity], console: Console,
+                     names: dict[str, str] | None = None) -> None:
+    """Print rows of a comparison; ``names`` head the columns of values, by whose they are."""
+    heads = {"closed_form": "closed form", "reduced": "reduced", "dem": "DEM", **(names or {})}
+    sides = [side for side in SIDES if any(side in row.values for row in rows)]
     table = Table(title=title)
-    for heading in ("quantity", "unit", *names, "difference", "tolerance", ""):
+    for heading in ("quantity", "unit", *(heads[side] for side in sides), "difference", "tolerance", ""):
         table.add_column(heading, justify="left" if heading in ("quantity", "unit", "") else "right")
     for row in rows:
-        table.add_row(row.name, row.unit, number(row.reduced), number(row.dem), number(row.difference),
-                      number(row.tolerance), "pass" if row.passed else "MISSED")
+        values = [number(row.values[side]) if side in row.values else "" for side in sides]
+        table.add_row(row.name, row.unit, *values, number(row.difference), number(row.tolerance),
+                      "pass" if row.passed else "MISSED")
     console.print(table)
 
 
 @contextmanager
 def progress(console: Console, label: str) -> Iterator[Callable[[float], None]]:
-    """Yield a function that takes the finished fraction: a bar on a terminal, with a line every
-    10 % elsewhere."""
-    if console.is_terminal:
-        columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"),
-                   TimeElapsedColumn(), TimeRemainingColumn())
-        with Progress(*columns, console=console) as bar:
-            task = bar.add_task(label, total=1.0)
-            yield lambda fraction: bar.update(task, completed=fraction)
-        return
-    told = [-1]
-
-    def line(fraction: float) -> None:
-        if int(10 * fraction) > told[0]:
-            told[0] = int(10 * fraction)
-            console.print(f"{label}: {100 * fraction:.0f} %")
-
-    yield line
+    """Yield a function that takes the finished share: a bar on a terminal, with a line every 10 % elsewhere."""
+    with on_console(console, label) as tell:
+        yield tell
 
 
 @contextmanager
@@ -110,10 +111,4 @@ def undivided(console: Console, label: str) -> Iterator[Callable[[float], None]]
         with progress(console, label) as tell:
             yield tell
     except (KeyboardInterrupt, Interrupted):
-        raise Interrupted("interrupted; nothing was written") from None
-
-
-def counted(tell: Callable[[float], None], total: int) -> Callable[[], None]:
-    """Return what to call after each of so many runs; it tells the finished fraction."""
-    finished = count(1)
-    return lambda: tell(next(finished) / total)
+        raise Interrupted() from None

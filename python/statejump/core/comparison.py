@@ -1,167 +1,130 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Comparison of the DEM history with the reduced model, quantity by quantity."""
+"""Models beside each other, quantity by quantity, against the tolerances of the case."""
 from __future__ import annotations
 
-import csv
-import json
-import math
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
+from statejump.core.run import Run
+from statejump.core.tables import write_json, write_rows
 
-from statejump import _engine
-from statejump.kinds.spring_slider import reduced
-from statejump.schema.fields import Case
-from statejump.kinds.spring_slider.case import SpringSliderCase
-from statejump.core.history import History
-from statejump.core.output import write_atomically
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
-COMPARED_EVENTS = ("first_slip", "stop_reached", "stop_left")
+    from statejump.core.case import Case
+
+# Whose value a number can be, in the order of the columns.
+CLOSED_FORM, REDUCED, DEM = "closed_form", "reduced", "dem"
+SIDES = (CLOSED_FORM, REDUCED, DEM)
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """One compared number. ``difference`` is DEM minus reduced; None: the model has no such value."""
+    """One compared number.
+
+    :param name: what is compared
+    :param values: two values by whose they are (``closed_form``, ``reduced``, ``dem``); None: it has none
+    :param difference: the second less the first; None: one is missing
+    :param tolerance: allowed size of the difference
+    """
 
     name: str
     unit: str
-    reduced: Optional[float]
-    dem: Optional[float]
-    difference: Optional[float]
+    values: Mapping[str, float | None]
+    difference: float | None
     tolerance: float
     passed: bool
 
+    def __getattr__(self, name: str) -> float | None:
+        if name in SIDES:
+            return self.values.get(name)
+        raise AttributeError(name)
 
-def quantity(name: str, unit: str, exact: Optional[float], dem: Optional[float], tolerance: float) -> Quantity:
-    """Return one row; a value that one model lacks fails, one that both lack passes."""
-    if exact is None or dem is None:
-        return Quantity(name, unit, exact, dem, None, tolerance, passed=exact is None and dem is None)
-    difference = dem - exact
+    def to_dict(self) -> dict[str, Any]:
+        """Return the row as tables and JSON have it."""
+        return {"name": self.name, "unit": self.unit, **self.values, "difference": self.difference,
+                "tolerance": self.tolerance, "pass": self.passed}
+
+
+def quantity(name: str, unit: str, tolerance: float, **values: float | None) -> Quantity:
+    """Return one row; a value that one side lacks fails, one that both lack passes.
+
+    :param values: two values by whose they are; the second is judged by the first
+    """
+    first, second = values.values()
+    if first is None or second is None:
+        return Quantity(name, unit, values, None, tolerance, passed=first is None and second is None)
+    difference = second - first
     # Written so that NaN fails.
-    return Quantity(name, unit, exact, dem, difference, tolerance, passed=bool(abs(difference) <= tolerance))
+    return Quantity(name, unit, values, difference, tolerance, passed=bool(abs(difference) <= tolerance))
 
 
-def dem_event_temperatures(dem: History, samples_per_cycle: int) -> dict[str, Optional[float]]:
-    """Temperature changes [K] of the events of the first cycle, each half-way between two samples."""
-    first = slice(0, samples_per_cycle + 1)
-    change = dem["temperature_change_K"][first]
-
-    def between(index: int) -> float:
-        return float(0.5 * (change[index - 1] + change[index])) if index > 0 else float(change[0])
-
-    def starts(column: str) -> np.ndarray:
-        flags = dem[column][first] > 0.5
-        return np.flatnonzero(flags & ~np.concatenate(([False], flags[:-1])))
-
-    slips = starts("slipping")
-    reached = starts("stop_contact")
-    left = None
-    if len(reached):  # a cycle may reach both stops: the one left is the one reached first
-        push = dem["stop_force_N"][first]
-        others = np.flatnonzero(push * push[reached[0]] < 0)
-        end = others[0] if len(others) else len(push)
-        left = np.flatnonzero(dem["stop_contact"][first][:end] > 0.5)[-1] + 1
-    return {
-        "first_slip": between(slips[0]) if len(slips) else None,
-        "stop_reached": between(reached[0]) if len(reached) else None,
-        "stop_left": between(left) if left is not None and left < len(change) else None,
-    }
+def models(name: str, unit: str, reduced: float | None, dem: float | None, tolerance: float) -> Quantity:
+    """Return a row of the two models; see :func:`quantity`."""
+    return quantity(name, unit, tolerance, reduced=reduced, dem=dem)
 
 
-def energy_residual(dem: History) -> float:
-    """Supplied minus stored minus dissipated energy over the whole DEM run [J]."""
-
-    def change(name: str) -> float:
-        return float(dem[name][-1] - dem[name][0]) if name in dem else 0.0
-
-    supplied = change("thermal_work_J") + change("external_work_J")
-    stored = sum(change(f"{name}_energy_J") for name in ("elastic", "preload", "contact", "kinetic"))
-    dissipated = change("friction_dissipation_J") + change("damping_dissipation_J")
-    return supplied - stored - dissipated
+def table(rows: Sequence[Quantity]) -> list[dict[str, Any]]:
+    """Return rows with the same cells in all of them."""
+    sides = [side for side in SIDES if any(side in row.values for row in rows)]
+    return [
+        {"name": row.name, "unit": row.unit, **{side: row.values.get(side) for side in sides},
+         "difference": row.difference, "tolerance": row.tolerance, "pass": row.passed}
+        for row in rows
+    ]
 
 
-def loop_drift(dem: History, samples_per_cycle: int, cycles: int) -> float:
-    """Largest distance of any later loop from the second one at the same phase [m]."""
-    x = dem["displacement_m"]
-    loops = [x[k * samples_per_cycle : (k + 1) * samples_per_cycle + 1] for k in range(1, cycles)]
-    return float(max(np.max(np.abs(loop - loops[0])) for loop in loops))
+@dataclass(frozen=True)
+class Comparison:
+    """Two models of a case beside each other."""
+
+    case: Case
+    models: Mapping[str, Run]
+    rows: tuple[Quantity, ...]
+    notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = field(default=())
+
+    @property
+    def passed(self) -> bool:
+        """Whether all compared quantities are within tolerance."""
+        return all(row.passed for row in self.rows)
+
+    @property
+    def missed(self) -> list[str]:
+        """Names of the quantities that are not."""
+        return [row.name for row in self.rows if not row.passed]
+
+    def frame(self) -> pandas.DataFrame:
+        """Return a row per compared quantity."""
+        import pandas
+
+        return pandas.DataFrame(table(self.rows))
+
+    def plot(self, axes: Axes | Sequence[Axes] | None = None) -> Figure:
+        """Draw the models on top of each other; see :meth:`statejump.Run.plot`."""
+        from statejump.core.figures import drawn
+
+        return drawn(self.case, list(self.models.values()), axes)
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write ``comparison.json`` and ``comparison.csv``."""
+        document = {"case": self.case.name, "pass": self.passed, "quantities": [row.to_dict() for row in self.rows]}
+        return [write_json(folder / "comparison.json", document), write_comparison_csv(self.rows, folder)]
+
+    def __repr__(self) -> str:
+        verdict = "passed" if self.passed else f"missed: {', '.join(self.missed)}"
+        return f"Comparison({self.case.name}, {verdict})"
+
+    def _repr_html_(self) -> str:
+        from statejump.core.html import comparison_html
+
+        return comparison_html(self)
 
 
-def jump_row(case: SpringSliderCase, exact_m: float, other_m: float) -> Quantity:
-    """Compare two state jumps [m]."""
-    tolerance = case.tolerance
-    limit = max(tolerance.state_jump_relative * abs(exact_m), tolerance.state_jump_absolute_m)
-    return quantity("state_jump", "m", exact_m, other_m, limit)
-
-
-def displacement_row(case: SpringSliderCase, exact: History, other: History) -> Quantity:
-    """Compare two histories of displacement at the same times."""
-    x, y = exact["displacement_m"], other["displacement_m"]
-    largest = float(np.max(np.abs(x)))
-    rms = float(np.sqrt(np.mean((y - x) ** 2)))
-    return quantity("displacement_rms_over_largest", "-", 0.0, rms / largest if largest > 0 else math.nan,
-                    case.tolerance.displacement_rms_relative)
-
-
-def compare(case: SpringSliderCase, path: _engine.SpringSliderPath, dem: History) -> list[Quantity]:
-    """Compare a DEM history with the exact path of the same case."""
-    tolerance = case.tolerance
-    samples = case.dem.samples_per_cycle
-    exact = reduced.sample(path, dem["time_s"])
-    rows = [jump_row(case, path.state_jump_m, float(dem["displacement_m"][-1] - dem["displacement_m"][0]))]
-
-    if case.friction_force_N > 0:
-        exact_events: dict[str, float] = {}
-        for event in path.events:
-            if event.time_s <= case.dem.period_s:
-                exact_events.setdefault(event.kind, event.temperature_change_K)
-        dem_events = dem_event_temperatures(dem, samples)
-        rows += [
-            quantity(f"{kind}_temperature_change", "K", exact_events.get(kind), dem_events[kind],
-                      tolerance.event_temperature_K)
-            for kind in COMPARED_EVENTS
-        ]
-
-    rows.append(displacement_row(case, exact, dem))
-
-    reference = float(dem["friction_dissipation_J"][-1] - dem["friction_dissipation_J"][0])
-    name = "energy_residual_over_friction_work"
-    if not reference > 0:  # without friction the stored energy is the scale
-        reference = float(np.max(dem["elastic_energy_J"] + dem["contact_energy_J"]))
-        name = "energy_residual_over_largest_stored"
-    rows.append(quantity(name, "-", 0.0, energy_residual(dem) / reference if reference > 0 else math.nan,
-                          tolerance.energy_balance_relative))
-    if case.thermal.cycles > 2:
-        largest = float(np.max(np.abs(exact["displacement_m"])))
-        drift = loop_drift(dem, samples, case.thermal.cycles)
-        rows.append(quantity("loop_drift_over_largest_displacement", "-", 0.0, drift / largest,
-                              tolerance.drift_relative))
-    return rows
-
-
-def _entries(rows: list[Quantity]) -> list[dict[str, Any]]:
-    entries = []
-    for row in rows:
-        entry = asdict(row)
-        entry["pass"] = entry.pop("passed")
-        entries.append({k: None if isinstance(v, float) and math.isnan(v) else v for k, v in entry.items()})
-    return entries
-
-
-def write_comparison_csv(rows: list[Quantity], path: Path) -> None:
-    """Write the rows of a comparison as CSV; there must be one."""
-    entries = _entries(rows)
-    with write_atomically(path) as stream:
-        writer = csv.DictWriter(stream, fieldnames=list(entries[0]))
-        writer.writeheader()
-        writer.writerows(entries)
-
-
-def write_comparison(case: Case, rows: list[Quantity], folder: Path) -> None:
-    """Write ``comparison.json`` and ``comparison.csv``."""
-    document = {"case": case.name, "pass": all(row.passed for row in rows), "quantities": _entries(rows)}
-    with write_atomically(folder / "comparison.json") as stream:
-        stream.write(json.dumps(document, indent=2) + "\n")
-    write_comparison_csv(rows, folder / "comparison.csv")
+def write_comparison_csv(rows: Sequence[Quantity], folder: Path) -> Path:
+    """Write the rows of a comparison as ``comparison.csv``; there must be one."""
+    return write_rows(folder / "comparison.csv", table(rows))

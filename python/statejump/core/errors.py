@@ -1,41 +1,233 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What ends a command early: one sentence, no traceback, an exit status; the same as fields.
+"""What ends a command or a call early: an object with fields, whose sentence is made from them.
 
-The sentence is the one source: ``FILE: [ITEM: ]KEY = VALUE is not allowed: CAUSE`` and its like are read
-back into fields by :func:`read_sentence`. What a sentence does not say (time, temperature) is given beside
-it where the error is raised.
+``str(error)`` is one sentence, ``[FILE: ][ITEM: ]WHAT[: CAUSE][; REMEDY]``; :meth:`StatejumpError.fields` are
+the same facts by name. Nothing ever reads a sentence back.
 """
 from __future__ import annotations
 
-import ast
 import json
-import re
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any, ClassVar
 
 # Order of the fields in JSON.
 FIELDS = (
-    "kind", "message", "file", "item", "key", "value", "time_s", "temperature_change_K", "joint", "nodes",
-    "cause", "remedy", "exit_status",
+    "kind", "message", "file", "case", "item", "key", "value", "allowed", "time_s", "temperature_change_K", "joint",
+    "nodes", "cause", "remedy", "exit_status",
 )
+
+
+class _Absent:
+    """No value was given; None is a value."""
+
+    def __repr__(self) -> str:
+        return "absent"
+
+    def __reduce__(self) -> str:
+        return "ABSENT"
+
+
+ABSENT = _Absent()
+
+
+@dataclass(frozen=True)
+class Range:
+    """Numbers that a key allows: ``low`` to ``high`` [unit], without ``low`` itself if ``above``."""
+
+    low: float
+    high: float
+    unit: str = "-"
+    above: bool = False
+
+    def __str__(self) -> str:
+        if not isfinite(self.high):
+            return "must be a number" + (f" above {self.low:g}" if isfinite(self.low) else "")
+        if self.above:
+            return f"must be above {self.low:g} and at most {self.high:g} [{self.unit}]"
+        return f"must be between {self.low:g} and {self.high:g} [{self.unit}]"
+
+    def __contains__(self, value: float) -> bool:
+        return self.low <= value <= self.high and not (self.above and value == self.low)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the range as JSON takes it; an end without bound is left out."""
+        ends = {"above" if self.above else "low": self.low, "high": self.high}
+        return {key: end for key, end in ends.items() if isfinite(end)} | {"unit": self.unit}
+
+
+def shown(value: Any) -> str:
+    """Return a value as one would write it in a case file."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(value)
 
 
 class StatejumpError(Exception):
     """Bad input, or a run that could not be finished.
 
-    :param message: one sentence
-    :param details: fields that the sentence does not say, see ``FIELDS``
+    :param what: what is wrong, without what the other fields say
+    :param file: the file that is meant
+    :param place: how the sentence calls the file, if not by its path alone (``results folder out/x``)
+    :param case: name of the case that ran
+    :param item: which table of a list is meant, as ``node 'tip'``
+    :param key: key of a file, name of an argument
+    :param value: what was given for it
+    :param allowed: what may be given: a range, or names
+    :param joint: name of the joint
+    :param nodes: names of nodes
+    :param time_s: when [s]
+    :param temperature_change_K: at which temperature change [K]
+    :param cause: why; by default what ``allowed`` says
+    :param remedy: what would help
     """
 
-    exit_status = 2
-    kind = "bad_input"
+    kind: ClassVar[str] = "bad_input"
+    exit_status: ClassVar[int] = 2
 
-    def __init__(self, message: str, **details: Any) -> None:
-        super().__init__(message)
-        self.details = details
+    def __init__(
+        self,
+        what: str = "",
+        *,
+        file: object = None,
+        place: str | None = None,
+        case: str | None = None,
+        item: str | None = None,
+        key: str | None = None,
+        value: Any = ABSENT,
+        allowed: Range | Sequence[str] | None = None,
+        joint: str | None = None,
+        nodes: Sequence[str] = (),
+        time_s: float | None = None,
+        temperature_change_K: float | None = None,
+        cause: str | None = None,
+        remedy: str | None = None,
+    ) -> None:
+        super().__init__()
+        self.what = what
+        self.file = None if file is None else str(file)
+        self.place, self.case, self.item, self.key, self.value = place, case, item, key, value
+        self.allowed, self.joint, self.nodes = allowed, joint, tuple(nodes)
+        self.time_s, self.temperature_change_K = time_s, temperature_change_K
+        self.cause = str(allowed) if cause is None and isinstance(allowed, Range) else cause
+        self.remedy = remedy
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Exceptions travel between the processes of a campaign.
+        return (_remade, (type(self), self.__dict__.copy()))
+
+    def phrase(self) -> str:
+        """Return what is wrong, without file and item."""
+        return self.what
+
+    def located(self, *, file: object = None, case: str | None = None) -> StatejumpError:
+        """Say in which file or case it is, where that is not known yet; return the error itself."""
+        if self.file is None and file is not None:
+            self.file = str(file)
+        if self.case is None and case is not None:
+            self.case = case
+        return self
+
+    def _where(self) -> str | None:
+        if self.place is not None:
+            return self.place
+        if self.file is not None:
+            return self.file
+        return None if self.case is None else f"case {self.case}"
+
+    def __str__(self) -> str:
+        phrase, item = self.phrase(), self.item
+        if item and item.endswith("]"):  # an item without a name is called by its place: vary[1].key
+            phrase, item = f"{item}.{phrase}", None
+        sentence = ": ".join(part for part in (self._where(), item, phrase, self.cause) if part)
+        if not self.remedy:
+            return sentence
+        return f"{sentence}{'; ' if self.cause else ': '}{self.remedy}"
 
     def fields(self) -> dict[str, Any]:
-        """Return the failure as fields; those that are not known are left out."""
-        return fields(self.kind, str(self), self.exit_status, **self.details)
+        """Return the failure by the names of ``FIELDS``; what is not known is left out."""
+        allowed = self.allowed.to_json() if isinstance(self.allowed, Range) else self.allowed and list(self.allowed)
+        known = {
+            "kind": self.kind, "message": str(self), "file": self.file, "case": self.case, "item": self.item,
+            "key": self.key, "value": None if self.value is ABSENT else _plain(self.value), "allowed": allowed or None,
+            "time_s": self.time_s, "temperature_change_K": self.temperature_change_K, "joint": self.joint or None,
+            "nodes": list(self.nodes) or None, "cause": self.cause or None, "remedy": self.remedy or None,
+            "exit_status": self.exit_status,
+        }
+        return {name: known[name] for name in FIELDS if known[name] is not None}
+
+
+def _remade(kind: type[StatejumpError], state: dict[str, Any]) -> StatejumpError:
+    error = kind.__new__(kind)
+    Exception.__init__(error)
+    error.__dict__.update(state)
+    return error
+
+
+def _plain(value: Any) -> Any:
+    """Return a value if JSON can hold it, else as text."""
+    try:
+        json.dumps(value, allow_nan=False)
+    except (TypeError, ValueError):
+        return repr(value)
+    return value
+
+
+class NotAllowed(StatejumpError):
+    """A key has a value that it may not have: ``KEY = VALUE is not allowed[ BESIDE]: CAUSE``.
+
+    :param key: the key
+    :param value: what was given; ABSENT: the key may not be there at all, or its value says nothing
+    :param cause: why; by default what ``allowed`` says
+    :param beside: with what it is not allowed, as ``with start.mode = 'loaded'``
+    """
+
+    def __init__(self, key: str, value: Any = ABSENT, cause: str | None = None, *, beside: str = "",
+                 **more: Any) -> None:
+        super().__init__(key=key, value=value, cause=cause, **more)
+        self.beside = beside
+
+    def phrase(self) -> str:
+        given = self.key if self.value is ABSENT else f"{self.key} = {shown(self.value)}"
+        return f"{given} is not allowed" + (f" {self.beside}" if self.beside else "")
+
+
+class MissingKey(StatejumpError):
+    """A key or a section that must be there is not: ``KEY is missing[: NEEDS]``."""
+
+    def __init__(self, key: str, needs: str | None = None, *, section: str = "", **more: Any) -> None:
+        super().__init__(key=key, cause=needs, **more)
+        self.section = section
+
+    def phrase(self) -> str:
+        return f"{self.section or self.key} is missing"
+
+
+class UnknownKey(StatejumpError):
+    """There is no such key or section: ``KEY is unknown: did you mean OTHER?``.
+
+    :param key: the key
+    :param section: how the sentence calls a section, as ``section [demm]``
+    :param value: where the key names another key: the unknown one
+    :param beside: where it is unknown, as ``in a case of kind 'truss'``
+    :param cause: which are known, where none is near
+    :param remedy: which was probably meant
+    """
+
+    def __init__(self, key: str, *, section: str = "", beside: str = "", **more: Any) -> None:
+        super().__init__(key=key, **more)
+        self.section, self.beside = section, beside
+
+    def phrase(self) -> str:
+        given = self.section or self.key or ""
+        if self.value is not ABSENT:
+            given = f"{given} = {shown(self.value)}"
+        return f"{given} is unknown" + (f" {self.beside}" if self.beside else "")
+
+
+class Unreadable(StatejumpError):
+    """A file cannot be read, or is not what it should be."""
 
 
 class FailedRun(StatejumpError):
@@ -51,94 +243,40 @@ class NotWritten(StatejumpError):
 
 
 class TolerancesMissed(StatejumpError):
-    """The comparison ran and a tolerance of the case file is missed."""
+    """The comparison ran and tolerances of the case are missed.
+
+    :param quantities: names of the rows that miss theirs
+    """
 
     exit_status = 1
     kind = "tolerance_missed"
 
+    def __init__(self, quantities: Sequence[str], **more: Any) -> None:
+        super().__init__("tolerance missed", cause=", ".join(quantities), **more)
+        self.quantities = tuple(quantities)
+
 
 class Interrupted(StatejumpError):
-    """The user stopped a run; the sentence says what was kept."""
+    """The user stopped a run.
+
+    :param what: what was kept
+    :param run: the run as far as it came; None: nothing of it is left
+    """
 
     exit_status = 130
     kind = "interrupted"
 
+    def __init__(self, what: str = "interrupted; nothing was written", *, run: Any = None, **more: Any) -> None:
+        super().__init__(what, **more)
+        self.run = run
+
 
 def fields(kind: str, message: str, exit_status: int, **details: Any) -> dict[str, Any]:
-    """Return a failure as fields, in the order of ``FIELDS``."""
-    known = {"kind": kind, "message": message, **read_sentence(message), **details, "exit_status": exit_status}
+    """Return a failure that is no StatejumpError in the same form, in the order of ``FIELDS``."""
+    known = {"kind": kind, "message": message, **details, "exit_status": exit_status}
     return {name: known[name] for name in FIELDS if known.get(name) is not None}
 
 
 def to_json(failure: dict[str, Any]) -> str:
     """Return the fields of a failure as one line."""
     return json.dumps(failure, ensure_ascii=False, allow_nan=False)
-
-
-_FILE = re.compile(r"(?P<file>[^:]*\.(?:toml|h5|csv|stl|obj|ply|vtp|json)): (?P<rest>.*)", re.DOTALL)
-_ITEM = re.compile(r"(?P<item>(?:[a-z_]+ (?:'[^']*'|\d+)|vary\[\d+\])): (?P<rest>.*)", re.DOTALL)
-_KEY = r"(?P<key>--?[\w-]+|[\w.]+|[a-z]+ '[^']*'|\[+\w+\]+)"
-_WHAT = (
-    re.compile(_KEY + r" = (?P<value>.*?) is (?:not allowed|unknown)(?: in [^:]*)?: (?P<cause>.*)", re.DOTALL),
-    re.compile(r"(?:section )?" + _KEY + r" is (?:missing|unknown|not allowed)(?:: | |$)(?P<cause>.*)", re.DOTALL),
-)
-_PART = re.compile(r"(?P<kind>node|revolute|slider) '(?P<name>[^']*)'")
-_NUMBER = r"(?P<number>[-+]?\d[-+\d.e]*)"
-_TEMPERATURE = re.compile(rf"\btemperature[ _]change(?: of| =)? {_NUMBER} K\b")
-_TIME = re.compile(rf"\b(?:t =|time|time =) {_NUMBER} s\b")
-_REMEDY = re.compile(r"(?:^|[;:] )(?P<remedy>(?:did you mean|install|choose|load it|set (?:dem|reduced)\.\w+ to|--\w+ drops|the same command) .*)")
-
-
-def _value(text: str) -> Any:
-    """Return a value as it was in the file; as text if JSON cannot hold it."""
-    if text in ("true", "false"):
-        return text == "true"
-    try:
-        found = ast.literal_eval(text)
-        json.dumps(found, allow_nan=False)
-    except (ValueError, SyntaxError, TypeError):
-        return text
-    return found
-
-
-def read_sentence(message: str) -> dict[str, Any]:
-    """Return the fields that the sentence of a failure says: file, item, key, value, cause, ..."""
-    found: dict[str, Any] = {}
-    rest = message
-    match = _FILE.fullmatch(rest)
-    if match:
-        found["file"], rest = match["file"], match["rest"]
-    match = re.fullmatch(r"vary\[(\d+)\]\.(.*)", rest, re.DOTALL)
-    if match:
-        found["item"], rest = f"vary {match[1]}", match[2]
-    else:
-        match = _ITEM.fullmatch(rest)
-        if match:
-            found["item"], rest = match["item"], match["rest"]
-    for pattern in _WHAT:
-        match = pattern.fullmatch(rest)
-        if match:
-            said = match.groupdict()
-            found["key"] = said["key"].strip("[]")
-            if said["cause"]:
-                found["cause"] = said["cause"]
-            if "value" in said:
-                found["value"] = _value(said["value"])
-            break
-    remedy = _REMEDY.search(found.get("cause", rest))
-    if remedy:
-        found["remedy"] = remedy["remedy"]
-        if found.get("cause") == remedy["remedy"]:
-            del found["cause"]
-    parts = [*_PART.finditer(message)]
-    joints = [part["name"] for part in parts if part["kind"] != "node"]
-    if joints:
-        found["joint"] = joints[0]
-    nodes = [part["name"] for part in parts if part["kind"] == "node"]
-    if nodes:
-        found["nodes"] = list(dict.fromkeys(nodes))
-    for name, pattern in (("temperature_change_K", _TEMPERATURE), ("time_s", _TIME)):
-        said_number = pattern.search(message)
-        if said_number:
-            found[name] = float(said_number["number"])
-    return found

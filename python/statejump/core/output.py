@@ -18,7 +18,7 @@ def replacing(path: Path) -> Iterator[Path]:
         yield aside
         os.replace(aside, path)
     except OSError as error:
-        raise NotWritten(f"{path}: cannot be written: {error.strerror or error}") from None
+        raise NotWritten("cannot be written", file=path, cause=error.strerror or str(error)) from None
     finally:
         aside.unlink(missing_ok=True)
 
@@ -32,7 +32,7 @@ def write_atomically(path: Path) -> Iterator[IO[str]]:
 
 
 def results_folder(root: Path, name: str) -> Path:
-    """Make (if needed) and return ``root/name``; StatejumpError if it cannot be written to."""
+    """Make (if needed) and return ``root/name``; NotWritten if it cannot be written to."""
     folder = root / name
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -40,8 +40,6 @@ def results_folder(root: Path, name: str) -> Path:
         probe.touch()
         probe.unlink()
     except OSError as error:
-        raise NotWritten(
-            f"results folder {folder}: cannot be written: {error.strerror or error}; "
-            "choose another with --results"
-        ) from None
+        raise NotWritten("cannot be written", file=folder, place=f"results folder {folder}",
+                         cause=error.strerror or str(error), remedy="choose another with --results") from None
     return folder

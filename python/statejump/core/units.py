@@ -1,9 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers with units as an engineer writes them: 23.8095 µm, not 2.38095e-05 m."""
+"""Units: which one a name ends in, and numbers as an engineer writes them, 23.8095 µm, not 2.38095e-05 m."""
 from __future__ import annotations
 
 import math
-from typing import Optional
+
+# Unit by the ending of a name, the longest first: _N_m is not _m.
+ENDINGS = {
+    "_N_m_s_per_rad": "N m s/rad", "_N_m_per_rad": "N m/rad", "_kg_per_m3": "kg/m3", "_rad_per_s": "rad/s",
+    "_N_per_m": "N/m", "_m_per_s": "m/s", "_N_per_K": "N/K", "_per_K": "1/K", "_N_m": "N m", "_rad": "rad",
+    "_kg": "kg", "_Pa": "Pa", "_m2": "m2", "_m": "m", "_K": "K", "_N": "N", "_J": "J", "_s": "s", "_W": "W",
+}
+
+
+def split_unit(name: str) -> tuple[str, str]:
+    """Return a name without its unit, and the unit; ``-`` for none."""
+    ending = next((ending for ending in ENDINGS if name.endswith(ending)), "")
+    return name.removesuffix(ending), ENDINGS.get(ending, "-")
+
+
+def unit_of(name: str) -> str:
+    """Return the unit that a name ends in; ``-`` for none."""
+    return split_unit(name)[1]
+
 
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 # Units that take a prefix, with the powers of ten that are usual for them.
@@ -27,7 +45,7 @@ def scale_of(unit: str, size: float) -> tuple[float, str]:
     return 10.0**-power, PREFIXES[power] + written
 
 
-def text(value: Optional[float], unit: str = "-", digits: int = 6) -> str:
+def text(value: float | None, unit: str = "-", digits: int = 6) -> str:
     """Return a number with its unit; ``none`` for None and NaN."""
     if value is None or math.isnan(value):
         return "none"
@@ -43,6 +61,6 @@ def text(value: Optional[float], unit: str = "-", digits: int = 6) -> str:
     return f"{shown}\u202f{written}" if written else shown
 
 
-def plain(value: Optional[float], unit: str = "-", digits: int = 6) -> str:
+def plain(value: float | None, unit: str = "-", digits: int = 6) -> str:
     """Return the same for terminals and text files, where people search: common blank and minus sign."""
     return text(value, unit, digits).replace("\u202f", " ").replace("−", "-")

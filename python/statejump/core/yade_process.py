@@ -1,62 +1,50 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""DEM run of a case: starts YADE, shows progress, keeps what was computed."""
+"""A case in YADE: a process of its own, its progress, what it leaves, what goes wrong with it.
+
+The script in YADE writes samples as CSV and says everything else in lines of JSON that begin with ``MARK``: the
+finished share, or a failure by the names of :class:`~statejump.core.errors.StatejumpError`.
+"""
 from __future__ import annotations
 
 import json
-import math
 import os
-import re
 import shutil
 import signal
 import subprocess
 import tempfile
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
+
+import numpy as np
 
 from statejump import _paths
-from statejump.kinds.spring_slider import stable_step
-from statejump.schema.fields import Case
-from statejump.kinds.spring_slider.case import SpringSliderCase
-from statejump.core.errors import FailedRun, Interrupted
-from statejump.core.history import History
-from statejump.core.output import write_atomically
+from statejump.core.case import Case
+from statejump.core.errors import FailedRun, Interrupted, StatejumpError
+from statejump.core.progress import Tell
+from statejump.core.run import Run
+from statejump.core.tables import read_columns
 
-# Takes the samples of an interrupted run, writes them and returns the file to name.
-Keep = Callable[[History], Path]
-
-
-def number_of_steps(case: SpringSliderCase) -> int:
-    """Steps of the whole run: a multiple of the samples, so that the last sample is the end."""
-    wanted = case.dem.time_step_s
-    if wanted is None:
-        wanted = case.dem.time_step_fraction * stable_step.stable_time_step(case)
-    samples = case.dem.samples_per_cycle
-    return math.ceil(case.dem.period_s / wanted / samples) * samples * case.thermal.cycles
+MARK = "STATEJUMP "
+Columns = Mapping[str, np.ndarray]
+MakeRun = Callable[[Case, Columns, Mapping[str, Any]], Run]
 
 
-def time_step(case: SpringSliderCase) -> float:
-    """Time step [s]: the wanted one or a little less, so that steps fill the program exactly."""
-    return case.duration_s / number_of_steps(case)
+@dataclass(frozen=True)
+class Samples:
+    """What a process left: its samples by column, and what it says of itself."""
+
+    columns: dict[str, np.ndarray]
+    about: dict[str, Any]
 
 
 def common_values(case: Case, number_of_steps: int) -> dict[str, Any]:
-    """What the YADE script needs of a case of any kind, as plain values; keys as in the case file."""
-    values = case.dict()
-    if case.thermal.shape == "table":
-        values["thermal"]["table_time_s"] = case.table_time_s
+    """Return what the YADE script needs of a case of any kind, as plain values; keys as in the case file."""
+    values = case.to_dict()
     values["period_s"] = case.period_s
     values["number_of_samples"] = case.samples_per_cycle * case.thermal.cycles
-    values["dem"].update(
-        number_of_steps=number_of_steps, time_step_s=case.duration_s / number_of_steps
-    )
-    return values
-
-
-def resolved(case: SpringSliderCase) -> dict[str, Any]:
-    """Everything that the YADE script needs of a ``spring_slider`` case."""
-    values = common_values(case, number_of_steps(case))
-    values["dem"].update(tip_mass_kg=stable_step.tip_mass(case))
+    values["dem"].update(number_of_steps=number_of_steps, time_step_s=case.duration_s / number_of_steps)
     return values
 
 
@@ -65,50 +53,32 @@ def find_yade() -> str:
     wanted = os.environ.get("STATEJUMP_YADE", "yade")
     found = shutil.which(wanted)
     if found is None:
-        raise FailedRun(
-            f"YADE is missing: no command {wanted!r} found; install Debian's package 'yade' or set "
-            "STATEJUMP_YADE to the command"
-        )
+        raise FailedRun("YADE is missing", cause=f"no command {wanted!r} found",
+                        remedy="install Debian's package 'yade' or set STATEJUMP_YADE to the command")
     return found
 
 
-def run(
-    case: SpringSliderCase, folder: Path, progress: Callable[[float], None], keep: Keep | None = None
-) -> DemRun:
-    """Run a ``spring_slider`` case in YADE; see :func:`run_resolved`."""
-    return run_resolved(resolved(case), folder, progress, keep)
+def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, tell: Tell) -> Run:
+    """Run a case in YADE.
 
-
-@dataclass(frozen=True)
-class DemRun:
-    """A finished run: its samples, and what else it has to say (``dem_run.json``)."""
-
-    history: History
-    summary: dict[str, Any]
-
-
-def run_resolved(
-    values: dict[str, Any], folder: Path, progress: Callable[[float], None], keep: Keep | None = None
-) -> DemRun:
-    """Run a resolved case in YADE and write ``dem_run.json``, what the run says of itself.
-
-    :param values: resolved case, see :func:`common_values`
-    :param folder: results folder, exists
-    :param progress: called with the finished fraction, 0 to 1
-    :param keep: gets the samples of an interrupted run; None: they are dropped
-    :raises StatejumpError: YADE is missing, failed or was killed; nothing half-written is left
-    :raises Interrupted: Ctrl-C
+    :param values: what the script needs, see :func:`common_values`
+    :param make_run: makes the run of its samples
+    :param tell: takes the finished share, 0 to 1
+    :raises FailedRun: YADE is missing, failed or was killed
+    :raises Interrupted: Ctrl-C; its ``run`` has the samples so far, None if there are none
     """
-    done = execute(values, progress, keep)
-    with write_atomically(folder / "dem_run.json") as stream:
-        stream.write(json.dumps(done.summary, indent=2) + "\n")
-    return done
+    try:
+        done = execute(values, tell)
+    except Interrupted as stopped:
+        if stopped.run is not None:
+            samples: Samples = stopped.run
+            stopped.run = replace(make_run(case, samples.columns, samples.about), complete=False)
+        raise
+    return make_run(case, done.columns, done.about)
 
 
-def execute(
-    values: dict[str, Any], progress: Callable[[float], None], keep: Keep | None = None
-) -> DemRun:
-    """Run a resolved case in YADE without writing results; see :func:`run_resolved`."""
+def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
+    """Run a resolved case in YADE; see :func:`run`. Of an interrupted one ``run`` is :class:`Samples`."""
     name, threads = values["case"]["name"], values["dem"]["threads"]
     command = [find_yade(), "-n", "-x", f"-j{threads}", str(_paths.YADE_SCRIPTS / "run_case.py")]
     with tempfile.TemporaryDirectory(prefix="statejump-") as scratch:
@@ -123,26 +93,24 @@ def execute(
             OMP_NUM_THREADS=str(threads),
         )
         try:
-            problem, details = _watch(command, environment, progress)
+            _watch(command, environment, tell)
         except KeyboardInterrupt:
-            raise Interrupted(_keep_partial(output, keep)) from None
+            raise _interrupted(output) from None
         except OSError as error:
-            raise FailedRun(f"YADE cannot be started: {command[0]}: {error.strerror}") from None
-        if problem:
-            raise FailedRun(f"case {name}: {problem}", **({"cause": problem} | details))
+            raise FailedRun(f"YADE cannot be started: {command[0]}", cause=error.strerror) from None
+        except StatejumpError as failure:
+            raise failure.located(case=name) from None
         try:
-            history = History.read_csv(output)
-            summary = json.loads(output.with_name(output.name + ".json").read_text(encoding="utf-8"))
-        except (OSError, ValueError, IndexError) as error:
-            raise FailedRun(f"case {name}: the DEM run left no complete result: {error}") from None
-    return DemRun(history, summary)
+            about = json.loads(output.with_name(output.name + ".json").read_text(encoding="utf-8"))
+            return Samples(read_columns(output), about)
+        except (OSError, ValueError, IndexError, StatejumpError) as error:
+            raise FailedRun("the DEM run left no complete result", case=name, cause=str(error)) from None
 
 
-def _watch(
-    command: list[str], environment: dict[str, str], progress: Callable[[float], None]
-) -> tuple[str, dict[str, Any]]:
-    """Run the command, pass progress on, return what went wrong or an empty string, and its fields if it says them."""
-    sentence, details, finished, last = "", {}, False, ""
+def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
+    """Run the command and pass its progress on. :raises FailedRun: what went wrong"""
+    failure: dict[str, Any] | None = None
+    finished, last = False, ""
     with subprocess.Popen(
         command,
         env=environment,
@@ -155,38 +123,57 @@ def _watch(
     ) as process:
         try:
             for line in process.stdout or []:
-                word, _, rest = line.strip().partition(" ")
-                if word == "PROGRESS" and re.fullmatch(r"\d+(\.\d*)?", rest):
-                    fraction = float(rest)
-                    finished = fraction >= 1
-                    progress(fraction)
-                elif word == "DETAILS":
-                    details = json.loads(rest)
-                elif word == "ERROR":
-                    sentence = rest
-                elif line.strip():
-                    last = line.strip()
+                said = line.strip()
+                if said.startswith(MARK):
+                    message = json.loads(said.removeprefix(MARK))
+                    if "progress" in message:
+                        finished = message["progress"] >= 1
+                        tell(message["progress"])
+                    else:
+                        failure = message["failure"]
+                elif said:
+                    last = said
         except BaseException:
             os.killpg(process.pid, signal.SIGKILL)  # YADE and whatever it has started
             raise
-    if sentence:
-        return f"the DEM run failed: {sentence}", details
+    if failure is not None:
+        raise RunFailed(**failure)
     if process.returncode < 0:
-        return f"the DEM run was killed by signal {-process.returncode}; nothing was written", {}
+        raise FailedRun(f"the DEM run was killed by signal {-process.returncode}; nothing was written")
     if process.returncode != 0 or not finished:
-        detail = f": {last}" if last else ""
-        return f"YADE ended with status {process.returncode} before the run was finished{detail}", {}
-    return "", {}
+        raise FailedRun(f"YADE ended with status {process.returncode} before the run was finished",
+                        cause=last or None)
 
 
-def _keep_partial(output: Path, keep: Keep | None) -> str:
-    if keep is None:
-        return "interrupted; nothing was written"
+class RunFailed(FailedRun):
+    """A failure that the script in YADE tells: ``the DEM run failed: CAUSE (PLACE, time T s, temperature change
+    T K)[; REMEDY]``.
+
+    :param cause: what went wrong
+    :param place: words for the joint, as ``slider S1``
+    """
+
+    def __init__(self, cause: str, *, place: str = "", **more: Any) -> None:
+        super().__init__("the DEM run failed", cause=cause, **more)
+        self.words = place
+
+    def __str__(self) -> str:
+        where = [self.words] if self.words else []
+        if self.time_s is not None:
+            where.append(f"time {self.time_s:.9g} s")
+        if self.temperature_change_K is not None:
+            where.append(f"temperature change {self.temperature_change_K:.9g} K")
+        said = f"{self.what}: {self.cause}" + (f" ({', '.join(where)})" if where else "")
+        sentence = f"{self._where()}: {said}" if self._where() else said
+        return f"{sentence}; {self.remedy}" if self.remedy else sentence
+
+
+def _interrupted(output: Path) -> Interrupted:
     partial = output.with_name(output.name + ".partial")
     lines = partial.read_text(encoding="utf-8").splitlines(keepends=True) if partial.exists() else []
     if lines and not lines[-1].endswith("\n"):
         lines.pop()  # a row cut in the middle
     if len(lines) < 2:
-        return "interrupted before the first sample; nothing was written"
+        return Interrupted("interrupted before the first sample; nothing was written")
     partial.write_text("".join(lines), encoding="utf-8")
-    return f"interrupted; the {len(lines) - 1} samples so far are in {keep(History.read_csv(partial))}"
+    return Interrupted(run=Samples(read_columns(partial), {}))

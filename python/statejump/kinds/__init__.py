@@ -1,1 +1,91 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+"""The registry of kinds of cases. A kind is a folder here, or a module of anybody's, and one entry.
+
+Kinds of one's own are registered by :func:`register`, or for every command by the environment variable
+``STATEJUMP_KINDS``: a list of ``module:OBJECT`` separated by commas.
+"""
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from statejump.core.errors import StatejumpError
+from statejump.schema.rules import check_name
+
+if TYPE_CHECKING:
+    from statejump.kinds.protocol import Kind
+
+VARIABLE = "STATEJUMP_KINDS"
+# Where each kind's object is; its module is loaded when it is first asked for.
+KINDS: dict[str, str] = {
+    name: f"statejump.kinds.{name}:KIND" for name in ("spring_slider", "umbrella", "statics", "truss")
+}
+_loaded: dict[str, Kind] = {}
+_read_from: list[str] = []
+
+
+def _object(place: str) -> Kind:
+    module, _, name = place.partition(":")
+    try:
+        found: Kind = getattr(import_module(module), name)
+    except (ImportError, AttributeError) as problem:
+        raise StatejumpError(f"{VARIABLE}: {place!r} cannot be loaded", value=place, cause=str(problem)) from None
+    return found
+
+
+def register(place: str) -> Kind:
+    """Add a kind of one's own, or replace it, and return it.
+
+    :param place: ``module:OBJECT``, which workers of a campaign import as well
+    :raises StatejumpError: there is no such object
+    """
+    found = _object(place)
+    KINDS[found.name], _loaded[found.name] = place, found
+    return found
+
+
+def registered() -> list[str]:
+    """Return the places of the kinds that are not the project's own."""
+    return [place for place in KINDS.values() if not place.startswith("statejump.kinds.")]
+
+
+def _from_environment() -> None:
+    wanted = os.environ.get(VARIABLE, "")
+    if wanted and wanted not in _read_from:
+        _read_from.append(wanted)
+        for place in wanted.split(","):
+            register(place.strip())
+
+
+def names() -> list[str]:
+    """Return the names of all kinds."""
+    _from_environment()
+    return list(KINDS)
+
+
+def kind(name: str) -> Kind:
+    """Return a kind by its name. :raises NotAllowed: there is none"""
+    _from_environment()
+    check_name("case.kind", name, list(KINDS))
+    if name not in _loaded:
+        _loaded[name] = _object(KINDS[name])
+    return _loaded[name]
+
+
+def kinds_that_can(ability: str) -> list[str]:
+    """Return the names of the kinds that have an ability."""
+    return [name for name in names() if kind(name).can(ability)]
+
+
+def column_order(given: Iterable[str]) -> list[str]:
+    """Return names of columns in the order of the kind that knows them all; where none does, the program first,
+    then by name."""
+    wanted = set(given)
+    for name in names():
+        columns = kind(name).COLUMNS
+        if wanted <= set(columns):
+            return [column for column in columns if column in wanted]
+    first = {"time_s": 0, "temperature_change_K": 1}
+    return sorted(wanted, key=lambda name: (first.get(name, 2), name))

@@ -3,66 +3,22 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import dataclass, field
-from typing import Any, Optional
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from statejump.kinds.registry import Case, parse_case
-from statejump.core.comparison import Quantity
-from statejump.core.history import History
-
-# What a contact does at a sample; the number is the place in this list.
-CONTACT_STATES = ("separated", "stick", "slip", "at_stop")
-SEPARATED, STICK, SLIP, AT_STOP = range(len(CONTACT_STATES))
-
-# Longest ending first: _N_m is not _m.
-_UNITS = {
-    "_N_m_per_rad": "N m/rad", "_N_m_s_per_rad": "N m s/rad", "_kg_per_m3": "kg/m3", "_rad_per_s": "rad/s",
-    "_m_per_s": "m/s", "_N_per_m": "N/m", "_per_K": "1/K", "_N_m": "N m", "_rad": "rad", "_kg": "kg", "_Pa": "Pa",
-    "_m2": "m2", "_m": "m", "_K": "K", "_N": "N", "_J": "J", "_s": "s", "_W": "W",
-}
-
-
-def unit_of(name: str) -> str:
-    """Return the unit that a name ends in; ``-`` for none."""
-    return next((unit for ending, unit in _UNITS.items() if name.endswith(ending)), "-")
-
-
-@dataclass(frozen=True)
-class Column:
-    """Values over the samples of a run: one per sample, or (samples, items), or (samples, items, 3).
-
-    ``items`` is the key of the list of names of the second axis, see :attr:`Result.names`.
-    ``labels``: the values are places in this list. ``note`` says where it comes from, if not obvious.
-    """
-
-    values: np.ndarray
-    unit: str = "-"
-    items: str = ""
-    labels: tuple[str, ...] = ()
-    note: str = ""
-
-
-@dataclass(frozen=True)
-class Event:
-    """Something that happened. ``joint`` is the contact or joint, "" for none.
-
-    ``time_uncertainty_s``: 0 for an instant that the model locates, else half the distance of the two
-    samples between which it lies.
-    """
-
-    kind: str
-    time_s: float
-    temperature_change_K: float
-    joint: str = ""
-    time_uncertainty_s: float = 0.0
+from statejump.core.case import Case
+from statejump.core.comparison import Comparison, Quantity
+from statejump.core.errors import StatejumpError
+from statejump.core.run import Run
+from statejump.core.units import unit_of
 
 
 @dataclass(frozen=True)
 class Scalar:
-    """One number that sums up a run. NaN: it did not happen."""
+    """One number of the answers. NaN: there is none."""
 
     value: float
     unit: str = "-"
@@ -96,30 +52,6 @@ class Mesh:
     triangles: np.ndarray  # (triangles, 3), places in vertices_m
 
 
-@dataclass(frozen=True)
-class ModelRun:
-    """A run of one model. All columns have the length of ``history["time_s"]``."""
-
-    history: dict[str, Column]
-    energy: dict[str, Column]
-    links: dict[str, Column]  # (samples, links)
-    contacts: dict[str, Column]  # (samples, contacts) and (samples, contacts, 3)
-    events: list[Event]
-    summary: dict[str, Scalar]
-
-    @property
-    def time_s(self) -> np.ndarray:
-        """Times of the samples [s]."""
-        return self.history["time_s"].values
-
-    def column(self, path: str) -> Column:
-        """Return a column by its path below the model, as ``history/time_s``. :raises KeyError:"""
-        group, _, name = path.partition("/")
-        if group not in ("history", "energy", "links", "contacts"):
-            raise KeyError(path)
-        return getattr(self, group)[name]
-
-
 def _given(values: Any) -> Any:
     """Return parsed JSON without what is null or a list of nothing: a case file has no such value."""
     if isinstance(values, dict):
@@ -142,53 +74,30 @@ class Result:
     provenance: dict[str, Any]
     names: dict[str, list[str]]  # of the second axes of columns
     scene: dict[str, Any]  # see scene.py
-    models: dict[str, ModelRun]
-    comparison: Optional[list[Quantity]] = None
+    models: dict[str, Run]
+    rows: tuple[Quantity, ...] | None = None  # of a comparison; None: nothing was compared
     warnings: list[str] = field(default_factory=list)
     meshes: dict[str, Mesh] = field(default_factory=dict)
-    answers: Optional[Answers] = None
+    answers: Answers | None = None
 
+    @cached_property
     def case(self) -> Case:
-        """Return the case; StatejumpError if this version does not understand it any more."""
-        return parse_case(_given(json.loads(self.case_json)), f"case {self.name}")
+        """The case. :raises StatejumpError: this version does not understand it any more"""
+        from statejump.kinds.loading import parse_case
+
+        try:
+            return parse_case(_given(json.loads(self.case_json)))
+        except StatejumpError as failure:
+            raise failure.located(case=self.name) from None
 
     @property
-    def passed(self) -> Optional[bool]:
+    def comparison(self) -> Comparison | None:
+        """The models beside each other; None: nothing was compared."""
+        if self.rows is None:
+            return None
+        return Comparison(self.case, self.models, self.rows, warnings=tuple(self.warnings))
+
+    @property
+    def passed(self) -> bool | None:
         """Whether all compared quantities are within tolerance; None: nothing was compared."""
-        return None if self.comparison is None else all(row.passed for row in self.comparison)
-
-
-def columns_of(history: History) -> tuple[dict[str, Column], dict[str, Column]]:
-    """Return a history's columns and, apart from them, its energies (names that end in ``_J``)."""
-    plain: dict[str, Column] = {}
-    energy: dict[str, Column] = {}
-    for name, values in history.columns.items():
-        values = np.asarray(values)
-        if values.dtype.kind == "U":
-            labels, numbers = np.unique(values, return_inverse=True)
-            plain[name] = Column(numbers.astype(np.uint8), labels=tuple(labels.tolist()))
-            continue
-        (energy if name.endswith("_J") else plain)[name] = Column(values.astype(float), unit_of(name))
-    return plain, energy
-
-
-def history_of(run: ModelRun) -> History:
-    """Return the columns of one value per sample as a history; inverse of :func:`columns_of`."""
-    return History({
-        name: np.array(column.labels)[column.values] if column.labels else column.values
-        for name, column in {**run.history, **run.energy}.items() if column.values.ndim == 1
-    })
-
-
-# Differs from run to run of the same case: not a result.
-_OF_THE_DAY = ("wall_time_s", "cpu_time_s")
-
-
-def scalars(values: dict[str, Any]) -> dict[str, Scalar]:
-    """Return numbers with the units that their names end in; None becomes NaN, texts and what does
-    not repeat are left out."""
-    return {
-        name: Scalar(math.nan if value is None else float(value), unit_of(name))
-        for name, value in values.items()
-        if (value is None or isinstance(value, (int, float))) and name not in _OF_THE_DAY
-    }
+        return None if self.rows is None else all(row.passed for row in self.rows)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass, replace
-from typing import Any, Iterator, Optional
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from statejump.core.comparison import Quantity
 from statejump.core.errors import StatejumpError
-from statejump.results.contents import Column, ModelRun, Result
-from statejump.results.kinds import kind_of
+from statejump.core.run import Run
+from statejump.core.units import unit_of
+from statejump.results.contents import Result
 
 # How a case is computed, written and judged; the other sections say what it is.
 NUMERICAL_SECTIONS = ("case", "dem", "reduced", "output", "ensemble", "tolerance")
@@ -38,7 +40,7 @@ class EventDifference:
 
     kind: str
     counts: tuple[int, int]
-    first_K: tuple[Optional[float], Optional[float]]
+    first_K: tuple[float | None, float | None]
 
 
 @dataclass(frozen=True)
@@ -49,7 +51,7 @@ class RunDifference:
     summary: list[tuple[str, str, float, float]]  # quantity, unit, first, second; NaN: none
     columns: list[ColumnDifference]
     events: list[EventDifference]
-    rows: Optional[list[Quantity]]
+    rows: list[Quantity] | None
 
 
 def _entries(values: Any, path: str = "") -> Iterator[tuple[str, Any]]:
@@ -77,13 +79,13 @@ def case_differences(first: Result, second: Result) -> tuple[list[str], list[str
 def check_comparable(first: Result, second: Result) -> None:
     """Raise StatejumpError unless both files are of the same case."""
     if first.kind != second.kind:
-        raise StatejumpError(f"not comparable: kinds {first.kind} and {second.kind}")
+        raise StatejumpError("not comparable", cause=f"kinds {first.kind} and {second.kind}")
     physical, _ = case_differences(first, second)
     if physical:
         more = f", and {len(physical) - 1} more" if len(physical) > 1 else ""
-        raise StatejumpError(f"not comparable: the cases differ: {physical[0]}{more}")
+        raise StatejumpError("not comparable", cause=f"the cases differ: {physical[0]}{more}")
     if first.names != second.names:
-        raise StatejumpError("not comparable: the files name other links or contacts")
+        raise StatejumpError("not comparable", cause="the files name other links or contacts")
 
 
 def pairs(first: Result, second: Result) -> list[tuple[str, str]]:
@@ -92,33 +94,11 @@ def pairs(first: Result, second: Result) -> list[tuple[str, str]]:
     if common:
         return common
     if not first.models or not second.models:
-        raise StatejumpError("not comparable: a file holds no run")
+        raise StatejumpError("not comparable", cause="a file holds no run")
     return [(next(iter(first.models)), next(iter(second.models)))]
 
 
-def _at(run: ModelRun, time_s: np.ndarray) -> ModelRun:
-    """Return a run at other times: linear between samples, labels those of the sample before."""
-    if np.array_equal(run.time_s, time_s):
-        return run
-    before = np.clip(np.searchsorted(run.time_s, time_s, side="right") - 1, 0, len(run.time_s) - 1)
-    after = np.minimum(before + 1, len(run.time_s) - 1)
-    step = run.time_s[after] - run.time_s[before]
-    weight = np.divide(time_s - run.time_s[before], step, out=np.zeros(len(time_s)), where=step > 0)
-
-    def moved(column: Column) -> Column:
-        if column.labels:
-            return replace(column, values=column.values[before])
-        shape = (-1,) + (1,) * (column.values.ndim - 1)
-        here, there = column.values[before], column.values[after]
-        return replace(column, values=here + np.clip(weight, 0, 1).reshape(shape) * (there - here))
-
-    return replace(run, **{
-        group: {name: moved(column) for name, column in getattr(run, group).items()}
-        for group in ("history", "energy", "links", "contacts")
-    })
-
-
-def _columns(first: ModelRun, second: ModelRun) -> list[ColumnDifference]:
+def _columns(first: Run, second: Run) -> list[ColumnDifference]:
     found = []
     for group in ("history", "energy", "links"):
         other = getattr(second, group)
@@ -137,7 +117,7 @@ def _columns(first: ModelRun, second: ModelRun) -> list[ColumnDifference]:
     return found
 
 
-def _events(first: ModelRun, second: ModelRun) -> list[EventDifference]:
+def _events(first: Run, second: Run) -> list[EventDifference]:
     kinds = dict.fromkeys(event.kind for run in (first, second) for event in run.events)
     found = []
     for kind in kinds:
@@ -150,14 +130,11 @@ def _events(first: ModelRun, second: ModelRun) -> list[EventDifference]:
     return found
 
 
-def _summary(first: ModelRun, second: ModelRun) -> list[tuple[str, str, float, float]]:
-    found = []
-    for name in dict.fromkeys([*first.summary, *second.summary]):
-        scalars = [run.summary.get(name) for run in (first, second)]
-        unit = next(scalar.unit for scalar in scalars if scalar is not None)
-        values = [math.nan if scalar is None else scalar.value for scalar in scalars]
-        found.append((name, unit, values[0], values[1]))
-    return found
+def _summary(first: Run, second: Run) -> list[tuple[str, str, float, float]]:
+    return [
+        (name, unit_of(name), first.summary.get(name, math.nan), second.summary.get(name, math.nan))
+        for name in dict.fromkeys([*first.summary, *second.summary])
+    ]
 
 
 def difference(first: Result, second: Result) -> list[RunDifference]:
@@ -170,16 +147,17 @@ def difference(first: Result, second: Result) -> list[RunDifference]:
     """
     check_comparable(first, second)
     complete = first.complete and second.complete
+    judge = first.case.behaviour.ability("difference", first.case)
     found = []
     for names in pairs(first, second):
         one, other = first.models[names[0]], second.models[names[1]]
         ends = float(one.time_s[-1]), float(other.time_s[-1])
         if complete and abs(ends[0] - ends[1]) > SAME_TIME * max(ends):
-            raise StatejumpError(f"not comparable: the runs last {ends[0]:g} s and {ends[1]:g} s")
+            raise StatejumpError("not comparable", cause=f"the runs last {ends[0]:g} s and {ends[1]:g} s")
         times = one.time_s[one.time_s <= min(ends) * (1 + SAME_TIME)]
-        left, right = _at(one, times), _at(other, times)
+        left, right = one.at(times), other.at(times)
         found.append(RunDifference(
             names, _summary(one, other), _columns(left, right), _events(one, other),
-            kind_of(first.case()).difference_rows(first.case(), left, right) if complete else None,
+            judge(first.case, left, right) if complete else None,
         ))
     return found

@@ -2,12 +2,11 @@
 """Events of a run, read off the states of its contacts between two samples."""
 from __future__ import annotations
 
-import math
-from typing import Optional, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from statejump.results.contents import AT_STOP, SEPARATED, SLIP, Event, ModelRun
+from statejump.core.run import AT_STOP, SEPARATED, SLIP, Event
 
 
 def kind_of(before: int, after: int, slipped: bool) -> str:
@@ -49,10 +48,3 @@ def from_states(
             ))
             slipped = slipped or state[after] == SLIP
     return sorted(found, key=lambda event: event.time_s)
-
-
-def first_event_K(run: ModelRun, kind: str, until_s: float = math.inf) -> Optional[float]:
-    """Return the temperature change [K] of the first event of a kind; None if there is none."""
-    return next(
-        (event.temperature_change_K for event in run.events if event.kind == kind and event.time_s <= until_s), None
-    )

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Optional
 
 FORMAT = "statejump result"
 VERSION = 1  # raised when a reader of the old layout would go wrong
@@ -104,6 +103,9 @@ ENTRIES = (
     Entry("/comparison@passed", "bool", "whether all rows passed", required=False),
     Entry("/comparison/quantity", "text [rows]", "what was compared", required=False),
     Entry("/comparison/unit", "text [rows]", "unit of the row", required=False),
+    Entry("/comparison/closed_form", "float64 [rows]", "value of a closed form; NaN: the row has none", required=False),
+    Entry("/comparison/compared", "text [rows]",
+          "whose values a row compares, two of closed_form, reduced, dem; missing: reduced dem in all", required=False),
     Entry("/comparison/reduced", "float64 [rows]", "value of the reduced model; NaN: it has none", required=False),
     Entry("/comparison/dem", "float64 [rows]", "value of the DEM; NaN: it has none", required=False),
     Entry("/comparison/difference", "float64 [rows]", "DEM less reduced; NaN: one is missing", required=False),
@@ -150,7 +152,7 @@ ATTRIBUTES = {
 }
 
 
-def entry_of(path: str) -> Optional[Entry]:
+def entry_of(path: str) -> Entry | None:
     """Return the entry that a place in a file belongs to, the most special first."""
     found = [entry for entry in ENTRIES if entry.matches(path)]
     return min(found, key=lambda entry: entry.path.count("{name}")) if found else None

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import platform
-from typing import Any, Optional
+from typing import Any
 
 import h5py
 import numpy as np
 
 from statejump import __version__, _paths
-from statejump.kinds.registry import Case
+from statejump.core.case import Case
+from statejump.core.run import Run
 
 
-def provenance(case: Case, dem_summary: Optional[dict[str, Any]]) -> dict[str, Any]:
+def provenance(case: Case, dem: Run | None) -> dict[str, Any]:
     """Return the attributes of ``/provenance``.
 
-    :param dem_summary: what the DEM run says of itself (``dem_run.json``); None without a DEM run
+    :param dem: the DEM run; None without one
     """
     found: dict[str, Any] = {
         "statejump_version": __version__,
@@ -26,12 +27,12 @@ def provenance(case: Case, dem_summary: Optional[dict[str, Any]]) -> dict[str, A
         "h5py_version": h5py.__version__,
         "hdf5_version": h5py.version.hdf5_version,
     }
-    sections = case.dict()
+    sections = case.to_dict()
     seed = sections.get("ensemble", {}).get("seed")
     if seed is not None:
         found["seed"] = seed
-    if dem_summary is not None:
-        if "yade_version" in dem_summary:
-            found["yade_version"] = dem_summary["yade_version"]
+    if dem is not None:
+        if "yade_version" in dem.about:
+            found["yade_version"] = dem.about["yade_version"]
         found["threads"] = sections["dem"]["threads"]
     return found

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any
 
 import h5py
 import numpy as np
 
-from statejump.core.comparison import Quantity
-from statejump.core.errors import StatejumpError
-from statejump.results.contents import Answers, Column, Event, Mesh, ModelRun, Result, Scalar
+from statejump.core.comparison import SIDES, Quantity
+from statejump.core.errors import Unreadable
+from statejump.core.run import Column, Event, Events, Run
+from statejump.results.contents import Answers, Mesh, Result, Scalar
 from statejump.results.layout import ENTRIES, FORMAT, MODELS, SUFFIX, TABLES, VERSION
 
 
@@ -24,36 +26,33 @@ def is_result_file(path: Path) -> bool:
 def read(path: str | Path) -> Result:
     """Return what a result file holds.
 
-    :raises StatejumpError: no such file, not HDF5, not ours, of a newer layout, cut off, a part is
+    :raises Unreadable: no such file, not HDF5, not ours, of a newer layout, cut off, a part is
         missing or damaged
     """
     path = Path(path)
     if not path.is_file():
-        raise StatejumpError(f"{path}: no such result file")
+        raise Unreadable("no such result file", file=path)
     try:
         if not h5py.is_hdf5(path):
-            raise StatejumpError(f"{path}: not a result file: it is not HDF5")
+            raise Unreadable("not a result file", cause="it is not HDF5", file=path)
         with h5py.File(path, "r") as file:
             _check(file, path)
             return _result(file)
     except (OSError, RuntimeError) as error:
         reason = " ".join(str(error).split())
-        if "truncated" in reason:
-            raise StatejumpError(f"{path}: the file is cut off: it is shorter than it says") from None
-        raise StatejumpError(f"{path}: cannot be read: {reason}") from None
+        raise Unreadable("cannot be read, it may be cut off", cause=reason, file=path) from None
     except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
-        raise StatejumpError(f"{path}: damaged: {' '.join(str(error).split())}") from None
+        raise Unreadable("damaged", cause=" ".join(str(error).split()), file=path) from None
 
 
 def _check(file: h5py.File, path: Path) -> None:
-    """Raise StatejumpError unless the file is ours, of a layout we know, and nothing is missing."""
+    """Raise Unreadable unless the file is ours, of a layout we know, and nothing is missing."""
     if file.attrs.get("format") != FORMAT:
-        raise StatejumpError(f"{path}: not a result file: HDF5, but its attribute format is not {FORMAT!r}")
+        raise Unreadable("not a result file", cause=f"HDF5, but its attribute format is not {FORMAT!r}", file=path)
     version = int(file.attrs.get("layout_version", 0))
     if version > VERSION:
-        raise StatejumpError(
-            f"{path}: layout version {version} is newer than {VERSION}, the newest that this statejump reads"
-        )
+        raise Unreadable(f"layout version {version} is newer than {VERSION}, the newest that this statejump reads",
+                         file=path)
     models = [model for model in file.get("models", ())]
     for entry in ENTRIES:
         if not entry.required:
@@ -61,17 +60,25 @@ def _check(file: h5py.File, path: Path) -> None:
         for model in models if "{model}" in entry.path else [""]:
             place, _, attribute = entry.path.replace("{model}", model).partition("@")
             if place not in file or (attribute and attribute not in file[place].attrs):
-                raise StatejumpError(f"{path}: {place}{'@' if attribute else ''}{attribute} is missing")
+                raise Unreadable(f"{place}{'@' if attribute else ''}{attribute} is missing", file=path)
     for model in models:
         if model not in MODELS:
-            raise StatejumpError(f"{path}: /models/{model} is not a model: must be {' or '.join(MODELS)}")
+            raise Unreadable(f"/models/{model} is not a model", cause=f"must be {' or '.join(MODELS)}", file=path)
 
 
 def _result(file: h5py.File) -> Result:
     case = file["case"]
-    return Result(
+    names = {key: _texts(values) for key, values in file["names"].items()}
+    complete = bool(file.attrs["complete"])
+    made: list[Result] = []  # a run of the file reads its case only when it is asked for
+    runs = {
+        model: replace(_model(model, file["models"][model]), names=names, complete=complete,
+                       case_of=lambda: made[0].case)
+        for model in MODELS if model in file["models"]
+    }
+    made.append(Result(
         command=file.attrs["command"],
-        complete=bool(file.attrs["complete"]),
+        complete=complete,
         name=case.attrs["name"],
         kind=case.attrs["kind"],
         title=case.attrs["title"],
@@ -79,35 +86,37 @@ def _result(file: h5py.File) -> Result:
         case_text=_text(case["text"]),
         case_json=_text(case["resolved"]),
         provenance={key: _plain(value) for key, value in file["provenance"].attrs.items()},
-        names={key: _texts(values) for key, values in file["names"].items()},
+        names=names,
         scene=json.loads(_text(file["scene"])),
-        models={model: _model(file["models"][model]) for model in MODELS if model in file["models"]},
-        comparison=_comparison(file["comparison"]) if "comparison" in file else None,
+        models=runs,
+        rows=_comparison(file["comparison"]) if "comparison" in file else None,
         warnings=_texts(file["warnings"]),
         meshes={
             name: Mesh(mesh["vertices_m"][()], mesh["triangles"][()]) for name, mesh in file.get("meshes", {}).items()
         },
         answers=_answers(file["answers"]) if "answers" in file else None,
-    )
+    ))
+    return made[0]
 
 
-def _model(group: h5py.Group) -> ModelRun:
+def _model(model: str, group: h5py.Group) -> Run:
     samples = group["history/time_s"].shape[0]
     columns = {
         part: {name: _column(values, samples) for name, values in group[part].items()}
         for part in ("history", "energy", "links", "contacts")
     }
     events = group["events"]
-    return ModelRun(
+    return Run(
+        model,
         **columns,
-        events=[
+        events=Events([
             Event(kind, float(time), float(change), joint, float(uncertainty))
             for kind, time, change, joint, uncertainty in zip(
                 _texts(events["kind"]), events["time_s"][()], events["temperature_change_K"][()],
                 _texts(events["joint"]), events["time_uncertainty_s"][()], strict=True,
             )
-        ],
-        summary=_scalars(group["summary"]),
+        ]),
+        summary={name: float(value[()]) for name, value in group["summary"].items()},
     )
 
 
@@ -126,17 +135,21 @@ def _column(dataset: h5py.Dataset, samples: int) -> Column:
     )
 
 
-def _comparison(group: h5py.Group) -> list[Quantity]:
-    def numbers(key: str) -> list[Optional[float]]:
+def _comparison(group: h5py.Group) -> tuple[Quantity, ...]:
+    def numbers(key: str) -> list[float | None]:
         return [None if math.isnan(value) else float(value) for value in group[key][()]]
 
-    return [
-        Quantity(name, unit, reduced, dem, difference, math.nan if tolerance is None else tolerance, bool(passed))
-        for name, unit, reduced, dem, difference, tolerance, passed in zip(
-            _texts(group["quantity"]), _texts(group["unit"]), numbers("reduced"), numbers("dem"),
-            numbers("difference"), numbers("tolerance"), group["passed"][()], strict=True,
-        )
-    ]
+    names = _texts(group["quantity"])
+    compared = _texts(group["compared"]) if "compared" in group else ["reduced dem"] * len(names)
+    values = {side: numbers(side) for side in SIDES if side in group}
+    return tuple(
+        Quantity(name, unit, {side: values[side][place] for side in sides.split()}, difference,
+                 math.nan if tolerance is None else tolerance, bool(passed))
+        for place, (name, unit, sides, difference, tolerance, passed) in enumerate(zip(
+            names, _texts(group["unit"]), compared, numbers("difference"), numbers("tolerance"), group["passed"][()],
+            strict=True,
+        ))
+    )
 
 
 def _answers(group: h5py.Group) -> Answers:

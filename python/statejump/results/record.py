@@ -1,19 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a command leaves behind: the result file of its run, and from it the CSV files."""
+"""What a command leaves behind: the result file of its runs, and from it the CSV files."""
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Optional
 
-from statejump.kinds.registry import Case
-from statejump.core.comparison import Quantity
-from statejump.core.yade_process import DemRun
-from statejump.core.history import History
+from statejump.core.case import Case
+from statejump.core.comparison import Comparison
+from statejump.core.run import Run
+from statejump.core.tables import write_json
 from statejump.results import export_csv
-from statejump.results.contents import Answers, ModelRun, Result
-from statejump.results.kinds import kind_of
+from statejump.results.contents import Answers, Result
 from statejump.results.layout import SUFFIX
 from statejump.results.provenance import provenance
 from statejump.results.write import write
@@ -22,70 +20,54 @@ from statejump.results.write import write
 FILES = {"reduced": "reduced", "dem": "dem", "compare": "comparison", "truss answers": "answers"}
 
 
-def case_text(case_file: Path) -> str:
-    """Return a case file as given; to be called when the case is loaded, before it runs."""
-    return case_file.read_bytes().decode("utf-8")
-
-
-@dataclass
-class Record:
-    """The run of a command while it goes on.
+def result_of(
+    command: str, case: Case, runs: Mapping[str, Run], comparison: Comparison | None = None,
+    answers: Answers | None = None,
+) -> Result:
+    """Return runs of a case as the contents of a result file.
 
     :param command: ``reduced``, ``dem``, ``compare`` or ``truss answers``
-    :param case: the case
-    :param case_text: its file as given; "" if there is none
+    :param runs: by model
+    """
+    kind = case.behaviour
+    warnings = [warning for run in runs.values() for warning in run.warnings]
+    return Result(
+        command=command,
+        complete=all(run.complete for run in runs.values()),
+        name=case.name,
+        kind=case.kind,
+        title=case.title,
+        source=case.case.source,
+        case_text=case.origin.text,
+        case_json=json.dumps(case.to_dict(), indent=1),
+        provenance=provenance(case, runs.get("dem")),
+        names=kind.ability("names", case)(case),
+        scene=kind.ability("scene", case)(case),
+        models=dict(runs),
+        rows=None if comparison is None else comparison.rows,
+        warnings=list(dict.fromkeys(warnings)),
+        answers=answers,
+    )
+
+
+def save(
+    command: str, case: Case, runs: Mapping[str, Run], folder: Path, comparison: Comparison | None = None,
+    answers: Answers | None = None,
+) -> Path:
+    """Write the result file of runs and the CSV files of their histories, or of the answers; return its path.
+
+    Runs that are not complete get names of their own, so that they replace no finished ones.
+
     :param folder: results folder, exists
     """
-
-    command: str
-    case: Case
-    case_text: str
-    folder: Path
-    models: dict[str, ModelRun] = field(default_factory=dict)
-    warnings: list[str] = field(default_factory=list)
-    dem_summary: Optional[dict[str, Any]] = None
-    answers: Optional[Answers] = None
-
-    def add_dem(self, done: DemRun) -> None:
-        """Take a DEM run."""
-        self.models["dem"] = kind_of(self.case).dem_run(self.case, done)
-        self.dem_summary = done.summary
-
-    def result(self, rows: Optional[list[Quantity]] = None, complete: bool = True) -> Result:
-        """Return what there is so far as the contents of a file."""
-        kind, header = kind_of(self.case), self.case.case
-        return Result(
-            command=self.command,
-            complete=complete,
-            name=self.case.name,
-            kind=self.case.kind,
-            title=self.case.title,
-            source=header.source,
-            case_text=self.case_text,
-            case_json=json.dumps(self.case.dict(), indent=1),
-            provenance=provenance(self.case, self.dem_summary),
-            names=kind.names(self.case),
-            scene=kind.scene(self.case),
-            models=dict(self.models),
-            comparison=rows,
-            warnings=list(self.warnings),
-            answers=self.answers,
-        )
-
-    def save(self, rows: Optional[list[Quantity]] = None) -> Path:
-        """Write the result file of a finished run and the CSV files of its histories, or of its answers."""
-        return self._write(self.result(rows), "")
-
-    def keep(self, samples: History) -> Path:
-        """Write what an interrupted DEM run and the models before it gave, marked as not complete."""
-        self.add_dem(DemRun(samples, {}))
-        return self._write(self.result(complete=False), ".interrupted")
-
-    def _write(self, result: Result, mark: str) -> Path:
-        path = self.folder / f"{FILES[self.command]}{mark}{SUFFIX}"
-        write(result, path)
-        if result.answers is None:
-            export_csv.write_histories(result, self.folder, mark)
-        else:  # the histories beside it are those of a comparison
-            export_csv.write_answers(result.answers, self.folder)
+    result = result_of(command, case, runs, comparison, answers)
+    mark = "" if result.complete else ".interrupted"
+    path = folder / f"{FILES[command]}{mark}{SUFFIX}"
+    write(result, path)
+    if result.answers is not None:  # the histories beside it are those of a comparison
+        export_csv.write_answers(result.answers, folder)
         return path
+    export_csv.write_histories(result, folder, mark)
+    if "dem" in runs and result.complete:
+        write_json(folder / "dem_run.json", runs["dem"].about)
+    return path

@@ -12,15 +12,16 @@ All numbers are SI units, angles anticlockwise from x. docs/result_file.md has t
 """
 from __future__ import annotations
 
-from typing import Any, Union
+from typing import Any
 
 import numpy as np
 
 from statejump.core.errors import StatejumpError
-from statejump.results.contents import CONTACT_STATES, Column, ModelRun, Result
+from statejump.core.run import CONTACT_STATES, Column, Run
+from statejump.results.contents import Result
 
-Value = Union[float, dict[str, Any]]
-Point = Union[list[Value], dict[str, Any]]
+Value = float | dict[str, Any]
+Point = list[Value] | dict[str, Any]
 
 # Okabe-Ito colours, different in lightness as well.
 STATE_COLOURS = dict(zip(CONTACT_STATES, ("#999999", "#0072B2", "#E69F00", "#D55E00"), strict=True))
@@ -114,7 +115,7 @@ def _item(column: Column, value: dict[str, Any], names: dict[str, list[str]]) ->
     return values[:, names[column.items].index(value["item"])]
 
 
-def resolve(value: Value, run: ModelRun, names: dict[str, list[str]]) -> np.ndarray:
+def resolve(value: Value, run: Run, names: dict[str, list[str]]) -> np.ndarray:
     """Return a value or a reference over the samples: (samples) or (samples, 3).
 
     :raises StatejumpError: the run has no such column or item
@@ -129,7 +130,7 @@ def resolve(value: Value, run: ModelRun, names: dict[str, list[str]]) -> np.ndar
     return value.get("offset", 0.0) + value.get("scale", 1.0) * found
 
 
-def resolve_point(point: Point, run: ModelRun, names: dict[str, list[str]]) -> np.ndarray:
+def resolve_point(point: Point, run: Run, names: dict[str, list[str]]) -> np.ndarray:
     """Return a point or vector over the samples (samples, 3)."""
     if isinstance(point, dict):
         return resolve(point, run, names)

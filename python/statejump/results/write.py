@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Sequence
+from collections.abc import Sequence
 
 import h5py
 import numpy as np
 
 from statejump.core.output import replacing
-from statejump.results.contents import Answers, Column, ModelRun, Result
+from statejump.core.comparison import SIDES
+from statejump.core.run import Column, Run
+from statejump.core.units import unit_of
+from statejump.results.contents import Answers, Result
 from statejump.results.layout import FORMAT, VERSION
 
 COMPRESSED_FROM = 4096  # bytes; below, a chunk's administration is larger than what it saves
@@ -46,13 +49,13 @@ def write(result: Result, path: Path) -> None:
             models = file.create_group("models")
             for model, run in result.models.items():
                 _model(models.create_group(model), run)
-            if result.comparison is not None:
+            if result.rows is not None:
                 _comparison(file.create_group("comparison"), result)
             if result.answers is not None:
                 _answers(file.create_group("answers"), result.answers)
 
 
-def _model(group: h5py.Group, run: ModelRun) -> None:
+def _model(group: h5py.Group, run: Run) -> None:
     for name in ("history", "energy", "links", "contacts"):
         part = group.create_group(name)
         for key, column in sorted(getattr(run, name).items()):
@@ -63,20 +66,23 @@ def _model(group: h5py.Group, run: ModelRun) -> None:
     for key, unit in (("time_s", "s"), ("temperature_change_K", "K"), ("time_uncertainty_s", "s")):
         _numbers(events, key, np.array([getattr(event, key) for event in run.events], dtype=float), unit)
     summary = group.create_group("summary")
-    for key, scalar in sorted(run.summary.items()):
-        _numbers(summary, key, np.array(scalar.value, dtype=float), scalar.unit)
+    for key, value in sorted(run.summary.items()):
+        _numbers(summary, key, np.array(value, dtype=float), unit_of(key))
 
 
 def _comparison(group: h5py.Group, result: Result) -> None:
-    rows = result.comparison or []
+    rows = result.rows or ()
     group.attrs["passed"] = bool(result.passed)
     _texts(group, "quantity", [row.name for row in rows])
     _texts(group, "unit", [row.unit for row in rows])
-    for key in ("reduced", "dem", "difference", "tolerance"):
-        values = [getattr(row, key) for row in rows]
+    sides = [side for side in SIDES if any(side in row.values for row in rows)]
+    for key in (*sides, "difference", "tolerance"):
+        values = [row.values.get(key) if key in SIDES else getattr(row, key) for row in rows]
         # Units differ from row to row: they stand in `unit`.
         group.create_dataset(key, data=np.array([math.nan if value is None else value for value in values], float),
                              track_times=False)
+    if sides != ["reduced", "dem"]:
+        _texts(group, "compared", [" ".join(row.values) for row in rows])
     group.create_dataset("passed", data=np.array([row.passed for row in rows], dtype=bool), track_times=False)
 
 

@@ -1,363 +1,249 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every kind of case is made of: parameters with unit and range, sections, sentences.
+"""What case and campaign files are made of: keys with unit, range, default and source, in sections.
 
-Every field carries default (or none: required), unit, allowed range and source. Only this module
-knows pydantic. A kind of case is one module beside this one; :mod:`statejump.kinds.registry` registers it.
+A section is an attrs class; its keys are declared by the functions of this module::
+
+    @definition
+    class Link(Section):
+        length_m: float = parameter(..., "m", 0, 1e3, "Table 1", above=True)
+
+A key is checked where its section is made, from a file (:func:`structure`) or in Python. Only this package
+knows attrs.
 """
 from __future__ import annotations
 
-import difflib
-import math
-import re
-from typing import Any, ClassVar, Optional, Sequence, TypeVar
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, ClassVar, TypeVar
 
-from pydantic import BaseModel, Extra, Field, ValidationError, validator
-from pydantic.fields import ModelField
+import attrs
 
-from statejump.core.errors import StatejumpError
+from statejump.core.errors import MissingKey, NotAllowed, Range, UnknownKey
+from statejump.schema.rules import NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, suggestion
 
 CHOICE = "choice, the paper is silent"
+RULE, SECTION, TABLES = "rule", "section", "tables"
 
 SectionType = TypeVar("SectionType", bound="Section")
+Names = Sequence[str] | Callable[[], Sequence[str]]
+
+# Sections are immutable, made by keyword, and told apart by their values.
+definition = attrs.define(frozen=True, kw_only=True, slots=False)
 
 
-def parameter(
-    default: Any,
-    unit: str,
-    low: float,
-    high: float,
-    source: str,
-    *,
-    above: bool = False,
-) -> Any:
-    """Return the pydantic field of a number.
+def _check(instance: Any, attribute: attrs.Attribute[Any], value: Any) -> None:
+    rule_of(attribute).check(attribute.name, value)
 
-    :param default: default value; ``...`` for a required key
+
+def _as_float(value: Any) -> Any:
+    """A whole number is a number; all else is for the check to refuse."""
+    return float(value) if type(value) is int else value
+
+
+def _as_floats(value: Any) -> Any:
+    return [_as_float(item) for item in value] if isinstance(value, (list, tuple)) else value
+
+
+def _key(default: Any, rule: Rule, converter: Callable[[Any], Any] | None = None) -> Any:
+    if default is ...:
+        default = attrs.NOTHING
+    elif isinstance(default, list):
+        default = attrs.Factory(lambda: list(default))
+    return attrs.field(default=default, validator=_check, converter=converter, metadata={RULE: rule})
+
+
+def parameter(default: Any, unit: str, low: float, high: float, source: str, *, above: bool = False) -> Any:
+    """Declare a number.
+
+    :param default: default value; ``...`` for a required key, None for one that may be left out
     :param unit: unit, ``-`` for none
     :param low: lower end of the allowed range
     :param high: upper end, itself allowed
     :param source: where the default comes from
     :param above: whether ``low`` itself is excluded
     """
-    return Field(default, unit=unit, low=low, high=high, above=above, description=source)
+    rule = Rule(NUMBER, source, Range(low, high, unit, above), optional=default is None)
+    return _key(default, rule, _as_float)
 
 
-def allowed_range(extra: dict[str, Any]) -> str:
-    """Return the sentence part that states the allowed range of a parameter."""
-    if math.isinf(extra["high"]):
-        return "must be a number" + (f" above {extra['low']:g}" if math.isfinite(extra["low"]) else "")
-    if extra["above"]:
-        return f"must be above {extra['low']:g} and at most {extra['high']:g} [{extra['unit']}]"
-    return f"must be between {extra['low']:g} and {extra['high']:g} [{extra['unit']}]"
+def whole(default: Any, low: float, high: float, source: str) -> Any:
+    """Declare a whole number; parameters as of :func:`parameter`."""
+    return _key(default, Rule(WHOLE, source, Range(low, high), optional=default is None))
 
 
-def choice(default: Any, names: Sequence[str], source: str) -> Any:
-    """Return the pydantic field of one name out of several.
+def switch(default: Any, source: str) -> Any:
+    """Declare a key that is true or false."""
+    return _key(default, Rule(SWITCH, source))
 
-    :param default: default value; ``...`` for a required key
-    :param names: the names
-    :param source: where the default comes from
+
+def text(default: Any, source: str, *, pattern: str | None = None) -> Any:
+    """Declare a text.
+
+    :param pattern: regular expression that it must match as a whole
     """
-    return Field(default, names=tuple(names), description=source)
+    return _key(default, Rule(TEXT, source, pattern=pattern, optional=default is None))
 
 
-FOLDER_NAME = "[A-Za-z0-9][A-Za-z0-9_-]*"
+def _called(names: Names) -> Callable[[], Sequence[str]]:
+    return names if callable(names) else lambda: names
 
 
-def folder_name() -> Any:
-    """Return the pydantic field of a name that becomes that of the results folder."""
-    return Field(..., pattern=FOLDER_NAME, description="name of the results folder")
+def choice(default: Any, names: Names, source: str) -> Any:
+    """Declare one name out of several.
 
-
-def check_folder_name(value: str) -> str:
-    """Return the value if it can be the name of a results folder, else raise ValueError."""
-    if not re.fullmatch(FOLDER_NAME, value):
-        raise ValueError("must consist of letters, digits, '_' and '-'")
-    return value
-
-
-def check_number(value: Any, extra: dict[str, Any], integer: bool) -> float | int:
-    """Return the value if it is a number in range, else raise ValueError with the reason."""
-    kind = "a whole number" if integer else "a number"
-    if isinstance(value, bool) or not isinstance(value, int if integer else (int, float)):
-        raise ValueError(f"must be {kind}, " + allowed_range(extra).removeprefix("must be "))
-    if isinstance(value, float) and not math.isfinite(value):
-        raise ValueError("must be finite, " + allowed_range(extra).removeprefix("must be "))
-    too_low = value <= extra["low"] if extra["above"] else value < extra["low"]
-    if too_low or value > extra["high"]:
-        raise ValueError(allowed_range(extra))
-    return value
-
-
-def check_name(value: str, names: Sequence[str]) -> str:
-    """Return the value if it is one of the names, else raise ValueError that suggests the nearest."""
-    if value in names:
-        return value
-    listed = "must be " + " or ".join(repr(name) for name in names)
-    nearest = difflib.get_close_matches(value, names, n=1, cutoff=0.5)
-    raise ValueError(listed + (f"; did you mean {nearest[0]!r}?" if nearest else ""))
-
-
-def check_value(value: Any, extra: dict[str, Any], kind: Any) -> Any:
-    """Return the value if its key allows it, else raise ValueError with the reason.
-
-    :param extra: what the field declares: range, names, lists
-    :param kind: type of the value, of its items for a list
+    :param names: the names, or what returns them when they are needed
     """
-    if extra.get("texts"):
-        if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
-            raise ValueError("must be a list of texts in quotes")
-        return [check_name(item, extra["names"]) for item in value] if "names" in extra else value
-    if kind is bool:
-        if not isinstance(value, bool):
-            raise ValueError("must be true or false")
-        return value
-    if "low" not in extra:
-        if not isinstance(value, str if kind is str else (str, dict)):
-            raise ValueError("must be a text in quotes")
-        return check_name(value, extra["names"]) if "names" in extra else value
-    if extra.get("listed"):
-        if not isinstance(value, list):
-            raise ValueError(f"must be a list of numbers [{extra['unit']}]")
-        return [float(check_number(item, extra, integer=False)) for item in value]
-    return check_number(value, extra, integer=kind is int)
+    return _key(default, Rule(TEXT, source, known=_called(names), optional=default is None))
 
 
-def check_radii(bearing_radius: float, journal_radius: float) -> None:
-    """Raise ValueError unless a journal fits into its bearing; for cases with a revolute joint."""
-    if not bearing_radius > journal_radius:
-        raise ValueError(f"must be above journal_radius_m = {journal_radius!r} [m]")
+def numbers(default: Any, unit: str, low: float, high: float, source: str, *, length: int | None = None) -> Any:
+    """Declare a list of numbers, each within the range.
+
+    :param length: how many; None: any number of them
+    """
+    rule = Rule(NUMBERS, source, Range(low, high, unit), optional=default is None, length=length)
+    return _key(default, rule, _as_floats)
 
 
-class Section(BaseModel):
-    """A table of the case file: unknown keys are refused, numbers are strict and in range."""
+def texts(default: Any, source: str, names: Names | None = None) -> Any:
+    """Declare a list of texts, of given names if any are given."""
+    return _key(default, Rule(TEXTS, source, known=None if names is None else _called(names)))
+
+
+def section(model: type[Section], *, required: bool = False) -> Any:
+    """Declare a section of a file; one that is not required is all defaults where it is missing."""
+    default: Any = attrs.NOTHING if required else attrs.Factory(model)
+    return attrs.field(default=default, metadata={SECTION: model})
+
+
+def optional_section(model: type[Section]) -> Any:
+    """Declare a section that may be left out, then None."""
+    return attrs.field(default=None, metadata={SECTION: model})
+
+
+def tables(model: type[Section], source: str, *, required: bool = False) -> Any:
+    """Declare a list of tables, ``[[node]]`` and the like.
+
+    :param model: what a table is, an :class:`~statejump.schema.items.Item`
+    :param source: what the tables are
+    """
+    default: Any = attrs.NOTHING if required else attrs.Factory(list)
+    return attrs.field(default=default, metadata={TABLES: model, RULE: Rule(TEXT, source)})
+
+
+@definition
+class Section:
+    """A table of a file: unknown keys are refused, numbers are strict and in range."""
 
     # Choice of the section: keys that some of its names need and the others refuse.
     GOES_WITH: ClassVar[dict[str, dict[str, tuple[str, ...]]]] = {}
 
-    class Config:
-        extra = Extra.forbid
-        allow_mutation = False
-
-    @validator("*", pre=True)
-    def _strict(cls, value: Any, field: ModelField) -> Any:
-        return check_value(value, field.field_info.extra, field.type_)
+    def to_dict(self) -> dict[str, Any]:
+        """Return keys and values in the order of their declaration, sections as dicts."""
+        return {name: _plain(getattr(self, name)) for name in fields_of(type(self))}
 
 
-class CaseHeader(Section):
-    """What the case is."""
-
-    name: str = folder_name()
-    kind: str = Field(..., description="which experiment")
-    title: str = Field("", description="one line for figures")
-    source: str = Field("", description="where the numbers come from")
-
-    @validator("name")
-    def _name(cls, value: str) -> str:
-        return check_folder_name(value)
+def _plain(value: Any) -> Any:
+    if isinstance(value, Section):
+        return value.to_dict()
+    return [_plain(item) for item in value] if isinstance(value, list) else value
 
 
-class Thermal(Section):
-    """The temperature program, one cycle repeated."""
-
-    GOES_WITH = {"shape": {
-        "temperature_change_max_K": ("triangle", "half_sine", "sine"),
-        "table_time_s": ("table",),
-        "table_temperature_change_K": ("table",),
-    }}
-
-    shape: str = choice(..., ("triangle", "half_sine", "sine", "table"), CHOICE)
-    temperature_change_max_K: Optional[float] = parameter(None, "K", -1e4, 1e4, "Chen et al. (2021), sections 3.3 and 4.3")
-    cycles: int = parameter(1, "-", 1, 100_000, "the paper runs one")
-    table_time_s: Optional[list[float]] = Field(
-        None, unit="s", low=0, high=1e12, above=False, listed=True, description="measured data"
+def fields_of(model: type[Section]) -> dict[str, attrs.Attribute[Any]]:
+    """Return the keys of a section, or the sections of a file, in the order of their first declaration: a kind
+    that declares one of them anew leaves it in its place."""
+    known = {attribute.name: attribute for attribute in attrs.fields(model)}
+    order = dict.fromkeys(
+        attribute.name for base in reversed(model.__mro__) for attribute in base.__dict__.get("__attrs_attrs__", ())
     )
-    table_temperature_change_K: Optional[list[float]] = Field(
-        None, unit="K", low=-1e4, high=1e4, above=False, listed=True, description="measured data"
-    )
+    return {name: known[name] for name in order}
 
 
-class Case(Section):
-    """What all kinds have in common. A whole case file in SI units, immutable.
+def rule_of(attribute: attrs.Attribute[Any]) -> Rule:
+    """Return what a key takes."""
+    found: Rule = attribute.metadata[RULE]
+    return found
 
-    A kind adds its sections, ``KIND``, ``period_s``, ``samples_per_cycle`` and ``problem``.
+
+def section_of(attribute: attrs.Attribute[Any]) -> type[Section] | None:
+    """Return the class of a section of a file; None for a list of tables."""
+    found: type[Section] | None = attribute.metadata.get(SECTION)
+    return found
+
+
+def tables_of(attribute: attrs.Attribute[Any]) -> type[Section] | None:
+    """Return what a table of a list is; None for a section."""
+    found: type[Section] | None = attribute.metadata.get(TABLES)
+    return found
+
+
+def is_required(attribute: attrs.Attribute[Any]) -> bool:
+    """Whether a key, section or list must be there."""
+    return attribute.default is attrs.NOTHING
+
+
+def default_of(attribute: attrs.Attribute[Any]) -> Any:
+    """Return the default of a key that is not required."""
+    made = attribute.default
+    return made.factory() if isinstance(made, attrs.Factory) else made  # type: ignore[arg-type]
+
+
+def structure(model: type[SectionType], data: Mapping[str, Any]) -> SectionType:
+    """Return what a parsed TOML document holds.
+
+    An unknown key is reported first: a misspelt key is missing as well.
+
+    :param model: the file: its fields are sections and lists of tables
+    :raises StatejumpError: one failure, without the file's name
     """
+    from statejump.schema.items import read_tables
 
-    KIND: ClassVar[str]
-    # Sections that a file of this kind may not have.
-    NOT_IN_FILE: ClassVar[tuple[str, ...]] = ()
-
-    case: CaseHeader
-    thermal: Thermal
-
-    @property
-    def name(self) -> str:
-        """Name of the case and of its results folder."""
-        return self.case.name
-
-    @property
-    def kind(self) -> str:
-        """Which experiment."""
-        return self.KIND
-
-    @property
-    def title(self) -> str:
-        """One line for figures and tables."""
-        return self.case.title or self.case.name
-
-    @property
-    def period_s(self) -> float:
-        """Length of one cycle [s]."""
-        raise NotImplementedError
-
-    @property
-    def samples_per_cycle(self) -> int:
-        """Samples per cycle of both models."""
-        raise NotImplementedError
-
-    @property
-    def duration_s(self) -> float:
-        """Length of all cycles [s]."""
-        return self.period_s * self.thermal.cycles
-
-    @property
-    def table_time_s(self) -> list[float]:
-        """Times of the table, stretched so that one cycle lasts ``period_s``; else empty."""
-        times = self.thermal.table_time_s or []
-        return [self.period_s * (time / times[-1]) for time in times]
-
-    @property
-    def temperature_range_K(self) -> tuple[float, float]:
-        """Smallest and largest ΔT [K] of the program."""
-        return thermal_range_K(self.thermal)
-
-    def problem(self) -> str | None:
-        """Return what is wrong between several keys, without the file's name."""
-        raise NotImplementedError
+    wanted = fields_of(model)
+    for name in data:
+        if name not in wanted:
+            raise UnknownKey(name, section=f"section [{name}]", **suggestion(name, list(wanted), "[", "]"))
+        keys = section_of(wanted[name])
+        if keys is not None and isinstance(data[name], Mapping):
+            _refuse_unknown(name, keys, data[name])
+    for name, attribute in wanted.items():
+        if name not in data:
+            if is_required(attribute):
+                brackets = "[[{}]]" if tables_of(attribute) else "[{}]"
+                raise MissingKey(name, section=f"section {brackets.format(name)}")
+            continue
+        keys = section_of(attribute)
+        if keys is not None and isinstance(data[name], Mapping):
+            _refuse_missing(name, keys, data[name])
+    made: dict[str, Any] = {}
+    for name, attribute in wanted.items():
+        if name not in data:
+            continue
+        item, keys = tables_of(attribute), section_of(attribute)
+        if item is not None:
+            made[name] = read_tables(item, name, data[name])
+        elif keys is not None:
+            if not isinstance(data[name], Mapping):
+                raise NotAllowed(name, data[name], f"must be a section [{name}]")
+            made[name] = _section(keys, name, data[name])
+    return model(**made)
 
 
-def thermal_range_K(thermal: Thermal) -> tuple[float, float]:
-    """Return the smallest and the largest ΔT [K] of a program."""
-    if thermal.shape == "table":
-        changes = thermal.table_temperature_change_K or [0.0]
-        return min(changes), max(changes)
-    peak = thermal.temperature_change_max_K or 0.0
-    if thermal.shape == "sine":
-        return -abs(peak), abs(peak)
-    return min(0.0, peak), max(0.0, peak)
+def _refuse_unknown(name: str, keys: type[Section], given: Mapping[str, Any]) -> None:
+    known = fields_of(keys)
+    for key in given:
+        if key not in known:
+            raise UnknownKey(f"{name}.{key}", **suggestion(key, list(known), f"{name}.", ""))
 
 
-def thermal_problem(thermal: Thermal) -> str | None:
-    """Return what is wrong with the program as a whole, without the file's name."""
-    if thermal.shape != "table":
-        if thermal.temperature_change_max_K is None:
-            extra = Thermal.__fields__["temperature_change_max_K"].field_info.extra
-            return f"thermal.temperature_change_max_K is missing: {allowed_range(extra)}"
-        for key in ("table_time_s", "table_temperature_change_K"):
-            if getattr(thermal, key) is not None:
-                return f"thermal.{key} is not allowed: only with thermal.shape = 'table'"
-        return None
-    if thermal.temperature_change_max_K is not None:
-        return "thermal.temperature_change_max_K is not allowed with thermal.shape = 'table'"
-    times, changes = thermal.table_time_s, thermal.table_temperature_change_K
-    if times is None:
-        return "thermal.table_time_s is missing: a list of times [s] is needed for a table"
-    if changes is None:
-        return "thermal.table_temperature_change_K is missing: one value [K] per time is needed"
-    if len(times) < 2 or times[0] != 0 or any(b <= a for a, b in zip(times, times[1:])):
-        return (
-            f"thermal.table_time_s = {times} is not allowed: must be at least two times [s] "
-            "that start at 0 and rise"
-        )
-    if len(changes) != len(times):
-        return (
-            f"thermal.table_temperature_change_K has {len(changes)} values: "
-            f"must be {len(times)}, one per time"
-        )
-    if changes[0] != 0 or (thermal.cycles > 1 and changes[-1] != 0):
-        return (
-            f"thermal.table_temperature_change_K = {changes} is not allowed: must start at 0 [K]"
-            " and, with several cycles, end at 0 [K]"
-        )
-    return None
+def _refuse_missing(name: str, keys: type[Section], given: Mapping[str, Any]) -> None:
+    for key, attribute in fields_of(keys).items():
+        if key not in given and is_required(attribute):
+            raise MissingKey(f"{name}.{key}", rule_of(attribute).needs(), allowed=rule_of(attribute).allowed)
 
 
-def no_length_left(key: str, thermal_expansion_per_K: float, case: Case) -> str | None:
-    """Return the sentence for a link that the program shrinks to nothing."""
-    for change in case.temperature_range_K:
-        if 1 + thermal_expansion_per_K * change <= 0:
-            return (
-                f"{key} = {thermal_expansion_per_K!r} is not allowed: the link has no length left "
-                f"at a temperature change of {change:g} K"
-            )
-    return None
-
-
-def shown(value: Any) -> str:
-    """Return a value as one would write it in the file."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    return repr(value)
-
-
-def suggestion(word: str, known: list[str], before: str, after: str) -> str:
-    match = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
-    if match:
-        return f"did you mean {before}{match[0]}{after}?"
-    return "known are " + ", ".join(known)
-
-
-def rule(extra: dict[str, Any]) -> str:
-    """Return the sentence part that states what a key needs."""
-    if extra.get("texts"):
-        return "a list of texts in quotes is needed"
-    if extra.get("listed"):
-        return f"a list of numbers [{extra['unit']}] is needed"
-    if "low" in extra:
-        return allowed_range(extra)
-    if "names" in extra:
-        return "must be " + " or ".join(repr(name) for name in extra["names"])
-    return "a text in quotes is needed"
-
-
-def _sentence(error: dict[str, Any], data: dict[str, Any], sections: type[Section]) -> str:
-    """Return one pydantic error as one sentence."""
-    location = error["loc"]
-    section = str(location[0])
-    if len(location) == 1:
-        if error["type"] == "value_error.extra":
-            known = list(sections.__fields__)
-            return f"section [{section}] is unknown: {suggestion(section, known, '[', ']')}"
-        if error["type"] == "value_error.missing":
-            is_list = sections.__fields__[section].field_info.extra.get("tables")
-            return f"section [[{section}]] is missing" if is_list else f"section [{section}] is missing"
-        if error["type"] == "value_error.table":
-            return error["msg"]
-        return f"{section} = {shown(data[section])} is not allowed: must be a section [{section}]"
-    key = str(location[1])
-    model = sections.__fields__[section].type_
-    if error["type"] == "value_error.extra":
-        known = list(model.__fields__)
-        return f"{section}.{key} is unknown: {suggestion(key, known, section + '.', '')}"
-    info = model.__fields__[key].field_info
-    if error["type"] == "value_error.missing":
-        return f"{section}.{key} is missing: {rule(info.extra)}"
-    return f"{section}.{key} = {shown(data[section][key])} is not allowed: {error['msg']}"
-
-
-_ORDER = {"value_error.extra": 0, "value_error.missing": 1}
-
-
-def parsed(model: type[SectionType], data: dict[str, Any], name: str) -> SectionType:
-    """Return what a parsed TOML document holds, else raise one sentence.
-
-    :param model: the sections that are allowed
-    :param data: what tomllib returned
-    :param name: name of the file, for messages
-    """
+def _section(keys: type[SectionType], name: str, given: Mapping[str, Any]) -> SectionType:
     try:
-        return model.parse_obj(data)
-    except ValidationError as failure:
-        # An unknown key is reported first: a misspelt key is missing as well.
-        first = min(failure.errors(), key=lambda error: _ORDER.get(error["type"], 2))
-        raise StatejumpError(f"{name}: {_sentence(first, data, model)}") from None
+        return keys(**given)
+    except NotAllowed as refused:
+        refused.key = f"{name}.{refused.key}"
+        raise
+

@@ -2,32 +2,40 @@
 """Reading TOML files: what is wrong with one in a sentence, with its line."""
 from __future__ import annotations
 
-import re
 import tomllib
 from pathlib import Path
 from typing import Any
 
-from statejump.core.errors import StatejumpError
+from statejump.core.errors import Unreadable
 
 
 def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
     """Return the text of a TOML file and what it holds.
 
     :param what: what the file is, for the message when it is not there: ``case`` or ``campaign``
-    :raises StatejumpError: one sentence with the file and, if it is not TOML, the line
+    :raises Unreadable: one sentence with the file and, if it is not TOML, the line
     """
     try:
         text = Path(path).read_bytes().decode("utf-8")
     except FileNotFoundError:
-        raise StatejumpError(f"{path}: no such {what} file") from None
+        raise Unreadable(f"no such {what} file", file=path) from None
     except UnicodeDecodeError:
-        raise StatejumpError(f"{path}: not TOML: the file is not UTF-8 text") from None
+        raise Unreadable("not TOML", cause="the file is not UTF-8 text", file=path) from None
     except OSError as failure:
-        raise StatejumpError(f"{path}: cannot be read: {failure.strerror}") from None
+        raise Unreadable("cannot be read", cause=failure.strerror, file=path) from None
     try:
         return text, tomllib.loads(text)
     except tomllib.TOMLDecodeError as failure:
-        match = re.fullmatch(r"(.*) \(at (?:line (\d+), column \d+|end of document)\)", str(failure))
-        reason = match[1] if match else str(failure)
-        line = match[2] if match and match[2] else str(len(text.splitlines()))
-        raise StatejumpError(f"{path}: not TOML, line {line}: {reason}") from None
+        reason, line = _reason(failure, text)
+        raise Unreadable(f"not TOML, line {line}", cause=reason, file=path) from None
+
+
+def _reason(failure: tomllib.TOMLDecodeError, text: str) -> tuple[str, int]:
+    """Return what the parser says and in which line. Python 3.14 gives both as attributes; before, they are the
+    two halves of its message."""
+    if hasattr(failure, "lineno"):
+        return str(failure.msg), int(failure.lineno)
+    reason, _, place = str(failure).rpartition(" (at ")
+    words = place.replace(",", " ").split()
+    last = len(text.splitlines())
+    return reason or str(failure), int(words[1]) if words[:1] == ["line"] else last

@@ -2,16 +2,18 @@
 """Cases of kind ``spring_slider``: a heated bar that pushes a block with friction between stops."""
 from __future__ import annotations
 
-from typing import ClassVar, Optional
+from typing import ClassVar
 
-from pydantic import Field
-
+from statejump.core import thermal as programs
+from statejump.core.case import Case, no_length_left
+from statejump.core.errors import NotAllowed
 from statejump.kinds.spring_slider import stable_step
-from statejump.schema.fields import CHOICE, Case, Section, no_length_left, parameter
+from statejump.schema.fields import CHOICE, Section, definition, parameter, section, whole
 
 PAPER = "Chen et al. (2021), Table 1"
 
 
+@definition
 class Link(Section):
     """The bar that expands."""
 
@@ -23,6 +25,7 @@ class Link(Section):
     poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, PAPER)
 
 
+@definition
 class Joint(Section):
     """The block at the tip of the bar, in a slot with a floor and two stops."""
 
@@ -40,19 +43,21 @@ class Joint(Section):
     )
 
 
+@definition
 class Dem(Section):
     """How the DEM runs the case; the reduced model takes only times and samples from here."""
 
-    period_s: float = parameter(1.0, "s", 0, 1e6, CHOICE + ": slow enough", above=True)
-    time_step_s: Optional[float] = parameter(None, "s", 0, 1.0, "from the fraction", above=True)
+    period_s: float = programs.period()
+    time_step_s: float | None = parameter(None, "s", 0, 1.0, "from the fraction", above=True)
     time_step_fraction: float = parameter(0.1, "-", 0, 1.0, "of the stable step", above=True)
     link_damping_ratio: float = parameter(0.1, "-", 0, 10, CHOICE)
     contact_damping_ratio: float = parameter(0.1, "-", 0, 10, CHOICE)
     slider_mass_kg: float = parameter(0.0, "kg", 0, 1e6, "the paper's link is its own mass")
-    samples_per_cycle: int = parameter(2000, "-", 10, 1_000_000, CHOICE)
-    threads: int = parameter(1, "-", 1, 1024, CHOICE)
+    samples_per_cycle: int = whole(2000, 10, 1_000_000, CHOICE)
+    threads: int = whole(1, 1, 1024, CHOICE)
 
 
+@definition
 class Tolerance(Section):
     """How close the two models must be for ``compare`` to pass."""
 
@@ -64,20 +69,18 @@ class Tolerance(Section):
     drift_relative: float = parameter(0.001, "-", 0, 1, CHOICE + "; several cycles", above=True)
 
 
+@definition
 class SpringSliderCase(Case):
     """A bar with a clearance joint, the paper's section 3."""
 
     KIND: ClassVar[str] = "spring_slider"
 
-    link: Link
-    joint: Joint
-    dem: Dem = Field(default_factory=Dem)
-    tolerance: Tolerance = Field(default_factory=Tolerance)
+    PERIOD_KEY: ClassVar[str] = "dem.period_s"
 
-    @property
-    def period_s(self) -> float:
-        """Length of one cycle [s]."""
-        return self.dem.period_s
+    link: Link = section(Link, required=True)
+    joint: Joint = section(Joint, required=True)
+    dem: Dem = section(Dem)
+    tolerance: Tolerance = section(Tolerance)
 
     @property
     def samples_per_cycle(self) -> int:
@@ -98,36 +101,29 @@ class SpringSliderCase(Case):
         pad = joint.pad_thermal_expansion_per_K * joint.pad_radius_m
         return start + (stop - pad) * temperature_change_K
 
-    def problem(self) -> str | None:
-        """Return what is wrong between several keys, without the file's name."""
-        coldest, hottest = self.temperature_range_K
-        problem = no_length_left("link.thermal_expansion_per_K", self.link.thermal_expansion_per_K, self)
-        if problem is not None:
-            return problem
+    def check(self) -> None:
+        """Raise StatejumpError for what is wrong between several keys."""
+        link, joint = self.link, self.joint
+        no_length_left("link.thermal_expansion_per_K", link.thermal_expansion_per_K, self)
         for side, key in ((-1, "clearance_minus_m"), (1, "clearance_plus_m")):
-            for change in (coldest, hottest):
+            for change in self.temperature_range_K:
                 if not self.clearance_m(side, change) > 0:
-                    return (
-                        f"joint.{key} = {getattr(self.joint, key)!r} is not allowed: the expansion of "
-                        f"pad and slot closes it at a temperature change of {change:g} K, it must stay "
-                        "above 0 [m] within the program"
+                    raise NotAllowed(
+                        f"joint.{key}", getattr(joint, key),
+                        f"the expansion of pad and slot closes it at a temperature change of {change:g} K, it must stay "
+                        "above 0 [m] within the program",
                     )
-        if self.joint.clearance_minus_m >= self.link.stress_free_length_m:
-            return (
-                f"joint.clearance_minus_m = {self.joint.clearance_minus_m!r} is not allowed: "
-                f"must be below link.stress_free_length_m = {self.link.stress_free_length_m!r} [m]"
-            )
-        rigidity = self.link.young_modulus_Pa * self.link.cross_section_area_m2
+        if joint.clearance_minus_m >= link.stress_free_length_m:
+            raise NotAllowed("joint.clearance_minus_m", joint.clearance_minus_m,
+                             f"must be below link.stress_free_length_m = {link.stress_free_length_m!r} [m]")
+        rigidity = link.young_modulus_Pa * link.cross_section_area_m2
         if self.friction_force_N >= rigidity:
-            return (
-                f"joint.friction_coefficient = {self.joint.friction_coefficient!r} is not allowed: "
-                f"the friction force {self.friction_force_N:g} N must be below E A = {rigidity:g} N"
+            raise NotAllowed(
+                "joint.friction_coefficient", joint.friction_coefficient,
+                f"the friction force {self.friction_force_N:g} N must be below E A = {rigidity:g} N",
             )
         if self.dem.time_step_s is not None:
             stable = stable_step.stable_time_step(self)
             if self.dem.time_step_s > stable:
-                return (
-                    f"dem.time_step_s = {self.dem.time_step_s!r} is not allowed: must be above 0 and "
-                    f"at most the stable time step {stable:.4g} [s]"
-                )
-        return None
+                raise NotAllowed("dem.time_step_s", self.dem.time_step_s,
+                                 f"must be above 0 and at most the stable time step {stable:.4g} [s]")

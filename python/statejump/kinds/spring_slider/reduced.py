@@ -1,35 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reduced model of a case: the exact quasi-static path."""
+"""Reduced model of a ``spring_slider`` case: the exact quasi-static path."""
 from __future__ import annotations
 
 import numpy as np
 
 from statejump import _engine
-from statejump.schema.fields import Case
+from statejump.core.progress import Tell
+from statejump.core.run import Run
+from statejump.kinds.spring_slider import result
 from statejump.kinds.spring_slider.case import SpringSliderCase
-from statejump.core.history import History
-
-
-def thermal_program(case: Case) -> _engine.ThermalProgram:
-    """Temperature program of a case of any kind."""
-    thermal = case.thermal
-    if thermal.shape == "table":
-        return _engine.ThermalProgram(
-            shape="table",
-            cycles=thermal.cycles,
-            table_time_s=case.table_time_s,
-            table_temperature_change_K=thermal.table_temperature_change_K,
-        )
-    return _engine.ThermalProgram(
-        shape=thermal.shape,
-        temperature_change_max_K=thermal.temperature_change_max_K,
-        period_s=case.period_s,
-        cycles=thermal.cycles,
-    )
 
 
 def spring_slider(case: SpringSliderCase) -> _engine.SpringSlider:
-    """Reduced model of a ``spring_slider`` case."""
+    """Return the engine's model of a case."""
     return _engine.SpringSlider(
         young_modulus_Pa=case.link.young_modulus_Pa,
         cross_section_area_m2=case.link.cross_section_area_m2,
@@ -43,7 +26,7 @@ def spring_slider(case: SpringSliderCase) -> _engine.SpringSlider:
 
 
 def warnings(case: SpringSliderCase) -> list[str]:
-    """What the case asks for and the reduced model leaves out, as sentences."""
+    """Return what the case asks for and the reduced model leaves out, as sentences."""
     changes = [
         abs(case.clearance_m(side, change) - case.clearance_m(side, 0.0))
         for side in (-1, 1)
@@ -58,17 +41,23 @@ def warnings(case: SpringSliderCase) -> list[str]:
 
 
 def solve(case: SpringSliderCase) -> _engine.SpringSliderPath:
-    """Exact path of a case: segments, events, state jump."""
-    return _engine.solve_spring_slider(spring_slider(case), thermal_program(case))
-
-
-def sample(path: _engine.SpringSliderPath, times_s: np.ndarray) -> History:
-    """History of a path at the given times [s]; exact at any sampling."""
-    columns = path.sample(np.asarray(times_s, dtype=float))
-    return History({name: np.asarray(values) for name, values in columns.items()})
+    """Return the exact path of a case: segments, events, state jump."""
+    return _engine.solve_spring_slider(spring_slider(case), case.thermal_program())
 
 
 def sample_times(case: SpringSliderCase) -> np.ndarray:
-    """As many evenly spaced times as the DEM run has samples [s]."""
-    cycles = case.thermal.cycles
-    return np.linspace(0, case.dem.period_s * cycles, case.dem.samples_per_cycle * cycles + 1)
+    """Return as many evenly spaced times as the DEM run has samples [s]."""
+    return np.linspace(0, case.duration_s, case.dem.samples_per_cycle * case.thermal.cycles + 1)
+
+
+def run(case: SpringSliderCase, tell: Tell) -> Run:
+    """Return the exact path as a run; at other times it is as exact."""
+    path = solve(case)
+    said = (*path.warnings, *warnings(case))
+
+    def sampled(times_s: np.ndarray) -> Run:
+        columns = path.sample(np.asarray(times_s, dtype=float))
+        return result.reduced_run(case, path, columns, said, sampled)
+
+    tell(1.0)
+    return sampled(sample_times(case))

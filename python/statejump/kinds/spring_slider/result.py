@@ -1,23 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a result file says of a ``spring_slider`` case beside its histories."""
+"""Runs of a ``spring_slider`` case, from the columns of either model; and what to draw of it."""
 from __future__ import annotations
 
-from typing import Any, Optional
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
 from statejump import _engine
-from statejump.core import comparison as compare
-from statejump.kinds.spring_slider.case import SpringSliderCase
-from statejump.core.comparison import Quantity
-from statejump.core.yade_process import DemRun
-from statejump.core.history import History
-from statejump.results import scene as drawing
-from statejump.results.contents import (
-    AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Event, ModelRun, Scalar, columns_of, history_of,
-    scalars,
+from statejump.core.run import (
+    AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Columns, Event, Events, Run, columns_of, numbers_of,
 )
-from statejump.results.events import first_event_K, from_states
+from statejump.kinds.spring_slider.case import SpringSliderCase
+from statejump.results import scene as drawing
+from statejump.results.events import from_states
 
 CONTACTS = ("floor", "stop_minus", "stop_plus")
 SLIDING_STAGES = ("S2", "S5")
@@ -59,7 +55,7 @@ def scene(case: SpringSliderCase) -> dict[str, Any]:
     )
 
 
-def _states(case: SpringSliderCase, history: History) -> np.ndarray:
+def _states(case: SpringSliderCase, history: Columns) -> np.ndarray:
     """States of the contacts (samples, contacts)."""
     x = history["displacement_m"]
     states = np.full((len(x), len(CONTACTS)), SEPARATED, dtype=np.uint8)
@@ -77,7 +73,7 @@ def _states(case: SpringSliderCase, history: History) -> np.ndarray:
     return states
 
 
-def _contacts(case: SpringSliderCase, history: History) -> dict[str, Column]:
+def _contacts(case: SpringSliderCase, history: Columns) -> dict[str, Column]:
     x, change = history["displacement_m"], history["temperature_change_K"]
     samples, radius = len(x), case.joint.pad_radius_m
     states = _states(case, history)
@@ -110,22 +106,26 @@ def _contacts(case: SpringSliderCase, history: History) -> dict[str, Column]:
 
 
 def _run(
-    case: SpringSliderCase, history: History, events: Optional[list[Event]], summary: dict[str, Scalar]
-) -> ModelRun:
-    plain, energy = columns_of(history)
-    contacts = _contacts(case, history)
-    change = history["temperature_change_K"]
+    case: SpringSliderCase, model: str, columns: Columns, events: list[Event] | None, summary: dict[str, float],
+    **more: Any,
+) -> Run:
+    plain, energy = columns_of(columns)
+    contacts = _contacts(case, columns)
+    change = columns["temperature_change_K"]
     links = {
-        "axial_force_N": Column(history["axial_force_N"][:, None], "N", "links", note="compression positive"),
+        "axial_force_N": Column(columns["axial_force_N"][:, None], "N", "links", note="compression positive"),
         "thermal_strain": Column(case.link.thermal_expansion_per_K * change[:, None], "-", "links"),
     }
     if events is None:
-        events = from_states(history["time_s"], change, contacts["state"].values, CONTACTS)
-    return ModelRun(plain, energy, links, contacts, events, summary)
+        events = from_states(columns["time_s"], change, contacts["state"].values, CONTACTS)
+    return Run(model, plain, energy, links, contacts, Events(events), summary, names(case), lambda: case, **more)
 
 
-def reduced_run(case: SpringSliderCase, path: _engine.SpringSliderPath, history: History) -> ModelRun:
-    """The reduced model: exact events."""
+def reduced_run(
+    case: SpringSliderCase, path: _engine.SpringSliderPath, columns: Columns, warnings: tuple[str, ...],
+    sampler: Callable[[np.ndarray], Run],
+) -> Run:
+    """Return a run of the reduced model: exact events."""
     side = {1: "stop_plus", -1: "stop_minus"}
     events = []
     for event in path.events:
@@ -135,24 +135,12 @@ def reduced_run(case: SpringSliderCase, path: _engine.SpringSliderPath, history:
         elif event.kind in ("cycle_end", "force_sign_change"):
             joint = ""
         events.append(Event(event.kind, event.time_s, event.temperature_change_K, joint))
-    jump = {"state_jump_m": Scalar(path.state_jump_m, "m")}
-    return _run(case, history, events, jump)
+    return _run(case, "reduced", columns, events, {"state_jump_m": path.state_jump_m}, warnings=warnings, native=path,
+                sampler=sampler)
 
 
-def dem_run(case: SpringSliderCase, done: DemRun) -> ModelRun:
-    """The DEM: events between samples."""
-    x = done.history["displacement_m"]
-    summary = {"state_jump_m": Scalar(float(x[-1] - x[0]), "m"), **scalars(done.summary)}
-    return _run(case, done.history, None, summary)
-
-
-def difference_rows(case: SpringSliderCase, first: ModelRun, second: ModelRun) -> list[Quantity]:
-    """Two runs of the case at the same times against its tolerances."""
-    jumps = [run.summary["state_jump_m"].value for run in (first, second)]
-    rows = [compare.jump_row(case, *jumps)]
-    if case.friction_force_N > 0:
-        for kind in compare.COMPARED_EVENTS:
-            changes = [first_event_K(run, kind, case.period_s) for run in (first, second)]
-            rows.append(compare.quantity(f"{kind}_temperature_change", "K", *changes, case.tolerance.event_temperature_K))
-    rows.append(compare.displacement_row(case, history_of(first), history_of(second)))
-    return rows
+def dem_run(case: SpringSliderCase, columns: Columns, about: Mapping[str, Any]) -> Run:
+    """Return a DEM run: events between samples."""
+    x = columns["displacement_m"]
+    summary = {"state_jump_m": float(x[-1] - x[0]), **numbers_of(about)}
+    return _run(case, "dem", columns, None, summary, about=about)

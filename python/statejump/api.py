@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The functions of the public interface: ``import statejump as sj`` has them as ``sj.load`` and so on."""
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from statejump.core.case import Case, Progress
+from statejump.core.comparison import Comparison
+from statejump.core.errors import StatejumpError
+from statejump.core.run import Run
+from statejump.kinds.loading import load_case
+
+if TYPE_CHECKING:
+    from statejump.bore import Bore
+    from statejump.campaign import Campaign
+    from statejump.kinds.statics.solve import Statics
+    from statejump.results.contents import Result
+
+
+def load(source: str | Path | Mapping[str, Any]) -> Case:
+    """Return a case, checked as a whole.
+
+    :param source: path of a case file; name of a case that comes with the program, as ``table1``; or sections and
+        keys as a dict
+    :raises StatejumpError: there is no such file, or the case is not allowed: file, key, value, range
+    """
+    return load_case(source)
+
+
+def compare(first: Run, second: Run) -> Comparison:
+    """Return two runs of a case beside each other, against the tolerances of the case.
+
+    :param first: a run of the reduced model and
+    :param second: one of the DEM, in either order; or two runs of one model
+    :raises StatejumpError: they are not of the same case, or one of them is not complete
+    """
+    if first.case != second.case:
+        raise StatejumpError("not comparable", cause=f"the runs are of other cases: {first.case.name}, {second.case.name}")
+    for run in (first, second):
+        if not run.complete:
+            raise StatejumpError("not comparable", cause="a run was interrupted and is not complete")
+    case = first.case
+    if first.model != second.model:
+        by_model = {run.model: run for run in (first, second)}
+        found: Comparison = case.behaviour.ability("compare", case)(case, by_model["reduced"], by_model["dem"])
+        return found
+    rows = case.behaviour.ability("difference", case)(case, first, second.at(first.time_s))
+    return Comparison(case, {"first": first, "second": second}, tuple(rows))
+
+
+def read(path: str | Path) -> Result:
+    """Return what a result file (HDF5) holds: its runs by model, its comparison, case, scene and provenance.
+
+    :raises StatejumpError: no such file, not ours, of a newer layout, cut off or damaged
+    """
+    from statejump.results.read import read as read_file
+
+    return read_file(path)
+
+
+def statics(case: Case, friction_coefficient: float | None = None) -> Statics:
+    """Return where the joint of a ``statics`` case can rest under its forces.
+
+    :param friction_coefficient: instead of the case's own
+    :raises StatejumpError: the case is of another kind, or its mesh cannot be used
+    """
+    found: Statics = case.behaviour.ability("statics", case)(case, friction_coefficient)
+    return found
+
+
+def bore(
+    path: str | Path, *, unit_m: float = 1e-3, journal_radius_m: float | None = None, **settings: Any
+) -> Bore:
+    """Return what a measured bore is: roundness, lobes, taper, clearance to a journal.
+
+    :param path: STL, OBJ, PLY or VTP file of its wall
+    :param unit_m: length of one unit of the file [m]
+    :param journal_radius_m: radius of the journal that goes into it [m]
+    :raises StatejumpError: the file is not a bore; the sentence says what is wrong and where
+    """
+    from statejump.bore import measured
+
+    return measured(Path(path), unit_m=unit_m, journal_radius_m=journal_radius_m, **settings)
+
+
+def sweep(
+    case: Case, values: Mapping[str, Sequence[float]], *, model: str = "reduced", workers: int | None = None,
+    progress: Progress = False,
+) -> Campaign:
+    """Run a case on a grid of its parameters.
+
+    :param values: values by key: ``section.key``, ``section.item.key`` of an item of a list, ``section.*.key``
+    :param model: ``reduced`` or ``dem``
+    :param workers: processes; None: one for each core, or none of their own where the grid is small
+    :raises StatejumpError: there is no such key, or the kind of case has no outcomes
+    """
+    from statejump.campaign import sweep as run_sweep
+
+    return run_sweep(case, values, model=model, workers=workers, progress=progress)
+
+
+def montecarlo(
+    case: Case, distributions: Mapping[str, Mapping[str, Any]], *, samples: int = 1000, seed: int = 1,
+    model: str = "reduced", workers: int | None = None, progress: Progress = False,
+) -> Campaign:
+    """Run a case whose parameters are random.
+
+    :param distributions: of each key what a ``[[vary]]`` table says, as ``{"distribution": "normal", "relative": 0.1}``
+    :param samples: how many are drawn
+    :param seed: of the random numbers: the same seed gives the same samples
+    :param model: ``reduced`` or ``dem``
+    :param workers: as of :func:`sweep`
+    :raises StatejumpError: there is no such key or distribution
+    """
+    from statejump.campaign import montecarlo as run_montecarlo
+
+    return run_montecarlo(case, distributions, samples=samples, seed=seed, model=model, workers=workers,
+                          progress=progress)

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``statejump reduced``, ``dem`` and ``compare``: either model of a case, or both beside each other."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from rich.console import Console
+
+from statejump import api
+from statejump.cli.terminal import (
+    CASE, QUIET, RESULTS, CaseFile, loaded, make_console, print_comparison, print_shown, progress,
+)
+from statejump.core.case import Case
+from statejump.core.errors import Interrupted, TolerancesMissed
+from statejump.core.output import results_folder
+from statejump.core.run import Run
+
+
+def _told(case: Case, runs: dict[str, Run], console: Console) -> None:
+    print_shown(case.behaviour.ability("told", case)(case, runs), console)
+
+
+def _warn(runs: dict[str, Run], console: Console) -> None:
+    for warning in dict.fromkeys(warning for run in runs.values() for warning in run.warnings):
+        console.print(f"warning: {warning}")
+
+
+@click.command("reduced")
+@CASE
+@RESULTS
+@QUIET
+def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
+    """Reduced model of CASE: events, state jump, history.
+
+    \b
+    Example:
+      statejump reduced cases/table1.toml
+    """
+    from statejump.results.record import save
+
+    console = make_console(quiet)
+    case = loaded(case_file, "reduced")
+    folder = results_folder(results, case.name)
+    with progress(console, "reduced model") as tell:
+        runs = {"reduced": case.reduced(tell)}
+    _told(case, runs, console)
+    _warn(runs, console)
+    console.print(f"results: {save('reduced', case, runs, folder)}, history: {folder / 'reduced_history.csv'}")
+
+
+def _dem(command: str, case: Case, before: dict[str, Run], folder: Path, console: Console) -> Run:
+    """Run the DEM; what an interrupted one has is written, with the runs before it."""
+    from statejump.results.record import save
+
+    try:
+        with progress(console, "DEM") as tell:
+            return case.dem(tell)
+    except Interrupted as stopped:
+        if isinstance(stopped.run, Run):
+            kept = save(command, case, {**before, "dem": stopped.run}, folder)
+            raise Interrupted(f"interrupted; the {len(stopped.run)} samples so far are in {kept}") from None
+        raise
+
+
+@click.command("dem")
+@CASE
+@RESULTS
+@QUIET
+def dem_command(case_file: Path, results: Path, quiet: bool) -> None:
+    """DEM run of CASE in YADE: history.
+
+    \b
+    Example:
+      statejump dem cases/table1.toml
+    """
+    from statejump.results.record import save
+
+    console = make_console(quiet)
+    case = loaded(case_file, "dem_input")
+    folder = results_folder(results, case.name)
+    runs = {"dem": _dem("dem", case, {}, folder, console)}
+    _told(case, runs, console)
+    _warn(runs, console)
+    console.print(f"results: {save('dem', case, runs, folder)}, history: {folder / 'dem_history.csv'}")
+
+
+@click.command("compare")
+@click.argument("files", metavar="CASE|FILE FILE", nargs=-1, required=True, type=CaseFile())
+@RESULTS
+@QUIET
+def compare_command(files: tuple[Path, ...], results: Path, quiet: bool) -> None:
+    """Both models of CASE side by side, or two result files of the same case. The exit status is 1 when a
+    tolerance is missed, 2 when the files are of different cases.
+
+    \b
+    Examples:
+      statejump compare cases/table1.toml
+      statejump compare results/table1/reduced.h5 results/table1/dem.h5
+    """
+    from statejump.cli.results import compare_files
+    from statejump.results.read import is_result_file
+
+    console = make_console(quiet)
+    if len(files) > 1 or is_result_file(files[0]):
+        compare_files(files, console)
+    else:
+        _compare_case(files[0], results, console)
+
+
+def _compare_case(case_file: Path, results: Path, console: Console) -> None:
+    from statejump.core.figures import save as save_figure
+    from statejump.results.record import save
+
+    case = loaded(case_file, "compare", "dem_input")
+    folder = results_folder(results, case.name)
+    with progress(console, "reduced model") as tell:
+        reduced = case.reduced(tell)
+    dem = _dem("compare", case, {"reduced": reduced}, folder, console)
+    comparison = api.compare(reduced, dem)
+    runs = dict(comparison.models)
+    files = comparison.write(folder)
+    figures = save_figure(comparison.plot(), folder, case.name)
+    written = [save("compare", case, runs, folder, comparison), files[0], *figures]
+    _told(case, runs, console)
+    print_comparison(case.title, comparison.rows, console)
+    for note in comparison.notes:
+        console.print(note)
+    _warn(runs, console)
+    console.print(f"results: {', '.join(str(name) for name in written)}")
+    if not comparison.passed:
+        raise TolerancesMissed(comparison.missed, file=case_file)

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What cases of all kinds have in common: header, temperature program, and what one can ask of them."""
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from copy import deepcopy
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import attrs
+
+from statejump.core import thermal as programs
+from statejump.core.errors import NotAllowed
+from statejump.core.thermal import Thermal
+from statejump.schema.fields import CHOICE, Section, definition, section, text
+from statejump.schema.paths import set_value
+from statejump.schema.rules import FOLDER_NAME
+
+if TYPE_CHECKING:
+    from statejump import _engine
+    from statejump.core.run import Run
+    from statejump.kinds.protocol import Kind
+
+__all__ = ["CHOICE", "Case", "CaseHeader", "Origin"]
+
+Progress = bool | Callable[[float], None]
+
+
+@definition
+class CaseHeader(Section):
+    """What the case is."""
+
+    name: str = text(..., "name of the results folder", pattern=FOLDER_NAME)
+    kind: str = text(..., "which experiment")
+    title: str = text("", "one line for figures")
+    source: str = text("", "where the numbers come from")
+
+
+@attrs.frozen
+class Origin:
+    """Where a case comes from.
+
+    :param data: sections and keys as given, without defaults
+    :param file: the case file; None: it was made in Python
+    :param text: its text as read; "" without a file
+    """
+
+    data: Mapping[str, Any]
+    file: Path | None = None
+    text: str = ""
+
+    @property
+    def folder(self) -> Path:
+        """Where files that the case names are looked for."""
+        return Path() if self.file is None else self.file.parent
+
+
+@definition
+class Case(Section):
+    """A whole case in SI units, immutable. Each kind has its own sections; what one can do with a case is the
+    same for all kinds.
+
+    A case is made by :func:`statejump.load`, from a file, a shipped case's name or a dict.
+    """
+
+    KIND: ClassVar[str]
+    PERIOD_KEY: ClassVar[str] = "thermal.period_s"
+    # Sections that a file of this kind may not have, and why.
+    NOT_IN_FILE: ClassVar[Mapping[str, str]] = {}
+
+    case: CaseHeader = section(CaseHeader, required=True)
+    thermal: Thermal = section(Thermal, required=True)
+
+    def __attrs_post_init__(self) -> None:
+        # What nothing says of the period is settled here, so that every reader finds a number.
+        part, key = self.PERIOD_KEY.split(".")
+        if hasattr(self, part) and hasattr(getattr(self, part), key):
+            lasts = programs.period_of(self.thermal, getattr(getattr(self, part), key), self.PERIOD_KEY)
+            object.__setattr__(self, part, attrs.evolve(getattr(self, part), **{key: lasts}))
+
+    @property
+    def origin(self) -> Origin:
+        """Where the case comes from."""
+        found: Origin | None = self.__dict__.get("_origin")
+        return found if found is not None else Origin(self.to_dict())
+
+    def _with_origin(self, origin: Origin) -> Case:
+        object.__setattr__(self, "_origin", origin)
+        return self
+
+    @property
+    def name(self) -> str:
+        """Name of the case and of its results folder."""
+        return self.case.name
+
+    @property
+    def kind(self) -> str:
+        """Which experiment, the key of :data:`statejump.kinds.KINDS`."""
+        return self.KIND
+
+    @property
+    def title(self) -> str:
+        """One line for figures and tables."""
+        return self.case.title or self.case.name
+
+    @property
+    def period_s(self) -> float:
+        """Length of one cycle [s]."""
+        part, key = self.PERIOD_KEY.split(".")
+        found: float = getattr(getattr(self, part), key)
+        return found
+
+    @property
+    def samples_per_cycle(self) -> int:
+        """Samples per cycle of both models."""
+        raise NotImplementedError
+
+    @property
+    def duration_s(self) -> float:
+        """Length of all cycles [s]."""
+        return self.period_s * self.thermal.cycles
+
+    @property
+    def temperature_range_K(self) -> tuple[float, float]:
+        """Smallest and largest ΔT [K] of the program."""
+        return programs.range_K(self.thermal)
+
+    def thermal_program(self) -> _engine.ThermalProgram:
+        """Return the temperature program as the engine's."""
+        return programs.program(self.thermal, self.period_s)
+
+    def check(self) -> None:
+        """Raise StatejumpError for what is wrong between several keys."""
+
+    def changed(self, changes: Mapping[str, Any]) -> Case:
+        """Return the case with other values, checked as a whole.
+
+        :param changes: value by key: ``section.key`` as in the case file, ``section.item.key`` of an item of a
+            list, ``section.*.key`` of all of them
+        :raises StatejumpError: there is no such key, or the case is not allowed with these values
+        """
+        from statejump.kinds.loading import parse_case
+
+        data = deepcopy(dict(self.origin.data))
+        for path, value in changes.items():
+            set_value(type(self), data, path, value)
+        origin = self.origin
+        return parse_case(data, file=origin.file, text="")
+
+    def __getitem__(self, path: str) -> Any:
+        """Return the value of ``section.key``, or of ``section.item.key`` of an item of a list."""
+        from statejump.schema.paths import value_of
+
+        return value_of(self, path)
+
+    def _ability(self, name: str) -> Callable[..., Any]:
+        return self.behaviour.ability(name, self)
+
+    @property
+    def behaviour(self) -> Kind:
+        """The kind as an object: everything that can be done with the case."""
+        from statejump.kinds import kind
+
+        return kind(self.KIND)
+
+    def reduced(self, progress: Progress = False) -> Run:
+        """Run the reduced model.
+
+        :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
+        :raises StatejumpError: the kind has no reduced model, or the run could not be finished
+        """
+        from statejump.core.progress import shown
+
+        with shown(progress, "reduced model") as tell:
+            run: Run = self._ability("reduced")(self, tell)
+        return run
+
+    def dem(self, progress: Progress = False) -> Run:
+        """Run the case in YADE, in a process of its own.
+
+        :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
+        :raises StatejumpError: the kind has no DEM, YADE is missing or failed
+        :raises Interrupted: Ctrl-C; its ``run`` has the samples so far
+        """
+        from statejump.core.progress import shown
+
+        with shown(progress, "DEM") as tell:
+            run: Run = self._ability("dem")(self, tell)
+        return run
+
+    def _repr_html_(self) -> str:
+        from statejump.core.html import case_html
+
+        return case_html(self)
+
+
+def no_length_left(key: str, thermal_expansion_per_K: float, case: Case) -> None:
+    """Raise NotAllowed for a link that the program shrinks to nothing."""
+    for change in case.temperature_range_K:
+        if 1 + thermal_expansion_per_K * change <= 0:
+            raise NotAllowed(key, thermal_expansion_per_K,
+                             f"the link has no length left at a temperature change of {change:g} K")
+
+
+def check_radii(bearing_radius_m: float, journal_radius_m: float) -> bool:
+    """Whether a journal fits into its bearing."""
+    return bearing_radius_m > journal_radius_m

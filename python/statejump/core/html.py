@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cases, runs and comparisons as a notebook shows them."""
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+from typing import TYPE_CHECKING
+
+from statejump.core.errors import StatejumpError
+from statejump.core.units import text, unit_of
+
+if TYPE_CHECKING:
+    from statejump.core.case import Case
+    from statejump.core.comparison import Comparison
+    from statejump.core.run import Run
+
+MOST_EVENTS = 12
+
+
+def _table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    head = "".join(f"<th>{escape(cell)}</th>" for cell in header)
+    body = "".join("<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>" for row in rows)
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _title(run: Run) -> str:
+    try:
+        return run.case.title
+    except (StatejumpError, ValueError):  # of a file that this version does not understand any more
+        return ""
+
+
+def case_html(case: Case) -> str:
+    """Return a case in words, as HTML."""
+    sentences = case.behaviour.describe(case) if hasattr(case.behaviour, "describe") else []
+    return f"<h4>{escape(case.title)}</h4><p>{escape(' '.join(sentences))}</p>"
+
+
+def run_html(run: Run) -> str:
+    """Return what sums up a run, as HTML."""
+    from statejump.core.run import MODELS
+
+    rows = [(name, text(value, unit_of(name))) for name, value in sorted(run.summary.items())]
+    events = [
+        (event.kind, event.joint, text(event.temperature_change_K, "K"), text(event.time_s, "s"))
+        for event in run.events[:MOST_EVENTS]
+    ]
+    parts = [f"<h4>{escape(_title(run))}: {escape(MODELS.get(run.model, run.model))}, {len(run):,} samples</h4>",
+             _table(("quantity", "value"), rows)]
+    if events:
+        more = len(run.events) - len(events)
+        parts += [_table(("event", "joint", "ΔT", "time"), events), f"<p>and {more:,} more</p>" if more else ""]
+    parts += [f"<p>warning: {escape(warning)}</p>" for warning in run.warnings]
+    if not run.complete:
+        parts.append("<p>warning: the run was interrupted, this is what there is of it</p>")
+    return "".join(parts)
+
+
+def comparison_html(comparison: Comparison) -> str:
+    """Return the rows of a comparison and the verdict, as HTML."""
+    from statejump.core.comparison import SIDES
+
+    sides = [side for side in SIDES if any(side in row.values for row in comparison.rows)]
+    rows = [
+        (row.name, *(text(row.values[side], row.unit) if side in row.values else "" for side in sides),
+         text(row.difference, row.unit), text(row.tolerance, row.unit), "pass" if row.passed else "MISSED")
+        for row in comparison.rows
+    ]
+    verdict = "passed" if comparison.passed else "a tolerance is missed"
+    head = ("quantity", *(side.replace("_", " ") for side in sides), "difference", "tolerance", "")
+    return f"<h4>{escape(comparison.case.title)}: {verdict}</h4>{_table(head, rows)}"

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Progress of long runs: for a caller's function, or shown on standard error."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import count
+
+Tell = Callable[[float], None]
+
+
+def _silent(share: float) -> None:
+    pass
+
+
+@contextmanager
+def shown(progress: bool | Tell, label: str) -> Iterator[Tell]:
+    """Yield what is called with the finished share, 0 to 1.
+
+    :param progress: False: nothing is told; True: shown on standard error; else what is called
+    """
+    if callable(progress):
+        yield progress
+    elif not progress:
+        yield _silent
+    else:
+        with bar(label) as tell:
+            yield tell
+
+
+@contextmanager
+def bar(label: str) -> Iterator[Tell]:
+    """Yield what moves a bar on a terminal, and prints a line every tenth elsewhere; on standard error."""
+    from rich.console import Console
+
+    with on_console(Console(stderr=True, highlight=False, soft_wrap=True, markup=False), label) as tell:
+        yield tell
+
+
+@contextmanager
+def on_console(console: object, label: str) -> Iterator[Tell]:
+    """Yield what shows the finished share on a console of rich: a bar on a terminal, else a line every tenth."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+    assert isinstance(console, Console)
+    if console.is_terminal:
+        columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"),
+                   TimeElapsedColumn(), TimeRemainingColumn())
+        with Progress(*columns, console=console) as shown_bar:
+            task = shown_bar.add_task(label, total=1.0)
+            yield lambda share: shown_bar.update(task, completed=share)
+        return
+    told = [-1]
+
+    def line(share: float) -> None:
+        if int(10 * share) > told[0]:
+            told[0] = int(10 * share)
+            console.print(f"{label}: {100 * share:.0f} %")
+
+    yield line
+
+
+def counted(tell: Tell, total: int) -> Callable[[], None]:
+    """Return what to call after each of so many runs; it tells the finished share."""
+    finished = count(1)
+    return lambda: tell(next(finished) / total)

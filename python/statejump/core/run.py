@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A run of a model: columns over its samples, events, numbers that sum it up. The same class for every kind of
+case and for both models."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from statejump.core.tables import write_columns
+from statejump.core.units import unit_of
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from statejump.core.case import Case
+
+# What a contact does at a sample; the number is the place in this list.
+CONTACT_STATES = ("separated", "stick", "slip", "at_stop")
+SEPARATED, STICK, SLIP, AT_STOP = range(len(CONTACT_STATES))
+MODELS = {"reduced": "reduced model", "dem": "DEM"}
+GROUPS = ("history", "energy", "links", "contacts")
+AXES = ("x", "y", "z")
+Columns = Mapping[str, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Column:
+    """Values over the samples of a run: one per sample, or (samples, items), or (samples, items, 3).
+
+    ``items`` is the key of the list of names of the second axis, see :attr:`Run.names`.
+    ``labels``: the values are places in this list. ``note`` says where it comes from, if not obvious.
+    """
+
+    values: np.ndarray
+    unit: str = "-"
+    items: str = ""
+    labels: tuple[str, ...] = ()
+    note: str = ""
+
+    @property
+    def shown(self) -> np.ndarray:
+        """The values, of labels the texts themselves."""
+        return np.array(self.labels)[self.values] if self.labels else self.values
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened. ``joint`` is the contact or joint, "" for none.
+
+    ``time_uncertainty_s``: 0 for an instant that the model locates, else half the distance of the two
+    samples between which it lies.
+    """
+
+    kind: str
+    time_s: float
+    temperature_change_K: float
+    joint: str = ""
+    time_uncertainty_s: float = 0.0
+
+
+class Events(Sequence[Event]):
+    """Events of a run in order of time."""
+
+    def __init__(self, events: Sequence[Event]) -> None:
+        self._events = tuple(events)
+
+    def __getitem__(self, place: Any) -> Any:
+        return self._events[place]
+
+    def __len__(self) -> int:
+        return len(self._events)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Events) and self._events == other._events
+
+    def first(self, kind: str, until_s: float = float("inf")) -> Event | None:
+        """Return the first event of a kind; None if there is none until then."""
+        return next((event for event in self._events if event.kind == kind and event.time_s <= until_s), None)
+
+    def frame(self) -> pandas.DataFrame:
+        """Return a row per event, units in the names of the columns."""
+        import pandas
+
+        return pandas.DataFrame([vars(event) for event in self._events], columns=list(Event.__dataclass_fields__))
+
+    def __repr__(self) -> str:
+        return f"Events({', '.join(event.kind for event in self._events)})"
+
+    def _repr_html_(self) -> str:
+        return str(self.frame().to_html(index=False))
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run of one model of a case. All columns have the length of its ``time_s``.
+
+    :param model: ``reduced`` or ``dem``
+    :param history: what the model gives over time
+    :param energy: energies, dissipated and supplied energies [J]
+    :param links: what is known of every link, (samples, links)
+    :param contacts: what is known of every contact, (samples, contacts) and (samples, contacts, 3)
+    :param events: what happened, in order of time
+    :param summary: numbers that sum up the run; their names end in their units, NaN: it did not happen
+    :param names: names of the items of the second axes of columns
+    :param case_of: returns the case that ran; of a file it is only read when it is asked for
+    :param warnings: limits of the model that the run met
+    :param complete: False: the run was interrupted, this is what there is of it
+    :param about: what a DEM run says of itself: version of YADE, steps, seconds
+    :param native: what the model itself returned (the path of a solver); None: the run was read from a file
+    :param sampler: returns the run at other times [s], where the model can tell it exactly
+    """
+
+    model: str
+    history: Mapping[str, Column]
+    energy: Mapping[str, Column]
+    links: Mapping[str, Column]
+    contacts: Mapping[str, Column]
+    events: Events
+    summary: Mapping[str, float]
+    names: Mapping[str, list[str]] = field(default_factory=dict)
+    case_of: Callable[[], Case] | None = field(default=None, repr=False, compare=False)
+    warnings: tuple[str, ...] = ()
+    complete: bool = True
+    about: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+    native: Any = field(default=None, repr=False, compare=False)
+    sampler: Callable[[np.ndarray], Run] | None = field(default=None, repr=False, compare=False)
+
+    @cached_property
+    def case(self) -> Case:
+        """The case that ran. :raises StatejumpError: this version does not understand it any more"""
+        if self.case_of is None:
+            raise ValueError("this run was made without a case")
+        return self.case_of()
+
+    @property
+    def time_s(self) -> np.ndarray:
+        """Times of the samples [s]."""
+        return self.history["time_s"].values
+
+    def __len__(self) -> int:
+        return len(self.time_s)
+
+    def _found(self, name: str) -> Column | None:
+        return self.history.get(name) or self.energy.get(name)
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and self._found(name) is not None
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Return the values of a column of history or energy. :raises KeyError: there is none"""
+        found = self._found(name)
+        if found is None:
+            raise KeyError(name)
+        return found.shown
+
+    def column(self, path: str) -> Column:
+        """Return a column by its path, as ``history/time_s``. :raises KeyError: there is none"""
+        group, _, name = path.partition("/")
+        if group not in GROUPS:
+            raise KeyError(path)
+        found: Column = getattr(self, group)[name]
+        return found
+
+    def at(self, times_s: np.ndarray) -> Run:
+        """Return the run at other times [s]: exact where the model can tell, else linear between samples,
+        labels those of the sample before."""
+        if np.array_equal(self.time_s, times_s):
+            return self
+        if self.sampler is not None:
+            return self.sampler(times_s)
+        return self._interpolated(np.asarray(times_s, dtype=float))
+
+    def _interpolated(self, times_s: np.ndarray) -> Run:
+        before = np.clip(np.searchsorted(self.time_s, times_s, side="right") - 1, 0, len(self.time_s) - 1)
+        after = np.minimum(before + 1, len(self.time_s) - 1)
+        step = self.time_s[after] - self.time_s[before]
+        weight = np.divide(times_s - self.time_s[before], step, out=np.zeros(len(times_s)), where=step > 0)
+
+        def moved(column: Column) -> Column:
+            if column.labels:
+                return replace(column, values=column.values[before])
+            shape = (-1,) + (1,) * (column.values.ndim - 1)
+            here, there = column.values[before], column.values[after]
+            return replace(column, values=here + np.clip(weight, 0, 1).reshape(shape) * (there - here))
+
+        groups = {group: {name: moved(column) for name, column in getattr(self, group).items()} for group in GROUPS}
+        return replace(self, **groups, native=None)
+
+    def flat(self, groups: Sequence[str] = ("history", "energy")) -> dict[str, np.ndarray]:
+        """Return columns of one value a sample, in the order of the CSV files: ``name``, ``name[item]``,
+        ``name[item].x``; those of links and contacts begin with ``links/`` and ``contacts/``."""
+        from statejump.kinds import column_order
+
+        plain = {
+            name: column.shown for group in ("history", "energy") if group in groups
+            for name, column in getattr(self, group).items() if column.values.ndim == 1
+        }
+        found = {name: plain[name] for name in column_order(plain)}
+        for group in groups:
+            head = "" if group in ("history", "energy") else f"{group}/"
+            for name, column in getattr(self, group).items():
+                if column.values.ndim > 1:
+                    found.update(self._items(f"{head}{name}", column))
+        return found
+
+    def _items(self, name: str, column: Column) -> Iterator[tuple[str, np.ndarray]]:
+        values = column.shown
+        for place, item in enumerate(self.names[column.items]):
+            if values.ndim == 2:
+                yield f"{name}[{item}]", values[:, place]
+            else:
+                for axis, letter in enumerate(AXES):
+                    yield f"{name}[{item}].{letter}", values[:, place, axis]
+
+    def frame(self, groups: Sequence[str] = ("history", "energy")) -> pandas.DataFrame:
+        """Return the samples as a table, units in the names of the columns.
+
+        :param groups: any of ``history``, ``energy``, ``links``, ``contacts``; see :meth:`flat`
+        """
+        import pandas
+
+        return pandas.DataFrame(self.flat(groups))
+
+    def write_csv(self, path: Path) -> None:
+        """Write history and energies as CSV, in full precision."""
+        write_columns(self.flat(), path)
+
+    def plot(self, axes: Axes | Sequence[Axes] | None = None) -> Figure:
+        """Draw the run.
+
+        :param axes: axes to draw into, one or several: the figure's panels in their order; None: a new figure
+        :return: the figure; matplotlib's backend is left alone
+        """
+        from statejump.core.figures import drawn
+
+        return drawn(self.case, [self], axes)
+
+    def __repr__(self) -> str:
+        return f"Run({MODELS.get(self.model, self.model)}, {len(self)} samples, {len(self.events)} events)"
+
+    def _repr_html_(self) -> str:
+        from statejump.core.html import run_html
+
+        return run_html(self)
+
+
+def columns_of(columns: Columns) -> tuple[dict[str, Column], dict[str, Column]]:
+    """Return columns of one value a sample as history and, apart from them, energies (names that end in ``_J``)."""
+    plain: dict[str, Column] = {}
+    energy: dict[str, Column] = {}
+    for name, values in columns.items():
+        values = np.asarray(values)
+        if values.dtype.kind == "U":
+            labels, places = np.unique(values, return_inverse=True)
+            plain[name] = Column(places.astype(np.uint8), labels=tuple(labels.tolist()))
+            continue
+        (energy if name.endswith("_J") else plain)[name] = Column(values.astype(float), unit_of(name))
+    return plain, energy
+
+
+# Differs from run to run of the same case: not a result.
+_OF_THE_DAY = ("wall_time_s", "cpu_time_s")
+
+
+def numbers_of(values: Mapping[str, Any]) -> dict[str, float]:
+    """Return what sums up a run of what a model says of it: numbers; None becomes NaN, texts and what does not
+    repeat are left out."""
+    return {
+        name: float("nan") if value is None else float(value) for name, value in values.items()
+        if (value is None or isinstance(value, (int, float))) and name not in _OF_THE_DAY
+    }
+
+
+def change(columns: Mapping[str, Any], name: str) -> float:
+    """Return the last value of a column less its first; 0 where there is no such column."""
+    if name not in columns:
+        return 0.0
+    values = columns[name]
+    values = values.values if isinstance(values, Column) else values
+    return float(values[-1] - values[0])
+
+
+def energy_residue_J(
+    columns: Mapping[str, Any], supplied: Sequence[str], stored: Sequence[str], dissipated: Sequence[str]
+) -> float:
+    """Return supplied minus stored minus dissipated energy over a whole run [J].
+
+    :param columns: columns by name; one that a model lacks counts as 0
+    :param supplied: names of the columns, ``thermal_work_J`` and the like; so the others
+    """
+    total = [sum(change(columns, name) for name in names) for names in (supplied, stored, dissipated)]
+    return total[0] - total[1] - total[2]

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The one writer of tables: CSV with units in the headers, Markdown, JSON; and the reader of CSV columns."""
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from statejump.core.errors import Unreadable
+from statejump.core.output import write_atomically
+
+
+def _cell(value: Any) -> Any:
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    return repr(value) if isinstance(value, float) else value
+
+
+def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
+    """Write a table; full precision, None and NaN as an empty cell. Return the path.
+
+    :param header: names of the columns, with their units
+    """
+    with write_atomically(path) as stream:
+        writer = csv.writer(stream)
+        writer.writerow(header)
+        writer.writerows([_cell(value) for value in row] for row in rows)
+    return path
+
+
+def write_rows(path: Path, rows: Sequence[Mapping[str, Any]], header: Sequence[str] = ()) -> Path:
+    """Write rows that name their cells; see :func:`write_csv`.
+
+    :param header: names of the columns; by default those of the first row
+    """
+    names = list(header) or (list(rows[0]) if rows else [])
+    return write_csv(path, names, ([row.get(name) for name in names] for row in rows))
+
+
+def write_columns(columns: Mapping[str, np.ndarray], path: Path) -> None:
+    """Write columns of equal length; NaN stays ``nan``, for it is a value that a model gave."""
+    rows = zip(*(values.tolist() for values in columns.values()))
+    with write_atomically(path) as stream:
+        writer = csv.writer(stream)
+        writer.writerow(columns)
+        writer.writerows([value if isinstance(value, str) else repr(value) for value in row] for row in rows)
+
+
+def read_columns(path: Path) -> dict[str, np.ndarray]:
+    """Return the columns of a CSV file with a header; numbers where all cells are.
+
+    :raises Unreadable: the file holds no samples
+    """
+    with path.open(newline="", encoding="utf-8") as stream:
+        rows = list(csv.reader(stream))
+    if len(rows) < 2:
+        raise Unreadable("holds no samples", file=path)
+    columns = {}
+    for place, name in enumerate(rows[0]):
+        cells = [row[place] for row in rows[1:]]
+        try:
+            columns[name] = np.array([float(cell) for cell in cells])
+        except ValueError:
+            columns[name] = np.array(cells)
+    return columns
+
+
+def finite(value: Any) -> Any:
+    """Return a value for JSON, which has no NaN: None instead, in lists and dicts too."""
+    if isinstance(value, Mapping):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def write_json(path: Path, document: Any, indent: int = 2) -> Path:
+    """Write a document as JSON and return the path; numbers that are none become null."""
+    with write_atomically(path) as stream:
+        stream.write(json.dumps(finite(document), indent=indent, ensure_ascii=False) + "\n")
+    return path
+
+
+def markdown(header: Sequence[str], rows: Iterable[Sequence[Any]], right: Iterable[int] = ()) -> list[str]:
+    """Return a table as lines of Markdown.
+
+    :param right: places of the columns that are aligned to the right
+    """
+    places = set(right)
+    lines = ["| " + " | ".join(header) + " |",
+             "|" + "|".join("---:" if place in places else "---" for place in range(len(header))) + "|"]
+    return lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
+
+
+def write_text(path: Path, lines: Sequence[str]) -> Path:
+    """Write lines of text and return the path."""
+    with write_atomically(path) as stream:
+        stream.write("\n".join(lines) + "\n")
+    return path
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A table for people.
+
+    :param title: above the table
+    :param header: names of the columns with their units
+    :param rows: cells as texts
+    :param left: names of the columns that are aligned to the left
+    """
+
+    title: str
+    header: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    left: Sequence[str] = ()

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cases from files, from the names of shipped ones, from dicts: checked as a whole, or refused with one failure."""
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from statejump import _paths
+from statejump.core.case import Case, CaseHeader, Origin
+from statejump.core.errors import StatejumpError
+from statejump.kinds import kind, names
+from statejump.schema.fields import Section, definition, section, structure
+from statejump.schema.rules import check_name
+from statejump.schema.toml import read_toml
+
+SHIPPED = "cases"
+
+
+@definition
+class _HeaderOnly(Section):
+    case: CaseHeader = section(CaseHeader, required=True)
+
+
+def _kind_name(data: Mapping[str, Any]) -> str:
+    """Return what ``case.kind`` names; everything else depends on it."""
+    header = data.get("case")
+    wanted = header.get("kind") if isinstance(header, Mapping) else None
+    if not isinstance(wanted, str):
+        # Without a kind only the header can be judged: [caes] and knid are named as such.
+        structure(_HeaderOnly, {key: data[key] for key in data if difflib.get_close_matches(key, ["case"])})
+    return check_name("case.kind", wanted, names())
+
+
+def parse_case(data: Mapping[str, Any], file: Path | None = None, text: str = "") -> Case:
+    """Return the case in a parsed document.
+
+    :param data: sections and keys, as tomllib returns them
+    :param file: where it comes from, for messages and for files that it names
+    :param text: the file as read
+    :raises StatejumpError: one failure; of several the first
+    """
+    try:
+        made = kind(_kind_name(data)).case_from(data)
+    except StatejumpError as failure:
+        raise failure.located(file=file) from None
+    return made._with_origin(Origin(data, file, text))
+
+
+def found_case(path: str | Path) -> Path:
+    """Return the case file that is meant: as given, or, where there is none, that of the cases that come with the
+    program. ``table1``, ``table1.toml`` and ``cases/table1.toml`` find it from every folder."""
+    path = Path(path)
+    if path.exists() or path.is_absolute():
+        return path
+    named = path if path.suffix else path.with_suffix(".toml")
+    for place in (_paths.SHARE / named, _paths.SHARE / SHIPPED / named, _paths.SHARE / SHIPPED / "trusses" / named):
+        if SHIPPED in place.relative_to(_paths.SHARE).parts and place.is_file():
+            return place
+    return path
+
+
+def load_case(source: str | Path | Mapping[str, Any]) -> Case:
+    """Return a case.
+
+    :param source: path of a case file; name of a case that comes with the program, as ``table1``; or sections and
+        keys as a dict
+    :raises StatejumpError: there is no such file, or the case is not allowed: file, key, value, range
+    """
+    if isinstance(source, Mapping):
+        return parse_case(source)
+    path = found_case(source)
+    text, data = read_toml(path, "case")
+    return parse_case(data, path, text)

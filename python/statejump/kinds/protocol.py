@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a kind of case is: one object with everything that knows the kind.
+
+A kind is a subclass of :class:`Kind` that has a name, a class of cases and the abilities below as methods. An
+ability that it lacks is not there, and what needs it refuses the case with one sentence.
+
+==================  =====================================================================================
+``reduced``         ``(case, tell) -> Run``: the reduced model; ``tell`` takes the finished share
+``dem_input``       ``(case) -> dict``: what the scene in YADE needs, as plain values
+``dem_run``         ``(case, columns, about) -> Run``: a finished or interrupted DEM run
+``compare``         ``(case, reduced, dem) -> Comparison``
+``difference``      ``(case, first, second) -> list[Quantity]``: two runs of one model, at the same times
+``sheet``           ``(case, runs) -> Sheet``: figure of one run, or of two on top of each other
+``scene``           ``(case) -> dict``: what to draw of its parts, see :mod:`statejump.results.scene`
+``names``           ``(case) -> dict``: names of the items of columns
+``describe``        ``(case) -> list[str]``: the case in sentences
+``charts``          ``(result) -> list[Chart]``: curves on the page of ``statejump report``
+``outcomes``        ``(case, run) -> dict[str, float]``: what a campaign records of a run; their units from their names
+``told``            ``(case, runs) -> list``: what a command prints of runs, tables and lines
+``control``         ``(case, settings) -> ...``: what makes the state jump smaller
+==================  =====================================================================================
+
+Further abilities are those of single commands and have their names: ``statics``, ``answers``, ``convergence``,
+``hold``, ``slow``, ``energy``, ``figures``, ``laws``.
+"""
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+
+from statejump.core.case import Case
+from statejump.core.errors import NotAllowed
+from statejump.core.progress import Tell
+from statejump.core.run import Run
+
+
+class Kind:
+    """A kind of case; see the module."""
+
+    name: ClassVar[str]
+    Case: ClassVar[type[Case]]
+    # Columns of one value a sample in the order of the CSV files, of either model.
+    COLUMNS: ClassVar[tuple[str, ...]] = ()
+    # Words of this kind for report and figures: of columns, contacts, links, by their keys.
+    WORDS: ClassVar[Mapping[str, str]] = {}
+    # Module that builds the scene in YADE, or the path of its file; by default scene_NAME beside the runner.
+    SCENE: ClassVar[str] = ""
+
+    def can(self, ability: str) -> bool:
+        """Whether the kind has an ability."""
+        return callable(getattr(self, ability, None))
+
+    def ability(self, name: str, case: Case) -> Callable[..., Any]:
+        """Return an ability. :raises NotAllowed: the kind lacks it; the sentence says which kinds have it"""
+        if self.can(name):
+            found: Callable[..., Any] = getattr(self, name)
+            return found
+        raise self.refusal(name, case)
+
+    def refusal(self, name: str, case: Case) -> NotAllowed:
+        """Return why a case of this kind is refused by what needs an ability."""
+        from statejump.kinds import kinds_that_can
+
+        others = " and ".join(repr(other) for other in kinds_that_can(name))
+        command = COMMANDS.get(name, name.replace("_", " "))
+        return NotAllowed("case.kind", self.name, f"'statejump {command}' is for {others or 'no kind of case'}",
+                          file=case.origin.file)
+
+    def dem(self, case: Case, tell: Tell) -> Run:
+        """Run a case in YADE. A kind whose scene needs more than the case itself has its own."""
+        from statejump.core import yade_process
+
+        values = {"scene": self.scene_module(), **self.ability("dem_input", case)(case)}
+        return yade_process.run(case, values, self.ability("dem_run", case), tell)
+
+    def scene_module(self) -> str:
+        """Return the module that builds the scene in YADE."""
+        return self.SCENE or f"scene_{self.name}"
+
+    def case_from(self, data: Mapping[str, Any]) -> Case:
+        """Return the case of a parsed document. :raises StatejumpError: one failure, without the file's name"""
+        from statejump.core import thermal
+        from statejump.schema.fields import structure
+
+        for section in self.Case.NOT_IN_FILE:
+            if section in data:
+                raise NotAllowed(f"section [{section}]", cause=self.Case.NOT_IN_FILE[section])
+        made = structure(self.Case, data)
+        thermal.check(made.thermal)
+        made.check()
+        return made
+
+
+# Commands whose name is not that of the ability.
+COMMANDS = {"dem_input": "dem", "answers": "truss answers", "draw": "truss draw", "outcomes": "sweep", "sheet": "plot"}
+Columns = Mapping[str, np.ndarray]

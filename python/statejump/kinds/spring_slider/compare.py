@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Comparison of the DEM run of a ``spring_slider`` case with the reduced model."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from statejump.core.comparison import Comparison, Quantity, models
+from statejump.core.run import Run, change, energy_residue_J
+from statejump.kinds.spring_slider.case import SpringSliderCase
+
+COMPARED_EVENTS = ("first_slip", "stop_reached", "stop_left")
+
+
+def dem_event_temperatures(dem: Run, samples_per_cycle: int) -> dict[str, float | None]:
+    """Return the temperature changes [K] of the events of the first cycle, each half-way between two samples."""
+    first = slice(0, samples_per_cycle + 1)
+    temperature = dem["temperature_change_K"][first]
+
+    def between(index: int) -> float:
+        return float(0.5 * (temperature[index - 1] + temperature[index])) if index > 0 else float(temperature[0])
+
+    def starts(column: str) -> np.ndarray:
+        flags = dem[column][first] > 0.5
+        return np.flatnonzero(flags & ~np.concatenate(([False], flags[:-1])))
+
+    slips = starts("slipping")
+    reached = starts("stop_contact")
+    left = None
+    if len(reached):  # a cycle may reach both stops: the one left is the one reached first
+        push = dem["stop_force_N"][first]
+        others = np.flatnonzero(push * push[reached[0]] < 0)
+        end = others[0] if len(others) else len(push)
+        left = int(np.flatnonzero(dem["stop_contact"][first][:end] > 0.5)[-1]) + 1
+    return {
+        "first_slip": between(slips[0]) if len(slips) else None,
+        "stop_reached": between(reached[0]) if len(reached) else None,
+        "stop_left": between(left) if left is not None and left < len(temperature) else None,
+    }
+
+
+def energy_residual(dem: Run) -> float:
+    """Return supplied minus stored minus dissipated energy over the whole DEM run [J]."""
+    return energy_residue_J(
+        dem.energy, ("thermal_work_J", "external_work_J"),
+        ("elastic_energy_J", "preload_energy_J", "contact_energy_J", "kinetic_energy_J"),
+        ("friction_dissipation_J", "damping_dissipation_J"),
+    )
+
+
+def loop_drift(dem: Run, samples_per_cycle: int, cycles: int) -> float:
+    """Return the largest distance of any later loop from the second one at the same phase [m]."""
+    x = dem["displacement_m"]
+    loops = [x[k * samples_per_cycle : (k + 1) * samples_per_cycle + 1] for k in range(1, cycles)]
+    return float(max(np.max(np.abs(loop - loops[0])) for loop in loops))
+
+
+def first_cycle_events(case: SpringSliderCase, run: Run) -> dict[str, float | None]:
+    """Return the temperature change [K] of the first of every compared event in the first cycle; None: none."""
+    found = {kind: run.events.first(kind, case.period_s) for kind in COMPARED_EVENTS}
+    return {kind: None if event is None else event.temperature_change_K for kind, event in found.items()}
+
+
+def _jump_row(case: SpringSliderCase, exact_m: float, other_m: float) -> Quantity:
+    tolerance = case.tolerance
+    limit = max(tolerance.state_jump_relative * abs(exact_m), tolerance.state_jump_absolute_m)
+    return models("state_jump", "m", exact_m, other_m, limit)
+
+
+def _displacement_row(case: SpringSliderCase, exact: Run, other: Run) -> Quantity:
+    x, y = exact["displacement_m"], other["displacement_m"]
+    largest = float(np.max(np.abs(x)))
+    rms = float(np.sqrt(np.mean((y - x) ** 2)))
+    return models("displacement_rms_over_largest", "-", 0.0, rms / largest if largest > 0 else math.nan,
+                  case.tolerance.displacement_rms_relative)
+
+
+def compare(case: SpringSliderCase, reduced: Run, dem: Run) -> Comparison:
+    """Compare a DEM run with the exact path of the same case."""
+    tolerance = case.tolerance
+    samples = case.dem.samples_per_cycle
+    exact = reduced.at(dem["time_s"])
+    rows = [_jump_row(case, reduced.summary["state_jump_m"], change(dem.history, "displacement_m"))]
+
+    if case.friction_force_N > 0:
+        exact_events = first_cycle_events(case, reduced)
+        dem_events = dem_event_temperatures(dem, samples)
+        rows += [
+            models(f"{kind}_temperature_change", "K", exact_events[kind], dem_events[kind],
+                   tolerance.event_temperature_K)
+            for kind in COMPARED_EVENTS
+        ]
+
+    rows.append(_displacement_row(case, exact, dem))
+
+    reference = change(dem.energy, "friction_dissipation_J")
+    name = "energy_residual_over_friction_work"
+    if not reference > 0:  # without friction the stored energy is the scale
+        reference = float(np.max(dem["elastic_energy_J"] + dem["contact_energy_J"]))
+        name = "energy_residual_over_largest_stored"
+    rows.append(models(name, "-", 0.0, energy_residual(dem) / reference if reference > 0 else math.nan,
+                       tolerance.energy_balance_relative))
+    if case.thermal.cycles > 2:
+        largest = float(np.max(np.abs(exact["displacement_m"])))
+        drift = loop_drift(dem, samples, case.thermal.cycles)
+        rows.append(models("loop_drift_over_largest_displacement", "-", 0.0, drift / largest,
+                           tolerance.drift_relative))
+    return Comparison(case, {"reduced": exact, "dem": dem}, tuple(rows), warnings=reduced.warnings)
+
+
+def difference(case: SpringSliderCase, first: Run, second: Run) -> list[Quantity]:
+    """Compare two runs of one model at the same times."""
+    rows = [_jump_row(case, first.summary["state_jump_m"], second.summary["state_jump_m"])]
+    if case.friction_force_N > 0:
+        found = [first_cycle_events(case, run) for run in (first, second)]
+        rows += [
+            models(f"{kind}_temperature_change", "K", found[0][kind], found[1][kind], case.tolerance.event_temperature_K)
+            for kind in COMPARED_EVENTS
+        ]
+    return [*rows, _displacement_row(case, first, second)]

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A ``spring_slider`` case in words, and what a command prints of its runs."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from statejump.core.run import Run
+from statejump.core.tables import Shown
+from statejump.core.units import text
+from statejump.kinds.spring_slider.case import SpringSliderCase
+
+
+def describe(case: SpringSliderCase) -> list[str]:
+    """Return the case in sentences; its temperature program is told for all kinds alike."""
+    link, joint = case.link, case.joint
+    minus, plus = joint.clearance_minus_m, joint.clearance_plus_m
+    both = f"{text(minus, 'm')} and {text(plus, 'm')} away"
+    stops = f"{text(plus, 'm')} away on either side" if minus == plus else both
+    sentences = [
+        f"A bar, {text(link.stress_free_length_m, 'm')} long and {text(link.cross_section_area_m2, 'm2')} in "
+        f"section, is held at one end and pushes a block at the other.",
+        f"The block is pressed on its floor with {text(joint.normal_force_N, 'N')}; friction with "
+        f"μ = {joint.friction_coefficient:g} holds it up to {text(case.friction_force_N, 'N')}. Two stops are {stops}.",
+    ]
+    if joint.preload_stiffness_N_per_m:
+        sentences.append(f"A spring of {text(joint.preload_stiffness_N_per_m, 'N/m')} ties the block to the ground.")
+    return sentences
+
+
+def told(case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown | str]:
+    """Return what a command prints of the runs: exact events of the first cycle, the jump of a model alone."""
+    if len(runs) > 1:
+        return []
+    found: list[Shown | str] = []
+    for run in runs.values():
+        if run.native is not None:
+            rows = [
+                (event.kind, f"{event.stage_before} → {event.stage_after}", f"{event.temperature_change_K:.6f}",
+                 f"{event.time_s:.6f}", f"{event.displacement_m:.6e}", f"{event.axial_force_N:.4f}")
+                for event in run.native.events if event.time_s <= case.period_s
+            ]
+            headings = ("event", "stage", "ΔT [K]", "time [s]", "displacement [m]", "axial force [N]")
+            found.append(Shown(f"{case.title}: events of the first cycle", headings, rows, left=("event", "stage")))
+        found.append(f"state jump: {run.summary['state_jump_m']:.6e} m after {case.thermal.cycles} cycle(s)")
+    return found

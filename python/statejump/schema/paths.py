@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Keys by their path: ``section.key`` as in a case file, ``section.item.key`` of an item of a list of tables,
+``section.*.key`` of all its items. Names of items may hold dots: the key is what follows the last one."""
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+
+from statejump.core.errors import StatejumpError, UnknownKey
+from statejump.schema.fields import Section, fields_of, section_of, tables_of
+from statejump.schema.rules import suggestion
+
+EVERY = "*"
+
+
+def split_path(path: str) -> tuple[str, str, str]:
+    """Return section, item ("" for a plain section) and key of a path."""
+    section, _, rest = path.partition(".")
+    item, _, key = rest.rpartition(".")
+    return section, item, key
+
+
+def keys_of(model: type[Section]) -> dict[str, attrs.Attribute[Any]]:
+    """Return every key of a kind of case by its path, ``section.*.key`` for those of items."""
+    found = {}
+    for name, attribute in fields_of(model).items():
+        keys, item = section_of(attribute), tables_of(attribute)
+        for key, inner in fields_of(keys or item).items() if keys or item else ():
+            found[f"{name}.{EVERY}.{key}" if item else f"{name}.{key}"] = inner
+    return found
+
+
+def attribute_of(model: type[Section], path: str) -> attrs.Attribute[Any]:
+    """Return the declaration of a key. :raises UnknownKey: there is none"""
+    section, item, key = split_path(path)
+    known = keys_of(model)
+    pattern = f"{section}.{EVERY}.{key}" if item else path
+    if pattern not in known:
+        raise UnknownKey(path, **suggestion(path, list(known)))
+    return known[pattern]
+
+
+def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any) -> None:
+    """Set a key of a parsed case file. None takes it away, so that its default holds.
+
+    :raises UnknownKey: there is no such key, or no such item
+    """
+    attribute_of(model, path)
+    section, item, key = split_path(path)
+    if not item:
+        targets = [data.setdefault(section, {})]
+    else:
+        tables = data.get(section, [])
+        targets = [table for table in tables if item in (EVERY, table.get("name"))]
+        if not targets:
+            names = [str(table.get("name")) for table in tables]
+            raise UnknownKey(path, **(suggestion(item, names) if names else {"cause": f"the case has no [[{section}]]"}))
+    for target in targets:
+        if value is None:
+            target.pop(key, None)
+        else:
+            target[key] = value
+
+
+def value_of(case: Section, path: str) -> Any:
+    """Return the value of a key of a case. :raises UnknownKey: there is no such key, or no such item
+
+    :raises StatejumpError: ``*`` stands for items with several values
+    """
+    attribute_of(type(case), path)
+    section, item, key = split_path(path)
+    if not item:
+        return getattr(getattr(case, section), key)
+    items = getattr(case, section)
+    found = [getattr(one, key) for one in items if item in (EVERY, one.name)]
+    if not found:
+        raise UnknownKey(path, **suggestion(item, [one.name for one in items]))
+    if any(value != found[0] for value in found):
+        raise StatejumpError(f"{path} has several values", key=path)
+    return found[0]

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the value of a key must be, and how a value is held against it."""
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import attrs
+
+from statejump.core.errors import ABSENT, NotAllowed, Range
+
+FOLDER_NAME = "[A-Za-z0-9][A-Za-z0-9_-]*"
+# Types of values.
+NUMBER, WHOLE, SWITCH, TEXT, NUMBERS, TEXTS = "number", "whole", "switch", "text", "numbers", "texts"
+
+
+@attrs.frozen
+class Rule:
+    """What a key takes.
+
+    :param form: NUMBER, WHOLE, SWITCH, TEXT, NUMBERS or TEXTS
+    :param source: where the default comes from, what the key is for
+    :param allowed: range of a number, of every number of a list
+    :param known: names that a text, or every text of a list, must be one of; called when it is needed, for the
+        catalogue of laws may grow
+    :param pattern: regular expression that a text must match as a whole
+    :param optional: whether None stands for a value that was not given
+    :param length: how many items a list has
+    """
+
+    form: str
+    source: str = ""
+    allowed: Range | None = None
+    known: Callable[[], Sequence[str]] | None = None
+    pattern: str | None = None
+    optional: bool = False
+    length: int | None = None
+
+    @property
+    def unit(self) -> str | None:
+        """Unit of a number; ``-`` for none; None: no number."""
+        return None if self.allowed is None else self.allowed.unit
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names that a text must be one of; empty: any text."""
+        return () if self.known is None else tuple(self.known())
+
+    def needs(self) -> str:
+        """Return the part of a sentence that states what the key needs."""
+        if self.form == TEXTS:
+            return "a list of texts in quotes is needed"
+        if self.form == NUMBERS:
+            return f"a list of numbers [{self.unit}] is needed"
+        if self.allowed is not None:
+            return str(self.allowed)
+        if self.known is not None:
+            return "must be " + " or ".join(repr(name) for name in self.names)
+        return "true or false is needed" if self.form == SWITCH else "a text in quotes is needed"
+
+    def check(self, key: str, value: Any) -> None:
+        """Raise NotAllowed unless the key takes the value."""
+        if value is None and self.optional:
+            return
+        _CHECKS[self.form](self, key, value)
+
+
+def _number(rule: Rule, key: str, value: Any) -> None:
+    assert rule.allowed is not None
+    whole = rule.form == WHOLE
+    kind = "a whole number" if whole else "a number"
+    said = str(rule.allowed).removeprefix("must be ")
+    if isinstance(value, bool) or not isinstance(value, int if whole else (int, float)):
+        raise NotAllowed(key, value, f"must be {kind}, {said}", allowed=rule.allowed)
+    if isinstance(value, float) and not math.isfinite(value):
+        raise NotAllowed(key, value, f"must be finite, {said}", allowed=rule.allowed)
+    if value not in rule.allowed:
+        raise NotAllowed(key, value, allowed=rule.allowed)
+
+
+def _switch(rule: Rule, key: str, value: Any) -> None:
+    if not isinstance(value, bool):
+        raise NotAllowed(key, value, "must be true or false")
+
+
+def _text(rule: Rule, key: str, value: Any) -> None:
+    if not isinstance(value, str):
+        raise NotAllowed(key, value, "must be a text in quotes")
+    if rule.known is not None:
+        check_name(key, value, rule.names)
+    if rule.pattern is not None and not re.fullmatch(rule.pattern, value):
+        raise NotAllowed(key, value, "must consist of letters, digits, '_' and '-'")
+
+
+def _numbers(rule: Rule, key: str, value: Any) -> None:
+    if not isinstance(value, (list, tuple)):
+        raise NotAllowed(key, value, f"must be a list of numbers [{rule.unit}]")
+    one = attrs.evolve(rule, form=NUMBER)
+    for item in value:
+        try:
+            _number(one, key, item)
+        except NotAllowed as refused:
+            raise NotAllowed(key, value, refused.cause, allowed=rule.allowed) from None
+
+
+def _texts(rule: Rule, key: str, value: Any) -> None:
+    if not isinstance(value, (list, tuple)) or not all(isinstance(item, str) for item in value):
+        raise NotAllowed(key, value, "must be a list of texts in quotes")
+    if rule.known is not None:
+        for item in value:
+            try:
+                check_name(key, item, rule.names)
+            except NotAllowed as refused:
+                raise NotAllowed(key, value, refused.cause, allowed=rule.names) from None
+
+
+_CHECKS = {NUMBER: _number, WHOLE: _number, SWITCH: _switch, TEXT: _text, NUMBERS: _numbers, TEXTS: _texts}
+
+
+def check_name(key: str, value: Any, names: Sequence[str], **more: Any) -> str:
+    """Return the value if it is one of the names, else raise NotAllowed that suggests the nearest."""
+    if value in names:
+        return str(value)
+    cause = "must be " + " or ".join(repr(name) for name in names)
+    near = difflib.get_close_matches(value, names, n=1, cutoff=0.5) if isinstance(value, str) else []
+    remedy = f"did you mean {near[0]!r}?" if near else None
+    given = ABSENT if value is None else value
+    raise NotAllowed(key, given, cause, allowed=tuple(names), remedy=remedy, **more)
+
+
+def suggestion(word: str, known: Sequence[str], before: str = "", after: str = "") -> dict[str, str]:
+    """Return the fields of an UnknownKey: the nearest known word as remedy, else all of them as cause."""
+    match = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
+    if match:
+        return {"remedy": f"did you mean {before}{match[0]}{after}?"}
+    return {"cause": "known are " + ", ".join(known)}
