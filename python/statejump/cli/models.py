@@ -98,11 +98,12 @@ def compare_command(files: tuple[Path, ...], results: Path, quiet: bool) -> None
       statejump compare cases/table1.toml
       statejump compare results/table1/reduced.h5 results/table1/dem.h5
     """
-    from statejump.cli.results import compare_files
     from statejump.results.read import is_result_file
 
     console = make_console(quiet)
     if len(files) > 1 or is_result_file(files[0]):
+        from statejump.cli.results import compare_files
+
         compare_files(files, console)
     else:
         _compare_case(files[0], results, console)
