@@ -27,7 +27,7 @@ if TYPE_CHECKING:
         statics as statics,
         sweep as sweep,
     )
-    from statejump.core.case import Case as Case
+    from statejump.case import Case as Case
     from statejump.core.comparison import Comparison as Comparison, Quantity as Quantity
     from statejump.core.errors import StatejumpError as StatejumpError
     from statejump.core.run import Column as Column, Event as Event, Run as Run
@@ -38,7 +38,7 @@ __version__ = "0.1.0"
 # Where each name of the public interface is.
 _PLACES = {
     **dict.fromkeys(("bore", "compare", "load", "montecarlo", "read", "statics", "sweep"), "statejump.api"),
-    "Case": "statejump.core.case",
+    "Case": "statejump.case",
     **dict.fromkeys(("Comparison", "Quantity"), "statejump.core.comparison"),
     "StatejumpError": "statejump.core.errors",
     **dict.fromkeys(("Column", "Event", "Run"), "statejump.core.run"),

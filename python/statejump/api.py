@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from statejump.core.case import Case, Progress
+from statejump.case import Case, Progress
 from statejump.core.comparison import Comparison
 from statejump.core.errors import StatejumpError
 from statejump.core.run import Run
@@ -26,7 +26,7 @@ def load(source: str | Path | Mapping[str, Any]) -> Case:
         keys as a dict
     :raises StatejumpError: there is no such file, or the case is not allowed: file, key, value, range
     """
-    return load_case(source)
+    return Case(load_case(source))
 
 
 def compare(first: Run, second: Run) -> Comparison:
@@ -36,12 +36,12 @@ def compare(first: Run, second: Run) -> Comparison:
     :param second: one of the DEM, in either order; or two runs of one model
     :raises StatejumpError: they are not of the same case, or one of them is not complete
     """
-    if first.case != second.case:
-        raise StatejumpError("not comparable", cause=f"the runs are of other cases: {first.case.name}, {second.case.name}")
+    if first.definition != second.definition:
+        raise StatejumpError("not comparable", cause=f"the runs are of other cases: {first.definition.name}, {second.definition.name}")
     for run in (first, second):
         if not run.complete:
             raise StatejumpError("not comparable", cause="a run was interrupted and is not complete")
-    case = first.case
+    case = first.definition
     if first.model != second.model:
         by_model = {run.model: run for run in (first, second)}
         found: Comparison = case.behaviour.ability("compare", case)(case, by_model["reduced"], by_model["dem"])
@@ -66,7 +66,7 @@ def statics(case: Case, friction_coefficient: float | None = None) -> Statics:
     :param friction_coefficient: instead of the case's own
     :raises StatejumpError: the case is of another kind, or its mesh cannot be used
     """
-    found: Statics = case.behaviour.ability("statics", case)(case, friction_coefficient)
+    found: Statics = case.definition.behaviour.ability("statics", case.definition)(case.definition, friction_coefficient)
     return found
 
 
@@ -98,7 +98,7 @@ def sweep(
     """
     from statejump.campaign import sweep as run_sweep
 
-    return run_sweep(case, values, model=model, workers=workers, progress=progress)
+    return run_sweep(case.definition, values, model=model, workers=workers, progress=progress)
 
 
 def montecarlo(
@@ -116,5 +116,5 @@ def montecarlo(
     """
     from statejump.campaign import montecarlo as run_montecarlo
 
-    return run_montecarlo(case, distributions, samples=samples, seed=seed, model=model, workers=workers,
+    return run_montecarlo(case.definition, distributions, samples=samples, seed=seed, model=model, workers=workers,
                           progress=progress)

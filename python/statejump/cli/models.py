@@ -11,14 +11,15 @@ from statejump import api
 from statejump.cli.terminal import (
     CASE, QUIET, RESULTS, CaseFile, loaded, make_console, print_comparison, print_shown, progress,
 )
-from statejump.core.case import Case
+from statejump.case import Case
 from statejump.core.errors import Interrupted, TolerancesMissed
 from statejump.core.output import results_folder
 from statejump.core.run import Run
 
 
 def _told(case: Case, runs: dict[str, Run], console: Console) -> None:
-    print_shown(case.behaviour.ability("told", case)(case, runs), console)
+    definition = case.definition
+    print_shown(definition.behaviour.ability("told", definition)(definition, runs), console)
 
 
 def _warn(runs: dict[str, Run], console: Console) -> None:
@@ -40,13 +41,13 @@ def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
     from statejump.results.record import save
 
     console = make_console(quiet)
-    case = loaded(case_file, "reduced")
+    case = Case(loaded(case_file, "reduced"))
     folder = results_folder(results, case.name)
     with progress(console, "reduced model") as tell:
         runs = {"reduced": case.reduced(tell)}
     _told(case, runs, console)
     _warn(runs, console)
-    console.print(f"results: {save('reduced', case, runs, folder)}, history: {folder / 'reduced_history.csv'}")
+    console.print(f"results: {save('reduced', case.definition, runs, folder)}, history: {folder / 'reduced_history.csv'}")
 
 
 def _dem(command: str, case: Case, before: dict[str, Run], folder: Path, console: Console) -> Run:
@@ -58,7 +59,7 @@ def _dem(command: str, case: Case, before: dict[str, Run], folder: Path, console
             return case.dem(tell)
     except Interrupted as stopped:
         if isinstance(stopped.run, Run):
-            kept = save(command, case, {**before, "dem": stopped.run}, folder)
+            kept = save(command, case.definition, {**before, "dem": stopped.run}, folder)
             raise Interrupted(f"interrupted; the {len(stopped.run)} samples so far are in {kept}") from None
         raise
 
@@ -77,12 +78,12 @@ def dem_command(case_file: Path, results: Path, quiet: bool) -> None:
     from statejump.results.record import save
 
     console = make_console(quiet)
-    case = loaded(case_file, "dem_input")
+    case = Case(loaded(case_file, "dem_input"))
     folder = results_folder(results, case.name)
     runs = {"dem": _dem("dem", case, {}, folder, console)}
     _told(case, runs, console)
     _warn(runs, console)
-    console.print(f"results: {save('dem', case, runs, folder)}, history: {folder / 'dem_history.csv'}")
+    console.print(f"results: {save('dem', case.definition, runs, folder)}, history: {folder / 'dem_history.csv'}")
 
 
 @click.command("compare")
@@ -113,7 +114,7 @@ def _compare_case(case_file: Path, results: Path, console: Console) -> None:
     from statejump.core.figures import save as save_figure
     from statejump.results.record import save
 
-    case = loaded(case_file, "compare", "dem_input")
+    case = Case(loaded(case_file, "compare", "dem_input"))
     folder = results_folder(results, case.name)
     with progress(console, "reduced model") as tell:
         reduced = case.reduced(tell)
@@ -122,7 +123,7 @@ def _compare_case(case_file: Path, results: Path, console: Console) -> None:
     runs = dict(comparison.models)
     files = comparison.write(folder)
     figures = save_figure(comparison.plot(), folder, case.name)
-    written = [save("compare", case, runs, folder, comparison), files[0], *figures]
+    written = [save("compare", case.definition, runs, folder, comparison), files[0], *figures]
     _told(case, runs, console)
     print_comparison(case.title, comparison.rows, console)
     for note in comparison.notes:

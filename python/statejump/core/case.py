@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What cases of all kinds have in common: header, temperature program, and what one can ask of them."""
+"""The definition of a case: what all kinds have in common, header and temperature program."""
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from copy import deepcopy
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -18,12 +18,9 @@ from statejump.schema.rules import FOLDER_NAME
 
 if TYPE_CHECKING:
     from statejump import _engine
-    from statejump.core.run import Run
     from statejump.kinds.protocol import Kind
 
 __all__ = ["CHOICE", "Case", "CaseHeader", "Origin"]
-
-Progress = bool | Callable[[float], None]
 
 
 @definition
@@ -57,10 +54,8 @@ class Origin:
 
 @definition
 class Case(Section):
-    """A whole case in SI units, immutable. Each kind has its own sections; what one can do with a case is the
-    same for all kinds.
-
-    A case is made by :func:`statejump.load`, from a file, a shipped case's name or a dict.
+    """A whole case in SI units, immutable. Each kind has its own sections. What one can do with a case is the same
+    for all kinds, see :class:`statejump.Case`.
     """
 
     KIND: ClassVar[str]
@@ -153,45 +148,12 @@ class Case(Section):
 
         return value_of(self, path)
 
-    def _ability(self, name: str) -> Callable[..., Any]:
-        return self.behaviour.ability(name, self)
-
     @property
     def behaviour(self) -> Kind:
         """The kind as an object: everything that can be done with the case."""
         from statejump.kinds import kind
 
         return kind(self.KIND)
-
-    def reduced(self, progress: Progress = False) -> Run:
-        """Run the reduced model.
-
-        :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
-        :raises StatejumpError: the kind has no reduced model, or the run could not be finished
-        """
-        from statejump.core.progress import shown
-
-        with shown(progress, "reduced model") as tell:
-            run: Run = self._ability("reduced")(self, tell)
-        return run
-
-    def dem(self, progress: Progress = False) -> Run:
-        """Run the case in YADE, in a process of its own.
-
-        :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
-        :raises StatejumpError: the kind has no DEM, YADE is missing or failed
-        :raises Interrupted: Ctrl-C; its ``run`` has the samples so far
-        """
-        from statejump.core.progress import shown
-
-        with shown(progress, "DEM") as tell:
-            run: Run = self._ability("dem")(self, tell)
-        return run
-
-    def _repr_html_(self) -> str:
-        from statejump.core.html import case_html
-
-        return case_html(self)
 
 
 def no_length_left(key: str, thermal_expansion_per_K: float, case: Case) -> None:

@@ -25,7 +25,7 @@ def _table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 def _title(run: Run) -> str:
     try:
-        return run.case.title
+        return run.definition.title
     except (StatejumpError, ValueError):  # of a file that this version does not understand any more
         return ""
 

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from statejump.core.case import Case
+    from statejump.case import Case
+    from statejump.core.case import Case as Definition
 
 # What a contact does at a sample; the number is the place in this list.
 CONTACT_STATES = ("separated", "stick", "slip", "at_stop")
@@ -109,7 +110,7 @@ class Run:
     :param events: what happened, in order of time
     :param summary: numbers that sum up the run; their names end in their units, NaN: it did not happen
     :param names: names of the items of the second axes of columns
-    :param case_of: returns the case that ran; of a file it is only read when it is asked for
+    :param case_of: returns the definition of the case that ran; of a file it is only read when it is asked for
     :param warnings: limits of the model that the run met
     :param complete: False: the run was interrupted, this is what there is of it
     :param about: what a DEM run says of itself: version of YADE, steps, seconds
@@ -125,7 +126,7 @@ class Run:
     events: Events
     summary: Mapping[str, float]
     names: Mapping[str, list[str]] = field(default_factory=dict)
-    case_of: Callable[[], Case] | None = field(default=None, repr=False, compare=False)
+    case_of: Callable[[], Definition] | None = field(default=None, repr=False, compare=False)
     warnings: tuple[str, ...] = ()
     complete: bool = True
     about: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
@@ -133,11 +134,18 @@ class Run:
     sampler: Callable[[np.ndarray], Run] | None = field(default=None, repr=False, compare=False)
 
     @cached_property
-    def case(self) -> Case:
-        """The case that ran. :raises StatejumpError: this version does not understand it any more"""
+    def definition(self) -> Definition:
+        """What the case says that ran. :raises StatejumpError: this version does not understand it any more"""
         if self.case_of is None:
             raise ValueError("this run was made without a case")
         return self.case_of()
+
+    @property
+    def case(self) -> Case:
+        """The case that ran. :raises StatejumpError: this version does not understand it any more"""
+        from statejump.case import Case
+
+        return Case(self.definition)
 
     @property
     def time_s(self) -> np.ndarray:
@@ -240,7 +248,7 @@ class Run:
         """
         from statejump.core.figures import drawn
 
-        return drawn(self.case, [self], axes)
+        return drawn(self.definition, [self], axes)
 
     def __repr__(self) -> str:
         return f"Run({MODELS.get(self.model, self.model)}, {len(self)} samples, {len(self.events)} events)"

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from statejump.core.case import Case
+from statejump.case import Case
+from statejump.core.case import Case as Definition
 from statejump.core.comparison import Comparison, Quantity
 from statejump.core.errors import StatejumpError
 from statejump.core.run import Run
@@ -81,8 +82,8 @@ class Result:
     answers: Answers | None = None
 
     @cached_property
-    def case(self) -> Case:
-        """The case. :raises StatejumpError: this version does not understand it any more"""
+    def definition(self) -> Definition:
+        """What the case says. :raises StatejumpError: this version does not understand it any more"""
         from statejump.kinds.loading import parse_case
 
         try:
@@ -91,11 +92,16 @@ class Result:
             raise failure.located(case=self.name) from None
 
     @property
+    def case(self) -> Case:
+        """The case. :raises StatejumpError: this version does not understand it any more"""
+        return Case(self.definition)
+
+    @property
     def comparison(self) -> Comparison | None:
         """The models beside each other; None: nothing was compared."""
         if self.rows is None:
             return None
-        return Comparison(self.case, self.models, self.rows, warnings=tuple(self.warnings))
+        return Comparison(self.definition, self.models, self.rows, warnings=tuple(self.warnings))
 
     @property
     def passed(self) -> bool | None:

@@ -147,7 +147,7 @@ def difference(first: Result, second: Result) -> list[RunDifference]:
     """
     check_comparable(first, second)
     complete = first.complete and second.complete
-    judge = first.case.behaviour.ability("difference", first.case)
+    judge = first.definition.behaviour.ability("difference", first.definition)
     found = []
     for names in pairs(first, second):
         one, other = first.models[names[0]], second.models[names[1]]
@@ -158,6 +158,6 @@ def difference(first: Result, second: Result) -> list[RunDifference]:
         left, right = one.at(times), other.at(times)
         found.append(RunDifference(
             names, _summary(one, other), _columns(left, right), _events(one, other),
-            judge(first.case, left, right) if complete else None,
+            judge(first.definition, left, right) if complete else None,
         ))
     return found

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A case as one holds it in Python: the same class for every kind."""
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from statejump.core.case import Case as Definition
+
+if TYPE_CHECKING:
+    from statejump.core.run import Run
+
+Progress = bool | Callable[[float], None]
+
+
+class Case:
+    """A case, checked as a whole and immutable, and what one can do with it. :func:`statejump.load` makes it.
+
+    Its sections are attributes, ``case.joint.friction_coefficient``; ``case["dem.threads"]`` reaches every key, also
+    those of the sections ``[reduced]`` and ``[dem]``, whose names are those of the models here.
+
+    :param definition: what the case file says, with all defaults
+    """
+
+    def __init__(self, definition: Definition) -> None:
+        self.definition = definition
+
+    @property
+    def name(self) -> str:
+        """Name of the case and of its results folder."""
+        return self.definition.name
+
+    @property
+    def kind(self) -> str:
+        """Which experiment, one of :func:`statejump.kinds.names`."""
+        return self.definition.kind
+
+    @property
+    def title(self) -> str:
+        """One line for figures and tables."""
+        return self.definition.title
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name == "definition":
+            raise AttributeError(name)
+        return getattr(self.definition, name)
+
+    def __getitem__(self, path: str) -> Any:
+        """Return the value of ``section.key``, or of ``section.item.key`` of an item of a list.
+
+        :raises StatejumpError: there is no such key or item
+        """
+        return self.definition[path]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Case) and self.definition == other.definition
+
+    def __hash__(self) -> int:
+        return hash((self.kind, self.name))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return sections and keys with all defaults, as a dict that :func:`statejump.load` takes."""
+        return self.definition.to_dict()
+
+    def changed(self, changes: Mapping[str, Any]) -> Case:
+        """Return the case with other values, checked as a whole.
+
+        :param changes: value by key: ``section.key`` as in the case file, ``section.item.key`` of an item of a
+            list, ``section.*.key`` of all of them; None takes a key away, so that its default holds
+        :raises StatejumpError: there is no such key, or the case is not allowed with these values
+        """
+        return Case(self.definition.changed(changes))
+
+    def reduced(self, progress: Progress = False) -> Run:
+        """Run the reduced model.
+
+        :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
+        :raises StatejumpError: the kind has no reduced model, or the run could not be finished
+        """
+        return self._run("reduced", "reduced model", progress)
+
+    def dem(self, progress: Progress = False) -> Run:
+        """Run the case in YADE, in a process of its own.
+
+        :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
+        :raises StatejumpError: the kind has no DEM, YADE is missing or failed
+        :raises Interrupted: Ctrl-C; its ``run`` has the samples so far
+        """
+        self.definition.behaviour.ability("dem_input", self.definition)
+        return self._run("dem", "DEM", progress)
+
+    def _run(self, ability: str, label: str, progress: Progress) -> Run:
+        from statejump.core.progress import shown
+
+        model = self.definition.behaviour.ability(ability, self.definition)
+        with shown(progress, label) as tell:
+            run: Run = model(self.definition, tell)
+        return run
+
+    def __repr__(self) -> str:
+        return f"Case({self.name!r}, {self.kind})"
+
+    def _repr_html_(self) -> str:
+        from statejump.core.html import case_html
+
+        return case_html(self.definition)
