@@ -141,7 +141,7 @@ def table1_table(rows: list[dict[str, Any]]) -> str:
     key = "cpu_time_per_contact_and_step_ns"
     lines = ["| scene | CPU time per step | steps per second of CPU time |", "|---|--:|--:|"]
     names = {
-        "table1": "Table 1 (`yade_scripts/table1.py`)",
+        "table1": "Table 1 (`yade_scripts/examples/table1.py`)",
         "sphere_energy": "one pair of YADE's spheres, three more near by",
     }
     for scene, name in names.items():

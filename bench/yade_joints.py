@@ -8,7 +8,7 @@ Variants, all with 2 n bodies, n contacts, the same collider and integrator:
   another temperature
 - ``joint_isothermal``: the same without the ThermalExpansionEngine
 - ``sphere``: pairs of spheres, one fixed, with YADE's own Law2_ScGeom_MindlinPhys_Mindlin
-- ``table1``: yade_scripts/table1.py as it stands, from its first line to its last (one contact)
+- ``table1``: yade_scripts/examples/table1.py as it stands, from its first line to its last (one contact)
 
 The free body is pressed on the fixed one with a constant force inclined to the normal, below the
 friction limit, so that both laws carry a normal and a tangential force. Rotations are blocked, or
@@ -180,7 +180,7 @@ def measure():
 def table1():
     import statejump_yade  # noqa: F401  the one of PYTHONPATH, whatever the script looks for
 
-    script = Path(sys.argv[0]).resolve().parents[1] / "yade_scripts" / "table1.py"
+    script = Path(sys.argv[0]).resolve().parents[1] / "yade_scripts" / "examples" / "table1.py"
     output = io.StringIO()
     start_wall, start = time.perf_counter(), time.process_time()
     with contextlib.redirect_stdout(output):

@@ -120,7 +120,7 @@ def test_failed_run(statejump, cases: Path, fake_yade, tmp_path: Path, failure: 
 
 
 def test_interrupt_keeps_the_samples_so_far(cases: Path, fake_yade, tmp_path: Path) -> None:
-    # the columns that yade_scripts/scene_spring_slider.py writes
+    # the columns that yade_scripts/runner/scene_spring_slider.py writes
     names = [name for name in SPRING_SLIDER_COLUMNS if name != "stage"]
     rows = [",".join([time] + ["0.0"] * (len(names) - 1)) for time in ("0.0", "1.0", "2.0")]
     lines = "\\n".join([",".join(names), *rows])[:-2]

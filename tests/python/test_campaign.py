@@ -499,7 +499,7 @@ def test_either_model_and_yade_batch(
         "description", "campaign", "command", "sample", "joint__friction_coefficient", "joint__clearance_plus_m"
     ]
     done = subprocess.run(
-        ["yade", "-n", "-x", str(REPOSITORY / "yade_scripts" / "batch_case.py")], cwd=tmp_path,
+        ["yade", "-n", "-x", str(REPOSITORY / "yade_scripts" / "runner" / "batch_case.py")], cwd=tmp_path,
         env={**os.environ, "PYTHONPATH": str(BUILT), "YADE_BATCH": "samples.table:4"}, stdin=subprocess.DEVNULL,
         capture_output=True, text=True, timeout=120,
     )

@@ -21,7 +21,7 @@ from statejump.kinds.truss import dem as truss_dem
 from statejump.kinds.truss.solve import solve
 from statejump.kinds.umbrella import dem as umbrella_dem
 
-sys.path.insert(0, str(REPOSITORY / "yade_scripts"))
+sys.path.insert(0, str(REPOSITORY / "yade_scripts" / "runner"))
 import failures  # noqa: E402 - needs no YADE
 
 Values = dict[str, Any]

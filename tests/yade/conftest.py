@@ -21,7 +21,7 @@ def yade(
     script: Path, *arguments: str, threads: int = 1, environment: dict[str, str] | None = None
 ) -> subprocess.CompletedProcess[str]:
     """Run ``yade -n -x script`` with the plugin of this build and return what it printed."""
-    paths = [PLUGIN_DIR, str(HERE / "scripts"), str(REPOSITORY / "yade_scripts")]
+    paths = [PLUGIN_DIR, str(HERE / "scripts"), *(str(REPOSITORY / "yade_scripts" / part) for part in ("examples", "runner"))]
     return subprocess.run(
         ["yade", "-n", "-x", f"-j{threads}", str(script), *arguments],
         stdin=subprocess.DEVNULL,

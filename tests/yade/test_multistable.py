@@ -1,4 +1,4 @@
-"""yade_scripts/multistable.py: released joints stay where the friction cone says, and only there."""
+"""yade_scripts/examples/multistable.py: released joints stay where the friction cone says, and only there."""
 import csv
 import re
 from math import atan, degrees
@@ -13,7 +13,7 @@ CONE = degrees(atan(0.3))
 @pytest.fixture(scope="module")
 def seen(tmp_path_factory):
     folder = tmp_path_factory.mktemp("multistable")
-    done = yade(REPOSITORY / "yade_scripts" / "multistable.py", environment={"FOLDER": str(folder)})
+    done = yade(REPOSITORY / "yade_scripts" / "examples" / "multistable.py", environment={"FOLDER": str(folder)})
     cases = {}
     for row in re.findall(r"^\| (\w+) \|([ 0-9|–]+)\|$", done.stdout, re.MULTILINE):
         cases[row[0]] = [int(number) for number in row[1].split("|") if "–" not in number]

@@ -1,4 +1,4 @@
-"""yade_scripts/table1.py by itself."""
+"""yade_scripts/examples/table1.py by itself."""
 import re
 
 from conftest import REPOSITORY, yade
@@ -6,7 +6,7 @@ from conftest import REPOSITORY, yade
 
 def test_tutorial_prints_the_state_jump():
     # The script looks for the plugin in <repository>/build/python, then along PYTHONPATH.
-    done = yade(REPOSITORY / "yade_scripts" / "table1.py")
+    done = yade(REPOSITORY / "yade_scripts" / "examples" / "table1.py")
     found = re.search(r"state jump: ([-0-9.]+) um; the closed form .* is ([0-9.]+) um", done.stdout)
     assert found, done.stdout + done.stderr
     assert abs(float(found[2]) - 23.80952) < 1e-3

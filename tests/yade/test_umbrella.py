@@ -1,4 +1,4 @@
-"""yade_scripts/umbrella.py by itself, and what it records for ParaView."""
+"""yade_scripts/examples/umbrella.py by itself, and what it records for ParaView."""
 import json
 import re
 
@@ -6,7 +6,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from conftest import REPOSITORY, yade
 
-TUTORIAL = REPOSITORY / "yade_scripts" / "umbrella.py"
+TUTORIAL = REPOSITORY / "yade_scripts" / "examples" / "umbrella.py"
 
 
 def read(path):

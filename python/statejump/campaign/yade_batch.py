@@ -23,7 +23,7 @@ def column_of(path: str) -> str:
 
 
 def write_table(campaign: Campaign, path: Path) -> None:
-    """Write the table: one line per sample, to be run by ``yade_scripts/batch_case.py``.
+    """Write the table: one line per sample, to be run by ``yade_scripts/runner/batch_case.py``.
 
     The script takes the values from their columns; the campaign file tells case and outcomes.
     """

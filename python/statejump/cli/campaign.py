@@ -100,7 +100,7 @@ def _command(name: str, text: str) -> Callable[..., click.Command]:
                   help="Dask scheduler that runs already, as tcp://host:8786, instead of a cluster on this machine.")
     @click.option("--restart", is_flag=True, help="Drop finished samples of an earlier run.")
     @click.option("--yade-batch", "table", type=click.Path(path_type=Path), metavar="FILE",
-                  help="Only write a parameter table for yade-batch and yade_scripts/batch_case.py.")
+                  help="Only write a parameter table for yade-batch and yade_scripts/runner/batch_case.py.")
     @RESULTS
     @QUIET
     def command(

@@ -80,7 +80,7 @@ def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, tell: Tell) ->
 def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
     """Run a resolved case in YADE; see :func:`run`. Of an interrupted one ``run`` is :class:`Samples`."""
     name, threads = values["case"]["name"], values["dem"]["threads"]
-    command = [find_yade(), "-n", "-x", f"-j{threads}", str(_paths.YADE_SCRIPTS / "run_case.py")]
+    command = [find_yade(), "-n", "-x", f"-j{threads}", str(_paths.YADE_SCRIPTS / "runner" / "run_case.py")]
     with tempfile.TemporaryDirectory(prefix="statejump-") as scratch:
         input_file, output = Path(scratch) / "case.json", Path(scratch) / "dem_history.csv"
         input_file.write_text(json.dumps(values), encoding="utf-8")

@@ -175,7 +175,7 @@ def bulge():
 
 def recorded():
     """What the recorder for ParaView writes of a journal and a warm bore beside it."""
-    sys.path.insert(0, str(Path(inspect.getfile(body)).resolve().parents[3] / "yade_scripts"))
+    sys.path.insert(0, str(Path(inspect.getfile(body)).resolve().parents[3] / "yade_scripts" / "examples"))
     from paraview import ParaViewRecorder
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 

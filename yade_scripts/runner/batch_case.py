@@ -2,7 +2,7 @@
 
     statejump montecarlo CAMPAIGN.toml --yade-batch samples.table
     export PYTHONPATH=build/python
-    yade-batch --job-threads=1 --log=@.log samples.table yade_scripts/batch_case.py
+    yade-batch --job-threads=1 --log=@.log samples.table yade_scripts/runner/batch_case.py
 
 Each line leaves ``samples.table.sample_<number>.csv``, the history, and ``….outcomes.json``, the
 numbers that ``statejump`` itself puts into the row of its table. Nothing is resumed: that is what

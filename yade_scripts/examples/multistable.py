@@ -1,7 +1,7 @@
 """Where a loaded joint with friction can rest: not in one place, but in a whole set of them.
 
-    yade -n -x yade_scripts/multistable.py             # table; CSV and figure in results/multistable
-    FOLDER=out CASES=circle,sphere yade -n -x yade_scripts/multistable.py
+    yade -n -x yade_scripts/examples/multistable.py             # table; CSV and figure in results/multistable
+    FOLDER=out CASES=circle,sphere yade -n -x yade_scripts/examples/multistable.py
 
 A journal in a bearing under a constant force F touches the wall somewhere. It rests there if friction
 can hold it: if the reaction that F needs, -F, is no farther than atan(mu) from the wall's normal N on
@@ -24,7 +24,7 @@ from pathlib import Path
 
 # The build tree, for a clone that is not installed.
 here = Path(sys.argv[0]).resolve().parent
-sys.path += [str(here), str(here.parent / "build" / "python")]
+sys.path += [str(here), str(here.parents[1] / "build" / "python")]
 from statejump_yade import *
 
 young, poisson, friction = 70e9, 0.3, 0.3  # Table 2 of Chen et al. (2021): Pa, -, -

@@ -1,8 +1,8 @@
 """One rib of the umbrella antenna of Chen et al. (2021), section 4: two links, one joint with play.
 
-    yade -n -x yade_scripts/umbrella.py            # prints first contact and the state jump
-    yade yade_scripts/umbrella.py                  # the same with YADE's windows: press play, 3D
-    PARAVIEW=out/umbrella- yade -n -x yade_scripts/umbrella.py    # files for ParaView as well
+    yade -n -x yade_scripts/examples/umbrella.py            # prints first contact and the state jump
+    yade yade_scripts/examples/umbrella.py                  # the same with YADE's windows: press play, 3D
+    PARAVIEW=out/umbrella- yade -n -x yade_scripts/examples/umbrella.py    # files for ParaView as well
 
 Links AB and BC are pinned to a frame at A and C. At B the journal of BC has 0.1 mm of play in the
 bearing of AB. Heated, the links grow and the frame does not: the play is used up, journal and
@@ -15,7 +15,7 @@ from pathlib import Path
 
 # The build tree, for a clone that is not installed.
 here = Path(sys.argv[0]).resolve().parent
-sys.path[:0] = [str(here), str(here.parent / "build" / "python")]
+sys.path[:0] = [str(here), str(here.parents[1] / "build" / "python")]
 from statejump_yade import *
 
 # Tables 2 and 3. The paper gives neither section, nor damping, nor the duration of the cycle.

@@ -1,6 +1,6 @@
 """Table 1 of Chen et al. (2021): a bar with a slider in a slot, through one orbit of temperature.
 
-    yade -n -x yade_scripts/table1.py
+    yade -n -x yade_scripts/examples/table1.py
 
 Prints the state jump: where the slider is when the temperature is back, minus where it started.
 """
@@ -9,7 +9,7 @@ from math import atan, sqrt
 from pathlib import Path
 
 # The build tree, for a clone that is not installed.
-sys.path.insert(0, str(Path(sys.argv[0]).resolve().parents[1] / "build" / "python"))
+sys.path.insert(0, str(Path(sys.argv[0]).resolve().parents[2] / "build" / "python"))
 from statejump_yade import *
 
 # The bar (Table 1) and the joint. The paper gives neither density nor the shape of the pads.

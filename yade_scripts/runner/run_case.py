@@ -1,6 +1,6 @@
 """Runs one case in YADE and writes its history; started by ``statejump dem CASE``.
 
-    STATEJUMP_CASE_JSON=case.json STATEJUMP_OUTPUT=history.csv yade -n -x yade_scripts/run_case.py
+    STATEJUMP_CASE_JSON=case.json STATEJUMP_OUTPUT=history.csv yade -n -x yade_scripts/runner/run_case.py
 
 The resolved case comes as JSON. Samples go to ``<output>.partial`` as they are taken; at the end
 the file is renamed. What the caller is told stands on lines of standard output that begin with ``STATEJUMP``:
