@@ -289,7 +289,7 @@ known = {
 }
 chosen = os.environ.get("CASES", ",".join(known)).split(",")
 cases = [release(known[name]()) for name in chosen]
-folder = Path(os.environ.get("FOLDER", here.parent / "results" / "multistable"))
+folder = Path(os.environ.get("FOLDER", here.parents[1] / "results" / "multistable"))
 folder.mkdir(parents=True, exist_ok=True)
 for case in cases:
     with open(folder / f"{case.name}.csv", "w", newline="") as file:

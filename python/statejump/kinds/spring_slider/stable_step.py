@@ -17,6 +17,8 @@ from __future__ import annotations
 from math import sqrt
 from typing import TYPE_CHECKING
 
+from statejump.core import physics
+
 if TYPE_CHECKING:
     from statejump.kinds.spring_slider.case import SpringSliderCase
 
@@ -31,33 +33,36 @@ def tip_mass(case: SpringSliderCase) -> float:
 def largest_stop_force(case: SpringSliderCase) -> float:
     """Force [N] that would hold the thermal overlap with a rigid stop."""
     link = case.link
-    stiffness = link.young_modulus_Pa * link.cross_section_area_m2 / link.stress_free_length_m
     overlap = 0.0
     for change in case.temperature_range_K:
         stroke = link.stress_free_length_m * link.thermal_expansion_per_K * change
         overlap = max(overlap, stroke - case.clearance_m(1, change), -stroke - case.clearance_m(-1, change))
-    return stiffness * overlap
+    return link_stiffness(case) * overlap
+
+
+def link_stiffness(case: SpringSliderCase) -> float:
+    """k = E A/l0 [N/m]."""
+    link = case.link
+    return physics.axial_stiffness_N_per_m(
+        link.young_modulus_Pa, link.cross_section_area_m2, link.stress_free_length_m
+    )
 
 
 def contact_stiffness(case: SpringSliderCase, force_N: float) -> tuple[float, float]:
     """Tangent stiffnesses k_n, k_t [N/m] of one pad under a force [N]."""
     joint = case.joint
-    nu = joint.poisson_ratio
-    effective_modulus = joint.young_modulus_Pa / (2 * (1 - nu**2))
-    shear_modulus = joint.young_modulus_Pa / (2 * (1 + nu))
-    effective_shear = shear_modulus / (2 * (2 - nu))
-    hertz = 4 / 3 * effective_modulus * sqrt(joint.pad_radius_m)
-    contact_radius = sqrt(joint.pad_radius_m * (force_N / hertz) ** (2 / 3))
-    return 2 * effective_modulus * contact_radius, 8 * effective_shear * contact_radius
+    hertz = physics.hertz_stiffness_N_per_m15(
+        physics.effective_young_modulus_Pa(joint.young_modulus_Pa, joint.poisson_ratio), joint.pad_radius_m
+    )
+    normal = float(physics.hertz_tangent_N_per_m(force_N, hertz))
+    return normal, normal * physics.shear_over_normal_stiffness(joint.poisson_ratio)
 
 
 def stable_time_step(case: SpringSliderCase) -> float:
     """Largest stable time step [s] of the DEM run of a case."""
     floor_normal, floor_tangential = contact_stiffness(case, 2 * case.joint.normal_force_N)
     stop_normal, stop_tangential = contact_stiffness(case, 2 * largest_stop_force(case))
-    bar = case.link
-    link = bar.young_modulus_Pa * bar.cross_section_area_m2 / bar.stress_free_length_m
-    link += case.joint.preload_stiffness_N_per_m
+    link = link_stiffness(case) + case.joint.preload_stiffness_N_per_m
     mass = tip_mass(case)
     axes = (
         (0.0, (floor_normal, stop_tangential)),

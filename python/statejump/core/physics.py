@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Formulas that checks, drawings and time steps need in Python, each written once. All take numbers and arrays
+alike, in SI units. The models themselves are the engine's and the plugin's.
+"""
+from __future__ import annotations
+
+from math import sqrt
+from typing import TypeVar
+
+import numpy as np
+
+Value = TypeVar("Value", float, np.ndarray)
+
+
+def effective_young_modulus_Pa(young_modulus_Pa: Value, poisson_ratio: Value) -> Value:
+    """Return E* [Pa] of a contact of two parts of one material, E/(2 (1 - ν²))."""
+    return young_modulus_Pa / (2 * (1 - poisson_ratio**2))
+
+
+def shear_over_normal_stiffness(poisson_ratio: Value) -> Value:
+    """Return k_t/k_n = 4 G*/E* = 2 (1 - ν)/(2 - ν) of a contact of two parts of one material (Mindlin)."""
+    return 2 * (1 - poisson_ratio) / (2 - poisson_ratio)
+
+
+def hertz_stiffness_N_per_m15(effective_young_modulus_Pa: Value, effective_radius_m: Value) -> Value:
+    """Return K of F = K δ^1.5 [N/m^1.5], 4/3 E* sqrt(R)."""
+    return 4 / 3 * effective_young_modulus_Pa * np.sqrt(effective_radius_m)
+
+
+def conforming_radius_m(journal_radius_m: Value, bearing_radius_m: Value, radial_clearance_m: Value) -> Value:
+    """Return the effective radius of a journal in its bearing [m], R1 R2/(R2 - R1)."""
+    return journal_radius_m * bearing_radius_m / radial_clearance_m
+
+
+def hertz_depth_m(force_N: Value, hertz_stiffness: Value) -> Value:
+    """Return the penetration depth [m] at a normal force, (F/K)^(2/3)."""
+    return (force_N / hertz_stiffness) ** (2 / 3)
+
+
+def hertz_tangent_N_per_m(force_N: Value, hertz_stiffness: Value) -> Value:
+    """Return dF/dδ [N/m] of F = K δ^1.5 at a force."""
+    return 1.5 * hertz_stiffness ** (2 / 3) * np.cbrt(force_N)
+
+
+def axial_stiffness_N_per_m(young_modulus_Pa: Value, cross_section_area_m2: Value, length_m: Value) -> Value:
+    """Return E A / l [N/m], the paper's equation (4)."""
+    return young_modulus_Pa * cross_section_area_m2 / length_m
+
+
+def apex_m(left_m: float, right_m: float, base_m: float) -> tuple[float, float]:
+    """Return where two links meet above a base from (0, 0) to (base, 0): x and y [m]; y is 0 if they do not.
+
+    :param left_m: length of the link from (0, 0)
+    :param right_m: length of the link from (base, 0)
+    """
+    x = (base_m + (left_m - right_m) * (left_m + right_m) / base_m) / 2
+    # Heron's product: no difference of squares.
+    product = ((left_m + right_m + base_m) * (left_m + right_m - base_m)
+               * (base_m + left_m - right_m) * (base_m - left_m + right_m))
+    return x, sqrt(max(product, 0.0)) / (2 * base_m)
