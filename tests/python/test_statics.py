@@ -11,10 +11,13 @@ import pytest
 from click.testing import CliRunner
 
 from conftest import REPOSITORY
+import statejump as sj
 from statejump import _engine
-from statejump.kinds.registry import StaticsCase, load_case
-from statejump.core.errors import StatejumpError
-from statejump.kinds.statics.solve import can_mesh, cone_angles, solve, statics_command
+from statejump.cli.statics import statics_command
+from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.kinds.loading import load_case
+from statejump.kinds.statics.mesh import can_mesh
+from statejump.kinds.statics.solve import cone_angles
 
 C = 1e-4
 CASES = REPOSITORY / "cases"
@@ -164,8 +167,7 @@ def test_other_kinds_are_refused() -> None:
 
 
 def test_forces_over_temperature() -> None:
-    case = load_case(CASES / "statics_ball.toml")
-    assert isinstance(case, StaticsCase)
+    case = sj.load(CASES / "statics_ball.toml")
     assert [load.force_N for load in case.load_cases] == [(0, 30, -100), (25, 30, -100), (50, 30, -100)]
     assert case.load_cases[1].name == "preload, ΔT = 50 K"
 
@@ -257,9 +259,7 @@ def test_mesh_from_a_file(tmp_path: Path, side: str, sign: float) -> None:
     pytest.importorskip("vtkmodules.vtkIOGeometry")
     write_sphere(tmp_path / "socket.stl")
     path = mesh_case(tmp_path, side=side)
-    case = load_case(path)
-    assert isinstance(case, StaticsCase)
-    statics = solve(case, tmp_path)
+    statics = sj.statics(sj.load(path))
     exact = _engine.rest_in_socket(C, [(1, 2, 3)], 0.5)["any"]
     assert len(statics.mesh.vertices_m) == 642  # welded
     assert statics.any["area_m2"] == pytest.approx(exact["area_m2"], rel=0.01)
@@ -280,10 +280,47 @@ def test_bad_mesh_files(tmp_path: Path, file: str, content: str | None, sentence
     pytest.importorskip("vtkmodules.vtkIOGeometry")
     if content is not None:
         (tmp_path / file).write_text(content)
-    case = load_case(mesh_case(tmp_path, file))
-    assert isinstance(case, StaticsCase)
-    with pytest.raises(StatejumpError, match=sentence):
-        solve(case, tmp_path)
+    path = mesh_case(tmp_path, file)
+    with pytest.raises(StatejumpError, match=sentence) as caught:
+        sj.statics(sj.load(path))
+    told = caught.value.fields()
+    assert (told["key"], told["value"], told["file"]) == ("joint.mesh_file", file, str(path))
+    assert str(caught.value).startswith(f"{path}: joint.mesh_file = {file!r}")
+
+
+def test_library(tmp_path: Path) -> None:
+    """Without any file: a case from a dict, its sets as a table, as a picture, in a notebook."""
+    import matplotlib
+
+    backend = matplotlib.get_backend()
+    case = sj.load({
+        "case": {"name": "two", "kind": "statics"}, "joint": {"type": "journal", "clearance_m": C,
+                                                             "friction_coefficient": 0.3},
+        "force": [{"force_N": [1, 0, 0]}, {"force_N": [0, 1, 0], "name": "up"}],
+    })
+    statics = sj.statics(case)
+    frame = statics.frame()
+    # Right angle between the forces, wider than both cones: two arcs apart, none in common.
+    assert list(frame["set"]) == ["F1", "up"] + ["union: any force"] * 2 + ["intersection: every force"]
+    assert frame["angle_rad"][:2].tolist() == pytest.approx([2 * atan(0.3)] * 2, abs=1e-12)
+    assert frame["parts"].tolist() == [1, 1, 2, 2, 0] and np.isnan(frame["angle_rad"].iloc[-1])
+    assert frame["x_m"][0] == pytest.approx(C) and frame["y_m"][1] == pytest.approx(C)
+    figure = statics.plot()
+    figure.savefig(tmp_path / "two.png")
+    axes = figure.axes[0]
+    assert statics.plot(axes) is figure
+    assert matplotlib.get_backend() == backend
+    shown = statics._repr_html_()
+    assert "union: any force" in shown and "no position holds under every force" in shown
+    assert "journal" in case._repr_html_()
+    other = sj.statics(case, friction_coefficient=0.1)
+    assert other.frame()["angle_rad"][0] == pytest.approx(2 * atan(0.1), abs=1e-12)
+    assert sj.statics(case.changed({"joint.friction_coefficient": 0.1})).any["length_m"] == other.any["length_m"]
+    for wrong in (-1.0, float("nan"), 101.0):
+        with pytest.raises(NotAllowed, match="joint.friction_coefficient = "):
+            sj.statics(case, friction_coefficient=wrong)
+    with pytest.raises(NotAllowed, match="case.kind = 'statics' is not allowed: 'statejump reduced' is for"):
+        case.reduced()
 
 
 def test_refusals_of_the_engine() -> None:

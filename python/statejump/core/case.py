@@ -77,7 +77,9 @@ class Case(Section):
     def origin(self) -> Origin:
         """Where the case comes from."""
         found: Origin | None = self.__dict__.get("_origin")
-        return found if found is not None else Origin(self.to_dict())
+        if found is not None:
+            return found
+        return Origin({name: part for name, part in self.to_dict().items() if name not in self.NOT_IN_FILE})
 
     def _with_origin(self, origin: Origin) -> Case:
         object.__setattr__(self, "_origin", origin)

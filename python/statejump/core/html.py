@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 MOST_EVENTS = 12
 
 
-def _table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """Return a table as HTML."""
     head = "".join(f"<th>{escape(cell)}</th>" for cell in header)
     body = "".join("<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>" for row in rows)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
@@ -46,10 +47,10 @@ def run_html(run: Run) -> str:
         for event in run.events[:MOST_EVENTS]
     ]
     parts = [f"<h4>{escape(_title(run))}: {escape(MODELS.get(run.model, run.model))}, {len(run):,} samples</h4>",
-             _table(("quantity", "value"), rows)]
+             table(("quantity", "value"), rows)]
     if events:
         more = len(run.events) - len(events)
-        parts += [_table(("event", "joint", "ΔT", "time"), events), f"<p>and {more:,} more</p>" if more else ""]
+        parts += [table(("event", "joint", "ΔT", "time"), events), f"<p>and {more:,} more</p>" if more else ""]
     parts += [f"<p>warning: {escape(warning)}</p>" for warning in run.warnings]
     if not run.complete:
         parts.append("<p>warning: the run was interrupted, this is what there is of it</p>")
@@ -68,4 +69,4 @@ def comparison_html(comparison: Comparison) -> str:
     ]
     verdict = "passed" if comparison.passed else "a tolerance is missed"
     head = ("quantity", *(side.replace("_", " ") for side in sides), "difference", "tolerance", "")
-    return f"<h4>{escape(comparison.case.title)}: {verdict}</h4>{_table(head, rows)}"
+    return f"<h4>{escape(comparison.case.title)}: {verdict}</h4>{table(head, rows)}"

@@ -21,7 +21,7 @@ from statejump.core.errors import MissingKey, NotAllowed, Range, UnknownKey
 from statejump.schema.rules import NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, suggestion
 
 CHOICE = "choice, the paper is silent"
-RULE, SECTION, TABLES = "rule", "section", "tables"
+RULE, SECTION, TABLES, READ = "rule", "section", "tables", "read"
 
 SectionType = TypeVar("SectionType", bound="Section")
 Names = Sequence[str] | Callable[[], Sequence[str]]
@@ -47,7 +47,8 @@ def _key(default: Any, rule: Rule, converter: Callable[[Any], Any] | None = None
     if default is ...:
         default = attrs.NOTHING
     elif isinstance(default, list):
-        default = attrs.Factory(lambda: list(default))
+        given = tuple(default)
+        default = attrs.Factory(lambda: list(given))
     return attrs.field(default=default, validator=_check, converter=converter, metadata={RULE: rule})
 
 
@@ -109,9 +110,14 @@ def texts(default: Any, source: str, names: Names | None = None) -> Any:
     return _key(default, Rule(TEXTS, source, known=None if names is None else _called(names)))
 
 
-def section(model: type[Section], *, required: bool = False) -> Any:
-    """Declare a section of a file; one that is not required is all defaults where it is missing."""
-    default: Any = attrs.NOTHING if required else attrs.Factory(model)
+def section(
+    model: type[Section], *, required: bool = False, made: Callable[[], Section] | None = None
+) -> Any:
+    """Declare a section of a file; one that is not required is all defaults where it is missing.
+
+    :param made: returns the section where it is missing, if not with all defaults
+    """
+    default: Any = attrs.NOTHING if required else attrs.Factory(made or model)
     return attrs.field(default=default, metadata={SECTION: model})
 
 
@@ -120,14 +126,18 @@ def optional_section(model: type[Section]) -> Any:
     return attrs.field(default=None, metadata={SECTION: model})
 
 
-def tables(model: type[Section], source: str, *, required: bool = False) -> Any:
+def tables(
+    model: type[Section], source: str, *, required: bool = False,
+    read: Callable[[str, Any], list[Any]] | None = None,
+) -> Any:
     """Declare a list of tables, ``[[node]]`` and the like.
 
-    :param model: what a table is, an :class:`~statejump.schema.items.Item`
+    :param model: what a table is, an :class:`~statejump.schema.items.Item` unless ``read`` is given
     :param source: what the tables are
+    :param read: returns the items, of the name of the list and what tomllib returned for it
     """
     default: Any = attrs.NOTHING if required else attrs.Factory(list)
-    return attrs.field(default=default, metadata={TABLES: model, RULE: Rule(TEXT, source)})
+    return attrs.field(default=default, metadata={TABLES: model, READ: read, RULE: Rule(TEXT, source)})
 
 
 @definition
@@ -219,7 +229,8 @@ def structure(model: type[SectionType], data: Mapping[str, Any]) -> SectionType:
             continue
         item, keys = tables_of(attribute), section_of(attribute)
         if item is not None:
-            made[name] = read_tables(item, name, data[name])
+            read = attribute.metadata[READ]
+            made[name] = read(name, data[name]) if read else read_tables(item, name, data[name])
         elif keys is not None:
             if not isinstance(data[name], Mapping):
                 raise NotAllowed(name, data[name], f"must be a section [{name}]")

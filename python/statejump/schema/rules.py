@@ -98,6 +98,8 @@ def _text(rule: Rule, key: str, value: Any) -> None:
 def _numbers(rule: Rule, key: str, value: Any) -> None:
     if not isinstance(value, (list, tuple)):
         raise NotAllowed(key, value, f"must be a list of numbers [{rule.unit}]")
+    if rule.length is not None and len(value) != rule.length:
+        raise NotAllowed(key, value, f"must be a list of {rule.length} numbers [{rule.unit}]")
     one = attrs.evolve(rule, form=NUMBER)
     for item in value:
         try:

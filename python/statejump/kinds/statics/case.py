@@ -7,19 +7,23 @@ is exact with the two ends of the range. The union is that of the listed tempera
 """
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from math import hypot, isfinite
-from typing import Any, ClassVar, Optional
+from math import hypot
+from typing import Any, ClassVar
 
-from pydantic import Field, validator
-from pydantic.fields import ModelField
-
-from statejump.schema.fields import CHOICE, Case, Section, Thermal, choice, parameter, suggestion
-from statejump.schema.items import numbers
+from statejump.core.case import Case
+from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey
+from statejump.core.thermal import Thermal
+from statejump.schema.fields import (
+    Section, choice, definition, fields_of, numbers, parameter, rule_of, section, tables, text, whole,
+)
+from statejump.schema.rules import suggestion
 
 PAPER = "Chen et al. (2021), section 2"
 TYPES = ("slot", "journal", "ball", "cylinder", "lobed", "mesh")
 LARGEST_FORCE_N = 1e12
+LARGEST_TEMPERATURE_CHANGE_K = 1e4
 MOST_FORCES = 256
 # key of [joint]: the types that need it
 KEYS_OF_TYPES = {
@@ -30,23 +34,78 @@ KEYS_OF_TYPES = {
     "mesh_file": ("mesh",),
     "mesh_unit_m": ("mesh",),
 }
-LARGEST_TEMPERATURE_CHANGE_K = 1e4
+# What a key of a [[force]] must be.
+NEEDS = {
+    "name": "must be a text in quotes",
+    "force_N": f"must be a list of three numbers [N], none beyond {LARGEST_FORCE_N:g}",
+    "force_rate_N_per_K": "must be a list of three numbers [N/K] together with temperature_change_K",
+    "temperature_change_K":
+        f"must be a list of numbers between {-LARGEST_TEMPERATURE_CHANGE_K:g} and {LARGEST_TEMPERATURE_CHANGE_K:g} [K] "
+        "together with force_rate_N_per_K",
+}
 
 
-# What a [[force]] may hold; _load_cases() judges it.
+@definition
 class Force(Section):
     """One force on the component, or one for each of several temperatures."""
 
-    name: Optional[str] = Field(None, description="F1, F2, ...")
+    name: str | None = text(None, "F1, F2, ...")
     force_N: list[float] = numbers(..., "N", -LARGEST_FORCE_N, LARGEST_FORCE_N, PAPER + ": x, y, z", length=3)
-    force_rate_N_per_K: Optional[list[float]] = numbers(
+    force_rate_N_per_K: list[float] | None = numbers(
         None, "N/K", -LARGEST_FORCE_N, LARGEST_FORCE_N, "with temperature_change_K", length=3
     )
-    temperature_change_K: Optional[list[float]] = numbers(
+    temperature_change_K: list[float] | None = numbers(
         None, "K", -LARGEST_TEMPERATURE_CHANGE_K, LARGEST_TEMPERATURE_CHANGE_K, "with force_rate_N_per_K"
     )
 
+    def __attrs_post_init__(self) -> None:
+        if self.name == "":
+            raise NotAllowed("name", self.name, NEEDS["name"])
+        rate, changes = self.force_rate_N_per_K, self.temperature_change_K
+        if rate is None and changes is None:
+            return
+        for key, value in (("force_rate_N_per_K", rate), ("temperature_change_K", changes)):
+            if not value:
+                raise NotAllowed(key, value, NEEDS[key])
 
+    def at_temperatures(self, name: str) -> list[LoadCase]:
+        """Return the force, or the force at every temperature."""
+        x, y, z = self.force_N
+        if self.force_rate_N_per_K is None or self.temperature_change_K is None:
+            return [LoadCase(name, (x, y, z))]
+        a, b, c = self.force_rate_N_per_K
+        return [
+            LoadCase(f"{name}, ΔT = {change:g} K", (x + a * change, y + b * change, z + c * change))
+            for change in self.temperature_change_K
+        ]
+
+
+def read_forces(name: str, value: Any) -> list[Force]:
+    """Return the forces of ``[[force]]``; they need no names, so that messages count them.
+
+    :raises StatejumpError: one failure, without the file's name
+    """
+    given = [value] if isinstance(value, Mapping) else value
+    if not isinstance(given, list) or not given or not all(isinstance(table, Mapping) for table in given):
+        raise NotAllowed(name, value, f"must be one or more sections [[{name}]] with force_N = [x, y, z]")
+    known = fields_of(Force)
+    found = []
+    for number, table in enumerate(given, start=1):
+        item = f"{name} {number}"
+        for key in table:
+            if key not in known:
+                raise UnknownKey(key, item=item, **suggestion(key, list(known)))
+        if "force_N" not in table:
+            raise MissingKey("force_N", NEEDS["force_N"], item=item, allowed=rule_of(known["force_N"]).allowed)
+        try:
+            found.append(Force(**table))
+        except NotAllowed as refused:
+            key = refused.key or ""
+            raise NotAllowed(key, table.get(key), NEEDS[key], item=item, allowed=refused.allowed) from None
+    return found
+
+
+@definition
 class StaticsJoint(Section):
     """The joint: what its clearance leaves free, and friction."""
 
@@ -54,21 +113,20 @@ class StaticsJoint(Section):
 
     type: str = choice(..., TYPES, PAPER + ": one, two or three dimensions")
     friction_coefficient: float = parameter(..., "-", 0, 100, PAPER)
-    clearance_m: Optional[float] = parameter(None, "m", 0, 1e2, PAPER + ": c", above=True)
-    axial_play_m: Optional[float] = parameter(None, "m", 0, 1e2, "cylinder: middle to shoulder", above=True)
-    lobes: Optional[int] = parameter(None, "-", 1, 45, "lobed")
-    lobe_amplitude_m: Optional[float] = parameter(None, "m", 0, 1e2, "lobed: of the centre's curve")
-    mesh_file: Optional[str] = Field(None, description="STL, OBJ, PLY or VTP; from the case file's folder")
-    mesh_unit_m: Optional[float] = parameter(None, "m", 0, 1e3, "length of one unit of the mesh file", above=True)
+    clearance_m: float | None = parameter(None, "m", 0, 1e2, PAPER + ": c", above=True)
+    axial_play_m: float | None = parameter(None, "m", 0, 1e2, "cylinder: middle to shoulder", above=True)
+    lobes: int | None = whole(None, 1, 45, "lobed")
+    lobe_amplitude_m: float | None = parameter(None, "m", 0, 1e2, "lobed: of the centre's curve")
+    mesh_file: str | None = text(None, "STL, OBJ, PLY or VTP; from the case file's folder")
+    mesh_unit_m: float | None = parameter(None, "m", 0, 1e3, "length of one unit of the mesh file", above=True)
     mesh_free_side: str = choice("right_hand", ("right_hand", "left_hand"), "side of the triangles' vertex order")
 
 
+@definition
 class Picture(Section):
     """What is drawn besides the case's own friction coefficient."""
 
-    friction_coefficients: list[float] = Field(
-        [], unit="-", low=0, high=100, above=False, listed=True, description="one panel each, two dimensions"
-    )
+    friction_coefficients: list[float] = numbers([], "-", 0, 100, "one panel each, two dimensions")
 
 
 @dataclass(frozen=True)
@@ -79,136 +137,69 @@ class LoadCase:
     force_N: tuple[float, float, float]
 
 
-def _vector(value: Any) -> Optional[tuple[float, float, float]]:
-    if not isinstance(value, list) or len(value) != 3:
-        return None
-    if any(isinstance(item, bool) or not isinstance(item, (int, float)) or not isfinite(item) for item in value):
-        return None
-    if max(abs(item) for item in value) > LARGEST_FORCE_N:
-        return None
-    return (float(value[0]), float(value[1]), float(value[2]))
-
-
-def _temperatures(value: Any) -> Optional[list[float]]:
-    if not isinstance(value, list) or not value:
-        return None
-    largest = LARGEST_TEMPERATURE_CHANGE_K
-    if any(isinstance(item, bool) or not isinstance(item, (int, float)) or not abs(item) <= largest for item in value):
-        return None
-    return [float(item) for item in value]
-
-
-def _load_cases(tables: Any) -> list[LoadCase] | str:
-    """Return the forces of [[force]], or what is wrong with it."""
-    if isinstance(tables, dict):
-        tables = [tables]
-    if not isinstance(tables, list) or not tables or not all(isinstance(table, dict) for table in tables):
-        return f"force = {tables!r} is not allowed: must be one or more sections [[force]] with force_N = [x, y, z]"
-    found: list[LoadCase] = []
-    rule = f"must be a list of three numbers [N], none beyond {LARGEST_FORCE_N:g}"
-    for number, table in enumerate(tables, start=1):
-        where = f"force {number}"
-        for key in table:
-            if key not in Force.__fields__:
-                return f"{where}: {key} is unknown: {suggestion(key, list(Force.__fields__), '', '')}"
-        name = table.get("name", f"F{number}")
-        if not isinstance(name, str) or not name:
-            return f"{where}: name = {name!r} is not allowed: must be a text in quotes"
-        if "force_N" not in table:
-            return f"{where}: force_N is missing: {rule}"
-        force = _vector(table["force_N"])
-        if force is None:
-            return f"{where}: force_N = {table['force_N']!r} is not allowed: {rule}"
-        if "force_rate_N_per_K" not in table and "temperature_change_K" not in table:
-            found.append(LoadCase(name, force))
-            continue
-        rate = _vector(table.get("force_rate_N_per_K"))
-        if rate is None:
-            return (
-                f"{where}: force_rate_N_per_K = {table.get('force_rate_N_per_K')!r} is not allowed: must be a list of "
-                "three numbers [N/K] together with temperature_change_K"
-            )
-        changes = _temperatures(table.get("temperature_change_K"))
-        if changes is None:
-            return (
-                f"{where}: temperature_change_K = {table.get('temperature_change_K')!r} is not allowed: must be a "
-                "list of numbers between -10000 and 10000 [K] together with force_rate_N_per_K"
-            )
-        for change in changes:
-            x, y, z = (a + b * change for a, b in zip(force, rate))
-            found.append(LoadCase(f"{name}, ΔT = {change:g} K", (x, y, z)))
-    if len(found) > MOST_FORCES:
-        return f"force stands for {len(found)} forces: must be at most {MOST_FORCES}"
-    return found
-
-
+@definition
 class StaticsCase(Case):
     """Where a loaded joint can rest: its position under given forces, friction included."""
 
     KIND: ClassVar[str] = "statics"
+    NOT_IN_FILE: ClassVar[Mapping[str, str]] = {
+        "thermal": "a force takes temperature_change_K and force_rate_N_per_K",
+    }
 
-    joint: StaticsJoint
-    NOT_IN_FILE: ClassVar[tuple[str, ...]] = ("thermal",)
-
-    force: Any = Field(..., tables=Force, description="sections [[force]]")
-    picture: Picture = Field(default_factory=Picture)
+    joint: StaticsJoint = section(StaticsJoint, required=True)
+    force: list[Force] = tables(Force, "sections [[force]]", required=True, read=read_forces)
+    picture: Picture = section(Picture)
     # The common part of all kinds; forces carry their temperatures themselves.
-    thermal: Thermal = Field(default_factory=lambda: Thermal(shape="triangle", temperature_change_max_K=0.0))
-
-    @validator("*", pre=True)
-    def _strict(cls, value: Any, field: ModelField) -> Any:
-        # The schema knows tables of keys only; [[force]] is judged by problem().
-        return value if field.name == "force" else Section._strict(value, field)
+    thermal: Thermal = section(
+        Thermal, made=lambda: Thermal(shape="triangle", temperature_change_max_K=0.0)
+    )
 
     @property
     def load_cases(self) -> list[LoadCase]:
         """Every force, one per temperature where it depends on it."""
-        found = _load_cases(self.force)
-        assert not isinstance(found, str)
-        return found
+        return [
+            load for number, force in enumerate(self.force, start=1)
+            for load in force.at_temperatures(force.name or f"F{number}")
+        ]
 
     @property
     def is_planar(self) -> bool:
         """Whether positions are on a plane curve."""
         return self.joint.type in ("slot", "journal", "lobed")
 
-    def problem(self) -> str | None:
-        """Return what is wrong between several keys, without the file's name."""
-        if "thermal" in self.__fields_set__:
-            return "section [thermal] is not allowed: a force takes temperature_change_K and force_rate_N_per_K"
-        return self._joint_problem() or self._force_problem()
+    def check(self) -> None:
+        """Raise StatejumpError for what is wrong between several keys."""
+        self._check_joint()
+        self._check_forces()
 
-    def _joint_problem(self) -> str | None:
+    def _check_joint(self) -> None:
         joint = self.joint
         for key, types in KEYS_OF_TYPES.items():
             value = getattr(joint, key)
             if value is None and joint.type in types:
-                return f"joint.{key} is missing: joint.type = {joint.type!r} needs it"
+                raise MissingKey(f"joint.{key}", f"joint.type = {joint.type!r} needs it")
             if value is not None and joint.type not in types:
-                return (
-                    f"joint.{key} = {value!r} is not allowed: only with joint.type = "
-                    + " or ".join(repr(name) for name in types)
-                )
-        if joint.type == "lobed" and not joint.lobe_amplitude_m < joint.clearance_m:
-            return (
-                f"joint.lobe_amplitude_m = {joint.lobe_amplitude_m!r} is not allowed: must be at least 0 and below "
-                f"joint.clearance_m = {joint.clearance_m!r} [m]"
-            )
+                raise NotAllowed(f"joint.{key}", value,
+                                 "only with joint.type = " + " or ".join(repr(name) for name in types))
+        if joint.lobe_amplitude_m is not None and joint.clearance_m is not None:
+            if not joint.lobe_amplitude_m < joint.clearance_m:
+                raise NotAllowed("joint.lobe_amplitude_m", joint.lobe_amplitude_m,
+                                 f"must be at least 0 and below joint.clearance_m = {joint.clearance_m!r} [m]")
         if self.picture.friction_coefficients and not self.is_planar:
-            return "picture.friction_coefficients is not allowed: only for joints in one or two dimensions"
-        return None
+            raise NotAllowed("picture.friction_coefficients", cause="only for joints in one or two dimensions")
 
-    def _force_problem(self) -> str | None:
-        found = _load_cases(self.force)
-        if isinstance(found, str):
-            return found
-        for load in found:
+    def _check_forces(self) -> None:
+        loads = self.load_cases
+        if len(loads) > MOST_FORCES:
+            raise StatejumpError(f"force stands for {len(loads)} forces", key="force",
+                                 cause=f"must be at most {MOST_FORCES}")
+        for load in loads:
             x, y, z = load.force_N
             if hypot(x, y, z) == 0:
-                return f"force {load.name!r} = [0, 0, 0] is not allowed: without a force every position is at rest"
+                raise NotAllowed(f"force {load.name!r}", [0, 0, 0], "without a force every position is at rest")
             if self.joint.type in ("journal", "lobed") and z != 0:
-                return (
-                    f"force {load.name!r} = {list(load.force_N)} is not allowed: joint.type = {self.joint.type!r} is "
-                    "planar, the third number must be 0; 'cylinder' takes axial forces"
+                raise NotAllowed(
+                    f"force {load.name!r}", list(load.force_N),
+                    f"joint.type = {self.joint.type!r} is planar, the third number must be 0; 'cylinder' takes axial "
+                    "forces",
                 )
-        return None

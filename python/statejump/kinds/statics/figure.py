@@ -2,18 +2,19 @@
 """Pictures of rest sets: where the centre of a component can be, under which force."""
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import atan, atan2, cos, degrees, hypot, pi, sin
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Wedge
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from statejump.kinds.spring_slider import figure as plot
+from statejump.core.figures import Drawing, style
 from statejump.kinds.statics.case import StaticsCase
-from statejump.kinds.spring_slider.figure import plt
 from statejump.kinds.statics.solve import Statics
 
 COLOURS = ("#E69F00", "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#56B4E9")
@@ -23,32 +24,54 @@ SURFACE, HELD, HELD_BY_ALL = "#C9CED3", "#E69F00", "#0072B2"
 MICRO = 1e6
 
 
-def planar(case: StaticsCase, solutions: list[Statics], folder: Path) -> list[Path]:
-    """Write ``<case>.png`` and ``.svg``: one panel per friction coefficient."""
-    count, slot = len(solutions), case.joint.type == "slot"
-    with plt.rc_context(plot.STYLE):
+def drawn(statics: Statics, axes: Axes | None = None) -> Figure:
+    """Return the picture of rest sets, or draw them into given axes."""
+    if axes is None:
+        return planar([statics]) if statics.case.is_planar else spatial(statics)
+    if statics.case.is_planar:
+        _panel(axes, statics)
+    else:
+        _space(axes, statics)
+    figure = axes.figure
+    assert isinstance(figure, Figure)
+    return figure
+
+
+def planar(solutions: Sequence[Statics]) -> Figure:
+    """Draw positions on a curve, one panel per friction coefficient of one case."""
+    case, count = solutions[0].case, len(solutions)
+    slot = case.joint.type == "slot"
+    with style():
         if slot:
-            drawing = plt.figure(figsize=(7.0, 1.2 + 2.6 * count), constrained_layout=True)
+            drawing = Drawing(figsize=(7.0, 1.2 + 2.6 * count), layout="constrained")
             grid = drawing.add_gridspec(count + 1, 1, height_ratios=[1.0] * count + [0.16])
             panels = [drawing.add_subplot(grid[row, 0]) for row in range(count)]
             below = drawing.add_subplot(grid[count, 0])
         else:
-            drawing = plt.figure(figsize=(max(5.0, 3.7 * count), 4.6), constrained_layout=True)
+            drawing = Drawing(figsize=(max(5.0, 3.7 * count), 4.6), layout="constrained")
             grid = drawing.add_gridspec(2, count, height_ratios=[1.0, 0.1])
             panels = [drawing.add_subplot(grid[0, column]) for column in range(count)]
             below = drawing.add_subplot(grid[1, :])
         for panel, statics in zip(panels, solutions):
-            (_slot if slot else _ring)(panel, case, statics)
-            panel.set_title(_title(statics), fontsize=9)
-        for panel in panels if slot else panels[:1]:
-            panel.set_ylabel("normal to the slot [µm]" if slot else "y of the centre [µm]")
-        for panel in panels[-1:] if slot else panels:
-            panel.set_xlabel("position of the centre [µm]" if slot else "x of the centre [µm]")
+            _panel(panel, statics)
+        for panel in [] if slot else panels[1:]:
+            panel.set_ylabel("")
+        for panel in panels[:-1] if slot else []:
+            panel.set_xlabel("")
         below.axis("off")
         below.legend(handles=_legend(case, solutions[0]), loc="center", ncol=3 if slot or count < 3 else 5,
                      fontsize=8, framealpha=1)
         drawing.suptitle(case.title, fontsize=11)
-        return plot.save(drawing, folder, case.name)
+    return drawing
+
+
+def _panel(panel: Axes, statics: Statics) -> None:
+    """Draw positions on a curve into axes."""
+    slot = statics.case.joint.type == "slot"
+    (_slot if slot else _ring)(panel, statics.case, statics)
+    panel.set_title(_title(statics), fontsize=9)
+    panel.set_ylabel("normal to the slot [µm]" if slot else "y of the centre [µm]")
+    panel.set_xlabel("position of the centre [µm]" if slot else "x of the centre [µm]")
 
 
 def _title(statics: Statics) -> str:
@@ -85,18 +108,18 @@ def _drawn(statics: Statics) -> list[tuple[str, dict[str, Any]]]:
     return list(zip(COLOURS, statics.each))
 
 
-def _arrow(panel: plt.Axes, start: np.ndarray, end: np.ndarray, colour: str, style: str = "-|>") -> None:
+def _arrow(panel: Axes, start: np.ndarray, end: np.ndarray, colour: str, style: str = "-|>") -> None:
     panel.annotate("", xy=tuple(end), xytext=tuple(start), zorder=6,
                    arrowprops=dict(arrowstyle=style, color=colour, linewidth=1.6, shrinkA=0, shrinkB=0,
                                    mutation_scale=13))
 
 
-def _name(panel: plt.Axes, text: str, place: np.ndarray) -> None:
+def _name(panel: Axes, text: str, place: np.ndarray) -> None:
     panel.annotate(text, tuple(place), ha="center", va="center", fontsize=8, color="0.15", zorder=7,
                    bbox=dict(boxstyle="round,pad=0.1", facecolor="white", edgecolor="none", alpha=0.8))
 
 
-def _cone(panel: plt.Axes, apex: np.ndarray, axis: np.ndarray, mu: float, size: float, colour: str = "0.5") -> None:
+def _cone(panel: Axes, apex: np.ndarray, axis: np.ndarray, mu: float, size: float, colour: str = "0.5") -> None:
     """Friction cone: of the reactions that the surface can give, or of directions to the contact."""
     if mu == 0:
         return
@@ -106,7 +129,7 @@ def _cone(panel: plt.Axes, apex: np.ndarray, axis: np.ndarray, mu: float, size: 
     panel.plot(*np.transpose([apex, apex + size * axis]), color="0.4", linewidth=0.9, linestyle="-.", zorder=2.5)
 
 
-def _ring(panel: plt.Axes, case: StaticsCase, statics: Statics) -> None:
+def _ring(panel: Axes, case: StaticsCase, statics: Statics) -> None:
     """Journal: the closed curve of its centre, rest arcs, forces, a friction cone at an arc's end."""
     c = case.joint.clearance_m * MICRO
     if statics.curve is None:
@@ -158,7 +181,7 @@ def _ring(panel: plt.Axes, case: StaticsCase, statics: Statics) -> None:
     panel.set_aspect("equal")
 
 
-def _slot(panel: plt.Axes, case: StaticsCase, statics: Statics) -> None:
+def _slot(panel: Axes, case: StaticsCase, statics: Statics) -> None:
     """Block in a slot: its centre between the stops, drawn in the plane of axis and force."""
     c = case.joint.clearance_m * MICRO
     panel.plot([-c, c], [0, 0], color="0.55", linewidth=1.2, linestyle=(0, (4, 3)), zorder=1.5)
@@ -193,8 +216,19 @@ def _slot(panel: plt.Axes, case: StaticsCase, statics: Statics) -> None:
     panel.grid(False)
 
 
-def spatial(case: StaticsCase, statics: Statics, folder: Path) -> list[Path]:
-    """Write ``<case>.png`` and ``.svg``: the surface of positions, shaded, the rest sets on it."""
+def spatial(statics: Statics) -> Figure:
+    """Draw the surface of positions, shaded, the rest sets on it."""
+    with style():
+        drawing = Drawing(figsize=(7.0, 6.4), dpi=160)  # of the picture inside the SVG
+        panel = drawing.add_axes((0.0, 0.08, 1.0, 0.84), projection="3d", computed_zorder=False)
+        handles = _space(panel, statics)
+        drawing.legend(handles=handles, loc="lower center", ncol=2, fontsize=8, framealpha=1)
+        drawing.suptitle(f"{statics.case.title}, μ = {statics.friction_coefficient:g}", fontsize=11)
+    return drawing
+
+
+def _space(panel: Any, statics: Statics) -> list[Any]:
+    """Draw positions in space into three-dimensional axes; return what the legend shows."""
     polygons = [polygon * MICRO for polygon in statics.pieces["polygons_m"]]
     counts = np.array(statics.pieces["polygon_forces"])
     every = len(statics.loads)
@@ -217,51 +251,46 @@ def spatial(case: StaticsCase, statics: Statics, folder: Path) -> list[Path]:
     lamp = view + 0.5 * side / max(np.linalg.norm(side), 1e-9) + np.array([0, 0, 0.5])
     light = 0.55 + 0.45 * np.abs(outwards @ (lamp / np.linalg.norm(lamp)))
     shaded = np.clip(colours * light[:, None], 0, 1)
-    with plt.rc_context(plot.STYLE):
-        drawing = plt.figure(figsize=(7.0, 6.4), dpi=160)  # of the picture inside the SVG
-        panel = drawing.add_axes((0.0, 0.08, 1.0, 0.84), projection="3d", computed_zorder=False)
-        surface = Poly3DCollection(polygons, facecolors=shaded, edgecolors=shaded, linewidths=0.15, zorder=1)
-        surface.set_rasterized(True)  # thousands of polygons
-        panel.add_collection3d(surface)
-        handles = [Patch(facecolor=SURFACE, label="positions of the centre in contact"),
-                   Patch(facecolor=HELD, label="at rest" if every == 1 else "at rest under at least one force")]
+    surface = Poly3DCollection(polygons, facecolors=shaded, edgecolors=shaded, linewidths=0.15, zorder=1)
+    surface.set_rasterized(True)  # thousands of polygons
+    panel.add_collection3d(surface)
+    handles = [Patch(facecolor=SURFACE, label="positions of the centre in contact"),
+               Patch(facecolor=HELD, label="at rest" if every == 1 else "at rest under at least one force")]
+    if every > 1:
+        handles.append(Patch(facecolor=HELD_BY_ALL, label="at rest under every force"))
+    for part in statics.any["parts"]:
+        line = part["points_m"] * MICRO
+        if len(line):
+            panel.plot(*line.T, color=HELD, linewidth=3, marker="o" if len(line) == 1 else None, zorder=3)
+        for rim in part["rims_m"]:
+            facing = (rim * MICRO - middle) @ view > 0  # the surface hides the others
+            line = np.where(facing[:, None], rim * MICRO, np.nan)
+            panel.plot(*line.T, color=HELD, linewidth=3, zorder=3)
+    if statics.any["parts"]:
+        ends = middle + 1.01 * (statics.any["farthest_m"] * MICRO - middle)
+        panel.plot(*ends.T, "o", color="black", markersize=5, zorder=4)
+        panel.plot(*ends.T, color="black", linewidth=1.2, linestyle=(0, (3, 2)), zorder=4)
+        jump = statics.any["diameter_m"] * MICRO
+        handles.append(Line2D([], [], color="black", marker="o", markersize=4, linestyle=(0, (3, 2)),
+                              label=f"farthest two, {jump:.4g} µm"))
+    shown = statics.loads if every <= MOST_DRAWN else [statics.loads[0], statics.loads[-1]]
+    for index, load in enumerate(shown, start=1):
+        force = np.array(load.force_N) / hypot(*load.force_N)
+        start, end = middle + 1.08 * reach * force, middle + 1.5 * reach * force
+        panel.quiver(*start, *(end - start), color="0.15", linewidth=1.6, arrow_length_ratio=0.25, zorder=5)
+        text = load.name if every == 1 else str(index)
+        panel.text(*(middle + 1.62 * reach * force), text, fontsize=9, ha="center", va="center", zorder=6,
+                   bbox=dict(boxstyle="round,pad=0.15", facecolor="white", edgecolor="none", alpha=0.8))
         if every > 1:
-            handles.append(Patch(facecolor=HELD_BY_ALL, label="at rest under every force"))
-        for part in statics.any["parts"]:
-            line = part["points_m"] * MICRO
-            if len(line):
-                panel.plot(*line.T, color=HELD, linewidth=3, marker="o" if len(line) == 1 else None, zorder=3)
-            for rim in part["rims_m"]:
-                facing = (rim * MICRO - middle) @ view > 0  # the surface hides the others
-                line = np.where(facing[:, None], rim * MICRO, np.nan)
-                panel.plot(*line.T, color=HELD, linewidth=3, zorder=3)
-        if statics.any["parts"]:
-            ends = middle + 1.01 * (statics.any["farthest_m"] * MICRO - middle)
-            panel.plot(*ends.T, "o", color="black", markersize=5, zorder=4)
-            panel.plot(*ends.T, color="black", linewidth=1.2, linestyle=(0, (3, 2)), zorder=4)
-            jump = statics.any["diameter_m"] * MICRO
-            handles.append(Line2D([], [], color="black", marker="o", markersize=4, linestyle=(0, (3, 2)),
-                                  label=f"farthest two, {jump:.4g} µm"))
-        shown = statics.loads if every <= MOST_DRAWN else [statics.loads[0], statics.loads[-1]]
-        for index, load in enumerate(shown, start=1):
-            force = np.array(load.force_N) / hypot(*load.force_N)
-            start, end = middle + 1.08 * reach * force, middle + 1.5 * reach * force
-            panel.quiver(*start, *(end - start), color="0.15", linewidth=1.6, arrow_length_ratio=0.25, zorder=5)
-            text = load.name if every == 1 else str(index)
-            panel.text(*(middle + 1.62 * reach * force), text, fontsize=9, ha="center", va="center", zorder=6,
-                       bbox=dict(boxstyle="round,pad=0.15", facecolor="white", edgecolor="none", alpha=0.8))
-            if every > 1:
-                handles.append(Line2D([], [], color="0.15", marker=">", markersize=4, label=f"{index}: {load.name}"))
-        for setter, value in zip((panel.set_xlim, panel.set_ylim, panel.set_zlim), middle):
-            setter(value - 1.15 * reach, value + 1.15 * reach)
-        panel.set_box_aspect((1, 1, 1))
-        panel.view_init(elev=rise, azim=azimuth)
-        panel.set_xlabel("x [µm]")
-        panel.set_ylabel("y [µm]")
-        panel.set_zlabel("z [µm]")
-        drawing.legend(handles=handles, loc="lower center", ncol=2, fontsize=8, framealpha=1)
-        drawing.suptitle(f"{case.title}, μ = {statics.friction_coefficient:g}", fontsize=11)
-        return plot.save(drawing, folder, case.name)
+            handles.append(Line2D([], [], color="0.15", marker=">", markersize=4, label=f"{index}: {load.name}"))
+    for setter, value in zip((panel.set_xlim, panel.set_ylim, panel.set_zlim), middle):
+        setter(value - 1.15 * reach, value + 1.15 * reach)
+    panel.set_box_aspect((1, 1, 1))
+    panel.view_init(elev=rise, azim=azimuth)
+    panel.set_xlabel("x [µm]")
+    panel.set_ylabel("y [µm]")
+    panel.set_zlabel("z [µm]")
+    return handles
 
 
 def _rgb(colour: str) -> np.ndarray:

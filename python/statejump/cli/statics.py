@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``statejump statics``: where a loaded joint can rest."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown
+from statejump.core.output import results_folder
+
+
+@click.command("statics")
+@CASE
+@RESULTS
+@QUIET
+def statics_command(case_file: Path, results: Path, quiet: bool) -> None:
+    """Where the joint of CASE can rest: parts, measure, and the largest jump that friction allows.
+
+    \b
+    Example:
+      statejump statics cases/statics_journal.toml
+    """
+    from statejump import api
+    from statejump.case import Case
+
+    console = make_console(quiet)
+    case = Case(loaded(case_file, "statics"))
+    folder = results_folder(results, case.name)
+    statics = api.statics(case)
+    print_shown(statics.told(), console)
+    console.print(f"results: {', '.join(str(path) for path in statics.write(folder))}")
