@@ -3,12 +3,13 @@
 ``section.*.key`` of all its items. Names of items may hold dots: the key is what follows the last one."""
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import attrs
 
-from statejump.core.errors import StatejumpError, UnknownKey
-from statejump.schema.fields import Section, fields_of, section_of, tables_of
+from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey
+from statejump.schema.fields import Section, SectionType, fields_of, section_of, tables_of
 from statejump.schema.rules import suggestion
 
 EVERY = "*"
@@ -79,3 +80,24 @@ def value_of(case: Section, path: str) -> Any:
     if any(value != found[0] for value in found):
         raise StatejumpError(f"{path} has several values", key=path)
     return found[0]
+
+
+def with_values(case: SectionType, changes: Mapping[str, Any]) -> SectionType:
+    """Return a case with other values, each held against its own rule, but the case not checked as a whole: a study
+    may ask what no case file would.
+
+    :param changes: value by ``section.key``; keys of lists of tables stay as they are
+    :raises NotAllowed: a value is not allowed
+    """
+    sections: dict[str, dict[str, Any]] = {}
+    for path, value in changes.items():
+        section, _, key = path.partition(".")
+        sections.setdefault(section, {})[key] = value
+    made = {}
+    for section, values in sections.items():
+        try:
+            made[section] = attrs.evolve(getattr(case, section), **values)
+        except NotAllowed as refused:
+            refused.key = f"{section}.{refused.key}"
+            raise
+    return attrs.evolve(case, **made)

@@ -7,28 +7,40 @@ from C to B; the flare angle is theta4 - theta2.
 """
 from __future__ import annotations
 
-from math import atan, atan2, pi, sqrt
-from typing import ClassVar
-
-from pydantic import Field
+from collections.abc import Callable, Sequence
+from math import atan, atan2, pi
+from typing import Any, ClassVar
 
 from statejump import _engine
-from statejump.schema.fields import CHOICE, Case, Section, Thermal, check_radii, choice, no_length_left, parameter
+from statejump.core import thermal as programs
+from statejump.core.case import Case, check_radii, no_length_left
+from statejump.core.errors import NotAllowed
+from statejump.core.physics import apex_m
+from statejump.core.thermal import Thermal
+from statejump.schema.fields import CHOICE, Section, choice, definition, parameter, section, whole
 
 PAPER = "Chen et al. (2021), Tables 2 and 3"
 NONE = "none in the paper's case"
 
 
-def _holds_static_load(friction_law: str) -> bool:
-    return any(law["name"] == friction_law and law["holds_static_load"] for law in _engine.laws("friction"))
+def _laws(kind: str) -> Callable[[], Sequence[str]]:
+    """Return what names the laws of a kind when they are needed: the catalogue grows with laws of one's own."""
+    return lambda: _engine.law_names(kind)
 
 
+def friction_has(trait: str, friction_law: str) -> bool:
+    """Whether the catalogue says so of a friction law: ``holds_static_load``, ``has_memory``."""
+    return any(law["name"] == friction_law and law[trait] for law in _engine.laws("friction"))
+
+
+@definition
 class Frame(Section):
     """What carries the pins; it does not expand."""
 
     length_m: float = parameter(..., "m", 0, 1e3, PAPER + ": |AC|", above=True)
 
 
+@definition
 class UmbrellaLink(Section):
     """A bar pinned to the frame at one end; it also gives its half of the joint its material."""
 
@@ -40,6 +52,7 @@ class UmbrellaLink(Section):
     poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, PAPER)
 
 
+@definition
 class UmbrellaJoint(Section):
     """The clearance joint at B and its contact laws; names are those of the engine's catalogue."""
 
@@ -48,14 +61,14 @@ class UmbrellaJoint(Section):
     journal_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, "eq. 12: constant")
     bearing_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, "eq. 12: constant")
     normal_law: str = choice(
-        "hertz_internal", _engine.law_names("normal"), CHOICE + "; it prints hertz_paper"
+        "hertz_internal", _laws("normal"), CHOICE + "; it prints hertz_paper"
     )
-    dissipation_law: str = choice("none", _engine.law_names("dissipation"), "eq. 6: none")
+    dissipation_law: str = choice("none", _laws("dissipation"), "eq. 6: none")
     friction_law: str = choice(
-        "mindlin", _engine.law_names("friction"), CHOICE + "; its ambrosio holds no static load"
+        "mindlin", _laws("friction"), CHOICE + "; its ambrosio holds no static load"
     )
     tangential_velocity: str = choice(
-        "material", _engine.law_names("tangential_velocity"), CHOICE + "; eqs 14-16 are paper"
+        "material", _laws("tangential_velocity"), CHOICE + "; eqs 14-16 are paper"
     )
     friction_coefficient: float = parameter(..., "-", 0, 10, PAPER)
     restitution: float = parameter(1.0, "-", 0, 1, CHOICE + "; dissipation laws only", above=True)
@@ -69,6 +82,7 @@ class UmbrellaJoint(Section):
     contact_length_m: float = parameter(0.01, "m", 0, 1e2, CHOICE + "; line contacts only", above=True)
 
 
+@definition
 class TorsionSpring(Section):
     """Spring (17) on the flare angle between the links."""
 
@@ -76,6 +90,7 @@ class TorsionSpring(Section):
     bias_rad: float = parameter(0.0, "rad", -pi, pi, "eq. 17: free at the ideal position")
 
 
+@definition
 class Damping(Section):
     """Damping outside of the contact."""
 
@@ -83,12 +98,14 @@ class Damping(Section):
     pin_damping_N_m_s_per_rad: float = parameter(0.0, "N m s/rad", 0, 1e9, NONE)
 
 
+@definition
 class UmbrellaThermal(Thermal):
     """The temperature program of both links."""
 
-    period_s: float = parameter(1.0, "s", 0, 1e6, CHOICE, above=True)
+    period_s: float = programs.period()
 
 
+@definition
 class Start(Section):
     """State at t = 0: links at rest, links that follow their expansion, or loaded equilibrium."""
 
@@ -98,40 +115,45 @@ class Start(Section):
     contact_angle_rad: float = parameter(0.0, "rad", -pi / 2, pi / 2, CHOICE + ": from AC; loaded")
 
 
+@definition
 class Output(Section):
     """What both models write."""
 
-    samples_per_cycle: int = parameter(2000, "-", 10, 1_000_000, CHOICE)
+    samples_per_cycle: int = whole(2000, 10, 1_000_000, CHOICE)
 
 
+@definition
 class Reduced(Section):
     """How the reduced model is integrated."""
 
     method: str = choice("rk4", ("rk4", "adaptive"), CHOICE)
-    steps_per_cycle: int = parameter(100_000, "-", 10, 1_000_000_000, "the paper's number")
+    steps_per_cycle: int = whole(100_000, 10, 1_000_000_000, "the paper's number")
     relative_tolerance: float = parameter(1e-10, "-", 1e-14, 0.01, CHOICE + "; adaptive only")
 
 
+@definition
 class UmbrellaDem(Section):
     """How the DEM is integrated."""
 
-    steps_per_cycle: int = parameter(100_000, "-", 10, 1_000_000_000, "as the reduced model")
-    threads: int = parameter(1, "-", 1, 1024, CHOICE)
+    steps_per_cycle: int = whole(100_000, 10, 1_000_000_000, "as the reduced model")
+    threads: int = whole(1, 1, 1024, CHOICE)
 
 
+@definition
 class Ensemble(Section):
     """Runs from slightly different starts: without damping the motion is chaotic."""
 
-    reduced_runs: int = parameter(100, "-", 1, 1_000_000, CHOICE)
-    dem_runs: int = parameter(30, "-", 1, 1_000_000, CHOICE)
-    reduced_steps_per_cycle: int = parameter(100_000, "-", 10, 1_000_000_000, "the paper's number")
-    dem_steps_per_cycle: int = parameter(
-        400_000, "-", 10, 1_000_000_000, CHOICE + ": leapfrog keeps the links' phase less well"
+    reduced_runs: int = whole(100, 1, 1_000_000, CHOICE)
+    dem_runs: int = whole(30, 1, 1_000_000, CHOICE)
+    reduced_steps_per_cycle: int = whole(100_000, 10, 1_000_000_000, "the paper's number")
+    dem_steps_per_cycle: int = whole(
+        400_000, 10, 1_000_000_000, CHOICE + ": leapfrog keeps the links' phase less well"
     )
     start_spread_m: float = parameter(1e-9, "m", 0, 1e2, CHOICE + ": around the start", above=True)
-    seed: int = parameter(1, "-", 0, 2**31 - 1, CHOICE)
+    seed: int = whole(1, 0, 2**31 - 1, CHOICE)
 
 
+@definition
 class UmbrellaTolerance(Section):
     """How close the two models must be for ``compare`` to pass."""
 
@@ -142,29 +164,25 @@ class UmbrellaTolerance(Section):
     energy_balance_relative: float = parameter(0.001, "-", 0, 1, CHOICE, above=True)
 
 
+@definition
 class UmbrellaCase(Case):
     """One rib of the umbrella antenna, the paper's section 4."""
 
     KIND: ClassVar[str] = "umbrella"
 
-    frame: Frame
-    link_ab: UmbrellaLink
-    link_bc: UmbrellaLink
-    joint: UmbrellaJoint
-    torsion_spring: TorsionSpring = Field(default_factory=TorsionSpring)
-    damping: Damping = Field(default_factory=Damping)
-    thermal: UmbrellaThermal
-    start: Start = Field(default_factory=Start)
-    output: Output = Field(default_factory=Output)
-    reduced: Reduced = Field(default_factory=Reduced)
-    dem: UmbrellaDem = Field(default_factory=UmbrellaDem)
-    ensemble: Ensemble = Field(default_factory=Ensemble)
-    tolerance: UmbrellaTolerance = Field(default_factory=UmbrellaTolerance)
-
-    @property
-    def period_s(self) -> float:
-        """Length of one cycle [s]."""
-        return self.thermal.period_s
+    frame: Frame = section(Frame, required=True)
+    link_ab: UmbrellaLink = section(UmbrellaLink, required=True)
+    link_bc: UmbrellaLink = section(UmbrellaLink, required=True)
+    joint: UmbrellaJoint = section(UmbrellaJoint, required=True)
+    torsion_spring: TorsionSpring = section(TorsionSpring)
+    damping: Damping = section(Damping)
+    thermal: UmbrellaThermal = section(UmbrellaThermal, required=True)
+    start: Start = section(Start)
+    output: Output = section(Output)
+    reduced: Reduced = section(Reduced)
+    dem: UmbrellaDem = section(UmbrellaDem)
+    ensemble: Ensemble = section(Ensemble)
+    tolerance: UmbrellaTolerance = section(UmbrellaTolerance)
 
     @property
     def samples_per_cycle(self) -> int:
@@ -184,7 +202,8 @@ class UmbrellaCase(Case):
             - joint.journal_thermal_expansion_per_K * joint.journal_radius_m
         )
 
-    def _link_lengths_m(self, temperature_change_K: float) -> tuple[float, float]:
+    def link_lengths_m(self, temperature_change_K: Any) -> tuple[Any, Any]:
+        """Return the lengths of AB and BC without load [m] at ΔT, a number or an array."""
         ab, bc = (
             link.stress_free_length_m * (1 + link.thermal_expansion_per_K * temperature_change_K)
             for link in (self.link_ab, self.link_bc)
@@ -194,12 +213,8 @@ class UmbrellaCase(Case):
     @property
     def ideal_position_m(self) -> tuple[float, float]:
         """Where the unstrained links meet at ΔT = 0, above AC: x and y of B [m]."""
-        ab, bc = self._link_lengths_m(0.0)
-        frame = self.frame.length_m
-        x = (frame + (ab - bc) * (ab + bc) / frame) / 2
-        # Heron's product: no difference of squares.
-        product = (ab + bc + frame) * (ab + bc - frame) * (frame + ab - bc) * (frame - ab + bc)
-        return x, sqrt(max(product, 0.0)) / (2 * frame)
+        x, y = apex_m(self.frame.length_m, *self.link_lengths_m(0.0))
+        return float(x), float(y)
 
     @property
     def theta2_rad(self) -> float:
@@ -224,6 +239,12 @@ class UmbrellaCase(Case):
         return self.flare_angle_rad + self.torsion_spring.bias_rad
 
     @property
+    def is_reproducible(self) -> bool:
+        """Whether the whole history, not only the heating, can be compared point by point: with damping of the links
+        and of the pins small differences die out; without they grow to the size of the play."""
+        return self.damping.axial_damping_ratio > 0 and self.damping.pin_damping_N_m_s_per_rad > 0
+
+    @property
     def effective_young_modulus_Pa(self) -> float:
         """E* of the contact [Pa]."""
         ab, bc = self.link_ab, self.link_bc
@@ -231,128 +252,105 @@ class UmbrellaCase(Case):
             ab.young_modulus_Pa, ab.poisson_ratio, bc.young_modulus_Pa, bc.poisson_ratio
         )
 
-    def problem(self) -> str | None:
-        """Return what is wrong between several keys, without the file's name."""
-        return (
-            self._geometry_problem()
-            or self._joint_problem()
-            or self._start_problem()
-            or self._run_problem()
-        )
+    def check(self) -> None:
+        """Raise StatejumpError for what is wrong between several keys."""
+        self._check_geometry()
+        self._check_joint()
+        self._check_start()
+        self._check_run()
 
-    def _geometry_problem(self) -> str | None:
-        for section in ("link_ab", "link_bc"):
-            expansion = getattr(self, section).thermal_expansion_per_K
-            problem = no_length_left(f"{section}.thermal_expansion_per_K", expansion, self)
-            if problem is not None:
-                return problem
+    def _check_geometry(self) -> None:
+        for part in ("link_ab", "link_bc"):
+            no_length_left(f"{part}.thermal_expansion_per_K", getattr(self, part).thermal_expansion_per_K, self)
         frame = self.frame.length_m
         # The sum is linear in ΔT and the difference convex: the ends of the program decide.
         for change in (0.0, *self.temperature_range_K):
-            ab, bc = self._link_lengths_m(change)
+            ab, bc = self.link_lengths_m(change)
             if not abs(ab - bc) < frame < ab + bc:
-                return (
-                    f"frame.length_m = {frame!r} is not allowed: must be above {abs(ab - bc):.9g} and below "
-                    f"{ab + bc:.9g} [m], or the links cannot meet at a temperature change of {change:g} K"
+                raise NotAllowed(
+                    "frame.length_m", frame,
+                    f"must be above {abs(ab - bc):.9g} and below {ab + bc:.9g} [m], or the links cannot meet at a "
+                    f"temperature change of {change:g} K",
                 )
         flare, bias = self.flare_angle_rad, self.torsion_spring.bias_rad
         if not 0 < flare + bias < pi:
-            return (
-                f"torsion_spring.bias_rad = {bias!r} is not allowed: must be above {-flare:.9g} and below "
-                f"{pi - flare:.9g} [rad], so that the free flare angle lies between 0 and pi"
+            raise NotAllowed(
+                "torsion_spring.bias_rad", bias,
+                f"must be above {-flare:.9g} and below {pi - flare:.9g} [rad], so that the free flare angle lies between "
+                "0 and pi",
             )
-        return None
 
-    def _joint_problem(self) -> str | None:
+    def _check_joint(self) -> None:
         joint = self.joint
-        try:
-            check_radii(self.bearing_radius_m, joint.journal_radius_m)
-        except ValueError:
-            return (
-                f"joint.radial_clearance_m = {joint.radial_clearance_m!r} is not allowed: too small beside "
-                f"joint.journal_radius_m = {joint.journal_radius_m!r} [m], the radii come out equal"
+        clearance = joint.radial_clearance_m
+        if not check_radii(self.bearing_radius_m, joint.journal_radius_m):
+            raise NotAllowed(
+                "joint.radial_clearance_m", clearance,
+                f"too small beside joint.journal_radius_m = {joint.journal_radius_m!r} [m], the radii come out equal",
             )
         for part in ("journal", "bearing"):
             expansion = getattr(joint, f"{part}_thermal_expansion_per_K")
             for change in self.temperature_range_K:
                 if 1 + expansion * change <= 0:
-                    return (
-                        f"joint.{part}_thermal_expansion_per_K = {expansion!r} is not allowed: the {part} "
-                        f"has no radius left at a temperature change of {change:g} K"
-                    )
+                    raise NotAllowed(f"joint.{part}_thermal_expansion_per_K", expansion,
+                                     f"the {part} has no radius left at a temperature change of {change:g} K")
         for change in self.temperature_range_K:
             if not self.clearance_m(change) > 0:
-                return (
-                    f"joint.radial_clearance_m = {joint.radial_clearance_m!r} is not allowed: the expansion "
-                    f"of journal and bearing closes it at a temperature change of {change:g} K, it must stay "
-                    "above 0 [m] within the program"
+                raise NotAllowed(
+                    "joint.radial_clearance_m", clearance,
+                    f"the expansion of journal and bearing closes it at a temperature change of {change:g} K, it must "
+                    "stay above 0 [m] within the program",
                 )
         if joint.friction_v1_m_per_s <= joint.friction_v0_m_per_s:
-            return (
-                f"joint.friction_v1_m_per_s = {joint.friction_v1_m_per_s!r} is not allowed: must be above "
-                f"joint.friction_v0_m_per_s = {joint.friction_v0_m_per_s!r} [m/s]"
-            )
-        return None
+            raise NotAllowed("joint.friction_v1_m_per_s", joint.friction_v1_m_per_s,
+                             f"must be above joint.friction_v0_m_per_s = {joint.friction_v0_m_per_s!r} [m/s]")
 
-    def _start_problem(self) -> str | None:
-        start, joint = self.start, self.joint
-        if start.mode != "loaded":
-            if start.contact_angle_rad != 0:
-                return (
-                    f"start.contact_angle_rad = {start.contact_angle_rad!r} is not allowed: "
-                    "only with start.mode = 'loaded'"
-                )
-            if start.eccentricity_m > joint.radial_clearance_m:
-                return (
-                    f"start.eccentricity_m = {start.eccentricity_m!r} is not allowed: must be between 0 and "
-                    f"joint.radial_clearance_m = {joint.radial_clearance_m!r} [m], beyond it the joint starts "
-                    "in deep penetration"
-                )
-        else:
-            for key in ("eccentricity_m", "eccentricity_angle_rad"):
-                if getattr(start, key) != 0:
-                    return (
-                        f"start.{key} = {getattr(start, key)!r} is not allowed with start.mode = 'loaded': "
-                        "equilibrium decides"
-                    )
-            spring = self.torsion_spring
-            for key in ("stiffness_N_m_per_rad", "bias_rad"):
-                if getattr(spring, key) == 0:
-                    return (
-                        f"start.mode = 'loaded' is not allowed: torsion_spring.{key} is 0, and only a biased "
-                        "torsion spring loads the joint"
-                    )
-            largest = atan(joint.friction_coefficient) if _holds_static_load(joint.friction_law) else 0.0
-            if abs(start.contact_angle_rad) > largest:
-                rule = (
-                    f"between {-largest:.9g} and {largest:.9g} [rad], atan of joint.friction_coefficient"
-                    if largest else "0 [rad]: this friction holds no static load"
-                )
-                return f"start.contact_angle_rad = {start.contact_angle_rad!r} is not allowed: must be {rule}"
-        if self.ensemble.start_spread_m > joint.radial_clearance_m:
-            return (
-                f"ensemble.start_spread_m = {self.ensemble.start_spread_m!r} is not allowed: must be above 0 and "
-                f"at most joint.radial_clearance_m = {joint.radial_clearance_m!r} [m]"
+    def _check_start(self) -> None:
+        start, clearance = self.start, self.joint.radial_clearance_m
+        if start.mode == "loaded":
+            self._check_loaded()
+        elif start.contact_angle_rad != 0:
+            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, "only with start.mode = 'loaded'")
+        elif start.eccentricity_m > clearance:
+            raise NotAllowed(
+                "start.eccentricity_m", start.eccentricity_m,
+                f"must be between 0 and joint.radial_clearance_m = {clearance!r} [m], beyond it the joint starts in deep "
+                "penetration",
             )
-        return None
+        if self.ensemble.start_spread_m > clearance:
+            raise NotAllowed("ensemble.start_spread_m", self.ensemble.start_spread_m,
+                             f"must be above 0 and at most joint.radial_clearance_m = {clearance!r} [m]")
 
-    def _run_problem(self) -> str | None:
-        if self.reduced.method == "adaptive" and self.joint.friction_law == "mindlin":
-            return (
-                "reduced.method = 'adaptive' is not allowed with joint.friction_law = 'mindlin': friction with "
-                "memory is not smooth, use 'rk4'"
+    def _check_loaded(self) -> None:
+        start, joint, spring = self.start, self.joint, self.torsion_spring
+        for key in ("eccentricity_m", "eccentricity_angle_rad"):
+            if getattr(start, key) != 0:
+                raise NotAllowed(f"start.{key}", getattr(start, key), "equilibrium decides",
+                                 beside="with start.mode = 'loaded'")
+        for key in ("stiffness_N_m_per_rad", "bias_rad"):
+            if getattr(spring, key) == 0:
+                raise NotAllowed("start.mode", start.mode,
+                                 f"torsion_spring.{key} is 0, and only a biased torsion spring loads the joint")
+        holds = friction_has("holds_static_load", joint.friction_law)
+        largest = atan(joint.friction_coefficient) if holds else 0.0
+        if abs(start.contact_angle_rad) > largest:
+            raise NotAllowed(
+                "start.contact_angle_rad", start.contact_angle_rad,
+                f"must be between {-largest:.9g} and {largest:.9g} [rad], atan of joint.friction_coefficient"
+                if largest else "must be 0 [rad]: this friction holds no static load",
             )
+
+    def _check_run(self) -> None:
+        if self.reduced.method == "adaptive" and friction_has("has_memory", self.joint.friction_law):
+            raise NotAllowed("reduced.method", "adaptive", "friction with memory is not smooth, use 'rk4'",
+                             beside=f"with joint.friction_law = {self.joint.friction_law!r}")
         samples = self.output.samples_per_cycle
-        for section, key in (
+        for part, key in (
             ("reduced", "steps_per_cycle"),
             ("dem", "steps_per_cycle"),
             ("ensemble", "reduced_steps_per_cycle"),
             ("ensemble", "dem_steps_per_cycle"),
         ):
-            steps = getattr(getattr(self, section), key)
+            steps = getattr(getattr(self, part), key)
             if steps % samples != 0:
-                return (
-                    f"{section}.{key} = {steps} is not allowed: must be a multiple of "
-                    f"output.samples_per_cycle = {samples}"
-                )
-        return None
+                raise NotAllowed(f"{part}.{key}", steps, f"must be a multiple of output.samples_per_cycle = {samples}")

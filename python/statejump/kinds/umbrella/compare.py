@@ -3,70 +3,72 @@
 from __future__ import annotations
 
 import math
-from typing import Optional
 
 import numpy as np
 
-from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.core.comparison import Quantity, quantity
-from statejump.core.yade_process import DemRun
-from statejump.core.history import History
+from statejump.core.comparison import Comparison, Quantity, models, quantity
+from statejump.core.run import Run, energy_residue_J
 from statejump.kinds.umbrella import reduced as model
+from statejump.kinds.umbrella.case import UmbrellaCase
 
-STORED = ("kinetic", "axial", "contact", "torsion")
-DISSIPATED = ("axial", "pin", "friction", "impact")
-
-
-def largest_temperature(history: History) -> int:
-    """Index of the sample at which |ΔT| is largest first."""
-    return int(np.argmax(np.abs(history["temperature_change_K"])))
-
-
-def energy_residual(history: History) -> float:
-    """Supplied minus stored minus dissipated energy over the whole run [J]."""
-
-    def change(name: str) -> float:
-        return float(history[name][-1] - history[name][0])
-
-    stored = sum(change(f"{name}_energy_J") for name in STORED)
-    dissipated = sum(change(f"{name}_dissipation_J") for name in DISSIPATED)
-    return change("thermal_work_J") - stored - dissipated
+STORED = tuple(f"{name}_energy_J" for name in ("kinetic", "axial", "contact", "torsion"))
+DISSIPATED = tuple(f"{name}_dissipation_J" for name in ("axial", "pin", "friction", "impact"))
+FIRST_CONTACT = "first_contact_temperature_change"
+CHAOS = (
+    "without damping of links and pins the motion after contact is chaotic: compared point by point until the largest "
+    "temperature; for the rest see 'statejump figures'"
+)
 
 
-def _energy_row(case: UmbrellaCase, reduced: History, dem: History) -> Quantity:
-    """Both residues over the largest amount of energy that was about in the DEM run."""
-    about = sum(dem[f"{name}_energy_J"] for name in STORED) + sum(
-        dem[f"{name}_dissipation_J"] for name in DISSIPATED
-    )
+def largest_temperature(run: Run) -> int:
+    """Return the sample at which |ΔT| is largest first."""
+    return int(np.argmax(np.abs(run["temperature_change_K"])))
+
+
+def energy_residual(run: Run) -> float:
+    """Return supplied minus stored minus dissipated energy over the whole run [J]."""
+    return energy_residue_J(run.energy, ("thermal_work_J",), STORED, DISSIPATED)
+
+
+def _energy_row(case: UmbrellaCase, reduced: Run, dem: Run) -> Quantity:
+    """Return both residues over the largest amount of energy that was about in the DEM run."""
+    about = sum(dem[name] for name in STORED) + sum(dem[name] for name in DISSIPATED)
     scale = float(np.max(about))
     tolerance = case.tolerance.energy_balance_relative
+    name = "energy_residual_over_largest_energy"
     if not scale > 0:
-        return Quantity("energy_residual_over_largest_energy", "-", 0.0, 0.0, 0.0, tolerance, True)
+        return models(name, "-", 0.0, 0.0, tolerance)
     ours, other = energy_residual(reduced) / scale, energy_residual(dem) / scale
     passed = bool(abs(ours) <= tolerance and abs(other) <= tolerance)
-    return Quantity("energy_residual_over_largest_energy", "-", ours, other, other - ours, tolerance, passed)
+    return Quantity(name, "-", {"reduced": ours, "dem": other}, other - ours, tolerance, passed)
 
 
-def _first_contact_rows(case: UmbrellaCase, reduced: model.ReducedRun, dem: DemRun) -> list[Quantity]:
-    """First contact: both models against the closed form where it holds, else against each other."""
+def first_contact_K(run: Run) -> float | None:
+    """Return ΔT [K] of the first contact as the model locates it; None: the play was never used up."""
+    found = run.events.first("first_contact")
+    return None if found is None else found.temperature_change_K
+
+
+def _first_contact_rows(case: UmbrellaCase, reduced: Run, dem: Run) -> list[Quantity]:
+    """Return the first contact: both models against the closed form where it holds, else against each other."""
     tolerance = case.tolerance
-    ours = reduced.first_contact_temperature_change_K
-    other = dem.summary["first_contact_temperature_change_K"]
-    name = "first_contact_temperature_change"
+    ours, other = first_contact_K(reduced), first_contact_K(dem)
     exact = closed_form_first_contact(case)
     if exact is None:
-        return [quantity(name, "K", ours, other, tolerance.first_contact_dem_K)]
-    limit: Optional[float] = exact if exact <= case.temperature_range_K[1] else None
+        return [models(FIRST_CONTACT, "K", ours, other, tolerance.first_contact_dem_K)]
+    limit = exact if exact <= case.temperature_range_K[1] else None
     return [
-        quantity(f"{name}, closed form and reduced", "K", limit, ours, tolerance.first_contact_reduced_K),
-        quantity(f"{name}, closed form and DEM", "K", limit, other, tolerance.first_contact_dem_K),
+        quantity(f"{FIRST_CONTACT}, closed form and reduced", "K", tolerance.first_contact_reduced_K,
+                 closed_form=limit, reduced=ours),
+        quantity(f"{FIRST_CONTACT}, closed form and DEM", "K", tolerance.first_contact_dem_K,
+                 closed_form=limit, dem=other),
     ]
 
 
-def closed_form_first_contact(case: UmbrellaCase) -> Optional[float]:
-    """ΔT_c [K] where c/(α |AC|) holds: heating from a concentric start whose links do not ring, no
+def closed_form_first_contact(case: UmbrellaCase) -> float | None:
+    """Return ΔT_c [K] where c/(α |AC|) holds: heating from a concentric start whose links do not ring, no
     torsion spring before contact. Infinity: the play is never used up; None: no closed form."""
-    first_heats = float(model.thermal_program(case).temperature_rate(0.0)) > 0
+    first_heats = float(case.thermal_program().temperature_rate(0.0)) > 0
     expansions_agree = (
         case.link_ab.thermal_expansion_per_K == case.link_bc.thermal_expansion_per_K
     )
@@ -74,20 +76,19 @@ def closed_form_first_contact(case: UmbrellaCase) -> Optional[float]:
     concentric = case.start.mode == "matched" and case.start.eccentricity_m == 0
     if not (first_heats and expansions_agree and unbiased and concentric):
         return None
-    return model.linkage(case).first_contact_temperature_change()
+    return float(model.linkage(case).first_contact_temperature_change())
 
 
-def history_rows(case: UmbrellaCase, ours: History, other: History) -> list[Quantity]:
-    """Compare two histories at the same times: jumps and largest differences of both angles. What is
+def history_rows(case: UmbrellaCase, ours: Run, other: Run) -> list[Quantity]:
+    """Compare two runs at the same times: jumps and largest differences of both angles. What is
     not reproducible is compared until the largest temperature, see :func:`compare`."""
     tolerance = case.tolerance
-    reproducible = model.is_reproducible(case)
+    reproducible = case.is_reproducible
     rows = []
     if reproducible:
-        for angle, limit in (("theta2", tolerance.final_theta2_rad), ("theta4", tolerance.final_theta2_rad)):
-            column = f"{angle}_rad"
-            jumps = [float(history[column][-1] - history[column][0]) for history in (ours, other)]
-            rows.append(quantity(f"{angle}_jump", "rad", *jumps, limit))
+        for angle in ("theta2", "theta4"):
+            jumps = [run.summary[f"{angle}_jump_rad"] for run in (ours, other)]
+            rows.append(models(f"{angle}_jump", "rad", *jumps, tolerance.final_theta2_rad))
     end = len(ours) if reproducible else largest_temperature(ours) + 1
     until = "" if reproducible else "_until_largest_temperature"
     for angle in ("theta2", "theta4"):
@@ -95,21 +96,30 @@ def history_rows(case: UmbrellaCase, ours: History, other: History) -> list[Quan
         span = float(np.ptp(ours[column]))
         largest = float(np.max(np.abs(other[column][:end] - ours[column][:end])))
         rows.append(
-            quantity(f"{angle}_largest_difference_over_range{until}", "-", 0.0,
-                     largest / span if span > 0 else math.nan, tolerance.history_relative)
+            models(f"{angle}_largest_difference_over_range{until}", "-", 0.0,
+                   largest / span if span > 0 else math.nan, tolerance.history_relative)
         )
     return rows
 
 
-def compare(case: UmbrellaCase, reduced: model.ReducedRun, dem: DemRun) -> list[Quantity]:
+def compare(case: UmbrellaCase, reduced: Run, dem: Run) -> Comparison:
     """Compare a DEM run with the reduced run of the same case.
 
     A damped case is compared over its whole program. Without damping the motion after contact is
     chaotic: what can be compared point by point ends at the largest temperature; for the rest there
     is the ensemble (``statejump figures``).
     """
-    ours, other = reduced.history, dem.history
     rows = [] if case.start.mode == "loaded" else _first_contact_rows(case, reduced, dem)
-    rows += history_rows(case, ours, other)
-    rows.append(_energy_row(case, ours, other))
-    return rows
+    rows += history_rows(case, reduced, dem)
+    rows.append(_energy_row(case, reduced, dem))
+    return Comparison(case, {"reduced": reduced, "dem": dem}, tuple(rows),
+                      notes=() if case.is_reproducible else (CHAOS,))
+
+
+def difference(case: UmbrellaCase, first: Run, second: Run) -> list[Quantity]:
+    """Compare two runs of one model at the same times."""
+    rows = []
+    if case.start.mode != "loaded":
+        changes = [first_contact_K(run) for run in (first, second)]
+        rows.append(models(FIRST_CONTACT, "K", *changes, case.tolerance.first_contact_dem_K))
+    return rows + history_rows(case, first, second)

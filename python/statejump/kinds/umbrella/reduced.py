@@ -3,37 +3,28 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any, Callable, Iterator, Optional
 
 import numpy as np
 
 from statejump import _engine
-from statejump.kinds.umbrella.case import UmbrellaCase, UmbrellaLink
 from statejump.core.errors import FailedRun
-from statejump.core.history import History
-from statejump.kinds.spring_slider.reduced import thermal_program
-
-
-def changed(case: UmbrellaCase, changes: dict[str, Any]) -> UmbrellaCase:
-    """Return the case with other values; keys as ``section.key``. Not checked again."""
-    sections: dict[str, dict[str, Any]] = {}
-    for path, value in changes.items():
-        section, key = path.split(".")
-        sections.setdefault(section, {})[key] = value
-    return case.copy(
-        update={name: getattr(case, name).copy(update=values) for name, values in sections.items()}
-    )
+from statejump.core.progress import Tell
+from statejump.core.run import Columns, Run
+from statejump.kinds.umbrella import result
+from statejump.kinds.umbrella.case import UmbrellaCase, UmbrellaLink
+from statejump.schema.paths import with_values
 
 
 def _link(link: UmbrellaLink) -> _engine.ThermalLink:
-    return _engine.ThermalLink(**link.dict())
+    return _engine.ThermalLink(**link.to_dict())
 
 
 def linkage(case: UmbrellaCase) -> _engine.Linkage:
-    """Engine model of a case. :raises ValueError: a changed case is out of range"""
-    joint = case.joint.dict()
+    """Return the engine's model of a case. :raises ValueError: a changed case is out of range"""
+    joint = case.joint.to_dict()
     del joint["radial_clearance_m"]
     return _engine.Linkage(
         frame_length_m=case.frame.length_m,
@@ -42,13 +33,13 @@ def linkage(case: UmbrellaCase) -> _engine.Linkage:
         bearing_radius_m=case.bearing_radius_m,
         torsion_stiffness_N_m_per_rad=case.torsion_spring.stiffness_N_m_per_rad,
         torsion_free_angle_rad=case.free_flare_angle_rad,
-        **case.damping.dict(),
+        **case.damping.to_dict(),
         **joint,
     )
 
 
 def start_state(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engine.LinkageState:
-    """State at t = 0.
+    """Return the state at t = 0.
 
     :param offset_m: added to the journal's place in the play (2) [m]; not for ``loaded``
     """
@@ -59,65 +50,44 @@ def start_state(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engi
     eccentricity = start.eccentricity_m * np.array([np.cos(angle), np.sin(angle)])
     if offset_m is not None:
         eccentricity = eccentricity + offset_m
-    rate = float(thermal_program(case).temperature_rate(0.0))
+    rate = float(case.thermal_program().temperature_rate(0.0))
     return _engine.initial_state(model, start.mode, rate, eccentricity)
 
 
-@dataclass(frozen=True)
-class ReducedRun:
-    """A run of the reduced model."""
-
-    history: History
-    first_contact_time_s: Optional[float]
-    first_contact_temperature_change_K: Optional[float]
-    contacts: int
-    steps: int
-    energy_residue_J: float  # thermal work less dissipation less stored energy
-
-
-def run(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> ReducedRun:
+def integrate(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engine.LinkageRun:
     """Integrate a case over its whole program.
 
-    :raises StatejumpError: a law left its range or the steps are too long; with time and temperature
+    :param offset_m: see :func:`start_state`
+    :raises FailedRun: a law left its range or the steps are too long; with time and temperature
     """
     try:
-        model, program, start = linkage(case), thermal_program(case), start_state(case, offset_m)
+        model, program, start = linkage(case), case.thermal_program(), start_state(case, offset_m)
         cycles, samples = case.thermal.cycles, case.samples_per_cycle
         if case.reduced.method == "adaptive":
-            done = _engine.simulate_adaptive(
+            return _engine.simulate_adaptive(
                 model, program, start, case.reduced.relative_tolerance, samples * cycles
             )
-        else:
-            steps = case.reduced.steps_per_cycle
-            done = _engine.simulate(model, program, start, steps * cycles, steps // samples)
+        steps = case.reduced.steps_per_cycle
+        return _engine.simulate(model, program, start, steps * cycles, steps // samples)
     except (ValueError, RuntimeError) as error:
-        raise FailedRun(f"case {case.name}: the reduced run failed: {error}", cause=str(error)) from None
-    return ReducedRun(
-        History(done.columns()),
-        done.first_contact_time_s,
-        done.first_contact_temperature_change_K,
-        done.contacts,
-        done.steps,
-        done.energy_residue_J,
-    )
+        raise FailedRun("the reduced run failed", case=case.name, cause=str(error)) from None
 
 
-def quasi_static(case: UmbrellaCase, samples: int = 400) -> Optional[_engine.JointLoop]:
-    """Path of the loaded joint, rigid links and exact friction; None if statics leaves it open."""
+def run(case: UmbrellaCase, tell: Tell = lambda share: None, offset_m: np.ndarray | None = None) -> Run:
+    """Run the reduced model; see :func:`integrate`."""
+    made = result.reduced_run(case, integrate(case, offset_m))
+    tell(1.0)
+    return made
+
+
+def quasi_static(case: UmbrellaCase, samples: int = 400) -> _engine.JointLoop | None:
+    """Return the path of the loaded joint, rigid links and exact friction; None if statics leaves it open."""
     try:
         return _engine.joint_loop(
-            linkage(case), thermal_program(case), case.start.contact_angle_rad, samples
+            linkage(case), case.thermal_program(), case.start.contact_angle_rad, samples
         )
     except ValueError:
         return None
-
-
-def is_reproducible(case: UmbrellaCase) -> bool:
-    """Whether the whole history, not only the heating, can be compared point by point: with damping
-    of the links and of the pins small differences die out; without they grow to the size of the
-    play."""
-    damping = case.damping
-    return damping.axial_damping_ratio > 0 and damping.pin_damping_N_m_s_per_rad > 0
 
 
 def start_offsets(case: UmbrellaCase, count: int) -> Iterator[np.ndarray]:
@@ -157,7 +127,7 @@ class EnsembleOfRuns:
 
 def for_ensemble(case: UmbrellaCase) -> UmbrellaCase:
     """Return the case with the steps of its ensemble in both models."""
-    return changed(
+    return with_values(
         case,
         {
             "reduced.steps_per_cycle": case.ensemble.reduced_steps_per_cycle,
@@ -166,14 +136,14 @@ def for_ensemble(case: UmbrellaCase) -> UmbrellaCase:
     )
 
 
-def gather(histories: list[History]) -> EnsembleOfRuns:
+def gather(runs: Sequence[Columns | Run]) -> EnsembleOfRuns:
     """Stack the runs of an ensemble."""
-    first = histories[0]
+    first = runs[0]
     return EnsembleOfRuns(
         first["time_s"],
         first["temperature_change_K"],
-        np.stack([history["theta2_rad"] for history in histories]),
-        np.array([[history["eccentricity_x_m"][-1], history["eccentricity_y_m"][-1]] for history in histories]),
+        np.stack([run["theta2_rad"] for run in runs]),
+        np.array([[run["eccentricity_x_m"][-1], run["eccentricity_y_m"][-1]] for run in runs]),
     )
 
 
@@ -187,10 +157,10 @@ def ensemble(
     offsets = list(start_offsets(case, runs or case.ensemble.reduced_runs))
     case = for_ensemble(case)
 
-    def one(offset: np.ndarray) -> History:
-        history = run(case, offset).history
+    def one(offset: np.ndarray) -> Columns:
+        columns: Columns = integrate(case, offset).columns()
         progress()
-        return history
+        return columns
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return gather(list(pool.map(one, offsets)))

@@ -1,25 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a result file says of an ``umbrella`` case beside its histories."""
+"""Runs of an ``umbrella`` case, from the columns of either model; and what to draw of it."""
 from __future__ import annotations
 
-from typing import Any, Optional
+from collections.abc import Mapping
+from math import isnan, nan
+from typing import Any
 
 import numpy as np
 
-from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.core.comparison import Quantity, quantity
-from statejump.core.yade_process import DemRun
-from statejump.core.history import History
-from statejump.kinds.umbrella.compare import history_rows
-from statejump.kinds.umbrella.reduced import ReducedRun
-from statejump.results import scene as drawing
-from statejump.results.contents import (
-    CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Event, ModelRun, Scalar, columns_of, history_of, scalars,
+from statejump import _engine
+from statejump.core.run import (
+    CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Columns, Event, Events, Run, columns_of, numbers_of,
 )
-from statejump.results.events import first_event_K, from_states
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.results import scene as drawing
+from statejump.results.events import from_states
 
 CONTACTS = ("joint_b",)
 LINKS = ("link_ab", "link_bc")
+CHAOS = (
+    "without damping of links and pins the motion after contact is chaotic: one run's jump is one of many, see "
+    "'statejump figures'"
+)
 
 
 def names(case: UmbrellaCase) -> dict[str, list[str]]:
@@ -59,7 +61,7 @@ def scene(case: UmbrellaCase) -> dict[str, Any]:
     return drawing.description(parts, [("joint_b", "journal", "bearing")], joint.radial_clearance_m)
 
 
-def _contacts(case: UmbrellaCase, history: History) -> dict[str, Column]:
+def _contacts(case: UmbrellaCase, history: Columns) -> dict[str, Column]:
     """Force, state and place of the contact. n points from the bearing's centre to the journal's; the
     bearing pushes the journal along -n, friction acts along n turned by +90 degrees."""
     change = history["temperature_change_K"]
@@ -83,7 +85,7 @@ def _contacts(case: UmbrellaCase, history: History) -> dict[str, Column]:
     }
 
 
-def _links(case: UmbrellaCase, history: History) -> dict[str, Column]:
+def _links(case: UmbrellaCase, history: Columns) -> dict[str, Column]:
     change = history["temperature_change_K"]
     forces, strains = [], []
     for name in LINKS:
@@ -101,15 +103,14 @@ def _links(case: UmbrellaCase, history: History) -> dict[str, Column]:
 
 
 def _run(
-    case: UmbrellaCase, history: History, first_time: Optional[float], first_change: Optional[float],
-    summary: dict[str, Scalar],
-) -> ModelRun:
-    plain, energy = columns_of(history)
-    contacts = _contacts(case, history)
-    events = from_states(
-        history["time_s"], history["temperature_change_K"], contacts["state"].values, CONTACTS
-    )
-    if first_time is not None and first_change is not None:
+    case: UmbrellaCase, model: str, columns: Columns, summary: Mapping[str, float], **more: Any
+) -> Run:
+    plain, energy = columns_of(columns)
+    contacts = _contacts(case, columns)
+    change = columns["temperature_change_K"]
+    events = from_states(columns["time_s"], change, contacts["state"].values, CONTACTS)
+    first_time, first_change = (summary.get(f"first_contact_{key}", nan) for key in ("time_s", "temperature_change_K"))
+    if not isnan(first_time):
         # Both models locate it: better than between two samples, and there if the samples miss it.
         seen = next((event for event in events if event.kind == "contact"), None)
         if seen is not None and abs(seen.time_s - first_time) <= 2 * seen.time_uncertainty_s:
@@ -117,31 +118,21 @@ def _run(
         events.append(Event("first_contact", first_time, first_change, CONTACTS[0]))
         events.sort(key=lambda event: event.time_s)
     jumps = {
-        f"{angle}_jump_rad": Scalar(float(history[f"{angle}_rad"][-1] - history[f"{angle}_rad"][0]), "rad")
+        f"{angle}_jump_rad": float(columns[f"{angle}_rad"][-1] - columns[f"{angle}_rad"][0])
         for angle in ("theta2", "theta4")
     }
-    return ModelRun(plain, energy, _links(case, history), contacts, events, {**jumps, **summary})
+    warnings = () if case.is_reproducible else (CHAOS,)
+    return Run(model, plain, energy, _links(case, columns), contacts, Events(events), {**jumps, **summary},
+               names(case), lambda: case, warnings=warnings, **more)
 
 
-def reduced_run(case: UmbrellaCase, done: ReducedRun) -> ModelRun:
-    """The reduced model."""
-    summary = scalars({
-        key: getattr(done, key)
-        for key in ("first_contact_time_s", "first_contact_temperature_change_K", "contacts", "steps", "energy_residue_J")
-    })
-    return _run(case, done.history, done.first_contact_time_s, done.first_contact_temperature_change_K, summary)
+def reduced_run(case: UmbrellaCase, done: _engine.LinkageRun) -> Run:
+    """Return a run of the reduced model."""
+    keys = ("first_contact_time_s", "first_contact_temperature_change_K", "contacts", "steps", "energy_residue_J")
+    summary = numbers_of({key: getattr(done, key) for key in keys})
+    return _run(case, "reduced", done.columns(), summary, native=done)
 
 
-def dem_run(case: UmbrellaCase, done: DemRun) -> ModelRun:
-    """The DEM."""
-    first = [done.summary.get(f"first_contact_{key}") for key in ("time_s", "temperature_change_K")]
-    return _run(case, done.history, first[0], first[1], scalars(done.summary))
-
-
-def difference_rows(case: UmbrellaCase, first: ModelRun, second: ModelRun) -> list[Quantity]:
-    """Two runs of the case at the same times against its tolerances."""
-    rows = []
-    if case.start.mode != "loaded":
-        changes = [first_event_K(run, "first_contact") for run in (first, second)]
-        rows.append(quantity("first_contact_temperature_change", "K", *changes, case.tolerance.first_contact_dem_K))
-    return rows + history_rows(case, history_of(first), history_of(second))
+def dem_run(case: UmbrellaCase, columns: Columns, about: Mapping[str, Any]) -> Run:
+    """Return a DEM run."""
+    return _run(case, "dem", columns, numbers_of(about), about=about)

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An ``umbrella`` case in words, and what a command prints of its runs."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from statejump.core.run import Run
+from statejump.core.tables import Shown
+from statejump.core.units import text
+from statejump.kinds.umbrella.case import UmbrellaCase
+
+WORDS = {
+    "joint_b": "Joint B", "link_ab": "Link AB", "link_bc": "Link BC", "theta2_rad": "Angle θ2 of AB",
+    "theta4_rad": "Angle θ4 of BC", "theta2_jump_rad": "Jump of θ2", "theta4_jump_rad": "Jump of θ4",
+    "theta2_jump": "Jump of θ2", "theta4_jump": "Jump of θ4",
+}
+
+
+def describe(case: UmbrellaCase) -> list[str]:
+    """Return the case in sentences; its temperature program is told for all kinds alike."""
+    ab, bc, joint = case.link_ab, case.link_bc, case.joint
+    sentences = [
+        f"One rib of an umbrella antenna: link AB, {text(ab.stress_free_length_m, 'm')}, {ab.mass_kg:g}\u202fkg, "
+        f"and link BC, {text(bc.stress_free_length_m, 'm')}, {bc.mass_kg:g}\u202fkg, turn on two ideal pins A "
+        f"and C, {text(case.frame.length_m, 'm')} apart on a frame that does not expand.",
+        f"At B the journal of BC, radius {text(joint.journal_radius_m, 'm')}, has a radial clearance of "
+        f"{text(joint.radial_clearance_m, 'm')} in the bearing of AB; friction coefficient "
+        f"{joint.friction_coefficient:g}.",
+    ]
+    spring = case.torsion_spring.stiffness_N_m_per_rad
+    if spring:
+        sentences.append(f"A torsion spring of {text(spring, 'N m/rad')} acts on the angle between the links.")
+    return sentences
+
+
+def told(case: UmbrellaCase, runs: Mapping[str, Run]) -> list[Shown | str]:
+    """Return what a command prints of a model alone: first contact, jump, and what the reduced model says of itself."""
+    if len(runs) > 1:
+        return []
+    found: list[Shown | str] = []
+    for run in runs.values():
+        first, said = run.events.first("first_contact"), run.summary
+        found.append(
+            "first contact: none, the play is never used up" if first is None
+            else f"first contact: ΔT = {first.temperature_change_K:.6f} K at {first.time_s:.6f} s"
+        )
+        found.append(f"state jump: θ2 {said['theta2_jump_rad']:.6e} rad, θ4 {said['theta4_jump_rad']:.6e} rad after "
+                     f"{case.thermal.cycles} cycle(s)")
+        if "energy_residue_J" in said:
+            found.append(f"{said['steps']:,.0f} steps, {said['contacts']:.0f} contacts, energy residue "
+                         f"{said['energy_residue_J']:.3g} J")
+    return found
