@@ -2,15 +2,17 @@
 """Both models of the umbrella rib, through the command and beside each other."""
 from __future__ import annotations
 
+import csv
 import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from statejump.kinds.registry import load_case
 from statejump.core.errors import StatejumpError
+from statejump.kinds.loading import load_case
 from statejump.kinds.umbrella import dem, reduced as model
+from statejump.schema.paths import with_values
 
 
 def quantities(folder: Path) -> dict[str, dict]:
@@ -29,7 +31,17 @@ def test_damped_case_agrees_to_the_end(statejump, edited, tmp_path: Path, fricti
     assert found["theta4_largest_difference_over_range"]["dem"] < 0.01
     assert abs(found["first_contact_temperature_change, closed form and reduced"]["difference"]) < 1e-6
     assert abs(found["first_contact_temperature_change, closed form and DEM"]["difference"]) < 1e-3
-    assert (tmp_path / "results" / "umbrella_damped" / "umbrella_damped.svg").exists()
+    folder = tmp_path / "results" / "umbrella_damped"
+    assert (folder / "umbrella_damped.svg").exists()
+    # Whose value a number is: the closed form has a column of its own.
+    with (folder / "comparison.csv").open(newline="") as stream:
+        rows = {row["name"]: row for row in csv.DictReader(stream)}
+    sides = {name: [side for side in ("closed_form", "reduced", "dem") if row[side]] for name, row in rows.items()}
+    assert sides["first_contact_temperature_change, closed form and reduced"] == ["closed_form", "reduced"]
+    assert sides["first_contact_temperature_change, closed form and DEM"] == ["closed_form", "dem"]
+    assert sides["theta2_jump"] == ["reduced", "dem"]
+    first = float(rows["first_contact_temperature_change, closed form and DEM"]["closed_form"])
+    assert first == pytest.approx(1e-4 / (23.75e-6 * 0.12), rel=1e-12)  # c/(α |AC|)
 
 
 def test_undamped_case_agrees_until_the_largest_temperature(statejump, cases: Path, tmp_path: Path) -> None:
@@ -47,10 +59,10 @@ def test_undamped_case_agrees_until_the_largest_temperature(statejump, cases: Pa
 @pytest.mark.parametrize("clearance_mm, exact", [(0.05, 17.5439), (0.10, 35.0877), (0.15, 52.6316),
                                                  (0.20, 70.1754), (0.30, None)])
 def test_first_contact(cases: Path, clearance_mm: float, exact: float | None) -> None:
-    case = model.changed(load_case(cases / "umbrella_damped.toml"),
+    case = with_values(load_case(cases / "umbrella_damped.toml"),
                          {"joint.radial_clearance_m": clearance_mm * 1e-3, "dem.steps_per_cycle": 100_000})
-    ours = model.run(case).first_contact_temperature_change_K
-    other = dem.execute(case).summary["first_contact_temperature_change_K"]
+    ours = model.integrate(case).first_contact_temperature_change_K
+    other = dem.execute(case).about["first_contact_temperature_change_K"]
     if exact is None:
         assert ours is None and other is None
         return
@@ -62,7 +74,7 @@ def test_first_contact(cases: Path, clearance_mm: float, exact: float | None) ->
 
 def test_expanding_radii_move_first_contact(cases: Path) -> None:
     expansion = 23.75e-6
-    case = model.changed(load_case(cases / "umbrella_damped.toml"), {
+    case = with_values(load_case(cases / "umbrella_damped.toml"), {
         "joint.journal_thermal_expansion_per_K": expansion,
         "joint.bearing_thermal_expansion_per_K": 3 * expansion,
         "dem.steps_per_cycle": 100_000,
@@ -70,8 +82,8 @@ def test_expanding_radii_move_first_contact(cases: Path) -> None:
     # α ΔT a = c + (R2 3α − R1 α) ΔT
     closed = 1e-4 / (expansion * (0.12 - 3 * 0.0051 + 0.005))
     assert model.linkage(case).first_contact_temperature_change() == pytest.approx(closed, rel=1e-12)
-    assert model.run(case).first_contact_temperature_change_K == pytest.approx(closed, abs=1e-6)
-    assert dem.execute(case).summary["first_contact_temperature_change_K"] == pytest.approx(closed, abs=1e-3)
+    assert model.integrate(case).first_contact_temperature_change_K == pytest.approx(closed, abs=1e-6)
+    assert dem.execute(case).about["first_contact_temperature_change_K"] == pytest.approx(closed, abs=1e-3)
 
 
 # Laws, and expansion of the journal [1/K], which the normal and dissipation laws see.
@@ -87,25 +99,25 @@ LAWS = [
 def test_laws_by_name_are_the_same_in_both_models(cases: Path, names: tuple[str, ...]) -> None:
     keys = ("normal_law", "dissipation_law", "friction_law", "tangential_velocity")
     changes = {f"joint.{key}": name for key, name in zip(keys, names)}
-    case = model.changed(load_case(cases / "umbrella_damped.toml"), {
+    case = with_values(load_case(cases / "umbrella_damped.toml"), {
         **changes, "joint.journal_thermal_expansion_per_K": names[-1], "joint.restitution": 0.8, "thermal.period_s": 0.2, "thermal.temperature_change_max_K": 60.0,
         "joint.friction_v1_m_per_s": 1e-4, "reduced.steps_per_cycle": 200_000, "dem.steps_per_cycle": 200_000,
     })
-    ours, other = model.run(case).history, dem.execute(case).history
+    ours, other = model.run(case), dem.execute(case).columns
     assert np.max(ours["normal_force_N"]) > 0
     for angle in ("theta2_rad", "theta4_rad"):
         # First order in ω h = 0.01 where friction and damping see the last half step's speed.
         difference = np.max(np.abs(other[angle] - ours[angle]))
         assert difference < 0.01 * np.ptp(ours[angle]), difference / np.ptp(ours[angle])
     # Another law gives another motion: what is compared depends on the names.
-    standard = model.run(model.changed(case, {f"joint.{key}": "none" if key != "normal_law" else "hertz_internal"
-                                              for key in keys[:3]})).history
+    standard = model.run(with_values(case, {f"joint.{key}": "none" if key != "normal_law" else "hertz_internal"
+                                              for key in keys[:3]}))
     assert np.max(np.abs(standard["theta2_rad"] - ours["theta2_rad"])) > 0.01 * np.ptp(ours["theta2_rad"])
 
 
 def test_a_law_outside_its_range_stops_both_models(cases: Path) -> None:
     # A soft joint without spring: 1 MPa links and joint let the journal sink beyond Johnson's range.
-    case = model.changed(load_case(cases / "umbrella_damped.toml"), {
+    case = with_values(load_case(cases / "umbrella_damped.toml"), {
         "joint.normal_law": "johnson", "torsion_spring.stiffness_N_m_per_rad": 1000.0,
         "torsion_spring.bias_rad": 0.5, "link_ab.young_modulus_Pa": 70e7, "link_bc.young_modulus_Pa": 70e7,
         "joint.contact_length_m": 1e-4, "dem.steps_per_cycle": 100_000,
@@ -119,7 +131,7 @@ def test_a_law_outside_its_range_stops_both_models(cases: Path) -> None:
 
 
 def test_steps_too_long_are_refused_by_both_models(cases: Path) -> None:
-    case = model.changed(load_case(cases / "umbrella.toml"),
+    case = with_values(load_case(cases / "umbrella.toml"),
                          {"reduced.steps_per_cycle": 2000, "dem.steps_per_cycle": 4000})
     with pytest.raises(StatejumpError, match="steps = 2000.*at least 3128, or the links' ringing is unstable"):
         model.run(case)
@@ -128,18 +140,19 @@ def test_steps_too_long_are_refused_by_both_models(cases: Path) -> None:
 
 
 def test_ensembles_repeat_bit_for_bit(cases: Path) -> None:
-    case = model.changed(load_case(cases / "umbrella.toml"),
+    case = with_values(load_case(cases / "umbrella.toml"),
                          {"ensemble.reduced_steps_per_cycle": 20_000, "output.samples_per_cycle": 20})
     few, many = model.ensemble(case, 3), model.ensemble(case, 5)
     assert np.array_equal(few.theta2_rad, many.theta2_rad[:3])
-    other = model.ensemble(model.changed(case, {"ensemble.seed": 2}), 3)
+    other = model.ensemble(with_values(case, {"ensemble.seed": 2}), 3)
     assert not np.array_equal(few.theta2_rad, other.theta2_rad)
     radii = [np.hypot(*offset) for offset in model.start_offsets(case, 50)]
     assert 0 < min(radii) and max(radii) <= case.ensemble.start_spread_m
 
 
 def test_dem_repeats_bit_for_bit(cases: Path) -> None:
-    case = model.changed(load_case(cases / "umbrella.toml"), {"dem.steps_per_cycle": 50_000})
-    first, second = dem.execute_all([case, case])
-    for name, values in first.history.columns.items():
-        assert np.array_equal(values, second.history[name]), name
+    case = with_values(load_case(cases / "umbrella.toml"), {"dem.steps_per_cycle": 50_000})
+    first, second = (run.flat() for run in dem.execute_all([case, case]))
+    assert "theta2_rad" in first and "thermal_work_J" in first
+    for name, values in first.items():
+        assert np.array_equal(values, second[name]), name

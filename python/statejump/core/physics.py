@@ -4,7 +4,6 @@ alike, in SI units. The models themselves are the engine's and the plugin's.
 """
 from __future__ import annotations
 
-from math import sqrt
 from typing import TypeVar
 
 import numpy as np
@@ -47,7 +46,7 @@ def axial_stiffness_N_per_m(young_modulus_Pa: Value, cross_section_area_m2: Valu
     return young_modulus_Pa * cross_section_area_m2 / length_m
 
 
-def apex_m(left_m: float, right_m: float, base_m: float) -> tuple[float, float]:
+def apex_m(left_m: Value, right_m: Value, base_m: Value) -> tuple[Value, Value]:
     """Return where two links meet above a base from (0, 0) to (base, 0): x and y [m]; y is 0 if they do not.
 
     :param left_m: length of the link from (0, 0)
@@ -57,4 +56,4 @@ def apex_m(left_m: float, right_m: float, base_m: float) -> tuple[float, float]:
     # Heron's product: no difference of squares.
     product = ((left_m + right_m + base_m) * (left_m + right_m - base_m)
                * (base_m + left_m - right_m) * (base_m - left_m + right_m))
-    return x, sqrt(max(product, 0.0)) / (2 * base_m)
+    return x, np.sqrt(np.maximum(product, 0.0)) / (2 * base_m)

@@ -35,8 +35,11 @@ def _check(instance: Any, attribute: attrs.Attribute[Any], value: Any) -> None:
 
 
 def _as_float(value: Any) -> Any:
-    """A whole number is a number; all else is for the check to refuse."""
-    return float(value) if type(value) is int else value
+    """A whole number is a number; all else is for the check to refuse, as it was given."""
+    try:
+        return float(value) if type(value) is int else value
+    except OverflowError:  # beyond all ranges
+        return value
 
 
 def _as_floats(value: Any) -> Any:
@@ -255,6 +258,7 @@ def _section(keys: type[SectionType], name: str, given: Mapping[str, Any]) -> Se
     try:
         return keys(**given)
     except NotAllowed as refused:
+        refused.value = given.get(refused.key, refused.value)  # 1, not 1.0, if the file says so
         refused.key = f"{name}.{refused.key}"
         raise
 

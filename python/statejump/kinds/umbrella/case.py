@@ -213,7 +213,7 @@ class UmbrellaCase(Case):
     @property
     def ideal_position_m(self) -> tuple[float, float]:
         """Where the unstrained links meet at ΔT = 0, above AC: x and y of B [m]."""
-        x, y = apex_m(self.frame.length_m, *self.link_lengths_m(0.0))
+        x, y = apex_m(*self.link_lengths_m(0.0), self.frame.length_m)
         return float(x), float(y)
 
     @property
