@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 #!/usr/bin/env python3
 """Cost of a joint contact beside YADE's own sphere-sphere Hertz-Mindlin law, in one YADE each.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 #!/usr/bin/env python3
 """Cost of a joint and step of trusses in the DEM; writes results/bench/truss_dem.md and truss_dem.csv.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 #!/usr/bin/env python3
 """Speed of the umbrella rib in both models; writes results/bench/umbrella.md and umbrella.csv.
 

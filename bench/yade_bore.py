@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Cost of a contact step in a bore of triangles beside the analytic bearing.
 
     yade -n -x -j1 bench/yade_bore.py                   # prints a table, writes results/bench/bore.md

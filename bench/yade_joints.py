@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """One measurement of run.py: n contacts in YADE for a number of steps. Prints one line of JSON.
 
     STATEJUMP_BENCH_VARIANT=joint STATEJUMP_BENCH_SIZE=100 yade -n -x -j1 bench/yade_joints.py

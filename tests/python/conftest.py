@@ -2,10 +2,12 @@
 """Where the built package is, and a case file to damage."""
 from __future__ import annotations
 
+import io
 import os
 import random
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Iterator
@@ -27,9 +29,13 @@ class Outcome:
     errors: str
 
 
+# Commands that start processes of their own, which would import the test instead of the command.
+SPREADING = ("montecarlo", "sweep")
+
+
 @pytest.fixture
-def statejump(tmp_path: Path) -> Callable[..., Outcome]:
-    """Run the command in a folder of its own."""
+def statejump_process(tmp_path: Path) -> Callable[..., Outcome]:
+    """Run the command in a process and a folder of its own, with these variables in its environment."""
 
     def run(*arguments: object, **environment: str) -> Outcome:
         done = subprocess.run(
@@ -37,6 +43,29 @@ def statejump(tmp_path: Path) -> Callable[..., Outcome]:
             capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL,
         )
         return Outcome(done.returncode, done.stdout, done.stderr)
+
+    return run
+
+
+@pytest.fixture
+def statejump(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, statejump_process: Callable[..., Outcome]
+) -> Callable[..., Outcome]:
+    """Run the command in a folder of its own; in this process where that makes no difference."""
+    from statejump.cli import main
+
+    def run(*arguments: object, **environment: str) -> Outcome:
+        words = [str(argument) for argument in arguments]
+        if environment or any(word in SPREADING for word in words):
+            return statejump_process(*words, **environment)
+        output, errors = io.StringIO(), io.StringIO()
+        with monkeypatch.context() as there, redirect_stdout(output), redirect_stderr(errors):
+            there.chdir(tmp_path)
+            try:
+                status = main.run(words)
+            except SystemExit as end:
+                status = int(end.code or 0)
+        return Outcome(status, output.getvalue(), errors.getvalue())
 
     return run
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Where a loaded joint with friction can rest: not in one place, but in a whole set of them.
 
     yade -n -x yade_scripts/examples/multistable.py             # table; CSV and figure in results/multistable

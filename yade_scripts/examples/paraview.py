@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Recording of joints and links for ParaView. Imported by scripts that run under ``yade``.
 
     from paraview import ParaViewRecorder

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Table 1 of Chen et al. (2021): a bar with a slider in a slot, through one orbit of temperature.
 
     yade -n -x yade_scripts/examples/table1.py

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """One rib of the umbrella antenna of Chen et al. (2021), section 4: two links, one joint with play.
 
     yade -n -x yade_scripts/examples/umbrella.py            # prints first contact and the state jump

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs one sample of a campaign in YADE; started by ``yade-batch``, once per line of its table.
 
     statejump montecarlo CAMPAIGN.toml --yade-batch samples.table

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Failures of a run from a case file, in the case's names: the plugin knows bodies by their numbers only."""
 from __future__ import annotations
 

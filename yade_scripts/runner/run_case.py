@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs one case in YADE and writes its history; started by ``statejump dem CASE``.
 
     STATEJUMP_CASE_JSON=case.json STATEJUMP_OUTPUT=history.csv yade -n -x yade_scripts/runner/run_case.py

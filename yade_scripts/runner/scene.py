@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the scenes of all kinds of case share. Imported by scripts that run under ``yade``."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """YADE scene of ``spring_slider`` cases: a bar with a slider at its tip, in a slot."""
 from __future__ import annotations
 

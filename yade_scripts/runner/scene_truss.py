@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """YADE scene of ``truss`` cases: nodes are bodies, bars are links, joints are contacts.
 
 What the DEM cannot represent has been refused before: ``statejump/truss/dem.py``, which also says how

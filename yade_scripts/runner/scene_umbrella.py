@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """YADE scene of ``umbrella`` cases: two links on pins of a frame, a clearance joint between them."""
 from __future__ import annotations
 

@@ -151,7 +151,7 @@ class Case(Section):
         return value_of(self, path)
 
     @property
-    def behaviour(self) -> Kind:
+    def behaviour(self) -> Kind[Any]:
         """The kind as an object: everything that can be done with the case."""
         from statejump.kinds import kind
 

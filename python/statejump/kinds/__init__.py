@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from statejump.core.errors import StatejumpError
 from statejump.schema.rules import check_name
@@ -22,20 +22,20 @@ VARIABLE = "STATEJUMP_KINDS"
 KINDS: dict[str, str] = {
     name: f"statejump.kinds.{name}:KIND" for name in ("spring_slider", "umbrella", "statics", "truss")
 }
-_loaded: dict[str, Kind] = {}
+_loaded: dict[str, Kind[Any]] = {}
 _read_from: list[str] = []
 
 
-def _object(place: str) -> Kind:
+def _object(place: str) -> Kind[Any]:
     module, _, name = place.partition(":")
     try:
-        found: Kind = getattr(import_module(module), name)
+        found: Kind[Any] = getattr(import_module(module), name)
     except (ImportError, AttributeError) as problem:
         raise StatejumpError(f"{VARIABLE}: {place!r} cannot be loaded", value=place, cause=str(problem)) from None
     return found
 
 
-def register(place: str) -> Kind:
+def register(place: str) -> Kind[Any]:
     """Add a kind of one's own, or replace it, and return it.
 
     :param place: ``module:OBJECT``, which workers of a campaign import as well
@@ -65,7 +65,7 @@ def names() -> list[str]:
     return list(KINDS)
 
 
-def kind(name: str) -> Kind:
+def kind(name: str) -> Kind[Any]:
     """Return a kind by its name. :raises NotAllowed: there is none"""
     _from_environment()
     check_name("case.kind", name, list(KINDS))

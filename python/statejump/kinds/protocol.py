@@ -26,21 +26,27 @@ Further abilities are those of single commands and have their names: ``statics``
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from statejump.core.case import Case
+from statejump.core.case import Case as Definition
 from statejump.core.errors import NotAllowed
 from statejump.core.progress import Tell
 from statejump.core.run import Run
 
 
-class Kind:
-    """A kind of case; see the module."""
+CaseType = TypeVar("CaseType", bound=Definition)
+
+
+class Kind(Generic[CaseType]):
+    """A kind of case; see the module.
+
+    ``Case`` is the class of its definitions: keys with unit, range, default and source.
+    """
 
     name: ClassVar[str]
-    Case: ClassVar[type[Case]]
+    Case: ClassVar[type[Definition]]
     # Columns of one value a sample in the order of the CSV files, of either model.
     COLUMNS: ClassVar[tuple[str, ...]] = ()
     # Words of this kind for report and figures: of columns, contacts, links, by their keys.
@@ -52,14 +58,14 @@ class Kind:
         """Whether the kind has an ability."""
         return callable(getattr(self, ability, None))
 
-    def ability(self, name: str, case: Case) -> Callable[..., Any]:
+    def ability(self, name: str, case: Definition) -> Callable[..., Any]:
         """Return an ability. :raises NotAllowed: the kind lacks it; the sentence says which kinds have it"""
         if self.can(name):
             found: Callable[..., Any] = getattr(self, name)
             return found
         raise self.refusal(name, case)
 
-    def refusal(self, name: str, case: Case) -> NotAllowed:
+    def refusal(self, name: str, case: Definition) -> NotAllowed:
         """Return why a case of this kind is refused by what needs an ability."""
         from statejump.kinds import kinds_that_can
 
@@ -68,7 +74,7 @@ class Kind:
         return NotAllowed("case.kind", self.name, f"'statejump {command}' is for {others or 'no kind of case'}",
                           file=case.origin.file)
 
-    def dem(self, case: Case, tell: Tell) -> Run:
+    def dem(self, case: CaseType, tell: Tell) -> Run:
         """Run a case in YADE. A kind whose scene needs more than the case itself has its own."""
         from statejump.core import yade_process
 
@@ -79,7 +85,7 @@ class Kind:
         """Return the module that builds the scene in YADE."""
         return self.SCENE or f"scene_{self.name}"
 
-    def case_from(self, data: Mapping[str, Any]) -> Case:
+    def case_from(self, data: Mapping[str, Any]) -> Definition:
         """Return the case of a parsed document. :raises StatejumpError: one failure, without the file's name"""
         from statejump.core import thermal
         from statejump.schema.fields import structure

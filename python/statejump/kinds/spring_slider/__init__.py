@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from statejump.core.figures import Sheet
 
 
-class SpringSlider(Kind):
+class SpringSlider(Kind[SpringSliderCase]):
     """The kind as one object."""
 
     name: ClassVar[str] = "spring_slider"

@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+from pathlib import Path
+
+SHARE: Path
+YADE_SCRIPTS: Path
+SCHEMA: Path
+PYTHON: str
+GIT_COMMIT: str
