@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from statejump.case import Case, Progress
-from statejump.core.comparison import Comparison
+from statejump.core.comparison import FIRST, SECOND, Comparison, of_two
 from statejump.core.errors import StatejumpError
 from statejump.core.run import Run
 from statejump.kinds.loading import load_case
@@ -47,7 +47,7 @@ def compare(first: Run, second: Run) -> Comparison:
         found: Comparison = case.behaviour.ability("compare", case)(case, by_model["reduced"], by_model["dem"])
         return found
     rows = case.behaviour.ability("difference", case)(case, first, second.at(first.time_s))
-    return Comparison(case, {"first": first, "second": second}, tuple(rows))
+    return Comparison(case, {FIRST: first, SECOND: second}, tuple(of_two(rows)))
 
 
 def read(path: str | Path) -> Result:

@@ -15,8 +15,10 @@ from conftest import REPOSITORY
 from test_result_file import check_layout, run
 
 from statejump.core.errors import StatejumpError
-from statejump.results import layout, read, write
+from statejump.results import layout
 from statejump.results.contents import Scalar
+from statejump.results.read import read
+from statejump.results.write import write
 
 CASE = REPOSITORY / "cases" / "trusses" / "umbrella_8.toml"
 
@@ -66,7 +68,7 @@ def test_the_path_beside_the_answers_is_theirs(folder: Path) -> None:
     result = read(folder / "answers.h5")
     path, answers = result.models["reduced"], result.answers
     assert answers is not None and result.complete and result.command == "truss answers"
-    assert result.case_text == CASE.read_text() and result.case().thermal.cycles == 2  # --cycles, not the file's 1
+    assert result.case_text == CASE.read_text() and result.case.thermal.cycles == 2  # --cycles, not the file's 1
     # Cycles end at samples: the same numbers.
     moved = path.history["displacement_m"].values
     last = [row for row in answers.tables["node_jumps"] if row["cycle"] == 2]

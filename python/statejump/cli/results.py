@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Optional, Sequence
 
 import click
+import numpy as np
 from rich.console import Console
-from rich.table import Table
 
+from statejump.cli.terminal import QUIET, make_console, number, print_comparison, print_table, progress
+from statejump.core.comparison import FIRST, SECOND
 from statejump.core.errors import Interrupted, StatejumpError, TolerancesMissed
 from statejump.core.output import results_folder
-from statejump.cli.terminal import QUIET, make_console, number, print_comparison, progress
+from statejump.core.run import GROUPS, Column
+from statejump.core.tables import Shown
+from statejump.core.units import unit_of
 from statejump.results import export_csv
-from statejump.results.contents import Answers, Column, Result, Scalar
+from statejump.results.contents import Answers, Result
 from statejump.results.difference import RunDifference, case_differences, difference
 from statejump.results.read import read
 
@@ -25,15 +29,8 @@ FRAMES = 200
 SHOWN_EVENTS = 12
 
 
-def _table(title: str, *headings: str, left: Sequence[str] = ()) -> Table:
-    table = Table(title=title)
-    for heading in headings:
-        table.add_column(heading, justify="left" if heading in left else "right")
-    return table
-
-
-def _value(value: Optional[float]) -> str:
-    return number(None if value is None or math.isnan(value) else value)
+def _value(value: float) -> str:
+    return number(None if math.isnan(value) else value)
 
 
 @click.command("info")
@@ -47,12 +44,11 @@ def info_command(file: Path) -> None:
     """
     console = make_console(False)
     result = read(file)
-    _print_header(result, console)
-    _print_summary(result, console)
+    print_table(_header(result), console)
+    print_table(_summary(result), console)
     _print_events(result, console)
-    if result.comparison is not None:
-        print_comparison(f"{result.title}: {'passed' if result.passed else 'a tolerance is missed'}",
-                         result.comparison, console)
+    if result.rows is not None:
+        print_comparison(f"{result.title}: {'passed' if result.passed else 'a tolerance is missed'}", result.rows, console)
     if result.answers is not None:
         _print_answers(result.answers, console)
     _print_contents(result, console)
@@ -62,8 +58,7 @@ def info_command(file: Path) -> None:
         console.print("warning: not complete: the run was interrupted, the file holds what there was")
 
 
-def _print_header(result: Result, console: Console) -> None:
-    table = _table(result.title, "", "value", left=("", "value"))
+def _header(result: Result) -> Shown:
     rows = {
         "case": f"{result.name}, kind {result.kind}", "source": result.source, "written by": f"statejump {result.command}",
         "complete": "yes" if result.complete else "no",
@@ -71,49 +66,46 @@ def _print_header(result: Result, console: Console) -> None:
         "parts": ", ".join(f"{part['name']} ({part['type']})" for part in result.scene["parts"][:SHOWN_EVENTS])
         + (" ..." if len(result.scene["parts"]) > SHOWN_EVENTS else ""),
     }
-    for key, value in rows.items():
-        table.add_row(key, value or "not known")
-    console.print(table)
+    return Shown(result.title, ("", "value"), [(key, value or "not known") for key, value in rows.items()],
+                 left=("", "value"))
 
 
-def _print_summary(result: Result, console: Console) -> None:
-    table = _table("summary", "quantity", "unit", *(MODEL_NAMES[model] for model in result.models),
-                   left=("quantity", "unit"))
-    names = dict.fromkeys(name for run in result.models.values() for name in run.summary)
-    for name in sorted(names):
-        scalars: list[Optional[Scalar]] = [run.summary.get(name) for run in result.models.values()]
-        unit = next(scalar.unit for scalar in scalars if scalar is not None)
-        table.add_row(name, unit, *("" if scalar is None else _value(scalar.value) for scalar in scalars))
-    console.print(table)
+def _summary(result: Result) -> Shown:
+    names = sorted({name for run in result.models.values() for name in run.summary})
+    rows = [
+        (name, unit_of(name),
+         *(_value(run.summary[name]) if name in run.summary else "" for run in result.models.values()))
+        for name in names
+    ]
+    return Shown("summary", ("quantity", "unit", *(MODEL_NAMES[model] for model in result.models)), rows,
+                 left=("quantity", "unit"))
 
 
 def _print_events(result: Result, console: Console) -> None:
     for model, run in result.models.items():
-        table = _table(f"events, {MODEL_NAMES[model]}", "event", "joint", "ΔT [K]", "time [s]", "± [s]",
-                       left=("event", "joint"))
-        for event in run.events[:SHOWN_EVENTS]:
-            table.add_row(event.kind, event.joint, f"{event.temperature_change_K:.6f}", f"{event.time_s:.6f}",
-                          f"{event.time_uncertainty_s:.2g}")
-        console.print(table)
+        rows = [
+            (event.kind, event.joint, f"{event.temperature_change_K:.6f}", f"{event.time_s:.6f}",
+             f"{event.time_uncertainty_s:.2g}")
+            for event in run.events[:SHOWN_EVENTS]
+        ]
+        print_table(Shown(f"events, {MODEL_NAMES[model]}", ("event", "joint", "ΔT [K]", "time [s]", "± [s]"), rows,
+                          left=("event", "joint")), console)
         if len(run.events) > SHOWN_EVENTS:
             console.print(f"and {len(run.events) - SHOWN_EVENTS:,} more: statejump export --format csv")
 
 
 def _print_answers(answers: Answers, console: Console) -> None:
-    table = _table(f"answers: {answers.text}", "quantity", "unit", "value", left=("quantity", "unit"))
-    for name, scalar in sorted(answers.summary.items()):
-        table.add_row(name, scalar.unit, _value(scalar.value))
-    console.print(table)
+    numbers = [(name, scalar.unit, _value(scalar.value)) for name, scalar in sorted(answers.summary.items())]
+    print_table(Shown(f"answers: {answers.text}", ("quantity", "unit", "value"), numbers, left=("quantity", "unit")),
+                console)
     console.print(f"{answers.verdict}: {answers.verdict_text}")
     for note in answers.notes:
         console.print(f"note: {note}")
-    table = _table("tables of answers", "table", "rows", "columns", left=("table", "columns"))
-    for name, rows in answers.tables.items():
-        table.add_row(name, f"{len(rows):,}", ", ".join(rows[0]) if rows else "")
-    console.print(table)
+    tables = [(name, f"{len(rows):,}", ", ".join(rows[0]) if rows else "") for name, rows in answers.tables.items()]
+    print_table(Shown("tables of answers", ("table", "rows", "columns"), tables, left=("table", "columns")), console)
 
 
-def _shape(result: Result, column: Column) -> str:
+def _shape(column: Column) -> str:
     parts = [f"{column.values.shape[0]:,} samples"]
     if column.items:
         parts.append(f"{column.values.shape[1]:,} {column.items}")
@@ -123,19 +115,19 @@ def _shape(result: Result, column: Column) -> str:
 
 
 def _print_contents(result: Result, console: Console) -> None:
+    headings = ("place", "unit", "shape", "smallest", "largest")
     for model, run in result.models.items():
-        table = _table(f"columns, {MODEL_NAMES[model]}", "place", "unit", "shape", "smallest", "largest",
-                       left=("place", "unit", "shape"))
-        for group in ("history", "energy", "links", "contacts"):
-            for name, column in sorted(getattr(run, group).items()):
-                table.add_row(f"{group}/{name}", column.unit, _shape(result, column), *_extremes(column))
-        console.print(table)
+        rows = [
+            (f"{group}/{name}", column.unit, _shape(column), *_extremes(column))
+            for group in GROUPS for name, column in sorted(getattr(run, group).items())
+        ]
+        print_table(Shown(f"columns, {MODEL_NAMES[model]}", headings, rows, left=("place", "unit", "shape")), console)
 
 
 def _extremes(column: Column) -> tuple[str, str]:
     if column.labels:
         return ", ".join(column.labels), ""
-    known = column.values[~(column.values != column.values)]  # without NaN
+    known = column.values[~np.isnan(column.values)]
     return (number(float(known.min())), number(float(known.max()))) if known.size else ("none", "none")
 
 
@@ -148,7 +140,7 @@ def _extremes(column: Column) -> tuple[str, str]:
 @click.option("--frames", type=click.IntRange(min=0), default=FRAMES, show_default=True,
               help="Samples in the VTK series, evenly spread; 0: all.")
 @QUIET
-def export_command(file: Path, form: str, folder: Optional[Path], frames: int, quiet: bool) -> None:
+def export_command(file: Path, form: str, folder: Path | None, frames: int, quiet: bool) -> None:
     """CSV tables and ParaView files of a result FILE.
 
     \b
@@ -159,7 +151,7 @@ def export_command(file: Path, form: str, folder: Optional[Path], frames: int, q
     result = read(file)
     target = folder if folder is not None else file.with_suffix("")
     if target == file:
-        raise StatejumpError(f"{file}: has no suffix to leave out: choose a folder with --to")
+        raise StatejumpError("has no suffix to leave out", file=file, remedy="choose a folder with --to")
     target = results_folder(target.parent, target.name)
     written: list[Path] = []
     if form in ("csv", "all"):
@@ -185,12 +177,12 @@ def compare_files(files: Sequence[Path], console: Console) -> None:
     """
     if len(files) != 2:
         raise StatejumpError(
-            f"{len(files)} file(s) given: 'statejump compare' takes a case file or two result files; what is in "
-            "one shows 'statejump info'"
+            f"{len(files)} file(s) given", cause="'statejump compare' takes a case file or two result files",
+            remedy="what is in one shows 'statejump info'",
         )
     first, second = (read(file) for file in files)
     found = difference(first, second)
-    for place, file in zip(("first", "second"), files):
+    for place, file in zip((FIRST, SECOND), files):
         console.print(f"{place}: {file}")
     for text in case_differences(first, second)[1]:
         console.print(f"computed otherwise: {text}")
@@ -204,24 +196,25 @@ def compare_files(files: Sequence[Path], console: Console) -> None:
     if not (first.complete and second.complete):
         console.print("not judged: a run is not complete; its common time is compared")
     if missed:
-        raise TolerancesMissed(f"{files[0]}, {files[1]}: tolerance missed: {', '.join(missed)}")
+        raise TolerancesMissed(missed, file=f"{files[0]}, {files[1]}")
 
 
 def _print_difference(title: str, runs: RunDifference, console: Console) -> None:
-    names = (f"first, {MODEL_NAMES[runs.names[0]]}", f"second, {MODEL_NAMES[runs.names[1]]}")
-    table = _table(f"{title}: summary", "quantity", "unit", *names, "difference", left=("quantity", "unit"))
-    for name, unit, one, other in runs.summary:
-        table.add_row(name, unit, _value(one), _value(other), _value(other - one))
-    console.print(table)
-    table = _table("largest difference over time", "column", "unit", "difference", "at [s]", "range of the first",
-                   left=("column", "unit"))
-    for column in runs.columns:
-        table.add_row(column.name, column.unit, number(column.largest), number(column.time_s), number(column.range))
-    console.print(table)
-    table = _table("events", "event", "first: count", "second: count", "first: ΔT [K]", "second: ΔT [K]",
-                   left=("event",))
-    for event in runs.events:
-        table.add_row(event.kind, *map(str, event.counts), *map(_value, event.first_K))
-    console.print(table)
+    names = {place: f"{place}, {MODEL_NAMES[model]}" for place, model in zip((FIRST, SECOND), runs.names)}
+    print_table(Shown(
+        f"{title}: summary", ("quantity", "unit", *names.values(), "difference"),
+        [(name, unit, _value(one), _value(other), _value(other - one)) for name, unit, one, other in runs.summary],
+        left=("quantity", "unit"),
+    ), console)
+    print_table(Shown(
+        "largest difference over time", ("column", "unit", "difference", "at [s]", "range of the first"),
+        [(column.name, column.unit, number(column.largest), number(column.time_s), number(column.range))
+         for column in runs.columns],
+        left=("column", "unit"),
+    ), console)
+    print_table(Shown(
+        "events", ("event", "first: count", "second: count", "first: ΔT [K]", "second: ΔT [K]"),
+        [(event.kind, *map(str, event.counts), *map(number, event.first_K)) for event in runs.events], left=("event",),
+    ), console)
     if runs.rows is not None:
         print_comparison("against the tolerances of the case", runs.rows, console, names)

@@ -2,8 +2,8 @@
 """Models beside each other, quantity by quantity, against the tolerances of the case."""
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 
 # Whose value a number can be, in the order of the columns.
 CLOSED_FORM, REDUCED, DEM = "closed_form", "reduced", "dem"
-SIDES = (CLOSED_FORM, REDUCED, DEM)
+# Of two runs of one model, or of two files.
+FIRST, SECOND = "first", "second"
+SIDES = (CLOSED_FORM, REDUCED, DEM, FIRST, SECOND)
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,8 @@ class Quantity:
     """One compared number.
 
     :param name: what is compared
-    :param values: two values by whose they are (``closed_form``, ``reduced``, ``dem``); None: it has none
+    :param values: two values by whose they are (``closed_form``, ``reduced``, ``dem``; ``first``, ``second`` of two
+        runs of one model); None: it has none
     :param difference: the second less the first; None: one is missing
     :param tolerance: allowed size of the difference
     """
@@ -66,6 +69,11 @@ def quantity(name: str, unit: str, tolerance: float, **values: float | None) -> 
 def models(name: str, unit: str, reduced: float | None, dem: float | None, tolerance: float) -> Quantity:
     """Return a row of the two models; see :func:`quantity`."""
     return quantity(name, unit, tolerance, reduced=reduced, dem=dem)
+
+
+def of_two(rows: Iterable[Quantity]) -> list[Quantity]:
+    """Return rows of two runs as those of the first and the second, whatever their models are."""
+    return [replace(row, values=dict(zip((FIRST, SECOND), row.values.values()))) for row in rows]
 
 
 def table(rows: Sequence[Quantity]) -> list[dict[str, Any]]:

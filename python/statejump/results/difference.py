@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from statejump.core.comparison import Quantity
+from statejump.core.comparison import Quantity, of_two
 from statejump.core.errors import StatejumpError
 from statejump.core.run import Run
 from statejump.core.units import unit_of
@@ -158,6 +158,6 @@ def difference(first: Result, second: Result) -> list[RunDifference]:
         left, right = one.at(times), other.at(times)
         found.append(RunDifference(
             names, _summary(one, other), _columns(left, right), _events(one, other),
-            judge(first.definition, left, right) if complete else None,
+            of_two(judge(first.definition, left, right)) if complete else None,
         ))
     return found

@@ -8,14 +8,16 @@
 """
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import VTK_LINE, vtkDataObject, vtkPolyData, vtkUnstructuredGrid
 
-from statejump.results.contents import ModelRun, Result
+from statejump.core.run import Run
+from statejump.results.contents import Result
 from statejump.results.outline import outlines, placed
 from statejump.results.scene import PART_TYPES, growth, resolve, resolve_point
 from statejump.results.vtk_data import add_array, cells, file_time, frames_of, points, write, write_series
@@ -28,7 +30,7 @@ class _Lines:
 
     suffix = ".vtu"
 
-    def __init__(self, result: Result, run: ModelRun, model: str) -> None:
+    def __init__(self, result: Result, run: Run, model: str) -> None:
         self.parts = [part for part in result.scene["parts"] if part["type"] in ("link", "spring")]
         self.ends = [[resolve_point(end, run, result.names) for end in part["ends"]] for part in self.parts]
         samples = len(run.time_s)
@@ -76,14 +78,14 @@ class _Parts:
 
     suffix = ".vtp"
 
-    def __init__(self, result: Result, run: ModelRun, model: str) -> None:
+    def __init__(self, result: Result, run: Run, model: str) -> None:
         self.shapes = [
             self._shape(part, result, run, model)
             for part in result.scene["parts"] if part["type"] not in ("link", "spring")
         ]
 
     @staticmethod
-    def _shape(part: dict[str, Any], result: Result, run: ModelRun, model: str) -> _Shape:
+    def _shape(part: dict[str, Any], result: Result, run: Run, model: str) -> _Shape:
         names, samples = result.names, len(run.time_s)
         change = resolve(part.get("temperature_change_K", result.scene["temperature_change_K"]), run, names)
         if part["type"] == "frame":
@@ -152,7 +154,7 @@ class _Vertices:
         return data
 
 
-def _contacts(result: Result, run: ModelRun) -> _Vertices | None:
+def _contacts(result: Result, run: Run) -> _Vertices | None:
     scene, names = result.scene, result.names
     if not scene["contacts"]:
         return None
@@ -167,7 +169,7 @@ def _contacts(result: Result, run: ModelRun) -> _Vertices | None:
     return _Vertices(contacts, [resolve_point(forces[name, "normal"]["at"], run, names) for name in contacts], arrays)
 
 
-def _forces(result: Result, run: ModelRun) -> _Vertices | None:
+def _forces(result: Result, run: Run) -> _Vertices | None:
     contacts = {entry["name"] for entry in result.scene["contacts"]}
     further = [force for force in result.scene["forces"] if force.get("contact") not in contacts]
     if not further:

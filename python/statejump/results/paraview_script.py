@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from statejump.core.output import write_atomically
-from statejump.results.contents import CONTACT_STATES, Result
+from statejump.core.run import CONTACT_STATES
+from statejump.core.tables import write_text
+from statejump.results.contents import Result
 from statejump.results.export_vtk import sorts
 from statejump.results.scene import STATE_COLOURS, resolve_point
 
@@ -197,7 +198,4 @@ def script(result: Result) -> str:
 
 def write_script(result: Result, folder: Path) -> Path:
     """Write the script beside the series."""
-    path = folder / NAME
-    with write_atomically(path) as stream:
-        stream.write(script(result))
-    return path
+    return write_text(folder / NAME, script(result).splitlines())

@@ -17,6 +17,9 @@ from statejump.core.run import Column, Event, Events, Run
 from statejump.results.contents import Answers, Mesh, Result, Scalar
 from statejump.results.layout import ENTRIES, FORMAT, MODELS, SUFFIX, TABLES, VERSION
 
+# Of the longest superblock that ends with its addresses.
+SUPERBLOCK_BYTES = 56
+
 
 def is_result_file(path: Path) -> bool:
     """Whether a path is meant as a result file: it is HDF5, or is called so."""
@@ -35,14 +38,27 @@ def read(path: str | Path) -> Result:
     try:
         if not h5py.is_hdf5(path):
             raise Unreadable("not a result file", cause="it is not HDF5", file=path)
+        if path.stat().st_size < _stored_size(path):
+            raise Unreadable("the file is cut off", cause="it is shorter than it says", file=path)
         with h5py.File(path, "r") as file:
             _check(file, path)
             return _result(file)
     except (OSError, RuntimeError) as error:
         reason = " ".join(str(error).split())
-        raise Unreadable("cannot be read, it may be cut off", cause=reason, file=path) from None
+        raise Unreadable("cannot be read", cause=reason, file=path) from None
     except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
         raise Unreadable("damaged", cause=" ".join(str(error).split()), file=path) from None
+
+
+def _stored_size(path: Path) -> int:
+    """Return how many bytes an HDF5 file says that it has: the end-of-file address of its superblock; 0 where the
+    superblock has another size of addresses, or a user block stands before it."""
+    with path.open("rb") as stream:
+        head = stream.read(SUPERBLOCK_BYTES)
+    version = head[8:9]
+    # "HDF5 File Format Specification", II.A: versions 0 and 1 have more fields before the addresses than 2 and 3.
+    sizes, place = (head[13:14], 40 if version == b"\0" else 44) if version in (b"\0", b"\1") else (head[9:10], 28)
+    return int.from_bytes(head[place : place + 8], "little") if sizes == b"\x08" else 0
 
 
 def _check(file: h5py.File, path: Path) -> None:

@@ -12,6 +12,7 @@ All numbers are SI units, angles anticlockwise from x. docs/result_file.md has t
 """
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -83,7 +84,7 @@ def contact_forces(contact: str, on: str, other: str) -> list[dict[str, Any]]:
 
 def description(
     parts: list[dict[str, Any]], contacts: list[tuple[str, str, str]], smallest_clearance_m: float,
-    forces: list[dict[str, Any]] = [],
+    forces: Sequence[dict[str, Any]] = (),
 ) -> dict[str, Any]:
     """Return a whole description.
 
@@ -106,7 +107,7 @@ def description(
     }
 
 
-def _item(column: Column, value: dict[str, Any], names: dict[str, list[str]]) -> np.ndarray:
+def _item(column: Column, value: dict[str, Any], names: Mapping[str, list[str]]) -> np.ndarray:
     values = column.values
     if "item" not in value:
         return values
@@ -115,7 +116,7 @@ def _item(column: Column, value: dict[str, Any], names: dict[str, list[str]]) ->
     return values[:, names[column.items].index(value["item"])]
 
 
-def resolve(value: Value, run: Run, names: dict[str, list[str]]) -> np.ndarray:
+def resolve(value: Value, run: Run, names: Mapping[str, list[str]]) -> np.ndarray:
     """Return a value or a reference over the samples: (samples) or (samples, 3).
 
     :raises StatejumpError: the run has no such column or item
@@ -126,11 +127,11 @@ def resolve(value: Value, run: Run, names: dict[str, list[str]]) -> np.ndarray:
     try:
         found = _item(run.column(value["data"]), value, names)
     except (KeyError, ValueError) as error:
-        raise StatejumpError(f"scene: {value} refers to nothing in the file: {error}") from None
+        raise StatejumpError("scene", cause=f"{value} refers to nothing in the file: {error}") from None
     return value.get("offset", 0.0) + value.get("scale", 1.0) * found
 
 
-def resolve_point(point: Point, run: Run, names: dict[str, list[str]]) -> np.ndarray:
+def resolve_point(point: Point, run: Run, names: Mapping[str, list[str]]) -> np.ndarray:
     """Return a point or vector over the samples (samples, 3)."""
     if isinstance(point, dict):
         return resolve(point, run, names)

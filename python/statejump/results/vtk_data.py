@@ -2,7 +2,6 @@
 """What all VTK files are made of: points, cells, named arrays, a file, a series of files with true times."""
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,8 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkFieldD
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter, vtkXMLWriter
 
 from statejump.core.errors import NotWritten
-from statejump.core.output import replacing, write_atomically
+from statejump.core.output import replacing
+from statejump.core.tables import write_json
 
 
 def frames_of(samples: int, wanted: int) -> np.ndarray:
@@ -69,11 +69,10 @@ def write(data: vtkDataObject, path: Path, time_s: float | None = None) -> None:
         writer.SetFileName(str(aside))
         writer.SetInputData(data)
         if not writer.Write():
-            raise NotWritten(f"{path}: cannot be written")
+            raise NotWritten("cannot be written", file=path)
 
 
 def write_series(path: Path, files: list[tuple[str, float]]) -> None:
     """Write the ``.series`` file that ParaView opens: names of files and their times [s]."""
     entries = [{"name": name, "time": time_s} for name, time_s in files]
-    with write_atomically(path) as stream:
-        stream.write(json.dumps({"file-series-version": "1.0", "files": entries}, indent=1) + "\n")
+    write_json(path, {"file-series-version": "1.0", "files": entries}, indent=1)
