@@ -115,6 +115,7 @@ class Run:
     :param complete: False: the run was interrupted, this is what there is of it
     :param about: what a DEM run says of itself: version of YADE, steps, seconds
     :param native: what the model itself returned (the path of a solver); None: the run was read from a file
+    :param kind: of the case, where ``case_of`` is not to be asked for it
     :param sampler: returns the run at other times [s], where the model can tell it exactly
     """
 
@@ -131,6 +132,7 @@ class Run:
     complete: bool = True
     about: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
     native: Any = field(default=None, repr=False, compare=False)
+    kind: str = ""
     sampler: Callable[[np.ndarray], Run] | None = field(default=None, repr=False, compare=False)
 
     @cached_property
@@ -204,19 +206,25 @@ class Run:
     def flat(self, groups: Sequence[str] = ("history", "energy")) -> dict[str, np.ndarray]:
         """Return columns of one value a sample, in the order of the CSV files: ``name``, ``name[item]``,
         ``name[item].x``; those of links and contacts begin with ``links/`` and ``contacts/``."""
-        from statejump.kinds import column_order
-
         plain = {
             name: column.shown for group in ("history", "energy") if group in groups
             for name, column in getattr(self, group).items() if column.values.ndim == 1
         }
-        found = {name: plain[name] for name in column_order(plain)}
+        found = {name: plain[name] for name in self._ordered(plain)}
         for group in groups:
             head = "" if group in ("history", "energy") else f"{group}/"
             for name, column in getattr(self, group).items():
                 if column.values.ndim > 1:
                     found.update(self._items(f"{head}{name}", column))
         return found
+
+    def _ordered(self, names: Mapping[str, Any]) -> list[str]:
+        """Return names of columns in the order of the kind; those that it does not know last, by name."""
+        from statejump import kinds
+
+        kind = self.kind or self.definition.kind
+        known = kinds.kind(kind).COLUMNS if kind in kinds.names() else ("time_s", "temperature_change_K")
+        return [name for name in known if name in names] + sorted(set(names).difference(known))
 
     def _items(self, name: str, column: Column) -> Iterator[tuple[str, np.ndarray]]:
         values = column.shown

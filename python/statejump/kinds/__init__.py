@@ -7,7 +7,6 @@ Kinds of one's own are registered by :func:`register`, or for every command by t
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -31,7 +30,7 @@ def _object(place: str) -> Kind[Any]:
     try:
         found: Kind[Any] = getattr(import_module(module), name)
     except (ImportError, AttributeError) as problem:
-        raise StatejumpError(f"{VARIABLE}: {place!r} cannot be loaded", value=place, cause=str(problem)) from None
+        raise StatejumpError(f"kind {place!r} cannot be loaded", value=place, cause=str(problem)) from None
     return found
 
 
@@ -56,7 +55,12 @@ def _from_environment() -> None:
     if wanted and wanted not in _read_from:
         _read_from.append(wanted)
         for place in wanted.split(","):
-            register(place.strip())
+            try:
+                register(place.strip())
+            except StatejumpError as failure:
+                _read_from.clear()
+                failure.place = VARIABLE  # it is no fault of the file that is being read
+                raise
 
 
 def names() -> list[str]:
@@ -77,15 +81,3 @@ def kind(name: str) -> Kind[Any]:
 def kinds_that_can(ability: str) -> list[str]:
     """Return the names of the kinds that have an ability."""
     return [name for name in names() if kind(name).can(ability)]
-
-
-def column_order(given: Iterable[str]) -> list[str]:
-    """Return names of columns in the order of the kind that knows them all; where none does, the program first,
-    then by name."""
-    wanted = set(given)
-    for name in names():
-        columns = kind(name).COLUMNS
-        if wanted <= set(columns):
-            return [column for column in columns if column in wanted]
-    first = {"time_s": 0, "temperature_change_K": 1}
-    return sorted(wanted, key=lambda name: (first.get(name, 2), name))

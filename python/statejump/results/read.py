@@ -88,7 +88,7 @@ def _result(file: h5py.File) -> Result:
     complete = bool(file.attrs["complete"])
     made: list[Result] = []  # a run of the file reads its case only when it is asked for
     runs = {
-        model: replace(_model(model, file["models"][model]), names=names, complete=complete,
+        model: replace(_model(model, file["models"][model]), names=names, complete=complete, kind=case.attrs["kind"],
                        case_of=lambda: made[0].definition)
         for model in MODELS if model in file["models"]
     }
