@@ -38,7 +38,7 @@ GROUPS: dict[str, tuple[Mistake, ...]] = {
         Mistake("not TOML", "table1", "[joint]", "[joint"),
         Mistake("no such kind", "table1", 'kind = "spring_slider"', 'kind = "spring_slidr"'),
         Mistake("a name that is no folder", "table1", 'name = "table1"', 'name = "table 1"'),
-        Mistake("a case of another kind than the command is for", "table1", "", "", "statics"),
+        Mistake("a case of another kind than the command is for", "trusses/chain_10", "", "", "control"),
     ),
     "Keys and sections": (
         Mistake("misspelt key", "table1", NU, "frictoin_coefficient = 0.3"),
@@ -178,9 +178,8 @@ def table() -> str:
 
 def _as_json() -> list[str]:
     """Failures as JSON: a value, a mechanism, a run in YADE."""
-    from statejump.kinds.registry import load_case
-    from statejump.core.errors import StatejumpError, to_json
-    from statejump.kinds.truss.solve import solve
+    import statejump as sj
+    from statejump.core.errors import to_json
 
     shown = ["## As JSON\n"]
     first = GROUPS["Values"][2]
@@ -191,8 +190,8 @@ def _as_json() -> list[str]:
     _, message = said(["--json", "reduced", "table1.toml"])
     shown.append(f"```\nstatejump --json reduced table1.toml\n{message}\n```\n")
     try:
-        solve(load_case("umbrella_rib.toml"))
-    except StatejumpError as failure:
+        sj.load("umbrella_rib.toml").reduced()
+    except sj.StatejumpError as failure:
         shown.append(
             "The solver names nodes or joint, and temperature and time if it failed on the way. Here a support of "
             f"`umbrella_rib.toml` is taken away:\n\n```\n{to_json(failure.fields())}\n```\n"

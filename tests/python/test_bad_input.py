@@ -11,8 +11,7 @@ from pathlib import Path
 import pytest
 
 from conftest import COMMAND
-from statejump.core.history import SPRING_SLIDER_COLUMNS
-from statejump.results import read
+from statejump import kinds, read
 
 E_LINE, NU = "young_modulus_Pa = 70e9\nstress", "friction_coefficient = 0.3"
 
@@ -101,12 +100,13 @@ def test_yade_missing(statejump, cases: Path) -> None:
     )
 
 
+HALF = "echo 'STATEJUMP {\"progress\": 0.5}'\n"  # what the script in YADE says half-way
 FAILURES = {
-    "killed": ("echo PROGRESS 0.5\nkill -9 $$\n", "the DEM run was killed by signal 9; nothing was written"),
-    "failed": ("echo ERROR the contact is lost\nexit 2\n", "the DEM run failed: the contact is lost"),
+    "killed": (f"{HALF}kill -9 $$\n", "the DEM run was killed by signal 9; nothing was written"),
+    "failed": ("echo 'STATEJUMP {\"failure\": {\"cause\": \"the contact is lost\"}}'\nexit 2\n", "the DEM run failed: the contact is lost"),
     "crashed": ("echo something broke\nexit 3\n",
                 "YADE ended with status 3 before the run was finished: something broke"),
-    "ended early": ("echo PROGRESS 0.5\nexit 0\n", "YADE ended with status 0 before the run was finished"),
+    "ended early": (f"{HALF}exit 0\n", "YADE ended with status 0 before the run was finished"),
 }
 
 
@@ -121,10 +121,10 @@ def test_failed_run(statejump, cases: Path, fake_yade, tmp_path: Path, failure: 
 
 def test_interrupt_keeps_the_samples_so_far(cases: Path, fake_yade, tmp_path: Path) -> None:
     # the columns that yade_scripts/runner/scene_spring_slider.py writes
-    names = [name for name in SPRING_SLIDER_COLUMNS if name != "stage"]
+    names = [name for name in kinds.kind("spring_slider").COLUMNS if name != "stage"]
     rows = [",".join([time] + ["0.0"] * (len(names) - 1)) for time in ("0.0", "1.0", "2.0")]
     lines = "\\n".join([",".join(names), *rows])[:-2]
-    yade = fake_yade(f'printf "{lines}" > "$STATEJUMP_OUTPUT.partial"\necho PROGRESS 0.5\nsleep 30\n')
+    yade = fake_yade(f'printf "{lines}" > "$STATEJUMP_OUTPUT.partial"\n{HALF}sleep 30\n')
     process = subprocess.Popen(
         [COMMAND, "dem", str(cases / "table1.toml")], cwd=tmp_path, stderr=subprocess.PIPE,
         stdout=subprocess.PIPE, text=True, env={**os.environ, "STATEJUMP_YADE": yade, "PYTHONUNBUFFERED": "1"},

@@ -13,11 +13,10 @@ import numpy as np
 import pytest
 
 from conftest import COMMAND, damaged
-from statejump.core import comparison as compare
-from statejump.kinds.spring_slider import reduced
-from statejump.kinds.registry import Case, check_radii, load_case, parse_case
+from statejump import load
 from statejump.core.errors import StatejumpError
-from statejump.core.history import History
+from statejump.kinds.loading import load_case, parse_case
+from statejump.kinds.spring_slider import compare, reduced, result
 
 HUGE = 10**400
 FRICTION = "friction_coefficient = 0.3"
@@ -77,28 +76,22 @@ def test_damaged_files_never_end_in_another_error(cases: Path) -> None:
     sentences = 0
     for data in damaged(original, values, 4000):
         try:
-            reduced.solve(parse_case(data, "damaged.toml"))
+            reduced.solve(parse_case(data))
         except StatejumpError as error:
             sentences += 1
             assert "\n" not in str(error)
     assert 2000 < sentences < 4000  # some damage is harmless
 
 
-def test_bearing_must_be_larger_than_its_journal() -> None:
-    check_radii(bearing_radius=5.1e-3, journal_radius=5e-3)
-    for bearing in (5e-3, 4.9e-3, float("nan")):
-        with pytest.raises(ValueError, match="must be above journal_radius_m = 0.005"):
-            check_radii(bearing_radius=bearing, journal_radius=5e-3)
-
-
+DONE = "echo 'STATEJUMP {\"progress\": 1.0}'\n"
 HEADER = "time_s,displacement_m\\n"
 ODD_YADES = {
-    "no history": "echo PROGRESS 1.0000\n",
-    "an empty history": 'touch "$STATEJUMP_OUTPUT"\necho PROGRESS 1.0000\n',
-    "a row cut short": f'printf "{HEADER}0,0\\n1" > "$STATEJUMP_OUTPUT"\necho PROGRESS 1.0000\n',
-    "a word for a number": f'printf "{HEADER}0,zero\\n" > "$STATEJUMP_OUTPUT"\necho PROGRESS 1.0000\n',
-    "no summary": f'printf "{HEADER}0,0\\n" > "$STATEJUMP_OUTPUT"\necho PROGRESS 1.0000\n',
-    "progress without a number": "echo PROGRESS soon\nexit 4\n",
+    "no history": DONE,
+    "an empty history": f'touch "$STATEJUMP_OUTPUT"\n{DONE}',
+    "a row cut short": f'printf "{HEADER}0,0\\n1" > "$STATEJUMP_OUTPUT"\n{DONE}',
+    "a word for a number": f'printf "{HEADER}0,zero\\n" > "$STATEJUMP_OUTPUT"\n{DONE}',
+    "no summary": f'printf "{HEADER}0,0\\n" > "$STATEJUMP_OUTPUT"\n{DONE}',
+    "progress without a number": "echo STATEJUMP soon\nexit 4\n",
 }
 
 
@@ -133,7 +126,7 @@ def test_signal_ends_yade_and_its_children(
 ) -> None:
     yade = fake_yade(
         'printf "time_s,displacement_m\\n0,0\\n" > "$STATEJUMP_OUTPUT.partial"\n'
-        f'sleep 60 &\necho "$$ $!" > {tmp_path}/pids\necho PROGRESS 0.5\nwait\n'
+        f'sleep 60 &\necho "$$ $!" > {tmp_path}/pids\n' "echo 'STATEJUMP {\"progress\": 0.5}'\nwait\n"
     )
     scratch = tmp_path / "scratch"
     scratch.mkdir()
@@ -163,21 +156,20 @@ def test_wrong_python_has_status_2() -> None:
 
 def test_stop_left_is_the_one_reached_first(cases: Path) -> None:
     """A sine reaches both stops in one cycle; both models must name the same one."""
-    case: Case = load_case(cases / "table1.toml")
-    case = case.copy(update={"thermal": case.thermal.copy(update={"shape": "sine"})})
-    path = reduced.solve(case)
-    columns = dict(reduced.sample(path, reduced.sample_times(case)).columns)
+    case = load(cases / "table1.toml").changed({"thermal.shape": "sine"})
+    run = case.reduced()
+    columns = run.flat()
     assert columns["stop_force_N"].min() < -100 and columns["stop_force_N"].max() > 100
     stage = columns.pop("stage")
     columns["slipping"] = np.isin(stage, ("S2", "S5")).astype(float)
     # The stop is left where the block slides away from it, as in the DEM with its elastic stops.
-    left = [e.temperature_change_K for e in path.events if e.kind == "stop_left"]
+    left = [event.temperature_change_K for event in run.events if event.kind == "stop_left"]
     contact = np.abs(columns["displacement_m"]) > 1e-3 - 1e-12
     columns["stop_contact"] = contact.astype(float)
     columns["stop_force_N"] = np.where(contact, -np.sign(columns["displacement_m"]), 0.0)
     for name in ("contact_energy_J", "kinetic_energy_J", "damping_dissipation_J", "external_work_J"):
         columns[name] = np.zeros(len(contact))
-    found = compare.dem_event_temperatures(History(columns), case.dem.samples_per_cycle)
+    dem = result.dem_run(case.definition, columns, {})
+    found = compare.dem_event_temperatures(dem, case["dem.samples_per_cycle"])
     assert left[0] > 0 > left[1]
     assert found["stop_left"] == pytest.approx(left[0], abs=0.5)
-    assert [row.name for row in compare.compare(case, path, History(columns)) if not row.passed] == []

@@ -124,13 +124,12 @@ def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
         try:
             for line in process.stdout or []:
                 said = line.strip()
-                if said.startswith(MARK):
-                    message = json.loads(said.removeprefix(MARK))
-                    if "progress" in message:
-                        finished = message["progress"] >= 1
-                        tell(message["progress"])
-                    else:
-                        failure = message["failure"]
+                message = _message(said)
+                if "progress" in message:
+                    finished = message["progress"] >= 1
+                    tell(message["progress"])
+                elif "failure" in message:
+                    failure = message["failure"]
                 elif said:
                     last = said
         except BaseException:
@@ -143,6 +142,17 @@ def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
     if process.returncode != 0 or not finished:
         raise FailedRun(f"YADE ended with status {process.returncode} before the run was finished",
                         cause=last or None)
+
+
+def _message(line: str) -> dict[str, Any]:
+    """Return what a line tells; nothing if it is YADE's own, or torn."""
+    if not line.startswith(MARK):
+        return {}
+    try:
+        found = json.loads(line.removeprefix(MARK))
+    except ValueError:
+        return {}
+    return found if isinstance(found, dict) else {}
 
 
 class RunFailed(FailedRun):
