@@ -14,7 +14,9 @@ set(STATEJUMP_YADE_GENERATED "${PROJECT_BINARY_DIR}/yade_abi")
 # The measured layout of a variant as calls of macros, for layout_checks.hpp and declared.cpp.
 function(statejump_write_layout variant folder)
   set(_text "")
-  file(STRINGS "${STATEJUMP_YADE_ABI}/variants/${variant}_members.csv" _rows)
+  set(_table "${STATEJUMP_YADE_ABI}/variants/${variant}_members.csv")
+  set_property(DIRECTORY "${PROJECT_SOURCE_DIR}" APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${_table}")
+  file(STRINGS "${_table}" _rows)
   list(REMOVE_AT _rows 0)
   foreach(_row IN LISTS _rows)
     if(_row MATCHES "^([^,]+),,,([0-9]+),(allocation|place),")
@@ -117,5 +119,3 @@ string(APPEND _text "}};\nconstexpr int built_for_row = ${_place};\n")
 file(CONFIGURE OUTPUT "${STATEJUMP_YADE_GENERATED}/statejump/yade_abi/known_binaries.inc"
      CONTENT "${_text}" @ONLY)
 statejump_write_layout("${STATEJUMP_YADE_VARIANT}" "${STATEJUMP_YADE_GENERATED}")
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
-  "${STATEJUMP_YADE_ABI}/variants/${STATEJUMP_YADE_VARIANT}_members.csv")

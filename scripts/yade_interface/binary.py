@@ -110,11 +110,13 @@ class Libraries:
         return int.from_bytes(code[begin + 1: begin + 5], "little")
 
     def table(self, class_name: str) -> list[str]:
-        """Return the entries of a table of virtual functions: symbols, or numbers where there is none."""
+        """Return the entries of the table of virtual functions of a class of YADE's."""
         found = self.find(f"_ZTVN4yade{len(class_name)}{class_name}E")
-        if not found:
-            return []
-        library, symbol = found
+        return self.entries(*found) if found else []
+
+    @staticmethod
+    def entries(library: Library, symbol: Symbol) -> list[str]:
+        """Return the entries of a table: symbols, or numbers where there is none."""
         entries = []
         for address in range(symbol.address, symbol.address + symbol.size, 8):
             kind, index, addend = library.relocations().get(address, (0, 0, 0))

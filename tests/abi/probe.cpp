@@ -44,7 +44,8 @@ std::string entry_name(const void* entry, const std::string& child) {
   return place == std::string::npos ? name : name.replace(place, child.size(), "child");
 }
 
-// Everything that the compiled declarations amount to: two that give the same are the same interface.
+// Everything that the compiled declarations amount to: two that give the same are the same
+// interface.
 py::list description() {
   const auto declared = statejump::yade_abi::declared_interface();
   py::list result;
