@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import statejump
-from pygments.lexers.python import PythonLexer
 
 project, author = "statejump", "statejump maintainers"
 copyright = "GPL-3.0-or-later"
@@ -38,5 +37,4 @@ def setup(app: Any) -> None:
     def plain(app: Any, what: str, name: str, found: Any, options: Any, lines: list[str]) -> None:
         lines[:] = [line.replace("|", "\\|") for line in lines]
 
-    app.add_lexer("yade", PythonLexer)
     app.connect("autodoc-process-docstring", plain)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds the documentation: documents of the repository, generated references, as one site.
+"""Builds the documentation: documents of the repository, executed notebooks, generated references, as one site.
 
     /usr/bin/python3 docs/site/make.py --build build
 
@@ -25,6 +25,7 @@ REPOSITORY = HERE.parents[1]
 sys.path.insert(0, str(HERE))
 import cpp_pages  # noqa: E402 - these are beside this file
 import documents  # noqa: E402
+import notebooks  # noqa: E402
 
 DOXYFILE = """
 QUIET = YES
@@ -91,6 +92,18 @@ def python_pages(build: Path) -> dict[str, str]:
     return made
 
 
+def tutorial_pages(source: Path, build: Path) -> None:
+    """Replace the tutorials among the staged documents by their executed notebooks."""
+    for path in notebooks.tutorials():
+        target = source / path.relative_to(REPOSITORY)
+        # The staged text, not the repository's: its links are those of the site.
+        made = notebooks.executed(notebooks.notebook(target.read_text(encoding="utf-8")), build)
+        target.with_suffix(".ipynb").write_text(notebooks.stored(made), encoding="utf-8")
+        first, _, rest = notebooks.page(made, path.stem, target.parent).partition("\n")
+        note = f"Download this page as an executed {{download}}`Jupyter notebook <{path.stem}.ipynb>`."
+        target.write_text(f"{first}\n\n{note}\n{rest}", encoding="utf-8")
+
+
 def static_files(folder: Path) -> None:
     """Write the style and copy what is needed of Debian's MathJax: formulas are set without a network."""
     folder.mkdir(parents=True)
@@ -126,6 +139,7 @@ def main() -> None:
     wrong += command_pages.unlisted((REPOSITORY / "docs" / "commands.md").read_text(encoding="utf-8"))
     if wrong:
         sys.exit("\n".join(wrong))
+    tutorial_pages(source, build)
 
     members = doxygen(folder)
     subprocess.run(

@@ -12,6 +12,7 @@ import pytest
 REPOSITORY = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(REPOSITORY / "docs" / "site"))
 import documents  # noqa: E402 - beside the documents
+import notebooks  # noqa: E402
 
 README = REPOSITORY / "README.md"
 PAGES = [Path("README.md"), *documents.documents(REPOSITORY)]
@@ -57,3 +58,9 @@ def test_headings_that_links_name_exist() -> None:
                 anchors = {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
                            for heading in re.findall("^#+ (.*)$", text, re.MULTILINE)}
                 assert target.partition("#")[2] in anchors, f"{page}: {target}"
+
+
+@pytest.mark.parametrize("page", notebooks.tutorials(), ids=lambda page: page.stem)
+def test_notebook_is_that_of_its_page(page: Path) -> None:
+    made = notebooks.stored(notebooks.notebook(page.read_text(encoding="utf-8")))
+    assert page.with_suffix(".ipynb").read_text(encoding="utf-8") == made, "run docs/site/notebooks.py"
