@@ -41,7 +41,7 @@ docs:
 	./scripts/setup.sh run build docs
 	$(call configure)
 	$(compile) --target demo
-	$(PYTHON) docs/api/make.py --build $(BUILD)
+	$(PYTHON) docs/site/make.py --build $(BUILD)
 
 sanitize:
 	./scripts/setup.sh build test

@@ -12,12 +12,6 @@ find_package(Python3 REQUIRED COMPONENTS Interpreter Development.Module)
 set(Python_EXECUTABLE "${STATEJUMP_PYTHON}")
 
 if(STATEJUMP_BUILD_YADE AND NOT YADE_SOURCE_DIR)
-  set(YADE_LIBRARY_DIR "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/yade-double" CACHE PATH
-      "Folder of libyade.so, libpkg_common.so and libpkg_dem.so")
-  if(NOT EXISTS "${YADE_LIBRARY_DIR}/libyade.so")
-    message(FATAL_ERROR "YADE is missing: no libyade.so in ${YADE_LIBRARY_DIR}; "
-                        "install Debian's package 'yade' or set YADE_LIBRARY_DIR")
-  endif()
   execute_process(COMMAND readelf -d "${YADE_LIBRARY_DIR}/libpkg_dem.so"
                   OUTPUT_VARIABLE _needed COMMAND_ERROR_IS_FATAL ANY)
   if(NOT _needed MATCHES "libboost_python([0-9])([0-9]+)\\.so")

@@ -1,31 +1,32 @@
 #!/usr/bin/env bash
-# Installs a Debian package of statejump in a fresh minimal Debian 12 and runs it there, far from any
+# Installs a Debian package of statejump in a fresh minimal Debian and runs it there, far from any
 # source or build tree:
 #
-#     make package && sudo scripts/check_package.sh build/package/statejump_*.deb [FOLDER]
+#     make package && sudo scripts/check_package.sh build/package/statejump_*.deb [12|13|testing [FOLDER]]
 #
-# Needs root, debootstrap and about 4 GB in FOLDER (default: a temporary folder, removed at the end).
-# MIRROR is the Debian mirror, http://deb.debian.org/debian by default.
+# The release is that of this machine if none is given. Needs root, debootstrap and about 4 GB in FOLDER
+# (default: a temporary folder, removed at the end). MIRROR is the Debian mirror, that of this machine's apt
+# by default.
 set -euo pipefail
 
+# shellcheck source=scripts/debian_chroot.sh
+source "$(dirname "$(realpath "$0")")/debian_chroot.sh"
 package=$(realpath "${1:?a .deb file is needed}")
-mirror=${MIRROR:-http://deb.debian.org/debian}
-kept=${2:-}
+release=${2:-$(. /etc/os-release && echo "${VERSION_ID:-testing}")}
+kept=${3:-}
 root=${kept:-$(mktemp -d)}
 
 clean_up() {
-  umount "$root/proc" 2>/dev/null || true
+  leave_debian "$root"
   [[ -n $kept ]] || rm -rf --one-file-system "$root"
 }
 trap clean_up EXIT
 
-[[ -e $root/etc/debian_version ]] || debootstrap --variant=minbase bookworm "$root" "$mirror" >/dev/null
-mount -t proc proc "$root/proc"
+make_debian "$release" "$root"
 mkdir -p "$root/var/tmp/package"
 cp "$package" "$root/var/tmp/package/"
 
-chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
-  bash -euo pipefail <<'INSIDE'
+in_debian "$root" "$(cat <<'INSIDE'
 apt-get update -qq
 apt-get install -y -qq --no-install-recommends "/var/tmp/package/$(ls -t /var/tmp/package | head -1)" >/var/tmp/apt.log 2>&1 ||
   { tail -20 /var/tmp/apt.log; exit 1; }
@@ -49,4 +50,5 @@ apt-get remove -y -qq statejump >/dev/null 2>&1
 left=$(find / -xdev -path /proc -prune -o -path "$folder" -prune -o -path '*statejump*' -print | grep -v -e ^/var/ -e ^/tmp/ || true)
 [[ -z $left ]] || { echo "left behind: $left"; exit 1; }
 INSIDE
+)"
 echo "package works: $(basename "$package")"

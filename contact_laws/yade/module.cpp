@@ -7,12 +7,10 @@
 #include "joint.hpp"
 #include "object_list.hpp"
 #include "shapes.hpp"
+#include "statejump/yade_abi/guard.hpp"
 #include "thermal.hpp"
 #include "torsion.hpp"
 #include "view.hpp"
-#ifndef STATEJUMP_REAL_YADE_HEADERS
-#include "statejump/yade_abi/guard.hpp"
-#endif
 
 namespace statejump::dem {
 namespace {
@@ -48,14 +46,10 @@ using OurClasses = ClassList<
 
 // Empty on success, otherwise the sentence that the Python wrapper raises.
 std::string setup(const boost::python::object& wrapper) {
-#ifndef STATEJUMP_REAL_YADE_HEADERS
-  if (std::string difference = yade_abi::difference_from_running_yade(wrapper);
-      !difference.empty()) {
-    return difference;
+  if (auto difference = yade_abi::difference_from_running_yade(wrapper);
+      !difference.sentence.empty()) {
+    return difference.sentence;
   }
-#else
-  (void)wrapper;
-#endif
   register_list_converter<ThermalLink>();
   register_list_converter<TorsionSpring>();
   register_list_converter<JointGeom>();
@@ -125,6 +119,7 @@ STATEJUMP_EXPORT(GuidePlanes)
 BOOST_PYTHON_MODULE(_native) {
   namespace py = boost::python;
   py::def("setup", &statejump::dem::setup, py::arg("wrapper"));
+  py::def("built_for", &statejump::yade_abi::built_for);
   py::def("class_names", &statejump::dem::OurClasses::names);
   py::def(
       "bore_triangles", &statejump::dem::bore_triangles,

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/version.h>
+#if CGAL_VERSION_NR >= 1060000000  // the tree's parts carry their dimension in their names since then
+#include <CGAL/AABB_traits_3.h>
+#include <CGAL/AABB_triangle_primitive_3.h>
+#else
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_triangle_primitive.h>
+#endif
 
 #include <algorithm>
 #include <limits>
@@ -41,8 +47,13 @@ struct Grid {
 struct BoreMesh::Impl {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   using Facets = std::vector<Kernel::Triangle_3>;
+#if CGAL_VERSION_NR >= 1060000000
+  using Primitive = CGAL::AABB_triangle_primitive_3<Kernel, Facets::const_iterator>;
+  using Tree = CGAL::AABB_tree<CGAL::AABB_traits_3<Kernel, Primitive>>;
+#else
   using Primitive = CGAL::AABB_triangle_primitive<Kernel, Facets::const_iterator>;
   using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+#endif
 
   Impl(Triangles given, const BoreOptions& options, const std::string& name);
 

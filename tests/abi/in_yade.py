@@ -1,37 +1,41 @@
-"""Runs inside YADE: loads a probe module and prints what its guard says, as one line of JSON."""
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs inside YADE and answers requests, one line of JSON each, until there are no more.
+
+A request names a file of a module and a task. Each is carried out in a process of its own, split off this
+one, so that a module can crash and none sees what another did. The answer to a process that ended
+without one is its exit status.
+"""
+from __future__ import annotations
+
+import importlib.util
 import json
 import os
 import sys
 import time
+from pathlib import Path
+from typing import Any
 
 from yade import utils, wrapper
 
-sys.path.insert(0, os.environ["STATEJUMP_PROBE"])
+
+def module_in(folder: Path) -> Any:
+    """Load the probe of a folder."""
+    description = importlib.util.spec_from_file_location("_native", folder / "_native.so")
+    module = importlib.util.module_from_spec(description)
+    description.loader.exec_module(module)
+    return module
 
 
-def say(**what):
-    print("PROBE " + json.dumps(what), flush=True)
-    os._exit(0)
+def checks(folder: Path) -> dict[str, Any]:
+    """What the compiled declarations are, and what the guard says about them."""
+    native = module_in(folder)
+    description = native.description()
+    check, sentence = native.interface_checks(wrapper)
+    return {"description": description, "check": check, "sentence": sentence}
 
 
-def scene_on_disk():
-    path = os.path.join(os.environ["STATEJUMP_PROBE"], "scene.xml")
-    O.save(path, quiet=True)
-    with open(path, "rb") as file:
-        return file.read()
-
-
-if os.environ["STATEJUMP_PROBE_TASK"] == "package":
-    try:
-        import statejump_yade  # noqa: F401
-    except ImportError as error:
-        say(error=str(error), cause=error.__cause__ is not None)
-    say(error="")
-
-import _native  # noqa: E402
-
-if os.environ["STATEJUMP_PROBE_TASK"] == "scene":
-    # A scene with everything in it that the guard might disturb.
+def scene(folder: Path) -> dict[str, Any]:
+    """All checks, in a scene with everything in it that the guard might disturb."""
     O.bodies.append([utils.sphere((0, 0, 0), 1), utils.sphere((0, 0, 1.9), 1)])
     O.engines = [
         ForceResetter(),
@@ -46,9 +50,54 @@ if os.environ["STATEJUMP_PROBE_TASK"] == "scene":
     O.dt = 1e-5
     O.trackEnergy = True
     O.run(10, True)
-    before = scene_on_disk()
+
+    def on_disk() -> bytes:
+        path = folder / "scene.xml"
+        O.save(str(path), quiet=True)
+        return path.read_bytes()
+
+    before = on_disk()
+    native = module_in(folder)
     start = time.perf_counter()
-    sentence = _native.setup(wrapper)
+    check, sentence = native.all_checks(wrapper)
     seconds = time.perf_counter() - start
-    say(sentence=sentence, same=before == scene_on_disk(), seconds=seconds)
-say(sentence=_native.difference(wrapper))
+    return {"check": check, "sentence": sentence, "same": before == on_disk(), "seconds": seconds}
+
+
+def package(folder: Path) -> dict[str, Any]:
+    """Import the plugin's Python package with the probe as its module."""
+    sys.path.insert(0, str(folder))
+    try:
+        import statejump_yade  # noqa: F401
+    except ImportError as error:
+        return {"sentence": str(error), "cause": error.__cause__ is not None}
+    return {"sentence": "", "cause": False}
+
+
+TASKS = {"checks": checks, "scene": scene, "package": package}
+
+
+def answer(request: dict[str, str]) -> dict[str, Any]:
+    """Carry a request out in a process of its own."""
+    reading, writing = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            result = TASKS[request["task"]](Path(request["folder"]))
+        except Exception as error:  # noqa: BLE001  whatever it is, the other side has to hear of it
+            result = {"error": f"{type(error).__name__}: {error}"}
+        with os.fdopen(writing, "w") as stream:
+            json.dump(result, stream)
+        os._exit(0)
+    os.close(writing)
+    with os.fdopen(reading) as stream:
+        text = stream.read()
+    _, status = os.waitpid(child, 0)
+    return json.loads(text) if text else {"crash": os.waitstatus_to_exitcode(status)}
+
+
+with open(os.environ["STATEJUMP_REQUESTS"]) as requests, open(os.environ["STATEJUMP_ANSWERS"], "w") as answers:
+    for line in requests:
+        answers.write(json.dumps(answer(json.loads(line))) + "\n")
+        answers.flush()
+os._exit(0)

@@ -78,16 +78,3 @@ def test_tutorial_script_runs_by_itself() -> None:
                           capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120, env=environment)
     line = next(line for line in done.stdout.splitlines() if line.startswith("state jump: "))
     assert float(line.split()[2]) == pytest.approx(23.80952, rel=0.005)
-
-
-def test_readme_script_runs(tmp_path: Path) -> None:
-    text = (REPOSITORY / "README.md").read_text()
-    script = tmp_path / "hold.py"
-    blocks = [block.split("```", 1)[0] for block in text.split("```python\n")[1:]]
-    script.write_text(next(block for block in blocks if "statejump_yade" in block))
-    environment = {**os.environ, "PYTHONPATH": os.environ["STATEJUMP_PYTHON_DIR"]}
-    done = subprocess.run(["yade", "-n", "-x", str(script)], capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL, timeout=120, env=environment)
-    last = done.stdout.strip().splitlines()[-1]
-    assert last.startswith("journal at Vector3(0.000102"), done.stdout + done.stderr
-    assert float(last.split("moving at ")[1].split()[0]) < 1e-9

@@ -137,8 +137,8 @@ def test_paper_joint_is_that_of_the_case(cases: Path) -> None:
         assert getattr(paper, field) == pytest.approx(getattr(case, field), rel=1e-14)
 
 
-def test_readme_lists_every_law() -> None:
-    text = (REPOSITORY / "README.md").read_text()
+def test_document_lists_every_law() -> None:
+    text = (REPOSITORY / "docs" / "laws.md").read_text()
     listed = text.split("| key | law |", 1)[1].split("\n\n", 1)[0].splitlines()[2:]
     names = [row.split("|")[2].strip(" `") for row in listed]
     assert names == [name for kind in laws.KINDS for name in _engine.law_names(kind)]

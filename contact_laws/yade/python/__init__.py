@@ -21,14 +21,14 @@ try:
 except ImportError as _error:
     raise ImportError(
         f"statejump_yade could not be loaded into this YADE ({_error}): it was built for another "
-        "one; build it against this YADE with -DYADE_SOURCE_DIR=<YADE sources>"
+        "one; build it again on this machine"
     ) from None
 
 _difference = _native.setup(_wrapper)
 if _difference:
     raise ImportError(
-        f"statejump_yade refuses to load: {_difference}; it is built for YADE 2023.02a of "
-        "Debian 12; build it against your YADE with -DYADE_SOURCE_DIR=<YADE sources>"
+        f"statejump_yade refuses to load: {_difference}; it is built for {_native.built_for()}; build "
+        "it again on this machine, and if the build does not know this YADE, run scripts/measure_yade"
     )
 
 stable_time_step = _native.stable_time_step

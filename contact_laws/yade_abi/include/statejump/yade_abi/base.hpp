@@ -1,21 +1,29 @@
-// Declared interface of YADE 2023.02a (Debian 12, amd64, double): roots of its class hierarchy.
+// Declared interface of YADE (Debian's packages, amd64, double): roots of its class hierarchy.
 //
 // Debian ships YADE's libraries without headers. This folder declares the part of the binary
 // interface that the plugin uses: names, order of virtual functions, order of members. Nothing here
-// was copied from YADE; the layouts were measured, layout_checks.hpp holds the measured sizes and
-// offsets, and guard.cpp compares the declarations with the running libraries before any object is
-// touched. Only this folder knows offsets.
+// was copied from YADE; the layouts were measured. The measured sizes, offsets and tables are in
+// ../variants, one set for each variant of the interface; layout_checks.hpp holds the declarations
+// against them at compile time, and the guard compares them with the running libraries before any
+// object is touched. Only this folder knows offsets.
+//
+// STATEJUMP_YADE_VARIANT is the variant that is declared, named by the first version of YADE that
+// has it: 202302 (2023.02a, 2025.2) or 202601 (2026.1). known_binaries.csv says which binary has
+// which.
+//
+// Members that the plugin does not use are bytes of their measured size (Unused): what no check
+// sees is not declared.
 //
 // Virtual functions that YADE exports are declared and not defined: their definitions, the vtables
 // and the type information come from YADE's libraries. Constructors that YADE does not export are
 // defined here and give every member the default that a fresh object shows in Python.
 #pragma once
 
+#include <array>
 #include <boost/enable_shared_from_this.hpp>
 #include <boost/python.hpp>
 #include <boost/shared_ptr.hpp>
-#include <map>
-#include <mutex>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -26,6 +34,10 @@
 #endif
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+
+#ifndef STATEJUMP_YADE_VARIANT
+#error "STATEJUMP_YADE_VARIANT is set by the build: the interface variant of the YADE that it found"
+#endif
 
 // A class template of YADE that lives in the global namespace; instance() is exported.
 template <class T>
@@ -50,6 +62,13 @@ struct Se3 {
 using Se3r = Se3<Real>;
 
 class Scene;
+
+// Place of members that are not used. Zeros are what YADE's defaults amount to (null pointers)
+// where we construct the object; elsewhere YADE does.
+template <std::size_t size, std::size_t alignment = alignof(void*)>
+struct alignas(alignment) Unused {
+  std::array<char, size> bytes{};
+};
 
 class Factorable : public boost::enable_shared_from_this<Factorable> {
  public:

@@ -1,28 +1,17 @@
 // Declared interface of YADE: bodies, interactions, scene and containers.
 #pragma once
 
-#include <array>
-#include <list>
-
 #include "statejump/yade_abi/base.hpp"
 
 namespace yade {
 
-class BoundFunctor;
-class InternalForceFunctor;
-class IGeomFunctor;
-class IPhysFunctor;
-class LawFunctor;
 class TimingDeltas;
 class Engine;
 class Body;
-class Cell;
-class DisplayParameters;
 
 class Shape : public Serializable, public Indexable {
  public:
-  shared_ptr<BoundFunctor> boundFunctor;
-  shared_ptr<InternalForceFunctor> internalforcefunctor;
+  Unused<32> functors;  // two shared pointers, set by YADE alone
   Vector3r color = Vector3r(1, 1, 1);
   bool wire = false;
   bool highlight = false;
@@ -36,6 +25,9 @@ class Shape : public Serializable, public Indexable {
   boost::python::dict pyDict() const override;
   void callPostLoad() override;
   void pyRegisterClass(boost::python::object scope) override;
+#if STATEJUMP_YADE_VARIANT >= 202601
+  virtual Real getVolume();
+#endif
   int& modifyClassIndex() override;
   const int& getClassIndex() const override;
   const int& getBaseClassIndex(int depth) const override;
@@ -86,9 +78,7 @@ class Aabb : public Bound {
 
 class State : public Serializable, public Indexable {
  public:
-  Vector3r& pos;
-  Quaternionr& ori;
-  std::mutex updateMutex;
+  Unused<56> referencesAndMutex;  // pos and ori refer to se3
   Se3r se3;
   Vector3r vel;
   Real mass;
@@ -255,6 +245,9 @@ class NormShearPhys : public NormPhys {
 class FrictPhys : public NormShearPhys {
  public:
   Real tangensOfFrictionAngle;
+#if STATEJUMP_YADE_VARIANT >= 202601
+  Real frictDissip;
+#endif
 
   FrictPhys();
   ~FrictPhys() override;
@@ -273,20 +266,15 @@ class FrictPhys : public NormShearPhys {
 class Interaction : public Serializable {
  public:
   bool isActive;
-  struct FunctorCache {
-    bool geomExists;
-    shared_ptr<IGeomFunctor> geom;
-    shared_ptr<IPhysFunctor> phys;
-    shared_ptr<LawFunctor> constLaw;
-  } functorCache;
+  Unused<56> functorCache;
   int id1;
   int id2;
   long iterMadeReal;
-  long iterLastSeen;
+  Unused<8> iterLastSeen;
   shared_ptr<IGeom> geom;
   shared_ptr<IPhys> phys;
   Vector3i cellDist;
-  int linIx;
+  Unused<4, 4> linIx;
   long iterBorn;
 
   bool isReal() const { return static_cast<bool>(geom) && static_cast<bool>(phys); }
@@ -304,7 +292,7 @@ class Body : public Serializable {
   shared_ptr<State> state;
   shared_ptr<Shape> shape;
   shared_ptr<Bound> bound;
-  std::map<int, shared_ptr<Interaction>> intrs;
+  Unused<48> intrs;
   int clumpId;
   long iterBorn;
   Real timeBorn;
@@ -313,7 +301,6 @@ class Body : public Serializable {
   ~Body() override;
 };
 
-// Opaque parts are kept as bytes: the plugin does not touch them.
 class ForceContainer {
  public:
   void addForce(int id, const Vector3r& force);
@@ -321,25 +308,16 @@ class ForceContainer {
   const Vector3r& getForce(int id);
   const Vector3r& getTorque(int id);
   void sync();
-  int getNumAllocatedThreads() const;
   ForceContainer(const ForceContainer&) = delete;
 
- private:
-  alignas(8) std::array<char, 304> opaque_;
+  Unused<296> forcesAndTorques;
+  long lastReset;  // number of the step that the forces were set to zero for
 };
 
 class BodyContainer : public Serializable {
  public:
   std::vector<shared_ptr<Body>> body;
-  bool dirty;
-  bool checkedByCollider;
-  std::vector<int> insertedBodies;
-  std::vector<int> erasedBodies;
-  std::vector<int> realBodies;
-  bool useRedirection;
-  bool enableRedirection;
-  std::vector<int> subdomainBodies;
-  std::mutex drawloopmutex;
+  Unused<152> listsAndMutex;
 
   // Null pointers are the places of erased bodies.
   std::size_t size() const { return body.size(); }
@@ -355,20 +333,12 @@ class BodyContainer : public Serializable {
 class InteractionContainer : public Serializable {
  public:
   std::vector<shared_ptr<Interaction>> linIntrs;
-  std::vector<shared_ptr<Interaction>> sortedIntrs;
-  const std::vector<shared_ptr<Body>>* bodies;
+  Unused<32> sortedAndBodies;
   std::size_t currSize;
-  shared_ptr<Interaction> empty;
-  std::vector<shared_ptr<Interaction>> interaction;
-  bool dirty;
-  std::mutex drawloopmutex;
-  bool serializeSorted;
-  long iterColliderLastRun;
+  Unused<104> listsAndMutex;
 
   std::size_t size() const { return currSize; }
   const shared_ptr<Interaction>& operator[](std::size_t i) const { return linIntrs[i]; }
-  bool insert(int id1, int id2);
-  void clear();
   InteractionContainer(const InteractionContainer&) = delete;
   ~InteractionContainer() override;
 };
@@ -380,17 +350,14 @@ class EnergyTracker : public Serializable {
   EnergyTracker(const EnergyTracker&) = delete;
   ~EnergyTracker() override;
 
- private:
-  alignas(8) std::array<char, 152> opaque_;
+  Unused<152> energies;
 };
 
 class Scene : public Serializable {
  public:
-  const unsigned int hostNameMax = 255;
+  Unused<8> hostNameMax;
   ForceContainer forces;
-  Eigen::Matrix<double, 10, 1> speedElements;
-  shared_ptr<void> renderer;
-  long prevTime;
+  Unused<104> speedAndRenderer;
   Real dt;
   long iter;
   bool subStepping;
@@ -402,23 +369,18 @@ class Scene : public Serializable {
   bool isPeriodic;
   bool trackEnergy;
   bool doSort;
-  bool runInternalConsistencyChecks;
+  Unused<1, 1> runInternalConsistencyChecks;
   int selectedBody;
   int subdomain;
   shared_ptr<Shape> subD;
   std::vector<std::string> tags;
   std::vector<shared_ptr<Engine>> engines;
-  std::vector<shared_ptr<Engine>> nextEngines;
+  Unused<24> nextEngines;
   shared_ptr<BodyContainer> bodies;
   shared_ptr<InteractionContainer> interactions;
   shared_ptr<EnergyTracker> energy;
-  std::vector<shared_ptr<Material>> materials;
-  shared_ptr<Bound> bound;
-  shared_ptr<Cell> cell;
-  std::vector<shared_ptr<Serializable>> miscParams;
-  std::vector<shared_ptr<DisplayParameters>> dispParams;
+  Unused<104> materialsCellAndMore;
 
-  shared_ptr<Engine> engineByName(const std::string& class_name);
   Scene(const Scene&) = delete;
   ~Scene() override;
 };

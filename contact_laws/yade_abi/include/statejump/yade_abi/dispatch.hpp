@@ -166,15 +166,10 @@ class OpenGLRenderer {
   static bool initDone;
 };
 
-struct TimingInfo {
-  long nExec = 0;
-  unsigned long nsec = 0;
-};
-
 class Engine : public Serializable {
  public:
   Scene* scene;
-  TimingInfo timingInfo;
+  Unused<16> timingInfo;
   shared_ptr<TimingDeltas> timingDeltas;
   bool dead;
   int ompThreads;

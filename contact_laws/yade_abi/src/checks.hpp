@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The single checks of the guard. Each answers with one sentence about the first difference,
+// without its end, or with nothing.
+#pragma once
+
+#include <boost/python/object.hpp>
+#include <string>
+
+#include "statejump/yade_abi/interface.hpp"
+
+namespace statejump::yade_abi {
+
+std::string size_difference(const DeclaredInterface& declared);
+std::string table_difference(const DeclaredInterface& declared);
+std::string getter_difference(const DeclaredInterface& declared,
+                              const boost::python::object& wrapper);
+// Whether every declared member is seen by some check, with the type that the check establishes.
+std::string coverage_difference(const DeclaredInterface& declared);
+std::string sentinel_difference(const DeclaredInterface& declared,
+                                const boost::python::object& wrapper);
+std::string value_difference(const DeclaredInterface& declared,
+                             const boost::python::object& wrapper);
+
+}  // namespace statejump::yade_abi

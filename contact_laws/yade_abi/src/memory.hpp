@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Memory and symbols of the running process, read without the risk of a crash.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace statejump::yade_abi {
+
+using Word = std::uint64_t;
+
+// Reads through a pipe: the kernel refuses an address that cannot be read, where a plain read ends
+// the process.
+class Memory {
+ public:
+  Memory();
+  ~Memory();
+  Memory(const Memory&) = delete;
+  Memory& operator=(const Memory&) = delete;
+
+  bool copy(const void* from, void* to, std::size_t bytes) const;
+  std::optional<Word> word(Word address) const;
+  // Up to its end or to a length that no name reaches.
+  std::optional<std::string> text(Word address) const;
+
+ private:
+  int ends_[2];
+};
+
+inline Word address_of(const void* place) {
+  return reinterpret_cast<std::uintptr_t>(place);
+}
+
+template <class Type>
+Type read_as(const char* place) {
+  Type value;
+  std::memcpy(&value, place, sizeof value);
+  return value;
+}
+
+// "5State": a class of the namespace yade as it stands within mangled names.
+std::string mangled_name(const std::string& class_name);
+// Among the libraries that YADE loaded; null when there is none.
+const void* symbol(const std::string& name);
+// Among those of this module.
+const void* own_symbol(const std::string& name);
+
+// A function of YADE by its symbol, null when it is missing. The guard calls YADE through this
+// alone, so no declaration that it checks decides what is called, and how.
+template <class Function>
+Function* function(const std::string& name) {
+  return reinterpret_cast<Function*>(const_cast<void*>(symbol(name)));
+}
+
+// What an object of the named class begins with; 0: YADE has no such class.
+Word table_pointer(const std::string& class_name);
+
+}  // namespace statejump::yade_abi

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The Markdown documents of the repository as pages of the site: the same folders, so the same links.
+
+A link to a file that is no page becomes a download. The way through the site is docs/index.md: each of its
+sections is a part of the sidebar, the links in it, in their order, are its pages.
+"""
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+from typing import Iterator
+
+LINK = re.compile(r"(!?)\[((?:[^][]|!\[[^]]*\]\([^)]*\))*)\]\(([^)\s]+)\)")
+FENCE = re.compile(r"^(```|~~~).*?^\1\s*?$", re.MULTILINE | re.DOTALL)
+START = Path("docs/index.md")
+
+
+def documents(repository: Path) -> list[Path]:
+    """Return the documents, from the repository's root. The README is the start page of the repository only."""
+    found = [Path(name) for name in ("CHANGELOG.md", "CONTRIBUTING.md")]
+    for folder in "docs", "results":
+        found += sorted(path.relative_to(repository) for path in (repository / folder).rglob("*.md"))
+    return found
+
+
+def links(text: str) -> Iterator[str]:
+    """Yield the targets of the links and pictures outside of fenced blocks, pictures inside links too."""
+    for match in LINK.finditer(FENCE.sub("", text)):
+        yield match[3]
+        yield from links(match[2])
+
+
+def local_target(document: Path, target: str) -> Path | None:
+    """Return the file that a link leads to, from the repository's root; None: it leads elsewhere or stays on the page."""
+    if re.match(r"[a-z]+:|#", target):
+        return None
+    parts: list[str] = []
+    for part in (document.parent / target.partition("#")[0]).parts:
+        if part == "..":
+            parts.pop()
+        else:
+            parts.append(part)
+    return Path(*parts)
+
+
+def stage(repository: Path, source: Path) -> list[str]:
+    """Copy documents and their pictures below ``source``; return what is wrong with links, one sentence each."""
+    pages = documents(repository)
+    wrong = []
+    for page in pages:
+        text = (repository / page).read_text(encoding="utf-8")
+
+        def linked(match: re.Match[str], page: Path = page) -> str:
+            inner = LINK.sub(linked, match[2])
+            target = local_target(page, match[3])
+            if target is None:
+                return f"{match[1]}[{inner}]({match[3]})"
+            if not (repository / target).exists():
+                wrong.append(f"{page}: {match[3]} does not exist")
+            elif target == Path("README.md"):
+                return f"[{inner}]({up(page)}{START})"
+            elif target not in pages and (repository / target).is_dir():
+                return inner
+            elif target not in pages:
+                (source / target).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(repository / target, source / target)
+                if not match[1]:
+                    return f"{{download}}`{inner.replace('`', '')} <{match[3]}>`"
+            return f"{match[1]}[{inner}]({match[3]})"
+
+        blocks: list[str] = []
+
+        def kept(match: re.Match[str]) -> str:
+            blocks.append(match[0])
+            return f"\0{len(blocks) - 1}\0"
+
+        text = LINK.sub(linked, FENCE.sub(kept, text))
+        text = re.sub("\0(\\d+)\0", lambda match: blocks[int(match[1])], text)
+        (source / page).parent.mkdir(parents=True, exist_ok=True)
+        (source / page).write_text(text, encoding="utf-8")
+    return wrong
+
+
+def up(page: Path) -> str:
+    """Return the way from a page to the root."""
+    return "../" * len(page.parent.parts)
+
+
+def add_way(source: Path, generated: dict[str, list[tuple[str, str]]]) -> None:
+    """Give the start page its tables of contents: what its sections link to, then the generated pages by section.
+
+    :param generated: heading of a section to (title, page) of the pages that it has besides
+    """
+    text = (source / START).read_text(encoding="utf-8")
+    listed: list[str] = []
+    parts = re.split(r"^(## .*)\n", text, flags=re.MULTILINE)
+    for place in range(1, len(parts), 2):
+        heading, body = parts[place].removeprefix("## "), parts[place + 1]
+        pages = []
+        for target in links(body):
+            found = local_target(START, target)
+            if found and found.suffix == ".md" and (source / found).exists() and found != START:
+                pages.append(f"/{found.with_suffix('')}")
+        further = generated.pop(heading, [])
+        parts[place + 1] = body.rstrip("\n") + "\n" + "".join(f"- [{title}](/{page}.rst)\n" for title, page in further)
+        pages += [f"/{page}" for _, page in further]
+        pages = [page for page in dict.fromkeys(pages) if page not in listed]
+        listed += pages
+        if pages:
+            parts[place + 1] += f"\n```{{toctree}}\n:hidden:\n:caption: {heading}\n\n" + "\n".join(pages) + "\n```\n\n"
+    if generated:
+        raise SystemExit(f"{START} has no section {', '.join(generated)}")
+    restored = parts[0] + "".join(f"{parts[k]}\n{parts[k + 1]}" for k in range(1, len(parts), 2))
+    (source / START).write_text(restored, encoding="utf-8")
+    reached = {Path(page.lstrip("/")) for page in listed} | {START.with_suffix("")}
+    lost = [str(page) for page in (path.relative_to(source) for path in source.rglob("*.md"))
+            if page.with_suffix("") not in reached]
+    if lost:
+        raise SystemExit(f"{START} leads nowhere to {', '.join(sorted(lost))}")

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pages of the reference made of definitions: keys of case files, and the table of symbols with links."""
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as xml
+from pathlib import Path
+from typing import Any, Iterator
+
+from statejump.schema import json_schema as schema
+
+# Names of the table of symbols that are YADE's own, or say in words how to get a value.
+YADES_OWN = {"young", "poisson", "frictionAngle", "state.pos", "kn", "ks", "state.mass"}
+
+
+def heading(text: str, mark: str) -> str:
+    """Return a heading of a page."""
+    return f"{text}\n{mark * len(text)}\n"
+
+
+def sections(name: str) -> Iterator[tuple[str, dict[str, Any], bool]]:
+    """Yield the sections of a kind of file: name, schema, whether it is a list of tables."""
+    for section, found in schema.schema(name)["properties"].items():
+        yield section, found.get("items", found), "items" in found
+
+
+def _escaped(text: str) -> str:
+    return re.sub(r"([*|`\\]|_(?=\W|$))", r"\\\1", text)
+
+
+def keys_page() -> str:
+    """Return the page of all keys of case and campaign files, from the schemas."""
+    lines = [heading("Keys of case files", "="), "Units are in the names; values in brackets are units.\n"]
+    for name in schema.names():
+        if name == schema.ANY:
+            continue
+        lines += [heading(name, "-"), _escaped(schema.schema(name)["description"]) + "\n"]
+        for section, found, is_list in sections(name):
+            lines += [heading(f"[[{section}]]" if is_list else f"[{section}]", "~"), _escaped(found["description"]) + "\n"]
+            for key, described in found["properties"].items():
+                lines += [f".. _key-{name}-{section}-{key}:\n", f".. object:: {section}.{key}\n",
+                          f"   {_escaped(described['description'])}\n"]
+    return "\n".join(lines)
+
+
+def key_targets() -> dict[str, list[tuple[str, str]]]:
+    """Return where each key is described: its name to (shown, label)."""
+    found: dict[str, list[tuple[str, str]]] = {}
+    for name in schema.names():
+        if name == schema.ANY:
+            continue
+        for section, content, _ in sections(name):
+            for key in content["properties"]:
+                place = (f"{name} {section}", f"key-{name}-{section}-{key}".lower())
+                found.setdefault(key, []).append(place)
+                found.setdefault(f"{section}.{key}", []).append(place)
+    return found
+
+
+def cpp_targets(members: Path) -> dict[str, list[str]]:
+    """Return the qualified names of all C++ members by their last part."""
+    found: dict[str, list[str]] = {}
+    for compound in xml.parse(members / "index.xml").getroot():
+        if compound.get("kind") not in ("class", "struct", "namespace"):
+            continue
+        scope = compound.findtext("name") or ""
+        if "<" in scope:
+            continue
+        for member in compound.findall("member"):
+            name = member.findtext("name") or ""
+            entry = f"{scope}::{name}"
+            role = {"function": "func", "variable": "member"}.get(member.get("kind") or "")
+            if role and f"{role} {entry}" not in found.setdefault(name, []):
+                found[name].append(f"{role} {entry}")
+    return found
+
+
+def yade_targets(page: str) -> dict[str, list[str]]:
+    """Return the classes of every attribute of the plugin, from its page."""
+    found: dict[str, list[str]] = {}
+    current = ""
+    for kind, name in re.findall(r"\.\. py:(class|attribute|function):: (\w+)", page):
+        if kind == "class":
+            current = name
+        if kind == "attribute":
+            found.setdefault(name, []).append(f"{current}.{name}")
+        else:
+            found.setdefault(name, []).append(name)
+    return found
+
+
+def _rows(text: str) -> Iterator[list[list[str]]]:
+    """Yield the rows of the tables of docs/symbols.md: cells."""
+    table: list[list[str]] = []
+    for line in [*text.splitlines(), ""]:
+        if line.startswith("|"):
+            cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+            if not set("".join(cells)) <= set("-|"):
+                table.append(cells)
+        elif table:
+            yield table
+            table = []
+
+
+def symbols_page(document: str, members: Path, yade_page: str) -> str:
+    """Return the tables of docs/symbols.md with every name linked to where it is documented.
+
+    :raises SystemExit: a name is documented nowhere
+    """
+    keys, cpp, yade = key_targets(), cpp_targets(members), yade_targets(yade_page)
+    lost: list[str] = []
+
+    def linked(name: str, column: int) -> str:
+        plain = name.split("(")[0]
+        if column == 3 and plain in keys:
+            return ", ".join(f":ref:`{shown} <{label}>`" for shown, label in keys[plain])
+        entries = [entry for entry in cpp.get(plain.rpartition("::")[2], []) if entry.endswith(plain)]
+        if column == 4 and entries:
+            return ", ".join(f":cpp:{entry.split()[0]}:`{entry.split()[1].removeprefix('statejump::')} <{entry.split()[1]}>`"
+                             for entry in entries)
+        last = plain.rsplit(".", 1)[-1]
+        matching = [target for target in yade.get(last, []) if target == plain or target.endswith("." + last)]
+        if plain.count(".") and plain in matching:
+            matching = [plain]
+        if column == 5 and matching:
+            return ", ".join(f":py:obj:`{target} <statejump_yade.{target}>`" for target in matching)
+        if name not in YADES_OWN and column != 3:
+            lost.append(f"{name} (column {column})")
+        return ""
+
+    # Names of histories and of the engine's Python module, which no table of keys holds.
+    columns = history_columns()
+    lines = [heading("Where each name is documented", "="),
+             "The names of the :doc:`table of symbols </docs/symbols>`.\n"]
+    for table in _rows(document):
+        for cells in table[1:]:
+            title = re.sub(r"\\\|", "|", cells[0])
+            lines.append(f".. rubric:: {_escaped(title)}: {_escaped(cells[1])} [{_escaped(cells[2])}]\n")
+            for column in range(3, len(cells)):
+                for name in re.findall(r"`([^`]+)`", cells[column]):
+                    target = linked(name, column)
+                    if not target and column == 3:
+                        if name not in columns and not name.endswith("_m"):
+                            lost.append(f"{name} (column 3)")
+                        target = "column of histories, argument of the engine's module"
+                    lines.append(f"- ``{name}``: {target or 'of YADE itself'}")
+            lines.append("")
+    if lost:
+        raise SystemExit("docs/symbols.md has names that are documented nowhere: " + ", ".join(lost))
+    return "\n".join(lines)
+
+
+def history_columns() -> set[str]:
+    """Return the columns of histories and the arguments that the engine's module documents."""
+    from statejump import _engine
+    from statejump.core import history
+
+    found: set[str] = set()
+    for value in vars(history).values():
+        if isinstance(value, tuple) and all(isinstance(item, str) for item in value):
+            found.update(value)
+    for value in vars(_engine).values():
+        inner = vars(value) if isinstance(value, type) else {}
+        found.update(inner)
+        for documented in (value, *inner.values()):
+            found.update(re.findall(r"\w+", getattr(documented, "__doc__", "") or ""))
+    return found

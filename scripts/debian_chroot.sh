@@ -1,0 +1,39 @@
+# shellcheck shell=bash
+# For check_debian.sh and check_package.sh: a bare Debian in a folder.
+#
+#     make_debian 12|13|testing FOLDER    makes it with debootstrap, unless it is there already
+#     in_debian FOLDER COMMAND            runs a command of bash in it, as root with a bare environment
+#     leave_debian FOLDER                 ends what make_debian mounted
+#
+# The mirror is MIRROR, else that of the apt of this machine.
+
+make_debian() {
+  local release=$1 root=$2 codename mirror=${MIRROR:-}
+  case $release in
+    12) codename=bookworm ;;
+    13) codename=trixie ;;
+    testing) codename=testing ;;
+    *) echo "release $release: 12, 13 or testing is needed" >&2; return 2 ;;
+  esac
+  [[ $(id -u) -eq 0 ]] || { echo "needs root" >&2; return 2; }
+  command -v debootstrap >/dev/null || { echo "debootstrap is missing: apt-get install debootstrap" >&2; return 2; }
+  [[ -n $mirror ]] || mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' | head -1)
+  if [[ ! -e $root/etc/debian_version ]]; then
+    # The script of unstable serves every newer release that this debootstrap does not know by name.
+    debootstrap --variant=minbase "$codename" "$root" "${mirror:-http://deb.debian.org/debian}" \
+      /usr/share/debootstrap/scripts/sid >/dev/null
+  fi
+  cp /etc/resolv.conf "$root/etc/resolv.conf"
+  mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
+  mkdir -p "$root/dev/shm"
+  mountpoint -q "$root/dev/shm" || mount -t tmpfs tmpfs "$root/dev/shm"
+}
+
+in_debian() {
+  chroot "$1" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
+    bash -euo pipefail -c "$2"
+}
+
+leave_debian() {
+  umount "$1/dev/shm" "$1/proc" 2>/dev/null || true
+}

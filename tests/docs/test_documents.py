@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Documents of the repository: their links, the scripts in the README, what is kept of results."""
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(REPOSITORY / "docs" / "site"))
+import documents  # noqa: E402 - beside the documents
+import notebooks  # noqa: E402
+
+README = REPOSITORY / "README.md"
+PAGES = [Path("README.md"), *documents.documents(REPOSITORY)]
+
+
+def tracked(*arguments: str) -> list[str]:
+    """Return files that git knows; the test is skipped where the tree is no clone."""
+    done = subprocess.run(["git", "ls-files", *arguments], cwd=REPOSITORY, capture_output=True, text=True)
+    if done.returncode:
+        pytest.skip("not a clone")
+    return done.stdout.splitlines()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=str)
+def test_links_lead_to_files_of_the_repository(page: Path) -> None:
+    known = set(tracked())
+    folders = {str(parent) for name in known for parent in Path(name).parents}
+    for target in documents.links((REPOSITORY / page).read_text(encoding="utf-8")):
+        found = documents.local_target(page, target)
+        assert found is None or str(found) in known | folders, f"{page} links to {target}"
+
+
+def test_results_that_are_kept_are_shown() -> None:
+    shown = {str(documents.local_target(page, target)) for page in PAGES
+             for target in documents.links((REPOSITORY / page).read_text(encoding="utf-8"))}
+    assert [name for name in tracked("results") if name not in shown] == []
+
+
+def test_nothing_is_kept_that_is_ignored() -> None:
+    assert tracked("--cached", "--ignored", "--exclude-standard") == []
+
+
+def test_readme_is_short() -> None:
+    assert len(README.read_text(encoding="utf-8").splitlines()) <= 150
+
+
+def test_headings_that_links_name_exist() -> None:
+    for page in PAGES:
+        for target in documents.links((REPOSITORY / page).read_text(encoding="utf-8")):
+            if "#" in target and not re.match("[a-z]+:", target):
+                file = documents.local_target(page, target) or page
+                text = (REPOSITORY / file).read_text(encoding="utf-8")
+                anchors = {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+                           for heading in re.findall("^#+ (.*)$", text, re.MULTILINE)}
+                assert target.partition("#")[2] in anchors, f"{page}: {target}"
+
+
+@pytest.mark.parametrize("page", notebooks.tutorials(), ids=lambda page: page.stem)
+def test_notebook_is_that_of_its_page(page: Path) -> None:
+    made = notebooks.stored(notebooks.notebook(page.read_text(encoding="utf-8")))
+    assert page.with_suffix(".ipynb").read_text(encoding="utf-8") == made, "run docs/site/notebooks.py"
