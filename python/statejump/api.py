@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from statejump.case import Case, Progress
 from statejump.core.comparison import FIRST, SECOND, Comparison, of_two
@@ -13,9 +13,13 @@ from statejump.core.run import Run
 from statejump.kinds.loading import load_case
 
 if TYPE_CHECKING:
+    import pandas
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
     from statejump.bore import Bore
+    from statejump.core.tables import Shown
     from statejump.campaign import Campaign
-    from statejump.kinds.statics.solve import Statics
     from statejump.results.contents import Result
 
 
@@ -60,13 +64,30 @@ def read(path: str | Path) -> Result:
     return read_file(path)
 
 
-def statics(case: Case, friction_coefficient: float | None = None) -> Statics:
-    """Return where the joint of a ``statics`` case can rest under its forces.
+class RestSets(Protocol):
+    """Where a joint can rest; each kind of case has its own."""
+
+    def frame(self) -> pandas.DataFrame:
+        """Return the sets as a table, units in the names of the columns."""
+
+    def plot(self, axes: Axes | None = None) -> Figure:
+        """Draw the sets; into given axes, or into a new figure."""
+
+    def told(self) -> list[Shown | str]:
+        """Return what a command prints, tables and lines."""
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write the sets and their picture into a folder; return the paths."""
+
+
+def statics(case: Case, friction_coefficient: float | None = None) -> RestSets:
+    """Return where friction holds the joint of a case: under the forces of a ``statics`` case, against the bar of a
+    ``spring_slider`` case.
 
     :param friction_coefficient: instead of the case's own
-    :raises StatejumpError: the case is of another kind, or its mesh cannot be used
+    :raises StatejumpError: the kind of case has no such answer, or its mesh cannot be used
     """
-    found: Statics = case.definition.behaviour.ability("statics", case.definition)(case.definition, friction_coefficient)
+    found: RestSets = case.definition.behaviour.ability("statics", case.definition)(case.definition, friction_coefficient)
     return found
 
 

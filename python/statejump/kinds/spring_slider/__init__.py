@@ -14,6 +14,7 @@ from statejump.kinds.spring_slider.case import SpringSliderCase
 
 if TYPE_CHECKING:
     from statejump.core.figures import Sheet
+    from statejump.kinds.spring_slider.statics import RestSets
 
 
 class SpringSlider(Kind[SpringSliderCase]):
@@ -92,6 +93,11 @@ class SpringSlider(Kind[SpringSliderCase]):
         from statejump.kinds.spring_slider import words
 
         return words.describe(case)
+
+    def statics(self, case: SpringSliderCase, friction_coefficient: float | None = None) -> RestSets:
+        from statejump.kinds.spring_slider import statics
+
+        return statics.statics(case, friction_coefficient)
 
     def outcomes(self, case: SpringSliderCase, run: Run) -> dict[str, float]:
         from statejump.kinds.spring_slider import outcomes

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where friction holds the block of a ``spring_slider`` case: its rest set at the temperatures of the program.
+
+The bar pushes with k_T (x_T - x), a preload spring pulls back with k_p x, and friction takes up to f. So the block
+rests wherever |k_T x_T - (k_T + k_p) x| <= f, a segment of half-length f/(k_T + k_p) about the place of zero
+force, as far as the stops let it; beyond a stop the wall takes what is left, and the block rests at the stop. At
+the reference temperature the two ends of the segment are as far apart as a state jump can be.
+"""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from statejump.core.physics import axial_stiffness_N_per_m
+from statejump.core.tables import Shown, write_json
+from statejump.core.units import plain
+from statejump.kinds.spring_slider.case import SpringSliderCase
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Segment:
+    """Places at which the block rests at one temperature."""
+
+    temperature_change_K: float
+    from_m: float
+    to_m: float
+    zero_force_m: float  # where neither friction nor a stop is needed
+
+    @property
+    def length_m(self) -> float:
+        """How far apart two places of rest can be [m]."""
+        return self.to_m - self.from_m
+
+
+@dataclass(frozen=True)
+class RestSets:
+    """Rest sets of the block, coldest first. ``largest_jump_m`` is that at the reference temperature."""
+
+    case: SpringSliderCase
+    friction_force_N: float
+    segments: tuple[Segment, ...]
+
+    @property
+    def largest_jump_m(self) -> float:
+        """Largest state jump that friction allows [m]: the length of the rest set at ΔT = 0."""
+        return next(part.length_m for part in self.segments if part.temperature_change_K == 0)
+
+    def frame(self) -> pandas.DataFrame:
+        """Return a row per temperature, units in the names of the columns."""
+        import pandas
+
+        rows = [(*astuple(part), part.length_m) for part in self.segments]
+        return pandas.DataFrame(rows, columns=[*(field.name for field in fields(Segment)), "length_m"])
+
+    def plot(self, axes: Axes | None = None) -> Figure:
+        """Draw the places of rest over the temperature; into given axes, or into a new figure."""
+        from statejump.core.figures import panels, style
+
+        with style():
+            if axes is None:
+                figure, axes = panels(1, 1, (5.5, 4.2))
+            dense = rest_sets(self.case, self.friction_force_N, DENSE).segments
+            change = [part.temperature_change_K for part in dense]
+            axes.fill_between(change, [part.from_m * 1e3 for part in dense], [part.to_m * 1e3 for part in dense],
+                              color="#E69F00", alpha=0.6, linewidth=0, label="held by friction or a stop")
+            axes.plot(change, [part.zero_force_m * 1e3 for part in dense], color="#000000", linewidth=1,
+                      linestyle=(0, (5, 2)), label="no force")
+            axes.set_xlabel("Temperature change [K]")
+            axes.set_ylabel("Place of the slider [mm]")
+            axes.legend(loc="best", framealpha=1)
+        found: Figure = axes.figure
+        return found
+
+    def told(self) -> list[Shown | str]:
+        """Return what a command prints."""
+        rows = [tuple(plain(value, "K" if place == 0 else "m") for place, value in
+                      enumerate((part.temperature_change_K, part.from_m, part.to_m, part.length_m)))
+                for part in self.segments]
+        return [
+            Shown(f"{self.case.title}: where friction of {plain(self.friction_force_N, 'N')} holds the block",
+                  ("ΔT", "from", "to", "length"), rows),
+            f"largest state jump that friction allows: {plain(self.largest_jump_m, 'm')}",
+        ]
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write ``statics.json`` and the picture; return their paths."""
+        from statejump.core.figures import save
+
+        document = {
+            "case": self.case.name, "title": self.case.title, "friction_force_N": self.friction_force_N,
+            "largest_jump_m": self.largest_jump_m,
+            "segments": [{"length_m": part.length_m, **vars(part)} for part in self.segments],
+        }
+        return [write_json(folder / "statics.json", document, indent=1),
+                *save(self.plot(), folder, f"{self.case.name}_statics")]
+
+    def __repr__(self) -> str:
+        return f"RestSets({self.case.name}, largest jump {self.largest_jump_m:.6g} m)"
+
+    def _repr_html_(self) -> str:
+        return str(self.frame().to_html(index=False))
+
+
+DENSE = 401  # temperatures of the picture
+
+
+def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_K: float) -> Segment:
+    """Return the rest set at one temperature; clearances are those of the reference temperature."""
+    link, joint = case.link, case.joint
+    length = link.stress_free_length_m * (1 + link.thermal_expansion_per_K * temperature_change_K)
+    bar = axial_stiffness_N_per_m(link.young_modulus_Pa, link.cross_section_area_m2, length)
+    total = bar + joint.preload_stiffness_N_per_m
+    zero = bar * (link.stress_free_length_m * link.thermal_expansion_per_K * temperature_change_K) / total
+    half = friction_force_N / total
+    ends = [min(max(place, -joint.clearance_minus_m), joint.clearance_plus_m) for place in (zero - half, zero + half)]
+    return Segment(float(temperature_change_K), ends[0], ends[1], zero)
+
+
+def rest_sets(case: SpringSliderCase, friction_force_N: float, temperatures: int | None = None) -> RestSets:
+    """Return the rest sets at the ends of the program and at ΔT = 0, or at so many evenly spaced temperatures."""
+    coldest, hottest = case.temperature_range_K
+    changes: Sequence[float] = sorted({coldest, 0.0, hottest})
+    if temperatures is not None:
+        changes = [coldest + (hottest - coldest) * place / (temperatures - 1) for place in range(temperatures)]
+    return RestSets(case, friction_force_N, tuple(segment(case, friction_force_N, change) for change in changes))
+
+
+def statics(case: SpringSliderCase, friction_coefficient: float | None = None) -> RestSets:
+    """Return where the block can rest.
+
+    :param friction_coefficient: instead of the case's own
+    """
+    mu = case.joint.friction_coefficient if friction_coefficient is None else friction_coefficient
+    return rest_sets(case, mu * case.joint.normal_force_N)
