@@ -41,6 +41,12 @@ def hertz_tangent_N_per_m(force_N: Value, hertz_stiffness: Value) -> Value:
     return 1.5 * hertz_stiffness ** (2 / 3) * np.cbrt(force_N)
 
 
+def hertz_tangent_at_depth_N_per_m(effective_young_modulus_Pa: Value, effective_radius_m: Value,
+                                   depth_m: Value) -> Value:
+    """Return dF/dδ [N/m] of F = K δ^1.5 at a depth, 2 E* sqrt(R δ)."""
+    return 2 * effective_young_modulus_Pa * np.sqrt(effective_radius_m * depth_m)
+
+
 def axial_stiffness_N_per_m(young_modulus_Pa: Value, cross_section_area_m2: Value, length_m: Value) -> Value:
     """Return E A / l [N/m], the paper's equation (4)."""
     return young_modulus_Pa * cross_section_area_m2 / length_m

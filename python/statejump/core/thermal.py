@@ -41,30 +41,33 @@ def period() -> Any:
     return parameter(None, "s", 0, 1e6, "1 s; a table lasts as long as its last time says", above=True)
 
 
-def check(thermal: Thermal) -> None:
-    """Raise StatejumpError for what is wrong with a program as a whole."""
+def check(thermal: Thermal, section: str = "thermal.") -> None:
+    """Raise StatejumpError for what is wrong with a program as a whole.
+
+    :param section: how its keys begin, "" in a table of its own
+    """
     if thermal.shape != "table":
         if thermal.temperature_change_max_K is None:
             rule = rule_of(fields_of(Thermal)["temperature_change_max_K"])
-            raise MissingKey("thermal.temperature_change_max_K", str(rule.allowed), allowed=rule.allowed)
+            raise MissingKey(f"{section}temperature_change_max_K", str(rule.allowed), allowed=rule.allowed)
         for key in ("table_time_s", "table_temperature_change_K"):
             if getattr(thermal, key) is not None:
-                raise NotAllowed(f"thermal.{key}", cause="only with thermal.shape = 'table'")
+                raise NotAllowed(f"{section}{key}", cause=f"only with {section}shape = 'table'")
         return
     if thermal.temperature_change_max_K is not None:
-        raise NotAllowed("thermal.temperature_change_max_K", beside="with thermal.shape = 'table'")
+        raise NotAllowed(f"{section}temperature_change_max_K", beside=f"with {section}shape = 'table'")
     times, changes = thermal.table_time_s, thermal.table_temperature_change_K
     if times is None:
-        raise MissingKey("thermal.table_time_s", "a list of times [s] is needed for a table")
+        raise MissingKey(f"{section}table_time_s", "a list of times [s] is needed for a table")
     if changes is None:
-        raise MissingKey("thermal.table_temperature_change_K", "one value [K] per time is needed")
+        raise MissingKey(f"{section}table_temperature_change_K", "one value [K] per time is needed")
     if len(times) < 2 or times[0] != 0 or any(b <= a for a, b in zip(times, times[1:])):
-        raise NotAllowed("thermal.table_time_s", times, "must be at least two times [s] that start at 0 and rise")
+        raise NotAllowed(f"{section}table_time_s", times, "must be at least two times [s] that start at 0 and rise")
     if len(changes) != len(times):
-        raise NotAllowed("thermal.table_temperature_change_K", ABSENT, f"must be {len(times)} values, one per time, "
+        raise NotAllowed(f"{section}table_temperature_change_K", ABSENT, f"must be {len(times)} values, one per time, "
                          f"not {len(changes)}")
     if changes[0] != 0 or (thermal.cycles > 1 and changes[-1] != 0):
-        raise NotAllowed("thermal.table_temperature_change_K", changes,
+        raise NotAllowed(f"{section}table_temperature_change_K", changes,
                          "must start at 0 [K] and, with several cycles, end at 0 [K]")
 
 
@@ -76,9 +79,9 @@ def period_of(thermal: Thermal, given_s: float | None, key: str, default_s: floa
     :param default_s: where nothing says it
     :raises NotAllowed: a table lasts otherwise
     """
-    if thermal.shape != "table" or not thermal.table_time_s:
+    lasts = thermal.table_time_s[-1] if thermal.shape == "table" and thermal.table_time_s else 0.0
+    if not lasts > 0:  # no table, or one that :func:`check` refuses
         return default_s if given_s is None else given_s
-    lasts = thermal.table_time_s[-1]
     if given_s is not None and abs(given_s - lasts) > SAME_TIME * lasts:
         raise NotAllowed(key, given_s, f"the table lasts {lasts:g} s, and its own times are the times",
                          remedy=f"leave {key} out")

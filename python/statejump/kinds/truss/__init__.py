@@ -1,2 +1,130 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trusses of many joints: what is made of ``truss`` cases."""
+"""Kind ``truss``: trusses of many joints with friction and clearance."""
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from statejump.core.comparison import Comparison, Quantity
+from statejump.core.progress import Tell
+from statejump.core.run import Columns, Run
+from statejump.core.tables import Shown
+from statejump.kinds.protocol import Kind
+from statejump.kinds.truss.case import TrussCase
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from statejump.core.figures import Sheet
+    from statejump.kinds.truss.answers.study import Study
+
+
+class Truss(Kind):
+    """The kind as one object."""
+
+    name: ClassVar[str] = "truss"
+    Case = TrussCase
+    # Columns by item follow in the order given.
+    COLUMNS = (
+        "time_s",
+        "temperature_change_K",
+        "elastic_energy_J",  # of links, springs, torsion springs and contacts
+        "kinetic_energy_J",
+        "friction_dissipation_J",
+        "damping_dissipation_J",  # of links, pins and contacts
+        "thermal_work_J",
+        "external_work_J",  # of the dead loads
+    )
+    OUTCOMES = (
+        "largest_node_jump_m",
+        "rms_node_jump_m",
+        "reflector_rms_of_change_m",
+        "reflector_rms_error_m",
+        "reflector_tilt_change_rad",
+        "reflector_depth_change_m",
+        "friction_dissipation_J",
+        "slipping_joints",
+        "largest_axial_force_N",
+    )
+    OUTCOMES_OF = ("reduced",)
+
+    def reduced(self, case: TrussCase, tell: Tell) -> Run:
+        from statejump.kinds.truss import result, solve
+
+        return result.reduced_run(case, solve.solve(case, tell), result.sample_times(case))
+
+    def dem_input(self, case: TrussCase) -> dict[str, Any]:
+        from statejump.kinds.truss import dem
+
+        return dem.dem_input(case)
+
+    def dem(self, case: TrussCase, tell: Tell) -> Run:
+        from statejump.kinds.truss import dem, result
+
+        return dem.run(case, self.scene_module(), result.dem_run, tell)
+
+    def dem_run(self, case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
+        from statejump.kinds.truss import result
+
+        return result.dem_run(case, columns, about)
+
+    def compare(self, case: TrussCase, reduced: Run, dem: Run) -> Comparison:
+        from statejump.kinds.truss import compare
+
+        return compare.compare(case, reduced, dem)
+
+    def difference(self, case: TrussCase, first: Run, second: Run) -> list[Quantity]:
+        from statejump.kinds.truss import compare
+
+        return compare.difference(case, first, second)
+
+    def names(self, case: TrussCase) -> dict[str, list[str]]:
+        from statejump.kinds.truss import result
+
+        return result.names(case)
+
+    def scene(self, case: TrussCase) -> dict[str, Any]:
+        from statejump.kinds.truss import result
+
+        return result.scene(case)
+
+    def sheet(self, case: TrussCase, runs: Sequence[Run]) -> Sheet:
+        from statejump.kinds.truss import figure
+
+        return figure.sheet(case, runs)
+
+    def told(self, case: TrussCase, runs: Mapping[str, Run]) -> list[Shown | str]:
+        from statejump.kinds.truss import words
+
+        return words.told(case, runs)
+
+    def describe(self, case: TrussCase) -> list[str]:
+        from statejump.kinds.truss import words
+
+        return words.describe(case)
+
+    def quick(self, case: TrussCase) -> Run:
+        from statejump.kinds.truss import outcomes
+
+        return outcomes.quick(case)
+
+    def outcomes(self, case: TrussCase, run: Run) -> dict[str, float]:
+        from statejump.kinds.truss import outcomes
+
+        return outcomes.outcomes(case, run)
+
+    def draw(self, case: TrussCase, axes: Axes | None = None) -> Figure:
+        """Draw what the case says, before anything is solved."""
+        from statejump.kinds.truss import draw
+
+        return draw.draw(case, axes)
+
+    def answers(self, case: TrussCase, **settings: Any) -> Study:
+        """Return what a designer asks of the truss; see :func:`statejump.truss.answers`."""
+        from statejump.kinds.truss.answers import study
+
+        return study.study(case, **settings)
+
+
+KIND = Truss()

@@ -7,16 +7,20 @@ wrong between several keys is found by :mod:`statejump.kinds.truss.checks`.
 """
 from __future__ import annotations
 
+from functools import cached_property
 from math import pi
-from typing import Any, ClassVar, Optional
+from typing import ClassVar
 
-from pydantic import Field, validator
-from pydantic.fields import ModelField
-
-from statejump.schema.fields import CHOICE, Case, Section, Thermal, choice, parameter, thermal_range_K
-from statejump.schema.items import Item, is_tables, numbers, read_tables, tables, texts
+from statejump.core import thermal as core_thermal
+from statejump.core.case import Case
+from statejump.core.thermal import Thermal
 from statejump.kinds.truss import checks
 from statejump.kinds.truss.resolved import ResolvedTruss, resolve
+from statejump.schema.fields import (
+    CHOICE, Section, choice, definition, numbers, optional_section, parameter, section, switch, tables, text, texts,
+    whole,
+)
+from statejump.schema.items import Item
 
 USER = "no default: the truss decides"
 ALUMINIUM = CHOICE + ": aluminium"
@@ -24,21 +28,24 @@ AXES = ("x", "y", "z")
 LARGEST_LENGTH_M = 1e6
 
 
+@definition
 class Truss(Section):
     """What holds for the truss as a whole."""
 
-    dimension: int = parameter(..., "-", 2, 3, "2: x and y; 3: x, y and z")
+    dimension: int = whole(..., 2, 3, "2: x and y; 3: x, y and z")
 
 
+@definition
 class Node(Item):
     """A point that moves, where bars, joints and springs end. Positions are those at ΔT = 0."""
 
     position_m: list[float] = numbers(..., "m", -LARGEST_LENGTH_M, LARGEST_LENGTH_M, USER)
     fixed: list[str] = texts([], "directions without motion", AXES)
-    guide_normal: Optional[list[float]] = numbers(None, "-", -1e9, 1e9, "no motion along it; of any length")
-    force_N: Optional[list[float]] = numbers(None, "N", -1e12, 1e12, "dead load; none")
+    guide_normal: list[float] | None = numbers(None, "-", -1e9, 1e9, "no motion along it; of any length")
+    force_N: list[float] | None = numbers(None, "N", -1e12, 1e12, "dead load; none")
 
 
+@definition
 class Link(Item):
     """A straight bar between two nodes that carries axial force only."""
 
@@ -46,16 +53,17 @@ class Link(Item):
     young_modulus_Pa: float = parameter(..., "Pa", 0, 1e13, USER, above=True)
     cross_section_area_m2: float = parameter(..., "m2", 0, 1e2, USER, above=True)
     thermal_expansion_per_K: float = parameter(..., "1/K", -1e-3, 1e-3, USER)
-    stress_free_length_m: Optional[float] = parameter(
+    stress_free_length_m: float | None = parameter(
         None, "m", 0, LARGEST_LENGTH_M, "at ΔT = 0; the distance of its nodes", above=True
     )
-    density_kg_per_m3: Optional[float] = parameter(None, "kg/m3", 0, 1e5, "this or mass_kg; DEM only", above=True)
-    mass_kg: Optional[float] = parameter(None, "kg", 0, 1e6, "this or density_kg_per_m3; DEM only", above=True)
+    density_kg_per_m3: float | None = parameter(None, "kg/m3", 0, 1e5, "this or mass_kg; DEM only", above=True)
+    mass_kg: float | None = parameter(None, "kg", 0, 1e6, "this or density_kg_per_m3; DEM only", above=True)
     poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM)
     temperature_fraction: float = parameter(1.0, "-", -10, 10, "of its program's ΔT; fully sunlit")
-    program: Optional[str] = Field(None, description="name of a [[program]]; the common [thermal]")
+    program: str | None = text(None, "name of a [[program]]; the common [thermal]")
 
 
+@definition
 class Slider(Item):
     """A frictional prismatic joint: the first node slides along an axis fixed in space, on ground or on
     the second node. Between two nodes it also holds them together across the axis; on ground the
@@ -65,44 +73,47 @@ class Slider(Item):
     axis: list[float] = numbers(..., "-", -1e9, 1e9, "of any length")
     friction_coefficient: float = parameter(..., "-", 0, 10, USER)
     normal_force_N: float = parameter(..., "N", 0, 1e9, USER)
-    clearance_minus_m: Optional[float] = parameter(None, "m", 0, 1e2, "against the axis; no stop", above=True)
-    clearance_plus_m: Optional[float] = parameter(None, "m", 0, 1e2, "along the axis; no stop", above=True)
+    clearance_minus_m: float | None = parameter(None, "m", 0, 1e2, "against the axis; no stop", above=True)
+    clearance_plus_m: float | None = parameter(None, "m", 0, 1e2, "along the axis; no stop", above=True)
     pad_radius_m: float = parameter(0.05, "m", 0, 1e2, CHOICE + "; DEM and elastic sticking only", above=True)
     young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM + "; DEM and elastic sticking only", above=True)
     poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM + "; DEM and elastic sticking only")
 
 
+@definition
 class Revolute(Item):
     """A clearance revolute joint with Coulomb friction: the journal, at one node, plays in the bearing, at
     another. A link carries and turns each; without a link a part does not turn."""
 
-    bearing_node: str = Field(..., description="where the bearing's centre is")
-    journal_node: str = Field(..., description="where the journal's centre is")
-    bearing_link: Optional[str] = Field(None, description="whose end carries the bearing; none: it does not turn")
-    journal_link: Optional[str] = Field(None, description="whose end carries the journal; none: it does not turn")
+    bearing_node: str = text(..., "where the bearing's centre is")
+    journal_node: str = text(..., "where the journal's centre is")
+    bearing_link: str | None = text(None, "whose end carries the bearing; none: it does not turn")
+    journal_link: str | None = text(None, "whose end carries the journal; none: it does not turn")
     journal_radius_m: float = parameter(..., "m", 0, 1e2, USER, above=True)
     radial_clearance_m: float = parameter(..., "m", 0, 1e2, USER + "; at ΔT = 0", above=True)
     friction_coefficient: float = parameter(..., "-", 0, 10, USER)
-    axis: Optional[list[float]] = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
+    axis: list[float] | None = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
     journal_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, CHOICE + ": constant radii")
     bearing_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, CHOICE + ": constant radii")
     temperature_fraction: float = parameter(1.0, "-", -10, 10, "of its program's ΔT; fully sunlit")
-    program: Optional[str] = Field(None, description="name of a [[program]]; the common [thermal]")
+    program: str | None = text(None, "name of a [[program]]; the common [thermal]")
     young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM, above=True)
     poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM)
     contact: str = choice("hertz", ("hertz", "rigid"), CHOICE + "; of the reduced model, DEM is always elastic")
 
 
+@definition
 class Spring(Item):
     """A linear spring between two nodes, or a cable that only pulls."""
 
     nodes: list[str] = texts(..., "its two nodes")
     stiffness_N_per_m: float = parameter(..., "N/m", 0, 1e15, USER, above=True)
-    preload_N: Optional[float] = parameter(None, "N", -1e12, 1e12, "tension of the drawn truss; 0")
-    free_length_m: Optional[float] = parameter(None, "m", 0, LARGEST_LENGTH_M, "instead of preload_N")
-    cable: bool = Field(False, description="whether it only pulls")
+    preload_N: float | None = parameter(None, "N", -1e12, 1e12, "tension of the drawn truss; 0")
+    free_length_m: float | None = parameter(None, "m", 0, LARGEST_LENGTH_M, "instead of preload_N")
+    cable: bool = switch(False, "whether it only pulls")
 
 
+@definition
 class TrussTorsionSpring(Item):
     """A spring on the angle from the first link to the second, or on the angle of one link in space.
 
@@ -113,37 +124,56 @@ class TrussTorsionSpring(Item):
     links: list[str] = texts(..., "two links that share a place, or one")
     stiffness_N_m_per_rad: float = parameter(..., "N m/rad", 0, 1e12, USER, above=True)
     bias_rad: float = parameter(0.0, "rad", -pi, pi, "free angle beyond the drawn one")
-    axis: Optional[list[float]] = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
+    axis: list[float] | None = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
 
 
+@definition
 class TrussThermal(Thermal):
-    """The common temperature program."""
+    """A temperature program that says how long its cycle lasts."""
 
-    period_s: float = parameter(1.0, "s", 0, 1e6, CHOICE, above=True)
+    period_s: float = core_thermal.period()
+
+    def repeated(self, cycles: int) -> TrussThermal:
+        """Return the program with another number of cycles."""
+        return TrussThermal(**{**self.to_dict(), "cycles": cycles})
 
 
+@definition
 class Program(Item, Thermal):
     """Another temperature program, for links and joints that name it; it lasts as long as the common one."""
 
-    cycles: Optional[int] = parameter(None, "-", 1, 100_000, "as [thermal]")
-    period_s: Optional[float] = parameter(None, "s", 0, 1e6, "as [thermal]", above=True)
+    cycles: int | None = whole(None, 1, 100_000, "as [thermal]")
+    period_s: float | None = parameter(None, "s", 0, 1e6, "as [thermal]; of a table its last time", above=True)
+
+    def completed(self, common: TrussThermal) -> TrussThermal:
+        """Return the program with cycles and period, those of the common one where it says nothing of them.
+
+        :raises NotAllowed: it is a table that lasts otherwise than ``period_s`` says
+        """
+        given = self.to_dict()
+        del given["name"]
+        lasts = core_thermal.period_of(self, self.period_s, "period_s", common.period_s)
+        return TrussThermal(**{**given, "cycles": self.cycles or common.cycles, "period_s": lasts})
 
 
+@definition
 class Output(Section):
     """What both models write."""
 
-    samples_per_cycle: int = parameter(200, "-", 10, 1_000_000, CHOICE)
+    samples_per_cycle: int = whole(200, 10, 1_000_000, CHOICE)
 
 
+@definition
 class TrussReduced(Section):
     """How the quasi-static solver follows the path."""
 
-    increments_per_branch: int = parameter(50, "-", 1, 1_000_000, CHOICE)
-    locate_events: bool = Field(True, description="whether events are located between increments")
+    increments_per_branch: int = whole(50, 1, 1_000_000, CHOICE)
+    locate_events: bool = switch(True, "whether events are located between increments")
     sticking: str = choice("rigid", ("rigid", "elastic"), "Coulomb's law; elastic: gives way by k_t, as in the DEM")
     event_tolerance: float = parameter(1e-9, "-", 0, 0.1, CHOICE + "; of a branch", above=True)
 
 
+@definition
 class TrussDem(Section):
     """How the DEM is integrated."""
 
@@ -151,17 +181,19 @@ class TrussDem(Section):
     link_damping_ratio: float = parameter(0.1, "-", 0, 10, CHOICE)
     contact_damping_ratio: float = parameter(0.1, "-", 0, 10, CHOICE)
     pin_damping_N_m_s_per_rad: float = parameter(0.0, "N m s/rad", 0, 1e9, CHOICE)
-    threads: int = parameter(1, "-", 1, 1024, CHOICE)
+    threads: int = whole(1, 1, 1024, CHOICE)
 
 
+@definition
 class Reflector(Section):
     """The nodes that carry a reflecting surface: its error is that against the best-fit paraboloid."""
 
     nodes: list[str] = texts(..., "nodes of the surface")
     axis: list[float] = numbers(..., "-", -1e9, 1e9, "of the paraboloid; of any length")
-    focal_length_m: Optional[float] = parameter(None, "m", 0, LARGEST_LENGTH_M, "best fit", above=True)
+    focal_length_m: float | None = parameter(None, "m", 0, LARGEST_LENGTH_M, "best fit", above=True)
 
 
+@definition
 class TrussTolerance(Section):
     """How close the two models must be for ``compare`` to pass."""
 
@@ -171,36 +203,26 @@ class TrussTolerance(Section):
     energy_balance_relative: float = parameter(0.001, "-", 0, 1, CHOICE, above=True)
 
 
+@definition
 class TrussCase(Case):
     """A truss with frictional and clearance joints under one or several temperature programs."""
 
     KIND: ClassVar[str] = "truss"
 
-    truss: Truss
-    node: list[Node] = tables(..., "sections [[node]]")
-    link: list[Link] = tables(..., "sections [[link]]")
-    program: list[Program] = tables([], "sections [[program]]")
-    slider: list[Slider] = tables([], "sections [[slider]]")
-    revolute: list[Revolute] = tables([], "sections [[revolute]]")
-    spring: list[Spring] = tables([], "sections [[spring]]")
-    torsion_spring: list[TrussTorsionSpring] = tables([], "sections [[torsion_spring]]")
-    thermal: TrussThermal
-    output: Output = Field(default_factory=Output)
-    reduced: TrussReduced = Field(default_factory=TrussReduced)
-    dem: TrussDem = Field(default_factory=TrussDem)
-    reflector: Optional[Reflector] = Field(None, description="none")
-    tolerance: TrussTolerance = Field(default_factory=TrussTolerance)
-
-    @validator("*", pre=True)
-    def _strict(cls, value: Any, field: ModelField) -> Any:
-        if is_tables(field):
-            return read_tables(field.type_, field.name, value)
-        return Section._strict(value, field)
-
-    @property
-    def period_s(self) -> float:
-        """Length of one cycle [s]."""
-        return self.thermal.period_s
+    truss: Truss = section(Truss, required=True)
+    node: list[Node] = tables(Node, "sections [[node]]", required=True)
+    link: list[Link] = tables(Link, "sections [[link]]", required=True)
+    program: list[Program] = tables(Program, "sections [[program]]")
+    slider: list[Slider] = tables(Slider, "sections [[slider]]")
+    revolute: list[Revolute] = tables(Revolute, "sections [[revolute]]")
+    spring: list[Spring] = tables(Spring, "sections [[spring]]")
+    torsion_spring: list[TrussTorsionSpring] = tables(TrussTorsionSpring, "sections [[torsion_spring]]")
+    thermal: TrussThermal = section(TrussThermal, required=True)
+    output: Output = section(Output)
+    reduced: TrussReduced = section(TrussReduced)
+    dem: TrussDem = section(TrussDem)
+    reflector: Reflector | None = optional_section(Reflector)
+    tolerance: TrussTolerance = section(TrussTolerance)
 
     @property
     def samples_per_cycle(self) -> int:
@@ -210,24 +232,22 @@ class TrussCase(Case):
     @property
     def programs(self) -> list[TrussThermal]:
         """The temperature programs, the common one first, cycles and period filled in."""
-        return [self.thermal] + [
-            TrussThermal.construct(**{
-                **program.dict(exclude={"name"}),
-                "cycles": program.cycles or self.thermal.cycles,
-                "period_s": program.period_s or self.thermal.period_s,
-            })
-            for program in self.program
-        ]
+        return [self.thermal, *(program.completed(self.thermal) for program in self.program)]
 
     @property
     def temperature_ranges_K(self) -> list[tuple[float, float]]:
         """Smallest and largest ΔT [K] of every program."""
-        return [thermal_range_K(program) for program in self.programs]
+        return [core_thermal.range_K(program) for program in self.programs]
 
-    def resolve(self) -> ResolvedTruss:
-        """Return the truss as arrays: names turned into indices, defaults filled in, axes of length 1."""
+    @cached_property
+    def _resolved(self) -> ResolvedTruss:
         return resolve(self)
 
-    def problem(self) -> str | None:
-        """Return what is wrong between several keys, without the file's name."""
-        return checks.problem(self)
+    def resolve(self) -> ResolvedTruss:
+        """Return the truss as arrays: names turned into indices, defaults filled in, axes of length 1. It is made
+        once and not to be written to."""
+        return self._resolved
+
+    def check(self) -> None:
+        """Raise StatejumpError for what is wrong between several keys."""
+        checks.check(self)

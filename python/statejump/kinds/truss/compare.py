@@ -3,41 +3,36 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
+from statejump.core.comparison import Comparison, Quantity, models
+from statejump.core.run import Column, Run, change, energy_residue_J
 from statejump.kinds.truss.case import TrussCase
-from statejump.core.comparison import Quantity, quantity
-
-if TYPE_CHECKING:
-    from statejump.results.contents import Column, ModelRun
 
 
-def energy_residual(energy: "dict[str, Column]") -> float:
-    """Supplied minus stored minus dissipated energy over the whole run [J]."""
-
-    def change(name: str) -> float:
-        values = energy[f"{name}_J"].values if f"{name}_J" in energy else np.zeros(1)
-        return float(values[-1] - values[0])
-
-    supplied = change("thermal_work") + change("external_work")
-    stored = change("elastic_energy") + change("kinetic_energy")
-    return supplied - stored - change("friction_dissipation") - change("damping_dissipation")
+def energy_residual(energy: Mapping[str, Column]) -> float:
+    """Return supplied minus stored minus dissipated energy over the whole run [J]."""
+    return energy_residue_J(
+        energy, ("thermal_work_J", "external_work_J"), ("elastic_energy_J", "kinetic_energy_J"),
+        ("friction_dissipation_J", "damping_dissipation_J"),
+    )
 
 
-def jumps_m(run: "ModelRun") -> np.ndarray:
+def jumps_m(run: Run) -> np.ndarray:
     """State jump of every node [m] (nodes, 3): displacement at the end less that at the start."""
-    displacement = run.history["displacement_m"].values
+    displacement = run["displacement_m"]
     return displacement[-1] - displacement[0]
 
 
-def loop_width_m(case: TrussCase, run: "ModelRun") -> float:
+def loop_width_m(case: TrussCase, run: Run) -> float:
     """Width of the first cycle's loop [m]: largest motion of a node between heating and cooling at one
     temperature. 0 where these are not one branch each, as in a sine."""
     end = case.samples_per_cycle + 1
-    change = run.history["temperature_change_K"].values[:end]
-    displacement = run.history["displacement_m"].values[:end]
+    change = run["temperature_change_K"][:end]
+    displacement = run["displacement_m"][:end]
     peak = int(np.argmax(np.abs(change)))
     size = np.abs(change)
     if not 0 < peak < len(change) - 1 or np.any(np.diff(size[: peak + 1]) < 0) or np.any(np.diff(size[peak:]) > 0):
@@ -51,7 +46,7 @@ def loop_width_m(case: TrussCase, run: "ModelRun") -> float:
     return width
 
 
-def jump_scale_m(case: TrussCase, run: "ModelRun") -> float:
+def jump_scale_m(case: TrussCase, run: Run) -> float:
     """What differences of jumps are measured by [m]: the largest jump or the loop's width, the larger."""
     jumps = np.linalg.norm(jumps_m(run), axis=1)
     return max(float(jumps.max()), loop_width_m(case, run))
@@ -60,15 +55,15 @@ def jump_scale_m(case: TrussCase, run: "ModelRun") -> float:
 def _relative(name: str, difference: float, scale: float, tolerance: float) -> Quantity:
     """Return one row; two models without any motion or force agree."""
     value = 0.0 if difference == 0 else difference / scale if scale > 0 else math.inf
-    return quantity(name, "-", 0.0, value, tolerance)
+    return models(name, "-", 0.0, value, tolerance)
 
 
-def history_rows(case: TrussCase, first: "ModelRun", second: "ModelRun") -> list[Quantity]:
+def difference(case: TrussCase, first: Run, second: Run) -> list[Quantity]:
     """Compare two runs at the same times; the first gives the scales."""
     tolerance = case.tolerance
-    ours, other = (run.history["displacement_m"].values for run in (first, second))
+    ours, other = (run["displacement_m"] for run in (first, second))
     largest = float(np.linalg.norm(ours, axis=2).max())
-    peak = int(np.argmax(np.abs(first.history["temperature_change_K"].values)))
+    peak = int(np.argmax(np.abs(first["temperature_change_K"])))
     apart = np.linalg.norm(other - ours, axis=2)
     rows = [
         _relative("displacement_at_peak_largest_difference_over_largest", float(apart[peak].max()), largest,
@@ -80,8 +75,7 @@ def history_rows(case: TrussCase, first: "ModelRun", second: "ModelRun") -> list
     node = int(np.argmax(np.linalg.norm(jumps[0], axis=1)))
     scale = jump_scale_m(case, first)
     lengths = [float(np.linalg.norm(jump[node])) for jump in jumps]
-    name = first_name(case, node)
-    rows.append(quantity(f"jump_of_node_{name}", "m", *lengths, tolerance.jump_relative * scale))
+    rows.append(models(f"jump_of_node_{case.node[node].name}", "m", *lengths, tolerance.jump_relative * scale))
     rows.append(_relative("jump_largest_difference_over_largest_jump_or_loop",
                           float(np.linalg.norm(jumps[1] - jumps[0], axis=1).max()), scale, tolerance.jump_relative))
     forces = [run.links["axial_force_N"].values for run in (first, second)]
@@ -92,42 +86,36 @@ def history_rows(case: TrussCase, first: "ModelRun", second: "ModelRun") -> list
     return rows
 
 
-def first_name(case: TrussCase, node: int) -> str:
-    """Return the name of a node."""
-    return case.node[node].name
-
-
-def loop_drift_m(case: TrussCase, run: "ModelRun") -> float:
+def loop_drift_m(case: TrussCase, run: Run) -> float:
     """Largest distance of a node in any later cycle from where it was in the second at the same phase [m]."""
-    samples, displacement = case.samples_per_cycle, run.history["displacement_m"].values
+    samples, displacement = case.samples_per_cycle, run["displacement_m"]
     loops = [displacement[k * samples : (k + 1) * samples + 1] for k in range(1, case.thermal.cycles)]
     return float(max(np.linalg.norm(loop - loops[0], axis=2).max() for loop in loops))
 
 
-def _energy_row(case: TrussCase, dem: "ModelRun") -> Quantity:
+def _energy_row(case: TrussCase, dem: Run) -> Quantity:
     """Residue over the work of friction; without friction over the energy that is stored and spent."""
     residual = energy_residual(dem.energy)
-    friction = dem.energy["friction_dissipation_J"].values
-    scale = float(friction[-1] - friction[0])
+    scale = change(dem.energy, "friction_dissipation_J")
     name = "energy_residual_over_friction_work"
     if not scale > 0:
-        scale = float(np.ptp(dem.energy["elastic_energy_J"].values) + dem.energy["damping_dissipation_J"].values[-1])
+        scale = float(np.ptp(dem["elastic_energy_J"]) + dem["damping_dissipation_J"][-1])
         name = "energy_residual_over_largest_stored"
-    return quantity(name, "-", 0.0, residual / scale if scale > 0 else 0.0, case.tolerance.energy_balance_relative)
+    return models(name, "-", 0.0, residual / scale if scale > 0 else 0.0, case.tolerance.energy_balance_relative)
 
 
-def compare(case: TrussCase, reduced: "ModelRun", dem: "ModelRun") -> list[Quantity]:
+def compare(case: TrussCase, reduced: Run, dem: Run) -> Comparison:
     """Compare a DEM run with the quasi-static path at the same times."""
-    rows = history_rows(case, reduced, dem)
-    rows.append(_energy_row(case, dem))
+    exact = reduced.at(dem.time_s)
+    rows = [*difference(case, exact, dem), _energy_row(case, dem)]
     if case.thermal.cycles > 2:
-        displacement = reduced.history["displacement_m"].values
         rows.append(_relative("loop_drift_over_largest_displacement", loop_drift_m(case, dem),
-                              float(np.linalg.norm(displacement, axis=2).max()), case.tolerance.displacement_relative))
-    return rows
+                              float(np.linalg.norm(exact["displacement_m"], axis=2).max()),
+                              case.tolerance.displacement_relative))
+    return Comparison(case, {"reduced": exact, "dem": dem}, tuple(rows), warnings=reduced.warnings)
 
 
-def jump_table(case: TrussCase, run: "ModelRun", most: int = 8) -> list[tuple[Any, ...]]:
+def jump_table(case: TrussCase, run: Run, most: int = 8) -> list[tuple[Any, ...]]:
     """Return name, jump along x, y, z and its length [m] of the nodes that jump most."""
     jumps = jumps_m(run)
     length = np.linalg.norm(jumps, axis=1)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stiffness of a truss' joints by Hertz's and Mindlin's formulas, not by the DEM's contact law.
 
-Both parts of a joint are of one material: E* = E/(2 (1 - ν²)), and k_t/k_n = 4 G*/E* = 2 (1 - ν)/(2 - ν).
-Journal and bearing touch as a sphere of R = R1 R2/(R2 - R1) on a plane, as bodies of the DEM do.
+Both parts of a joint are of one material. Journal and bearing touch as a sphere of R = R1 R2/(R2 - R1) on a plane,
+as bodies of the DEM do.
 """
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from math import inf
 
 import numpy as np
 
+from statejump.core import physics
 from statejump.kinds.truss.resolved import ResolvedTruss, Revolutes, Sliders
 
 
@@ -24,52 +25,38 @@ class Pad:
 
 
 def _effective_modulus(parts: Sliders | Revolutes) -> np.ndarray:
-    """E* [Pa]."""
-    return parts.young_modulus_Pa / (2 * (1 - parts.poisson_ratio**2))
-
-
-def _hertz(parts: Sliders | Revolutes, radius_m: np.ndarray) -> np.ndarray:
-    """K of F = K δ^1.5 [N/m^1.5], 4/3 E* sqrt(R)."""
-    return 4 / 3 * _effective_modulus(parts) * np.sqrt(radius_m)
-
-
-def _shear_over_normal(parts: Sliders | Revolutes) -> np.ndarray:
-    """k_t/k_n."""
-    return 2 * (1 - parts.poisson_ratio) / (2 - parts.poisson_ratio)
-
-
-def tangent_stiffness(hertz: np.ndarray, force_N: np.ndarray) -> np.ndarray:
-    """Return dF/dδ [N/m] of contacts with F = K δ^1.5 at these forces [N]."""
-    return 1.5 * hertz ** (2 / 3) * np.cbrt(force_N)
+    return physics.effective_young_modulus_Pa(parts.young_modulus_Pa, parts.poisson_ratio)
 
 
 def pad_hertz_stiffness(truss: ResolvedTruss) -> np.ndarray:
     """Return K of F = K δ^1.5 [N/m^1.5] of every slider's pad on a plane, its floor or a stop."""
-    return _hertz(truss.sliders, truss.sliders.pad_radius_m)
+    return physics.hertz_stiffness_N_per_m15(_effective_modulus(truss.sliders), truss.sliders.pad_radius_m)
 
 
 def pads(truss: ResolvedTruss) -> Pad:
     """Return the contacts of the sliders' pads with their floors."""
     sliders = truss.sliders
-    depth = (sliders.normal_force_N / pad_hertz_stiffness(truss)) ** (2 / 3)
-    normal = 2 * _effective_modulus(sliders) * np.sqrt(sliders.pad_radius_m * depth)
-    return Pad(depth, normal, normal * _shear_over_normal(sliders))
+    depth = physics.hertz_depth_m(sliders.normal_force_N, pad_hertz_stiffness(truss))
+    normal = physics.hertz_tangent_at_depth_N_per_m(_effective_modulus(sliders), sliders.pad_radius_m, depth)
+    return Pad(depth, normal, normal * physics.shear_over_normal_stiffness(sliders.poisson_ratio))
 
 
 def hertz_stiffness(truss: ResolvedTruss) -> np.ndarray:
     """Return K of F = K δ^1.5 [N/m^1.5] of every revolute."""
     joints = truss.revolutes
-    return _hertz(joints, joints.journal_radius_m * joints.bearing_radius_m / joints.radial_clearance_m)
+    radius = physics.conforming_radius_m(joints.journal_radius_m, joints.bearing_radius_m, joints.radial_clearance_m)
+    return physics.hertz_stiffness_N_per_m15(_effective_modulus(joints), radius)
 
 
 def mindlin_stiffness(truss: ResolvedTruss) -> np.ndarray:
     """Return k_t over the root of the depth [N/m^1.5] of every revolute, 8 G* sqrt(R)."""
-    return 1.5 * hertz_stiffness(truss) * _shear_over_normal(truss.revolutes)
+    return 1.5 * hertz_stiffness(truss) * physics.shear_over_normal_stiffness(truss.revolutes.poisson_ratio)
 
 
 def revolute_stiffness(truss: ResolvedTruss, force_N: np.ndarray) -> np.ndarray:
     """Return the sum of both tangent stiffnesses [N/m] of revolutes at these normal forces [N]."""
-    return tangent_stiffness(hertz_stiffness(truss), force_N) * (1 + _shear_over_normal(truss.revolutes))
+    normal = physics.hertz_tangent_N_per_m(force_N, hertz_stiffness(truss))
+    return normal * (1 + physics.shear_over_normal_stiffness(truss.revolutes.poisson_ratio))
 
 
 def solver_stiffness(truss: ResolvedTruss) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

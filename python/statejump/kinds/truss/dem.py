@@ -8,29 +8,34 @@ model whatever else loads the supports.
 """
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import ceil, inf, pi
-from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from statejump.core import yade_process as dem
-from statejump.kinds.truss.case import TrussCase
+from statejump.core import physics, thermal, yade_process
 from statejump.core.errors import StatejumpError
-from statejump.kinds.truss.checks import SAME_DIRECTION
-from statejump.kinds.truss.contacts import pad_hertz_stiffness, pads, revolute_stiffness, tangent_stiffness
+from statejump.core.progress import Tell
+from statejump.core.run import Run
+from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.check_geometry import SAME_DIRECTION
+from statejump.kinds.truss.contacts import pad_hertz_stiffness, pads, revolute_stiffness
 from statejump.kinds.truss.resolved import GROUND, ResolvedTruss
-from statejump.kinds.truss.solve import TrussPath
+from statejump.kinds.truss.solve import TrussPath, solve
 
 CONTACT_GROUPS = 30  # bits of a body's mask in YADE that are free to use
 # Friction may double a contact's force for a moment; Hertz's stiffness grows with its cube root.
 IMPACT = 2 ** (1 / 3)
 
 
-def refuse(case: TrussCase, sentence: str) -> StatejumpError:
+PATH_SHARE = 0.1  # of the progress that is told of a DEM run: the path that it begins with
+
+
+def refuse(case: TrussCase, why: str, **fields: Any) -> StatejumpError:
     """Return the error for what the DEM cannot represent."""
-    return StatejumpError(f"{case.name}: {sentence}; 'statejump reduced' can run the case")
+    return StatejumpError(cause=why, case=case.name, remedy="'statejump reduced' can run the case", **fields)
 
 
 def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
@@ -49,8 +54,8 @@ def stable_time_step(case: TrussCase, path: TrussPath) -> float:
 
     The square of a spring's stretch is at most the number of its ends that move times the sum of their
     squares. With k the sum over one body of stiffness times that number over its mass, and c that of the
-    dashpots, the largest eigenvalue is at most the largest k, and leapfrog with a lagged dashpot is
-    stable up to 4/(c + sqrt(c^2 + 4 k)).
+    dashpots, the largest eigenvalue is at most the largest k: every body is as stable as an oscillator of its k
+    and c.
     """
     truss, mass = path.truss, lumped_mass_kg(path.truss)
     inverse = np.divide(1, mass, out=np.zeros_like(mass), where=mass > 0)
@@ -67,7 +72,7 @@ def stable_time_step(case: TrussCase, path: TrussPath) -> float:
     ratio, contact = case.dem.link_damping_ratio, case.dem.contact_damping_ratio
     ranges = np.array(case.temperature_ranges_K)[links.program] * links.temperature_fraction[:, None]
     shortest = links.stress_free_length_m * (1 + links.thermal_expansion_per_K[:, None] * ranges).T.min(axis=0)
-    axial = links.young_modulus_Pa * links.cross_section_area_m2 / shortest
+    axial = physics.axial_stiffness_N_per_m(links.young_modulus_Pa, links.cross_section_area_m2, shortest)
     touch(links.nodes, axial, ratio, case.dem.pin_damping_N_m_s_per_rad / shortest**2)
     touch(springs.nodes, springs.stiffness_N_per_m, ratio)
     for ends, moment in zip(torsion.links, torsion.stiffness_N_m_per_rad):
@@ -81,7 +86,7 @@ def stable_time_step(case: TrussCase, path: TrussPath) -> float:
         pad = pads(truss)
         at_stop = np.isfinite(truss.sliders.clearance_minus_m) | np.isfinite(truss.sliders.clearance_plus_m)
         force = IMPACT**3 * np.abs(path.states["slider_force_N"]).max(axis=0)
-        stop = np.where(at_stop, tangent_stiffness(pad_hertz_stiffness(truss), force), 0.0)
+        stop = np.where(at_stop, physics.hertz_tangent_N_per_m(force, pad_hertz_stiffness(truss)), 0.0)
         touch(truss.sliders.nodes[:, :1], pad.tangential_N_per_m + stop, contact)
     if len(truss.revolutes.names):
         force = IMPACT**3 * path.states["normal_force_N"].max(axis=0)
@@ -129,7 +134,7 @@ def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) 
         if free is None:
             name = (*sliders.names, *joints.names)[place]
             raise refuse(case, f"joint {name!r} is within reach of more than {CONTACT_GROUPS} other joints, "
-                               "the DEM cannot keep their contacts apart")
+                               "the DEM cannot keep their contacts apart", joint=name)
         group[members] = free
     return group
 
@@ -151,10 +156,12 @@ def check(case: TrussCase) -> None:
     mass = lumped_mass_kg(truss)
     nodes, sliders, joints, springs = truss.nodes, truss.sliders, truss.revolutes, truss.springs
     for index in np.flatnonzero(sliders.nodes[:, 1] != GROUND)[:1]:
-        raise refuse(case, f"slider {sliders.names[index]!r} is between two nodes, the DEM has sliders on ground only")
+        raise refuse(case, f"slider {sliders.names[index]!r} is between two nodes, the DEM has sliders on ground only",
+                     joint=sliders.names[index])
     free = ~_blocked(truss).all(axis=1)
     for index in np.flatnonzero(free & (mass <= 0))[:1]:
-        raise refuse(case, f"node {nodes.names[index]!r} has no mass because no link ends there, the DEM needs one")
+        raise refuse(case, f"node {nodes.names[index]!r} has no mass because no link ends there, the DEM needs one",
+                     nodes=(nodes.names[index],))
     roles: dict[int, tuple[Any, ...]] = {}
     for kind, items, node_of, shape in (
         ("slider", sliders, sliders.nodes[:, 0], sliders.pad_radius_m),
@@ -168,7 +175,8 @@ def check(case: TrussCase) -> None:
                     float(items.young_modulus_Pa[index]), int(link[index]) if part != "pad" else None)
             if int(node) in roles and (roles[int(node)] != role or part == "pad"):
                 raise refuse(case, f"{kind} {items.names[index]!r} gives node {nodes.names[node]!r} a second contact "
-                                   "part, in the DEM a node has one")
+                                   "part, in the DEM a node has one", joint=items.names[index],
+                             nodes=(nodes.names[node],))
             roles[int(node)] = role
     for index in np.flatnonzero(springs.free_length_m <= 0)[:1]:
         raise refuse(case, f"spring {springs.names[index]!r} has the free length {springs.free_length_m[index]:.6g} m, "
@@ -191,8 +199,8 @@ def _refuse_tilted_springs(case: TrussCase, truss: ResolvedTruss) -> None:
         for link in ends[ends != GROUND]:
             start, end = position[links.nodes[link]]
             if abs((end - start) @ axis) > SAME_DIRECTION * np.linalg.norm(end - start):
-                raise refuse(case, f"torsion_spring {springs.names[index]!r} has link {links.names[link]!r} that is not "
-                                   "across its axis, the DEM has torsion springs in a plane only")
+                raise refuse(case, f"torsion_spring {springs.names[index]!r} has link {links.names[link]!r} that is "
+                                   "not across its axis, the DEM has torsion springs in a plane only")
 
 
 def _blocked(truss: ResolvedTruss) -> np.ndarray:
@@ -200,18 +208,9 @@ def _blocked(truss: ResolvedTruss) -> np.ndarray:
     return truss.nodes.fixed | (np.abs(truss.nodes.guide_normal) >= 1 - SAME_DIRECTION)
 
 
-def _programs(case: TrussCase, truss: ResolvedTruss) -> list[dict[str, Any]]:
-    found = []
-    for program in truss.programs:
-        values = {"shape": program.shape, "period_s": program.period_s, "cycles": program.cycles}
-        if program.shape == "table":
-            times = program.table_time_s
-            values["table_time_s"] = [program.period_s * (time / times[-1]) for time in times]
-            values["table_temperature_change_K"] = program.table_temperature_change_K
-        else:
-            values["temperature_change_max_K"] = program.temperature_change_max_K
-        found.append(values)
-    return found
+def _programs(truss: ResolvedTruss) -> list[dict[str, Any]]:
+    return [{**thermal.parameters(program, program.period_s), "period_s": program.period_s}
+            for program in truss.programs]
 
 
 def _lists(part: Any, **more: Any) -> dict[str, Any]:
@@ -236,17 +235,15 @@ def resolved(case: TrussCase, path: TrussPath) -> dict[str, Any]:
     reach = truss.sliders.pad_radius_m + 2 * np.abs(path.states["slide_m"]).max(axis=0)
     groups = _contact_groups(truss, case, np.concatenate((reach, np.sqrt(2) * truss.revolutes.bearing_radius_m)))
     count = len(truss.sliders.names)
-    steps = number_of_steps(case, path)
     torsion = truss.torsion_springs
     if len(torsion.links) and np.abs(torsion.bias_rad).max() > pi / 2:
         raise refuse(case, "a torsion spring has a bias above π/2, beyond what the DEM can tell from its opposite")
     start = path.states["displacement_m"][0]
+    values = yade_process.common_values(case, number_of_steps(case, path))
     return {
-        **{key: case.dict()[key] for key in ("case", "dem")} | {"number_of_samples": case.samples_per_cycle * case.thermal.cycles},
-        "dem": {**case.dem.dict(), "number_of_steps": steps,
-                "time_step_s": case.period_s * case.thermal.cycles / steps},
+        **{key: values[key] for key in ("case", "dem", "number_of_samples")},
         "dimension": truss.dimension,
-        "programs": _programs(case, truss),
+        "programs": _programs(truss),
         "node": _lists(truss.nodes, blocked=_blocked(truss), mass_kg=mass, start_m=truss.nodes.position_m + start),
         "link": _lists(truss.links),
         "slider": _lists(truss.sliders, depth_m=pad.depth_m, reach_m=reach, floor_normal=pressing_directions(truss),
@@ -262,8 +259,19 @@ def _finite(values: np.ndarray) -> list[float | None]:
     return [float(value) if np.isfinite(value) else None for value in values]
 
 
-def run(
-    case: TrussCase, path: TrussPath, folder: Path, progress: Callable[[float], None], keep: dem.Keep | None = None
-) -> dem.DemRun:
-    """Run the case in YADE; see :func:`statejump.core.yade_process.run_resolved`."""
-    return dem.run_resolved(resolved(case, path), folder, progress, keep)
+def dem_input(case: TrussCase, tell: Tell = lambda share: None) -> dict[str, Any]:
+    """Return everything that the YADE script needs, see :func:`resolved`; the path is found first.
+
+    :param tell: takes the finished share of the path
+    """
+    check(case)
+    return resolved(case, solve(case, tell))
+
+
+def run(case: TrussCase, scene: str, make_run: Callable[..., Run], tell: Tell) -> Run:
+    """Find the path and run the case in YADE from where it begins; see :func:`statejump.core.yade_process.run`.
+
+    :param scene: module that builds the scene in YADE
+    """
+    values = {"scene": scene, **dem_input(case, lambda share: tell(PATH_SHARE * share))}
+    return yade_process.run(case, values, make_run, lambda share: tell(PATH_SHARE + (1 - PATH_SHARE) * share))

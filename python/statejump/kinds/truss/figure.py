@@ -2,25 +2,23 @@
 """Figure of a comparison of a ``truss`` case: loops of the nodes that move and jump most, joint forces."""
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 
+from statejump.core.figures import DEM, REDUCED, Panel, Sheet
+from statejump.core.run import Run
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.spring_slider.figure import DEM, REDUCED, STYLE, plt, save
 from statejump.kinds.truss.compare import jumps_m
-
-if TYPE_CHECKING:
-    from statejump.results.contents import Column, ModelRun
 
 QUASI_STATIC = {**REDUCED, "label": "quasi-static solver", "linewidth": 3.6}
 DEM_RUN = {**DEM, "linewidth": 1.1}
 
 
-def _shown(case: TrussCase, run: "ModelRun") -> list[tuple[int, int]]:
+def _shown(case: TrussCase, run: Run) -> list[tuple[int, int]]:
     """Return node and axis of two components: the largest jump, then the largest motion of another node."""
-    motion = np.ptp(run.history["displacement_m"].values, axis=0)
+    motion = np.ptp(run["displacement_m"], axis=0)
     jump = np.abs(jumps_m(run))
     first = np.unravel_index(np.argmax(jump if jump.max() > 1e-9 * motion.max() else motion), motion.shape)
     others = motion.copy()
@@ -34,39 +32,44 @@ def _shown(case: TrussCase, run: "ModelRun") -> list[tuple[int, int]]:
     return [(int(first[0]), int(first[1])), (int(second[0]), int(second[1]))]
 
 
-def figure(case: TrussCase, reduced: "ModelRun", dem: "ModelRun", folder: Path) -> list[Path]:
-    """Write ``<case>.png`` and ``<case>.svg`` into the folder and return their paths."""
-    shown = _shown(case, reduced)
-    scale, unit = (1e3, "mm") if np.abs(reduced.history["displacement_m"].values).max() > 2e-3 else (1e6, "µm")
-    link = int(np.argmax(np.ptp(reduced.links["axial_force_N"].values, axis=0)))
-    with plt.rc_context(STYLE):
-        drawing, panels = plt.subplots(2, 2, figsize=(9.5, 7.0), constrained_layout=True)
-        for run, style in ((reduced, QUASI_STATIC), (dem, DEM_RUN)):
-            change, time = run.history["temperature_change_K"].values, run.time_s
-            for panel, (node, axis) in zip(panels[0], shown):
-                panel.plot(change, run.history["displacement_m"].values[:, node, axis] * scale, **style)
-            panels[1, 0].plot(change, run.links["axial_force_N"].values[:, link], **style)
-            heat = run.energy["friction_dissipation_J"].values
-            panels[1, 1].plot(time, (heat - heat[0]) * 1e3, **style)
-        for panel, (node, axis) in zip(panels[0], shown):
-            panel.set_xlabel("Temperature change [K]")
-            panel.set_ylabel(f"Displacement of node {case.node[node].name} along {'xyz'[axis]} [{unit}]")
-            _mark_jump(panel, reduced.history, node, axis, scale, unit)
-        if len(shown) == 1:
-            panels[0, 1].set_axis_off()
-        panels[1, 0].set_xlabel("Temperature change [K]")
-        panels[1, 0].set_ylabel(f"Axial force of {case.link[link].name}, compression positive [N]")
-        panels[1, 1].set_xlabel("Time [s]")
-        panels[1, 1].set_ylabel("Work of friction [mJ]")
-        panels[0, 0].legend(loc="best", framealpha=1)
-        drawing.suptitle(case.title, fontsize=11)
-        return save(drawing, folder, case.name)
+def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
+    """Return loops of two nodes, of the axial force that changes most, and the work of friction over time. The
+    first run decides which nodes and link."""
+    first = runs[0]
+    shown = _shown(case, first)
+    scale, unit = (1e3, "mm") if np.abs(first["displacement_m"]).max() > 2e-3 else (1e6, "µm")
+    link = int(np.argmax(np.ptp(first.links["axial_force_N"].values, axis=0)))
+    styled = [(run, QUASI_STATIC if run.model == "reduced" else DEM_RUN) for run in runs]
+
+    def loop(node: int, axis: int) -> Panel:
+        def draw(axes: Axes) -> None:
+            for run, style in styled:
+                axes.plot(run["temperature_change_K"], run["displacement_m"][:, node, axis] * scale, **style)
+            axes.set_xlabel("Temperature change [K]")
+            axes.set_ylabel(f"Displacement of node {case.node[node].name} along {'xyz'[axis]} [{unit}]")
+            _mark_jump(axes, first, node, axis, scale, unit)
+
+        return draw
+
+    def force(axes: Axes) -> None:
+        for run, style in styled:
+            axes.plot(run["temperature_change_K"], run.links["axial_force_N"].values[:, link], **style)
+        axes.set_xlabel("Temperature change [K]")
+        axes.set_ylabel(f"Axial force of {case.link[link].name}, compression positive [N]")
+
+    def friction(axes: Axes) -> None:
+        for run, style in styled:
+            heat = run["friction_dissipation_J"]
+            axes.plot(run.time_s, (heat - heat[0]) * 1e3, **style)
+        axes.set_xlabel("Time [s]")
+        axes.set_ylabel("Work of friction [mJ]")
+
+    second = loop(*shown[1]) if len(shown) > 1 else None
+    return Sheet([loop(*shown[0]), second, force, friction], 2, (9.5, 7.0), case.title)
 
 
-def _mark_jump(
-    panel: plt.Axes, history: "dict[str, Column]", node: int, axis: int, scale: float, unit: str
-) -> None:
-    values = history["displacement_m"].values[:, node, axis] * scale
-    panel.plot(history["temperature_change_K"].values[-1], values[-1], "s", color="#D55E00", markersize=5, zorder=6,
-               label=f"state jump {values[-1] - values[0]:.4g} {unit}")
-    panel.legend(loc="best", framealpha=1)
+def _mark_jump(axes: Axes, run: Run, node: int, axis: int, scale: float, unit: str) -> None:
+    values = run["displacement_m"][:, node, axis] * scale
+    axes.plot(run["temperature_change_K"][-1], values[-1], "s", color="#D55E00", markersize=5, zorder=6,
+              label=f"state jump {values[-1] - values[0]:.4g} {unit}")
+    axes.legend(loc="best", framealpha=1)

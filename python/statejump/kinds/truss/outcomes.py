@@ -4,36 +4,31 @@ from __future__ import annotations
 
 import numpy as np
 
-from statejump.kinds.truss.case import TrussCase
+from statejump.core.run import Run
 from statejump.kinds.truss.answers import reflector
-from statejump.kinds.truss.answers.answers import node_jumps, quick_path
+from statejump.kinds.truss.answers.jumps import node_jumps, quick_path
+from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.result import reduced_run
+from statejump.kinds.truss.solve import TrussPath
 
-UNITS = {
-    "largest_node_jump_m": "m",
-    "rms_node_jump_m": "m",
-    "reflector_rms_of_change_m": "m",
-    "reflector_rms_error_m": "m",
-    "reflector_tilt_change_rad": "rad",
-    "reflector_depth_change_m": "m",
-    "friction_dissipation_J": "J",
-    "slipping_joints": "-",
-    "largest_axial_force_N": "N",
-}
 # Share of the heat of all joints below which a joint does not slip: what it has is rounding.
 LEAST_HEAT = 1e-9
 
 
-def outcomes(case: TrussCase) -> dict[str, float]:
-    """Run a truss and return its outcomes, jumps over all cycles.
+def quick(case: TrussCase) -> Run:
+    """Return the reduced model as a run of two samples, its ends; only those events are located on which the state
+    depends."""
+    path = quick_path(case.resolve(), case.reduced.increments_per_branch)
+    return reduced_run(case, path, np.array([0.0, case.duration_s]))
 
-    :raises StatejumpError: the solver finds no path
-    """
-    truss = case.resolve()
-    found = quick_path(truss, case.reduced.increments_per_branch)
-    ends = found.cycle_ends
+
+def outcomes(case: TrussCase, run: Run) -> dict[str, float]:
+    """Return the outcomes of a run of the reduced model, jumps over all cycles."""
+    found: TrussPath = run.native
+    truss, ends = found.truss, found.cycle_ends
     jumps = np.linalg.norm(node_jumps(found)[-1], axis=1)
     heat = np.concatenate((ends["slider_dissipation_J"][-1], ends["revolute_dissipation_J"][-1]))
-    values = dict.fromkeys(UNITS, float("nan"))
+    values = dict.fromkeys(case.behaviour.OUTCOMES, float("nan"))
     surface = reflector.surface(truss)
     if surface is not None:
         start, end = (surface.fit(ends["displacement_m"][index]) for index in (0, -1))

@@ -6,9 +6,10 @@ Index -1 stands for ground.
 """
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, Any, Iterable, Optional, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -127,7 +128,7 @@ class ReflectorSurface:
 
     nodes: np.ndarray  # int
     axis: np.ndarray  # (3,) unit
-    focal_length_m: Optional[float]  # None: best fit
+    focal_length_m: float | None  # None: best fit
 
 
 @dataclass(frozen=True)
@@ -142,28 +143,28 @@ class ResolvedTruss:
     revolutes: Revolutes
     springs: Springs
     torsion_springs: TorsionSprings
-    programs: tuple["TrussThermal", ...]
+    programs: tuple[TrussThermal, ...]
     program_names: tuple[str, ...]  # "thermal" and those of the file
-    reflector: Optional[ReflectorSurface]
+    reflector: ReflectorSurface | None
     sticking: str  # "rigid" or "elastic": contacts of the reduced model
 
 
-def column(items: Sequence["Item"], key: str) -> np.ndarray:
+def column(items: Sequence[Item], key: str) -> np.ndarray:
     """Return one number of every item; NaN where it is not given."""
     return np.array([getattr(item, key) for item in items], dtype=float)
 
 
-def names(items: Sequence["Item"]) -> tuple[str, ...]:
+def names(items: Sequence[Item]) -> tuple[str, ...]:
     """Return the names of the items."""
     return tuple(item.name for item in items)
 
 
-def numbering(items: Iterable["Item"]) -> dict[Optional[str], int]:
+def numbering(items: Iterable[Item]) -> dict[str | None, int]:
     """Return the index of every name; that of no name is GROUND."""
     return {None: GROUND, **{item.name: index for index, item in enumerate(items)}}
 
 
-def vectors(values: Sequence[Optional[Sequence[float]]], dimension: int) -> np.ndarray:
+def vectors(values: Sequence[Sequence[float] | None], dimension: int) -> np.ndarray:
     """Return vectors (n, 3) of 2 or 3 numbers each, zero where there is none."""
     none = (0.0,) * dimension
     given = np.array([none if value is None else value for value in values], dtype=float).reshape(-1, dimension)
@@ -185,7 +186,7 @@ def _axes(items: Sequence[Any], dimension: int) -> np.ndarray:
     return unit(vectors([item.axis for item in items], dimension))
 
 
-def _pairs(items: Sequence[Any], key: str, number: dict[Optional[str], int]) -> np.ndarray:
+def _pairs(items: Sequence[Any], key: str, number: dict[str | None, int]) -> np.ndarray:
     pairs = [[number[name] for name in getattr(item, key)] for item in items]
     return np.array([(pair + [GROUND])[:2] for pair in pairs], dtype=int).reshape(-1, 2)
 
@@ -195,14 +196,14 @@ def distances(position_m: np.ndarray, pairs: np.ndarray) -> np.ndarray:
     return np.linalg.norm(position_m[pairs[:, 1]] - position_m[pairs[:, 0]], axis=1)
 
 
-def resolve(case: "TrussCase") -> ResolvedTruss:
+def resolve(case: TrussCase) -> ResolvedTruss:
     """Return the arrays of a case. References must be right: ``checks`` sees to it when a case is read."""
     dimension = case.truss.dimension
     node_number, link_number = numbering(case.node), numbering(case.link)
     program_number = {name: index + 1 for name, index in numbering(case.program).items()}
     positions = vectors([node.position_m for node in case.node], dimension)
 
-    def indices(items: Sequence[Any], key: str, number: dict[Optional[str], int]) -> np.ndarray:
+    def indices(items: Sequence[Any], key: str, number: dict[str | None, int]) -> np.ndarray:
         return np.array([number[getattr(item, key)] for item in items], dtype=int)
 
     fixed = np.array([[axis in node.fixed for axis in "xyz"] for node in case.node], dtype=bool)

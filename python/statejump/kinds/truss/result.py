@@ -2,22 +2,22 @@
 """What a result file says of a ``truss`` case: both models have the same columns, by item."""
 from __future__ import annotations
 
-from typing import Any, Optional
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from statejump.kinds.truss.case import TrussCase
-from statejump.core.comparison import Quantity
-from statejump.core.yade_process import DemRun
-from statejump.core.history import TRUSS_COLUMNS, History
+from statejump.core.run import (
+    AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Columns, Event, Events, Run, columns_of, numbers_of,
+)
+from statejump.core.units import unit_of
 from statejump.kinds.truss import compare
+from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.dem import pressing_directions
 from statejump.kinds.truss.resolved import GROUND, ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, engine_program
 from statejump.results import scene as drawing
-from statejump.results.contents import (
-    AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Event, ModelRun, Scalar, columns_of, scalars, unit_of,
-)
 from statejump.results.events import from_states, kind_of
 
 # Of the engine's statuses stick, slip_plus, slip_minus, stop_plus, stop_minus, open.
@@ -126,11 +126,10 @@ def _changes(truss: ResolvedTruss, time_s: np.ndarray, part: Any) -> np.ndarray:
 
 
 def _run(
-    truss: ResolvedTruss, energy: dict[str, Column], plain: dict[str, Column], items: dict[str, np.ndarray],
-    events: Optional[list[Event]], summary: dict[str, Scalar],
-) -> ModelRun:
-    time = plain["time_s"].values
-    samples = len(time)
+    case: TrussCase, model: str, plain: dict[str, Column], energy: dict[str, Column], items: dict[str, np.ndarray],
+    events: list[Event] | None, summary: Mapping[str, float], **more: Any,
+) -> Run:
+    truss, time = case.resolve(), plain["time_s"].values
     history = dict(plain)
     for key, (of, _) in ITEMS.items():
         if key not in ("slider_state", "revolute_state", "axial_force_N") and items[key].shape[1]:
@@ -148,13 +147,10 @@ def _run(
     contacts = _contacts(truss, time, position, items)
     change = plain["temperature_change_K"].values
     if events is None:
-        events = from_states(time, change, contacts["state"].values, _joints(truss)) if samples else []
-    return ModelRun(history, energy, links, contacts, events, {**_jumps(truss, items["displacement_m"]), **summary})
-
-
-def _jumps(truss: ResolvedTruss, displacement: np.ndarray) -> dict[str, Scalar]:
-    jump = np.linalg.norm(displacement[-1] - displacement[0], axis=1)
-    return {"largest_jump_m": Scalar(float(jump.max()), "m")}
+        events = from_states(time, change, contacts["state"].values, _joints(truss)) if len(time) else []
+    jumps = np.linalg.norm(items["displacement_m"][-1] - items["displacement_m"][0], axis=1)
+    return Run(model, history, energy, links, contacts, Events(events),
+               {"largest_jump_m": float(jumps.max()), **summary}, names(case), lambda: case, **more)
 
 
 def _contacts(
@@ -188,14 +184,18 @@ def _contacts(
     }
 
 
-def _energies(columns: dict[str, np.ndarray]) -> tuple[dict[str, Column], dict[str, Column]]:
-    return columns_of(History({name: columns[name] for name in TRUSS_COLUMNS if name in columns}))
+def sample_times(case: TrussCase) -> np.ndarray:
+    """Return the times of the DEM's samples [s]."""
+    cycles = case.thermal.cycles
+    return np.linspace(0, case.period_s * cycles, case.samples_per_cycle * cycles + 1)
 
 
-def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> ModelRun:
-    """The quasi-static path at these times [s], linear between its states."""
-    truss, states = path.truss, path.states
+def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
+    """Return the quasi-static path at these times [s], linear between its states; :meth:`Run.at` gives it at
+    others."""
+    states = path.states
     at = states["time_s"]
+    times_s = np.asarray(times_s, dtype=float)
 
     def sampled(values: np.ndarray) -> np.ndarray:
         place = np.clip(np.searchsorted(at, times_s, side="right") - 1, 0, max(len(at) - 2, 0))
@@ -210,14 +210,24 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> ModelR
     for kind in ("slider", "revolute"):
         items[f"{kind}_state"] = STATES[states[f"{kind}_status"].astype(int)][ending]
     heat = states["slider_dissipation_J"].sum(axis=1) + states["revolute_dissipation_J"].sum(axis=1)
-    plain, energy = _energies({
-        "time_s": np.asarray(times_s, dtype=float),
+    plain, energy = columns_of({
+        "time_s": times_s,
         "temperature_change_K": sampled(states["temperature_change_K"]),
         "elastic_energy_J": sampled(states["elastic_energy_J"]),
         "friction_dissipation_J": sampled(heat),
         "thermal_work_J": sampled(states["thermal_work_J"]),
         "external_work_J": sampled(states["load_potential_J"][0] - states["load_potential_J"]),
     })
+    summary = {"energy_residue_J": path.energy_residue_J, "solves": float(path.solves), "unknowns": float(path.unknowns)}
+    run = _run(case, "reduced", plain, energy, items, _events(case, path), summary, native=path,
+               sampler=lambda times: reduced_run(case, path, times))
+    of_joints = np.concatenate((states["slider_dissipation_J"], states["revolute_dissipation_J"]), axis=1)
+    heat_of_joints = Column(sampled(of_joints), "J", "contacts", note="heat of friction since the start")
+    return replace(run, contacts={**run.contacts, "dissipation_J": heat_of_joints})
+
+
+def _events(case: TrussCase, path: TrussPath) -> list[Event]:
+    truss, at = path.truss, path.states["time_s"]
     joints, slipped = _joints(truss), set()
     first_revolute, events = len(truss.sliders.names), []
     for event in path.events:
@@ -226,32 +236,23 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> ModelR
         # A path that does not locate all events has some of them somewhere within an increment.
         half = event.interval_s / 2 if event.interval_s > LOCATED * case.period_s else 0.0
         if before != after:
-            change = float(np.interp(event.time_s - half, at, states["temperature_change_K"])) if half else (
+            change = float(np.interp(event.time_s - half, at, path.states["temperature_change_K"])) if half else (
                 event.temperature_change_K)
             events.append(Event(kind_of(before, after, name in slipped), event.time_s - half, change, name, half))
         if after == SLIP:
             slipped.add(name)
-    summary = scalars({"energy_residue_J": path.energy_residue_J, "solves": path.solves, "unknowns": path.unknowns})
-    run = _run(truss, energy, plain, items, events, summary)
-    of_joints = np.concatenate((states["slider_dissipation_J"], states["revolute_dissipation_J"]), axis=1)
-    run.contacts["dissipation_J"] = Column(sampled(of_joints), "J", "contacts", note="heat of friction since the start")
-    return run
+    return events
 
 
-def dem_run(case: TrussCase, done: DemRun) -> ModelRun:
-    """The DEM: events between samples."""
-    truss, history = case.resolve(), done.history
+def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
+    """Return a DEM run: events between samples."""
+    truss, samples = case.resolve(), len(columns["time_s"])
     items = {}
     for key, (of, vector) in ITEMS.items():
         ends = (".x", ".y", ".z") if vector else ("",)
-        columns = [history[f"{key}[{name}]{end}"] for name in getattr(truss, of).names for end in ends]
-        values = np.stack(columns, axis=1) if columns else np.zeros((len(history), 0))
-        items[key] = values.reshape(len(history), -1, 3) if vector else values
-    plain, energy = _energies(history.columns)
-    summary = {**scalars(done.summary), "energy_residue_J": Scalar(compare.energy_residual(energy), "J")}
-    return _run(truss, energy, plain, items, None, summary)
-
-
-def difference_rows(case: TrussCase, first: ModelRun, second: ModelRun) -> list[Quantity]:
-    """Two runs of the case at the same times against its tolerances."""
-    return compare.history_rows(case, first, second)
+        found = [columns[f"{key}[{name}]{end}"] for name in getattr(truss, of).names for end in ends]
+        values = np.stack(found, axis=1) if found else np.zeros((samples, 0))
+        items[key] = values.reshape(samples, -1, 3) if vector else values
+    plain, energy = columns_of({name: values for name, values in columns.items() if "[" not in name})
+    summary = {**numbers_of(about), "energy_residue_J": compare.energy_residual(energy)}
+    return _run(case, "dem", plain, energy, items, None, summary, about=about)

@@ -2,14 +2,17 @@
 """Quasi-static path of a truss case: the reduced model."""
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Callable, Optional
+from typing import Any
 
 import numpy as np
 
 from statejump import _engine
+from statejump.core import thermal
+from statejump.core.errors import FailedRun, Interrupted
+from statejump.core.progress import Tell
 from statejump.kinds.truss.case import TrussCase, TrussThermal
-from statejump.core.errors import FailedRun
 from statejump.kinds.truss.contacts import solver_stiffness
 from statejump.kinds.truss.resolved import ResolvedTruss
 
@@ -56,19 +59,9 @@ class TrussPath:
         return float((states["thermal_work_J"] - (stored - stored[0]) - heat)[-1])
 
 
-def engine_program(thermal: TrussThermal) -> _engine.ThermalProgram:
-    """Return a temperature program of a truss as the engine's; a table is stretched to the period."""
-    if thermal.shape != "table":
-        return _engine.ThermalProgram(
-            shape=thermal.shape, temperature_change_max_K=thermal.temperature_change_max_K,
-            period_s=thermal.period_s, cycles=thermal.cycles,
-        )
-    times = thermal.table_time_s
-    return _engine.ThermalProgram(
-        shape="table", period_s=thermal.period_s, cycles=thermal.cycles,
-        table_time_s=[thermal.period_s * (time / times[-1]) for time in times],
-        table_temperature_change_K=thermal.table_temperature_change_K,
-    )
+def engine_program(program: TrussThermal) -> _engine.ThermalProgram:
+    """Return a temperature program of a truss as the engine's."""
+    return thermal.program(program, program.period_s)
 
 
 def _table(part: Any, *keys: str, **more: Any) -> dict[str, Any]:
@@ -82,7 +75,7 @@ def path(
     locate_events: bool = True,
     event_tolerance: float = 1e-9,
     cycle_ends_only: bool = False,
-    progress: Optional[Callable[[float], Optional[bool]]] = None,
+    progress: Callable[[float], bool | None] | None = None,
 ) -> TrussPath:
     """Return the quasi-static path of a truss.
 
@@ -91,7 +84,7 @@ def path(
     :param event_tolerance: share of a branch within which a change is located
     :param cycle_ends_only: keep the states at the ends of cycles only
     :param progress: called with the share that is done; returning False ends the path
-    :raises StatejumpError: for a mechanism, an unloaded joint, no equilibrium: with names and temperature
+    :raises FailedRun: for a mechanism, an unloaded joint, no equilibrium: with names and temperature
     """
     sliders, springs, torsion = truss.sliders, truss.springs, truss.torsion_springs
     hertz, mindlin, tangential = solver_stiffness(truss)
@@ -116,10 +109,7 @@ def path(
             event_tolerance=event_tolerance, cycle_ends_only=cycle_ends_only, progress=progress,
         )
     except (ValueError, RuntimeError) as failure:
-        sentence = str(failure)
-        if "does not settle" in sentence and locate_events:
-            sentence += "; set reduced.locate_events to false, which takes such changes together"
-        raise FailedRun(f"{truss.name}: {sentence}", cause=str(failure)) from None
+        raise _failed(truss, failure, locate_events) from None
     names = {"slider": sliders.names, "revolute": truss.revolutes.names}
     events = tuple(
         TrussEvent(name=names[event["joint_kind"]][event["joint"]], **event) for event in found.pop("events")
@@ -127,13 +117,52 @@ def path(
     return TrussPath(truss=truss, events=events, **found)
 
 
-def solve(case: TrussCase, progress: Optional[Callable[[float], Optional[bool]]] = None) -> TrussPath:
-    """Return the path of a case, with the settings of its [reduced]."""
+def whole_path(truss: ResolvedTruss, tell: Tell = lambda share: None, **options: Any) -> TrussPath:
+    """Return the path up to its end; see :func:`path`.
+
+    :param tell: takes the finished share, 0 to 1
+    :raises Interrupted: Ctrl-C
+    """
+    def going_on(share: float) -> bool:
+        tell(share)
+        return True
+
+    found = path(truss, progress=going_on, **options)
+    if not found.complete:
+        raise Interrupted()
+    return found
+
+
+def _failed(truss: ResolvedTruss, failure: Exception, locate_events: bool) -> FailedRun:
+    """Return what the engine's failure says, by the names of the truss."""
+    told = {key: getattr(failure, key, None) for key in ("kind", "joint", "nodes", "time_s", "temperature_change_K")}
+    remedy = None
+    if told.pop("kind") == "unsettled_joint" and locate_events:
+        remedy = "set reduced.locate_events to false, which takes such changes together"
+    return FailedRun(case=truss.name, cause=str(failure), remedy=remedy, **{**told, "nodes": told["nodes"] or ()})
+
+
+def solve(case: TrussCase, tell: Tell = lambda share: None) -> TrussPath:
+    """Return the path of a case, with the settings of its [reduced]. A case is immutable, so its path is found once: the
+    DEM begins where the reduced model does.
+
+    :param tell: takes the finished share, 0 to 1
+    :raises FailedRun: for a mechanism, an unloaded joint, no equilibrium: with names and temperature
+    :raises Interrupted: Ctrl-C
+    """
+    kept = vars(case)
+    if "_path" not in kept:
+        kept["_path"] = _solved(case, tell)
+    found: TrussPath = kept["_path"]
+    return found
+
+
+def _solved(case: TrussCase, tell: Tell) -> TrussPath:
     truss = case.resolve()
     items = 3 * len(truss.nodes.names) + len(truss.links.names) + 8 * len(truss.revolutes.names)
     states = 2 * case.thermal.cycles * case.reduced.increments_per_branch
-    return path(
-        truss, increments_per_branch=case.reduced.increments_per_branch,
+    return whole_path(
+        truss, tell, increments_per_branch=case.reduced.increments_per_branch,
         locate_events=case.reduced.locate_events, event_tolerance=case.reduced.event_tolerance,
-        cycle_ends_only=8 * items * states > LARGEST_PATH, progress=progress,
+        cycle_ends_only=8 * items * states > LARGEST_PATH,
     )

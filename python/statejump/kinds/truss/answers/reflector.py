@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi
-from typing import Optional
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -27,7 +26,7 @@ class Fit:
     residual_m: np.ndarray  # (nodes,) along the normal
     rms_error_m: float
     tilt_rad: np.ndarray  # (1 or 2,) of the axis towards the frame's lateral axes
-    focal_length_m: Optional[float]  # None: flat, or not determined
+    focal_length_m: float | None  # None: flat, or not determined
     depth_m: float  # of the vertex, along the axis
 
 
@@ -102,7 +101,7 @@ def _central(function, x: np.ndarray, step: float = 1e-5) -> np.ndarray:  # type
                     axis=1)
 
 
-def surface(truss: ResolvedTruss) -> Optional[Surface]:
+def surface(truss: ResolvedTruss) -> Surface | None:
     """Return the reflecting surface of a truss, None if it has none or too few nodes for a plane.
 
     Parameters that the drawn nodes do not determine are held, in this order: the vertex' lateral shift

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Callable, Optional
 
 import numpy as np
 
 from statejump.core.errors import StatejumpError
-from statejump.kinds.truss.answers.answers import Output, quick_path
+from statejump.core.progress import Tell
+from statejump.kinds.truss.answers.jumps import quick_path
+from statejump.kinds.truss.answers.outputs import Output
 from statejump.kinds.truss.resolved import ResolvedTruss, distances
 from statejump.kinds.truss.solve import TrussPath
 
@@ -23,13 +24,13 @@ class Sensitivity:
 
     parameter: str  # "revolute.*.radial_clearance_m", "revolute.joint3.radial_clearance_m"
     items: int
-    value: Optional[float]  # None: the items differ
+    value: float | None  # None: the items differ
     per_relative_change: float  # in the output's unit
     half_step: float
     verdict: str  # "smooth", "no influence", "steps disagree", "not differentiable", "failed: ..."
 
     @property
-    def per_unit(self) -> Optional[float]:
+    def per_unit(self) -> float | None:
         """Change of the jump per unit of the parameter; None if the items differ."""
         return None if self.value is None else self.per_relative_change / self.value
 
@@ -74,7 +75,7 @@ def _histories(found: TrussPath) -> dict[tuple[str, int], list[str]]:
 
 def sensitivities(
     found: TrussPath, output: Output, *, each: bool = False, step: float = STEP,
-    progress: Callable[[float], Any] = lambda fraction: None,
+    tell: Tell = lambda share: None,
 ) -> list[Sensitivity]:
     """Return the sensitivities of an output's jump, parameters without value (0 or no stop) left out.
 
@@ -106,7 +107,7 @@ def sensitivities(
             rows.append(Sensitivity(label, len(own), same, *found_of))
         except StatejumpError as problem:
             rows.append(Sensitivity(label, len(own), same, float("nan"), float("nan"), f"failed: {problem}"))
-        progress((place + 1) / len(asked))
+        tell((place + 1) / len(asked))
     return rows
 
 

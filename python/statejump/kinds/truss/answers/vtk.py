@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_VERTEX, vtkUnstructuredGrid
 
+from statejump.core.progress import Tell
 from statejump.results.vtk_data import add_array, cells, file_time, frames_of, points, write, write_series
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, engine_program
@@ -23,7 +24,7 @@ def link_temperatures(truss: ResolvedTruss, times_s: np.ndarray) -> np.ndarray:
 
 
 def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
-           progress: Callable[[float], Any] = lambda fraction: None) -> Path:
+           tell: Tell = lambda share: None) -> Path:
     """Write ``<name>.N.vtu`` and ``<name>.vtu.series`` and return the latter.
 
     Points are the drawn nodes; ``displacement_m`` moves them (Warp By Vector). Cells: links, springs,
@@ -76,7 +77,7 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
         time_s = file_time(at["time_s"])
         write(data, path, time_s)
         entries.append((path.name, time_s))
-        progress((number + 1) / len(frames))
+        tell((number + 1) / len(frames))
     index = folder / f"{name}.vtu.series"
     write_series(index, entries)
     return index

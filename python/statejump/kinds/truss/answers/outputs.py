@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Numbers of a truss' shape whose jump is traced to the joints: motion of a node, error and tilt of a surface."""
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from statejump.core.errors import NotAllowed, UnknownKey
+from statejump.kinds.truss.answers import reflector
+from statejump.kinds.truss.answers.jumps import most_moved, node_jumps
+from statejump.kinds.truss.solve import TrussPath
+from statejump.schema.rules import suggestion
+
+
+@dataclass(frozen=True)
+class Output:
+    """One number of the truss' shape whose jump is traced to the joints."""
+
+    name: str
+    text: str
+    unit: str
+    value: Callable[[np.ndarray], float]  # of displacements (nodes, 3)
+
+    def jump(self, found: TrussPath) -> float:
+        """Return its jump over all cycles."""
+        ends = found.cycle_ends["displacement_m"]
+        return self.value(ends[-1]) - self.value(ends[0])
+
+
+def node_output(found: TrussPath, name: str | None = None) -> Output:
+    """Return the displacement [m] of a node along its jump; the most moved node without a name.
+
+    :raises UnknownKey: there is no such node
+    """
+    names = found.truss.nodes.names
+    if name is not None and name not in names:
+        raise UnknownKey("output", value=f"node:{name}", case=found.truss.name, nodes=(name,), **suggestion(name, names))
+    index = most_moved(found) if name is None else names.index(name)
+    jump = node_jumps(found)[-1, index]
+    size = float(np.linalg.norm(jump))
+    way = jump / size if size > 0 else np.array([1.0, 0.0, 0.0])
+    which = "most moved node" if name is None else "node"
+    return Output(f"node:{names[index]}", f"displacement of the {which} {names[index]} along its jump", "m",
+                  lambda moved: float(moved[index] @ way))
+
+
+def rms_output(found: TrussPath, surface: reflector.Surface) -> Output:
+    """Return the RMS [m] over the surface of what the jump changes in the residuals of the best fit."""
+    ends = found.cycle_ends["displacement_m"]
+    start = surface.fit(ends[0]).residual_m
+    change = surface.fit(ends[-1]).residual_m - start
+    size = float(np.linalg.norm(change))
+    way = change / (size * np.sqrt(len(change))) if size > 0 else 0 * change
+    return Output("rms", "RMS of the surface's change against its best fit", "m",
+                  lambda moved: float((surface.fit(moved).residual_m - start) @ way))
+
+
+def tilt_output(found: TrussPath, surface: reflector.Surface) -> Output:
+    """Return the tilt [rad] of the surface along its jump."""
+    ends = found.cycle_ends["displacement_m"]
+    change = surface.fit(ends[-1]).tilt_rad - surface.fit(ends[0]).tilt_rad
+    size = float(np.linalg.norm(change))
+    way = change / size if size > 0 else 0 * change
+    return Output("tilt", "tilt of the surface along its jump", "rad",
+                  lambda moved: float(surface.fit(moved).tilt_rad @ way))
+
+
+def chosen_output(found: TrussPath, name: str) -> Output:
+    """Return the output of a name: ``node`` (most moved), ``node:NAME``, ``rms``, ``tilt``.
+
+    :raises NotAllowed: there is none
+    """
+    if name == "node" or name.startswith("node:"):
+        return node_output(found, name[5:] or None if name != "node" else None)
+    if name not in ("rms", "tilt"):
+        raise NotAllowed("output", name, "must be 'node', 'node:NAME', 'rms' or 'tilt'",
+                         allowed=("node", "node:NAME", "rms", "tilt"))
+    surface = reflector.surface(found.truss)
+    if surface is None:
+        raise NotAllowed("output", name, "the truss has no [reflector] whose nodes determine a fit")
+    return rms_output(found, surface) if name == "rms" else tilt_output(found, surface)

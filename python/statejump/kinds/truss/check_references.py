@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What items of a truss say of each other: names that are there, ends that fit, keys that exclude each other."""
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from statejump.core.errors import ABSENT, MissingKey, NotAllowed
+
+if TYPE_CHECKING:
+    from statejump.kinds.truss.case import Revolute, TrussCase
+
+MOST_LISTED = 5
+# Sections whose items name nodes: least and greatest number of nodes.
+_NODES_OF = {"link": (2, 2), "slider": (1, 2), "spring": (2, 2)}
+
+
+def check_references(case: TrussCase) -> None:
+    """Raise StatejumpError for the first name that is not there or does not fit."""
+    nodes = {node.name: node for node in case.node}
+    links = {link.name: link for link in case.link}
+    _nodes(case, nodes)
+    _programs(case)
+    _alternatives(case)
+    for revolute in case.revolute:
+        _revolute(revolute, nodes, links)
+    _torsion_springs(case, links)
+    if case.reflector is not None:
+        if not case.reflector.nodes:
+            raise NotAllowed("reflector.nodes", [], "must be one or more nodes")
+        for name in case.reflector.nodes:
+            _known("reflector.nodes", ABSENT, name, nodes, "node", beside="as it is")
+
+
+def listed(names: list[str]) -> str:
+    """Return the first names as a sentence lists them."""
+    return ", ".join(repr(name) for name in names[:MOST_LISTED]) + (", ..." if len(names) > MOST_LISTED else "")
+
+
+def _known(key: str, value: Any, name: str, known: Mapping[str, Any], what: str, **where: Any) -> None:
+    """Raise NotAllowed for a name that is not known; its remedy is the nearest one."""
+    if name in known:
+        return
+    nearest = difflib.get_close_matches(name, list(known), n=1, cutoff=0.5)
+    if nearest:
+        remedy = f"did you mean {nearest[0]!r}?"
+    else:
+        remedy = f"known are {listed(list(known))}" if known else f"the file has no section [[{what}]]"
+    raise NotAllowed(key, value, f"there is no {what} {name!r}", remedy=remedy,
+                     nodes=(name,) if what == "node" else (), **where)
+
+
+def _nodes(case: TrussCase, nodes: Mapping[str, Any]) -> None:
+    for section, (least, most) in _NODES_OF.items():
+        for item in getattr(case, section):
+            where = {"item": f"{section} {item.name!r}", "joint": item.name if section == "slider" else None}
+            if not least <= len(item.nodes) <= most:
+                many = "2 nodes" if least == most else "1 node, on ground, or 2 nodes"
+                raise NotAllowed("nodes", item.nodes, f"must be {many}", **where)
+            for name in item.nodes:
+                if name not in nodes:
+                    _known("nodes", item.nodes, name, nodes, "node", **where)
+            if len(item.nodes) == 2 and item.nodes[0] == item.nodes[1]:
+                raise NotAllowed("nodes", item.nodes, "must be two different nodes", **where)
+
+
+def _programs(case: TrussCase) -> None:
+    programs = {program.name: program for program in case.program}
+    for section in ("link", "revolute"):
+        for item in getattr(case, section):
+            if item.program is not None and item.program not in programs:
+                _known("program", item.program, item.program, programs, "program", item=f"{section} {item.name!r}",
+                       joint=item.name if section == "revolute" else None)
+
+
+def _alternatives(case: TrussCase) -> None:
+    for link in case.link:
+        if (link.density_kg_per_m3 is None) == (link.mass_kg is None):
+            where = f"link {link.name!r}"
+            if link.mass_kg is None:
+                raise MissingKey("mass_kg", "one of them is needed", section="density_kg_per_m3 or mass_kg", item=where)
+            raise NotAllowed("mass_kg", link.mass_kg, "only without density_kg_per_m3", item=where)
+    for spring in case.spring:
+        if spring.preload_N is not None and spring.free_length_m is not None:
+            raise NotAllowed("preload_N", spring.preload_N, "only without free_length_m",
+                             item=f"spring {spring.name!r}")
+
+
+def _revolute(revolute: Revolute, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+    where = {"item": f"revolute {revolute.name!r}", "joint": revolute.name}
+    for part in ("bearing", "journal"):
+        node_key, link_key = f"{part}_node", f"{part}_link"
+        node, link = getattr(revolute, node_key), getattr(revolute, link_key)
+        _known(node_key, node, node, nodes, "node", **where)
+        if link is None:
+            # Nothing at hand says how such a part turns.
+            if not nodes[node].fixed and nodes[node].guide_normal is None:
+                raise MissingKey(
+                    link_key, f"without a link the {part} does not turn, so node {node!r} must have a support "
+                    "(fixed or guide_normal)", nodes=(node,), **where,
+                )
+            continue
+        _known(link_key, link, link, links, "link", **where)
+        if node not in links[link].nodes:
+            ends = " and ".join(repr(end) for end in links[link].nodes)
+            raise NotAllowed(link_key, link, f"that link ends at {ends}, it must end at {node_key} = {node!r}", **where)
+    if revolute.bearing_node == revolute.journal_node:
+        raise NotAllowed("journal_node", revolute.journal_node, "must be another node than bearing_node", **where)
+    if revolute.bearing_link is not None and revolute.bearing_link == revolute.journal_link:
+        raise NotAllowed("journal_link", revolute.journal_link, "must be another link than bearing_link", **where)
+
+
+def _torsion_springs(case: TrussCase, links: Mapping[str, Any]) -> None:
+    for spring in case.torsion_spring:
+        where = {"item": f"torsion_spring {spring.name!r}"}
+        if not 1 <= len(spring.links) <= 2:
+            raise NotAllowed("links", spring.links, "must be 2 links, or 1 against ground", **where)
+        for name in spring.links:
+            _known("links", spring.links, name, links, "link", **where)
+        if len(spring.links) == 2 and spring.links[0] == spring.links[1]:
+            raise NotAllowed("links", spring.links, "must be two different links", **where)

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A ``truss`` case in words, and what a command prints of its runs."""
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+
+from statejump.core.run import Run
+from statejump.core.tables import Shown
+from statejump.core.units import text
+from statejump.kinds.truss import compare
+from statejump.kinds.truss.case import Node, TrussCase
+
+
+def _count(items: Sequence[object], one: str) -> str:
+    return f"{len(items)} {one}{'' if len(items) == 1 else 's'}"
+
+
+def spread(values: Iterable[float], unit: str = "-", digits: int = 4) -> str:
+    """Return the one value of many items, or from where to where their values go."""
+    known = [float(value) for value in values]
+    low, high = min(known), max(known)
+    return text(low, unit, digits) if low == high else f"{text(low, unit, digits)} to {text(high, unit, digits)}"
+
+
+def is_held(case: TrussCase, node: Node) -> bool:
+    """Whether a node cannot move at all."""
+    return len(set(node.fixed)) == case.truss.dimension
+
+
+def is_guided(case: TrussCase, node: Node) -> bool:
+    """Whether a node can move in some directions only."""
+    return bool(node.fixed or node.guide_normal) and not is_held(case, node)
+
+
+def describe(case: TrussCase) -> list[str]:
+    """Return the case in sentences; its temperature program is told for all kinds alike."""
+    kind = {2: "plane", 3: "spatial"}[case.truss.dimension]
+    held = [node for node in case.node if is_held(case, node)]
+    guided = [node for node in case.node if is_guided(case, node)]
+    sentences = [
+        f"A {kind} truss of {_count(case.node, 'node')} and {_count(case.link, 'link')}; {_count(held, 'node')} "
+        f"{'is' if len(held) == 1 else 'are'} held" + (f", {len(guided)} guided" if guided else "") + "."
+    ]
+    sentences += [*_joints(case), *_tied(case)]
+    loads = [sum(part**2 for part in node.force_N) ** 0.5 for node in case.node if node.force_N]
+    if any(loads):
+        sentences.append(f"Dead loads of {spread(loads, 'N')} on {_count(loads, 'node')}.")
+    shares = [link.temperature_fraction for link in case.link]
+    if set(shares) != {1.0}:
+        sentences.append(f"Links are shaded: they take {spread(shares, digits=3)} of the temperature change.")
+    if case.program:
+        sentences.append(f"{_count(case.program, 'further temperature program')} for members that name one.")
+    return sentences
+
+
+def _joints(case: TrussCase) -> list[str]:
+    sentences = []
+    if case.revolute:
+        sentences.append(
+            f"{_count(case.revolute, 'revolute joint')} with clearance: radial clearance "
+            f"{spread((joint.radial_clearance_m for joint in case.revolute), 'm')}, journal radius "
+            f"{spread((joint.journal_radius_m for joint in case.revolute), 'm')}, friction coefficient "
+            f"{spread(joint.friction_coefficient for joint in case.revolute)}."
+        )
+    if case.slider:
+        stops = sum(side is not None for joint in case.slider for side in (joint.clearance_minus_m,
+                                                                           joint.clearance_plus_m))
+        limits = (joint.friction_coefficient * joint.normal_force_N for joint in case.slider)
+        sentences.append(f"{_count(case.slider, 'sliding joint')} held by friction up to {spread(limits, 'N')}, "
+                         f"{f'with {stops} stops' if stops else 'without stops'}.")
+    if case.reduced.sticking == "elastic":
+        sentences.append("Joints of the reduced model stick elastically, as those of the DEM.")
+    return sentences
+
+
+def _tied(case: TrussCase) -> list[str]:
+    cables = [spring for spring in case.spring if spring.cable]
+    springs = [spring for spring in case.spring if not spring.cable]
+    tied = [_count(found, name) for found, name in ((springs, "spring"), (cables, "cable"),
+                                                   (case.torsion_spring, "torsion spring")) if found]
+    return [f"It has {' and '.join(filter(None, [', '.join(tied[:-1]), tied[-1]]))}."] if tied else []
+
+
+def told(case: TrussCase, runs: Mapping[str, Run]) -> list[Shown | str]:
+    """Return what a command prints of the runs: the nodes that jump most, events, energy residue."""
+    first, *others = runs.values()
+    axes = "xyz"[: case.truss.dimension]
+    header = ["node", *(f"along {axis} [m]" for axis in axes), "length [m]", *("DEM, length [m]" for _ in others)]
+    lengths = [np.linalg.norm(compare.jumps_m(run), axis=1) for run in others]
+    numbers = {node.name: place for place, node in enumerate(case.node)}
+    rows = [
+        [name, *(f"{value:.6e}" for value in (*jump[: len(axes)], length, *(found[numbers[name]] for found in lengths)))]
+        for name, *jump, length in compare.jump_table(case, first)
+    ]
+    title = f"{case.title}: state jump after {case.thermal.cycles} cycle(s)"
+    found: list[Shown | str] = [Shown(title, header, rows, left=("node",))]
+    for model, run in runs.items():
+        label = {"reduced": "solver: ", "dem": "DEM: "}[model] if others else ""
+        found.append(f"{label}{len(run.events)} events, energy residue {run.summary['energy_residue_J']:.3g} J")
+    if first.native is not None and not others:
+        path = first.native
+        found.append(f"{path.solves:,} solves, {len(path.events)} changes of joints, {path.unknowns} unknowns")
+    return found
