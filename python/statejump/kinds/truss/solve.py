@@ -115,9 +115,9 @@ def path(
             increments_per_branch=increments_per_branch, locate_events=locate_events,
             event_tolerance=event_tolerance, cycle_ends_only=cycle_ends_only, progress=progress,
         )
-    except (ValueError, RuntimeError) as failure:
+    except _engine.EngineFailure as failure:
         sentence = str(failure)
-        if "does not settle" in sentence and locate_events:
+        if failure.kind == "unsettled_joint" and locate_events:
             sentence += "; set reduced.locate_events to false, which takes such changes together"
         raise FailedRun(f"{truss.name}: {sentence}", cause=str(failure)) from None
     names = {"slider": sliders.names, "revolute": truss.revolutes.names}
