@@ -114,9 +114,10 @@ void translate(std::exception_ptr thrown) {
 void bind_failure(py::module_& module) {
   py::dict attributes;
   attributes["__doc__"] = doc;
-  for (const char* name :
-       {"kind", "message", "item", "key", "value", "allowed", "joint", "joint_kind", "time_s",
-        "temperature_change_K", "cause", "remedy", "file"}) {
+  attributes["kind"] = "";
+  attributes["message"] = "";
+  for (const char* name : {"item", "key", "value", "allowed", "joint", "joint_kind", "time_s",
+                           "temperature_change_K", "cause", "remedy", "file"}) {
     attributes[name] = py::none();
   }
   attributes["joints"] = py::tuple();
