@@ -228,6 +228,20 @@ bool BoreContacts::find(const Probe& probe, const MeshBore& bore, const yade::St
                         const yade::State& state2, const Vector3r& shift2, bool force,
                         const yade::shared_ptr<yade::Interaction>& contact,
                         yade::Scene& scene) const {
+  // None of what this calls, the wall's geometry and the kernel, may throw out of YADE's loop.
+  try {
+    return find_or_throw(probe, bore, state1, state2, shift2, force, contact, scene);
+  } catch (const std::exception& error) {
+    fail_search(error.what(), scene, *contact);
+    return false;
+  }
+}
+
+bool BoreContacts::find_or_throw(const Probe& probe, const MeshBore& bore,
+                                 const yade::State& state1, const yade::State& state2,
+                                 const Vector3r& shift2, bool force,
+                                 const yade::shared_ptr<yade::Interaction>& contact,
+                                 yade::Scene& scene) const {
   if (!bore.mesh()) {
     fail_search("a MeshBore has neither a file nor triangles", scene, *contact);
     return false;
@@ -245,12 +259,7 @@ bool BoreContacts::find(const Probe& probe, const MeshBore& bore, const yade::St
   if (!contact->geom) contact->geom = boost::make_shared<BoreGeom>();
   auto& pair = static_cast<BoreGeom&>(*contact->geom);
   thread_local std::vector<geometry::FollowedContact> found;
-  try {
-    geometry::follow_contacts(mesh, {centre, axis, radius}, patchAngle, pair.known, found);
-  } catch (const std::exception& error) {
-    fail_search(error.what(), scene, *contact);
-    return false;
-  }
+  geometry::follow_contacts(mesh, {centre, axis, radius}, patchAngle, pair.known, found);
 
   // The list of contacts. Most steps leave it as it is.
   std::size_t touching = 0;

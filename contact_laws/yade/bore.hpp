@@ -159,6 +159,9 @@ class BoreContacts {
   bool find(const Probe& probe, const MeshBore& bore, const yade::State& state1,
             const yade::State& state2, const Vector3r& shift2, bool force,
             const yade::shared_ptr<yade::Interaction>& contact, yade::Scene& scene) const;
+  bool find_or_throw(const Probe& probe, const MeshBore& bore, const yade::State& state1,
+                     const yade::State& state2, const Vector3r& shift2, bool force,
+                     const yade::shared_ptr<yade::Interaction>& contact, yade::Scene& scene) const;
   static constexpr const char* patch_angle_doc =
       "Angle by which the normal of a contact may turn before the smooth wall is asked again at "
       "its new place; until then the wall around it has the curvature found there. 0: search the "

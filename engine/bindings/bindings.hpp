@@ -5,6 +5,9 @@
 
 namespace statejump::bindings {
 
+/// Adds EngineFailure, the one exception that all failures of the engine become. Call first.
+void bind_failure(pybind11::module_& module);
+
 /// Adds ThermalProgram to the module.
 void bind_thermal_program(pybind11::module_& module);
 

@@ -8,6 +8,7 @@
 
 #include "bindings.hpp"
 #include "statejump/geometry/bore_mesh.hpp"
+#include "statejump/kernel/require.hpp"
 
 namespace py = pybind11;
 
@@ -45,7 +46,7 @@ geometry::BoreOptions options(const std::string& kind, double scale, bool flip,
   if (kind == "socket")
     result.kind = geometry::SurfaceKind::socket;
   else if (kind != "bore")
-    throw py::value_error("kind = '" + kind + "', allowed is one of bore, socket");
+    throw kernel::OutOfRange("kind", kind, "one of bore, socket");
   result.scale = scale;
   result.flip = flip;
   result.smallest_radius = smallest_radius;

@@ -124,7 +124,7 @@ linkage::Linkage make_linkage(double frame_length, const linkage::ThermalLink& l
 linkage::Start start_mode(const std::string& mode) {
   if (mode == "rest") return linkage::Start::rest;
   if (mode == "matched") return linkage::Start::matched;
-  throw std::invalid_argument("mode = '" + mode + "', allowed is one of rest, matched");
+  throw kernel::OutOfRange("mode", mode, "one of rest, matched");
 }
 
 /// One point of a quasi-static path, rigid or elastic.
@@ -193,8 +193,7 @@ py::class_<Loop> bind_path(py::module_& module, const char* name, const char* do
 joint_loop::TangentialCompliance tangential_compliance(const std::string& name) {
   if (name == "rigid") return joint_loop::TangentialCompliance::rigid;
   if (name == "mindlin") return joint_loop::TangentialCompliance::mindlin;
-  throw std::invalid_argument("tangential_compliance = '" + name +
-                              "', allowed is one of rigid, mindlin");
+  throw kernel::OutOfRange("tangential_compliance", name, "one of rigid, mindlin");
 }
 
 void bind_models(py::module_& module) {

@@ -6,7 +6,9 @@ PYBIND11_MODULE(_engine, module) {
       "Reduced models of state jump in exact, closed or quasi-static form.\n\n"
       "SI units everywhere; every name that carries a quantity ends with its unit. Arguments out "
       "of\n"
-      "range raise ValueError with the name, the value and the range.";
+      "range and models without a result raise EngineFailure, a ValueError and RuntimeError with "
+      "fields.";
+  statejump::bindings::bind_failure(module);
   statejump::bindings::bind_thermal_program(module);
   statejump::bindings::bind_spring_slider(module);
   statejump::bindings::bind_laws(module);

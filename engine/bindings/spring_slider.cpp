@@ -8,6 +8,7 @@
 #include <string>
 
 #include "bindings.hpp"
+#include "statejump/kernel/require.hpp"
 #include "statejump/spring_slider/history.hpp"
 #include "statejump/spring_slider/path.hpp"
 
@@ -69,8 +70,7 @@ void bind_model(py::module_& module) {
               return euler_load(self, spring_slider::EndCondition::pinned_pinned,
                                 second_moment_of_area);
             }
-            throw py::value_error("ends = '" + ends +
-                                  "', allowed is clamped_clamped or pinned_pinned");
+            throw kernel::OutOfRange("ends", ends, "clamped_clamped or pinned_pinned");
           },
           py::arg("ends") = "clamped_clamped",
           py::arg("second_moment_of_area_m4") = std::numeric_limits<double>::quiet_NaN(),

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 
 #include "impl.hpp"
+#include "statejump/kernel/require.hpp"
 
 namespace statejump::geometry {
 namespace {
@@ -14,12 +14,7 @@ namespace {
 constexpr double pi = 3.141592653589793238462643;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-void require(bool holds, const char* name, double value, const char* range) {
-  if (holds) return;
-  char number[32];
-  std::snprintf(number, sizeof number, "%.9g", value);
-  throw std::invalid_argument(std::string(name) + " = " + number + ", allowed is " + range);
-}
+using kernel::require;
 
 void validate(const Vector3& centre, const char* centre_name, double radius,
               const char* radius_name, double maximum_gap) {

@@ -4,8 +4,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <thread>
+
+#include "statejump/kernel/require.hpp"
 
 namespace statejump::geometry {
 namespace {
@@ -57,13 +58,7 @@ CGAL::Exact_predicates_inexact_constructions_kernel::Point_3 to_cgal(const Vecto
 
 BoreMesh::Impl::Impl(Triangles given, const BoreOptions& options, const std::string& name)
     : mesh(std::move(given)), kind(options.kind) {
-  const auto require = [](bool holds, const char* what, double value, const char* range) {
-    if (!holds) {
-      char number[32];
-      std::snprintf(number, sizeof number, "%.9g", value);
-      throw std::invalid_argument(std::string(what) + " = " + number + ", allowed is " + range);
-    }
-  };
+  using kernel::require;
   require(options.scale > 0 && std::isfinite(options.scale), "scale", options.scale, "(0, inf) m");
   require(options.fit_degree >= 2 && options.fit_degree <= 4, "fit_degree", options.fit_degree,
           "2, 3 or 4");
@@ -146,9 +141,12 @@ void BoreMesh::Impl::make_jets(int degree) {
       ring.assign(1, v);
       seen[v] = v;
       std::size_t done = 0;
+      // A vertex whose first ring alone has more gets two whole rings: an arc of the first would
+      // say little about the other side, and one ring nothing about the fourth order.
+      std::size_t taken = most_neighbours;
       for (int rings = 0; rings < 6; ++rings) {
         const std::size_t last = ring.size();
-        for (; done < last && ring.size() < most_neighbours; ++done)
+        for (; done < last && ring.size() < taken; ++done)
           for (int i = start[ring[done]]; i < start[ring[done] + 1]; ++i)
             for (const int w : corner[faces_at[i]])
               // Across a crease the polynomial would not follow.
@@ -156,11 +154,12 @@ void BoreMesh::Impl::make_jets(int degree) {
                 seen[w] = v;
                 ring.push_back(w);
               }
+        if (rings == 0 && ring.size() > most_neighbours + 1) taken = vertices.size();
         if (ring.size() == last) break;
         if (rings >= 1 && ring.size() > fewest_neighbours) break;
       }
       points.clear();
-      for (std::size_t i = 1; i < ring.size() && i <= most_neighbours; ++i)
+      for (std::size_t i = 1; i < ring.size() && i <= taken; ++i)
         points.push_back(mesh.vertices[vertices[ring[i]]]);
       const Vector3& here = mesh.vertices[vertices[v]];
       if (points.size() < 2) {

@@ -48,6 +48,41 @@ Bend second(const Jet& jet, double u, double v) {
           hyy / (jet.scale_v * jet.scale_v)};
 }
 
+using Solution = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 14, 1>;
+
+/// Neighbours for which the equations fit on the stack.
+constexpr int usual_rows = 64;
+
+/// Coefficients of the scaled polynomial by least squares.
+template <int most_rows>
+Solution fitted(const Jet& jet, const std::vector<Vector3>& points, int degree) {
+  const int unknowns = degree * (degree + 3) / 2;
+  const int count = static_cast<int>(points.size());
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_rows, 14> matrix(count, unknowns);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_rows, 1> heights(count);
+  for (int i = 0; i < count; ++i) {
+    const Vector3 from = points[i] - jet.origin;
+    const double x = from.dot(jet.tangent_u) / jet.scale_u;
+    const double y = from.dot(jet.tangent_v) / jet.scale_v;
+    // Nearer neighbours say more.
+    const double weight = 1 / (0.1 + x * x + y * y);
+    double factor = weight;
+    int column = 0;
+    for (int d = 1; d <= degree; ++d, factor *= higher_power_scale)
+      for (int j = 0; j <= d; ++j) {
+        double power = factor;
+        for (int k = 0; k < d - j; ++k) power *= x;
+        for (int k = 0; k < j; ++k) power *= y;
+        matrix(i, column++) = power;
+      }
+    heights(i) = weight * from.dot(jet.normal);
+  }
+  Eigen::CompleteOrthogonalDecomposition<decltype(matrix)> solver;
+  solver.setThreshold(1e-10);
+  solver.compute(matrix);
+  return solver.solve(heights);
+}
+
 }  // namespace
 
 double Jet::meet(const Vector3& point, const Vector3& direction, double guess) const {
@@ -109,31 +144,9 @@ Jet fit_jet(const Vector3& origin, const Vector3& normal, const Vector3& along,
   jet.scale_u = largest_u > 0 ? largest_u : 1;
   jet.scale_v = largest_v > 1e-9 * jet.scale_u ? largest_v : jet.scale_u;
 
-  const int unknowns = degree * (degree + 3) / 2;
-  const int count = static_cast<int>(points.size());
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 64, 14> matrix(count, unknowns);
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 64, 1> heights(count);
-  for (int i = 0; i < count; ++i) {
-    const Vector3 from = points[i] - origin;
-    const double x = from.dot(jet.tangent_u) / jet.scale_u;
-    const double y = from.dot(jet.tangent_v) / jet.scale_v;
-    // Nearer neighbours say more.
-    const double weight = 1 / (0.1 + x * x + y * y);
-    double factor = weight;
-    int column = 0;
-    for (int d = 1; d <= degree; ++d, factor *= higher_power_scale)
-      for (int j = 0; j <= d; ++j) {
-        double power = factor;
-        for (int k = 0; k < d - j; ++k) power *= x;
-        for (int k = 0; k < j; ++k) power *= y;
-        matrix(i, column++) = power;
-      }
-    heights(i) = weight * from.dot(normal);
-  }
-  Eigen::CompleteOrthogonalDecomposition<decltype(matrix)> solver;
-  solver.setThreshold(1e-10);
-  solver.compute(matrix);
-  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 14, 1> solution = solver.solve(heights);
+  const Solution solution = static_cast<int>(points.size()) <= usual_rows
+                                ? fitted<usual_rows>(jet, points, degree)
+                                : fitted<Eigen::Dynamic>(jet, points, degree);
   double factor = 1;
   int column = 0;
   for (int d = 1; d <= degree; ++d, factor *= higher_power_scale)

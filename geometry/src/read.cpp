@@ -7,8 +7,8 @@
 #include <cctype>
 #include <fstream>
 #include <map>
-#include <stdexcept>
 
+#include "statejump/geometry/mesh_failure.hpp"
 #include "statejump/geometry/triangles.hpp"
 
 namespace statejump::geometry {
@@ -39,13 +39,14 @@ bool read_soup(const std::string& file, const std::string& ending, std::vector<P
 Triangles read_triangles(const std::string& file) {
   const std::string ending = lower_ending(file);
   if (ending != "off" && ending != "stl" && ending != "ply" && ending != "obj")
-    throw std::runtime_error(file + ": a mesh file ends with .off, .stl, .ply or .obj");
+    throw MeshFailure(file, MeshFault::unreadable,
+                      "a mesh file ends with .off, .stl, .ply or .obj");
   {
     std::ifstream stream(file, std::ios::binary);
     if (!stream || stream.peek() == std::ifstream::traits_type::eof())
-      throw std::runtime_error(file + (stream.is_open() && !stream.bad() && stream.eof()
-                                           ? ": the file is empty"
-                                           : ": cannot be opened"));
+      throw MeshFailure(file, MeshFault::unreadable,
+                        stream.is_open() && !stream.bad() && stream.eof() ? "the file is empty"
+                                                                          : "cannot be opened");
   }
   std::vector<Point> points;
   std::vector<std::vector<std::size_t>> polygons;
@@ -57,8 +58,8 @@ Triangles read_triangles(const std::string& file) {
   }
   std::string format = ending;
   for (char& c : format) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  if (!read) throw std::runtime_error(file + ": not readable as " + format);
-  if (polygons.empty()) throw std::runtime_error(file + ": the mesh has no faces");
+  if (!read) throw MeshFailure(file, MeshFault::unreadable, "not readable as " + format);
+  if (polygons.empty()) throw MeshFailure(file, MeshFault::bad_faces, "the mesh has no faces");
 
   // Equal points become one, numbered by first appearance.
   Triangles result;
@@ -73,12 +74,14 @@ Triangles read_triangles(const std::string& file) {
   for (std::size_t f = 0; f < polygons.size(); ++f) {
     const auto& polygon = polygons[f];
     if (polygon.size() < 3)
-      throw std::runtime_error(file + ": face " + std::to_string(f) + " has fewer than 3 corners");
+      throw MeshFailure(file, MeshFault::bad_faces,
+                        "face " + std::to_string(f) + " has fewer than 3 corners");
     for (const std::size_t corner : polygon)
       if (corner >= number.size())
-        throw std::runtime_error(file + ": face " + std::to_string(f) + " has corner " +
-                                 std::to_string(corner) + ", but there are only " +
-                                 std::to_string(number.size()) + " vertices");
+        throw MeshFailure(file, MeshFault::bad_faces,
+                          "face " + std::to_string(f) + " has corner " + std::to_string(corner) +
+                              ", but there are only " + std::to_string(number.size()) +
+                              " vertices");
     for (std::size_t k = 1; k + 1 < polygon.size(); ++k)
       result.faces.push_back({number[polygon[0]], number[polygon[k]], number[polygon[k + 1]]});
   }

@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include "statejump/geometry/triangles.hpp"
+#include "statejump/kernel/require.hpp"
 
 namespace statejump::geometry {
 namespace {
 
 constexpr double pi = 3.141592653589793238462643;
 
-void require(bool holds, const char* name, double value, const char* range) {
-  if (holds) return;
-  char number[32];
-  std::snprintf(number, sizeof number, "%.9g", value);
-  throw std::invalid_argument(std::string(name) + " = " + number + ", allowed is " + range);
-}
+using kernel::require;
 
 void validate(const BoreShape& shape) {
   require(shape.radius > 0 && std::isfinite(shape.radius), "radius", shape.radius, "(0, inf) m");

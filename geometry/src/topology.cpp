@@ -11,8 +11,9 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <stdexcept>
 #include <unordered_map>
+
+#include "statejump/geometry/mesh_failure.hpp"
 
 namespace statejump::geometry {
 namespace {
@@ -27,8 +28,8 @@ std::string face_name(const Triangles& mesh, int face) {
          std::to_string(corner[1]) + ", " + std::to_string(corner[2]) + ")";
 }
 
-[[noreturn]] void refuse(const std::string& name, const std::string& what) {
-  throw std::runtime_error(name + ": " + what);
+[[noreturn]] void refuse(const std::string& name, const std::string& cause) {
+  throw MeshFailure(name, MeshFault::bad_faces, cause);
 }
 
 void check_faces(const Triangles& mesh, const std::string& name) {
@@ -233,10 +234,11 @@ void check_self_intersection(const Triangles& mesh, const std::string& name) {
     const int j = static_cast<int>(b.idx());
     first = std::min(first, {std::min(i, j), std::max(i, j)});
   }
-  refuse(name,
-         "faces " + std::to_string(first.first) + " and " + std::to_string(first.second) + " at " +
-             place(face_centre(mesh, first.first)) + " intersect" +
-             (pairs.size() > 1 ? ", and " + std::to_string(pairs.size() - 1) + " more pairs" : ""));
+  throw MeshFailure(
+      name, MeshFault::self_intersects,
+      "faces " + std::to_string(first.first) + " and " + std::to_string(first.second) + " at " +
+          place(face_centre(mesh, first.first)) + " intersect" +
+          (pairs.size() > 1 ? ", and " + std::to_string(pairs.size() - 1) + " more pairs" : ""));
 }
 
 Neighbours restricted(const Neighbours& neighbours, const std::vector<int>& faces, int face_count) {

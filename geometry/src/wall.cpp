@@ -5,18 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <stdexcept>
+
+#include "statejump/geometry/mesh_failure.hpp"
 
 namespace statejump::geometry {
 namespace {
 
 constexpr double pi = 3.141592653589793238462643;
 constexpr double cosine_45 = 0.70710678118654752440;
+constexpr const char* turn_it = "flip turns it";
 constexpr double crease = 0.76604444311897803520;  // cos 40 degrees: faces that meet sharper part
-
-[[noreturn]] void refuse(const std::string& name, const std::string& what) {
-  throw std::runtime_error(name + ": " + what);
-}
 
 /// Round surface: a cylinder, or a sphere (axis then only names a direction).
 struct Round {
@@ -214,14 +212,16 @@ void check_borders(const Triangles& mesh, std::vector<Loop> loops, SurfaceKind k
   const std::size_t ends = kind == SurfaceKind::bore ? 2 : 1;
   if (loops.empty() || loops.size() == ends) return;
   if (loops.size() < ends)
-    refuse(name, "the mesh has one open end, of " + loop_place(mesh, loops[0]) +
-                     ", but a bore has two, or none when it is a closed ring");
+    throw MeshFailure(name, MeshFault::open,
+                      "the mesh has one open end, of " + loop_place(mesh, loops[0]) +
+                          ", but a bore has two, or none when it is a closed ring");
   std::sort(loops.begin(), loops.end(), [&](const Loop& a, const Loop& b) {
     return loop_length(mesh, a) > loop_length(mesh, b);
   });
-  refuse(name, "the mesh has " + std::to_string(loops.size() - ends) +
-                   " hole(s) beside the open end(s), the largest of " +
-                   loop_place(mesh, loops[ends]));
+  throw MeshFailure(name, MeshFault::open,
+                    "the mesh has " + std::to_string(loops.size() - ends) +
+                        " hole(s) beside the open end(s), the largest of " +
+                        loop_place(mesh, loops[ends]));
 }
 
 double volume(const Triangles& mesh) {
@@ -254,7 +254,8 @@ Wall find_wall(const Triangles& mesh, const Neighbours& neighbours, const BoreOp
   std::vector<int> chosen = all;
   if (loops.empty() && kind == SurfaceKind::bore) {
     if (volume(mesh) < 0)
-      refuse(name, "the closed mesh is inside out: its normals point into the body; flip turns it");
+      throw MeshFailure(name, MeshFault::inside_out,
+                        "the closed mesh is inside out: its normals point into the body", turn_it);
     chosen.clear();
     double largest = 0;
     for (const auto& patch : patches(faces, neighbours)) {
@@ -268,39 +269,47 @@ Wall find_wall(const Triangles& mesh, const Neighbours& neighbours, const BoreOp
       largest = area;
     }
     if (chosen.empty())
-      refuse(name, "the closed mesh has no bore: no smooth wall surrounds an axis");
+      throw MeshFailure(name, MeshFault::no_bore,
+                        "the closed mesh has no bore: no smooth wall surrounds an axis");
   }
 
   Round round = fit(mesh, faces, chosen, kind);
   const double facing = inward(faces, chosen, round, kind);
   if (facing < 0)
-    refuse(name, "the mesh is inside out: its normals point away from " + towards +
-                     ", as that of face " + std::to_string(chosen[0]) + " at " +
-                     place(faces[chosen[0]].centre) + "; flip turns it");
+    throw MeshFailure(name, MeshFault::inside_out,
+                      "the mesh is inside out: its normals point away from " + towards +
+                          ", as that of face " + std::to_string(chosen[0]) + " at " +
+                          place(faces[chosen[0]].centre),
+                      turn_it);
   if (facing < 0.5 || (kind == SurfaceKind::bore && !surrounds(faces, chosen, round)))
-    refuse(name, "the mesh is no " + std::string(kind == SurfaceKind::bore
-                                                     ? "bore: its faces do not surround an axis"
-                                                     : "socket: its faces do not face a centre"));
+    throw MeshFailure(
+        name, MeshFault::no_bore,
+        "the mesh is no " + std::string(kind == SurfaceKind::bore
+                                            ? "bore: its faces do not surround an axis"
+                                            : "socket: its faces do not face a centre"));
   // Ends and chamfers go, then the axis is fitted to what remains.
   for (int pass = 0; pass < 2; ++pass) {
     std::vector<int> kept;
     for (const int f : chosen)
       if (faces[f].normal.dot(to_axis(round, faces[f].centre, kind).normalized()) > cosine_45)
         kept.push_back(f);
-    if (kept.size() < 3) refuse(name, "too few faces point to " + towards);
+    if (kept.size() < 3)
+      throw MeshFailure(name, MeshFault::no_bore, "too few faces point to " + towards);
     round = fit(mesh, faces, kept, kind);
     if (pass == 1 || kept.size() == chosen.size()) {
       chosen = kept;
       break;
     }
   }
-  if (!(round.radius >= options.smallest_radius && round.radius <= options.largest_radius))
-    refuse(name, "the mean radius is " + number(round.radius) + " m, allowed is " +
-                     number(options.smallest_radius) + " to " + number(options.largest_radius) +
-                     " m: " +
-                     (round.radius > options.largest_radius
-                          ? "are the coordinates in millimetres? Then scale by 0.001"
-                          : "is the scale right?"));
+  if (!(round.radius >= options.smallest_radius && round.radius <= options.largest_radius)) {
+    const bool is_large = round.radius > options.largest_radius;
+    throw MeshFailure(
+        name, is_large ? MeshFault::too_large : MeshFault::too_small,
+        "the mean radius is " + number(round.radius) + " m, allowed is " +
+            number(options.smallest_radius) + " to " + number(options.largest_radius) +
+            " m: " + (is_large ? "are the coordinates in millimetres?" : "is the scale right?"),
+        is_large ? "scale by 0.001" : "");
+  }
 
   Wall wall;
   std::sort(chosen.begin(), chosen.end());

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "elastic_loop_equations.hpp"
-#include "statejump/kernel/require.hpp"
+#include "statejump/failure.hpp"
 
 namespace statejump::joint_loop {
 
@@ -31,7 +31,7 @@ constexpr double limit_rounding = 1e-10;
 void require_law(bool holds, const char* field, const kernel::laws::LawInfo& info,
                  const char* allowed) {
   if (holds) return;
-  throw std::invalid_argument(std::string(field) + " = '" + info.name + "', allowed is " + allowed);
+  throw kernel::OutOfRange(field, info.name, allowed);
 }
 
 void validate_laws(const linkage::Linkage& model) {
@@ -46,13 +46,12 @@ void validate_laws(const linkage::Linkage& model) {
 }
 
 [[noreturn]] void fail(const Equilibrium& at) {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "no equilibrium found at temperature_change = %.9g K: residual %g of the joint "
-                "force, %g m in the "
-                "closure",
-                at.p.temperature_change, at.force_residual, at.closure_residual);
-  throw std::runtime_error(text);
+  FailureFields fields{FailureKind::not_converged};
+  fields.sought = "no equilibrium found";
+  fields.temperature_change = at.p.temperature_change;
+  fields.numbers = {{"force_residual", at.force_residual},
+                    {"closure_residual_m", at.closure_residual}};
+  throw Failure(std::move(fields));
 }
 
 Equilibrium start(const linkage::Linkage& model, const Equations& equations, double contact_angle) {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "statejump/kernel/require.hpp"
+#include "statejump/failure.hpp"
 
 namespace statejump::joint_loop {
 
@@ -136,8 +136,11 @@ int loaded_side(const linkage::Linkage& model, double contact_angle) {
       side = candidate;
     }
   }
-  require(side != 0, "torsion_free_angle", model.free_angle(),
-          "far enough from the ideal flare angle to load the joint at the start [rad]");
+  if (side == 0) {
+    throw UnloadedJoint("", "torsion_free_angle", model.free_angle(),
+                        "far enough from the ideal flare angle to load the joint at the start "
+                        "[rad]");
+  }
   return side;
 }
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <klu.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "sparse_factor.hpp"
 
 namespace statejump::linear {
@@ -19,11 +23,40 @@ struct SparseFactor::Factors {
   Factors(const Factors&) = delete;
   Factors& operator=(const Factors&) = delete;
 
+  /// Whether every pivot is more than rounding of its column, within its diagonal block.
+  bool has_pivots(const Eigen::SparseMatrix<double>& matrix) {
+    // KLU divides every row by its largest entry.
+    row_size.setZero(size);
+    for (int j = 0; j < size; ++j) {
+      for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it) {
+        row_size[it.row()] = std::max(row_size[it.row()], std::abs(it.value()));
+      }
+    }
+    pivot_of_row.resize(static_cast<std::size_t>(size));
+    for (int k = 0; k < size; ++k) {
+      pivot_of_row[static_cast<std::size_t>(numeric->Pnum[k])] = k;
+    }
+    const double* pivots = static_cast<const double*>(numeric->Udiag);
+    for (int block = 0; block < symbolic->nblocks; ++block) {
+      for (int k = symbolic->R[block]; k < symbolic->R[block + 1]; ++k) {
+        double largest = 0.0;
+        for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, symbolic->Q[k]); it; ++it) {
+          if (pivot_of_row[static_cast<std::size_t>(it.row())] < symbolic->R[block]) continue;
+          largest = std::max(largest, std::abs(it.value()) / row_size[it.row()]);
+        }
+        if (!(std::abs(pivots[k]) > singular_pivot * largest)) return false;
+      }
+    }
+    return true;
+  }
+
   // KLU's C interface allocates and frees these itself.
   klu_common common{};
   klu_symbolic* symbolic = nullptr;
   klu_numeric* numeric = nullptr;
   int size = 0;
+  Eigen::VectorXd row_size;
+  std::vector<int> pivot_of_row;
 };
 
 SparseFactor::SparseFactor() : factors_(std::make_unique<Factors>()) {}
@@ -42,7 +75,7 @@ bool SparseFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
   }
   klu_free_numeric(&f.numeric, &f.common);
   f.numeric = klu_factor(columns, rows, values, f.symbolic, &f.common);
-  return f.numeric != nullptr && f.common.status == KLU_OK;
+  return f.numeric != nullptr && f.common.status == KLU_OK && f.has_pivots(matrix);
 }
 
 Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {

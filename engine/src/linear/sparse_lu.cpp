@@ -1,12 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Eigen/SparseLU>
+#include <algorithm>
+#include <cmath>
 
 #include "sparse_factor.hpp"
 
 namespace statejump::linear {
 
+namespace {
+
+/// Eigen's factors, whose pivots are inside.
+struct Lu : Eigen::SparseLU<Eigen::SparseMatrix<double>> {
+  /// Whether every pivot is more than rounding of its column.
+  bool has_pivots(const Eigen::SparseMatrix<double>& matrix) const {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+      double largest = 0.0;
+      for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it) {
+        largest = std::max(largest, std::abs(it.value()));
+      }
+      const Eigen::Index k = m_perm_c.indices()[j];
+      for (typename SCMatrix::InnerIterator it(m_Lstore, k); it; ++it) {
+        if (it.index() != k) continue;
+        if (!(std::abs(it.value()) > SparseFactor::singular_pivot * largest)) return false;
+        break;
+      }
+    }
+    return true;
+  }
+};
+
+}  // namespace
+
 struct SparseFactor::Factors {
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> lu;
+  Lu lu;
   bool ordered = false;
 };
 
@@ -17,7 +43,7 @@ bool SparseFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
   if (!factors_->ordered) factors_->lu.analyzePattern(matrix);
   factors_->ordered = true;
   factors_->lu.factorize(matrix);
-  return factors_->lu.info() == Eigen::Success;
+  return factors_->lu.info() == Eigen::Success && factors_->lu.has_pivots(matrix);
 }
 
 Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {

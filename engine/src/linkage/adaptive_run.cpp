@@ -70,7 +70,7 @@ class AdaptiveRun {
       try {
         stepper.do_step(system);
       } catch (const std::domain_error& error) {
-        throw std::domain_error(at_instant(error.what(), time_, course(time_).change));
+        throw failure(error, time_, course(time_).change);
       }
       ++run_.steps;
       const double begin = time_;
@@ -85,7 +85,7 @@ class AdaptiveRun {
       };
       Vector y = at(end);
       if (!std::isfinite(beyond(end, y))) {
-        throw std::domain_error(at_instant(not_finite, begin, course(begin).change));
+        throw failure(NotFinite(), begin, course(begin).change);
       }
       bool touches = beyond(end, y) > 0.0;
       const bool changes = touches != touching_;
@@ -168,9 +168,8 @@ Run simulate_adaptive(const Linkage& model, const thermal::Program& program, con
           "relative_tolerance", options.relative_tolerance, "[1e-14, 1e-3]");
   require(options.samples >= 0, "samples", options.samples, ">= 0");
   if (has_memory(model.law.friction)) {
-    throw std::invalid_argument(std::string("friction_law = '") +
-                                law_info(model.law.friction).name +
-                                "' remembers, the adaptive method takes one that does not");
+    throw kernel::OutOfRange("friction_law", law_info(model.law.friction).name,
+                             "a law without memory in the adaptive method");
   }
   return detail::AdaptiveRun(model, start, options.relative_tolerance)
       .integrate(program, options.samples);

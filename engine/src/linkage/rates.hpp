@@ -10,6 +10,7 @@
 #include <string>
 #include <variant>
 
+#include "statejump/failure.hpp"
 #include "statejump/kernel/elastic_pair.hpp"
 #include "statejump/linkage/run.hpp"
 #include "statejump/thermal/program.hpp"
@@ -84,7 +85,10 @@ struct Course {
   }
 };
 
-inline constexpr const char* not_finite = "the state is not finite, take more steps";
+/// The state ceased to be finite.
+struct NotFinite : std::domain_error {
+  NotFinite() : std::domain_error("the state is not finite") {}
+};
 
 struct Radii {
   double journal, bearing;
@@ -97,7 +101,7 @@ inline Radii radii_at(const Constants& k, double temperature_change) {
 
 inline kernel::laws::NormalState normal_state(const Constants& k, double depth,
                                               const Radii& radii) {
-  if (!std::isfinite(depth)) throw std::domain_error(not_finite);
+  if (!std::isfinite(depth)) throw NotFinite();
   return kernel::laws::evaluate(k.law.normal, depth,
                                 {radii.journal, radii.bearing, k.law.contact_length},
                                 {k.pair.effective_young_modulus});
@@ -359,7 +363,7 @@ Account account(const typename Kind::Vector& y, double remembered_friction_heat)
 }
 
 /// The message with the instant of a run appended.
-std::string at_instant(const std::string& what, double time, double temperature_change);
+Failure failure(const std::domain_error& error, double time, double temperature_change);
 
 /// Thermal work − dissipation − change of energy [J].
 double energy_residue(const Linkage& model, const Sample& begin, const Sample& end);

@@ -79,7 +79,7 @@ class FixedStepRun {
         }
       }
     } catch (const std::domain_error& error) {
-      throw std::domain_error(at_instant(error.what(), time_, heat_));
+      throw failure(error, time_, heat_);
     }
     if (run_.samples.back().time != time_) record();
     run_.energy_residue = energy_residue(model_, run_.samples.front(), run_.samples.back());
@@ -94,7 +94,7 @@ class FixedStepRun {
     heat_ = last ? course.branch.end : course(time_).change;
     const double beyond = overlap<Kind>(k_, next, heat_);
     if (!std::isfinite(beyond)) {
-      throw std::domain_error(not_finite);
+      throw NotFinite();
     }
     const bool touches = beyond > 0.0;
     if (touches && !touching_) {
@@ -153,11 +153,13 @@ double stable_step(const Linkage& model) {
   return 2.78 / (faster * std::max(angular_frequency(k.ab), angular_frequency(k.bc)));
 }
 
-std::string at_instant(const std::string& what, double time, double temperature_change) {
-  char text[96];
-  std::snprintf(text, sizeof text, " at time = %.9g s, temperature_change = %.9g K", time,
-                temperature_change);
-  return what + text;
+Failure failure(const std::domain_error& error, double time, double temperature_change) {
+  const bool not_finite = dynamic_cast<const NotFinite*>(&error) != nullptr;
+  FailureFields fields{not_finite ? FailureKind::not_finite : FailureKind::law_left_range};
+  fields.time = time;
+  fields.temperature_change = temperature_change;
+  fields.cause = error.what();
+  return Failure(std::move(fields));
 }
 
 double energy_residue(const Linkage& model, const Sample& begin, const Sample& end) {

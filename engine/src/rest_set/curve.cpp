@@ -44,8 +44,9 @@ struct Implicit {
   double value(const Vector2d& p) const {
     const double result = gamma(p);
     if (!std::isfinite(result)) {
-      throw std::invalid_argument("gamma(" + std::to_string(p.x()) + ", " + std::to_string(p.y()) +
-                                  ") = " + std::to_string(result) + ", allowed is finite");
+      throw kernel::OutOfRange(
+          "", "gamma(" + std::to_string(p.x()) + ", " + std::to_string(p.y()) + ")", result,
+          "finite");
     }
     return result;
   }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "newton.hpp"
 #include "parts.hpp"
@@ -24,8 +23,8 @@ constexpr int most_modes = 6;
 /// compliance is that of a hundredth of such a part, and rounding stays below the share above.
 constexpr double stiff_joint = 100.0;
 
-/// "node 'B' (x), node 'C' (y)": the nodes that move most in a mode.
-std::string movers(const System& system, const VectorXd& mode) {
+/// The nodes that move most in a mode.
+FailureMode movers(const System& system, const VectorXd& mode) {
   const Model& model = system.model();
   std::vector<std::pair<double, int>> nodes;
   for (int n = 0; n < static_cast<int>(model.nodes.size()); ++n) {
@@ -33,17 +32,15 @@ std::string movers(const System& system, const VectorXd& mode) {
   }
   std::stable_sort(nodes.begin(), nodes.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::ostringstream text;
+  FailureMode found;
   for (std::size_t k = 0; k < std::min<std::size_t>(3, nodes.size()); ++k) {
     if (nodes[k].first < 0.1 * nodes[0].first) break;
     const Vector3d moved = system.displacement(nodes[k].second, mode);
     Eigen::Index along = 0;
     moved.cwiseAbs().maxCoeff(&along);
-    text << (k == 0 ? "" : ", ") << "node '" << model.nodes[index(nodes[k].second)].name
-         << "' mostly along "
-         << "xyz"[along];
+    found.push_back({model.nodes[index(nodes[k].second)].name, "xyz"[along]});
   }
-  return text.str();
+  return found;
 }
 
 using Factors = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
@@ -83,34 +80,31 @@ Eigen::SparseMatrix<double> shifted_stiffness(const System& system, const Vector
   return shifted;
 }
 
-/// Those of the modes whose eigenvalues are in a range, in words; their number.
-std::pair<int, std::string> modes_between(const System& system, const Modes& modes, double smallest,
-                                          double largest) {
-  std::ostringstream text;
-  int count = 0;
+/// Those of the modes whose eigenvalues are in a range.
+FoundModes modes_between(const System& system, const Modes& modes, double smallest,
+                         double largest) {
+  FoundModes found;
   for (Eigen::Index j = 0; j < modes.eigenvalues.size(); ++j) {
     if (!(modes.eigenvalues[j] >= smallest && modes.eigenvalues[j] <= largest)) continue;
     VectorXd mode = VectorXd::Zero(system.unknowns());
     mode.head(modes.vectors.rows()) = modes.vectors.col(j);
-    text << (count++ == 0 ? "" : "; ") << movers(system, mode);
+    found.modes.push_back(movers(system, mode));
   }
-  return {count, text.str()};
+  found.count = static_cast<int>(found.modes.size());
+  found.more = found.count == most_modes;
+  return found;
 }
 
-/// "2 free modes: ...", "" without any; whether some direction has a negative stiffness.
-std::pair<std::string, bool> free_modes(const System& system, const VectorXd& z, double time,
-                                        const Statuses& statuses, JointModel joints) {
+/// The free modes; whether some direction has a negative stiffness.
+std::pair<FoundModes, bool> free_modes(const System& system, const VectorXd& z, double time,
+                                       const Statuses& statuses, JointModel joints) {
   const Eigen::SparseMatrix<double> shifted =
       shifted_stiffness(system, z, time, statuses, joints, 1.0, 0.05 * free_share);
   const Factors factors(shifted);
-  if (factors.info() != Eigen::Success) return {"", false};
+  if (factors.info() != Eigen::Success) return {FoundModes{}, false};
   const double least = free_share * system.stiffness_scale();
-  const auto [free, text] = modes_between(system, lowest_modes(shifted, factors), -least, least);
   const bool pushed = (factors.vectorD().array() < 0.0).any();
-  if (free == 0) return {"", pushed};
-  return {std::to_string(free) + (free == most_modes ? " or more" : "") + " free mode" +
-              (free == 1 ? "" : "s") + ": " + text,
-          pushed};
+  return {modes_between(system, lowest_modes(shifted, factors), -least, least), pushed};
 }
 
 /// The truss with parts that carry no force as drawn; slack cables stay slack.
@@ -129,30 +123,30 @@ Model without_stress(Model model) {
 
 }  // namespace
 
-std::string mechanism(const System& system, const VectorXd& z, double time,
-                      const Statuses& statuses, JointModel joints) {
-  if (system.displacements() == 0) return "";
-  const auto [text, pushed] = free_modes(system, z, time, statuses, joints);
-  if (!text.empty() || !pushed || !z.isZero()) return text;
+FoundModes mechanism(const System& system, const VectorXd& z, double time, const Statuses& statuses,
+                     JointModel joints) {
+  if (system.displacements() == 0) return {};
+  const auto [found, pushed] = free_modes(system, z, time, statuses, joints);
+  if (found || !pushed || !z.isZero()) return found;
   // Forces of the drawn shape may push a mechanism along its free mode; without them it is one.
   const Model slack = without_stress(system.model());
   return free_modes(System(slack), z, time, statuses, joints).first;
 }
 
-std::string buckling(const System& system, const VectorXd& z, double time) {
-  if (system.displacements() == 0) return "";
+FoundModes buckling(const System& system, const VectorXd& z, double time) {
+  if (system.displacements() == 0) return {};
   const Eigen::SparseMatrix<double> shifted = shifted_stiffness(
       system, z, time, system.all_stick(), JointModel::pins, stiff_joint, free_share);
   const Factors factors(shifted);
   // Sylvester: as many negative pivots as negative eigenvalues.
   const Eigen::Index unstable =
       factors.info() == Eigen::Success ? (factors.vectorD().array() < 0.0).count() : 0;
-  if (unstable == 0) return "";
+  if (unstable == 0) return {};
   const double lowest = -std::numeric_limits<double>::infinity();
-  const std::string text =
-      modes_between(system, lowest_modes(shifted, factors), lowest, 0.0).second;
-  return std::to_string(unstable) + " mode" + (unstable == 1 ? "" : "s") + " without resistance" +
-         (text.empty() ? "" : ": " + text);
+  FoundModes found = modes_between(system, lowest_modes(shifted, factors), lowest, 0.0);
+  found.count = static_cast<int>(unstable);
+  found.more = false;
+  return found;
 }
 
 }  // namespace statejump::truss::detail

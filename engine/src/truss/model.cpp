@@ -13,7 +13,7 @@ namespace {
 
 void check(bool holds, const std::string& item, const char* field, double value,
            const char* range) {
-  kernel::require(holds, (item + ": " + field).c_str(), value, range);
+  if (!holds) throw kernel::OutOfRange(item, field, value, range);
 }
 
 void check_index(int i, std::size_t count, const std::string& item, const char* field) {
@@ -46,8 +46,9 @@ void Model::validate() const {
   std::vector<Eigen::Vector2d> ranges;
   for (const auto& program : programs) {
     program.validate();
-    kernel::require(program.duration() == programs.front().duration(), "duration of a program",
-                    program.duration(), "that of the first program [s]");
+    const double first = programs.front().duration();
+    kernel::require(std::abs(program.duration() - first) <= same_time * first,
+                    "duration of a program", program.duration(), "that of the first program [s]");
     ranges.push_back(range_of(program));
   }
   for (const Node& node : nodes) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <string>
+#include <vector>
 
 #include "linear/sparse_factor.hpp"
+#include "statejump/failure.hpp"
 #include "system.hpp"
 
 namespace statejump::truss::detail {
@@ -38,14 +39,20 @@ class Newton {
   long factorizations_ = 0;
 };
 
-/// Sentence that names the free modes of the truss at z, or "" if it has none: its joints held as
-/// their statuses say.
-std::string mechanism(const System& system, const Eigen::VectorXd& z, double time,
-                      const Statuses& statuses, JointModel joints);
+/// Modes of a truss that nothing resists.
+struct FoundModes {
+  int count = 0;                   ///< May be more than are described; 0: none.
+  bool more = false;               ///< There may be more than `count`.
+  std::vector<FailureMode> modes;  ///< The nodes that move most.
+  explicit operator bool() const { return count > 0; }
+};
 
-/// Sentence that names the modes in which the equilibrium at z is unstable though every joint is
-/// held (so friction cannot help), or "". That a joint which slips or leaves its bearing makes the
-/// truss unstable is not seen.
-std::string buckling(const System& system, const Eigen::VectorXd& z, double time);
+/// Free modes of the truss at z, its joints held as their statuses say.
+FoundModes mechanism(const System& system, const Eigen::VectorXd& z, double time,
+                     const Statuses& statuses, JointModel joints);
+
+/// Modes in which the equilibrium at z is unstable though every joint is held (so friction cannot
+/// help). That a joint which slips or leaves its bearing makes the truss unstable is not seen.
+FoundModes buckling(const System& system, const Eigen::VectorXd& z, double time);
 
 }  // namespace statejump::truss::detail

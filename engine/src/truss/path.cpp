@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
-#include <stdexcept>
+#include <utility>
 
 #include "newton.hpp"
 #include "parts.hpp"
-#include "statejump/kernel/require.hpp"
+#include "statejump/failure.hpp"
 
 namespace statejump::truss {
 
+using detail::FoundModes;
 using detail::index;
 using detail::JointModel;
 using detail::Newton;
@@ -44,19 +44,31 @@ const char* to_string(JointStatus status) {
 
 namespace {
 
-/// "slider 'J3'" or "revolute 'B1'".
-std::string joint_name(const Model& model, int joint) {
+/// @param joint sliders before revolutes
+FailureJoint named(const Model& model, int joint) {
   const int sliders = static_cast<int>(model.sliders.size());
-  if (joint < sliders) return "slider '" + model.sliders[index(joint)].name + "'";
-  return "revolute '" + model.revolutes[index(joint - sliders)].name + "'";
+  if (joint < sliders) return {"slider", model.sliders[index(joint)].name};
+  return {"revolute", model.revolutes[index(joint - sliders)].name};
 }
 
-std::string at_temperature(const Model& model, double time) {
-  std::ostringstream text;
-  text.precision(9);
-  text << " at a temperature change of " << model.temperature_change(0, 1.0, time)
-       << " K (t = " << time << " s)";
-  return text.str();
+/// Fields of a failure at an instant.
+FailureFields failure_at(FailureKind kind, const Model& model, double time) {
+  FailureFields fields{kind};
+  fields.time = time;
+  fields.temperature_change = model.temperature_change(0, 1.0, time);
+  return fields;
+}
+
+[[noreturn]] void fail_modes(FailureFields fields, FoundModes found) {
+  fields.modes = std::move(found.modes);
+  fields.mode_count = found.count;
+  fields.more_modes = found.more;
+  throw Failure(std::move(fields));
+}
+
+[[noreturn]] void fail_joint(FailureFields fields, FailureJoint joint) {
+  fields.joints.push_back(std::move(joint));
+  throw Failure(std::move(fields));
 }
 
 /// Largest angle [rad] by which a contact may move around its bearing in one step; more within a
@@ -81,19 +93,17 @@ struct Walker {
   VectorXd slide_rate;
 
   [[noreturn]] void fail(const SolveReport& report, JointModel joints, double when,
-                         const std::string& doing) const {
-    const std::string modes = detail::mechanism(system, z, when, origin.statuses, joints);
-    if (!modes.empty()) {
-      throw std::runtime_error("the truss is a mechanism" + at_temperature(model, when) + ": " +
-                               modes);
+                         const char* sought) const {
+    if (FoundModes modes = detail::mechanism(system, z, when, origin.statuses, joints)) {
+      fail_modes(failure_at(FailureKind::mechanism, model, when), std::move(modes));
     }
     refuse_buckled(when);
-    throw std::runtime_error(
-        doing + at_temperature(model, when) +
-        (report.end == SolveEnd::singular ? ": the stiffness is singular" : ": not converged") +
-        (report.joint < 0
-             ? std::string(", after all joints had settled")
-             : ", while the status of " + joint_name(model, report.joint) + " still changed"));
+    const FailureKind kind =
+        report.end == SolveEnd::singular ? FailureKind::singular : FailureKind::not_converged;
+    FailureFields fields = failure_at(kind, model, when);
+    fields.sought = sought;
+    if (report.joint >= 0) fields.joints.push_back(named(model, report.joint));
+    throw Failure(std::move(fields));
   }
 
   void note(const SolveReport& report) {
@@ -115,9 +125,8 @@ struct Walker {
 void Walker::start() {
   origin.statuses = system.all_stick();
   z = VectorXd::Zero(system.unknowns());
-  const std::string modes = detail::mechanism(system, z, 0.0, origin.statuses, JointModel::pins);
-  if (!modes.empty()) {
-    throw std::runtime_error("the truss is a mechanism even with every joint held, " + modes);
+  if (FoundModes modes = detail::mechanism(system, z, 0.0, origin.statuses, JointModel::pins)) {
+    fail_modes(failure_at(FailureKind::held_mechanism, model, 0.0), std::move(modes));
   }
   const StepStart begin = system.step_start(z, origin.statuses);
   const SolveReport report =
@@ -132,10 +141,9 @@ void Walker::start() {
 
 /// Throws if the state is unstable whatever the joints do.
 void Walker::refuse_buckled(double when) const {
-  const std::string modes = detail::buckling(system, z, when);
-  if (modes.empty()) return;
-  throw std::runtime_error("the truss has buckled" + at_temperature(model, when) +
-                           ": with every joint held its equilibrium is unstable, " + modes);
+  if (FoundModes modes = detail::buckling(system, z, when)) {
+    fail_modes(failure_at(FailureKind::buckled, model, when), std::move(modes));
+  }
 }
 
 void Walker::open_clearances() {
@@ -143,10 +151,8 @@ void Walker::open_clearances() {
   const double rounding = 1e-14 * system.stiffness_scale() * system.size();
   for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
     if (!(system.revolute_force(i, z).norm() > rounding)) {
-      throw std::runtime_error(
-          "revolute '" + model.revolutes[index(i)].name +
-          "' carries no force at the start: statics does not determine its position in the play; "
-          "load it by a spring, a cable or a force");
+      fail_joint(failure_at(FailureKind::unloaded_joint, model, 0.0),
+                 {"revolute", model.revolutes[index(i)].name});
     }
   }
   // The journal touches where its pin force pushes; the clearances open little by little, each time
@@ -185,9 +191,8 @@ void Walker::open_clearances() {
   }
   for (std::size_t i = 0; i < model.revolutes.size(); ++i) {
     if (origin.statuses.revolutes[i] == JointStatus::open) {
-      throw std::runtime_error("revolute '" + model.revolutes[i].name +
-                               "' has no contact at the start: statics does not determine its "
-                               "position in the play");
+      fail_joint(failure_at(FailureKind::no_contact, model, 0.0),
+                 {"revolute", model.revolutes[i].name});
     }
     if (model.revolutes[i].friction_coefficient > 0.0) {
       origin.statuses.revolutes[i] = JointStatus::stick;
@@ -266,11 +271,13 @@ StepEnd Walker::step_to(double target, double tolerance) {
       return StepEnd::event_inside;
     }
   }
-  bool opened = false;
+  std::vector<FailureJoint> opened;
   for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
     const JointStatus before = origin.statuses.revolutes[index(i)];
     const JointStatus after = trial_statuses.revolutes[index(i)];
-    opened = opened || (before != JointStatus::open && after == JointStatus::open);
+    if (before != JointStatus::open && after == JointStatus::open) {
+      opened.push_back({"revolute", model.revolutes[index(i)].name});
+    }
     if (before == JointStatus::open || after == JointStatus::open) continue;
     const double turned = system.revolute_geometry(i, trial, target, begin, 1.0).turned;
     if (std::abs(turned) <= most_turned) continue;
@@ -278,17 +285,15 @@ StepEnd Walker::step_to(double target, double tolerance) {
       ++path.solves;
       return StepEnd::event_inside;
     }
-    throw std::runtime_error("revolute '" + model.revolutes[index(i)].name +
-                             "' jumps across its play" + at_temperature(model, target) +
-                             ": its contact force vanishes there and statics does not determine "
-                             "the way to the next equilibrium");
+    fail_joint(failure_at(FailureKind::jump_across_play, model, target),
+               {"revolute", model.revolutes[index(i)].name});
   }
-  if (opened) {
-    const std::string modes =
-        detail::mechanism(system, trial, target, trial_statuses, JointModel::friction);
-    if (!modes.empty()) {
-      throw std::runtime_error("the truss becomes a mechanism" + at_temperature(model, target) +
-                               ", where a revolute loses its contact: " + modes);
+  if (!opened.empty()) {
+    if (FoundModes modes =
+            detail::mechanism(system, trial, target, trial_statuses, JointModel::friction)) {
+      FailureFields fields = failure_at(FailureKind::opened_mechanism, model, target);
+      fields.joints = std::move(opened);
+      fail_modes(std::move(fields), std::move(modes));
     }
   }
   note(report);
@@ -307,13 +312,37 @@ StepEnd Walker::step_to(double target, double tolerance) {
   return StepEnd::done;
 }
 
-/// Corners of all programs.
+/// Corners of all programs [s]. Those closer than Model::same_time of the duration are one: 3 times
+/// 0.1 s are not 0.3 s to the last bit, nor 8 times 0.15 s 4 times 0.3 s.
 std::vector<double> corners(const Model& model) {
-  std::set<double> times{0.0};
-  for (const auto& program : model.programs) {
-    for (const auto& branch : thermal::monotone_branches(program)) times.insert(branch.end_time);
+  // The first program's own times go before those of others, so that its cycles end exactly; the
+  // very last is where every program has ended.
+  std::vector<double> own{0.0};
+  std::set<double> others;
+  for (std::size_t i = 0; i < model.programs.size(); ++i) {
+    for (const auto& branch : thermal::monotone_branches(model.programs[i])) {
+      if (i == 0) {
+        own.push_back(branch.end_time);
+      } else {
+        others.insert(branch.end_time);
+      }
+    }
   }
-  return {times.begin(), times.end()};
+  const double near = truss::Model::same_time * own.back();
+  std::vector<double> times = own;
+  for (const double time : others) {
+    const auto after = std::lower_bound(times.begin(), times.end(), time);
+    if (after == times.end()) {
+      if (time - times.back() > near) {
+        times.push_back(time);
+      } else {
+        times.back() = time;
+      }
+    } else if (*after - time > near && time - *std::prev(after) > near) {
+      times.insert(after, time);
+    }
+  }
+  return times;
 }
 
 }  // namespace
@@ -375,10 +404,10 @@ Path solve(const Model& model, const Options& options) {
             const Event& event = walker.path.events[counted];
             const int joint = event.joint + (event.is_revolute ? sliders : 0);
             if (++changes[index(joint)] <= most_changes) continue;
-            throw std::runtime_error(joint_name(model, joint) + " does not settle" +
-                                     at_temperature(model, walker.time) +
-                                     ": its status changed from " + to_string(event.before) +
-                                     " to " + to_string(event.after) + " again and again");
+            FailureFields fields = failure_at(FailureKind::unsettled_joint, model, walker.time);
+            fields.before = to_string(event.before);
+            fields.after = to_string(event.after);
+            fail_joint(std::move(fields), named(model, joint));
           }
         } else {
           stride = std::max(0.125 * (goal - walker.time), tolerance);

@@ -223,13 +223,17 @@ def write(report: Report, folder: Path) -> Path:
     return path
 
 
+# What the library's remedies are on the command line, by the kind of failure.
+REMEDIES = {"inside_out": "; --flip turns it", "too_large": " Then use --scale 0.001"}
+
+
 def load(file: Path, scale: float = 1.0, flip: bool = False) -> _engine.BoreMesh:
     """Read a bore; StatejumpError with one sentence when it is none."""
     try:
         return _engine.BoreMesh.read(str(file), scale=scale, flip=flip)
-    except (ValueError, RuntimeError) as error:
-        sentence = str(error).replace("; flip turns it", "; --flip turns it")
-        raise StatejumpError(sentence.replace("Then scale by 0.001", "Then use --scale 0.001")) from None
+    except _engine.EngineFailure as failure:
+        sentence = f"{failure.file}: {failure.cause}" if failure.file else str(failure)
+        raise StatejumpError(sentence + REMEDIES.get(failure.kind, "")) from None
 
 
 @click.command("bore")

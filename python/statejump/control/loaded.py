@@ -60,8 +60,8 @@ def loaded_jump(case: UmbrellaCase) -> LoadedJump:
     def path(compute: Callable[[], Any]) -> tuple[Any, Optional[float], bool]:
         try:
             loop = compute()
-        except (ValueError, RuntimeError) as problem:
-            unloaded = "to load the joint" in str(problem)
+        except _engine.EngineFailure as problem:
+            unloaded = problem.kind == "unloaded_joint"
             notes.append("too weak to load the joint at the start" if unloaded else str(problem))
             return None, None, False
         if loop.separated:

@@ -8,6 +8,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include "statejump/geometry/mesh_failure.hpp"
 #include "support.hpp"
 
 namespace statejump::geometry {
@@ -288,6 +289,44 @@ TEST_F(BoreFiles, Refusals) {
   EXPECT_EQ(sentence(file), file + ": the mesh has no faces");
   file = write("far.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
   EXPECT_NE(sentence(file).find(file + ": "), std::string::npos);
+}
+
+TEST(BoreChecks, RefusalsAreTyped) {
+  Triangles mesh = tube();
+  for (auto& face : mesh.faces) std::swap(face[1], face[2]);
+  try {
+    BoreMesh{mesh};
+    FAIL() << "accepted";
+  } catch (const MeshFailure& failure) {
+    EXPECT_EQ(failure.fault(), MeshFault::inside_out);
+    EXPECT_EQ(failure.file(), "mesh");
+    EXPECT_EQ(failure.remedy(), "flip turns it");
+    EXPECT_EQ(failure.cause().find("the mesh is inside out"), 0u);
+  }
+}
+
+TEST(BoreChecks, VertexWithManyNeighboursIsFittedToAllOfThem) {
+  // The bottom of a cup: 150 faces meet there. Its curvature is the cup's all around; fitted to 60
+  // of the neighbours it would be that of an arc.
+  BoreOptions socket;
+  socket.kind = SurfaceKind::socket;
+  constexpr double radius = 8e-3;
+  const BoreMesh cup(socket_triangles(radius, 1.4, 150, 12), socket);
+  const WallPoint bottom = cup.closest_point({0, 0, -0.99 * radius});
+  // Rings of 0.145 rad: a fit of fourth order leaves the fourth power of two rings, 7e-3, times
+  // the coefficient of the sphere's sixth power over that of its second, 1/8.
+  EXPECT_NEAR(std::abs(bottom.curvature_1) * radius, 1.0, 1e-3);
+  EXPECT_NEAR(std::abs(bottom.curvature_2) * radius, 1.0, 1e-3);
+  EXPECT_NEAR(bottom.curvature_1, bottom.curvature_2, 1e-6 / radius);
+}
+
+TEST(BoreChecks, VertexWithManyNeighboursBeyondCreasesIsFitted) {
+  // All neighbours of the bottom lie beyond a crease and are taken nevertheless, each of 150 from
+  // both of its faces: more than the 64 equations that fit on the stack.
+  BoreOptions socket;
+  socket.kind = SurfaceKind::socket;
+  const BoreMesh cup(socket_triangles(8e-3, 0.4, 150, 2), socket);
+  EXPECT_TRUE(std::isfinite(cup.largest_curvature()));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "linkage/umbrella.hpp"
+#include "statejump/failure.hpp"
 #include "statejump/linkage/run.hpp"
 
 namespace statejump::joint_loop {
@@ -471,9 +472,16 @@ TEST(ElasticLoop, RefusesWhatItCannotAnswer) {
   try {
     loaded_state(model);
     FAIL() << "accepted";
-  } catch (const std::runtime_error& error) {
-    const std::string text = error.what();
-    EXPECT_NE(text.find("temperature_change = 0 K: residual "), std::string::npos) << text;
+  } catch (const Failure& failure) {
+    const FailureFields& fields = failure.fields();
+    EXPECT_EQ(fields.kind, FailureKind::not_converged);
+    EXPECT_EQ(fields.temperature_change, 0.0);
+    ASSERT_EQ(fields.numbers.size(), 2u);
+    EXPECT_EQ(fields.numbers[0].first, "force_residual");
+    EXPECT_EQ(fields.numbers[1].first, "closure_residual_m");
+    const std::string text = failure.what();
+    EXPECT_EQ(text.find("no equilibrium found at a temperature change of 0 K: residual "), 0u)
+        << text;
   }
 }
 

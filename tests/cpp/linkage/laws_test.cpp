@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "statejump/failure.hpp"
 #include "statejump/linkage/run.hpp"
 #include "umbrella.hpp"
 
@@ -97,11 +98,29 @@ TEST(LinkageLaws, DepthOutsideTheRangeStopsWithTheInstant) {
   try {
     simulate(model, heating(0.05), state, {100000, 0});
     FAIL() << "no error";
-  } catch (const std::domain_error& error) {
-    const std::string text = error.what();
-    EXPECT_NE(text.find("johnson: penetration_depth = "), std::string::npos) << text;
-    EXPECT_NE(text.find("time = "), std::string::npos) << text;
-    EXPECT_NE(text.find("temperature_change = "), std::string::npos) << text;
+  } catch (const Failure& failure) {
+    const FailureFields& fields = failure.fields();
+    EXPECT_EQ(fields.kind, FailureKind::law_left_range);
+    EXPECT_EQ(fields.cause.find("johnson: penetration_depth = "), 0u) << fields.cause;
+    ASSERT_TRUE(fields.time && fields.temperature_change);
+    EXPECT_GT(*fields.time, 0.0);
+    // A triangle of 100 K within 0.05 s.
+    EXPECT_NEAR(*fields.temperature_change, *fields.time / 0.025 * 100.0, 1e-9);
+    const std::string text = failure.what();
+    EXPECT_NE(text.find(fields.cause + " at a temperature change of "), std::string::npos) << text;
+  }
+}
+
+TEST(LinkageLaws, StateThatCeasesToBeFiniteStopsWithTheInstant) {
+  const Linkage model = with_laws({"hertz_internal", "none", "none", "material"});
+  State state = initial_state(model, Start::rest, 0.0);
+  state.journal_velocity = {1e300, 0.0};
+  try {
+    simulate(model, heating(0.05), state, {100000, 0});
+    FAIL() << "no error";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.fields().kind, FailureKind::not_finite);
+    EXPECT_EQ(remedy(failure.fields()), "take more steps");
   }
 }
 

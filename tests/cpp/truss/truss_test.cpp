@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "statejump/failure.hpp"
 #include "statejump/kernel/mindlin.hpp"
 #include "statejump/truss/path.hpp"
 #include "truss/newton.hpp"
@@ -332,11 +333,90 @@ TEST(Truss, ItemsOutOfRangeAreNamed) {
   EXPECT_NE(message(model).find("clearance at the program's worst temperature"), std::string::npos);
 }
 
+FailureFields failure(const Model& model) {
+  try {
+    solve(model);
+  } catch (const Failure& failed) {
+    return failed.fields();
+  }
+  ADD_FAILURE() << "no failure";
+  return {};
+}
+
 TEST(Truss, MechanismIsNamed) {
   Model model = rib();
   model.nodes[0].freedoms = 2;
   model.springs.clear();
   EXPECT_NE(message(model).find("mechanism even with every joint held"), std::string::npos);
+  const FailureFields fields = failure(model);
+  EXPECT_EQ(fields.kind, FailureKind::held_mechanism);
+  EXPECT_EQ(static_cast<std::size_t>(fields.mode_count), fields.modes.size());
+  ASSERT_FALSE(fields.modes.empty());
+  EXPECT_EQ(fields.time, 0.0);
+}
+
+TEST(Truss, JointThatNothingLoadsIsNamed) {
+  Model model = rib();
+  model.nodes[2].load.setZero();
+  model.torsion_springs.clear();
+  model.springs.clear();
+  // Stress-free lengths as drawn: no pin force.
+  for (Link& link : model.links) {
+    link.stress_free_length = (model.nodes[static_cast<std::size_t>(link.second)].position -
+                               model.nodes[static_cast<std::size_t>(link.first)].position)
+                                  .norm();
+  }
+  const FailureFields fields = failure(model);
+  EXPECT_EQ(fields.kind, FailureKind::unloaded_joint);
+  ASSERT_EQ(fields.joints.size(), 1u);
+  EXPECT_EQ(fields.joints[0].kind, "revolute");
+  EXPECT_EQ(fields.joints[0].name, "joint");
+  EXPECT_EQ(sentence(fields),
+            "revolute 'joint' carries no force at the start: statics does not determine its "
+            "position in the play; load it by a spring, a cable or a force");
+}
+
+/// The bar with a second one beside it that follows another program.
+Model two_programs(double period, int cycles, double other_period, int other_cycles) {
+  Model model = bar();
+  model.nodes.push_back(node("C", 0, 1, 0));
+  model.nodes.push_back(node("D", 0.5, 1, 1));
+  model.links.push_back({"CD", 2, 3, 6.3e5, 0.5, 23.4e-6, 1, 1.0});
+  model.programs = {triangle(100.0), triangle(50.0)};
+  model.programs[0].period = period;
+  model.programs[0].cycles = cycles;
+  model.programs[1].period = other_period;
+  model.programs[1].cycles = other_cycles;
+  return model;
+}
+
+TEST(Truss, ProgramsNeedNotLastEquallyLongToTheLastBit) {
+  ASSERT_NE(3 * 0.1, 0.3);
+  for (const bool longer_first : {false, true}) {
+    const Path path =
+        solve(longer_first ? two_programs(0.1, 3, 0.3, 1) : two_programs(0.3, 1, 0.1, 3));
+    EXPECT_EQ(path.cycle_ends.size(), longer_first ? 4u : 2u);
+    // Both have ended: the free bar is as long as drawn, to the rounding of its force.
+    EXPECT_NEAR(path.states.back().displacement(0, 3), 0.0, 1e-16);
+    EXPECT_EQ(path.states.back().temperature_change, 0.0);
+  }
+  EXPECT_NE(message(two_programs(0.1, 3, 0.31, 1)).find("duration of a program = 0.31"),
+            std::string::npos);
+}
+
+TEST(Truss, CornersThatNearlyCoincideAreOne) {
+  // Eight cycles of 0.15 s turn 16 times; the ends of four of 0.3 s are among those, to rounding.
+  ASSERT_NE(3 * 0.3 + 0.15, 7 * 0.15);
+  for (const bool longer_first : {false, true}) {
+    const Model model =
+        longer_first ? two_programs(0.3, 4, 0.15, 8) : two_programs(0.15, 8, 0.3, 4);
+    Options options;
+    options.locate_events = false;
+    const Path path = solve(model, options);
+    EXPECT_EQ(path.states.size(), 1u + 16u * 50u);
+    EXPECT_EQ(path.cycle_ends.size(), longer_first ? 5u : 9u);
+    for (const State& end : path.cycle_ends) EXPECT_EQ(end.temperature_change, 0.0);
+  }
 }
 
 }  // namespace

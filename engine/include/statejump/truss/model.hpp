@@ -101,6 +101,11 @@ struct Model {
   std::vector<ClearanceRevolute> revolutes;
   std::vector<thermal::Program> programs;  ///< At least one; all of one duration.
 
+  /// Share of the duration below which two times are one [-]: programs of 3 x 0.1 s and 1 x 0.3 s
+  /// last equally long, and what is typed with ten digits is meant so. Such times differ by less
+  /// than the interval within which events are located by default.
+  static constexpr double same_time = 1e-9;
+
   /// Throws std::invalid_argument that names the item, its value and the range: indices, numbers
   /// out of range, links without length somewhere in their program, a revolute whose link does not
   /// end at its node.

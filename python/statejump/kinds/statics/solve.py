@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from statejump import _engine
-from statejump.core.errors import FailedRun
+from statejump.core.engine_failures import engine
 from statejump.core.tables import Shown
 from statejump.kinds.statics.case import LoadCase, StaticsCase
 from statejump.kinds.statics.mesh import can_mesh, read_mesh, vertex_normals
@@ -126,7 +126,7 @@ def solve(case: StaticsCase, friction_coefficient: float | None = None) -> Stati
         rule_of(attribute_of(StaticsCase, FRICTION)).check(FRICTION, mu)
     forces = [load.force_N for load in loads]
     curve = mesh = None
-    try:
+    with engine("the rest sets cannot be computed", file=case.origin.file, case=case.name):
         if joint.type == "slot":
             found = _engine.rest_in_slot(joint.clearance_m, forces, mu)
         elif joint.type == "journal":
@@ -148,9 +148,6 @@ def solve(case: StaticsCase, friction_coefficient: float | None = None) -> Stati
         pieces: dict[str, Any] = {}
         if mesh is not None:
             pieces = found if joint.type == "mesh" else _engine.rest_on_mesh(mesh, forces, mu)
-    except ValueError as reason:
-        raise FailedRun("the rest sets cannot be computed", cause=str(reason), file=case.origin.file,
-                        case=case.name) from None
     return Statics(case, mu, loads, found["each"], found["any"], found["all"], curve, mesh, pieces)
 
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from statejump import _engine
 from statejump.core import thermal
-from statejump.core.errors import FailedRun, Interrupted
+from statejump.core.engine_failures import EngineFailed
+from statejump.core.errors import Interrupted
 from statejump.core.progress import Tell
 from statejump.kinds.truss.case import TrussCase, TrussThermal
 from statejump.kinds.truss.contacts import solver_stiffness
@@ -108,7 +109,7 @@ def path(
             increments_per_branch=increments_per_branch, locate_events=locate_events,
             event_tolerance=event_tolerance, cycle_ends_only=cycle_ends_only, progress=progress,
         )
-    except (ValueError, RuntimeError) as failure:
+    except _engine.EngineFailure as failure:
         raise _failed(truss, failure, locate_events) from None
     names = {"slider": sliders.names, "revolute": truss.revolutes.names}
     events = tuple(
@@ -133,13 +134,11 @@ def whole_path(truss: ResolvedTruss, tell: Tell = lambda share: None, **options:
     return found
 
 
-def _failed(truss: ResolvedTruss, failure: Exception, locate_events: bool) -> FailedRun:
-    """Return what the engine's failure says, by the names of the truss."""
-    told = {key: getattr(failure, key, None) for key in ("kind", "joint", "nodes", "time_s", "temperature_change_K")}
-    remedy = None
-    if told.pop("kind") == "unsettled_joint" and locate_events:
-        remedy = "set reduced.locate_events to false, which takes such changes together"
-    return FailedRun(case=truss.name, cause=str(failure), remedy=remedy, **{**told, "nodes": told["nodes"] or ()})
+def _failed(truss: ResolvedTruss, failure: _engine.EngineFailure, locate_events: bool) -> EngineFailed:
+    """Return what the engine's failure says, and what helps where events are what does not settle."""
+    taken_together = failure.kind == "unsettled_joint" and locate_events
+    remedy = "set reduced.locate_events to false, which takes such changes together" if taken_together else None
+    return EngineFailed(failure, remedy=remedy, file=truss.name)
 
 
 def solve(case: TrussCase, tell: Tell = lambda share: None) -> TrussPath:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from statejump import _engine
-from statejump.core.errors import FailedRun
+from statejump.core.engine_failures import engine
 from statejump.core.progress import Tell
 from statejump.core.run import Columns, Run
 from statejump.kinds.umbrella import result
@@ -60,7 +60,7 @@ def integrate(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engine
     :param offset_m: see :func:`start_state`
     :raises FailedRun: a law left its range or the steps are too long; with time and temperature
     """
-    try:
+    with engine("the reduced run failed", case=case.name):
         model, program, start = linkage(case), case.thermal_program(), start_state(case, offset_m)
         cycles, samples = case.thermal.cycles, case.samples_per_cycle
         if case.reduced.method == "adaptive":
@@ -69,8 +69,6 @@ def integrate(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engine
             )
         steps = case.reduced.steps_per_cycle
         return _engine.simulate(model, program, start, steps * cycles, steps // samples)
-    except (ValueError, RuntimeError) as error:
-        raise FailedRun("the reduced run failed", case=case.name, cause=str(error)) from None
 
 
 def run(case: UmbrellaCase, tell: Tell = lambda share: None, offset_m: np.ndarray | None = None) -> Run:

@@ -30,13 +30,12 @@ inline const char* to_string(Shape shape) {
   return "unknown";
 }
 
-/// Shape of that name. Throws std::invalid_argument for any other text.
+/// Shape of that name. Throws kernel::OutOfRange for any other text.
 inline Shape shape_of(const std::string& name) {
   for (const Shape shape : {Shape::triangle, Shape::half_sine, Shape::sine, Shape::table}) {
     if (name == to_string(shape)) return shape;
   }
-  throw std::invalid_argument("shape = '" + name +
-                              "', allowed is one of triangle, half_sine, sine, table");
+  throw kernel::OutOfRange("shape", name, "one of triangle, half_sine, sine, table");
 }
 
 /// Temperature of a part over time, as its change from the stress-free reference temperature.
@@ -151,10 +150,16 @@ inline CyclePlace cycle_place(const Program& program, double t) {
 }
 
 /// Index i of the table piece with times[i] <= tau < times[i + 1]; the last piece beyond the end.
+/// A table has at least two times.
 inline std::size_t table_piece(const Program& program, double tau) {
   const auto& times = program.table_times;
-  const auto after = std::upper_bound(times.begin() + 1, times.end() - 1, tau);
-  return static_cast<std::size_t>(after - times.begin()) - 1;
+  const std::size_t last = times.size() - 2;
+  std::size_t i = 0;
+  for (std::size_t beyond = last + 1; beyond - i > 1;) {
+    const std::size_t middle = i + (beyond - i) / 2;
+    (tau < times[middle] ? beyond : i) = middle;
+  }
+  return i;
 }
 
 }  // namespace detail

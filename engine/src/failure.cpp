@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/failure.hpp"
+
+#include <cstdio>
+#include <sstream>
+
+namespace statejump {
+
+namespace {
+
+std::string text_of(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string number_named(const FailureFields& fields, const char* name) {
+  for (const auto& [key, value] : fields.numbers) {
+    if (key == name) return text_of("%g", value);
+  }
+  return "?";
+}
+
+/// " at a temperature change of 12.5 K (t = 0.25 s)"; "" where no instant is known.
+std::string at_instant(const FailureFields& fields) {
+  if (!fields.temperature_change) return "";
+  std::ostringstream text;
+  text.precision(9);
+  text << " at a temperature change of " << *fields.temperature_change << " K";
+  if (fields.time) text << " (t = " << *fields.time << " s)";
+  return text.str();
+}
+
+/// "node 'B' mostly along x, node 'C' mostly along y; node …": modes parted by semicolons.
+std::string movers(const std::vector<FailureMode>& modes) {
+  std::string text;
+  for (const FailureMode& mode : modes) {
+    if (!text.empty()) text += "; ";
+    for (std::size_t k = 0; k < mode.size(); ++k) {
+      text += (k == 0 ? "node '" : ", node '") + mode[k].node + "' mostly along " + mode[k].along;
+    }
+  }
+  return text;
+}
+
+std::string free_modes(const FailureFields& fields) {
+  return std::to_string(fields.mode_count) + (fields.more_modes ? " or more" : "") + " free mode" +
+         (fields.mode_count == 1 ? "" : "s") + ": " + movers(fields.modes);
+}
+
+std::string unstable_modes(const FailureFields& fields) {
+  const std::string described = movers(fields.modes);
+  return std::to_string(fields.mode_count) + " mode" + (fields.mode_count == 1 ? "" : "s") +
+         " without resistance" + (described.empty() ? "" : ": " + described);
+}
+
+std::string joint(const FailureFields& fields) {
+  if (fields.joints.empty()) return "a joint";
+  return fields.joints.front().kind + " '" + fields.joints.front().name + "'";
+}
+
+}  // namespace
+
+const char* to_string(FailureKind kind) {
+  switch (kind) {
+    case FailureKind::mechanism:
+      return "mechanism";
+    case FailureKind::held_mechanism:
+      return "held_mechanism";
+    case FailureKind::opened_mechanism:
+      return "opened_mechanism";
+    case FailureKind::buckled:
+      return "buckled";
+    case FailureKind::unloaded_joint:
+      return "unloaded_joint";
+    case FailureKind::no_contact:
+      return "no_contact";
+    case FailureKind::jump_across_play:
+      return "jump_across_play";
+    case FailureKind::singular:
+      return "singular";
+    case FailureKind::not_converged:
+      return "not_converged";
+    case FailureKind::unsettled_joint:
+      return "unsettled_joint";
+    case FailureKind::law_left_range:
+      return "law_left_range";
+    case FailureKind::not_finite:
+      return "not_finite";
+  }
+  return "unknown";
+}
+
+std::string cause(const FailureFields& fields) {
+  switch (fields.kind) {
+    case FailureKind::mechanism:
+    case FailureKind::held_mechanism:
+    case FailureKind::opened_mechanism:
+      return free_modes(fields);
+    case FailureKind::buckled:
+      return "with every joint held its equilibrium is unstable, " + unstable_modes(fields);
+    case FailureKind::unloaded_joint:
+    case FailureKind::no_contact:
+      return "statics does not determine its position in the play";
+    case FailureKind::jump_across_play:
+      return "its contact force vanishes there and statics does not determine the way to the next "
+             "equilibrium";
+    case FailureKind::singular:
+    case FailureKind::not_converged: {
+      if (!fields.numbers.empty()) {
+        return "residual " + number_named(fields, "force_residual") + " of the joint force, " +
+               number_named(fields, "closure_residual_m") + " m in the closure";
+      }
+      const char* how =
+          fields.kind == FailureKind::singular ? "the stiffness is singular" : "not converged";
+      return how + (fields.joints.empty()
+                        ? std::string(", after all joints had settled")
+                        : ", while the status of " + joint(fields) + " still changed");
+    }
+    case FailureKind::unsettled_joint:
+      return "its status changed from " + fields.before + " to " + fields.after +
+             " again and again";
+    case FailureKind::law_left_range:
+      return fields.cause;
+    case FailureKind::not_finite:
+      return "the state is not finite";
+  }
+  return "";
+}
+
+std::string remedy(const FailureFields& fields) {
+  switch (fields.kind) {
+    case FailureKind::unloaded_joint:
+      return "load it by a spring, a cable or a force";
+    case FailureKind::not_finite:
+      return "take more steps";
+    default:
+      return "";
+  }
+}
+
+std::string sentence(const FailureFields& fields) {
+  const std::string why = cause(fields);
+  const std::string where = at_instant(fields);
+  switch (fields.kind) {
+    case FailureKind::mechanism:
+      return "the truss is a mechanism" + where + ": " + why;
+    case FailureKind::held_mechanism:
+      return "the truss is a mechanism even with every joint held, " + why;
+    case FailureKind::opened_mechanism:
+      return "the truss becomes a mechanism" + where +
+             ", where a revolute loses its contact: " + why;
+    case FailureKind::buckled:
+      return "the truss has buckled" + where + ": " + why;
+    case FailureKind::unloaded_joint:
+      return joint(fields) + " carries no force at the start: " + why + "; " + remedy(fields);
+    case FailureKind::no_contact:
+      return joint(fields) + " has no contact at the start: " + why;
+    case FailureKind::jump_across_play:
+      return joint(fields) + " jumps across its play" + where + ": " + why;
+    case FailureKind::singular:
+    case FailureKind::not_converged:
+      return fields.sought + where + ": " + why;
+    case FailureKind::unsettled_joint:
+      return joint(fields) + " does not settle" + where + ": " + why;
+    case FailureKind::law_left_range:
+      return why + where;
+    case FailureKind::not_finite:
+      return why + ", " + remedy(fields) + where;
+  }
+  return "";
+}
+
+}  // namespace statejump

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Failures of the engine as those of the package: the same fields, and the engine's own sentence."""
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+from statejump import _engine
+from statejump.core.errors import FailedRun
+
+
+class EngineFailed(FailedRun):
+    """The engine gave no result: ``[WHERE: ][WHAT: ]SENTENCE[; REMEDY]``. Its sentence holds cause and own remedy.
+
+    :param failure: what the engine threw
+    :param what: which run it was, "" for none
+    :param remedy: what would help besides
+    """
+
+    def __init__(self, failure: _engine.EngineFailure, what: str = "", *, remedy: str | None = None, **more: Any) -> None:
+        super().__init__(
+            what, joint=failure.joint, nodes=failure.nodes, time_s=failure.time_s,
+            temperature_change_K=failure.temperature_change_K, cause=failure.cause or failure.message,
+            remedy=remedy or failure.remedy, **more,
+        )
+        self.reason = str(failure.kind)
+        self.sentence = str(failure.message) + (f"; {remedy}" if remedy else "")
+        self.numbers: Mapping[str, float] = dict(failure.numbers)
+
+    def __str__(self) -> str:
+        return ": ".join(part for part in (self._where(), self.item, self.what, self.sentence) if part)
+
+
+@contextmanager
+def engine(what: str = "", **more: Any) -> Iterator[None]:
+    """Inside of this a failure of the engine is raised as :class:`EngineFailed`; parameters as there."""
+    try:
+        yield
+    except _engine.EngineFailure as failure:
+        raise EngineFailed(failure, what, **more) from None

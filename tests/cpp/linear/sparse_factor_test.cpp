@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "linear/sparse_factor.hpp"
+
+#include <gtest/gtest.h>
+
+namespace statejump::linear {
+namespace {
+
+Eigen::SparseMatrix<double> sparse(const Eigen::MatrixXd& dense) {
+  return dense.sparseView();
+}
+
+TEST(SparseFactor, SolvesWhatItFactors) {
+  Eigen::Matrix3d dense;
+  dense << 0.0, 2.0, 1.0, 3.0, 0.0, 0.5, 1.0, 1.0, 0.0;
+  SparseFactor factor;
+  ASSERT_TRUE(factor.factorize(sparse(dense)));
+  const Eigen::Vector3d right(1.0, -2.0, 0.25);
+  // Condition number 4: rounding of a few ulps.
+  EXPECT_LT((dense * factor.solve(right) - right).norm(), 1e-14);
+}
+
+TEST(SparseFactor, NamesAMatrixThatIsSingularToRounding) {
+  // The third row is twice the second less the first. None of the entries is a binary fraction, so
+  // that elimination leaves 1e-17 instead of zero.
+  Eigen::Matrix3d dense;
+  dense << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9;
+  SparseFactor factor;
+  EXPECT_FALSE(factor.factorize(sparse(dense)));
+  // A chain of springs, one of them a sum of thirds, without a support.
+  const double k = 1.0 / 3.0;
+  dense << k, -k, 0.0, -k, k + 0.7, -0.7, 0.0, -0.7, 0.7;
+  SparseFactor chain;
+  EXPECT_FALSE(chain.factorize(sparse(dense)));
+}
+
+TEST(SparseFactor, TakesColumnsOfDifferentUnits) {
+  // Newtons and metres of a stiff part: the smallest pivot is 1e-18 of the largest.
+  Eigen::Matrix2d dense;
+  dense << 1e9, 1.0, 1.0, -1e-9;
+  SparseFactor factor;
+  ASSERT_TRUE(factor.factorize(sparse(dense)));
+  const Eigen::Vector2d right(1.0, 1e-9);
+  EXPECT_LT((dense * factor.solve(right) - right).norm(), 1e-15);
+  // Soft by 1e-12, as the softest mode of a long ring: rounding leaves four digits of it.
+  dense << 1.0, 1.0, 1.0, 1.0 + 1e-12;
+  SparseFactor soft;
+  EXPECT_TRUE(soft.factorize(sparse(dense)));
+}
+
+}  // namespace
+}  // namespace statejump::linear
