@@ -138,7 +138,7 @@ def _failed(truss: ResolvedTruss, failure: _engine.EngineFailure, locate_events:
     """Return what the engine's failure says, and what helps where events are what does not settle."""
     taken_together = failure.kind == "unsettled_joint" and locate_events
     remedy = "set reduced.locate_events to false, which takes such changes together" if taken_together else None
-    return EngineFailed(failure, remedy=remedy, file=truss.name)
+    return EngineFailed(failure, remedy=remedy, case=truss.name, place=truss.name)
 
 
 def solve(case: TrussCase, tell: Tell = lambda share: None) -> TrussPath:
