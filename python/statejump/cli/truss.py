@@ -5,29 +5,28 @@ from __future__ import annotations
 import inspect
 import re
 import shlex
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 import click
 
-from statejump.kinds.registry import parse_case
-from statejump.schema.fields import Thermal
-from statejump.kinds.truss.case import Revolute, TrussCase, TrussReduced
-from statejump.core.errors import StatejumpError
-from statejump.core.output import results_folder
-from statejump.schema.json_schema import head_line
-from statejump.cli.terminal import CASE, QUIET, RESULTS, load_kind, make_console
+from statejump.case import Case
+from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console
 from statejump.cli.truss_answers import answers_command
-from statejump.kinds.truss.generate.document import Document, write
-from statejump.kinds.truss.generate.planar import GENERATORS
+from statejump.core.errors import NotWritten, StatejumpError
+from statejump.core.output import results_folder
+from statejump.core.thermal import SHAPES
+from statejump.kinds.truss.case import Revolute, TrussReduced
+from statejump.kinds.truss.generate.document import write
+from statejump.schema.fields import fields_of, rule_of
+from statejump.truss import GENERATORS, LARGEST, LEAST
 
-LEAST = {"ring": 3}
-LARGEST = 1_000_000
 # Keys that take one of several names.
 _NAMES = {
-    "shape": [name for name in Thermal.__fields__["shape"].field_info.extra["names"] if name != "table"],
-    "contact": list(Revolute.__fields__["contact"].field_info.extra["names"]),
-    "sticking": list(TrussReduced.__fields__["sticking"].field_info.extra["names"]),
+    "shape": [name for name in SHAPES if name != "table"],
+    "contact": list(rule_of(fields_of(Revolute)["contact"]).names),
+    "sticking": list(rule_of(fields_of(TrussReduced)["sticking"]).names),
 }
 
 
@@ -46,48 +45,52 @@ def _shown(key: str) -> str:
     return "--" + re.sub(r"_(N_m_per_rad|N_per_m|N|K|m4|m|s|rad)$", "", key).replace("_", "-")
 
 
-def _summary(function: Callable[..., Document]) -> tuple[str, dict[str, str]]:
+def _summary(function: Callable[..., Case]) -> tuple[str, dict[str, str]]:
     """Return the docstring without its parameters, and those."""
     text = inspect.getdoc(function) or ""
     described = dict(re.findall(r"^:param (\w+): (.*)$", text, re.MULTILINE))
     return text.split(":param", 1)[0].strip(), described
 
 
-def _help(function: Callable[..., Document], kind: str) -> str:
+def _help(function: Callable[..., Case], kind: str) -> str:
     text, _ = _summary(function)
     blocks = ["\b\n" + block if block.startswith("    ") else block.replace("::", ":")
               for block in re.split(r"\n\n(?! )|\n\n(?=    )", text)]
-    return "\n\n".join([*blocks, f"\b\nExample:\n  statejump truss {kind} {max(LEAST.get(kind, 1), 6)} -o {kind}.toml"])
+    return "\n\n".join([*blocks, f"\b\nExample:\n  statejump truss {kind} {max(LEAST[kind], 6)} -o {kind}.toml"])
 
 
-def _generator_command(kind: str, function: Callable[..., Document]) -> click.Command:
+def _generator_command(kind: str, function: Callable[..., Case]) -> click.Command:
     """Return the command that writes what a generator makes; its options are the function's keys."""
     keys = {key: parameter.default for key, parameter in inspect.signature(function).parameters.items()
             if key not in ("n", "name")}
     _, described = _summary(function)
 
     def make(n: int, output: Path, force: bool, quiet: bool, **values: Any) -> None:
+        from statejump.schema.json_schema import head_line
+
         console = make_console(quiet)
         if output.exists() and not force:
-            raise StatejumpError(f"{output}: exists already; --force overwrites it")
+            raise StatejumpError("exists already", file=output, remedy="--force overwrites it")
         if not output.parent.is_dir():
-            raise StatejumpError(f"{output}: cannot be written: there is no folder {output.parent}")
-        made = function(n, name=output.stem, **values)
-        case = parse_case(made, str(output))
+            raise NotWritten("cannot be written", file=output, cause=f"there is no folder {output.parent}")
+        try:
+            case = function(n, name=output.stem, **values)
+        except StatejumpError as refused:
+            raise refused.located(file=output) from None
         given = [
             _shown(key) + (f" {value}" if not isinstance(value, bool) else "") if value is not False
             else "--no-" + _shown(key)[2:]
             for key, value in values.items() if value != keys[key]
         ]
         line = " ".join(["statejump truss", kind, str(n), *given, "-o", shlex.quote(output.name)])
-        write(made, output, [head_line(case.kind, output), f"# Made by: {line}", "# Units are in the names."])
-        assert isinstance(case, TrussCase)
+        write(case.definition.origin.data, output,
+              [head_line(case.kind, output), f"# Made by: {line}", "# Units are in the names."])
         joints = len(case.slider) + len(case.revolute)
         console.print(f"{output}: nodes {len(case.node)}, links {len(case.link)}, joints {joints}")
 
     command = click.Command(kind, callback=make, help=_help(function, kind))
     command.params = [
-        click.Argument(["n"], metavar="N", type=click.IntRange(LEAST.get(kind, 1), LARGEST)),
+        click.Argument(["n"], metavar="N", type=click.IntRange(LEAST[kind], LARGEST)),
         click.Option(["-o", "--output", "output"], required=True, metavar="FILE", type=click.Path(path_type=Path),
                      help="Case file to write; its name is that of the case."),
         click.Option(["--force"], is_flag=True, help="Overwrite the file."),
@@ -118,12 +121,12 @@ def draw_command(case_file: Path, results: Path, quiet: bool) -> None:
     Example:
       statejump truss draw cases/trusses/ring_12.toml
     """
-    from statejump.kinds.truss import draw
+    from statejump.core.figures import save
 
     console = make_console(quiet)
-    case = load_kind(case_file, TrussCase)
+    case = loaded(case_file, "draw")
     folder = results_folder(results, case.name)
-    written = draw.figure(case, folder)
+    written = save(case.behaviour.ability("draw", case)(case), folder, f"{case.name}_truss")
     console.print(f"drawing: {', '.join(str(path) for path in written)}")
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from statejump.core.figures import Sheet
-    from statejump.kinds.truss.answers.study import Study
+    from statejump.kinds.truss.answers.study import TrussAnswers
 
 
 class Truss(Kind):
@@ -120,7 +120,7 @@ class Truss(Kind):
 
         return draw.draw(case, axes)
 
-    def answers(self, case: TrussCase, **settings: Any) -> Study:
+    def answers(self, case: TrussCase, **settings: Any) -> TrussAnswers:
         """Return what a designer asks of the truss; see :func:`statejump.truss.answers`."""
         from statejump.kinds.truss.answers import study
 

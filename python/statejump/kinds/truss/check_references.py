@@ -30,7 +30,7 @@ def check_references(case: TrussCase) -> None:
         if not case.reflector.nodes:
             raise NotAllowed("reflector.nodes", [], "must be one or more nodes")
         for name in case.reflector.nodes:
-            _known("reflector.nodes", ABSENT, name, nodes, "node", beside="as it is")
+            known_name("reflector.nodes", ABSENT, name, nodes, "node", beside="as it is")
 
 
 def listed(names: list[str]) -> str:
@@ -38,7 +38,7 @@ def listed(names: list[str]) -> str:
     return ", ".join(repr(name) for name in names[:MOST_LISTED]) + (", ..." if len(names) > MOST_LISTED else "")
 
 
-def _known(key: str, value: Any, name: str, known: Mapping[str, Any], what: str, **where: Any) -> None:
+def known_name(key: str, value: Any, name: str, known: Mapping[str, Any], what: str, **where: Any) -> None:
     """Raise NotAllowed for a name that is not known; its remedy is the nearest one."""
     if name in known:
         return
@@ -60,7 +60,7 @@ def _nodes(case: TrussCase, nodes: Mapping[str, Any]) -> None:
                 raise NotAllowed("nodes", item.nodes, f"must be {many}", **where)
             for name in item.nodes:
                 if name not in nodes:
-                    _known("nodes", item.nodes, name, nodes, "node", **where)
+                    known_name("nodes", item.nodes, name, nodes, "node", **where)
             if len(item.nodes) == 2 and item.nodes[0] == item.nodes[1]:
                 raise NotAllowed("nodes", item.nodes, "must be two different nodes", **where)
 
@@ -70,7 +70,7 @@ def _programs(case: TrussCase) -> None:
     for section in ("link", "revolute"):
         for item in getattr(case, section):
             if item.program is not None and item.program not in programs:
-                _known("program", item.program, item.program, programs, "program", item=f"{section} {item.name!r}",
+                known_name("program", item.program, item.program, programs, "program", item=f"{section} {item.name!r}",
                        joint=item.name if section == "revolute" else None)
 
 
@@ -92,7 +92,7 @@ def _revolute(revolute: Revolute, nodes: Mapping[str, Any], links: Mapping[str, 
     for part in ("bearing", "journal"):
         node_key, link_key = f"{part}_node", f"{part}_link"
         node, link = getattr(revolute, node_key), getattr(revolute, link_key)
-        _known(node_key, node, node, nodes, "node", **where)
+        known_name(node_key, node, node, nodes, "node", **where)
         if link is None:
             # Nothing at hand says how such a part turns.
             if not nodes[node].fixed and nodes[node].guide_normal is None:
@@ -101,7 +101,7 @@ def _revolute(revolute: Revolute, nodes: Mapping[str, Any], links: Mapping[str, 
                     "(fixed or guide_normal)", nodes=(node,), **where,
                 )
             continue
-        _known(link_key, link, link, links, "link", **where)
+        known_name(link_key, link, link, links, "link", **where)
         if node not in links[link].nodes:
             ends = " and ".join(repr(end) for end in links[link].nodes)
             raise NotAllowed(link_key, link, f"that link ends at {ends}, it must end at {node_key} = {node!r}", **where)
@@ -117,6 +117,6 @@ def _torsion_springs(case: TrussCase, links: Mapping[str, Any]) -> None:
         if not 1 <= len(spring.links) <= 2:
             raise NotAllowed("links", spring.links, "must be 2 links, or 1 against ground", **where)
         for name in spring.links:
-            _known("links", spring.links, name, links, "link", **where)
+            known_name("links", spring.links, name, links, "link", **where)
         if len(spring.links) == 2 and spring.links[0] == spring.links[1]:
             raise NotAllowed("links", spring.links, "must be two different links", **where)

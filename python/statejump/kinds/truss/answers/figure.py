@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from math import floor, log10
-from pathlib import Path
 from textwrap import fill
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
-from statejump.kinds.spring_slider import figure as plot
-from statejump.kinds.spring_slider.figure import plt
-from statejump.kinds.truss.answers.answers import Contributions, Output, node_jumps
+from statejump.core.figures import Drawing, panels, style
+from statejump.kinds.truss.answers.contributions import Contributions
+from statejump.kinds.truss.answers.jumps import node_jumps
+from statejump.kinds.truss.answers.outputs import Output
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
-JUMPS = plt.get_cmap("cividis_r")  # small light, large dark: reads in grey and for colour-blind eyes
+JUMPS = colormaps["cividis_r"]  # small light, large dark: reads in grey and for colour-blind eyes
 BLUE, ORANGE, DRAWN = "#0072B2", "#D55E00", "0.72"
 SHOWN = 0.12  # of the truss' size: how large the largest jump is drawn
 MARKED = 5  # joints
@@ -46,8 +51,8 @@ def joint_places(truss: ResolvedTruss) -> np.ndarray:
     return np.concatenate((truss.sliders.nodes[:, 0], truss.revolutes.bearing_node)).astype(int)
 
 
-def jumps_figure(found: TrussPath, shares: Optional[Contributions], title: str, folder: Path, name: str) -> list[Path]:
-    """Write the drawn truss and the truss with its jumps, magnified; the first MARKED joints have numbers."""
+def jumps_figure(found: TrussPath, shares: Contributions | None, title: str) -> Figure:
+    """Return the drawn truss and the truss with its jumps, magnified; the first MARKED joints have numbers."""
     truss = found.truss
     jump = node_jumps(found)[-1]
     size = np.linalg.norm(jump, axis=1)
@@ -55,19 +60,19 @@ def jumps_figure(found: TrussPath, shares: Optional[Contributions], title: str, 
     scale = magnification(truss, float(size.max()))
     drawn, moved = truss.nodes.position_m, truss.nodes.position_m + scale * jump
     lines = np.concatenate((truss.links.nodes, truss.springs.nodes))
-    colours = plt.cm.ScalarMappable(plt.Normalize(0, float(size.max()) * factor or 1.0), JUMPS)
+    colours = ScalarMappable(Normalize(0, float(size.max()) * factor or 1.0), JUMPS)
     flat = truss.dimension == 2
     axes = slice(0, truss.dimension)
     extent = np.ptp(np.concatenate((drawn, moved))[:, axes], axis=0)
-    with plt.rc_context(plot.STYLE):
+    with style():
         if flat:
             shape = np.maximum(extent, 0.25 * extent.max())
             wide, tall = shape * min(7.0 / shape[0], 6.0 / shape[1])
-            drawing = plt.figure(figsize=(wide + 3.0, tall + 1.7), constrained_layout=True)
+            drawing = Drawing(figsize=(wide + 3.0, tall + 1.7), layout="constrained")
             panel = drawing.add_subplot()
             collection: Any = LineCollection
         else:
-            drawing = plt.figure(figsize=(8.0, 6.6))
+            drawing = Drawing(figsize=(8.0, 6.6))
             panel = drawing.add_axes((0.0, 0.02, 0.86, 0.86), projection="3d", computed_zorder=False)
             collection = Line3DCollection
         add = panel.add_collection if flat else panel.add_collection3d
@@ -101,10 +106,10 @@ def jumps_figure(found: TrussPath, shares: Optional[Contributions], title: str, 
             text += "; numbers: rank of a joint"
         wrapped = fill(text, int(13 * drawing.get_figwidth()))
         drawing.suptitle(f"{title}\n{wrapped}", fontsize=10)
-        return plot.save(drawing, folder, name)
+        return drawing
 
 
-def _mark(panel: plt.Axes, truss: ResolvedTruss, shares: Contributions, places: np.ndarray) -> None:
+def _mark(panel: Axes, truss: ResolvedTruss, shares: Contributions, places: np.ndarray) -> None:
     """Numbers at the joints that contribute most, outwards of the truss."""
     nodes, middle = joint_places(truss), places.mean(axis=0)
     extent = np.ptp(places, axis=0).max()
@@ -125,8 +130,8 @@ def _mark(panel: plt.Axes, truss: ResolvedTruss, shares: Contributions, places: 
             panel.text(*(place + 0.07 * extent * away), str(rank), **style)
 
 
-def ranking_figure(shares: Contributions, output: Output, title: str, folder: Path, name: str) -> list[Path]:
-    """Write the bars of the largest contributions and of all others together, their sum, the jump."""
+def ranking_figure(shares: Contributions, output: Output, title: str) -> Figure:
+    """Return the bars of the largest contributions and of all others together, their sum, the jump."""
     factor, unit = readable(shares.jump, output.unit)
     order = shares.order[np.abs(shares.contribution[shares.order]) > 0]
     shown, rest = order[:MOST_BARS], order[MOST_BARS:]
@@ -135,8 +140,8 @@ def ranking_figure(shares: Contributions, output: Output, title: str, folder: Pa
     if len(rest):
         labels.append(f"{len(rest)} others")
         values.append(shares.contribution[rest].sum())
-    with plt.rc_context(plot.STYLE):
-        drawing, panel = plt.subplots(figsize=(7.4, 1.6 + 0.27 * len(labels)), constrained_layout=True)
+    with style():
+        drawing, panel = panels(1, 1, (7.4, 1.6 + 0.27 * len(labels)))
         bars = np.array(values) * factor
         panel.barh(np.arange(len(bars)), bars, color=np.where(bars * np.sign(shares.jump) >= 0, BLUE, ORANGE), zorder=2)
         panel.set_yticks(np.arange(len(bars)), labels)
@@ -152,4 +157,4 @@ def ranking_figure(shares: Contributions, output: Output, title: str, folder: Pa
         panel.set_title(f"{output.text}: jump {shares.jump * factor:.5g} {unit}, "
                         f"sum of joints {shares.contribution.sum() * factor:.5g} {unit}", fontsize=8)
         drawing.suptitle(f"{title}: joints that hold the jump", fontsize=10)
-        return plot.save(drawing, folder, name)
+        return drawing

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from statejump.core.errors import NotAllowed, UnknownKey
+from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.answers import reflector
 from statejump.kinds.truss.answers.jumps import most_moved, node_jumps
+from statejump.kinds.truss.check_references import known_name
 from statejump.kinds.truss.solve import TrussPath
-from statejump.schema.rules import suggestion
 
 
 @dataclass(frozen=True)
@@ -32,11 +32,11 @@ class Output:
 def node_output(found: TrussPath, name: str | None = None) -> Output:
     """Return the displacement [m] of a node along its jump; the most moved node without a name.
 
-    :raises UnknownKey: there is no such node
+    :raises NotAllowed: there is no such node
     """
     names = found.truss.nodes.names
-    if name is not None and name not in names:
-        raise UnknownKey("output", value=f"node:{name}", case=found.truss.name, nodes=(name,), **suggestion(name, names))
+    if name is not None:
+        known_name("output", f"node:{name}", name, dict.fromkeys(names), "node", case=found.truss.name)
     index = most_moved(found) if name is None else names.index(name)
     jump = node_jumps(found)[-1, index]
     size = float(np.linalg.norm(jump))

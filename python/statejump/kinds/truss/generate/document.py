@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Iterable, Sequence
+from typing import Any
 
 import tomli_w
 
@@ -57,7 +58,7 @@ def node(name: str, position_m: Sequence[float], fixed: str = "", **more: Any) -
     return made | more
 
 
-def to_toml(made: Document) -> str:
+def to_toml(made: Mapping[str, Any]) -> str:
     """Return a document as TOML, short lists on one line."""
     text = tomli_w.dumps(made)
     # The writer puts every item of a list on a line of its own; texts have no line ends.
@@ -70,7 +71,7 @@ def _on_one_line(match: re.Match[str]) -> str:
     return line if len(line) <= 100 else match[0]
 
 
-def write(made: Document, path: Path, header: Sequence[str]) -> None:
+def write(made: Mapping[str, Any], path: Path, header: Sequence[str]) -> None:
     """Write a document to a file.
 
     :param header: comment lines at its head

@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Generators of trusses: functions that return the TOML document of a case as a dict.
+"""Generators of trusses: functions that return the TOML document of a case as a dict: chain, Iwan model, umbrella.
 
-Every generator takes the number of bays, ribs or blocks first, then keys with defaults; the commands of
-``statejump truss`` are made of these signatures and their ``:param`` lines.
+Every generator takes the number of bays, ribs or blocks first, then keys with defaults; the functions of
+:mod:`statejump.truss` and the commands of ``statejump truss`` are made of these signatures and their ``:param`` lines.
 """
 from __future__ import annotations
 
 from math import cos, pi, sin, sqrt
-from typing import Any, Callable
+from typing import Any
 
-from statejump.core.errors import StatejumpError
+from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.generate.document import (
     TABLE1_BAR, TABLE1_LENGTH_M, Document, document, finished, node, tidy,
 )
-from statejump.kinds.truss.generate.lattices import mast, ring
 
 PAPER = "Chen, Li, Tang, Wang, Mech. Sci. 12, 59-67, 2021"
 FRICTION_COEFFICIENT = 0.3  # Table 1
@@ -138,10 +137,10 @@ def umbrella(
     :param shape: temperature program
     :param cycles: number of cycles
     :param period_s: duration of a cycle [s]
-    :raises StatejumpError: cables on a single rib
+    :raises NotAllowed: cables on a single rib
     """
     if cable_preload_N and n == 1:
-        raise StatejumpError(f"cable_preload_N = {cable_preload_N!r} is not allowed: a single rib has no neighbour")
+        raise NotAllowed("cable_preload_N", cable_preload_N, "a single rib has no neighbour")
     made = document(
         name or f"umbrella_{n}", f"Umbrella antenna, {n} ribs" if n > 1 else "Umbrella rib as a truss",
         f"{PAPER}, Tables 2 and 3, section 4", 2 if n == 1 else 3, temperature_change_K, shape, cycles, period_s,
@@ -187,8 +186,3 @@ def umbrella(
     if n >= 3:
         made["reflector"] = {"nodes": [f"B{k}" for k in range(1, n + 1)], "axis": [1.0, 0.0, 0.0]}
     return finished(made)
-
-
-GENERATORS: dict[str, Callable[..., Document]] = {
-    function.__name__: function for function in (chain, iwan, umbrella, ring, mast)
-}

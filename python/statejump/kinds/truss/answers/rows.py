@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rows of the tables of a truss' answers, as CSV, JSON and result files have them."""
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from statejump.kinds.truss.answers import reflector
+from statejump.kinds.truss.answers.contributions import Contributions
+from statejump.kinds.truss.answers.jumps import Verdict, node_jumps
+from statejump.kinds.truss.answers.sensitivity import Sensitivity
+from statejump.kinds.truss.solve import TrussPath
+
+Row = dict[str, Any]
+
+
+def cycle_rows(checked: Verdict) -> list[Row]:
+    """Return what happens over each cycle."""
+    return [
+        {"cycle": cycle, "largest_jump_m": float(jump), "dissipation_J": float(heat)}
+        for cycle, (jump, heat) in enumerate(zip(checked.cycle_jump_m, checked.dissipation_J), start=1)
+    ]
+
+
+def node_rows(found: TrussPath) -> list[Row]:
+    """Return the jump of every node after each cycle."""
+    return [
+        {"node": name, "cycle": cycle, **{f"jump_{axis}_m": float(value) for axis, value in zip("xyz", jump)},
+         "jump_m": float(np.linalg.norm(jump))}
+        for cycle, jumps in enumerate(node_jumps(found), start=1)
+        for name, jump in zip(found.truss.nodes.names, jumps)
+    ]
+
+
+def joint_rows(found: TrussPath) -> list[Row]:
+    """Return slide or eccentricity, its jump and the heat of every joint after each cycle."""
+    ends, truss = found.cycle_ends, found.truss
+    rows = []
+    for cycle in range(1, len(ends["time_s"])):
+        for kind, names, place, heat in (
+            ("slider", truss.sliders.names, ends["slide_m"][..., None] * truss.sliders.axis,
+             ends["slider_dissipation_J"]),
+            ("revolute", truss.revolutes.names, ends["eccentricity_m"], ends["revolute_dissipation_J"]),
+        ):
+            for index, name in enumerate(names):
+                jump = place[cycle, index] - place[0, index]
+                rows.append({
+                    "joint": name, "kind": kind, "cycle": cycle,
+                    **{f"jump_{axis}_m": float(value) for axis, value in zip("xyz", jump)},
+                    "jump_m": float(np.linalg.norm(jump)),
+                    "dissipation_of_cycle_J": float(heat[cycle, index] - heat[cycle - 1, index]),
+                    "dissipation_J": float(heat[cycle, index]),
+                })
+    return rows
+
+
+def surface_rows(found: TrussPath, surface: reflector.Surface) -> list[Row]:
+    """Return the best fit at the start, at the hottest point and after every cycle."""
+    states, ends = found.states, found.cycle_ends
+    hottest = int(np.argmax(states["temperature_change_K"]))
+    asked = [("start", 0.0, ends["displacement_m"][0]),
+             ("hottest", float(states["temperature_change_K"][hottest]), states["displacement_m"][hottest])]
+    asked += [(f"after cycle {cycle}", float(ends["temperature_change_K"][cycle]), ends["displacement_m"][cycle])
+              for cycle in range(1, len(ends["time_s"]))]
+    start = surface.fit(ends["displacement_m"][0])
+    rows = []
+    for when, change, moved in asked:
+        fit = surface.fit(moved)
+        shift = None if fit.focal_length_m is None or start.focal_length_m is None else (
+            fit.focal_length_m - start.focal_length_m)
+        rows.append({
+            "state": when, "temperature_change_K": change, "rms_error_m": fit.rms_error_m,
+            "rms_of_change_m": float(np.sqrt(np.mean((fit.residual_m - start.residual_m) ** 2))),
+            "tilt_change_rad": float(np.linalg.norm(fit.tilt_rad - start.tilt_rad)),
+            "focal_length_m": fit.focal_length_m, "focal_shift_m": shift,
+            "depth_change_m": fit.depth_m - start.depth_m,
+        })
+    return rows
+
+
+def contribution_rows(shares: Contributions) -> list[Row]:
+    """Return the joints by rank."""
+    return [
+        {"rank": rank, "joint": shares.names[joint], "kind": shares.kinds[joint],
+         "contribution": float(shares.contribution[joint]), "share": float(shares.contribution[joint] / shares.jump)}
+        for rank, joint in enumerate(shares.order, start=1)
+    ]
+
+
+def sensitivity_rows(found: Sequence[Sensitivity], jump: float) -> list[Row]:
+    """Return the sensitivities; ``elasticity``: relative change of the jump per relative change."""
+    return [
+        {"parameter": row.parameter, "items": row.items, "value": row.value,
+         "elasticity": _known(row.per_relative_change / jump), "elasticity_half_step": _known(row.half_step / jump),
+         "jump_change_per_unit": _known(row.per_unit), "verdict": row.verdict}
+        for row in found
+    ]
+
+
+def _known(value: float | None) -> float | None:
+    return None if value is None or math.isnan(value) else value

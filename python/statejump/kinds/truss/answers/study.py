@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All that a designer asks of a truss, computed together: jumps, verdict, ranking of joints, surface, sensitivities."""
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from statejump.core.errors import ABSENT, FailedRun, NotAllowed, Range, StatejumpError
+from statejump.core.progress import Tell
+from statejump.core.run import Run
+from statejump.core.units import plain
+from statejump.kinds.truss.answers import reflector, rows
+from statejump.kinds.truss.answers.contributions import Contributions, contributions
+from statejump.kinds.truss.answers.jumps import Verdict, node_jumps, quick_path, resolution_m, verdict
+from statejump.kinds.truss.answers.outputs import Output, chosen_output
+from statejump.kinds.truss.answers.sensitivity import STEP, sensitivities
+from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.result import reduced_run
+from statejump.kinds.truss.solve import TrussPath
+from statejump.results.contents import Answers, Scalar
+from statejump.schema.rules import NUMBER, WHOLE, Rule
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.figure import Figure
+
+NO_JUMP = 1e-9  # of the largest jump of a node: what is smaller is rounding
+RESOLVED = 0.01  # of the jump: what twice the increments may change
+MOST_SAMPLES = 1000  # of the path in the result file; every cycle has at least its ends
+CYCLES = Rule(WHOLE, allowed=Range(1, 100_000), optional=True)
+STEPS = Rule(NUMBER, allowed=Range(1e-6, 0.2))
+
+# Called with what is done next; gives what takes the finished share of it.
+Phase = Callable[[str], AbstractContextManager[Tell]]
+
+
+def silent(label: str) -> AbstractContextManager[Tell]:
+    """Tell nobody."""
+    return nullcontext(lambda share: None)
+
+
+@dataclass(frozen=True)
+class TrussAnswers:
+    """What was found of a truss.
+
+    :param case: the case that was asked, with as many cycles as were run
+    :param record: jump, verdict, notes and tables, as the result file has them
+    :param run: the quasi-static path
+    :param output: what is traced to the joints
+    :param checked: whether jumps settle over the cycles
+    :param shares: what the friction of each joint holds of the jump; None: there is no jump, or no equilibrium
+        without friction
+    """
+
+    case: TrussCase
+    record: Answers
+    run: Run
+    output: Output
+    checked: Verdict
+    shares: Contributions | None
+
+    @property
+    def path(self) -> TrussPath:
+        """The path as the solver found it, its ends of cycles included."""
+        found: TrussPath = self.run.native
+        return found
+
+    @property
+    def jump(self) -> float:
+        """Jump of the output over all cycles, in the unit of ``record.unit``."""
+        return self.record.summary["jump"].value
+
+    @property
+    def verdict(self) -> str:
+        """``no jump``, ``one cycle``, ``shakedown``, ``ratcheting`` or ``not settled``."""
+        return self.record.verdict
+
+    @property
+    def notes(self) -> list[str]:
+        """What limits the answers."""
+        return self.record.notes
+
+    @property
+    def tables(self) -> dict[str, list[dict[str, Any]]]:
+        """Rows by table: ``cycles``, ``node_jumps``, ``joint_jumps``, ``surface``, ``contributions``,
+        ``sensitivities``; those that were asked and found."""
+        return self.record.tables
+
+    def frame(self, table: str) -> pandas.DataFrame:
+        """Return a table, units in the names of its columns. :raises KeyError: there is none"""
+        import pandas
+
+        return pandas.DataFrame(self.tables[table])
+
+    def plot(self) -> Figure:
+        """Draw the truss with its jumps, magnified."""
+        from statejump.kinds.truss.answers.figure import jumps_figure
+
+        return jumps_figure(self.path, self.shares, self.case.title)
+
+    def plot_ranking(self) -> Figure:
+        """Draw the joints that hold the jump. :raises StatejumpError: no joints are ranked"""
+        from statejump.kinds.truss.answers.figure import ranking_figure
+
+        if self.shares is None:
+            raise StatejumpError("no joints are ranked", cause="; ".join(self.notes), case=self.case.name)
+        return ranking_figure(self.shares, self.output, self.case.title)
+
+    def write(self, folder: Path, frames: int = 0, phase: Phase = silent) -> list[Path]:
+        """Write result file, tables, figures and ``answers.md``, and return their paths.
+
+        :param folder: exists
+        :param frames: how many files for ParaView, evenly spread over the path; 0: none
+        """
+        from statejump.kinds.truss.answers import write
+
+        return write.write(self, folder, frames, phase)
+
+    def __repr__(self) -> str:
+        return f"TrussAnswers({self.case.name}, jump {plain(self.jump, self.record.unit)}, {self.verdict})"
+
+
+def study(
+    case: TrussCase, *, output: str = "node", cycles: int | None = None, each: bool = False, step: float = STEP,
+    sensitivity: bool = True, phase: Phase = silent,
+) -> TrussAnswers:
+    """Return what a designer asks of a truss.
+
+    :param output: what is traced to the joints: ``node`` (the most moved one), ``node:NAME``, ``rms`` or ``tilt`` of
+        the reflector
+    :param cycles: instead of the case's
+    :param each: sensitivities to every single item, not only to all of a kind together
+    :param step: of the sensitivities, relative
+    :param sensitivity: whether sensitivities are asked
+    :param phase: called with what is done next
+    :raises NotAllowed: there is no such output, or a number is out of its range
+    :raises FailedRun: the solver finds no path
+    :raises Interrupted: Ctrl-C
+    """
+    STEPS.check("step", step)
+    case = _of_cycles(case, cycles)
+    truss, increments = case.resolve(), case.reduced.increments_per_branch
+    with phase("path") as tell:
+        found = quick_path(truss, increments, tell)
+    asked = chosen_output(found, output)
+    finer = quick_path(truss, 2 * increments, cycle_ends_only=True)
+    checked = verdict(found, resolution_m(found, finer))
+    jump = asked.jump(found)
+    tables: dict[str, list[rows.Row]] = {
+        "cycles": rows.cycle_rows(checked), "node_jumps": rows.node_rows(found), "joint_jumps": rows.joint_rows(found),
+    }
+    notes = _surface(found, tables)
+    change = abs(asked.jump(finer) - jump)
+    if change > RESOLVED * abs(jump):
+        notes.append(f"the jump is not resolved: with twice the increments it changes by {change:.2g} {asked.unit}; "
+                     "more reduced.increments_per_branch are needed, or there is none")
+    shares = None
+    if not _jumps(found, asked, jump):
+        notes.append("the output does not jump: no joints are ranked, no sensitivities are asked")
+    else:
+        with phase("contributions of joints") as tell:
+            shares = _shares(found, asked, tell, tables, notes)
+        if sensitivity:
+            with phase("sensitivities") as tell:
+                asked_of = sensitivities(found, asked, each=each, step=step, tell=tell)
+            tables["sensitivities"] = rows.sensitivity_rows(asked_of, jump)
+            if any(row.verdict == "not differentiable" for row in asked_of):
+                notes.append("the jump has a kink here in some parameters, its slopes on both sides differ: see the "
+                             "verdicts of the sensitivities")
+    record = Answers(asked.name, asked.text, asked.unit, checked.word, checked.text, notes,
+                     _numbers(found, asked, jump, shares), tables)
+    return TrussAnswers(case, record, reduced_run(case, found, _sample_times(case)), asked, checked, shares)
+
+
+def _of_cycles(case: TrussCase, cycles: int | None) -> TrussCase:
+    CYCLES.check("cycles", cycles)
+    if cycles is None or cycles == case.thermal.cycles:
+        return case
+    for program in case.program:
+        if program.cycles is not None:
+            raise NotAllowed("cycles", ABSENT, f"program {program.name!r} of the case has cycles of its own")
+    changed = case.changed({"thermal.cycles": cycles})
+    assert isinstance(changed, TrussCase)
+    return changed
+
+
+def _surface(found: TrussPath, tables: dict[str, list[rows.Row]]) -> list[str]:
+    """Add the table of the reflecting surface; return what limits it."""
+    surface = reflector.surface(found.truss)
+    if surface is not None:
+        tables["surface"] = rows.surface_rows(found, surface)
+        return [f"reflecting surface: {note}" for note in surface.notes]
+    return [] if found.truss.reflector is None else ["reflecting surface: its nodes do not determine a fit"]
+
+
+def _jumps(found: TrussPath, output: Output, jump: float) -> bool:
+    """Whether an output jumps by more than rounding."""
+    largest = float(np.linalg.norm(node_jumps(found)[-1], axis=1).max())
+    size = float(np.ptp(found.truss.nodes.position_m, axis=0).max())
+    return abs(jump) > NO_JUMP * (largest / size if output.unit == "rad" else largest)
+
+
+def _shares(found: TrussPath, output: Output, tell: Tell, tables: dict[str, list[rows.Row]],
+            notes: list[str]) -> Contributions | None:
+    try:
+        shares = contributions(found, output, tell)
+    except FailedRun as failure:
+        notes.append(f"no contributions: the truss without friction: {failure.cause}")
+        return None
+    notes += shares.notes
+    tables["contributions"] = rows.contribution_rows(shares)
+    return shares
+
+
+def _numbers(found: TrussPath, output: Output, jump: float, shares: Contributions | None) -> dict[str, Scalar]:
+    numbers = {"jump": Scalar(jump, output.unit), "energy_residue_J": Scalar(found.energy_residue_J, "J")}
+    if shares is not None:
+        numbers["sum_of_contributions"] = Scalar(float(shares.contribution.sum()), output.unit)
+        numbers["sum_error_relative"] = Scalar(shares.sum_error)
+        numbers["jump_from_friction_forces"] = Scalar(shares.reproduced, output.unit)
+    return numbers
+
+
+def _sample_times(case: TrussCase) -> np.ndarray:
+    """Return times [s] of the path in the result file."""
+    cycles = case.thermal.cycles
+    samples = max(1, min(case.samples_per_cycle, MOST_SAMPLES // cycles))
+    return np.linspace(0, case.period_s * cycles, samples * cycles + 1)

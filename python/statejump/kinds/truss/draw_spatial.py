@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Drawing of a spatial truss."""
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.markers import MarkerStyle
+from mpl_toolkits.mplot3d import Axes3D
+from mpl_toolkits.mplot3d.art3d import Line3DCollection
+
+from statejump.core.figures import Drawing
+from statejump.kinds.truss.draw_symbols import (
+    CABLE, FRACTION, JOINT, LOAD, MOST_NAMED, SPIRAL, SPRING, SURFACE, TORSION, gap_m, legend, link_colours, names,
+    symbol_size, torsion_places,
+)
+from statejump.kinds.truss.resolved import ResolvedTruss
+
+
+def spatial(truss: ResolvedTruss) -> Figure:
+    """Return the drawing of a spatial truss as a new figure, its legend below."""
+    handles = legend(truss)
+    below_in = 0.3 + 0.22 * -(-len(handles) // 2)
+    drawing = Drawing(figsize=(7.4, 6.2 + below_in))
+    below = below_in / (6.2 + below_in)
+    axes = drawing.add_axes((0.02, below, 0.9, 0.9 - below), projection="3d", computed_zorder=False)
+    colours, colour_scale = link_colours(truss)
+    if colour_scale is not None:
+        drawing.colorbar(colour_scale, ax=axes, label=FRACTION, shrink=0.6, pad=0.1)
+    draw_spatial(truss, axes)
+    drawing.legend(handles=handles, loc="lower center", ncol=2, fontsize=8, framealpha=1)
+    return drawing
+
+
+def draw_spatial(truss: ResolvedTruss, axes: Axes3D) -> None:
+    """Draw a spatial truss into axes of projection ``3d``."""
+    positions = truss.nodes.position_m
+    low, high = positions.min(axis=0), positions.max(axis=0)
+    span = float((high - low).max())
+    # The picture is some 250 pt wide.
+    size = symbol_size(gap_m(truss) / span * 250.0)
+    _lines(axes, truss, size, span)
+    _points(axes, truss, size, span)
+    _name(axes, truss, (low + high) / 2, span)
+    shape = np.maximum((high - low) / span, 0.25)
+    for setter, centre, part in zip((axes.set_xlim, axes.set_ylim, axes.set_zlim), (low + high) / 2, shape):
+        setter(centre - 0.54 * span * part, centre + 0.54 * span * part)
+    axes.set_box_aspect(tuple(shape), zoom=1.1)
+    axes.view_init(elev=22, azim=-55)
+    axes.set_xlabel("x [m]", labelpad=8)
+    axes.set_ylabel("y [m]", labelpad=8)
+    axes.set_zlabel("z [m]", labelpad=8)
+
+
+def _lines(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> None:
+    """Links, springs, and the normals of guided nodes."""
+    nodes, positions, springs = truss.nodes, truss.nodes.position_m, truss.springs
+    colours, _ = link_colours(truss)
+    ends = positions[truss.links.nodes]
+    axes.add_collection3d(Line3DCollection(list(ends), colors=colours, linewidths=float(np.clip(size / 5, 0.8, 2.2)),
+                                            zorder=2))
+    for mask, colour, style in ((~springs.cable, SPRING, "-"), (springs.cable, CABLE, (0, (5, 2)))):
+        if mask.any():
+            axes.add_collection3d(Line3DCollection(list(positions[springs.nodes[mask]]), colors=colour, linewidths=1.0,
+                                                    linestyles=[style], zorder=1.5))
+    guided = nodes.guide_normal.any(axis=1)
+    if guided.any():
+        tick = 0.07 * span * nodes.guide_normal[guided]
+        axes.add_collection3d(Line3DCollection(
+            list(np.stack((positions[guided] - tick, positions[guided] + tick), axis=1)), colors="0.45", linewidths=1,
+            zorder=3))
+
+
+def _points(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> None:
+    """Supports, joints, nodes, torsion springs, loads and the nodes of the surface."""
+    nodes, positions = truss.nodes, truss.nodes.position_m
+    dots = dict(linestyle="none", markeredgewidth=max(0.4, size / 12))
+    held = nodes.fixed.any(axis=1)
+    axes.plot(*positions[held].T, marker="^", color="0.25", markerfacecolor="white", markersize=0.8 * size, zorder=4,
+               **dots)
+    bare = ~held
+    if len(truss.sliders.names):
+        carriers = truss.sliders.nodes[:, 0]
+        axes.plot(*positions[carriers].T, marker="s", color=JOINT, markerfacecolor="white", markersize=0.7 * size,
+                   zorder=4, **dots)
+        reach = 0.05 * span * truss.sliders.axis
+        axes.add_collection3d(Line3DCollection(
+            list(np.stack((positions[carriers] - reach, positions[carriers] + reach), axis=1)), colors=JOINT,
+            linewidths=1, zorder=3))
+        bare[carriers] = False
+    if len(truss.revolutes.names):
+        centres = positions[truss.revolutes.bearing_node].T
+        axes.plot(*centres, marker="o", color=JOINT, markerfacecolor="white", markersize=0.7 * size, zorder=5, **dots)
+        axes.plot(*centres, marker="o", color=JOINT, markersize=0.35 * size, zorder=6, linestyle="none",
+                   markeredgewidth=0)
+        bare[truss.revolutes.bearing_node] = bare[truss.revolutes.journal_node] = False
+    axes.plot(*positions[bare].T, "o", color="0.2", markersize=0.35 * size, zorder=4, linestyle="none")
+    if len(truss.torsion_springs.names):
+        axes.plot(*torsion_places(truss).T, marker=MarkerStyle(SPIRAL), color=TORSION, markerfacecolor="none",
+                   markersize=1.3 * size, zorder=4.5, **dots)
+    forces = np.linalg.norm(nodes.force_N, axis=1)
+    if forces.any():
+        arrows = 0.15 * span * nodes.force_N / forces.max()
+        loaded = forces > 0
+        axes.quiver(*(positions[loaded] - arrows[loaded]).T, *arrows[loaded].T, color=LOAD, linewidth=1.4, zorder=7)
+    if truss.reflector is not None:
+        axes.plot(*positions[truss.reflector.nodes].T, marker="D", color=SURFACE, markerfacecolor="none",
+                   markersize=1.1 * size, zorder=6, **dots)
+
+
+def _name(axes: Axes3D, truss: ResolvedTruss, middle: np.ndarray, span: float) -> None:
+    named = names(truss)
+    if len(named) <= MOST_NAMED:
+        for place, text, _ in named:
+            # Many ribs end at one place: one name stands for all.
+            short = text if text.count(",") < 2 else text.split(",")[0] + ", ..."
+            away = place - middle
+            away = away / max(float(np.linalg.norm(away)), 1e-12) * 0.06 * span
+            axes.text(*(place + away), short, fontsize=8, ha="center", va="center", zorder=8,
+                       bbox=dict(boxstyle="round,pad=0.1", facecolor="white", edgecolor="none", alpha=0.7))

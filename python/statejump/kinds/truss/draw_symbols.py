@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Symbols of drawn trusses, their sizes, and what the legend says of them."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import pi
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.lines import Line2D
+from matplotlib.markers import MarkerStyle
+from matplotlib.path import Path as Outline
+from scipy.spatial import cKDTree
+
+from statejump.kinds.truss.resolved import GROUND, ResolvedTruss
+
+COLOURS = colormaps["cividis_r"]  # cold light, hot dark: reads in grey and for colour-blind eyes
+LINK, SPRING, CABLE, LOAD, JOINT, TORSION, SURFACE = (
+    "#0072B2", "#009E73", "#D55E00", "#D55E00", "#000000", "#CC79A7", "#E69F00",
+)
+FRACTION = "Temperature fraction of a link [-]"
+MOST_NAMED = 24  # nodes; of more the names would cover the drawing
+
+
+def _outline(*strokes: Sequence[tuple[float, float]]) -> Outline:
+    vertices, codes = [], []
+    for stroke in strokes:
+        vertices += list(stroke)
+        codes += [Outline.MOVETO] + [Outline.LINETO] * (len(stroke) - 1)
+    return Outline(vertices, codes)
+
+
+# Symbols in units of their size, the node at (0, 0), the ground below.
+PIN = _outline([(0, 0), (-0.55, -0.8), (0.55, -0.8), (0, 0)], [(-0.9, -0.8), (0.9, -0.8)],
+               *[[(x, -0.8), (x - 0.2, -1.0)] for x in (-0.6, -0.2, 0.2, 0.6)])
+ROLLER = _outline([(0, 0), (-0.5, -0.7), (0.5, -0.7), (0, 0)], [(-0.9, -0.95), (0.9, -0.95)])
+BLOCK = _outline([(-0.75, -0.45), (0.75, -0.45), (0.75, 0.45), (-0.75, 0.45), (-0.75, -0.45)],
+                 [(-1.0, -0.55), (1.0, -0.55)], *[[(x, -0.55), (x - 0.2, -0.75)] for x in (-0.7, -0.3, 0.1, 0.5, 0.9)])
+STOPS = _outline([(-1.0, -0.55), (-1.0, 0.45)], [(1.0, -0.55), (1.0, 0.45)])
+SPIRAL = Outline([(0.28 * t * np.cos(5.2 * t), 0.28 * t * np.sin(5.2 * t)) for t in np.linspace(0.4, 3.6, 60)])
+
+
+def gap_m(truss: ResolvedTruss) -> float:
+    """Distance of neighbouring places [m]. A few that are nearer may touch: not all symbols shall be tiny."""
+    places = np.unique(np.round(truss.nodes.position_m, 9), axis=0)
+    return float(np.quantile(cKDTree(places).query(places, k=2)[0][:, 1], 0.1))
+
+
+def symbol_size(gap_pt: float) -> float:
+    """Size of symbols [pt] for places that far apart on the drawing [pt]."""
+    return float(np.clip(0.6 * gap_pt, 2.0, 13.0))
+
+
+def _spread(values: np.ndarray, scale: float, unit: str) -> str:
+    """Return one value or the range of several."""
+    low, high = values.min() * scale, values.max() * scale
+    return f"{low:.4g} {unit}" if high - low <= 1e-9 * abs(high) else f"{low:.3g} to {high:.3g} {unit}"
+
+
+def link_colours(truss: ResolvedTruss) -> tuple[Any, ScalarMappable | None]:
+    fraction = truss.links.temperature_fraction
+    if np.ptp(fraction) < 1e-9:
+        return LINK, None
+    scale = ScalarMappable(Normalize(min(0.0, fraction.min()), fraction.max()), COLOURS)
+    return scale.to_rgba(fraction), scale
+
+
+def legend(truss: ResolvedTruss) -> list[Line2D]:
+    """Return what each symbol means, with the numbers that the drawing cannot show."""
+
+    def entry(label: str, **style: Any) -> Line2D:
+        return Line2D([], [], **{"linestyle": "none", "markersize": 9, **style}, label=label)
+
+    sliders, revolutes, springs = truss.sliders, truss.revolutes, truss.springs
+    fraction = truss.links.temperature_fraction
+    uniform = np.ptp(fraction) < 1e-9
+    text = "link" if (fraction == 1).all() else f"link, {_spread(fraction, 1.0, 'of ΔT')}"
+    if not uniform:
+        text = "link, coloured by temperature fraction"
+    found = [entry(text, linestyle="-", linewidth=2, color=LINK if uniform else COLOURS(0.6))]
+    symbol: dict[str, Any] = dict(color="0.25", markerfacecolor="white")
+    if truss.dimension == 2:
+        if truss.nodes.fixed[:, :2].all(axis=1).any():
+            found.append(entry("fixed", marker=MarkerStyle(PIN), **symbol))
+        if guided(truss).any():
+            found.append(entry("held in one direction", marker=MarkerStyle(ROLLER), **symbol))
+    else:
+        found.append(entry("fixed", marker="^", **symbol))
+        if truss.nodes.guide_normal.any():
+            found.append(entry("stays in a plane, its normal", linestyle="-", linewidth=1, color="0.45"))
+    if len(sliders.names):
+        limit = sliders.friction_coefficient * sliders.normal_force_N
+        text = f"slider, friction {_spread(limit, 1.0, 'N')}"
+        stops = np.concatenate((sliders.clearance_minus_m, sliders.clearance_plus_m))
+        if np.isfinite(stops).any():
+            text += f", stops at {_spread(stops[np.isfinite(stops)], 1e3, 'mm')}"
+        found.append(entry(text, marker=MarkerStyle(BLOCK), color=JOINT, markerfacecolor="white"))
+    if len(revolutes.names):
+        found.append(entry(
+            f"clearance joint, c = {_spread(revolutes.radial_clearance_m, 1e3, 'mm')}, "
+            f"μ = {_spread(revolutes.friction_coefficient, 1.0, '').strip()}",
+            marker="o", color=JOINT, markerfacecolor="white", markeredgewidth=1.4))
+    for what, mask, style in (("spring", ~springs.cable, dict(color=SPRING, linestyle="-", linewidth=1)),
+                              ("cable", springs.cable, dict(color=CABLE, linestyle=(0, (5, 2)), linewidth=1))):
+        if mask.any():
+            found.append(entry(f"{what}, preload {_spread(springs.preload_N[mask], 1.0, 'N')}", **style))
+    if len(truss.torsion_springs.names):
+        stiffness = _spread(truss.torsion_springs.stiffness_N_m_per_rad, 1.0, "N m/rad")
+        found.append(entry(f"torsion spring, {stiffness}", marker=MarkerStyle(SPIRAL), color=TORSION, markersize=12,
+                           markeredgewidth=0.8, markerfacecolor="none"))
+    forces = np.linalg.norm(truss.nodes.force_N, axis=1)
+    if forces.any():
+        found.append(entry(f"load, {_spread(forces[forces > 0], 1.0, 'N')}", marker=r"$\rightarrow$", color=LOAD))
+    if truss.reflector is not None:
+        found.append(entry("reflecting surface", marker="D", color=SURFACE, markerfacecolor="none"))
+    return found
+
+
+def guided(truss: ResolvedTruss) -> np.ndarray:
+    """Which nodes (n,) of a planar truss are held in one direction and carry no slider on ground."""
+    nodes = truss.nodes
+    held = (nodes.fixed[:, :2].sum(axis=1) == 1) | (
+        ~nodes.fixed[:, :2].any(axis=1) & nodes.guide_normal.any(axis=1))
+    held[truss.sliders.nodes[truss.sliders.nodes[:, 1] == GROUND, 0]] = False
+    return held
+
+
+def torsion_places(truss: ResolvedTruss) -> np.ndarray:
+    """Where torsion springs are drawn (t, 3): the nearest ends of their links, else a link's first node."""
+    positions, links = truss.nodes.position_m, truss.links
+    places = []
+    for one, two in truss.torsion_springs.links:
+        first = links.nodes[one]
+        if two == GROUND:
+            places.append(positions[first[0]])
+            continue
+        pairs = [(np.linalg.norm(positions[a] - positions[b]), a) for a in first for b in links.nodes[two]]
+        places.append(positions[min(pairs)[1]])
+    return np.array(places).reshape(-1, 3)
+
+
+def names(truss: ResolvedTruss) -> list[tuple[np.ndarray, str, np.ndarray]]:
+    """Place, names of the nodes there, and for planar trusses the direction (2,) that is farthest from
+    links, springs and the ground of supports."""
+    positions = truss.nodes.position_m
+    places: dict[tuple[float, ...], list[int]] = {}
+    for index, place in enumerate(positions):
+        places.setdefault(tuple(np.round(place, 9)), []).append(index)
+    ends = np.concatenate((truss.links.nodes, truss.springs.nodes))
+    taken: dict[int, list[np.ndarray]] = {}
+    for one, two in np.concatenate((ends, ends[:, ::-1])):
+        taken.setdefault(int(one), []).append((positions[two] - positions[one])[:2])
+    for index in np.flatnonzero(truss.nodes.fixed[:, :2].any(axis=1)):
+        ground = [0.0, -1.0] if truss.nodes.fixed[index, 1] else [-1.0, 0.0]
+        taken.setdefault(int(index), []).append(np.array(ground))
+    for index in np.flatnonzero(truss.nodes.force_N.any(axis=1)):
+        taken.setdefault(int(index), []).append(-truss.nodes.force_N[index, :2])
+    for (node, _), axis in zip(truss.sliders.nodes, truss.sliders.axis):
+        taken[int(node)] = [np.array([-axis[1], axis[0]])]  # below the block, where no link is
+    angles = pi / 2 + np.arange(16) * pi / 8
+    candidates = np.stack((np.cos(angles), np.sin(angles)), axis=1)
+    found = []
+    for members in places.values():
+        lines = [line / np.linalg.norm(line) for index in members for line in taken.get(index, []) if line.any()]
+        free = np.array([max((float(line @ way) for line in lines), default=-1.0) for way in candidates])
+        found.append((positions[members[0]], ", ".join(truss.nodes.names[index] for index in members),
+                      candidates[int(np.argmin(np.round(free, 9)))]))
+    return found

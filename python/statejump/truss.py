@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Trusses: cases of any size made by functions, drawings, and what a designer asks of them.
+
+::
+
+    import statejump as sj
+
+    case = sj.truss.ring(12, radial_clearance_m=1e-5)
+    sj.truss.draw(case)
+    found = sj.truss.answers(case, cycles=3)
+    found.verdict, found.frame("contributions")
+
+Every function that makes a truss takes the number of its bays, ribs or blocks first, then keys with defaults; the
+commands of ``statejump truss`` have the same ones.
+"""
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from functools import wraps
+from typing import TYPE_CHECKING, ParamSpec
+
+from statejump.case import Case, Progress
+from statejump.core.errors import Range
+from statejump.core.progress import shown
+from statejump.kinds.loading import parse_case
+from statejump.kinds.truss.generate import lattices, planar
+from statejump.kinds.truss.generate.document import Document
+from statejump.schema.rules import WHOLE, Rule
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from statejump.kinds.truss.answers.study import TrussAnswers
+
+__all__ = ["answers", "chain", "draw", "iwan", "mast", "ring", "umbrella"]
+
+Keys = ParamSpec("Keys")
+LARGEST = 1_000_000
+# The least number of bays, ribs or blocks of each.
+LEAST = {"chain": 1, "iwan": 1, "umbrella": 1, "ring": 3, "mast": 1}
+
+
+def _making(document: Callable[Keys, Document]) -> Callable[Keys, Case]:
+    """Return the function that makes a case of what a generator of documents makes."""
+    name = document.__name__
+    number = Rule(WHOLE, allowed=Range(LEAST[name], LARGEST))
+
+    @wraps(document)
+    def make(*given: Keys.args, **keys: Keys.kwargs) -> Case:
+        number.check("n", inspect.signature(document).bind(*given, **keys).arguments["n"])
+        return Case(parse_case(document(*given, **keys)))
+
+    make.__module__ = __name__
+    make.__signature__ = inspect.signature(document).replace(return_annotation="Case")  # type: ignore[attr-defined]
+    return make
+
+
+chain = _making(planar.chain)
+iwan = _making(planar.iwan)
+umbrella = _making(planar.umbrella)
+ring = _making(lattices.ring)
+mast = _making(lattices.mast)
+GENERATORS: dict[str, Callable[..., Case]] = {
+    "chain": chain, "iwan": iwan, "umbrella": umbrella, "ring": ring, "mast": mast,
+}
+
+
+def draw(case: Case, axes: Axes | None = None) -> Figure:
+    """Draw a truss before anything is solved: nodes, links by temperature, supports, joints, springs, loads.
+
+    :param case: a case of kind ``truss``
+    :param axes: axes to draw into, of a spatial truss with projection ``3d``; None: a new figure
+    :raises StatejumpError: the case is of another kind, or the axes are not those of three dimensions
+    """
+    asked = case.definition
+    figure: Figure = asked.behaviour.ability("draw", asked)(asked, axes)
+    return figure
+
+
+def answers(
+    case: Case, *, output: str = "node", cycles: int | None = None, each: bool = False, step: float = 0.01,
+    sensitivity: bool = True, progress: Progress = False,
+) -> TrussAnswers:
+    """Return what a designer asks of a truss: jumps, whether they settle, which joints hold them, what they follow.
+
+    :param case: a case of kind ``truss``
+    :param output: what is traced to the joints: ``node`` (the most moved one), ``node:NAME``, ``rms`` or ``tilt`` of
+        the reflector
+    :param cycles: instead of the case's
+    :param each: sensitivities to every single item, not only to all of a kind together
+    :param step: of the sensitivities, relative
+    :param sensitivity: whether sensitivities are asked
+    :param progress: True: show it on standard error; or what is called with the finished share of each part
+    :raises StatejumpError: the case is of another kind, there is no such output, or the solver finds no path
+    """
+    asked = case.definition
+    found: TrussAnswers = asked.behaviour.ability("answers", asked)(
+        asked, output=output, cycles=cycles, each=each, step=step, sensitivity=sensitivity,
+        phase=lambda label: shown(progress, label),
+    )
+    return found
