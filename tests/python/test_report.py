@@ -7,6 +7,7 @@ import json
 import math
 import os
 import subprocess
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any, Callable
@@ -17,16 +18,20 @@ import pytest
 
 from conftest import BUILT, COMMAND, REPOSITORY, Outcome
 
-from statejump.core.comparison import quantity
-from statejump.core.errors import StatejumpError
 from statejump.core import units
-from statejump.report import page
+from statejump.core.comparison import models
+from statejump.core.errors import StatejumpError
+from statejump.core.run import CONTACT_STATES, Column, Event, Events, Run
+from statejump.kinds import kind, names
+from statejump.report import page, words
 from statejump.report.decimation import kept_samples, largest_error
 from statejump.report.document import TOLERANCE, Document
 from statejump.report.drawing import round_down
-from statejump.results import Column, Event, ModelRun, Result, Scalar, read
-from statejump.results import scene as drawing
-from statejump.results.contents import CONTACT_STATES
+from statejump.results import layout, scene as drawing
+from statejump.results.contents import Result
+from statejump.results.read import read
+from statejump.schema.fields import rule_of
+from statejump.schema.paths import keys_of
 
 MEGABYTE = 1_000_000
 
@@ -131,8 +136,9 @@ def test_page_is_small_and_needs_nothing(
 def test_page_says_what_was_found(statejump: Callable[..., Outcome], results: Path) -> None:
     found, _ = written(statejump, results / "table1")
     result = read(results / "table1" / "comparison.h5")
-    for row in result.comparison or []:
-        assert units.text(row.reduced, row.unit) in found.words and units.text(row.dem, row.unit) in found.words
+    assert result.rows
+    for row in result.rows:
+        assert all(units.text(value, row.unit) in found.words for value in row.values.values()), row.name
     assert "23.8095\u202fµm" in found.words  # f l0/(E A) = 30 N · 0.5 m / (70 GPa · 9 mm²)
     assert "Both models agree: all 6 compared quantities are within tolerance." in found.words
     assert "stop reached" in found.words and "Hertz" not in found.words
@@ -200,12 +206,14 @@ def test_several_runs(statejump: Callable[..., Outcome], results: Path) -> None:
 
 def test_events_of_both_models_stand_in_one_row() -> None:
     result = _truss(3, 50)
-    for run, late in ((result.models["reduced"], 0.0), (result.models["dem"], 0.04)):
-        run.events[:] = [
+    for model, late in (("reduced", 0.0), ("dem", 0.04)):
+        events = [
             Event("slip", 0.1 + late, 1.0, "joint_0"), Event("stick", 0.3, 2.0, "joint_0"),
             Event("slip", 0.5 + late, 1.0, "joint_0", 2.5e-4), Event("slip", 0.5, 1.0, "joint_1"),
         ]
-    result.models["dem"].events.insert(1, Event("slip", 0.2, 1.0, "joint_0"))  # one that only it has
+        if late:
+            events.insert(1, Event("slip", 0.2, 1.0, "joint_0"))  # one that only the DEM has
+        result.models[model] = replace(result.models[model], events=Events(events))
     rows, omitted = Document(result, "x.h5", "run1", 1e6).events()
     assert omitted == 0 and [len(row["at"]) for row in rows] == [2, 1, 2, 2, 2]
     assert [row["time_s"] for row in rows] == [0.1, 0.2, 0.3, 0.5, 0.5]
@@ -217,7 +225,7 @@ def test_events_of_both_models_stand_in_one_row() -> None:
     [
         ("missing.h5", None, "missing.h5: no such result file"),
         ("text.h5", b"time_s\n0\n", "text.h5: not a result file: it is not HDF5"),
-        ("empty", "folder", "empty: no result file (*.h5) in this folder; 'statejump compare CASE' writes one"),
+        ("empty", "folder", "empty: no result file: no *.h5 in this folder; 'statejump compare CASE' writes one"),
     ],
 )
 def test_bad_runs(
@@ -311,8 +319,9 @@ def _truss(joints: int, samples: int) -> Result:
     places = offset + np.stack([length * (phase + 1.0), 0 * phase, 0 * phase], axis=1)[None]
     force = 1e5 * offset * np.where(state > 0, 1.0, 0.0)[:, :, None]
 
-    def run() -> ModelRun:
-        return ModelRun(
+    def run(model: str) -> Run:
+        return Run(
+            model,
             history={"time_s": Column(time, "s"), "temperature_change_K": Column(change, "K"),
                      "tip_displacement_m": Column(1e-3 * change, "m")},
             energy={"thermal_work_J": Column(change, "J"), "elastic_energy_J": Column(change, "J")},
@@ -325,15 +334,15 @@ def _truss(joints: int, samples: int) -> Result:
                 "normal_force_N": Column(-force, "N", "contacts"),
                 "tangential_force_N": Column(0.3 * force[:, :, [1, 0, 2]], "N", "contacts"),
             },
-            events=[Event("first_slip", 0.1 * place / joints, 1.0, name) for place, name in enumerate(names)],
-            summary={"state_jump_m": Scalar(1e-4, "m")},
+            events=Events([Event("first_slip", 0.1 * place / joints, 1.0, name) for place, name in enumerate(names)]),
+            summary={"state_jump_m": 1e-4},
         )
 
     contacts = [(name, f"journal_{place}", f"bearing_{place}") for place, name in enumerate(names)]
     return Result(
         "compare", True, "chain", "truss", "A hundred joints", "", "", "{}", {}, {"contacts": names},
-        drawing.description(parts, contacts, clearance), {"reduced": run(), "dem": run()},
-        [quantity("state_jump", "m", 1e-4, 1e-4, 1e-6)],
+        drawing.description(parts, contacts, clearance), {"reduced": run("reduced"), "dem": run("dem")},
+        (models("state_jump", "m", 1e-4, 1e-4, 1e-6),),
     )
 
 
@@ -380,6 +389,35 @@ def test_decimation_finds_the_kinks() -> None:
 )
 def test_numbers_with_units(value: float | None, unit: str, expected: str) -> None:
     assert units.text(value, unit) == expected
+
+
+UNIT_WORDS = {word for ending in units.ENDINGS for word in ending.split("_") if word}
+
+
+@pytest.mark.parametrize("name", names())
+def test_no_unit_rests_in_a_label(name: str) -> None:
+    """Keys of the case, columns and tables: the words of a key end before its unit, whichever it is."""
+    found, case = words.of_kind(name), kind(name).Case
+    keys = [path.rpartition(".")[2] for path in keys_of(case)]
+    tables = [column for _, columns in layout.TABLES.values() for column in columns]
+    for key in (*keys, *kind(name).COLUMNS, *tables, "friction_v1_m_per_s", "rolling_resistance_N_m_s_per_rad"):
+        label = found.plain(key)
+        assert label and label.split()[-1] not in UNIT_WORDS, (key, label)
+    # The one table of endings knows all units that keys have.
+    for path, attribute in keys_of(case).items():
+        unit = getattr(rule_of(attribute), "unit", None)
+        assert unit in (None, "-", units.unit_of(path)), path
+
+
+def test_labels_of_keys() -> None:
+    found = words.Words({"link_ab": "Link AB", "tip_jump": "Jump of the tip", "stage S1": "rest"})
+    assert found.plain("friction_v1_m_per_s") == "Friction v1" and found.plain("tip_jump_m") == "Jump of the tip"
+    assert found.parameter("link.young_modulus_Pa") == "Young's modulus of link"
+    assert found.parameter("link_ab.density_kg_per_m3") == "Density of Link AB"
+    assert found.parameter("revolute.*.radial_clearance_m") == "Radial clearance of all revolutes"
+    assert found.parameter("torsion_spring.T1.stiffness_N_m_per_rad") == "Stiffness of torsion spring T1"
+    assert found.parameter("first_slip_temperature_change_K") == "First slip ΔT"
+    assert found.stage("S1") == ("S1", "rest") and found.stage("S9") == ("S9", "")
 
 
 def test_numbers_for_terminals() -> None:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Optional
 
 import click
 
-from statejump.core.errors import StatejumpError
-from statejump.results import read
-from statejump.results.layout import SUFFIX
 from statejump.cli.terminal import QUIET, make_console
+from statejump.core.errors import Unreadable
+from statejump.results.layout import SUFFIX
+from statejump.results.read import read
 
 PAGE = "report.html"
 BUDGET_BYTES = 7e6  # of the histories of all runs; a page stays below 10 MB
@@ -20,7 +19,7 @@ def result_files(run: Path) -> list[Path]:
     """Return the result files that an argument means: a file itself, those of a results folder, or
     of the folders in it. A comparison stands for the single models' files beside it, not for the answers.
 
-    :raises StatejumpError: there is nothing
+    :raises Unreadable: there is nothing
     """
     if not run.is_dir():
         return [run]
@@ -29,10 +28,11 @@ def result_files(run: Path) -> list[Path]:
         if found:
             compared = {path.parent for path in found if path.stem == "comparison"}
             return [path for path in found if path.parent not in compared or path.stem in ("comparison", "answers")]
-    raise StatejumpError(f"{run}: no result file (*{SUFFIX}) in this folder; 'statejump compare CASE' writes one")
+    raise Unreadable("no result file", file=run, cause=f"no *{SUFFIX} in this folder",
+                     remedy="'statejump compare CASE' writes one")
 
 
-def _target(output: Optional[Path], runs: tuple[Path, ...], files: list[Path]) -> Path:
+def _target(output: Path | None, runs: tuple[Path, ...], files: list[Path]) -> Path:
     if output is not None:
         return output / PAGE if output.is_dir() else output
     if len(runs) == 1 and runs[0].is_dir():
@@ -47,7 +47,7 @@ def _target(output: Optional[Path], runs: tuple[Path, ...], files: list[Path]) -
     help=f"The page.  [default: {PAGE} beside the run, of several runs in the current folder]",
 )
 @QUIET
-def report_command(runs: tuple[Path, ...], output: Optional[Path], quiet: bool) -> None:
+def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> None:
     """One HTML page of RUN...: comparison, loops, events, energies, 3-D replay; of a campaign its
     distributions. A RUN is a result file, a campaign's samples.h5 or a results folder; the page
     needs nothing beside it, no network either.

@@ -48,7 +48,8 @@ def info_command(file: Path) -> None:
     print_table(_summary(result), console)
     _print_events(result, console)
     if result.rows is not None:
-        print_comparison(f"{result.title}: {'passed' if result.passed else 'a tolerance is missed'}", result.rows, console)
+        verdict = "passed" if result.passed else "a tolerance is missed"
+        print_comparison(f"{result.title}: {verdict}", result.rows, console)
     if result.answers is not None:
         _print_answers(result.answers, console)
     _print_contents(result, console)
@@ -60,7 +61,8 @@ def info_command(file: Path) -> None:
 
 def _header(result: Result) -> Shown:
     rows = {
-        "case": f"{result.name}, kind {result.kind}", "source": result.source, "written by": f"statejump {result.command}",
+        "case": f"{result.name}, kind {result.kind}", "source": result.source,
+        "written by": f"statejump {result.command}",
         "complete": "yes" if result.complete else "no",
         **{key.replace("_", " "): str(value) for key, value in sorted(result.provenance.items())},
         "parts": ", ".join(f"{part['name']} ({part['type']})" for part in result.scene["parts"][:SHOWN_EVENTS])

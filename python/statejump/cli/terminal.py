@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from statejump.core.case import Case
-from statejump.core.comparison import SIDES, Quantity
+from statejump.core.comparison import Quantity, sides
 from statejump.core.errors import Interrupted
 from statejump.core.progress import counted, on_console
 from statejump.core.tables import Shown
@@ -86,12 +86,12 @@ def print_comparison(title: str, rows: Sequence[Quantity], console: Console,
                      names: dict[str, str] | None = None) -> None:
     """Print rows of a comparison; ``names`` head the columns of values, by whose they are."""
     heads = {"closed_form": "closed form", "reduced": "reduced", "dem": "DEM", **(names or {})}
-    sides = [side for side in SIDES if any(side in row.values for row in rows)]
+    known = sides(rows)
     table = Table(title=title)
-    for heading in ("quantity", "unit", *(heads[side] for side in sides), "difference", "tolerance", ""):
+    for heading in ("quantity", "unit", *(heads[side] for side in known), "difference", "tolerance", ""):
         table.add_column(heading, justify="left" if heading in ("quantity", "unit", "") else "right")
     for row in rows:
-        values = [number(row.values[side]) if side in row.values else "" for side in sides]
+        values = [number(row.values[side]) if side in row.values else "" for side in known]
         table.add_row(row.name, row.unit, *values, number(row.difference), number(row.tolerance),
                       "pass" if row.passed else "MISSED")
     console.print(table)

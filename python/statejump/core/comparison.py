@@ -76,11 +76,16 @@ def of_two(rows: Iterable[Quantity]) -> list[Quantity]:
     return [replace(row, values=dict(zip((FIRST, SECOND), row.values.values()))) for row in rows]
 
 
+def sides(rows: Sequence[Quantity]) -> list[str]:
+    """Return whose values rows have, in the order of ``SIDES``."""
+    return [side for side in SIDES if any(side in row.values for row in rows)]
+
+
 def table(rows: Sequence[Quantity]) -> list[dict[str, Any]]:
     """Return rows with the same cells in all of them."""
-    sides = [side for side in SIDES if any(side in row.values for row in rows)]
+    known = sides(rows)
     return [
-        {"name": row.name, "unit": row.unit, **{side: row.values.get(side) for side in sides},
+        {"name": row.name, "unit": row.unit, **{side: row.values.get(side) for side in known},
          "difference": row.difference, "tolerance": row.tolerance, "pass": row.passed}
         for row in rows
     ]

@@ -59,14 +59,14 @@ def run_html(run: Run) -> str:
 
 def comparison_html(comparison: Comparison) -> str:
     """Return the rows of a comparison and the verdict, as HTML."""
-    from statejump.core.comparison import SIDES
+    from statejump.core.comparison import sides
 
-    sides = [side for side in SIDES if any(side in row.values for row in comparison.rows)]
+    known = sides(comparison.rows)
     rows = [
-        (row.name, *(text(row.values[side], row.unit) if side in row.values else "" for side in sides),
+        (row.name, *(text(row.values[side], row.unit) if side in row.values else "" for side in known),
          text(row.difference, row.unit), text(row.tolerance, row.unit), "pass" if row.passed else "MISSED")
         for row in comparison.rows
     ]
     verdict = "passed" if comparison.passed else "a tolerance is missed"
-    head = ("quantity", *(side.replace("_", " ") for side in sides), "difference", "tolerance", "")
+    head = ("quantity", *(side.replace("_", " ") for side in known), "difference", "tolerance", "")
     return f"<h4>{escape(comparison.case.title)}: {verdict}</h4>{table(head, rows)}"

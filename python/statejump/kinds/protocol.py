@@ -14,7 +14,8 @@ ability that it lacks is not there, and what needs it refuses the case with one 
 ``scene``           ``(case) -> dict``: what to draw of its parts, see :mod:`statejump.results.scene`
 ``names``           ``(case) -> dict``: names of the items of columns
 ``describe``        ``(case) -> list[str]``: the case in sentences
-``charts``          ``(result) -> list[Chart]``: curves on the page of ``statejump report``
+``charts``          ``(case) -> list[Chart]``: curves on the page of ``statejump report``
+``page``            ``(result, case) -> Part | None``: a part of that page that only this kind has
 ``outcomes``        ``(case, run) -> dict[str, float]``: what a campaign records of a run; their units from their names
 ``told``            ``(case, runs) -> list``: what a command prints of runs, tables and lines
 ``control``         ``(case, settings) -> ...``: what makes the state jump smaller
@@ -49,7 +50,8 @@ class Kind(Generic[CaseType]):
     Case: ClassVar[type[Definition]]
     # Columns of one value a sample in the order of the CSV files, of either model.
     COLUMNS: ClassVar[tuple[str, ...]] = ()
-    # Words of this kind for report and figures: of columns, contacts, links, by their keys.
+    # Words of this kind for report and figures: of columns, contacts, links, stages, by their keys; with "stage "
+    # in front of its name what a stage means.
     WORDS: ClassVar[Mapping[str, str]] = {}
     # Module that builds the scene in YADE, or the path of its file; by default scene_NAME beside the runner.
     SCENE: ClassVar[str] = ""

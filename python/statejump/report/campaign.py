@@ -7,13 +7,12 @@ import json
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any
 
 import h5py
 import numpy as np
 
-from statejump.campaign.summary import statistics, spearman
-from statejump.core.errors import StatejumpError
+from statejump.core.errors import Unreadable
 from statejump.core.units import scale_of, text
 from statejump.report import words
 
@@ -29,6 +28,7 @@ class Variable:
     name: str
     unit: str
     values: np.ndarray  # NaN: the sample has no such value
+    title: str  # the name in words
 
     @property
     def shown(self) -> tuple[float, str]:
@@ -40,7 +40,7 @@ class Variable:
     def label(self) -> str:
         """Name with unit, for an axis."""
         unit = self.shown[1]
-        return f"{words.parameter(self.name)} [{unit}]" if unit else words.parameter(self.name)
+        return f"{self.title} [{unit}]" if unit else self.title
 
 
 def is_campaign(path: Path) -> bool:
@@ -54,16 +54,22 @@ def is_campaign(path: Path) -> bool:
 class CampaignDocument:
     """A campaign as it stands on a page; arguments as of :class:`~.document.Document`.
 
-    :raises StatejumpError: the table is damaged
+    :raises Unreadable: the table is damaged
     """
 
     template = "campaign.html"
 
     def __init__(self, path: Path, identifier: str) -> None:
+        # What computes campaigns takes a while to load: a page of runs does without.
+        from statejump.campaign.summary import statistics
+
         self.source, self.identifier = path.name, identifier
         try:
             with h5py.File(path, "r") as file:
                 attributes = dict(file.attrs)
+                header = json.loads(attributes["case"])["case"]
+                self._words = words.of_kind(str(header["kind"]))
+                self.case = str(header["name"])
                 self.parameters = self._variables(file["parameters"])
                 self.outcomes = self._variables(file["outcomes"])
                 self.failed = [
@@ -72,22 +78,21 @@ class CampaignDocument:
                 ]
                 self.samples = len(file["sample"])
             self.text = str(attributes["campaign"])
-            header = tomllib.loads(self.text)["campaign"]
+            campaign = tomllib.loads(self.text)["campaign"]
             self.command, self.model = str(attributes["command"]), str(attributes["model"])
-            self.case = str(json.loads(attributes["case"])["case"]["name"])
         except (OSError, KeyError, ValueError, TypeError) as error:
-            raise StatejumpError(f"{path}: damaged: {' '.join(str(error).split())}") from None
-        self.seed: Optional[Any] = attributes.get("seed")
-        self.title = str(header.get("title") or header.get("name"))
+            raise Unreadable("damaged", cause=" ".join(str(error).split()), file=path) from None
+        self.seed: Any | None = attributes.get("seed")
+        self.title = str(campaign.get("title") or campaign.get("name"))
         self.attributes = {key: value for key, value in attributes.items() if key not in ("campaign", "case")}
         # What the campaign is about comes first.
         self.outcomes.sort(key=lambda outcome: "jump" not in outcome.name)
         self.statistics = {outcome.name: statistics(outcome.values) for outcome in self.outcomes}
 
-    @staticmethod
-    def _variables(group: h5py.Group) -> list[Variable]:
+    def _variables(self, group: h5py.Group) -> list[Variable]:
         return [
-            Variable(name, str(dataset.attrs["unit"]), dataset[()].astype(float)) for name, dataset in group.items()
+            Variable(name, str(dataset.attrs["unit"]), dataset[()].astype(float), self._words.parameter(name))
+            for name, dataset in group.items()
         ]
 
     @property
@@ -107,7 +112,7 @@ class CampaignDocument:
         """The campaign in words."""
         drawn = "on a grid" if self.command == "sweep" else "drawn at random"
         seed = f" (seed {self.seed})" if self.seed is not None else ""
-        names = [words.inside(words.parameter(parameter.name)) for parameter in self.parameters]
+        names = [words.inside(parameter.title) for parameter in self.parameters]
         varied = names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
         return [
             f"{_count(self.samples)} samples of case {self.case} in the {words.inside(words.MODELS[self.model])}, "
@@ -122,7 +127,7 @@ class CampaignDocument:
             shown = {"minimum": "smallest", "maximum": "largest"}
         return [
             {
-                "label": words.parameter(outcome.name),
+                "label": outcome.title,
                 "values": [
                     (label, text(self.statistics[outcome.name][key], outcome.unit, 4)) for key, label in shown.items()
                 ],
@@ -134,7 +139,7 @@ class CampaignDocument:
         """Rows of the table of outcomes."""
         return [
             {
-                "name": words.parameter(outcome.name),
+                "name": outcome.title,
                 "count": self.statistics[outcome.name]["count"],
                 **{
                     key: text(self.statistics[outcome.name][key], outcome.unit, 4)
@@ -147,7 +152,7 @@ class CampaignDocument:
     def provenance(self) -> list[tuple[str, str]]:
         """What computed the samples."""
         return [("Table of samples", self.source)] + [
-            (words.plain(key), str(value)) for key, value in self.attributes.items()
+            (self._words.plain(key), str(value)) for key, value in self.attributes.items()
         ]
 
     def payload(self) -> dict[str, Any]:
@@ -166,7 +171,7 @@ class CampaignDocument:
         counts, edges = np.histogram(there, BARS) if len(there) else (np.zeros(0, int), np.zeros(1))
         found = self.statistics[outcome.name]
         return {
-            "title": words.parameter(outcome.name), "label": outcome.label, "counts": counts.tolist(),
+            "title": outcome.title, "label": outcome.label, "counts": counts.tolist(),
             "edges": edges.tolist(),
             "note": f"in {_count(len(there))} of {_count(self.samples)} samples" if len(there) < self.samples else "",
             "quantiles": [found[key] * scale for key in QUANTILES if found[key] is not None],
@@ -174,12 +179,14 @@ class CampaignDocument:
 
     def _ranks(self, outcome: Variable) -> dict[str, Any]:
         """How closely an outcome follows each parameter: rank correlation, strongest first."""
+        from statejump.campaign.summary import spearman
+
         bars = [
-            {"parameter": words.parameter(parameter.name), "value": spearman(parameter.values, outcome.values)}
+            {"parameter": parameter.title, "value": spearman(parameter.values, outcome.values)}
             for parameter in self.parameters
         ]
         known = [bar for bar in bars if bar["value"] is not None]
-        return {"title": words.parameter(outcome.name), "bars": sorted(known, key=lambda bar: -abs(bar["value"]))}
+        return {"title": outcome.title, "bars": sorted(known, key=lambda bar: -abs(bar["value"]))}
 
     def _curve(self, outcome: Variable) -> dict[str, Any]:
         """An outcome over the first parameter, a line for each value of the second."""
@@ -196,8 +203,8 @@ class CampaignDocument:
                     "z": text(float(second.values[place]), second.unit, 4) if second is not None else "",
                 })
         return {
-            "title": f"{words.parameter(outcome.name)} over {words.inside(words.parameter(first.name))}",
-            "x": first.label, "y": outcome.label, "z": words.parameter(second.name) if second is not None else "", "points": points,
+            "title": f"{outcome.title} over {words.inside(first.title)}",
+            "x": first.label, "y": outcome.label, "z": second.title if second is not None else "", "points": points,
         }
 
 

@@ -1,97 +1,62 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which curves a page shows for a kind of case, and how their axes are called and scaled."""
+"""Charts of a page: which ones it has, and how their axes are called and scaled."""
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any, Optional
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from statejump.core import units
-from statejump.results import Result
-from statejump.report import words
+from statejump.core.case import Case
+from statejump.core.charts import TEMPERATURE, Axis, Chart
+from statejump.core.run import Run
+from statejump.report.words import Words
 
-
-@dataclass(frozen=True)
-class Axis:
-    """An axis of a chart: which column, what it is called."""
-
-    column: str
-    label: str = ""
-    from_start: bool = False  # shows the change since the first sample
-
-
-@dataclass(frozen=True)
-class Chart:
-    """Curves of all models over each other."""
-
-    x: Axis
-    y: Axis
-    title: str
-    equal: bool = False  # same scale on both axes
-    rings_m: tuple[float, ...] = field(default=())  # circles about the origin
-    stages: bool = False
-    marks: bool = False  # events and jump
-
-
-TEMPERATURE = Axis("temperature_change_K", "Temperature change")
-TIME = Axis("time_s", "Time")
+# What tells of a model, not of the structure.
 NOT_SHOWN = {"time_s", "temperature_change_K", "slipping", "stop_contact", "stage"}
 MOST_OTHER_LOOPS = 4
 STATE_UNITS = {"m", "rad"}  # of places: forces have no state jump
 
 
-def charts_of(result: Result) -> list[Chart]:
-    """Return the charts of a run, loops first."""
-    if result.kind == "spring_slider":
-        x = Axis("displacement_m")
-        force = Axis("axial_force_N")
-        return [
-            Chart(TEMPERATURE, x, "Displacement-temperature loop", marks=True),
-            Chart(TEMPERATURE, force, "Force-temperature loop", marks=True),
-            Chart(TIME, x, "Displacement over time", stages=True),
-            Chart(TIME, force, "Axial force over time", stages=True),
-        ]
-    if result.kind == "umbrella":
-        theta2 = Axis("theta2_rad", "Deflection of AB, θ2 − θ2(0)", from_start=True)
-        theta4 = Axis("theta4_rad", "Deflection of BC, θ4 − θ4(0)", from_start=True)
-        return [
-            Chart(TEMPERATURE, theta2, "Deflection-temperature loop", marks=True),
-            Chart(TEMPERATURE, theta4, "Deflection-temperature loop of BC", marks=True),
-            Chart(
-                Axis("eccentricity_x_m", "Journal − bearing centre, along AC"), Axis("eccentricity_y_m", "across AC"),
-                "Journal in its clearance", equal=True, rings_m=(result.scene["smallest_clearance_m"],),
-            ),
-            Chart(TIME, Axis("normal_force_N", "Normal force at the samples"), "Contact force over time"),
-        ]
+def charts_of(case: Case | None, run: Run, words: Words) -> list[Chart]:
+    """Return the charts of a run: those of its kind, or loops of its first plain columns.
+
+    :param case: None: this version does not understand the case of the file
+    """
+    if case is not None and case.behaviour.can("charts"):
+        found: list[Chart] = case.behaviour.ability("charts", case)(case)
+        return found
     return [
-        Chart(TEMPERATURE, Axis(name), f"{words.column(name)} over temperature", marks=True)
-        for name in _plain_columns(result)[:MOST_OTHER_LOOPS]
+        Chart(TEMPERATURE, Axis(name), f"{words.plain(name)} over temperature", marks=True)
+        for name in _plain_columns(run)[:MOST_OTHER_LOOPS]
     ]
 
 
-def _plain_columns(result: Result) -> list[str]:
-    run = next(iter(result.models.values()))
+def _plain_columns(run: Run) -> list[str]:
     return [
         name for name, column in run.history.items()
         if name not in NOT_SHOWN and column.values.ndim == 1 and not column.labels and np.ptp(column.values) > 0
     ]
 
 
-def _shown_axis(axis: Axis, columns: dict[str, dict[str, np.ndarray]], unit_of: dict[str, str]) -> dict[str, Any]:
+Columns = Mapping[str, Mapping[str, np.ndarray]]
+
+
+def _shown_axis(axis: Axis, columns: Columns, unit_of: Mapping[str, str], words: Words) -> dict[str, Any]:
     """Return an axis for the page: offset and factor of the values, label with unit."""
     found = [values[axis.column] for values in columns.values() if axis.column in values]
     start = float(found[0][0]) if axis.from_start else 0.0
     size = max(float(np.nanmax(np.abs(values - start))) for values in found)
     scale, unit = units.scale_of(unit_of.get(axis.column, "-"), size)
-    label = axis.label or words.column(axis.column)
+    label = axis.label or words.plain(axis.column)
     return {"column": axis.column, "label": f"{label} [{unit}]" if unit else label, "unit": unit, "scale": scale,
             "start": start}
 
 
 def shown(
-    chart: Chart, columns: dict[str, dict[str, np.ndarray]], unit_of: dict[str, str], marks: list[dict[str, Any]]
-) -> Optional[dict[str, Any]]:
+    chart: Chart, columns: Columns, unit_of: Mapping[str, str], marks: Sequence[dict[str, Any]], words: Words
+) -> dict[str, Any] | None:
     """Return a chart for the page; None if no model has its columns.
 
     :param columns: by model and name
@@ -102,9 +67,9 @@ def shown(
     models = [model for model, values in columns.items() if {chart.x.column, chart.y.column} <= set(values)]
     if not models:
         return None
-    x, y = (_shown_axis(axis, columns, unit_of) for axis in (chart.x, chart.y))
+    x, y = (_shown_axis(axis, columns, unit_of, words) for axis in (chart.x, chart.y))
     if chart.equal:  # one unit for both
-        larger = min(x, y, key=lambda axis: axis["scale"])
+        larger = min(x, y, key=lambda axis: float(axis["scale"]))
         for axis in (x, y):
             axis.update(
                 label=axis["label"].replace(f"[{axis['unit']}]", f"[{larger['unit']}]"), unit=larger["unit"],

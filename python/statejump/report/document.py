@@ -11,18 +11,21 @@ import base64
 import json
 import math
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 
-from statejump.core.comparison import Quantity
-from statejump.results import Event, ModelRun, Result
-from statejump.core.units import scale_of, text
+from statejump.core.case import Case
+from statejump.core.charts import Part
+from statejump.core.comparison import Quantity, sides
+from statejump.core.errors import StatejumpError
+from statejump.core.run import Event, Run
+from statejump.core.units import scale_of, text, unit_of
 from statejump.report import charts, words
 from statejump.report.decimation import errors, kept_samples
 from statejump.report.drawing import Drawing
 from statejump.report.energy import Account, account
-from statejump.report.truss import part_of
+from statejump.results.contents import Result
 
 TOLERANCE = 2e-4  # of a column's range, what decimation may cost
 MOST_SAMPLES = 4000  # of a model on a page
@@ -57,11 +60,20 @@ class Document:
 
     def __init__(self, result: Result, source: str, identifier: str, budget_bytes: float) -> None:
         self.result, self.source, self.identifier = result, source, identifier
-        self.case: dict[str, Any] = json.loads(result.case_json)
-        self.accounts: dict[str, Account] = {model: account(run) for model, run in result.models.items()}
-        self._drawing = Drawing(result)
-        self.truss = part_of(result, self.case)
-        self._charts = charts.charts_of(result) if self.truss is None else self.truss.charts()
+        self._values: dict[str, Any] = json.loads(result.case_json)
+        self._words = words.of_kind(result.kind)
+        self._run = next(iter(result.models.values()))
+        case = _case_of(result)
+        self.accounts: dict[str, Account] = {
+            model: account(run, self._words) for model, run in result.models.items()
+        }
+        self._drawing = Drawing(result, self._words)
+        self.sentences = [] if case is None else words.described(case)
+        self._cycles = 1 if case is None else case.thermal.cycles
+        self.part: Part | None = None
+        if case is not None and case.behaviour.can("page"):
+            self.part = case.behaviour.ability("page", case)(result, case)
+        self._charts = charts.charts_of(case, self._run, self._words) if self.part is None else self.part.charts()
         self._columns = {model: self._full_columns(model, run) for model, run in result.models.items()}
         self.kept: list[Kept] = []
         self._thin: dict[str, dict[str, np.ndarray]] = {}
@@ -79,19 +91,13 @@ class Document:
         return self.result.kind
 
     @property
-    def sentences(self) -> list[str]:
-        """The case in words."""
-        return words.describe(self.result.kind, self.case)
-
-    @property
     def verdict(self) -> tuple[str, str]:
         """Class (pass, fail, none) and sentence."""
-        rows = self.result.comparison
+        rows = self.result.rows
         if not self.result.complete:
             return "fail", "The run was interrupted: this is what there was of it."
-        if self.truss is not None and self.truss.answers is not None:
-            told = self.truss.answers.verdict_text
-            return "none", f"{told[:1].upper()}{told[1:]}."
+        if self.part is not None and self.part.verdict:
+            return "none", self.part.verdict
         if rows is None:
             only = " and ".join(words.MODELS[model] for model in self.result.models)
             return "none", f"{only}: one model alone, nothing is compared."
@@ -106,22 +112,19 @@ class Document:
         """The numbers at the top: state jumps of every model, then the first contact or slip."""
         models = self.result.models
         names = dict.fromkeys(name for run in models.values() for name in run.summary if "jump" in name)
-        cards = [
+        cards = [] if self.part is None else self.part.cards()
+        cards += [
             {
-                "label": words.plain(name),
+                "label": self._words.plain(name),
                 "values": [
-                    (words.MODELS[model], text(run.summary[name].value, run.summary[name].unit))
+                    (words.MODELS[model], text(run.summary[name], unit_of(name)))
                     for model, run in models.items() if name in run.summary
                 ],
             }
             for name in names
         ]
-        if self.truss is not None and self.truss.answers is not None:
-            answers = self.truss.answers
-            cards.insert(0, {"label": f"Jump of the output {answers.output}",
-                             "values": [(answers.verdict, text(answers.summary["jump"].value, answers.unit))]})
         for kind in ("first_contact", "first_slip"):
-            found = {model: self._first(run, kind) for model, run in models.items()}
+            found = {model: run.events.first(kind) for model, run in models.items()}
             if any(found.values()):
                 cards.append({
                     "label": words.EVENTS[kind].capitalize() + " at ΔT",
@@ -133,14 +136,10 @@ class Document:
                 break
         return cards
 
-    @staticmethod
-    def _first(run: ModelRun, kind: str) -> Optional[Event]:
-        return next((event for event in run.events if event.kind == kind), None)
-
     def inputs(self) -> list[tuple[str, list[tuple[str, str]]]]:
         """Sections of the case file with all defaults: key, value."""
         sections = []
-        for section, keys in self.case.items():
+        for section, keys in self._values.items():
             if isinstance(keys, list) and keys and isinstance(keys[0], dict):
                 sections.append((f"[{section}]", _summed_up(keys)))
                 continue
@@ -162,16 +161,20 @@ class Document:
             return f"{len(value)} values" if len(value) > 8 else ", ".join(str(item) for item in value)
         return f"{value:g}" if isinstance(value, float) else str(value)
 
+    @property
+    def sides(self) -> list[str]:
+        """Whose values are compared, in the order of the columns of the table."""
+        return sides(self.result.rows or ())
+
     def comparison(self) -> list[dict[str, Any]]:
         """Rows of the table of comparisons."""
-        return [self._compared(row) for row in self.result.comparison or []]
+        return [self._compared(row) for row in self.result.rows or ()]
 
-    @staticmethod
-    def _compared(row: Quantity) -> dict[str, Any]:
+    def _compared(self, row: Quantity) -> dict[str, Any]:
         name, _, rest = row.name.partition(", ")
         return {
-            "name": words.plain(name) + (f", {rest}" if rest else ""),
-            "reduced": text(row.reduced, row.unit), "dem": text(row.dem, row.unit),
+            "name": self._words.plain(name) + (f", {rest}" if rest else ""),
+            "values": [text(row.values[side], row.unit) if side in row.values else "" for side in self.sides],
             "difference": text(row.difference, row.unit, 3), "tolerance": text(row.tolerance, row.unit, 3),
             # How much of the tolerance is used: a bar in the table.
             "used": min(1.0, abs(row.difference) / row.tolerance) if row.difference is not None and row.tolerance
@@ -203,18 +206,17 @@ class Document:
         rows.sort(key=lambda row: row["time_s"])
         return rows[:MOST_EVENTS], max(0, len(rows) - MOST_EVENTS)
 
-    @staticmethod
-    def _event_row(event: Event) -> dict[str, Any]:
+    def _event_row(self, event: Event) -> dict[str, Any]:
         return {
-            "key": (event.kind, event.joint), "kind": words.EVENTS.get(event.kind, words.plain(event.kind)),
-            "joint": words.plain(event.joint) if event.joint else "", "time_s": event.time_s, "at": {},
+            "key": (event.kind, event.joint), "kind": words.EVENTS.get(event.kind, self._words.plain(event.kind)),
+            "joint": self._words.plain(event.joint) if event.joint else "", "time_s": event.time_s, "at": {},
         }
 
     @property
     def _cycle_s(self) -> float:
         """Length of a cycle [s]; of the whole run if the case has none."""
         end = max((float(run.time_s[-1]) for run in self.result.models.values()), default=0.0)
-        return end / self.case.get("thermal", {}).get("cycles", 1)
+        return end / self._cycles
 
     def stages(self) -> list[dict[str, Any]]:
         """Stages of the first model that names them: name, meaning, from, to."""
@@ -226,10 +228,10 @@ class Document:
             change = run.history["temperature_change_K"].values
             starts = np.concatenate(([0], np.flatnonzero(values[1:] != values[:-1]) + 1))
             ends = np.concatenate((starts[1:], [len(values) - 1]))
+            named = [self._words.stage(label) for label in column.labels]
             return [
                 {
-                    "name": words.NAMES.get(column.labels[int(values[start])], column.labels[int(values[start])]),
-                    "meaning": words.STAGES.get(column.labels[int(values[start])], ""),
+                    **dict(zip(("name", "meaning"), named[int(values[start])])),
                     "start_s": float(times[start]), "end_s": float(times[end]),
                     "start_K": text(float(change[start]), "K", 4), "end_K": text(float(change[end]), "K", 4),
                 }
@@ -239,25 +241,24 @@ class Document:
 
     def provenance(self) -> list[tuple[str, str]]:
         """What computed the result."""
-        rows = [(words.plain(key), str(value)) for key, value in self.result.provenance.items() if value != ""]
+        rows = [(self._words.plain(key), str(value)) for key, value in self.result.provenance.items() if value != ""]
         return [("Result file", self.source), ("Command", f"statejump {self.result.command}"), *rows]
 
     def payload(self) -> dict[str, Any]:
         """Data for the page's script."""
-        run = next(iter(self.result.models.values()))
-        units = {name: column.unit for name, column in run.history.items()}
-        if self.truss is not None:
-            units.update(self.truss.UNITS)
+        run, part = self._run, self.part
+        units = {name: column.unit for name, column in run.history.items()} | dict(part.units if part else {})
         marks = [
             {"time_s": event.time_s, "label": words.EVENTS[kind], "value": text(event.temperature_change_K, "K", 4),
              "role": "event"}
-            for kind in MARKED_EVENTS if (event := self._first(run, kind)) is not None
+            for kind in MARKED_EVENTS if (event := run.events.first(kind)) is not None
         ]
         jumps = [value for name, value in run.summary.items() if "jump" in name]
-        if jumps and jumps[0].value:
+        if jumps and jumps[0]:
             marks.append({"time_s": float(run.time_s[-1]), "label": "state jump", "role": "jump", "value": ""})
         shown = [
-            made for chart in self._charts if (made := charts.shown(chart, self._columns, units, marks)) is not None
+            made for chart in self._charts
+            if (made := charts.shown(chart, self._columns, units, marks, self._words)) is not None
         ]
         return {
             "id": self.identifier,
@@ -273,18 +274,18 @@ class Document:
             "energy": self._energy_chart(),
             "stages": self.stages(),
             "readouts": self._readouts(shown),
-            "truss": None if self.truss is None else self.truss.payload(_encoded),
+            "truss": None if part is None else part.payload(_encoded),
             "scene": {**self._drawing.scene, "parts": [_packed(part) for part in self._drawing.scene["parts"]]},
         }
 
-    def _full_columns(self, model: str, run: ModelRun) -> dict[str, np.ndarray]:
+    def _full_columns(self, model: str, run: Run) -> dict[str, np.ndarray]:
         names = {"time_s", "temperature_change_K"}
         names.update(axis.column for chart in self._charts for axis in (chart.x, chart.y))
         history = {
             name: run.history[name].values for name in sorted(names)
             if name in run.history and run.history[name].values.ndim == 1
         }
-        curves = {} if self.truss is None else self.truss.columns[model]
+        curves = {} if self.part is None else self.part.columns[model]
         return {**history, **curves, **self.accounts[model].columns, **self._drawing.columns[model]}
 
     def _thin_out(self, model: str, budget_bytes: float) -> None:
@@ -295,7 +296,8 @@ class Document:
         time_s = columns["time_s"]
         # Straight lines cannot follow a state: both samples of its change stay, if there is room.
         states = [values for values in moving if values.dtype == np.uint8]
-        turns = np.flatnonzero(np.any([np.diff(values) != 0 for values in states], axis=0)) if states else np.zeros(0, int)
+        turned = np.any([np.diff(values) != 0 for values in states], axis=0) if states else np.zeros(0, bool)
+        turns = np.flatnonzero(turned)
         always = np.unique(np.concatenate((turns, turns + 1)))
         chosen, guides = always if len(always) <= most else always[:0], moving[:: math.ceil(len(moving) / MOST_GUIDES)]
         for _ in range(2):  # the second time by the columns that the first ones do not stand for
@@ -308,7 +310,7 @@ class Document:
         self._thin[model] = {name: values[chosen] for name, values in columns.items()}
         self.kept.append(Kept(words.MODELS[model], len(time_s), len(chosen), error))
 
-    def _energy_chart(self) -> Optional[dict[str, Any]]:
+    def _energy_chart(self) -> dict[str, Any] | None:
         size = max((found.turnover_J for found in self.accounts.values()), default=0.0)
         if size == 0:
             return None
@@ -332,6 +334,14 @@ class Document:
         return [
             {**axis, "label": axis["label"].partition(" [")[0]} for axis in axes.values()
         ]
+
+
+def _case_of(result: Result) -> Case | None:
+    """Return the case of a file; None: this version does not understand it, and the page goes without its words."""
+    try:
+        return result.definition
+    except StatejumpError:
+        return None
 
 
 def _encoded(values: np.ndarray) -> Any:

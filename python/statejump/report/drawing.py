@@ -9,13 +9,15 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any, Callable
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
-from statejump.results import ModelRun, Result
+from statejump.core.run import Run
+from statejump.report.words import STATES, Words
+from statejump.results.contents import Result
 from statejump.results.scene import growth, resolve, resolve_point
-from statejump.report import words
 
 # What the default magnification gives the smallest clearance: a share of the scene's size, but of the
 # shortest link no more than can be told from the link.
@@ -41,8 +43,8 @@ class Drawing:
     ``columns`` has these by model and name.
     """
 
-    def __init__(self, result: Result) -> None:
-        self.result = result
+    def __init__(self, result: Result, words: Words) -> None:
+        self.result, self._words = result, words
         self.columns: dict[str, dict[str, np.ndarray]] = {model: {} for model in result.models}
         self._points: dict[str, int] = {}
         self._parts = {part["name"]: part for part in result.scene["parts"]}
@@ -61,24 +63,24 @@ class Drawing:
             "contacts": [self._contact(place, contact) for place, contact in enumerate(result.scene["contacts"])],
             "forces": self._forces(),
             "states": [
-                {"label": words.STATES.get(state, state), "colour": colour}
+                {"label": STATES.get(state, state), "colour": colour}
                 for state, colour in result.scene["states"].items()
             ],
         }
         self._measure()
 
-    def _column(self, name: str, values: Callable[[ModelRun], np.ndarray]) -> str:
+    def _column(self, name: str, values: Callable[[Run], np.ndarray]) -> str:
         for model, run in self.result.models.items():
             self.columns[model][name] = values(run)
         return name
 
-    def _vector(self, name: str, values: Callable[[ModelRun], np.ndarray]) -> list[str]:
+    def _vector(self, name: str, values: Callable[[Run], np.ndarray]) -> list[str]:
         for model, run in self.result.models.items():
             found = values(run)
             self.columns[model].update({f"{name}_{axis}": found[:, place] for place, axis in enumerate(AXES)})
         return [f"{name}_{axis}" for axis in AXES]
 
-    def _at(self, expression: Any, run: ModelRun) -> np.ndarray:
+    def _at(self, expression: Any, run: Run) -> np.ndarray:
         return resolve_point(expression, run, self.result.names)
 
     def _place(self, part: dict[str, Any]) -> int:
@@ -104,7 +106,7 @@ class Drawing:
         if base is None and isinstance(expression, list) and not any(isinstance(value, dict) for value in expression):
             return {"at": [float(value) for value in expression]}
 
-        def values(run: ModelRun) -> np.ndarray:
+        def values(run: Run) -> np.ndarray:
             at = self._at(expression, run)
             return at if base is None else at - self._at(self._expressions[base], run)
 
@@ -134,7 +136,7 @@ class Drawing:
         return name
 
     def _part(self, part: dict[str, Any]) -> dict[str, Any]:
-        drawn: dict[str, Any] = {"name": part["name"], "label": words.plain(part["name"]), "type": part["type"]}
+        drawn: dict[str, Any] = {"name": part["name"], "label": self._words.plain(part["name"]), "type": part["type"]}
         drawn["points"] = [self._points[json.dumps(point, sort_keys=True)] for point in _points_of(part)]
         for key in ("width_m", "radius_m", "half_width_m", "half_height_m", "axis"):
             if key in part:
@@ -166,7 +168,7 @@ class Drawing:
         names = self.result.names
         return {
             "name": contact["name"],
-            "label": words.plain(contact["name"]),
+            "label": self._words.plain(contact["name"]),
             "on": list(self._parts).index(contact["on"]),
             "from": list(self._parts).index(contact["from"]),
             "state": self._column(
@@ -176,7 +178,7 @@ class Drawing:
         }
 
     def _force(
-        self, place: int, label: str, kind: str, on: str, at: Any, vector: Callable[[ModelRun], np.ndarray]
+        self, place: int, label: str, kind: str, on: str, at: Any, vector: Callable[[Run], np.ndarray]
     ) -> dict[str, Any]:
         part = self._parts[on]
         centre = part.get("centre")
@@ -202,7 +204,7 @@ class Drawing:
         names = self.result.names
         drawn = [
             self._force(
-                place, f"{force['kind'].capitalize()} force on {words.plain(force['on']).lower()}", force["kind"],
+                place, f"{force['kind'].capitalize()} force on {self._words.plain(force['on']).lower()}", force["kind"],
                 force["on"], force["at"], lambda run, f=force: resolve_point(f["vector_N"], run, names),
             )
             for place, force in enumerate(self.result.scene["forces"])
@@ -218,7 +220,7 @@ class Drawing:
         that of the link as drawn."""
         first, second = (self._points[json.dumps(end, sort_keys=True)] for end in link["ends"])
         return {
-            "label": f"Axial force of {words.plain(link['name'])}", "kind": "axial", "point": second,
+            "label": f"Axial force of {self._words.plain(link['name'])}", "kind": "axial", "point": second,
             "arm": [0.0, 0.0, 0.0], "from": first,
             "vector": [self._column(f"force{place}", lambda run: resolve(axial, run, self.result.names))],
         }

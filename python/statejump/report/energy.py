@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from statejump.results import ModelRun
-from statejump.report import words
+from statejump.core.run import Run
+from statejump.report.words import Words
 
 # The end of a column's name tells its side of the account.
 ROLES = {"_work_J": "supplied", "_energy_J": "stored", "_dissipation_J": "dissipated"}
@@ -33,7 +33,7 @@ class Account:
     columns: dict[str, np.ndarray]  # sums over time, [J]
 
 
-def account(run: ModelRun) -> Account:
+def account(run: Run, words: Words) -> Account:
     """Return the account of a run from its energy columns; all changes since the first sample."""
     zero = np.zeros(len(run.time_s))
     sums = {role: zero.copy() for role in ROLES.values()}

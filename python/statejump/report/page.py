@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from statejump import __version__
 from statejump.core import units
-from statejump.core.errors import StatejumpError
+from statejump.core.errors import NotWritten, StatejumpError
 from statejump.core.output import write_atomically
 from statejump.report import words
 from statejump.report.campaign import CampaignDocument
@@ -27,8 +28,8 @@ def _asset(name: str) -> str:
         return path.read_text(encoding="utf-8")
     except OSError:
         raise StatejumpError(
-            f"the page's script is missing ({path}): build with STATEJUMP_BUILD_REPORT=ON, which needs Node and, "
-            "once, the npm registry"
+            f"the page's script is missing ({path})",
+            remedy="build with STATEJUMP_BUILD_REPORT=ON, which needs Node and, once, the npm registry",
         ) from None
 
 
@@ -48,8 +49,12 @@ def embedded_code(source: str, element: str) -> Markup:
 def render(documents: Sequence[Document | CampaignDocument]) -> str:
     """Return the page."""
     script, style, notices = _asset(SCRIPT), _asset(STYLE), _asset(NOTICES)
+    parts = {
+        document.part.template for document in documents if isinstance(document, Document) and document.part is not None
+    }
     environment = Environment(
-        loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+        loader=ChoiceLoader([FileSystemLoader(HERE), *(FileSystemLoader(part.parent) for part in sorted(parts))]),
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
     )
     environment.filters["quantity"] = units.text
     return environment.get_template("page.html").render(
@@ -57,6 +62,7 @@ def render(documents: Sequence[Document | CampaignDocument]) -> str:
         title=documents[0].title if len(documents) == 1 else f"{len(documents)} runs",
         version=__version__,
         models=words.MODELS,
+        sides=words.SIDES,
         data=embedded_json({
             "runs": [document.payload() for document in documents if isinstance(document, Document)],
             "campaigns": [document.payload() for document in documents if isinstance(document, CampaignDocument)],
@@ -73,6 +79,6 @@ def write(documents: Sequence[Document | CampaignDocument], path: Path) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise StatejumpError(f"{path}: cannot be written: {error.strerror or error}") from None
+        raise NotWritten("cannot be written", file=path, cause=error.strerror or str(error)) from None
     with write_atomically(path) as stream:
         stream.write(text)

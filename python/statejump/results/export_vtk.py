@@ -40,7 +40,9 @@ class _Lines:
                 resolve(part["values"][name], run, result.names) if name in part.get("values", {}) else missing
                 for part in self.parts
             ] or [missing], axis=1)[:, : len(self.parts)]
-            for name in sorted({"axial_force_N", "thermal_strain"}.union(*(part.get("values", {}) for part in self.parts)))
+            for name in sorted(
+                {"axial_force_N", "thermal_strain"}.union(*(part.get("values", {}) for part in self.parts))
+            )
         }
         change = [
             resolve(part.get("temperature_change_K", result.scene["temperature_change_K"]), run, result.names)
@@ -53,10 +55,11 @@ class _Lines:
         ends = [end[frame] for pair in self.ends for end in pair]
         data.SetPoints(points(np.array(ends)))
         data.SetCells(VTK_LINE, cells([2] * len(self.parts), np.arange(2 * len(self.parts))))
-        add_array(data.GetCellData(), "part", [part["name"] for part in self.parts])
-        add_array(data.GetCellData(), "type", np.array([TYPE_NUMBERS[part["type"]] for part in self.parts], dtype=np.int32))
+        about = data.GetCellData()
+        add_array(about, "part", [part["name"] for part in self.parts])
+        add_array(about, "type", np.array([TYPE_NUMBERS[part["type"]] for part in self.parts], dtype=np.int32))
         for name, values in self.arrays.items():
-            add_array(data.GetCellData(), name, values[frame])
+            add_array(about, name, values[frame])
         return data
 
 
@@ -126,11 +129,11 @@ class _Parts:
         if triangles:
             corners = np.concatenate(triangles)
             data.SetPolys(cells([3] * len(corners), corners.ravel()))
-        shapes = drawn + faces
-        add_array(data.GetCellData(), "part", [shape.part["name"] for shape in shapes])
-        add_array(data.GetCellData(), "type", np.array([TYPE_NUMBERS[shape.part["type"]] for shape in shapes], dtype=np.int32))
-        add_array(data.GetCellData(), "temperature_change_K", np.array([shape.change_K[frame] for shape in shapes], dtype=float))
-        add_array(data.GetCellData(), "thermal_strain", np.array([shape.growth[frame] - 1 for shape in shapes], dtype=float))
+        shapes, about = drawn + faces, data.GetCellData()
+        add_array(about, "part", [shape.part["name"] for shape in shapes])
+        add_array(about, "type", np.array([TYPE_NUMBERS[shape.part["type"]] for shape in shapes], dtype=np.int32))
+        add_array(about, "temperature_change_K", np.array([shape.change_K[frame] for shape in shapes], dtype=float))
+        add_array(about, "thermal_strain", np.array([shape.growth[frame] - 1 for shape in shapes], dtype=float))
         return data
 
 

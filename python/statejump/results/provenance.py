@@ -34,5 +34,7 @@ def provenance(case: Case, dem: Run | None) -> dict[str, Any]:
     if dem is not None:
         if "yade_version" in dem.about:
             found["yade_version"] = dem.about["yade_version"]
-        found["threads"] = sections["dem"]["threads"]
+        threads = sections.get("dem", {}).get("threads")
+        if threads is not None:
+            found["threads"] = threads
     return found

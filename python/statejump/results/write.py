@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 from statejump.core.output import replacing
-from statejump.core.comparison import SIDES
+from statejump.core.comparison import SIDES, sides
 from statejump.core.run import Column, Run
 from statejump.core.units import unit_of
 from statejump.results.contents import Answers, Result
@@ -75,13 +75,13 @@ def _comparison(group: h5py.Group, result: Result) -> None:
     group.attrs["passed"] = bool(result.passed)
     _texts(group, "quantity", [row.name for row in rows])
     _texts(group, "unit", [row.unit for row in rows])
-    sides = [side for side in SIDES if any(side in row.values for row in rows)]
-    for key in (*sides, "difference", "tolerance"):
+    known = sides(rows)
+    for key in (*known, "difference", "tolerance"):
         values = [row.values.get(key) if key in SIDES else getattr(row, key) for row in rows]
         # Units differ from row to row: they stand in `unit`.
         group.create_dataset(key, data=np.array([math.nan if value is None else value for value in values], float),
                              track_times=False)
-    if sides != ["reduced", "dem"]:
+    if known != ["reduced", "dem"]:
         _texts(group, "compared", [" ".join(row.values) for row in rows])
     group.create_dataset("passed", data=np.array([row.passed for row in rows], dtype=bool), track_times=False)
 

@@ -11,8 +11,10 @@ from statejump.core.run import Columns, Run
 from statejump.core.tables import Shown
 from statejump.kinds.protocol import Kind
 from statejump.kinds.spring_slider.case import SpringSliderCase
+from statejump.kinds.spring_slider.words import WORDS
 
 if TYPE_CHECKING:
+    from statejump.core.charts import Chart
     from statejump.core.figures import Sheet
     from statejump.kinds.spring_slider.statics import RestSets
 
@@ -22,6 +24,7 @@ class SpringSlider(Kind[SpringSliderCase]):
 
     name: ClassVar[str] = "spring_slider"
     Case = SpringSliderCase
+    WORDS = WORDS
     # Same names for both models; a model has some of them.
     COLUMNS = (
         "time_s",
@@ -98,6 +101,11 @@ class SpringSlider(Kind[SpringSliderCase]):
         from statejump.kinds.spring_slider import statics
 
         return statics.statics(case, friction_coefficient)
+
+    def charts(self, case: SpringSliderCase) -> list[Chart]:
+        from statejump.kinds.spring_slider import charts
+
+        return charts.charts(case)
 
     def outcomes(self, case: SpringSliderCase, run: Run) -> dict[str, float]:
         from statejump.kinds.spring_slider import outcomes

@@ -9,6 +9,17 @@ from statejump.core.tables import Shown
 from statejump.core.units import text
 from statejump.kinds.spring_slider.case import SpringSliderCase
 
+WORDS = {
+    "floor": "Floor", "stop_plus": "Stop +", "stop_minus": "Stop −", "bar": "Bar", "at_stop_plus": "stop +",
+    "at_stop_minus": "stop −", "displacement_m": "Displacement of the slider",
+    "axial_force_N": "Axial force, compression positive",
+    # What the stages of the reduced model mean.
+    "stage S1": "stick, never slid yet", "stage S2": "slip in the sense of the first slide",
+    "stage S3": "stick, the link unloads", "stage S4": "stick, the link loads the other way",
+    "stage S5": "slip against the first slide", "stage at_stop_plus": "at the stop, + side",
+    "stage at_stop_minus": "at the stop, − side",
+}
+
 
 def describe(case: SpringSliderCase) -> list[str]:
     """Return the case in sentences; its temperature program is told for all kinds alike."""

@@ -14,6 +14,7 @@ from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.words import WORDS
 
 if TYPE_CHECKING:
+    from statejump.core.charts import Chart
     from statejump.core.figures import Sheet
 
 
@@ -105,6 +106,11 @@ class Umbrella(Kind):
         from statejump.kinds.umbrella import words
 
         return words.describe(case)
+
+    def charts(self, case: UmbrellaCase) -> list[Chart]:
+        from statejump.kinds.umbrella import charts
+
+        return charts.charts(case)
 
     def outcomes(self, case: UmbrellaCase, run: Run) -> dict[str, float]:
         from statejump.kinds.umbrella import outcomes

@@ -7,17 +7,21 @@ the histories, and joints are ranked by how far they move and by their heat: not
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Callable, Optional
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from statejump.results import ModelRun, Result
-from statejump.results.contents import unit_of
-from statejump.core.units import scale_of, text
+from statejump.core.charts import TEMPERATURE, Axis, Chart
+from statejump.core.run import Run
+from statejump.core.units import scale_of, text, unit_of
+from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.words import is_guided, is_held
 from statejump.report import words
-from statejump.report.charts import TEMPERATURE, Axis, Chart
 from statejump.report.drawing import round_down
+from statejump.results.contents import Result
 
 SHOWN_JUMP = 0.12  # of the truss' size: how large the largest jump is drawn at first
 MOST_CYCLES = 12  # that the drawing offers, of more the first and the last ones
@@ -50,17 +54,21 @@ def _vectors(rows: list[Row], cycles: int) -> np.ndarray:
 class TrussPart:
     """The part of a page that only trusses have.
 
-    :param result: a truss with the history of its nodes, see :func:`part_of`
-    :param case: its case as in the file, with all defaults
+    :param result: a truss with the history of its nodes, see :func:`page`
     """
 
-    def __init__(self, result: Result, case: dict[str, Any]) -> None:
+    template = Path(__file__).with_name("truss.html")
+    units = {"truss_node_m": "m", "truss_slide_m": "m", "truss_journal_x_m": "m", "truss_journal_y_m": "m",
+             "truss_journal_m": "m", "truss_link_N": "N"}
+
+    def __init__(self, result: Result, case: TrussCase) -> None:
         self.result, self.case, self.answers = result, case, result.answers
         self.model = next(iter(result.models))
         self._run = result.models[self.model]
         self.nodes = result.names["nodes"]
         self._number = {name: place for place, name in enumerate(self.nodes)}
-        self.cycles = int(case["thermal"]["cycles"])
+        self._words = words.Words()
+        self.cycles = case.thermal.cycles
         self._ends = self._cycle_ends(self._run)
         if self.answers is None:
             self.cycles = max(len(self._ends) - 1, 1)
@@ -72,14 +80,14 @@ class TrussPart:
         self.measures = self._measures()
         self.columns = {model: self._curves(run) for model, run in result.models.items()}
 
-    def _cycle_ends(self, run: ModelRun) -> np.ndarray:
+    def _cycle_ends(self, run: Run) -> np.ndarray:
         """Samples at the start and nearest to the ends of the cycles that the run has."""
-        time, period = run.time_s, float(self.case["thermal"]["period_s"])
+        time, period = run.time_s, self.case.period_s
         whole = int(math.floor(float(time[-1]) / period + 1e-6))
         wanted = period * np.arange(min(self.cycles, whole) + 1) if whole else time[[0, -1]]
         return np.abs(time[:, None] - wanted).argmin(axis=0)
 
-    def _since_start(self, run: ModelRun, group: str, name: str) -> np.ndarray:
+    def _since_start(self, run: Run, group: str, name: str) -> np.ndarray:
         values = getattr(run, group)[name].values[self._cycle_ends(run)]
         return values[1:] - values[0]
 
@@ -94,9 +102,9 @@ class TrussPart:
     def _joints(self) -> list[Row]:
         """Every joint: name, kind, node, and what it is ranked by; in the order of the file."""
         found: list[Row] = [
-            {"name": item["name"], "kind": kind, "node": self._number[item["nodes"][0] if kind == "slider" else
-                                                                      item["bearing_node"]]}
-            for kind in ("slider", "revolute") for item in self.case.get(kind) or []
+            *({"name": item.name, "kind": "slider", "node": self._number[item.nodes[0]]} for item in self.case.slider),
+            *({"name": item.name, "kind": "revolute", "node": self._number[item.bearing_node]}
+              for item in self.case.revolute),
         ]
         if self.answers is None:
             self._read_off(found)
@@ -134,7 +142,8 @@ class TrussPart:
         unit = self.answers.unit if self.answers is not None else "m"
         every = [
             Measure("contribution", "Contribution to the jump", unit,
-                    "What the friction of a joint holds of the output's jump, with its sign; all together give the jump.",
+                    "What the friction of a joint holds of the output's jump, with its sign; all together give the "
+                    "jump.",
                     True),
             Measure("heat", "Heat of friction", "J", "Heat of the joint's friction over all cycles: where it slips, "
                     "not what holds the jump."),
@@ -152,11 +161,14 @@ class TrussPart:
         order = sorted(self.joints, key=lambda joint: -abs(joint[first]))
         return [{**joint, "text": self._texts(joint)} for joint in order[:MOST_BARS]]
 
+    def _largest(self, measure: Measure) -> float:
+        return max(abs(joint[measure.key]) for joint in self.joints)
+
     def _texts(self, joint: Row) -> dict[str, str]:
         found = {}
         for measure in self.measures:
-            value, largest = joint[measure.key], max(abs(other[measure.key]) for other in self.joints)
-            rounding = abs(value) < ROUNDED * largest
+            value = joint[measure.key]
+            rounding = abs(value) < ROUNDED * self._largest(measure)
             found[measure.key] = ROUNDING if rounding else text(value, measure.unit, 4)
             found[f"{measure.key}_short"] = ROUNDING if rounding else text(value, measure.unit, 3)
         if "share" in joint:
@@ -170,6 +182,19 @@ class TrussPart:
     # ---------------------------------------------------------------- words and tables
 
     @property
+    def verdict(self) -> str:
+        """What the answers find of the cycles, as a sentence; "" without answers."""
+        told = "" if self.answers is None else self.answers.verdict_text
+        return f"{told[:1].upper()}{told[1:]}." if told else ""
+
+    def cards(self) -> list[Row]:
+        """Return the jump of the answers' output for the top of the page."""
+        if self.answers is None:
+            return []
+        jump = text(self.answers.summary["jump"].value, self.answers.unit)
+        return [{"label": f"Jump of the output {self.answers.output}", "values": [(self.answers.verdict, jump)]}]
+
+    @property
     def sentences(self) -> list[str]:
         """What was found, in words."""
         if self.answers is None:
@@ -180,21 +205,23 @@ class TrussPart:
         verdict = self.answers.verdict_text
         found.append(f"Over the cycles: {verdict}.")
         if "sum_of_contributions" in numbers:
-            found.append(f"The contributions of all joints add up to {text(numbers['sum_of_contributions'].value, unit, 4)}, "
-                         f"the jump but for {numbers['sum_error_relative'].value:.1g} of it.")
+            total = text(numbers["sum_of_contributions"].value, unit, 4)
+            found.append(f"The contributions of all joints add up to {total}, the jump but for {numbers['sum_error_relative'].value:.1g} of it.")
         return found
 
     def _without_answers(self) -> list[str]:
         name = self.nodes[self._first]
-        jumps = [f"{text(float(np.linalg.norm(self._since_start(run, 'history', 'displacement_m')[-1, self._first])), 'm', 4)} "
-                 f"in the {words.inside(words.MODELS[model])}" for model, run in self.result.models.items()]
+        moved = {model: self._since_start(run, "history", "displacement_m")[-1, self._first]
+                 for model, run in self.result.models.items()}
+        jumps = [f"{text(float(np.linalg.norm(way)), 'm', 4)} in the {words.inside(words.MODELS[model])}"
+                 for model, way in moved.items()]
         found = [f"The node that jumps most, {name}, is after {_cycles(self.cycles)} away from where it began by "
                  f"{' and '.join(jumps)}."]
         if self.joints:
             by = "how far they moved" + (" and by the heat of their friction" if any(
                 measure.key == "heat" for measure in self.measures) else "")
-            found.append(f"This file has no contributions of joints: they are ranked by {by}, which is not what holds the "
-                         "jump. 'statejump truss answers' finds the contributions.")
+            found.append(f"This file has no contributions of joints: they are ranked by {by}, which is not what holds "
+                         "the jump. 'statejump truss answers' finds the contributions.")
         return found
 
     @property
@@ -216,7 +243,8 @@ class TrussPart:
             if not isinstance(value, float):
                 return value or "–"
             unit = unit_of(key)
-            return ROUNDING if unit in ("m", "rad") and 0 < abs(value) < ROUNDED_SURFACE * size else text(value, unit, 5)
+            rounding = unit in ("m", "rad") and 0 < abs(value) < ROUNDED_SURFACE * size
+            return ROUNDING if rounding else text(value, unit, 5)
 
         places = (*range(min(2, len(rows))), *(2 + place for place in _some(len(rows) - 2, 6)))
         return [{key: shown(key, value) for key, value in rows[place].items()} for place in places]
@@ -233,7 +261,7 @@ class TrussPart:
         ranked = sorted(rows, key=lambda row: -abs(row["elasticity"] or 0.0))
         most = max((abs(row["elasticity"] or 0.0) for row in ranked), default=0.0)
         shown = [
-            {**row, "name": _parameter(row["parameter"]), "key": row["parameter"],
+            {**row, "name": self._words.parameter(row["parameter"]), "key": row["parameter"],
              "bar": 100 * (row["elasticity"] or 0.0) / most if most else 0.0,
              "text": "–" if row["elasticity"] is None else f"{row['elasticity']:+.3g}".replace("-", "−"),
              "given": "differs" if row["value"] is None else text(row["value"], unit_of(row["parameter"]), 4)}
@@ -249,9 +277,10 @@ class TrussPart:
                        f"Loop of node {self.nodes[self._first]}", marks=True)]
         joint = self._leading()
         if joint is not None and joint["kind"] == "slider":
-            found.append(Chart(TEMPERATURE, Axis("truss_slide_m", f"Slide of {joint['name']}"), f"Loop of slider {joint['name']}"))
-        elif joint is not None and self.case["truss"]["dimension"] == 2:
-            clearance = next(item["radial_clearance_m"] for item in self.case["revolute"] if item["name"] == joint["name"])
+            found.append(Chart(TEMPERATURE, Axis("truss_slide_m", f"Slide of {joint['name']}"),
+                               f"Loop of slider {joint['name']}"))
+        elif joint is not None and self.case.truss.dimension == 2:
+            clearance = next(item.radial_clearance_m for item in self.case.revolute if item.name == joint["name"])
             found.append(Chart(
                 Axis("truss_journal_x_m", "Journal − bearing centre, along x"), Axis("truss_journal_y_m", "along y"),
                 f"Journal of {joint['name']} in its clearance", equal=True, rings_m=(clearance,),
@@ -265,19 +294,19 @@ class TrussPart:
                                f"Largest axial force, link {link}: compression positive"))
         return found
 
-    def _leading(self) -> Optional[Row]:
+    def _leading(self) -> Row | None:
         if not self.measures:
             return None
         first = self.measures[0].key
         return max(self.joints, key=lambda joint: abs(joint[first]))
 
-    def _hardest_link(self) -> Optional[str]:
+    def _hardest_link(self) -> str | None:
         force = self._run.links["axial_force_N"]
         if not force.values.size or not np.abs(force.values).max() > 0:
             return None
         return self.result.names["links"][int(np.argmax(np.abs(force.values).max(axis=0)))]
 
-    def _curves(self, run: ModelRun) -> dict[str, np.ndarray]:
+    def _curves(self, run: Run) -> dict[str, np.ndarray]:
         names, way = self.result.names, self.node_jumps[-1, self._first]
         size = float(np.linalg.norm(way))
         moved = run.history["displacement_m"].values[:, self._first]
@@ -293,9 +322,6 @@ class TrussPart:
             found["truss_link_N"] = run.links["axial_force_N"].values[:, names["links"].index(link)]
         return found
 
-    UNITS = {"truss_node_m": "m", "truss_slide_m": "m", "truss_journal_x_m": "m", "truss_journal_y_m": "m",
-             "truss_journal_m": "m", "truss_link_N": "N"}
-
     # ---------------------------------------------------------------- drawing
 
     def payload(self, encoded: Callable[[np.ndarray], Any]) -> Row:
@@ -306,15 +332,15 @@ class TrussPart:
         start = self._run.history["position_m"].values[0]
         size = float(np.ptp(start, axis=0).max())
         largest = float(self._size_m.max())
-        lines = [{"nodes": [self._number[name] for name in item["nodes"]], "kind": kind, "name": item["name"]}
-                 for kind in ("link", "spring") for item in self.case.get(kind) or []]
+        lines = [{"nodes": [self._number[name] for name in item.nodes], "kind": kind, "name": item.name}
+                 for kind, items in (("link", self.case.link), ("spring", self.case.spring)) for item in items]
         return {
-            "dimension": self.case["truss"]["dimension"],
+            "dimension": self.case.truss.dimension,
             "nodes": self.nodes,
             "start": encoded(np.ascontiguousarray(start).ravel()),
             "lines": lines,
-            "held": [place for place, item in enumerate(self.case["node"]) if words.is_held(item, self.case)],
-            "guided": [place for place, item in enumerate(self.case["node"]) if words.is_guided(item, self.case)],
+            "held": [place for place, item in enumerate(self.case.node) if is_held(self.case, item)],
+            "guided": [place for place, item in enumerate(self.case.node) if is_guided(self.case, item)],
             "cycles": [{"cycle": place + 1, "jump": encoded(self.node_jumps[place].ravel())}
                        for place in _some(len(self.node_jumps), MOST_CYCLES)],
             "jumps": [text(float(size), "m", 4) for size in self._size_m],
@@ -323,7 +349,7 @@ class TrussPart:
             "joints": [{**joint, "text": self._texts(joint)} for joint in self.joints],
             "measures": [
                 {"key": measure.key, "label": measure.label, "note": measure.note, "signed": measure.signed,
-                 **dict(zip(("scale", "unit"), scale_of(measure.unit, max(abs(joint[measure.key]) for joint in self.joints))))}
+                 **dict(zip(("scale", "unit"), scale_of(measure.unit, self._largest(measure))))}
                 for measure in self.measures
             ],
             "most": MOST_BARS,
@@ -339,16 +365,9 @@ def _cycles(count: int) -> str:
     return "one cycle" if count == 1 else f"{count} cycles"
 
 
-def _parameter(key: str) -> str:
-    """Return ``revolute.*.radial_clearance_m`` as words."""
-    section, name, column = key.split(".", 2) if key.count(".") >= 2 else ("", "", key)
-    of = f"all {words.plain(section).lower()}s" if name == "*" else f"{words.plain(section).lower()} {name}"
-    return f"{words.parameter(column)} of {of}"
-
-
-def part_of(result: Result, case: dict[str, Any]) -> Optional[TrussPart]:
-    """Return the part of a page for a truss; None for other kinds, or without a history of its nodes."""
-    if result.kind != "truss" or not case.get("node") or not result.models:
+def page(result: Result, case: TrussCase) -> TrussPart | None:
+    """Return the part of a page for a truss; None without a history of its nodes."""
+    if not result.models:
         return None
     run = next(iter(result.models.values()))
     if not {"position_m", "displacement_m"} <= set(run.history) or not len(run.time_s):

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a kind says of the page of ``statejump report``: which curves it shows, and a part of its own."""
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Axis:
+    """An axis of a chart.
+
+    :param column: name of the column, in the history or in the curves of the page's part
+    :param label: what it is called; "": as the words of the kind call the column
+    :param from_start: whether the change since the first sample is shown
+    """
+
+    column: str
+    label: str = ""
+    from_start: bool = False
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Curves of all models over each other.
+
+    :param equal: same scale on both axes
+    :param rings_m: radii of circles about the origin [m]
+    :param stages: whether the stages of the run are shaded, along the time
+    :param marks: whether events and the state jump are marked
+    """
+
+    x: Axis
+    y: Axis
+    title: str
+    equal: bool = False
+    rings_m: tuple[float, ...] = ()
+    stages: bool = False
+    marks: bool = False
+
+
+TEMPERATURE = Axis("temperature_change_K", "Temperature change")
+TIME = Axis("time_s", "Time")
+
+
+class Part(Protocol):
+    """A part of a run's page that only one kind has: what its ability ``page`` returns.
+
+    :param template: file of its HTML, which gets the part as ``part``
+    :param columns: curves of its charts by model and name
+    :param units: their units by name
+    """
+
+    template: Path
+    columns: Mapping[str, Mapping[str, np.ndarray]]
+    units: Mapping[str, str]
+
+    @property
+    def verdict(self) -> str:
+        """What it finds, as a sentence; "": nothing."""
+
+    def cards(self) -> list[dict[str, Any]]:
+        """Return numbers for the top of the page: ``label`` and ``values``, pairs of a name and a text."""
+
+    def charts(self) -> list[Chart]:
+        """Return the charts of the page."""
+
+    def payload(self, encoded: Callable[[np.ndarray], Any]) -> dict[str, Any]:
+        """Return the data of the drawing of nodes and joints, ``Truss`` of web/src/payload.ts. ``encoded`` makes a
+        column of the page of an array."""
