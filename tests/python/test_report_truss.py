@@ -13,13 +13,16 @@ import pytest
 from conftest import COMMAND, REPOSITORY, Outcome
 from test_report import MEGABYTE, Page, decoded, pytestmark, written  # noqa: F401  (no page, no test)
 
-from statejump.core import units
-from statejump.report import words
+import statejump as sj
 from statejump.cli.report import result_files
+from statejump.core import units
+from statejump.core.run import GROUPS
+from statejump.kinds.truss.page import SHOWN_JUMP
+from statejump.report import words
 from statejump.report.document import Document
 from statejump.report.drawing import round_down
-from statejump.report.truss import SHOWN_JUMP
-from statejump.results import Result, read
+from statejump.results.contents import Result
+from statejump.results.read import read
 
 TRUSSES = REPOSITORY / "cases" / "trusses"
 
@@ -53,7 +56,8 @@ def test_numbers_on_the_page_are_those_of_the_answers(statejump: Callable[..., O
     for row in answers.tables["contributions"]:
         assert row["joint"] in found.words and units.text(row["contribution"], "m", 4) in found.words
     strongest = max(answers.tables["sensitivities"], key=lambda row: abs(row["elasticity"]))
-    assert words.parameter(strongest["parameter"].rpartition(".")[2]) + " of all revolutes" in found.words
+    key = strongest["parameter"].rpartition(".")[2]
+    assert words.of_kind("truss").plain(key) + " of all revolutes" in found.words
     assert f"{strongest['elasticity']:+.3g}" in found.words
     assert "30 nodes and 24 links" in found.words and "take 0.5 to 1 of the temperature change" in found.words
     assert "Both models" not in found.words and "contributions of all joints add up to" in found.words
@@ -78,7 +82,7 @@ def test_the_drawing_gets_the_jumps_of_each_cycle(results: Path) -> None:
     assert {joint["name"]: joint["heat"] for joint in truss["joints"]} == heat
     assert [measure["key"] for measure in truss["measures"]] == ["contribution", "heat", "jump"]
     # Joints stand at the node of their bearing, links between theirs.
-    case = result.case()
+    case = result.case
     assert [truss["nodes"][joint["node"]] for joint in truss["joints"]] == [item.bearing_node for item in case.revolute]
     assert [[truss["nodes"][node] for node in line["nodes"]] for line in truss["lines"]] == [
         *(item.nodes for item in case.link), *(item.nodes for item in case.spring)]
@@ -118,7 +122,7 @@ def test_interrupted_run_shows_what_there_is(results: Path) -> None:
     def cut(columns: dict[str, Any]) -> dict[str, Any]:
         return {name: replace(column, values=column.values[:30]) for name, column in columns.items()}
 
-    short = replace(run, **{group: cut(getattr(run, group)) for group in ("history", "energy", "links", "contacts")})
+    short = replace(run, **{group: cut(getattr(run, group)) for group in GROUPS})
     truss = truss_of(replace(result, complete=False, models={"reduced": short}))
     assert len(truss["cycles"]) == 1 and truss["largest_m"] > 0
 
@@ -159,9 +163,7 @@ def test_a_hundred_joints_in_space(tmp_path: Path, statejump: Callable[..., Outc
                  "Joints of the reduced model stick elastically, as those of the DEM."]),
 ])
 def test_case_in_words(kind: str, sentences: list[str]) -> None:
-    from statejump.kinds.registry import load_case
-
-    described = words.describe("truss", load_case(TRUSSES / f"{kind}.toml").dict())
+    described = words.described(sj.load(TRUSSES / f"{kind}.toml").definition)
     for sentence in sentences:
         assert sentence in described, described
     assert described[-1].startswith("The temperature changes by 100\u202fK")

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     from statejump.core.figures import Sheet
     from statejump.kinds.truss.answers.study import TrussAnswers
+    from statejump.kinds.truss.page import TrussPart
+    from statejump.results.contents import Result
 
 
 class Truss(Kind):
@@ -108,6 +110,11 @@ class Truss(Kind):
         from statejump.kinds.truss import outcomes
 
         return outcomes.quick(case)
+
+    def page(self, result: Result, case: TrussCase) -> TrussPart | None:
+        from statejump.kinds.truss import page
+
+        return page.page(result, case)
 
     def outcomes(self, case: TrussCase, run: Run) -> dict[str, float]:
         from statejump.kinds.truss import outcomes
