@@ -19,10 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from statejump.kinds.registry import parse_case
 from statejump.core.output import write_atomically
-from statejump.kinds.truss import solve
-from statejump.kinds.truss.generate import planar as generate
+from statejump.kinds.loading import parse_case
+from statejump.kinds.truss import generate, solve
 
 SIZES = (10, 100, 1_000, 10_000, 100_000)
 TRUSSES = ("ring", "umbrella")
@@ -41,7 +40,7 @@ def document(truss: str, joints: int) -> dict[str, Any]:
 
 def measure(truss: str, joints: int) -> str:
     """Return one row of the table."""
-    resolved = parse_case(document(truss, joints), truss).resolve()
+    resolved = parse_case(document(truss, joints)).resolve()
     started = time.process_time()
     found = solve.path(resolved, increments_per_branch=10, locate_events=False, cycle_ends_only=True)
     seconds = time.process_time() - started

@@ -14,11 +14,10 @@ from statistics import median
 from typing import Any
 
 from run import BenchError, parse, publish
-from statejump.kinds.registry import parse_case
-from statejump.core.yade_process import execute
 from statejump.core.errors import StatejumpError
-from statejump.kinds.truss import dem
-from statejump.kinds.truss.generate import planar as generate
+from statejump.core.yade_process import execute
+from statejump.kinds.loading import parse_case
+from statejump.kinds.truss import KIND, dem, generate
 from statejump.kinds.truss.solve import path
 
 SIZES = (100, 1_000, 10_000)  # joints
@@ -30,8 +29,9 @@ COLUMNS = ("truss", "joints", "links", "repetition", "steps", "cpu_time_s", "ns_
 
 def resolved(kind: str, joints: int) -> dict[str, Any]:
     """Return the case as the YADE script wants it."""
-    case = parse_case(CASES[kind](joints), f"{kind}_{joints}")
-    return dem.resolved(case, path(case.resolve(), increments_per_branch=1, locate_events=False))
+    case = parse_case(CASES[kind](joints))
+    found = path(case.resolve(), increments_per_branch=1, locate_events=False)
+    return {"scene": KIND.scene_module(), **dem.resolved(case, found)}
 
 
 def run(values: dict[str, Any], steps: int) -> float:
@@ -39,7 +39,7 @@ def run(values: dict[str, Any], steps: int) -> float:
     step = values["dem"]["time_step_s"]
     shortened = {**values, "number_of_samples": 1,
                  "dem": {**values["dem"], "number_of_steps": steps, "time_step_s": step, "threads": 1}}
-    return execute(shortened, lambda fraction: None).summary["cpu_time_s"]
+    return execute(shortened, lambda share: None).about["cpu_time_s"]
 
 
 def measure(repetitions: int) -> list[dict[str, Any]]:

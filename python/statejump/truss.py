@@ -24,7 +24,7 @@ from statejump.case import Case, Progress
 from statejump.core.errors import Range
 from statejump.core.progress import shown
 from statejump.kinds.loading import parse_case
-from statejump.kinds.truss.generate import lattices, planar
+from statejump.kinds.truss import generate
 from statejump.kinds.truss.generate.document import Document
 from statejump.schema.rules import WHOLE, Rule
 
@@ -57,12 +57,13 @@ def _making(document: Callable[Keys, Document]) -> Callable[Keys, Case]:
     return make
 
 
-chain = _making(planar.chain)
-iwan = _making(planar.iwan)
-umbrella = _making(planar.umbrella)
-ring = _making(lattices.ring)
-mast = _making(lattices.mast)
-GENERATORS: dict[str, Callable[..., Case]] = {
+chain = _making(generate.chain)
+iwan = _making(generate.iwan)
+umbrella = _making(generate.umbrella)
+ring = _making(generate.ring)
+mast = _making(generate.mast)
+# What the commands of ``statejump truss`` are made of.
+MAKERS: dict[str, Callable[..., Case]] = {
     "chain": chain, "iwan": iwan, "umbrella": umbrella, "ring": ring, "mast": mast,
 }
 

@@ -16,17 +16,20 @@ from conftest import Outcome
 from statejump.campaign import execute, journal, tables, work
 from statejump.campaign.campaign_file import MONTECARLO, SWEEP, Campaign, load_campaign
 from statejump.campaign.sampling import montecarlo_draws
-from statejump.kinds.registry import load_case, parse_case
 from statejump.core.errors import StatejumpError
-from statejump.kinds.truss.answers import answers, reflector
-from statejump.kinds.truss.generate.planar import GENERATORS
-from statejump.kinds.truss.resolved import ResolvedTruss
+from statejump.kinds.loading import parse_case
+from statejump.kinds.truss.answers import reflector
+from statejump.kinds.truss.answers.contributions import contributions
+from statejump.kinds.truss.answers.jumps import node_jumps, quick_path, resolution_m, verdict
+from statejump.kinds.truss.answers.outputs import chosen_output
 from statejump.kinds.truss.answers.sensitivity import sensitivities
+from statejump.kinds.truss.generate import GENERATORS
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
 
 def made(kind: str, n: int, **keys: Any) -> ResolvedTruss:
-    return parse_case(GENERATORS[kind](n, name="t", **keys), "t").resolve()
+    return parse_case(GENERATORS[kind](n, name="t", **keys)).resolve()
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +37,7 @@ def chain() -> TrussPath:
     """Chain whose frictions and bars all differ."""
     truss = made("chain", 5)
     varied = 1 + 0.1 * np.arange(5)
-    return answers.quick_path(replace(
+    return quick_path(replace(
         truss,
         sliders=replace(truss.sliders, normal_force_N=truss.sliders.normal_force_N * varied[::-1]),
         links=replace(truss.links, cross_section_area_m2=truss.links.cross_section_area_m2 * varied),
@@ -43,7 +46,7 @@ def chain() -> TrussPath:
 
 @pytest.fixture(scope="module")
 def mast() -> TrussPath:
-    return answers.quick_path(made("mast", 2))
+    return quick_path(made("mast", 2))
 
 
 def test_contributions_of_the_chain(chain: TrussPath) -> None:
@@ -52,9 +55,9 @@ def test_contributions_of_the_chain(chain: TrussPath) -> None:
     compliance = links.stress_free_length_m / (links.young_modulus_Pa * links.cross_section_area_m2)
     # Slider j pushes on bars 1 to j: jump = Σ_i l_i/(EA)_i Σ_{j >= i} f_j, all joints slipping to the end.
     exact = friction * np.cumsum(compliance)
-    output = answers.chosen_output(chain, "node")
+    output = chosen_output(chain, "node")
     assert output.name == "node:N5"
-    found = answers.contributions(chain, output)
+    found = contributions(chain, output)
     # The truss is linear: rounding of positions of 2.5 m over a jump of half a millimetre.
     assert found.contribution == pytest.approx(exact, rel=1e-9)
     assert found.jump == pytest.approx(exact.sum(), rel=1e-9)
@@ -63,7 +66,7 @@ def test_contributions_of_the_chain(chain: TrussPath) -> None:
 
 
 def test_sensitivities_of_the_chain(chain: TrussPath) -> None:
-    output = answers.chosen_output(chain, "node")
+    output = chosen_output(chain, "node")
     jump = output.jump(chain)
     found = {row.parameter: row for row in sensitivities(chain, output)}
     assert {row.verdict for row in found.values()} == {"smooth"}
@@ -71,13 +74,13 @@ def test_sensitivities_of_the_chain(chain: TrussPath) -> None:
     for name, exact, error in (("slider.*.friction_coefficient", 1.0, 1e-9), ("link.*.young_modulus_Pa", -1.0, 1.1e-4)):
         assert found[name].per_relative_change / jump == pytest.approx(exact, abs=error), name
     each = [row for row in sensitivities(chain, output, each=True) if row.parameter.endswith(".friction_coefficient")]
-    shares = answers.contributions(chain, output)
+    shares = contributions(chain, output)
     assert [row.per_relative_change for row in each] == pytest.approx(shares.contribution, rel=1e-9)
 
 
 def test_friction_forces_give_the_jump_back(mast: TrussPath) -> None:
-    output = answers.chosen_output(mast, "node")
-    shares = answers.contributions(mast, output)
+    output = chosen_output(mast, "node")
+    shares = contributions(mast, output)
     # An equilibrium is found to 1e-12 of its forces; the mast is some 1e4 times softer than its bars.
     assert shares.reproduced == pytest.approx(shares.jump, rel=1e-6)
     # Third order in the turning of links by 1e-3 and of contacts by 0.1.
@@ -87,10 +90,10 @@ def test_friction_forces_give_the_jump_back(mast: TrussPath) -> None:
 def test_not_differentiable_is_said() -> None:
     # Friction at which the joint of a rib just slips back: more, and it stays.
     case = GENERATORS["umbrella"](3, name="t")
-    truss = parse_case(case, "t").resolve()
+    truss = parse_case(case).resolve()
     truss = replace(truss, revolutes=replace(truss.revolutes, friction_coefficient=np.full(3, 0.1885)))
-    path = answers.quick_path(truss)
-    words = {row.parameter: row.verdict for row in sensitivities(path, answers.chosen_output(path, "node"), step=0.1)}
+    path = quick_path(truss)
+    words = {row.parameter: row.verdict for row in sensitivities(path, chosen_output(path, "node"), step=0.1)}
     assert words["revolute.*.friction_coefficient"] == "not differentiable"
 
 
@@ -103,10 +106,10 @@ def test_kink_whose_slopes_cancel_is_said() -> None:
     most = float((links.young_modulus_Pa * links.cross_section_area_m2)[0]) * strain / (2 + strain)
     truss = replace(truss, sliders=replace(
         truss.sliders, normal_force_N=most / truss.sliders.friction_coefficient))
-    path = answers.quick_path(truss)
-    found = {row.parameter: row for row in sensitivities(path, answers.chosen_output(path, "node"))}
+    path = quick_path(truss)
+    found = {row.parameter: row for row in sensitivities(path, chosen_output(path, "node"))}
     row = found["slider.*.friction_coefficient"]
-    jump = answers.node_jumps(path)[-1, 1, 0]
+    jump = node_jumps(path)[-1, 1, 0]
     assert jump == pytest.approx(strain / (2 + strain) * links.stress_free_length_m[0], rel=1e-6)
     assert abs(row.per_relative_change) < strain * jump  # 1 and -(1 + ε), the mean of both
     assert row.verdict == "not differentiable"
@@ -114,8 +117,8 @@ def test_kink_whose_slopes_cancel_is_said() -> None:
 
 def test_verdicts() -> None:
     truss = made("mast", 2, cycles=3)
-    path = answers.quick_path(truss)
-    found = answers.verdict(path, answers.resolution_m(path, answers.quick_path(truss, 100)))
+    path = quick_path(truss)
+    found = verdict(path, resolution_m(path, quick_path(truss, 100)))
     assert found.word == "shakedown" and len(found.cycle_jump_m) == 3
 
     def of(each: list[float]) -> str:
@@ -125,7 +128,7 @@ def test_verdicts() -> None:
         ends["displacement_m"] = moved
         for key in ("slider_dissipation_J", "revolute_dissipation_J"):
             ends[key] = np.zeros((len(each) + 1, 1))
-        return answers.verdict(replace(path, cycle_ends=ends, states=ends)).word
+        return verdict(replace(path, cycle_ends=ends, states=ends)).word
 
     assert of([1e-3, 1e-4, 1.003e-4, 1e-4]) == "ratcheting"
     assert of([1e-3, 0, 0]) == "shakedown"
@@ -213,7 +216,7 @@ def test_command(statejump: Callable[..., Outcome], cases: Path, tmp_path: Path)
 
 
 @pytest.mark.parametrize("arguments, sentence", [
-    (("--output", "node:X"), "node 'X' is unknown"),
+    (("--output", "node:X"), "--output = 'node:X' is not allowed: there is no node 'X'"),
     (("--output", "rms"), "the truss has no [reflector]"),
     (("--output", "size"), "--output = 'size' is not allowed"),
     (("--cycles", 0), "--cycles = 0 is not allowed"),

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import copy
 import re
+import sys
 import tomllib
+from inspect import signature
 from math import inf, pi
 from pathlib import Path
 from typing import Any, Callable
@@ -12,10 +14,13 @@ from typing import Any, Callable
 import numpy as np
 import pytest
 
-from statejump.kinds.registry import TrussCase, load_case, parse_case
+import statejump as sj
 from statejump.core.errors import StatejumpError
+from statejump.core.figures import save
+from statejump.kinds.loading import load_case, parse_case
+from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.generate import GENERATORS
 from statejump.kinds.truss.generate.document import to_toml, write
-from statejump.kinds.truss.generate.planar import GENERATORS
 from statejump.kinds.truss.resolved import GROUND, ResolvedTruss, distances
 
 BAR = {"young_modulus_Pa": 70e9, "cross_section_area_m2": 9e-6, "thermal_expansion_per_K": 2e-5, "mass_kg": 1}
@@ -72,14 +77,14 @@ def spatial() -> dict[str, Any]:
 
 
 def parsed(data: dict[str, Any]) -> TrussCase:
-    case = parse_case(data, "truss.toml")
+    case = parse_case(data, Path("truss.toml"))
     assert isinstance(case, TrussCase)
     return case
 
 
 def sentence(data: dict[str, Any]) -> str:
     with pytest.raises(StatejumpError) as error:
-        parse_case(data, "truss.toml")
+        parse_case(data, Path("truss.toml"))
     assert str(error.value).startswith("truss.toml: ")
     return str(error.value).removeprefix("truss.toml: ")
 
@@ -261,8 +266,20 @@ MISTAKES: dict[str, tuple[Callable[[dict[str, Any]], None], str]] = {
         "of -1000 K, 0.5 times that of program 'shade'"),
     "program of another length": (
         set_key("program", "shade", cycles=3),
-        "program 'shade': cycles = 3 of period_s = 1.0 are not allowed: they last 3 s and must last 2 s, as "
-        "thermal.cycles of thermal.period_s do"),
+        "program 'shade': period_s = 1.0 is not allowed: 3 cycles of it last 3 s and must last 2 s, as thermal.cycles of "
+        "thermal.period_s do"),
+    "table that lasts otherwise than it is said": (
+        set_key("program", "shade", shape="table", temperature_change_max_K=None, table_time_s=[0.0, 1.0],
+                table_temperature_change_K=[0.0, 0.0], period_s=2.0),
+        "program 'shade': period_s = 2.0 is not allowed: the table lasts 1 s, and its own times are the times; leave "
+        "period_s out"),
+    "table without times": (
+        set_key("program", "shade", shape="table", temperature_change_max_K=None),
+        "program 'shade': table_time_s is missing: a list of times [s] is needed for a table"),
+    "table of one time": (
+        set_key("program", "shade", shape="table", temperature_change_max_K=None, table_time_s=[0.0],
+                table_temperature_change_K=[0.0]),
+        "program 'shade': table_time_s = [0.0] is not allowed: must be at least two times [s] that start at 0 and rise"),
     "program without amplitude": (
         set_key("program", "shade", temperature_change_max_K=None),
         "program 'shade': temperature_change_max_K is missing: must be between -10000 and 10000 [K]"),
@@ -492,7 +509,7 @@ def test_umbrella_rib_is_the_umbrella_case(cases: Path) -> None:
     assert at["B"][:2] == pytest.approx(case.ideal_position_m, abs=1e-15)
     assert at["J"].tolist() == at["B"].tolist()
     for index, link in enumerate((case.link_ab, case.link_bc)):
-        for key, value in link.dict().items():
+        for key, value in link.to_dict().items():
             assert getattr(truss.links, key)[index] == value, key
     names, joint = truss.links.names, truss.revolutes
     assert [names[joint.bearing_link[0]], names[joint.journal_link[0]]] == ["AB", "CB"]
@@ -510,7 +527,7 @@ def test_umbrella_rib_is_the_umbrella_case(cases: Path) -> None:
     assert spring.links.tolist() == [[0, 1]]
     angle = np.arctan2(cb[1], cb[0]) - np.arctan2(ab[1], ab[0])
     assert angle == pytest.approx(case.flare_angle_rad, abs=1e-13)  # 1e-15 m of 0.05 m, and pi's rounding
-    for key, value in case.thermal.dict().items():
+    for key, value in case.thermal.to_dict().items():
         assert getattr(truss.programs[0], key) == value, key
     assert rib.samples_per_cycle == case.samples_per_cycle
     assert rib.dem.link_damping_ratio == case.damping.axial_damping_ratio
@@ -611,8 +628,61 @@ def test_mast_is_rigid_and_every_half_link_carries(n: int) -> None:
 
 
 def test_single_rib_has_no_cables() -> None:
-    with pytest.raises(StatejumpError, match="a single rib has no neighbour"):
-        GENERATORS["umbrella"](1, cable_preload_N=1.0)
+    with pytest.raises(StatejumpError) as refused:
+        sj.truss.umbrella(1, cable_preload_N=1.0)
+    assert str(refused.value) == "cable_preload_N = 1.0 is not allowed: a single rib has no neighbour"
+    assert refused.value.fields()["key"] == "cable_preload_N"
+
+
+def test_makers_return_the_cases_of_the_commands() -> None:
+    for kind, document in GENERATORS.items():
+        make = getattr(sj.truss, kind)
+        case = make(3, cycles=2, name="made")
+        assert case.to_dict() == sj.load(document(3, cycles=2, name="made")).to_dict()
+        assert (case.name, case.kind, case.thermal.cycles) == ("made", "truss", 2)
+        assert ":param n:" in make.__doc__ and list(signature(make).parameters) == list(signature(document).parameters)
+    for number, cause in ((2, "must be between 3 and 1e+06 [-]"),
+                          (3.0, "must be a whole number, between 3 and 1e+06 [-]")):
+        with pytest.raises(StatejumpError) as refused:
+            sj.truss.ring(number)
+        assert str(refused.value) == f"n = {number} is not allowed: {cause}"
+
+
+def test_a_failure_names_joint_and_nodes() -> None:
+    data = frame()
+    set_key("slider", "S", nodes=["B"])(data)
+    with pytest.raises(StatejumpError) as refused:
+        parse_case(data)
+    fields = refused.value.fields()
+    assert (fields["item"], fields["key"], fields["value"]) == ("slider 'S'", "axis", [1.0, 0.0])
+    assert (fields["joint"], fields["nodes"]) == ("S", ["B"])
+
+
+def test_programs_of_equal_duration_are_those_to_rounding() -> None:
+    """3 x 0.1 s is not 0.3 s in floating point; it is another number of cycles of the same duration."""
+    data = frame()
+    data["thermal"].update(cycles=1, period_s=0.3)
+    set_key("program", "shade", cycles=3, period_s=0.1)(data)
+    assert [(each.cycles, each.period_s) for each in parsed(data).programs] == [(1, 0.3), (3, 0.1)]
+    found = sj.truss.chain(2, cycles=3, period_s=0.1).definition.origin.data
+    found = {**found, "program": [{"name": "shade", "shape": "sine", "temperature_change_max_K": 50.0, "cycles": 1,
+                                   "period_s": 0.3}]}
+    found["link"][1]["program"] = "shade"
+    run = sj.load(found).reduced()
+    assert run.time_s[-1] == pytest.approx(0.3, rel=1e-15)
+
+
+def test_table_lasts_as_long_as_its_last_time() -> None:
+    data = frame()
+    table = {"shape": "table", "table_time_s": [0.0, 0.5, 2.0], "table_temperature_change_K": [0.0, 10.0, 0.0]}
+    data["thermal"] = {**table, "cycles": 2}
+    set_key("program", "shade", cycles=1, period_s=4.0)(data)
+    case = parsed(data)
+    assert (case.period_s, case.duration_s, case.programs[1].period_s) == (2.0, 4.0, 4.0)
+    data["thermal"] = {"shape": "triangle", "temperature_change_max_K": 1.0, "cycles": 1, "period_s": 4.0}
+    data["program"] = [{"name": "shade", "cycles": 2, **table}]
+    assert parsed(data).programs[1].period_s == 2.0
+    assert parsed(data).resolve().programs[1].to_dict()["table_time_s"] == [0.0, 0.5, 2.0]
 
 
 @pytest.mark.parametrize("kind", ("ring", "chain"))
@@ -646,8 +716,6 @@ def test_draw(name: str, cases: Path, tmp_path: Path, statejump: Callable[..., A
 
 
 def test_draw_every_symbol_and_many_bays(tmp_path: Path) -> None:
-    from statejump.kinds.truss import draw
-
     data = frame()
     data["slider"][0]["clearance_minus_m"] = 1e-3
     data["torsion_spring"].append({"name": "T2", "links": ["AD"], "stiffness_N_m_per_rad": 1.0})
@@ -657,7 +725,7 @@ def test_draw_every_symbol_and_many_bays(tmp_path: Path) -> None:
     for number, each in enumerate((data, loaded, GENERATORS["ring"](100), GENERATORS["chain"](100),
                                    GENERATORS["mast"](1))):
         each["case"]["name"] = f"drawn{number}"
-        written = draw.figure(parsed(each), tmp_path)
+        written = save(sj.truss.draw(sj.load(each)), tmp_path, each["case"]["name"])
         assert [path.suffix for path in written] == [".png", ".svg"] and all(path.is_file() for path in written)
 
 
@@ -689,10 +757,24 @@ def test_bad_options(arguments: tuple[Any, ...], expected: str, tmp_path: Path, 
     assert list(tmp_path.iterdir()) == []
 
 
+def test_draw_into_axes_leaves_the_backend_alone() -> None:
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    before = matplotlib.get_backend(), "matplotlib.pyplot" in sys.modules
+    flat, space = Figure().add_subplot(), Figure().add_subplot(projection="3d")
+    assert sj.truss.draw(sj.truss.chain(3), flat) is flat.figure and len(flat.lines) > 0
+    case = sj.truss.umbrella(3)
+    assert sj.truss.draw(case, space) is space.figure and len(space.lines) > 0
+    with pytest.raises(StatejumpError, match="a spatial truss needs axes with projection='3d'"):
+        sj.truss.draw(case, flat)
+    assert (matplotlib.get_backend(), "matplotlib.pyplot" in sys.modules) == before
+
+
 def test_draw_is_for_trusses(cases: Path, tmp_path: Path, statejump: Callable[..., Any]) -> None:
     path = cases / "table1.toml"
     outcome = statejump("truss", "draw", path)
     assert outcome.status == 2
     assert outcome.errors == (
-        f"error: {path}: case.kind = 'spring_slider' is not allowed: 'statejump draw' is for 'truss'\n")
+        f"error: {path}: case.kind = 'spring_slider' is not allowed: 'statejump truss draw' is for 'truss'\n")
     assert list(tmp_path.iterdir()) == []

@@ -10,10 +10,9 @@ import pytest
 
 from statejump import _engine
 from statejump.kinds.spring_slider import reduced
-from statejump.kinds.registry import load_case, parse_case
-from statejump.core.errors import StatejumpError
-from statejump.kinds.truss import contacts, solve
-from statejump.kinds.truss.generate import planar as generate
+from statejump.core.errors import FailedRun, Interrupted, StatejumpError
+from statejump.kinds.loading import load_case, parse_case
+from statejump.kinds.truss import contacts, generate, solve
 from statejump.kinds.truss.generate.document import document, finished, node
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.umbrella import reduced as umbrella
@@ -25,7 +24,7 @@ CLOSED_FORM = 1e-10
 
 
 def resolved(document: dict[str, Any]) -> ResolvedTruss:
-    return parse_case(document, "test").resolve()
+    return parse_case(document).resolve()
 
 
 def path(document: dict[str, Any], **options: Any) -> solve.TrussPath:
@@ -136,7 +135,7 @@ def theta_rad(found: solve.TrussPath, at: int) -> np.ndarray:
 def test_umbrella_rib_is_the_elastic_loop() -> None:
     """Two solvers that share no line: Newton on a general truss, and on the rib's own closed equations."""
     case = load_case(ROOT / "cases" / "umbrella_bias.toml")
-    loop = _engine.elastic_loop(umbrella.linkage(case), umbrella.thermal_program(case), samples=2000)
+    loop = _engine.elastic_loop(umbrella.linkage(case), case.thermal_program(), samples=2000)
     found = path(generate.umbrella(1), increments_per_branch=100)
     jump = theta_rad(found, -1) - theta_rad(found, 0)
     # The rolling of a step is of third order on both sides; 100 steps a branch leave 1e-8.

@@ -20,7 +20,7 @@ from statejump.core.thermal import SHAPES
 from statejump.kinds.truss.case import Revolute, TrussReduced
 from statejump.kinds.truss.generate.document import write
 from statejump.schema.fields import fields_of, rule_of
-from statejump.truss import GENERATORS, LARGEST, LEAST
+from statejump.truss import LARGEST, LEAST, MAKERS
 
 # Keys that take one of several names.
 _NAMES = {
@@ -66,8 +66,6 @@ def _generator_command(kind: str, function: Callable[..., Case]) -> click.Comman
     _, described = _summary(function)
 
     def make(n: int, output: Path, force: bool, quiet: bool, **values: Any) -> None:
-        from statejump.schema.json_schema import head_line
-
         console = make_console(quiet)
         if output.exists() and not force:
             raise StatejumpError("exists already", file=output, remedy="--force overwrites it")
@@ -83,6 +81,8 @@ def _generator_command(kind: str, function: Callable[..., Case]) -> click.Comman
             for key, value in values.items() if value != keys[key]
         ]
         line = " ".join(["statejump truss", kind, str(n), *given, "-o", shlex.quote(output.name)])
+        from statejump.schema.json_schema import head_line
+
         write(case.definition.origin.data, output,
               [head_line(case.kind, output), f"# Made by: {line}", "# Units are in the names."])
         joints = len(case.slider) + len(case.revolute)
@@ -106,7 +106,7 @@ def _generator_command(kind: str, function: Callable[..., Case]) -> click.Comman
     return QUIET(command)
 
 
-for _kind, _function in GENERATORS.items():
+for _kind, _function in MAKERS.items():
     truss_command.add_command(_generator_command(_kind, _function))
 
 

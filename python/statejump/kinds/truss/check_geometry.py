@@ -42,7 +42,8 @@ def _lengths(truss: ResolvedTruss) -> None:
             place = [float(value) for value in truss.nodes.position_m[items.nodes[index, 0], : truss.dimension]]
             raise StatejumpError(
                 f"nodes {' and '.join(map(repr, ends))} are at one place, {place} m",
-                cause=f"the {section} has no length", item=f"{section} {items.names[index]!r}", key="nodes", value=ends, nodes=ends,
+                cause=f"the {section} has no length", item=f"{section} {items.names[index]!r}", key="nodes", value=ends,
+                nodes=ends,
             )
 
 

@@ -57,11 +57,11 @@ def _lines(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> None
     colours, _ = link_colours(truss)
     ends = positions[truss.links.nodes]
     axes.add_collection3d(Line3DCollection(list(ends), colors=colours, linewidths=float(np.clip(size / 5, 0.8, 2.2)),
-                                            zorder=2))
+                                           zorder=2))
     for mask, colour, style in ((~springs.cable, SPRING, "-"), (springs.cable, CABLE, (0, (5, 2)))):
         if mask.any():
             axes.add_collection3d(Line3DCollection(list(positions[springs.nodes[mask]]), colors=colour, linewidths=1.0,
-                                                    linestyles=[style], zorder=1.5))
+                                                   linestyles=[style], zorder=1.5))
     guided = nodes.guide_normal.any(axis=1)
     if guided.any():
         tick = 0.07 * span * nodes.guide_normal[guided]
@@ -76,12 +76,12 @@ def _points(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> Non
     dots = dict(linestyle="none", markeredgewidth=max(0.4, size / 12))
     held = nodes.fixed.any(axis=1)
     axes.plot(*positions[held].T, marker="^", color="0.25", markerfacecolor="white", markersize=0.8 * size, zorder=4,
-               **dots)
+              **dots)
     bare = ~held
     if len(truss.sliders.names):
         carriers = truss.sliders.nodes[:, 0]
         axes.plot(*positions[carriers].T, marker="s", color=JOINT, markerfacecolor="white", markersize=0.7 * size,
-                   zorder=4, **dots)
+                  zorder=4, **dots)
         reach = 0.05 * span * truss.sliders.axis
         axes.add_collection3d(Line3DCollection(
             list(np.stack((positions[carriers] - reach, positions[carriers] + reach), axis=1)), colors=JOINT,
@@ -91,12 +91,12 @@ def _points(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> Non
         centres = positions[truss.revolutes.bearing_node].T
         axes.plot(*centres, marker="o", color=JOINT, markerfacecolor="white", markersize=0.7 * size, zorder=5, **dots)
         axes.plot(*centres, marker="o", color=JOINT, markersize=0.35 * size, zorder=6, linestyle="none",
-                   markeredgewidth=0)
+                  markeredgewidth=0)
         bare[truss.revolutes.bearing_node] = bare[truss.revolutes.journal_node] = False
     axes.plot(*positions[bare].T, "o", color="0.2", markersize=0.35 * size, zorder=4, linestyle="none")
     if len(truss.torsion_springs.names):
         axes.plot(*torsion_places(truss).T, marker=MarkerStyle(SPIRAL), color=TORSION, markerfacecolor="none",
-                   markersize=1.3 * size, zorder=4.5, **dots)
+                  markersize=1.3 * size, zorder=4.5, **dots)
     forces = np.linalg.norm(nodes.force_N, axis=1)
     if forces.any():
         arrows = 0.15 * span * nodes.force_N / forces.max()
@@ -104,7 +104,7 @@ def _points(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> Non
         axes.quiver(*(positions[loaded] - arrows[loaded]).T, *arrows[loaded].T, color=LOAD, linewidth=1.4, zorder=7)
     if truss.reflector is not None:
         axes.plot(*positions[truss.reflector.nodes].T, marker="D", color=SURFACE, markerfacecolor="none",
-                   markersize=1.1 * size, zorder=6, **dots)
+                  markersize=1.1 * size, zorder=6, **dots)
 
 
 def _name(axes: Axes3D, truss: ResolvedTruss, middle: np.ndarray, span: float) -> None:
@@ -116,4 +116,4 @@ def _name(axes: Axes3D, truss: ResolvedTruss, middle: np.ndarray, span: float) -
             away = place - middle
             away = away / max(float(np.linalg.norm(away)), 1e-12) * 0.06 * span
             axes.text(*(place + away), short, fontsize=8, ha="center", va="center", zorder=8,
-                       bbox=dict(boxstyle="round,pad=0.1", facecolor="white", edgecolor="none", alpha=0.7))
+                      bbox=dict(boxstyle="round,pad=0.1", facecolor="white", edgecolor="none", alpha=0.7))

@@ -218,7 +218,8 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
         "thermal_work_J": sampled(states["thermal_work_J"]),
         "external_work_J": sampled(states["load_potential_J"][0] - states["load_potential_J"]),
     })
-    summary = {"energy_residue_J": path.energy_residue_J, "solves": float(path.solves), "unknowns": float(path.unknowns)}
+    summary = {"energy_residue_J": path.energy_residue_J, "solves": float(path.solves),
+               "unknowns": float(path.unknowns)}
     run = _run(case, "reduced", plain, energy, items, _events(case, path), summary, native=path,
                sampler=lambda times: reduced_run(case, path, times))
     of_joints = np.concatenate((states["slider_dissipation_J"], states["revolute_dissipation_J"]), axis=1)

@@ -142,8 +142,8 @@ def _failed(truss: ResolvedTruss, failure: _engine.EngineFailure, locate_events:
 
 
 def solve(case: TrussCase, tell: Tell = lambda share: None) -> TrussPath:
-    """Return the path of a case, with the settings of its [reduced]. A case is immutable, so its path is found once: the
-    DEM begins where the reduced model does.
+    """Return the path of a case, with the settings of its [reduced]. A case is immutable, so its path is found once:
+    the DEM begins where the reduced model does.
 
     :param tell: takes the finished share, 0 to 1
     :raises FailedRun: for a mechanism, an unloaded joint, no equilibrium: with names and temperature

@@ -91,7 +91,7 @@ def told(case: TrussCase, runs: Mapping[str, Run]) -> list[Shown | str]:
     lengths = [np.linalg.norm(compare.jumps_m(run), axis=1) for run in others]
     numbers = {node.name: place for place, node in enumerate(case.node)}
     rows = [
-        [name, *(f"{value:.6e}" for value in (*jump[: len(axes)], length, *(found[numbers[name]] for found in lengths)))]
+        [name, *(f"{value:.6e}" for value in (*jump[: len(axes)], length, *(size[numbers[name]] for size in lengths)))]
         for name, *jump, length in compare.jump_table(case, first)
     ]
     title = f"{case.title}: state jump after {case.thermal.cycles} cycle(s)"

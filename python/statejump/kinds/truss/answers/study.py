@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from statejump.core.errors import ABSENT, FailedRun, NotAllowed, Range, StatejumpError
+from statejump.core.engine_failures import EngineFailed
+from statejump.core.errors import ABSENT, NotAllowed, Range, StatejumpError
 from statejump.core.progress import Tell
 from statejump.core.run import Run
 from statejump.core.units import plain
@@ -209,8 +210,8 @@ def _shares(found: TrussPath, output: Output, tell: Tell, tables: dict[str, list
             notes: list[str]) -> Contributions | None:
     try:
         shares = contributions(found, output, tell)
-    except FailedRun as failure:
-        notes.append(f"no contributions: the truss without friction: {failure.cause}")
+    except EngineFailed as failure:
+        notes.append(f"no contributions: the truss without friction: {failure.sentence}")
         return None
     notes += shares.notes
     tables["contributions"] = rows.contribution_rows(shares)

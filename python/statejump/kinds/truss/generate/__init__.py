@@ -1,1 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+"""Generators of trusses: functions that return the document of a case; :mod:`statejump.truss` makes cases of them."""
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from statejump.kinds.truss.generate.document import Document
+from statejump.kinds.truss.generate.lattices import mast, ring
+from statejump.kinds.truss.generate.planar import chain, iwan, umbrella
+
+GENERATORS: dict[str, Callable[..., Document]] = {
+    "chain": chain, "iwan": iwan, "umbrella": umbrella, "ring": ring, "mast": mast,
+}
+__all__ = ["GENERATORS", "chain", "iwan", "mast", "ring", "umbrella"]
