@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Answers about trusses and campaigns over them: closed forms of the chain, fits, resumed campaigns."""
+"""Answers about trusses: closed forms of the chain, verdicts, fits of a surface, what the command writes."""
 from __future__ import annotations
 
 import csv
@@ -13,11 +13,10 @@ import pytest
 
 from conftest import Outcome
 
-from statejump.campaign import execute, journal, tables, work
-from statejump.campaign.campaign_file import MONTECARLO, SWEEP, Campaign, load_campaign
-from statejump.campaign.sampling import montecarlo_draws
-from statejump.core.errors import StatejumpError
+import statejump as sj
+from statejump.core.errors import Interrupted, StatejumpError
 from statejump.kinds.loading import parse_case
+from statejump.kinds.truss import solve
 from statejump.kinds.truss.answers import reflector
 from statejump.kinds.truss.answers.contributions import contributions
 from statejump.kinds.truss.answers.jumps import node_jumps, quick_path, resolution_m, verdict
@@ -215,6 +214,49 @@ def test_command(statejump: Callable[..., Outcome], cases: Path, tmp_path: Path)
     assert np.linalg.norm(moved) == pytest.approx(summary["jump"], rel=1e-9)
 
 
+def test_answers_in_python(tmp_path: Path) -> None:
+    case = sj.truss.chain(3, cycles=1)
+    found = sj.truss.answers(case, cycles=2, sensitivity=False)
+    assert found.verdict == "shakedown" and found.case.thermal.cycles == 2 and case.thermal.cycles == 1
+    assert found.jump == pytest.approx(found.frame("node_jumps").query("cycle == 2")["jump_m"].max(), rel=1e-12)
+    assert found.frame("contributions")["contribution"].sum() == pytest.approx(found.jump, rel=1e-9)
+    assert "sensitivities" not in found.tables and found.run.model == "reduced"
+    assert found.run.time_s[-1] == pytest.approx(2 * case.period_s)
+    assert len(found.plot().axes) == 2 and len(found.plot_ranking().axes) == 1  # the jumps have a scale of colours
+    assert list(tmp_path.iterdir()) == []
+    written = found.write(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {path.name for path in written}
+    assert sj.read(tmp_path / "answers.h5").answers.verdict == "shakedown"
+
+
+def test_answers_refuse_what_is_out_of_range() -> None:
+    case = sj.truss.chain(2)
+    for keys, sentence in (
+        ({"cycles": 0}, "cycles = 0 is not allowed: must be between 1 and 100000 [-]"),
+        ({"step": 1.0}, "step = 1.0 is not allowed: must be between 1e-06 and 0.2 [-]"),
+        ({"output": "size"}, "output = 'size' is not allowed: must be 'node', 'node:NAME', 'rms' or 'tilt'"),
+    ):
+        with pytest.raises(StatejumpError) as refused:
+            sj.truss.answers(case, **keys)
+        assert str(refused.value) == sentence
+    with pytest.raises(StatejumpError, match="'statejump truss answers' is for 'truss'"):
+        sj.truss.answers(sj.load("table1"))
+
+
+def test_interrupted_path_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = solve.path
+
+    def stopped(truss: ResolvedTruss, **options: Any) -> TrussPath:
+        return replace(whole(truss, **options), complete=False)  # what the engine returns after Ctrl-C
+
+    monkeypatch.setattr(solve, "path", stopped)
+    case = sj.truss.chain(2)
+    for call in (case.reduced, lambda: sj.truss.answers(case)):
+        with pytest.raises(Interrupted) as ended:
+            call()
+        assert ended.value.exit_status == 130
+
+
 @pytest.mark.parametrize("arguments, sentence", [
     (("--output", "node:X"), "--output = 'node:X' is not allowed: there is no node 'X'"),
     (("--output", "rms"), "the truss has no [reflector]"),
@@ -226,101 +268,3 @@ def test_mistakes(statejump: Callable[..., Outcome], cases: Path, tmp_path: Path
     done = statejump("truss", "answers", cases / "trusses" / "chain_10.toml", *arguments)
     assert done.status == 2 and sentence in done.errors and done.errors.count("\n") == 1, done.errors
     assert not list(tmp_path.glob("results/chain_10/answers*"))
-
-
-CAMPAIGN = """[campaign]
-name = "trial"
-case = "{case}"
-samples = {samples}
-seed = 3
-"""
-FRICTION = """[[vary]]
-key = "slider.*.friction_coefficient"
-distribution = "lognormal"
-relative = 0.2
-"""
-ONE = """[[vary]]
-key = "link.L3.young_modulus_Pa"
-distribution = "normal"
-relative = 0.1
-"""
-
-
-@pytest.fixture
-def campaign(tmp_path: Path, cases: Path) -> Callable[..., Campaign]:
-    def load(*vary: str, samples: int = 12, case: str = "iwan_10", command: str = MONTECARLO) -> Campaign:
-        path = tmp_path / "trial.toml"
-        text = CAMPAIGN.format(case=cases / "trusses" / f"{case}.toml", samples=samples)
-        if command == SWEEP:
-            text = "\n".join(line for line in text.splitlines() if not line.startswith(("samples", "seed"))) + "\n"
-        path.write_text(text + "".join(vary))
-        return load_campaign(path, command)
-
-    return load
-
-
-def test_every_item_is_drawn_on_its_own(campaign: Callable[..., Campaign]) -> None:
-    trial = campaign(FRICTION, ONE)
-    data = trial.data(4)
-    drawn = [slider["friction_coefficient"] for slider in data["slider"]]
-    assert len(set(drawn)) == 10
-    assert trial.values(4)[0] == pytest.approx(np.mean(drawn), rel=1e-15)
-    assert {link["name"]: link["young_modulus_Pa"] for link in data["link"]}["L3"] == trial.values(4)[1] != 70e9
-    assert sum(link["young_modulus_Pa"] != 70e9 for link in data["link"]) == 1
-    assert trial.case_data["slider"][0]["friction_coefficient"] == 0.3  # as in the file
-    assert [value for _, value in montecarlo_draws(trial.vary, 3, 4)][:10] == drawn
-    # The mean of 10 lognormal draws of 20 %, over 400 samples: 0.3 within 4 standard errors.
-    means = [trial.values(index)[0] for index in range(400)]
-    assert np.mean(means) == pytest.approx(0.3, abs=4 * 0.06 / np.sqrt(4000))
-    assert np.std(means) == pytest.approx(0.06 / np.sqrt(10), rel=0.15)
-
-
-def test_sweep_of_all_items(campaign: Callable[..., Campaign]) -> None:
-    trial = campaign('[[vary]]\nkey = "slider.*.friction_coefficient"\nvalues = [0.1, 0.2]\n', command=SWEEP)
-    assert {slider["friction_coefficient"] for slider in trial.data(1)["slider"]} == {0.2}
-    jumps = [dict(zip(trial.units, work.run_sample(trial, index).values)) for index in (0, 1)]
-    # The strongest block does not return: its share of the jump is proportional to friction.
-    assert jumps[1]["largest_node_jump_m"] > jumps[0]["largest_node_jump_m"] > 0
-    assert jumps[0]["slipping_joints"] == 10 and np.isnan(jumps[0]["reflector_rms_error_m"])
-
-
-@pytest.mark.parametrize("text, sentence", [
-    (FRICTION.replace("slider.*", "slider.S99"), "key = 'slider.S99.friction_coefficient' is unknown: the case has no"),
-    (FRICTION.replace("slider.*", "revolute.*"), "is not allowed: the case has no [[revolute]]"),
-    (FRICTION.replace("*.friction_coefficient", "*.friction"), "did you mean 'slider.*.friction_coefficient'?"),
-    (FRICTION + FRICTION.replace("*", "S1"), "vary[2].key = 'slider.S1.friction_coefficient' is not allowed: it varies"),
-    (FRICTION.replace("slider.*.friction_coefficient", "slider.*.clearance_plus_m"), "mean is missing"),
-    (FRICTION + 'also = ["link.*.young_modulus_Pa"]\n', "items of 'slider.*.friction_coefficient' share their values"),
-])
-def test_mistakes_in_a_campaign(campaign: Callable[..., Campaign], text: str, sentence: str) -> None:
-    with pytest.raises(StatejumpError) as caught:
-        campaign(text)
-    assert sentence in str(caught.value)
-
-
-def test_no_dem_campaign(campaign: Callable[..., Campaign]) -> None:
-    with pytest.raises(StatejumpError, match="campaign.model = 'dem' is not allowed"):
-        campaign('model = "dem"\n' + FRICTION)
-
-
-def test_half_a_campaign_resumed(tmp_path: Path, campaign: Callable[..., Campaign]) -> None:
-    """Half of the samples, a torn line as a kill leaves it, the others: the same bytes as in one go."""
-    trial = campaign(FRICTION, ONE)
-
-    def finish(folder: Path) -> tuple[bytes, bytes]:
-        folder.mkdir(exist_ok=True)
-        with journal.Journal(folder, trial, restart=False) as kept:
-            execute.run_missing(trial, kept, None, 1, lambda fraction: None)
-            table = tables.make_table(trial, kept.batches)
-        tables.write_csv(table, folder / "samples.csv")
-        tables.write_hdf5(trial, table, folder / "samples.h5")
-        return (folder / "samples.csv").read_bytes(), (folder / "samples.h5").read_bytes()
-
-    (tmp_path / "resumed").mkdir()
-    with journal.Journal(tmp_path / "resumed", trial, restart=False) as kept:
-        kept.add(work.run_samples(trial, (7, 0, 3, 5, 11, 2))[1])
-    with kept.path.open("ab") as stream:
-        stream.write(b'{"samples":[9],"val')
-    resumed = finish(tmp_path / "resumed")
-    assert resumed == finish(tmp_path / "whole")
-    assert b"nan" not in resumed[0].split(b"\n", 1)[0] and resumed[0].count(b"\n") == 13

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Campaigns over trusses: items that vary together or one by one, and campaigns that are resumed."""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+import pytest
+
+from statejump.campaign import execute, journal, tables, work
+from statejump.campaign.campaign_file import MONTECARLO, SWEEP, Campaign, load_campaign
+from statejump.campaign.sampling import montecarlo_draws
+from statejump.core.errors import StatejumpError
+
+CAMPAIGN = """[campaign]
+name = "trial"
+case = "{case}"
+samples = {samples}
+seed = 3
+"""
+FRICTION = """[[vary]]
+key = "slider.*.friction_coefficient"
+distribution = "lognormal"
+relative = 0.2
+"""
+ONE = """[[vary]]
+key = "link.L3.young_modulus_Pa"
+distribution = "normal"
+relative = 0.1
+"""
+
+
+@pytest.fixture
+def campaign(tmp_path: Path, cases: Path) -> Callable[..., Campaign]:
+    def load(*vary: str, samples: int = 12, case: str = "iwan_10", command: str = MONTECARLO) -> Campaign:
+        path = tmp_path / "trial.toml"
+        text = CAMPAIGN.format(case=cases / "trusses" / f"{case}.toml", samples=samples)
+        if command == SWEEP:
+            text = "\n".join(line for line in text.splitlines() if not line.startswith(("samples", "seed"))) + "\n"
+        path.write_text(text + "".join(vary))
+        return load_campaign(path, command)
+
+    return load
+
+
+def test_every_item_is_drawn_on_its_own(campaign: Callable[..., Campaign]) -> None:
+    trial = campaign(FRICTION, ONE)
+    data = trial.data(4)
+    drawn = [slider["friction_coefficient"] for slider in data["slider"]]
+    assert len(set(drawn)) == 10
+    assert trial.values(4)[0] == pytest.approx(np.mean(drawn), rel=1e-15)
+    assert {link["name"]: link["young_modulus_Pa"] for link in data["link"]}["L3"] == trial.values(4)[1] != 70e9
+    assert sum(link["young_modulus_Pa"] != 70e9 for link in data["link"]) == 1
+    assert trial.case_data["slider"][0]["friction_coefficient"] == 0.3  # as in the file
+    assert [value for _, value in montecarlo_draws(trial.vary, 3, 4)][:10] == drawn
+    # The mean of 10 lognormal draws of 20 %, over 400 samples: 0.3 within 4 standard errors.
+    means = [trial.values(index)[0] for index in range(400)]
+    assert np.mean(means) == pytest.approx(0.3, abs=4 * 0.06 / np.sqrt(4000))
+    assert np.std(means) == pytest.approx(0.06 / np.sqrt(10), rel=0.15)
+
+
+def test_sweep_of_all_items(campaign: Callable[..., Campaign]) -> None:
+    trial = campaign('[[vary]]\nkey = "slider.*.friction_coefficient"\nvalues = [0.1, 0.2]\n', command=SWEEP)
+    assert {slider["friction_coefficient"] for slider in trial.data(1)["slider"]} == {0.2}
+    jumps = [dict(zip(trial.units, work.run_sample(trial, index).values)) for index in (0, 1)]
+    # The strongest block does not return: its share of the jump is proportional to friction.
+    assert jumps[1]["largest_node_jump_m"] > jumps[0]["largest_node_jump_m"] > 0
+    assert jumps[0]["slipping_joints"] == 10 and np.isnan(jumps[0]["reflector_rms_error_m"])
+
+
+@pytest.mark.parametrize("text, sentence", [
+    (FRICTION.replace("slider.*", "slider.S99"), "key = 'slider.S99.friction_coefficient' is unknown: the case has no"),
+    (FRICTION.replace("slider.*", "revolute.*"), "is not allowed: the case has no [[revolute]]"),
+    (FRICTION.replace("*.friction_coefficient", "*.friction"), "did you mean 'slider.*.friction_coefficient'?"),
+    (FRICTION + FRICTION.replace("*", "S1"), "vary[2].key = 'slider.S1.friction_coefficient' is not allowed: it varies"),
+    (FRICTION.replace("slider.*.friction_coefficient", "slider.*.clearance_plus_m"), "mean is missing"),
+    (FRICTION + 'also = ["link.*.young_modulus_Pa"]\n', "items of 'slider.*.friction_coefficient' share their values"),
+])
+def test_mistakes_in_a_campaign(campaign: Callable[..., Campaign], text: str, sentence: str) -> None:
+    with pytest.raises(StatejumpError) as caught:
+        campaign(text)
+    assert sentence in str(caught.value)
+
+
+def test_no_dem_campaign(campaign: Callable[..., Campaign]) -> None:
+    with pytest.raises(StatejumpError, match="campaign.model = 'dem' is not allowed"):
+        campaign('model = "dem"\n' + FRICTION)
+
+
+def test_half_a_campaign_resumed(tmp_path: Path, campaign: Callable[..., Campaign]) -> None:
+    """Half of the samples, a torn line as a kill leaves it, the others: the same bytes as in one go."""
+    trial = campaign(FRICTION, ONE)
+
+    def finish(folder: Path) -> tuple[bytes, bytes]:
+        folder.mkdir(exist_ok=True)
+        with journal.Journal(folder, trial, restart=False) as kept:
+            execute.run_missing(trial, kept, None, 1, lambda fraction: None)
+            table = tables.make_table(trial, kept.batches)
+        tables.write_csv(table, folder / "samples.csv")
+        tables.write_hdf5(trial, table, folder / "samples.h5")
+        return (folder / "samples.csv").read_bytes(), (folder / "samples.h5").read_bytes()
+
+    (tmp_path / "resumed").mkdir()
+    with journal.Journal(tmp_path / "resumed", trial, restart=False) as kept:
+        kept.add(work.run_samples(trial, (7, 0, 3, 5, 11, 2))[1])
+    with kept.path.open("ab") as stream:
+        stream.write(b'{"samples":[9],"val')
+    resumed = finish(tmp_path / "resumed")
+    assert resumed == finish(tmp_path / "whole")
+    assert b"nan" not in resumed[0].split(b"\n", 1)[0] and resumed[0].count(b"\n") == 13
