@@ -8,18 +8,14 @@ from __future__ import annotations
 import copy
 import re
 import sys
-from pathlib import Path
 from typing import Any, Callable
 
 import pytest
 
 from conftest import REPOSITORY
 from statejump.core import yade_process as dem
-from statejump.kinds.registry import load_case
 from statejump.core.errors import FailedRun
-from statejump.kinds.truss import dem as truss_dem
-from statejump.kinds.truss.solve import solve
-from statejump.kinds.umbrella import dem as umbrella_dem
+from statejump.kinds.loading import load_case
 
 sys.path.insert(0, str(REPOSITORY / "yade_scripts" / "runner"))
 import failures  # noqa: E402 - needs no YADE
@@ -29,9 +25,7 @@ Values = dict[str, Any]
 
 def resolved(name: str) -> Values:
     case = load_case(REPOSITORY / "cases" / f"{name}.toml")
-    if case.case.kind == "truss":
-        return truss_dem.resolved(case, solve(case))
-    return (umbrella_dem if case.case.kind == "umbrella" else dem).resolved(case)
+    return {"scene": case.behaviour.scene_module(), **case.behaviour.dem_input(case)}
 
 
 @pytest.fixture(scope="module")
@@ -128,41 +122,47 @@ def test_remedy_of_a_step_helps(values: Callable[[str], Values]) -> None:
         dem.execute(found, lambda fraction: None)
     steps = int(re.fullmatch(SET_STEP, caught.value.fields()["remedy"])[2])
     found["dem"].update(number_of_steps=steps, time_step_s=found["period_s"] / steps)
-    assert len(dem.execute(found, lambda fraction: None).history["time_s"]) == found["number_of_samples"] + 1
+    assert len(dem.execute(found, lambda fraction: None).columns["time_s"]) == found["number_of_samples"] + 1
 
 
-def described(sentence: str, **more: Any) -> tuple[str, dict[str, Any]]:
+TAKEN = {"part": "contact", "bodies": (7, 4), "before": "too deep", "after": "", "time": 1.5, "stable_time_step": None}
+
+
+def described(taken: Values | None, stable_s: float = 1e-5, error: Exception | None = None) -> dict[str, Any]:
     names = failures.Names({failures.pair(4, 7): ("J", "revolute 'J'")}, {failures.pair(1, 2): "link 'AB'"})
     return failures.described(
-        more.get("error", RuntimeError(sentence)), names, 2.0, lambda time_s: 10 * time_s,
-        lambda: more.get("stable_s", 1e-5), lambda stable_s: f"set dem.time_step_s to {stable_s:g}",
+        error or RuntimeError("as YADE hands it on"), taken, names, 2.0, lambda time_s: 10 * time_s, lambda: stable_s,
+        lambda stable: f"set dem.time_step_s to {stable:g}",
     )
 
 
-def test_sentence_keeps_its_own_time() -> None:
+def test_failure_keeps_its_own_time() -> None:
     # The contact fails in one step, the engine that says it may act in the next.
-    for bodies in "7 and 4", "4 and 7":
-        assert described(f"too deep (contact of bodies {bodies}, time 1.5 s, temperature changes 3 K, 4 K)") == (
-            "too deep (revolute 'J', time 1.5 s, temperature change 15 K)",
-            {"time_s": 1.5, "temperature_change_K": 15.0, "joint": "J", "cause": "too deep"},
-        )
+    for bodies in (7, 4), (4, 7):
+        assert described({**TAKEN, "bodies": bodies}) == {
+            "time_s": 1.5, "temperature_change_K": 15.0, "joint": "J", "place": "revolute 'J'", "cause": "too deep"}
 
 
-def test_sentence_without_time_gets_that_of_the_scene() -> None:
-    sentence, fields = described("the link between bodies 2 and 1 leaves the x-y plane")
-    assert sentence == "link 'AB' leaves the x-y plane (time 2 s, temperature change 20 K)"
-    assert fields == {"time_s": 2.0, "temperature_change_K": 20.0, "cause": "link 'AB' leaves the x-y plane"}
+def test_failure_of_a_link_names_it_in_its_sentence() -> None:
+    taken = {**TAKEN, "part": "link", "bodies": (2, 1), "before": "", "after": " leaves the x-y plane"}
+    assert described(taken) == {
+        "time_s": 1.5, "temperature_change_K": 15.0, "cause": "link 'AB' leaves the x-y plane"}
+
+
+def test_what_is_not_the_plugins_gets_the_time_of_the_scene() -> None:
+    assert described(None, error=RuntimeError("no such\n engine")) == {
+        "time_s": 2.0, "temperature_change_K": 20.0, "cause": "no such engine"}
 
 
 def test_unknown_bodies_keep_their_numbers() -> None:
-    sentence, fields = described("too deep (contact of bodies 1 and 4, time 1 s)")
-    assert sentence == "too deep (bodies 1 and 4, time 1 s, temperature change 10 K)" and "joint" not in fields
+    found = described({**TAKEN, "bodies": (1, 4)})
+    assert found["place"] == "bodies 1 and 4" and "joint" not in found
 
 
 @pytest.mark.parametrize("stable_s, wanted", [(1e-5, 1e-5), (5e-5, 2e-5), (float("nan"), 2e-5), (0.0, 2e-5)])
 def test_remedy_is_the_smaller_step(stable_s: float, wanted: float) -> None:
-    sentence = "the time step 0.001 s is above the stable one, 2e-05 s (contact of bodies 4 and 7, time 1 s)"
-    assert described(sentence, stable_s=stable_s)[1]["remedy"] == f"set dem.time_step_s to {wanted:g}"
+    found = described({**TAKEN, "stable_time_step": 2e-5}, stable_s=stable_s)
+    assert found["remedy"] == f"set dem.time_step_s to {wanted:g}"
 
 
 @pytest.mark.parametrize("value, wanted", [(2.199e-5, 2.1e-5), (0.0022, 0.0022), (9.99e-6, 9.9e-6), (1.0, 1.0)])

@@ -2,17 +2,10 @@
 """Failures of a run from a case file, in the case's names: the plugin knows bodies by their numbers only."""
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import floor, inf, isfinite, log10
 from typing import Any
-
-# How the plugin ends a sentence, and how it speaks of links and springs.
-_END = re.compile(r" \((?:contact of bodies (\d+) and (\d+), )?time ([^ ,)]+) s(?:, temperature changes? [^)]*)?\)$")
-_LINK = re.compile(r"the link between bodies (\d+) and (\d+)")
-_TORSION_SPRING = re.compile(r"the torsion spring between the links of bodies (\d+) and (\d+)")
-_UNSTABLE = re.compile(r"the time step \S+ s is above the stable one.*, (\S+) s$")
 
 
 def pair(one: Any, other: Any) -> frozenset[int]:
@@ -57,35 +50,39 @@ def rounded_down(value: float) -> float:
 
 
 def described(
-    error: Exception, names: Names, now_s: float, temperature_change: Callable[[float], float],
-    stable_time_step: Callable[[], float], step_remedy: Callable[[float], str],
+    error: Exception, taken: Mapping[str, Any] | None, names: Names, now_s: float,
+    temperature_change: Callable[[float], float], stable_time_step: Callable[[], float],
+    step_remedy: Callable[[float], str],
 ) -> dict[str, Any]:
     """Return a failure by the names of its fields: cause, time, temperature; joint, words for its place and remedy
     where they are known.
 
+    :param error: what ended the run
+    :param taken: what the plugin says of it, see ``statejump_yade.take_failure``; None: it is not the plugin's
     :param now_s: time of a failure that does not say its own
     :param temperature_change: temperature change [K] of the case's (first) program at a time [s]
     :param stable_time_step: stable step [s] of the whole scene in its present state
     :param step_remedy: which key of the case file gives a step of at most so many seconds
     """
-    cause, joint, remedy = " ".join(str(error).split()), "", ""
-    words, time_s = "", now_s
-    end = _END.search(cause)
-    if end:
-        cause, time_s = cause[: end.start()], float(end[3])
-        if end[1]:
-            joint, words = names.joints.get(pair(end[1], end[2]), ("", f"bodies {end[1]} and {end[2]}"))
-    for pattern, known in ((_LINK, names.links), (_TORSION_SPRING, names.torsion_springs)):
-        cause = pattern.sub(lambda found: known.get(pair(found[1], found[2]), found[0]), cause)
-    unstable = _UNSTABLE.fullmatch(cause)
-    if unstable:
-        # One contact or link alone allows more than all that pull at one body.
-        whole = stable_time_step()
-        remedy = step_remedy(min(float(unstable[1]), whole if isfinite(whole) and whole > 0 else inf))
+    joint, words, remedy, time_s = "", "", "", now_s
+    if taken is None:
+        cause = " ".join(str(error).split())
+    else:
+        bodies, time_s = pair(*taken["bodies"]), taken["time"]
+        if taken["part"] == "contact":
+            cause = taken["before"] + taken["after"]
+            joint, words = names.joints.get(bodies, ("", "bodies {} and {}".format(*taken["bodies"])))
+        else:
+            known = names.links if taken["part"] == "link" else names.torsion_springs
+            unknown = f"the {taken['part'].replace('_', ' ')} of bodies {' and '.join(map(str, taken['bodies']))}"
+            cause = taken["before"] + known.get(bodies, unknown) + taken["after"]
+        if taken["stable_time_step"] is not None:
+            # One contact or link alone allows more than all that pull at one body.
+            whole = stable_time_step()
+            remedy = step_remedy(min(taken["stable_time_step"], whole if isfinite(whole) and whole > 0 else inf))
     if isinstance(error, SceneFailure):
         joint, remedy = error.joint, error.remedy
     time_s = float(f"{time_s:.9g}")
-    change = float(f"{temperature_change(time_s):.9g}")
-    fields = {"time_s": time_s, "temperature_change_K": change, "joint": joint, "place": words, "cause": cause,
-              "remedy": remedy}
+    fields = {"time_s": time_s, "temperature_change_K": float(f"{temperature_change(time_s):.9g}"), "joint": joint,
+              "place": words, "cause": cause, "remedy": remedy}
     return {key: value for key, value in fields.items() if value != ""}

@@ -83,8 +83,8 @@ def run(case, output):
                 raise RuntimeError(f"YADE stopped after {O.iter} of {steps + 1} steps")
         except Exception as error:
             raise CaseFailure(described(
-                refused[0] if refused else error, kind.names(case, built), O.time, built.program.temperatureChange,
-                sj.stable_time_step, lambda stable: kind.step_remedy(case, stable),
+                refused[0] if refused else error, sj.take_failure(), kind.names(case, built), O.time,
+                built.program.temperatureChange, sj.stable_time_step, lambda stable: kind.step_remedy(case, stable),
             )) from error
     os.replace(partial, output)
     summary = {
