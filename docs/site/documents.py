@@ -32,7 +32,7 @@ def links(text: str) -> Iterator[str]:
 
 
 def local_target(document: Path, target: str) -> Path | None:
-    """Return the file that a link leads to, from the repository's root; None: it leads elsewhere or stays on the page."""
+    """Return the file that a link leads to, from the repository's root; None: elsewhere, or on the same page."""
     if re.match(r"[a-z]+:|#", target):
         return None
     parts: list[str] = []
