@@ -28,21 +28,19 @@ constexpr int halving_limit = 40;
 constexpr double limit_rounding = 1e-10;
 
 /// Refuses a law of the catalogue that the equations here do not have.
-void require_law(bool holds, const char* field, const kernel::laws::LawInfo& info,
-                 const char* allowed) {
-  if (holds) return;
-  throw kernel::OutOfRange(field, info.name, allowed);
-}
-
 void validate_laws(const linkage::Linkage& model) {
-  const kernel::laws::NormalLaw& normal = model.law.normal;
-  require_law(std::holds_alternative<kernel::laws::HertzInternal>(normal) ||
-                  std::holds_alternative<kernel::laws::HertzPaper>(normal),
-              "normal", law_info(normal), "hertz_internal or hertz_paper in the elastic loop");
-  const kernel::laws::TangentialVelocityLaw& velocity = model.law.tangential_velocity;
-  require_law(std::holds_alternative<kernel::laws::MaterialVelocity>(velocity),
-              "tangential_velocity", law_info(velocity),
-              "material in the elastic loop: friction's moments act on the links");
+  using namespace kernel::laws;
+  const NormalLaw& normal = model.law.normal;
+  if (!has(normal, Trait::point_contact)) {
+    throw kernel::OutOfRange("normal", law_info(normal).name,
+                             names_with<NormalLaw>(Trait::point_contact) + " in the elastic loop");
+  }
+  const TangentialVelocityLaw& velocity = model.law.tangential_velocity;
+  if (has(velocity, Trait::needs_axis)) {
+    throw kernel::OutOfRange("tangential_velocity", law_info(velocity).name,
+                             names_with<TangentialVelocityLaw>(Trait::needs_axis, false) +
+                                 " in the elastic loop: friction's moments act on the links");
+  }
 }
 
 [[noreturn]] void fail(const Equilibrium& at) {
