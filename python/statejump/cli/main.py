@@ -16,7 +16,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from statejump import __version__, _engine, laws
+from statejump import __version__, _engine
 from statejump.core import comparison as compare, yade_process as dem, errors
 from statejump.kinds.spring_slider import convergence, figure as plot, reduced
 from statejump.bore.bore import bore_command
@@ -26,6 +26,7 @@ from statejump.control.command import control_command
 from statejump.core.errors import StatejumpError, Interrupted, TolerancesMissed
 from statejump.core.history import History
 from statejump.core.output import results_folder
+from statejump.cli.laws import laws_command
 from statejump.cli.report import report_command
 from statejump.kinds.spring_slider import result as kind_spring_slider
 from statejump.kinds.umbrella import result as kind_umbrella
@@ -287,39 +288,10 @@ def convergence_command(case_file: Path, results: Path, quiet: bool) -> None:
     console.print((folder / "convergence.md").read_text(encoding="utf-8"))
 
 
-@cli.command("laws")
-@click.argument("case_file", metavar="[CASE]", required=False, type=CaseFile())
-@RESULTS
-@QUIET
-def laws_command(case_file: Path | None, results: Path, quiet: bool) -> None:
-    """Catalogue of contact laws, and their curves for the joint of CASE (the paper's without).
-
-    \b
-    Example:
-      statejump laws
-    """
-    console = make_console(quiet)
-    case = load_kind(case_file, UmbrellaCase) if case_file is not None else None
-    folder = results_folder(results, "laws")
-    for kind in laws.KINDS:
-        table = Table(title=f"{kind} laws", show_lines=True)
-        for heading in ("name", "formula", "range", "source", "holds a static load"):
-            table.add_column(heading, overflow="fold")
-        for law in _engine.laws(kind):
-            table.add_row(law["name"], law["formula"], law["range"], law["source"],
-                          "yes" if law["holds_static_load"] else "no")
-        console.print(table)
-    if case is None:
-        written = laws.figure(laws.paper_joint(), folder, "laws")
-    else:
-        written = laws.figure(laws.joint_of(case), folder, f"laws_{case.name}")
-    console.print(f"curves: {', '.join(str(name) for name in written)}")
-
-
 for _command in (
     figures_command, slow_command, hold_command, energy_command, control_command, statics_command,
     bore_command, montecarlo_command, sweep_command, report_command, info_command, export_command, truss_command,
-    schema_command,
+    schema_command, laws_command,
 ):
     cli.add_command(_command)
 

@@ -55,7 +55,7 @@ def load_kind(case_file: Path, *kinds: type[CaseType]) -> CaseType:
     """Load a case of one of the kinds that the command is for; StatejumpError for any other."""
     case = load_case(case_file)
     if not isinstance(case, kinds):
-        command = click.get_current_context().info_name
+        command = click.get_current_context().command_path.split(" ", 1)[1]
         allowed = " and ".join(repr(kind.KIND) for kind in kinds)
         raise StatejumpError(
             f"{case_file}: case.kind = {case.kind!r} is not allowed: 'statejump {command}' is for "

@@ -1,21 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stable time step of the spring-slider scene.
 
-Leapfrog with a damping force from the lagged velocity is stable for omega dt <= 2 (sqrt(1 + zeta^2)
-- zeta) with omega^2 = k/m and zeta = c / (2 sqrt(k m)) of a mode. The slider moves along two axes:
+The limit of leapfrog for one oscillator is the kernel's, ``_engine.critical_time_step_s``. The slider moves
+along two axes:
 
 - across the floor (y): the floor's normal stiffness k_n, and k_t of a stop that it touches;
 - along the bar (x): the link, k_t of the floor and k_n of a stop.
 
-Contacts are Hertz-Mindlin, k_n = 2 E* a, k_t = 8 G* a, a = sqrt(R delta), delta =
-(F / (4/3 E* sqrt(R)))^(2/3), at the largest force they can see: the floor at twice the normal force
-(a load applied at once overshoots to twice its value), a stop at the force that would hold the whole
-thermal overlap rigidly, doubled for impact. Dashpots of all contacts of an axis are added.
+Contacts are Hertz-Mindlin at the largest force they can see: the floor at twice the normal force (a load
+applied at once overshoots to twice its value), a stop at the force that would hold the whole thermal
+overlap rigidly, doubled for impact. Dashpots of all contacts of an axis are added.
 """
 from __future__ import annotations
 
 from math import sqrt
 from typing import TYPE_CHECKING
+
+from statejump import _engine
 
 if TYPE_CHECKING:
     from statejump.kinds.spring_slider.case import SpringSliderCase
@@ -42,13 +43,9 @@ def largest_stop_force(case: SpringSliderCase) -> float:
 def contact_stiffness(case: SpringSliderCase, force_N: float) -> tuple[float, float]:
     """Tangent stiffnesses k_n, k_t [N/m] of one pad under a force [N]."""
     joint = case.joint
-    nu = joint.poisson_ratio
-    effective_modulus = joint.young_modulus_Pa / (2 * (1 - nu**2))
-    shear_modulus = joint.young_modulus_Pa / (2 * (1 + nu))
-    effective_shear = shear_modulus / (2 * (2 - nu))
-    hertz = 4 / 3 * effective_modulus * sqrt(joint.pad_radius_m)
-    contact_radius = sqrt(joint.pad_radius_m * (force_N / hertz) ** (2 / 3))
-    return 2 * effective_modulus * contact_radius, 8 * effective_shear * contact_radius
+    material = joint.young_modulus_Pa, joint.poisson_ratio
+    found = _engine.hertz_contact(force_N, joint.pad_radius_m, *material, *material)
+    return found["normal_stiffness_N_per_m"], found["tangential_stiffness_N_per_m"]
 
 
 def stable_time_step(case: SpringSliderCase) -> float:
@@ -65,13 +62,10 @@ def stable_time_step(case: SpringSliderCase) -> float:
     )
     steps = []
     for spring, contacts in axes:
-        stiffness = spring + sum(contacts)
-        # c / m of all dashpots, each 2 zeta sqrt(k m)
-        damping = 2 * sqrt(1 / mass) * (
+        # Each dashpot is 2 zeta sqrt(k m).
+        damping = 2 * sqrt(mass) * (
             case.dem.link_damping_ratio * sqrt(spring)
             + case.dem.contact_damping_ratio * sum(sqrt(k) for k in contacts)
         )
-        omega = sqrt(stiffness / mass)
-        ratio = damping / (2 * omega)
-        steps.append(2 / omega * (sqrt(1 + ratio**2) - ratio))
+        steps.append(_engine.critical_time_step_s(mass, spring + sum(contacts), damping))
     return min(steps)

@@ -15,6 +15,7 @@ from typing import Any, Callable
 import numpy as np
 from scipy.spatial import cKDTree
 
+from statejump import _engine
 from statejump.core import yade_process as dem
 from statejump.kinds.truss.case import TrussCase
 from statejump.core.errors import StatejumpError
@@ -49,8 +50,7 @@ def stable_time_step(case: TrussCase, path: TrussPath) -> float:
 
     The square of a spring's stretch is at most the number of its ends that move times the sum of their
     squares. With k the sum over one body of stiffness times that number over its mass, and c that of the
-    dashpots, the largest eigenvalue is at most the largest k, and leapfrog with a lagged dashpot is
-    stable up to 4/(c + sqrt(c^2 + 4 k)).
+    dashpots, the largest eigenvalue is at most the largest k: leapfrog is stable for the kernel's step.
     """
     truss, mass = path.truss, lumped_mass_kg(path.truss)
     inverse = np.divide(1, mass, out=np.zeros_like(mass), where=mass > 0)
@@ -87,9 +87,7 @@ def stable_time_step(case: TrussCase, path: TrussPath) -> float:
         force = IMPACT**3 * path.states["normal_force_N"].max(axis=0)
         nodes = np.stack((truss.revolutes.bearing_node, truss.revolutes.journal_node), axis=1)
         touch(nodes, revolute_stiffness(truss, force), contact)
-    with np.errstate(divide="ignore"):
-        steps = 4 / (damping + np.sqrt(damping**2 + 4 * stiffness))
-    return float(steps.min(initial=inf))
+    return float(np.min(_engine.critical_time_step_s(1.0, stiffness, damping), initial=inf))
 
 
 def number_of_steps(case: TrussCase, path: TrussPath) -> int:

@@ -12,15 +12,11 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from statejump import _engine
+from statejump import _engine, laws
 from statejump.schema.fields import CHOICE, Case, Section, Thermal, check_radii, choice, no_length_left, parameter
 
 PAPER = "Chen et al. (2021), Tables 2 and 3"
 NONE = "none in the paper's case"
-
-
-def _holds_static_load(friction_law: str) -> bool:
-    return any(law["name"] == friction_law and law["holds_static_load"] for law in _engine.laws("friction"))
 
 
 class Frame(Section):
@@ -48,14 +44,14 @@ class UmbrellaJoint(Section):
     journal_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, "eq. 12: constant")
     bearing_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, "eq. 12: constant")
     normal_law: str = choice(
-        "hertz_internal", _engine.law_names("normal"), CHOICE + "; it prints hertz_paper"
+        "hertz_internal", laws.names("normal"), CHOICE + "; it prints hertz_paper"
     )
-    dissipation_law: str = choice("none", _engine.law_names("dissipation"), "eq. 6: none")
+    dissipation_law: str = choice("none", laws.names("dissipation"), "eq. 6: none")
     friction_law: str = choice(
-        "mindlin", _engine.law_names("friction"), CHOICE + "; its ambrosio holds no static load"
+        "mindlin", laws.names("friction"), CHOICE + "; its ambrosio holds no static load"
     )
     tangential_velocity: str = choice(
-        "material", _engine.law_names("tangential_velocity"), CHOICE + "; eqs 14-16 are paper"
+        "material", laws.names("tangential_velocity"), CHOICE + "; eqs 14-16 are paper"
     )
     friction_coefficient: float = parameter(..., "-", 0, 10, PAPER)
     restitution: float = parameter(1.0, "-", 0, 1, CHOICE + "; dissipation laws only", above=True)
@@ -322,7 +318,8 @@ class UmbrellaCase(Case):
                         f"start.mode = 'loaded' is not allowed: torsion_spring.{key} is 0, and only a biased "
                         "torsion spring loads the joint"
                     )
-            largest = atan(joint.friction_coefficient) if _holds_static_load(joint.friction_law) else 0.0
+            holds = laws.law("friction", joint.friction_law).holds_static_load
+            largest = atan(joint.friction_coefficient) if holds else 0.0
             if abs(start.contact_angle_rad) > largest:
                 rule = (
                     f"between {-largest:.9g} and {largest:.9g} [rad], atan of joint.friction_coefficient"
@@ -337,9 +334,10 @@ class UmbrellaCase(Case):
         return None
 
     def _run_problem(self) -> str | None:
-        if self.reduced.method == "adaptive" and self.joint.friction_law == "mindlin":
+        friction = self.joint.friction_law
+        if self.reduced.method == "adaptive" and laws.law("friction", friction).has_memory:
             return (
-                "reduced.method = 'adaptive' is not allowed with joint.friction_law = 'mindlin': friction with "
+                f"reduced.method = 'adaptive' is not allowed with joint.friction_law = {friction!r}: friction with "
                 "memory is not smooth, use 'rk4'"
             )
         samples = self.output.samples_per_cycle

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The catalogue of contact laws: what each says of itself, and figures of what it does."""
+"""What the contact laws do: forces of a joint, one impact, and a figure of both."""
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import cycle
 from math import inf
 from pathlib import Path
 
@@ -12,8 +13,8 @@ from statejump import _engine
 from statejump.kinds.spring_slider import figure as plot
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.spring_slider.figure import plt
+from statejump.laws.traits import law, names
 
-KINDS = ("normal", "dissipation", "friction", "tangential_velocity")
 IMPACT_LAW = "hertz_internal"
 RESTITUTION = 0.8
 IMPACT_SPEED_m_per_s = 0.1
@@ -76,9 +77,12 @@ def range_end_m(name: str, joint: Joint) -> tuple[float, bool]:
     end = _engine.largest_depth_m(name, joint.journal_radius_m, joint.bearing_radius_m)
     if end < inf:
         return end, True
-    # Both Hertz laws: width a = sqrt(R delta).
-    at_one = normal_force(name, joint, np.array([1.0]))["contact_width_m"][0]
-    return (joint.journal_radius_m / at_one) ** 2, False
+    if law("normal", name).point_contact:  # a = sqrt(R delta)
+        at_one = normal_force(name, joint, np.array([1.0]))["contact_width_m"][0]
+        return (joint.journal_radius_m / at_one) ** 2, False
+    depth = np.geomspace(1e-9, 1.0, 1000) * joint.journal_radius_m
+    wide = normal_force(name, joint, depth)["contact_width_m"] >= joint.journal_radius_m
+    return float(depth[np.argmax(wide)] if wide.any() else depth[-1]), False
 
 
 @dataclass(frozen=True)
@@ -134,9 +138,9 @@ def figure(joint: Joint, folder: Path, name: str) -> list[Path]:
 
 def _draw_normal(panel: plt.Axes, joint: Joint) -> None:
     clearance = joint.bearing_radius_m - joint.journal_radius_m
-    ends = {name: range_end_m(name, joint) for name in _engine.law_names("normal")}
+    ends = {name: range_end_m(name, joint) for name in names("normal")}
     first = 1e-4 * min(clearance, *(end for end, _ in ends.values()))
-    for style, (name, (end, refuses)) in zip(STYLES, ends.items()):
+    for style, (name, (end, refuses)) in zip(cycle(STYLES), ends.items()):
         # Dense towards the end, where the curve of some laws turns upwards.
         depth = np.geomspace(first, end, 400)[:-1]
         depth = np.append(depth, end * (1 - np.geomspace(1e-2, 1e-9, 60)))
@@ -165,7 +169,7 @@ def _draw_normal(panel: plt.Axes, joint: Joint) -> None:
 
 
 def _draw_impacts(panel: plt.Axes, joint: Joint) -> None:
-    for style, name in zip(STYLES, _engine.law_names("dissipation")):
+    for style, name in zip(cycle(STYLES), names("dissipation")):
         result = impact(name, joint)
         panel.plot(result.depth_m * 1e6, result.force_N, label=f"{name}: e = {result.restitution:.3f}", **style)
     panel.set_xlabel("Penetration depth [µm]")
