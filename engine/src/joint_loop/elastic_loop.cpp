@@ -12,6 +12,8 @@
 
 #include "elastic_loop_equations.hpp"
 #include "statejump/failure.hpp"
+#include "statejump/kernel/elastic_pair.hpp"
+#include "statejump/kernel/require.hpp"
 
 namespace statejump::joint_loop {
 
@@ -43,6 +45,28 @@ void validate_laws(const linkage::Linkage& model) {
   }
 }
 
+/// The equations solve a point contact as Hertz's: a law that says it is one is held to its word.
+/// @param p at ΔT = 0
+void require_hertz(const linkage::Linkage& model, const Parameters& p) {
+  const double depth = 1e-3 * model.radial_clearance();
+  const double expected = p.hertz.value * depth * std::sqrt(depth);
+  const kernel::ElasticPair pair =
+      kernel::elastic_pair(model.link_bc.young_modulus, model.link_bc.poisson_ratio,
+                           model.link_ab.young_modulus, model.link_ab.poisson_ratio);
+  const double found =
+      evaluate(model.law.normal, depth,
+               {model.journal_radius, model.bearing_radius, model.law.contact_length},
+               {pair.effective_young_modulus})
+          .force;
+  // Rounding of R2 - R1 leaves some 1e-14.
+  if (std::abs(found - expected) <= 1e-9 * expected) return;
+  char text[120];
+  std::snprintf(text, sizeof text,
+                "a law that is Hertz's point contact as it says, %.9g N, not %.9g N", expected,
+                found);
+  throw kernel::OutOfRange("normal", law_info(model.law.normal).name, text);
+}
+
 [[noreturn]] void fail(const Equilibrium& at) {
   FailureFields fields{FailureKind::not_converged};
   fields.sought = "no equilibrium found";
@@ -60,6 +84,7 @@ Equilibrium start(const linkage::Linkage& model, const Equations& equations, dou
   const JointPoint rigid = joint_point(model, 0.0, side, contact_angle);
   Equilibrium at;
   at.p = parameters(model, 0.0);
+  require_hertz(model, at.p);
   at.z[th2] = rigid.theta2;
   at.z[th4] = rigid.theta4;
   at.z[psi] = std::atan2(rigid.eccentricity.y(), rigid.eccentricity.x());
