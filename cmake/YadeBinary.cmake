@@ -8,6 +8,7 @@ option(STATEJUMP_MEASURE_YADE
        "Accept a YADE with unknown build identifiers if scripts/measure_yade finds a known interface in it" OFF)
 set(YADE_LIBRARY_DIR "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/yade-double" CACHE PATH
     "Folder of libyade.so, libpkg_common.so and libpkg_dem.so")
+set(YADE_COMMAND "" CACHE STRING "Command that starts this YADE, for STATEJUMP_MEASURE_YADE; by default bin/yade of its prefix")
 set(STATEJUMP_YADE_ABI "${PROJECT_SOURCE_DIR}/contact_laws/yade_abi")
 set(STATEJUMP_YADE_GENERATED "${PROJECT_BINARY_DIR}/yade_abi")
 
@@ -91,7 +92,11 @@ else()
   endforeach()
   set(_measure "${PROJECT_SOURCE_DIR}/scripts/measure_yade")
   if(_place EQUAL -1 AND STATEJUMP_MEASURE_YADE)
-    execute_process(COMMAND "${STATEJUMP_PYTHON}" "${_measure}" "${YADE_LIBRARY_DIR}" --variant-only
+    set(_command "")
+    if(YADE_COMMAND)
+      set(_command --yade "${YADE_COMMAND}")
+    endif()
+    execute_process(COMMAND "${_measure}" "${YADE_LIBRARY_DIR}" --variant-only ${_command}
       OUTPUT_VARIABLE STATEJUMP_YADE_VARIANT OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE _status)
     if(NOT _status EQUAL 0)
       message(FATAL_ERROR "the interface of YADE in ${YADE_LIBRARY_DIR} is none of the known ones; "

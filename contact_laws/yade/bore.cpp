@@ -389,8 +389,12 @@ bool Ig2_Ball_MeshBore_BoreGeom::go(const yade::shared_ptr<yade::Shape>& shape1,
 
 void Law2_BoreGeom_BorePhys_JointLaw::check() {
   build(class_name);
-  if (tangentialVelocity != kernel::laws::MaterialVelocity::info.name) {
-    dem::refuse(class_name, "tangentialVelocity", tangentialVelocity, "material");
+  // A measured wall has no centre that the axis would run through.
+  using kernel::laws::TangentialVelocityLaw;
+  using kernel::laws::Trait;
+  if (kernel::laws::has(law().tangential_velocity, Trait::needs_axis)) {
+    dem::refuse(class_name, "tangentialVelocity", tangentialVelocity,
+                kernel::laws::names_with<TangentialVelocityLaw>(Trait::needs_axis, false));
   }
 }
 
@@ -430,9 +434,7 @@ bool Law2_BoreGeom_BorePhys_JointLaw::go(yade::shared_ptr<yade::IGeom>& geometry
     const JointGeom& here = *geometry.contacts[i];
     JointPhys& physics = *pair.contacts[i];
     // The part of the wall's radius that expansion has changed; the rest is another place.
-    if (physics.previousBearingRadius != 0) {
-      physics.previousBearingRadius = here.bearingRadius * (1 - geometry.strain_change);
-    }
+    physics.previousBearingRadius = here.bearingRadius * (1 - geometry.strain_change);
     if (!step(here, physics, *contact, *scene)) continue;
     touching = true;
     pair.kn += physics.kn;

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "failure.hpp"
-#include "statejump/kernel/contact_law.hpp"
+#include "statejump/kernel/stable_step.hpp"
 #include "thermal.hpp"
 
 namespace statejump::dem {

@@ -6,8 +6,7 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "thermal.hpp"
-#include "torsion.hpp"
+#include "yade_api.hpp"
 
 namespace statejump::dem {
 namespace {
@@ -20,9 +19,7 @@ long failed_iteration = 0;
 
 bool raised_by_an_engine(const yade::Scene& scene) {
   return std::any_of(scene.engines.begin(), scene.engines.end(), [](const auto& engine) {
-    return dynamic_cast<const ThermalExpansionEngine*>(engine.get()) ||
-           dynamic_cast<const ThermalLinks*>(engine.get()) ||
-           dynamic_cast<const TorsionSprings*>(engine.get());
+    return dynamic_cast<const RaisesFailures*>(engine.get()) != nullptr;
   });
 }
 

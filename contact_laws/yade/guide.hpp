@@ -3,11 +3,12 @@
 
 #include <vector>
 
+#include "failure.hpp"
 #include "registered.hpp"
 
 namespace statejump::dem {
 
-struct GuidePlanes : Registered<GuidePlanes, yade::GlobalEngine> {
+struct GuidePlanes : Registered<GuidePlanes, yade::GlobalEngine>, RaisesFailures {
   static constexpr const char* class_name = "GuidePlanes";
   static constexpr const char* base_name = "GlobalEngine";
   static constexpr const char* doc =

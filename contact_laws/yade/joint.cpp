@@ -2,6 +2,7 @@
 
 #include <boost/make_shared.hpp>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "blocked_motion.hpp"
@@ -120,7 +121,7 @@ Real inverse_mass_of(const yade::Scene& scene, int id) {
   geometry.refR1 = radius;
   geometry.refR2 = radius;
   geometry.journalRadius = radius;
-  geometry.bearingRadius = 0;
+  geometry.bearingRadius = std::numeric_limits<Real>::infinity();
   geometry.axis = Vector3r::Zero();
   geometry.clearanceRate =
       face.distance * face.thermalStrainRate - slider.radius * slider.thermalStrainRate;
@@ -178,37 +179,22 @@ void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
                                              scene->dt};
   const kernel::ContactResponse response =
       kernel::hertz_mindlin(contact_parameters(physics), kinematics, history);
-  if (scene->trackEnergy) account(response, geometry, physics);
+  if (scene->trackEnergy) {
+    account(
+        response, 0, geometry.effectiveRadius,
+        [&](Real& work) {  // dV/dR = V / (2 R)
+          const Real energy =
+              0.5 * (response.normal_elastic_energy + physics.previousElasticEnergy);
+          const Real radius = 0.5 * (geometry.effectiveRadius + physics.previousRadius);
+          work += energy / (2 * radius) * (geometry.effectiveRadius - physics.previousRadius);
+        },
+        geometry, physics, *scene, energies_);
+  }
   if (geometry.penetrationDepth <= 0) return false;
 
-  check_time_step(response.normal_stiffness, physics, *scene, *contact);
-  store(response, history, geometry.normal, physics);
-  apply(kernel::contact_wrench(response.force_on_1, geometry.arm1, geometry.arm2), *scene,
-        *contact);
+  exert(response, kernel::contact_wrench(response.force_on_1, geometry.arm1, geometry.arm2),
+        history, geometry, physics, *scene, *contact);
   return true;
-}
-
-// Expansion of journal or bearing works on the contact through the clearance c and the effective
-// radius R: with V(delta, R) and delta = eccentricity - c, the part of dV that no motion of the
-// bodies explains is -F dc + dV/dR dR, dV/dR = V / (2 R). Trapezoidal, as the motion is.
-void Law2_JointGeom_JointPhys_HertzMindlin::account(const kernel::ContactResponse& response,
-                                                    const JointGeom& geometry, JointPhys& physics) {
-  Real thermal_work = 0;
-  const Real clearance = geometry.eccentricity - geometry.penetrationDepth;
-  if (physics.previousRadius > 0) {
-    const Real force = 0.5 * (response.elastic_normal_force + physics.previousElasticForce);
-    const Real energy = 0.5 * (response.normal_elastic_energy + physics.previousElasticEnergy);
-    const Real radius = 0.5 * (geometry.effectiveRadius + physics.previousRadius);
-    thermal_work = -force * (clearance - physics.previousClearance) +
-                   energy / (2 * radius) * (geometry.effectiveRadius - physics.previousRadius);
-  }
-  physics.previousElasticForce = response.elastic_normal_force;
-  physics.previousElasticEnergy = response.normal_elastic_energy;
-  physics.previousClearance = clearance;
-  physics.previousRadius = geometry.effectiveRadius;
-  energies_.add(*scene,
-                {response.normal_elastic_energy + response.tangential_elastic_energy,
-                 response.friction_dissipation, response.damping_dissipation, thermal_work});
 }
 
 bool Law2_JointGeom_JointPhys_JointLaw::go(yade::shared_ptr<yade::IGeom>& geometry,

@@ -2,6 +2,7 @@
 // kernel's (statejump/kernel); these classes move numbers between YADE's objects and it.
 #pragma once
 
+#include <limits>
 #include <mutex>
 
 #include "joint_energies.hpp"
@@ -23,7 +24,7 @@ struct JointGeom : RegisteredIndexable<JointGeom, yade::GenericSpheresContact> {
   Real eccentricity = 0;
   Vector3r relativeVelocity = Vector3r::Zero();
   Real journalRadius = 0;
-  Real bearingRadius = 0;
+  Real bearingRadius = std::numeric_limits<Real>::infinity();
   // Recomputed in every step before it is used, so not saved.
   Vector3r arm1 = Vector3r::Zero();
   Vector3r arm2 = Vector3r::Zero();
@@ -50,7 +51,7 @@ struct JointGeom : RegisteredIndexable<JointGeom, yade::GenericSpheresContact> {
         read_only("journalRadius", &JointGeom::journalRadius,
                   "Radius of the journal (ball, slider's pads) at the current temperature [m]"),
         read_only("bearingRadius", &JointGeom::bearingRadius,
-                  "Radius of the bearing (socket) at the current temperature [m]; 0: a flat "
+                  "Radius of the bearing (socket) at the current temperature [m]; infinite: a flat "
                   "SlotFace; negative: a MeshBore that bulges there"));
   }
 };
@@ -69,7 +70,8 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
   Real normalDampingRatio = 0;
   Real tangentialDampingRatio = 0;
   bool slipping = false;
-  Real impactSpeed = -1;
+  bool begun = false;
+  Real impactSpeed = 0;
   Real dissipationSlope = 0;
   Real frictionSlope = 0;
   // Last step's values, for the trapezoidal rule of the thermal work; kept only while
@@ -95,16 +97,19 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
             "tangentialDampingRatio", &JointPhys::tangentialDampingRatio,
             "Ratio of the viscous tangential damping to the critical one, while sticking [-]"),
         read_only("slipping", &JointPhys::slipping, "Whether friction was at its limit [-]"),
+        read_only("begun", &JointPhys::begun,
+                  "Whether the bodies have touched: impactSpeed is that of this contact [-]. Kept "
+                  "by Law2_JointGeom_JointPhys_JointLaw"),
         read_only("impactSpeed", &JointPhys::impactSpeed,
                   "Approach speed of the bodies when this contact began [m/s], negative when it "
-                  "began while they parted (the clearance closed on them); -1 before the law has "
-                  "seen it. Kept by Law2_JointGeom_JointPhys_JointLaw"),
+                  "began while they parted (the clearance closed on them). Kept by "
+                  "Law2_JointGeom_JointPhys_JointLaw"),
         read_only("dissipationSlope", &JointPhys::dissipationSlope,
                   "Slope of the dissipation law against the approach speed at the last step "
                   "[N s/m], for stable_time_step()"),
         read_only("frictionSlope", &JointPhys::frictionSlope,
-                  "Largest slope of friction against sliding speed at the last step, mu F_N / (v1 "
-                  "- v0) for 'ambrosio' [N s/m], for stable_time_step()"),
+                  "Largest slope of friction against sliding speed at the last step, of a law "
+                  "that does not remember [N s/m], for stable_time_step()"),
         read_only("previousElasticForce", &JointPhys::previousElasticForce,
                   "Elastic normal force of the last step [N], kept for the energy account"),
         read_only("previousElasticEnergy", &JointPhys::previousElasticEnergy,
@@ -237,10 +242,14 @@ struct Law2_JointGeom_JointPhys_HertzMindlin
   static auto attributes() { return std::make_tuple(); }
 
  private:
-  void account(const kernel::ContactResponse& response, const JointGeom& geometry,
-               JointPhys& physics);
   JointEnergies energies_;
 };
+
+// Documentation of an attribute, from the catalogue: the laws of a kind with what they say of
+// themselves; what a parameter is and which laws read it.
+template <class Law>
+const char* law_docs();
+const char* parameter_docs(const kernel::laws::LawParameter& parameter);
 
 // What all laws have in common whose parts are chosen by name: attributes, checks and one contact's
 // step. A law derives from it beside its registration and gives law_attributes() for its own.
@@ -250,12 +259,12 @@ class NamedJointLaw {
   std::string dissipationLaw = kernel::laws::NoDissipation::info.name;
   std::string frictionLaw = kernel::laws::MindlinFriction::info.name;
   std::string tangentialVelocity = kernel::laws::MaterialVelocity::info.name;
-  Real restitution = 1;
-  Real smallestImpactSpeed = 1e-6;
-  Real contactLength = 0.01;
-  Real v0 = 0;
-  Real v1 = 1e-3;
-  Real firstContactTime = -1;
+  Real restitution = kernel::laws::parameter::restitution.standard;
+  Real smallestImpactSpeed = kernel::laws::parameter::smallest_impact_speed.standard;
+  Real contactLength = kernel::laws::parameter::contact_length.standard;
+  Real v0 = kernel::laws::parameter::v0.standard;
+  Real v1 = kernel::laws::parameter::v1.standard;
+  Real firstContactTime = std::numeric_limits<Real>::quiet_NaN();
   int contacts = 0;
 
  protected:
@@ -267,28 +276,25 @@ class NamedJointLaw {
     };
     return std::make_tuple(
         attribute("normalLaw", member(&NamedJointLaw::normalLaw),
-                  "'hertz_paper', 'hertz_internal', 'johnson', 'esdu_78035' or 'persson' [-]"),
+                  law_docs<kernel::laws::NormalLaw>()),
         attribute("dissipationLaw", member(&NamedJointLaw::dissipationLaw),
-                  "'none', 'lankarani_nikravesh', 'hunt_crossley' or 'flores' [-]"),
+                  law_docs<kernel::laws::DissipationLaw>()),
         attribute("frictionLaw", member(&NamedJointLaw::frictionLaw),
-                  "'none', 'ambrosio' (holds no static load) or 'mindlin' [-]"),
+                  law_docs<kernel::laws::FrictionLaw>()),
         attribute("tangentialVelocity", member(&NamedJointLaw::tangentialVelocity),
-                  "'material' (of the material at the contact point) or 'paper' (of the geometric "
-                  "points of eqs 14-16, without the spins) [-]"),
+                  law_docs<kernel::laws::TangentialVelocityLaw>()),
         attribute("restitution", member(&NamedJointLaw::restitution),
-                  "Restitution of the dissipation laws, in (0, 1] [-]"),
+                  parameter_docs(kernel::laws::parameter::restitution)),
         attribute("smallestImpactSpeed", member(&NamedJointLaw::smallestImpactSpeed),
-                  "Floor of the impact speed in the dissipation laws [m/s]: a contact that begins "
-                  "slower would be damped without bound"),
+                  parameter_docs(kernel::laws::parameter::smallest_impact_speed)),
         attribute("contactLength", member(&NamedJointLaw::contactLength),
-                  "Axial length of the line contacts johnson, esdu_78035 and persson [m]"),
-        attribute("v0", member(&NamedJointLaw::v0),
-                  "ambrosio: no friction up to this sliding speed [m/s]"),
-        attribute("v1", member(&NamedJointLaw::v1),
-                  "ambrosio: full friction from this sliding speed on [m/s]"),
+                  parameter_docs(kernel::laws::parameter::contact_length)),
+        attribute("v0", member(&NamedJointLaw::v0), parameter_docs(kernel::laws::parameter::v0)),
+        attribute("v1", member(&NamedJointLaw::v1), parameter_docs(kernel::laws::parameter::v1)),
         read_only("firstContactTime", member(&NamedJointLaw::firstContactTime),
                   "Time of the first touching [s], located linearly within its step (second order "
-                  "in O.dt); -1 before. Bodies that already touch in the very first step count "
+                  "in O.dt); NaN while contacts is 0. Bodies that already touch in the very first "
+                  "step count "
                   "from its time"),
         read_only("contacts", member(&NamedJointLaw::contacts),
                   "Number of contacts that have begun [-]"));
@@ -296,14 +302,14 @@ class NamedJointLaw {
 
   // Makes the law of the attributes. Throws std::invalid_argument that names class and attribute.
   void build(const char* class_name);
+  // As build() made it.
+  const kernel::laws::JointLaw& law() const { return law_; }
   // Forces of one contact on its two bodies and its entries in O.energy. False when it is open.
   bool step(const JointGeom& geometry, JointPhys& physics, const yade::Interaction& contact,
             yade::Scene& scene);
 
  private:
   void begin(const JointGeom& geometry, JointPhys& physics, const yade::Scene& scene);
-  void account(const kernel::laws::JointResponse& joint, const kernel::laws::NormalGeometry& radii,
-               const JointGeom& geometry, JointPhys& physics, yade::Scene& scene);
   kernel::laws::JointLaw law_;  // made by build()
   bool needs_axis_ = false;     // some of the laws have no meaning without a bearing's axis
   std::mutex beginning_;        // of firstContactTime and contacts
@@ -319,11 +325,12 @@ struct Law2_JointGeom_JointPhys_JointLaw
       "Joint contact by laws chosen by name: normal force, impact dissipation, friction and the "
       "velocity that friction sees. The defaults are Law2_JointGeom_JointPhys_HertzMindlin. The "
       "damping ratios of JointPhys act beside the dissipation law; the tangential one belongs to "
-      "the spring of 'mindlin'. A Slider on a SlotFace (with the radius of its pads) and a Ball in "
+      "the spring of a friction law that remembers. A Slider on a SlotFace (with the radius of its "
+      "pads) and a Ball in "
       "a "
-      "Socket have no axis: they take 'hertz_paper' or 'hertz_internal' and 'material' only. A "
-      "depth outside the range of the "
-      "normal law stops the run. Entries in O.energy: jointElastic, jointFriction, jointDamping, "
+      "Socket have no axis: a law that needs one (see the attributes) stops the run there, and so "
+      "does a depth outside the range of the normal law. Entries in O.energy: jointElastic, "
+      "jointFriction, jointDamping, "
       "jointThermalWork.";
   Law2_JointGeom_JointPhys_JointLaw() { check(); }
   using yade::LawFunctor::go;

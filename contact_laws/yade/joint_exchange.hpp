@@ -47,12 +47,49 @@ inline void check_time_step(Real normal_stiffness, const JointPhys& physics,
   }
 }
 
+// The entries of one contact in O.energy. Expansion works on it through the clearance c and the
+// radii: with V(delta, radii) and delta = eccentricity - c, the part of dV that no motion of the
+// bodies explains is -F dc plus what the radii change of V at fixed depth. Trapezoidal, as the
+// motion is.
+// @param dissipation_force of the dissipation law [N], @param radius kept until the next step [m]
+// @param add_radius_work adds the work of the changing radii to a number [J]
+template <class AddRadiusWork>
+void account(const kernel::ContactResponse& response, Real dissipation_force, Real radius,
+             const AddRadiusWork& add_radius_work, const JointGeom& geometry, JointPhys& physics,
+             const yade::Scene& scene, JointEnergies& energies) {
+  const Real clearance = geometry.eccentricity - geometry.penetrationDepth;
+  Real thermal_work = 0;
+  if (physics.previousRadius > 0) {
+    const Real force = 0.5 * (response.elastic_normal_force + physics.previousElasticForce);
+    thermal_work = -force * (clearance - physics.previousClearance) -
+                   dissipation_force * geometry.clearanceRate * scene.dt;
+    add_radius_work(thermal_work);
+  }
+  physics.previousElasticForce = response.elastic_normal_force;
+  physics.previousElasticEnergy = response.normal_elastic_energy;
+  physics.previousClearance = clearance;
+  physics.previousRadius = radius;
+  physics.previousBearingRadius = geometry.bearingRadius;
+  physics.previousDepth = geometry.penetrationDepth;
+  energies.add(scene, {response.normal_elastic_energy + response.tangential_elastic_energy,
+                       response.friction_dissipation, response.damping_dissipation, thermal_work});
+}
+
 inline void apply(const kernel::Wrench& wrench, yade::Scene& scene,
                   const yade::Interaction& contact) {
   scene.forces.addForce(contact.id1, wrench.force_1);
   scene.forces.addTorque(contact.id1, wrench.torque_1);
   scene.forces.addForce(contact.id2, wrench.force_2);
   scene.forces.addTorque(contact.id2, wrench.torque_2);
+}
+
+// Forces of a contact that touches: what it keeps, and what the two bodies feel.
+inline void exert(const kernel::ContactResponse& response, const kernel::Wrench& wrench,
+                  const kernel::ContactHistory& history, const JointGeom& geometry,
+                  JointPhys& physics, yade::Scene& scene, const yade::Interaction& contact) {
+  check_time_step(response.normal_stiffness, physics, scene, contact);
+  store(response, history, geometry.normal, physics);
+  apply(wrench, scene, contact);
 }
 
 }  // namespace statejump::dem

@@ -7,6 +7,9 @@
 #include "joint.hpp"
 #include "object_list.hpp"
 #include "shapes.hpp"
+#include "statejump/kernel/elastic_pair.hpp"
+#include "statejump/kernel/hertz.hpp"
+#include "statejump/law_loader/load.hpp"
 #include "statejump/yade_abi/guard.hpp"
 #include "thermal.hpp"
 #include "torsion.hpp"
@@ -50,6 +53,7 @@ std::string setup(const boost::python::object& wrapper) {
       !difference.sentence.empty()) {
     return difference.sentence;
   }
+  law_loader::load_user_laws();
   register_list_converter<ThermalLink>();
   register_list_converter<TorsionSpring>();
   register_list_converter<JointGeom>();
@@ -58,6 +62,15 @@ std::string setup(const boost::python::object& wrapper) {
   OurClasses::register_all();
   refresh_view();
   return "";
+}
+
+// Of two bodies of one material.
+double hertz_depth(double force, double effectiveRadius, double young, double poisson) {
+  kernel::require(force >= 0, "force", force, "[0, inf) N");
+  kernel::require(effectiveRadius > 0, "effectiveRadius", effectiveRadius, "(0, inf) m");
+  return kernel::hertz_depth(
+      kernel::elastic_pair(young, poisson, young, poisson).effective_young_modulus, effectiveRadius,
+      force);
 }
 
 double stable_time_step_of_scene() {
@@ -135,6 +148,11 @@ BOOST_PYTHON_MODULE(_native) {
           (py::arg("radius"), py::arg("opening"), py::arg("around"), py::arg("along")),
           "Triangles of a cup as keywords for MeshBore: the part of a sphere of the radius [m] "
           "below the polar angle opening [rad] from z, facets around (>= 3) and rings (>= 2).");
+  py::def("hertz_depth", &statejump::dem::hertz_depth,
+          (py::arg("force"), py::arg("effectiveRadius"), py::arg("young"), py::arg("poisson")),
+          "Depth [m] at which Hertz's point contact of two bodies of one material carries a force "
+          "[N]: start there, and nothing rings. effectiveRadius is that of the pads on a SlotFace, "
+          "R1 R2 / (R2 - R1) in a bearing [m].");
   py::def("stable_time_step", &statejump::dem::stable_time_step_of_scene,
           "Stable time step of the current scene [s], on the safe side: smallest of "
           "4 / (c + sqrt(c^2 + 4 k)) over the bodies, k and c twice the sums of stiffness and "

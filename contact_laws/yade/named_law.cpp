@@ -1,5 +1,9 @@
+#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "contact_parts.hpp"
 #include "failure.hpp"
@@ -16,14 +20,47 @@ namespace laws = kernel::laws;
 template <class Law>
 Law law_by_name(Law (*find)(const std::string&), const char* class_name, const char* attribute,
                 const std::string& name) {
-  try {
-    return find(name);
-  } catch (const std::invalid_argument&) {
+  const std::vector<std::string> known = laws::law_names<Law>();
+  if (std::find(known.begin(), known.end(), name) == known.end()) {
     std::string allowed = "one of ";
-    for (const std::string& known : laws::law_names<Law>()) allowed += known + ", ";
+    for (const std::string& each : known) allowed += each + ", ";
     allowed.resize(allowed.size() - 2);
     refuse(class_name, attribute, name, allowed);
   }
+  if (const std::string problem = laws::law_problem<Law>(name); !problem.empty()) {
+    std::string text = class_name;
+    text.append(".").append(attribute).append(" = '").append(name).append("' cannot be used: ");
+    throw std::invalid_argument(text + problem);
+  }
+  return find(name);
+}
+
+// A sentence that lives as long as the program, as Python's documentation wants it.
+const char* kept(const std::string& sentence) {
+  static std::mutex mutex;
+  static std::set<std::string> sentences;
+  const std::lock_guard<std::mutex> lock(mutex);
+  return sentences.insert(sentence).first->c_str();
+}
+
+// Names of the laws of a kind that read a parameter, each after a separator.
+template <class Law>
+void add_readers(const laws::LawParameter& parameter, std::string& names) {
+  for (const laws::LawInfo& info : laws::law_infos<Law>()) {
+    const auto& read = info.parameters;
+    if (std::find(read.begin(), read.end(), &parameter) == read.end()) continue;
+    names.append(names.empty() ? "" : ", ").append(info.name);
+  }
+}
+
+// "a Ball in a MeshBore"
+std::string pair_of(const yade::Scene& scene, const yade::Interaction& contact, bool flat) {
+  const auto shape = [&](int id) {
+    return body_at(scene, static_cast<std::size_t>(id))->shape->getClassName();
+  };
+  std::string text = "a ";
+  text.append(shape(contact.id1)).append(flat ? " on a " : " in a ").append(shape(contact.id2));
+  return text;
 }
 
 [[gnu::cold, gnu::noinline]] void fail_law(const std::string& sentence, const yade::Scene& scene,
@@ -33,6 +70,31 @@ Law law_by_name(Law (*find)(const std::string&), const char* class_name, const c
 
 }  // namespace
 
+template <class Law>
+const char* law_docs() {
+  std::string text;
+  for (const laws::LawInfo& info : laws::law_infos<Law>()) {
+    text.append("'").append(info.name).append("': ").append(info.formula);
+    text.append(" (").append(info.range);
+    if (!info.has(laws::Trait::holds_static_load)) text += "; holds no static load";
+    if (info.has(laws::Trait::needs_axis)) text += "; needs the axis of a Bearing";
+    text += "). ";
+  }
+  return kept(text + "[-]");
+}
+template const char* law_docs<laws::NormalLaw>();
+template const char* law_docs<laws::DissipationLaw>();
+template const char* law_docs<laws::FrictionLaw>();
+template const char* law_docs<laws::TangentialVelocityLaw>();
+
+const char* parameter_docs(const laws::LawParameter& parameter) {
+  std::string readers;
+  add_readers<laws::NormalLaw>(parameter, readers);
+  add_readers<laws::DissipationLaw>(parameter, readers);
+  add_readers<laws::FrictionLaw>(parameter, readers);
+  return kept(readers + ": " + parameter.meaning + ", " + allowed_range(parameter));
+}
+
 void NamedJointLaw::build(const char* class_name) {
   laws::JointLaw law;
   law.normal = law_by_name(laws::normal_law, class_name, "normalLaw", normalLaw);
@@ -41,12 +103,11 @@ void NamedJointLaw::build(const char* class_name) {
   law.friction = law_by_name(laws::friction_law, class_name, "frictionLaw", frictionLaw);
   law.tangential_velocity = law_by_name(laws::tangential_velocity_law, class_name,
                                         "tangentialVelocity", tangentialVelocity);
-  if (!(restitution > 0 && restitution <= 1)) {
-    dem::refuse(class_name, "restitution", restitution, "in (0, 1] [-]");
-  }
-  require_positive(class_name, "smallestImpactSpeed", smallestImpactSpeed, "[m/s]");
-  require_positive(class_name, "contactLength", contactLength, "[m]");
-  require_not_negative(class_name, "v0", v0, "[m/s]");
+  require_allowed(class_name, "restitution", restitution, laws::parameter::restitution);
+  require_allowed(class_name, "smallestImpactSpeed", smallestImpactSpeed,
+                  laws::parameter::smallest_impact_speed);
+  require_allowed(class_name, "contactLength", contactLength, laws::parameter::contact_length);
+  require_allowed(class_name, "v0", v0, laws::parameter::v0);
   if (!(v1 > v0 && std::isfinite(v1))) dem::refuse(class_name, "v1", v1, "above v0 [m/s]");
   law.restitution = restitution;
   law.smallest_impact_speed = smallestImpactSpeed;
@@ -54,14 +115,14 @@ void NamedJointLaw::build(const char* class_name) {
   law.friction_parameters = {0, v0, v1};  // the friction coefficient is that of each contact
   laws::validate(law);
   law_ = law;
-  needs_axis_ = !(std::holds_alternative<laws::HertzPaper>(law.normal) ||
-                  std::holds_alternative<laws::HertzInternal>(law.normal)) ||
-                std::holds_alternative<laws::PaperVelocity>(law.tangential_velocity);
+  needs_axis_ = laws::has(law.normal, laws::Trait::needs_axis) ||
+                laws::has(law.tangential_velocity, laws::Trait::needs_axis);
 }
 
 // The bodies have moved uniformly over the last step, at the velocity of the half step, and the
 // clearance has changed by clearanceRate dt: the touching is where that straight line crosses 0.
 void NamedJointLaw::begin(const JointGeom& geometry, JointPhys& physics, const yade::Scene& scene) {
+  physics.begun = true;
   physics.impactSpeed = geometry.relativeVelocity.dot(geometry.normal);
   const Real rate = physics.impactSpeed - geometry.clearanceRate;
   const Real since =
@@ -69,29 +130,30 @@ void NamedJointLaw::begin(const JointGeom& geometry, JointPhys& physics, const y
   const bool ever_apart = rate > 0 && scene.time >= scene.dt;
   const Real touched = ever_apart ? scene.time - since : scene.time;
   const std::lock_guard<std::mutex> lock(beginning_);
+  if (contacts == 0 || touched < firstContactTime) firstContactTime = touched;
   ++contacts;
-  if (firstContactTime < 0 || touched < firstContactTime) firstContactTime = touched;
 }
 
 bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
                          const yade::Interaction& contact, yade::Scene& scene) {
-  const bool flat = geometry.bearingRadius == 0;
-  if (geometry.bearingRadius < 0 && !std::holds_alternative<laws::HertzInternal>(law_.normal)) {
-    fail_law("a wall that bulges needs normalLaw 'hertz_internal', not '" + normalLaw + "'", scene,
-             contact);
+  if (geometry.bearingRadius < 0 && !laws::has(law_.normal, laws::Trait::accepts_bulging_wall)) {
+    fail_law("a wall that bulges needs normalLaw " +
+                 laws::names_with<laws::NormalLaw>(laws::Trait::accepts_bulging_wall) + ", not '" +
+                 normalLaw + "'",
+             scene, contact);
     return true;
   }
   if (needs_axis_ && geometry.axis.isZero()) {
-    fail_law(
-        std::string(flat ? "a Slider on a SlotFace" : "a Ball in a Socket") +
-            " needs normalLaw 'hertz_paper' or 'hertz_internal' and tangentialVelocity 'material', "
-            "not '" +
-            normalLaw + "' and '" + tangentialVelocity + "'",
-        scene, contact);
+    fail_law(pair_of(scene, contact, std::isinf(geometry.bearingRadius)) + " needs normalLaw " +
+                 laws::names_with<laws::NormalLaw>(laws::Trait::needs_axis, false) +
+                 " and tangentialVelocity " +
+                 laws::names_with<laws::TangentialVelocityLaw>(laws::Trait::needs_axis, false) +
+                 ", not '" + normalLaw + "' and '" + tangentialVelocity + "'",
+             scene, contact);
     return true;
   }
   const bool touching = geometry.penetrationDepth > 0;
-  if (touching && physics.impactSpeed == -1) begin(geometry, physics, scene);
+  if (touching && !physics.begun) begin(geometry, physics, scene);
 
   kernel::ContactHistory history = contact_history(geometry, physics);
   const auto& state1 = *body_at(scene, static_cast<std::size_t>(contact.id1))->state;
@@ -99,8 +161,7 @@ bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
   const laws::JointKinematics kinematics{
       {geometry.penetrationDepth, geometry.normal, geometry.arm1, geometry.arm2,
        geometry.relativeVelocity, geometry.effectiveRadius, geometry.eccentricity},
-      {geometry.journalRadius,
-       flat ? std::numeric_limits<Real>::infinity() : geometry.bearingRadius, law_.contact_length},
+      {geometry.journalRadius, geometry.bearingRadius, law_.contact_length},
       motion(state1),
       motion(state2),
       geometry.axis,
@@ -110,48 +171,31 @@ bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
   try {
     const laws::JointResponse response =
         laws::joint_response(law_, contact_parameters(physics), kinematics, history);
-    if (scene.trackEnergy) account(response, kinematics.geometry, geometry, physics, scene);
+    if (scene.trackEnergy) {
+      account(
+          response.contact, response.dissipation_force, geometry.journalRadius,
+          [&](Real& work) {  // V(delta, R1, R2) of any law is known by value only
+            laws::NormalGeometry before = kinematics.geometry;
+            before.journal_radius = physics.previousRadius;
+            before.bearing_radius = physics.previousBearingRadius;
+            for (const Real depth : {geometry.penetrationDepth, physics.previousDepth}) {
+              work += 0.5 * laws::radius_energy_change(law_.normal, {physics.effectiveYoungModulus},
+                                                       depth, before, kinematics.geometry);
+            }
+          },
+          geometry, physics, scene, energies_);
+    }
     if (!touching) return false;
 
-    check_time_step(response.contact.normal_stiffness, physics, scene, contact);
-    store(response.contact, history, geometry.normal, physics);
-    // 'ambrosio' remembers nothing: what it gives is force, not history.
+    exert(response.contact, response.wrench, history, geometry, physics, scene, contact);
+    // A law that remembers nothing gives force, not history.
     if (!(physics.ks > 0)) physics.shearForce = -response.contact.tangential_force;
     physics.dissipationSlope = response.dissipation_slope;
     physics.frictionSlope = response.friction_slope;
-    apply(response.wrench, scene, contact);
   } catch (const std::exception& error) {
     fail_law(error.what(), scene, contact);
   }
   return true;
-}
-
-// As Hertz and Mindlin's, but dV/dR by the law itself: V(delta, R1, R2) is known by value only.
-void NamedJointLaw::account(const laws::JointResponse& joint, const laws::NormalGeometry& radii,
-                            const JointGeom& geometry, JointPhys& physics, yade::Scene& scene) {
-  const kernel::ContactResponse& response = joint.contact;
-  const Real clearance = geometry.eccentricity - geometry.penetrationDepth;
-  Real thermal_work = 0;
-  if (physics.previousRadius > 0) {
-    const Real force = 0.5 * (response.elastic_normal_force + physics.previousElasticForce);
-    thermal_work = -force * (clearance - physics.previousClearance) -
-                   joint.dissipation_force * geometry.clearanceRate * scene.dt;
-    laws::NormalGeometry before = radii;
-    before.journal_radius = physics.previousRadius;
-    if (physics.previousBearingRadius != 0) before.bearing_radius = physics.previousBearingRadius;
-    for (const Real depth : {geometry.penetrationDepth, physics.previousDepth}) {
-      thermal_work += 0.5 * laws::radius_energy_change(law_.normal, {physics.effectiveYoungModulus},
-                                                       depth, before, radii);
-    }
-  }
-  physics.previousElasticForce = response.elastic_normal_force;
-  physics.previousElasticEnergy = response.normal_elastic_energy;
-  physics.previousClearance = clearance;
-  physics.previousRadius = geometry.journalRadius;
-  physics.previousBearingRadius = geometry.bearingRadius;
-  physics.previousDepth = geometry.penetrationDepth;
-  energies_.add(scene, {response.normal_elastic_energy + response.tangential_elastic_energy,
-                        response.friction_dissipation, response.damping_dissipation, thermal_work});
 }
 
 }  // namespace statejump::dem

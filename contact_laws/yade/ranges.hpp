@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "statejump/kernel/laws/law_info.hpp"
+
 namespace statejump::dem {
 
 [[noreturn]] inline void refuse(const char* class_name, const char* attribute, double value,
@@ -35,6 +37,27 @@ inline void require_not_negative(const char* class_name, const char* attribute, 
                                  const char* unit) {
   if (!(value >= 0 && std::isfinite(value))) {
     refuse(class_name, attribute, value, (std::string("0 or above ") + unit).c_str());
+  }
+}
+
+// "above 0 [m/s]", "0 or above [m/s]" or "in (0, 1] [-]".
+inline std::string allowed_range(const kernel::laws::LawParameter& parameter) {
+  std::ostringstream text;
+  const char* excluded = parameter.low_excluded ? "above " : "";
+  if (std::isinf(parameter.high)) {
+    text << excluded << parameter.low << (parameter.low_excluded ? "" : " or above");
+  } else {
+    text << "in " << (parameter.low_excluded ? "(" : "[") << parameter.low << ", " << parameter.high
+         << "]";
+  }
+  text << " [" << parameter.unit << "]";
+  return text.str();
+}
+
+inline void require_allowed(const char* class_name, const char* attribute, double value,
+                            const kernel::laws::LawParameter& parameter) {
+  if (!parameter.allows(value)) {
+    refuse(class_name, attribute, value, allowed_range(parameter).c_str());
   }
 }
 

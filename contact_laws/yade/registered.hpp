@@ -29,6 +29,8 @@
 #include <boost/serialization/shared_ptr.hpp>
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/vector.hpp>
+#include <cstdio>
+#include <cstdlib>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -64,6 +66,24 @@ namespace detail {
 template <class Archive, class Type>
 void archive_value(Archive& archive, const char* name, Type& value) {
   archive& boost::serialization::make_nvp(name, value);
+}
+
+// The radius of a flat face is infinite and a time that is not there yet NaN: an XML archive writes
+// them, but cannot read its own words.
+template <class Archive>
+void archive_value(Archive& archive, const char* name, Real& value) {
+  if constexpr (std::is_same_v<Archive, boost::archive::xml_oarchive>) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    const std::string words = text;
+    archive& boost::serialization::make_nvp(name, words);
+  } else if constexpr (std::is_same_v<Archive, boost::archive::xml_iarchive>) {
+    std::string words;
+    archive& boost::serialization::make_nvp(name, words);
+    value = std::strtod(words.c_str(), nullptr);
+  } else {
+    archive& boost::serialization::make_nvp(name, value);
+  }
 }
 
 // Component by component: YADE's own serialization of vectors is not part of its interface.

@@ -14,6 +14,7 @@
 #include "joint.hpp"
 #include "ranges.hpp"
 #include "shapes.hpp"
+#include "statejump/kernel/stable_step.hpp"
 #include "torsion.hpp"
 
 namespace statejump::dem {

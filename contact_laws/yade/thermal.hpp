@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "failure.hpp"
 #include "registered.hpp"
 #include "shapes.hpp"
 #include "statejump/thermal/program.hpp"
@@ -53,7 +54,8 @@ struct ThermalProgram : Registered<ThermalProgram, yade::Serializable> {
   std::optional<thermal::Program> program_;  // built by check()
 };
 
-struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalEngine> {
+struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalEngine>,
+                                RaisesFailures {
   static constexpr const char* class_name = "ThermalExpansionEngine";
   static constexpr const char* base_name = "GlobalEngine";
   static constexpr const char* doc =
@@ -169,7 +171,7 @@ struct LinkEnds {
 LinkEnds ends_of(const yade::Scene& scene, const ThermalLink& link);
 yade::Body& body_of(const yade::Scene& scene, int id, const char* who);
 
-struct ThermalLinks : Registered<ThermalLinks, yade::GlobalEngine> {
+struct ThermalLinks : Registered<ThermalLinks, yade::GlobalEngine>, RaisesFailures {
   static constexpr const char* class_name = "ThermalLinks";
   static constexpr const char* base_name = "GlobalEngine";
   static constexpr const char* doc =

@@ -7,7 +7,7 @@
 #include "contact_parts.hpp"
 #include "failure.hpp"
 #include "ranges.hpp"
-#include "statejump/kernel/contact_law.hpp"
+#include "statejump/kernel/stable_step.hpp"
 
 namespace statejump::dem {
 namespace {

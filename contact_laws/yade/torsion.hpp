@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "failure.hpp"
 #include "registered.hpp"
 #include "thermal.hpp"
 
@@ -42,7 +43,7 @@ struct TorsionSpring : Registered<TorsionSpring, yade::Serializable> {
   }
 };
 
-struct TorsionSprings : Registered<TorsionSprings, yade::GlobalEngine> {
+struct TorsionSprings : Registered<TorsionSprings, yade::GlobalEngine>, RaisesFailures {
   static constexpr const char* class_name = "TorsionSprings";
   static constexpr const char* base_name = "GlobalEngine";
   static constexpr const char* doc =

@@ -32,7 +32,7 @@ def links(text: str) -> Iterator[str]:
 
 
 def local_target(document: Path, target: str) -> Path | None:
-    """Return the file that a link leads to, from the repository's root; None: it leads elsewhere or stays on the page."""
+    """Return the file that a link leads to, from the repository's root; None: elsewhere, or on the same page."""
     if re.match(r"[a-z]+:|#", target):
         return None
     parts: list[str] = []
@@ -65,6 +65,8 @@ def stage(repository: Path, source: Path) -> list[str]:
             elif target not in pages:
                 (source / target).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(repository / target, source / target)
+                if match[2].startswith("!"):  # a role has no pictures: they stand above it
+                    return f"{inner}\n\n{{download}}`{target.name} <{match[3]}>`"
                 if not match[1]:
                     return f"{{download}}`{inner.replace('`', '')} <{match[3]}>`"
             return f"{match[1]}[{inner}]({match[3]})"

@@ -36,7 +36,8 @@ def keys_page() -> str:
             continue
         lines += [heading(name, "-"), _escaped(schema.schema(name)["description"]) + "\n"]
         for section, found, is_list in sections(name):
-            lines += [heading(f"[[{section}]]" if is_list else f"[{section}]", "~"), _escaped(found["description"]) + "\n"]
+            lines += [heading(f"[[{section}]]" if is_list else f"[{section}]", "~"),
+                      _escaped(found["description"]) + "\n"]
             for key, described in found["properties"].items():
                 lines += [f".. _key-{name}-{section}-{key}:\n", f".. object:: {section}.{key}\n",
                           f"   {_escaped(described['description'])}\n"]
@@ -116,8 +117,8 @@ def symbols_page(document: str, members: Path, yade_page: str) -> str:
             return ", ".join(f":ref:`{shown} <{label}>`" for shown, label in keys[plain])
         entries = [entry for entry in cpp.get(plain.rpartition("::")[2], []) if entry.endswith(plain)]
         if column == 4 and entries:
-            return ", ".join(f":cpp:{entry.split()[0]}:`{entry.split()[1].removeprefix('statejump::')} <{entry.split()[1]}>`"
-                             for entry in entries)
+            return ", ".join(f":cpp:{role}:`{found.removeprefix('statejump::')} <{found}>`"
+                             for role, found in map(str.split, entries))
         last = plain.rsplit(".", 1)[-1]
         matching = [target for target in yade.get(last, []) if target == plain or target.endswith("." + last)]
         if plain.count(".") and plain in matching:

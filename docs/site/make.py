@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds the documentation: documents of the repository, executed notebooks, generated references, as one site.
+"""Builds the documentation: documents of the repository, executed notebooks, generated references.
 
     /usr/bin/python3 docs/site/make.py --build build
 
-writes build/docs/html. References: C++ headers by Doxygen, YADE classes by importing the plugin, Python by autodoc, keys
-of case files from the schemas, commands from themselves. A warning is an error; so is a link that leads nowhere, a page
-that the way through the site does not reach, and a name in the table of symbols that is documented nowhere.
+writes build/docs/html. References: C++ headers by Doxygen, YADE classes by importing the plugin, Python by autodoc,
+keys of case files from the schemas, commands from themselves. A warning is an error; so are a link that leads nowhere,
+a page that the way through the site does not reach, and a name in the table of symbols that is documented nowhere.
 """
 from __future__ import annotations
 
@@ -175,7 +175,8 @@ def main() -> None:
     names = (folder / "html" / REFERENCE / "names.html").read_text(encoding="utf-8")
     for domain, page in (("cpp", r"cpp/\w+"), ("py", "yade")):
         wanted = len(re.findall(f'class="xref {domain} ', names))
-        found = len(re.findall(f'<a class="reference internal" href="{page}\\.html#[^>]*><code class="xref {domain} ', names))
+        link = f'<a class="reference internal" href="{page}\\.html#[^>]*><code class="xref {domain} '
+        found = len(re.findall(link, names))
         if not 0 < found == wanted:
             sys.exit(f"names: {found} of {wanted} references to {domain} lead somewhere")
     (folder / "html" / "index.html").write_text(

@@ -31,7 +31,8 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 TUTORIALS = REPOSITORY / "docs" / "tutorials"
 BLOCK = re.compile(r"^```([a-z+]*)(?: file=(\S+))?\n(.*?)^```$\n?", re.MULTILINE | re.DOTALL)
 # What every YADE says at its start, with ports and cookies that differ from run to run.
-YADES_GREETING = re.compile("Welcome to Yade|Using python version|TCP python prompt|XMLRPC info provider|Running script")
+YADES_GREETING = re.compile(
+    "Welcome to Yade|Using python version|TCP python prompt|XMLRPC info provider|Running script")
 TIMEOUT_S = 600  # of a cell; the longest takes some seconds on an idle machine
 
 
@@ -194,7 +195,8 @@ def _joined(outputs: list[NotebookNode]) -> list[NotebookNode]:
 
 
 def _text(text: str) -> str:
-    plain = "\n".join(line for line in re.sub("\x1b\\[[0-9;]*m", "", text).splitlines() if not YADES_GREETING.match(line))
+    lines = re.sub("\x1b\\[[0-9;]*m", "", text).splitlines()  # without colours
+    plain = "\n".join(line for line in lines if not YADES_GREETING.match(line))
     return f"````{{code-block}} text\n:class: output\n\n{plain}\n````" if plain.strip() else ""
 
 

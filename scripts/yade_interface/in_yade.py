@@ -8,11 +8,9 @@ YADE's objects but through Python.
 from __future__ import annotations
 
 import ctypes
-import ctypes.util
 import json
 import os
 import re
-import subprocess
 import time
 from typing import Any, Callable
 
@@ -142,7 +140,8 @@ def values() -> list[list[Any]]:
         return found[0]
 
     def list_of(pointee: str) -> str:
-        return f"std::vector<boost::shared_ptr<yade::{pointee}>, std::allocator<boost::shared_ptr<yade::{pointee}> > >"
+        pointer = f"boost::shared_ptr<yade::{pointee}>"
+        return f"std::vector<{pointer}, std::allocator<{pointer} > >"
 
     def is_list(start: int, things: list[int]) -> bool:
         return bool(things) and all(word(start + 2 * WORD * i) == one for i, one in enumerate(things))
@@ -194,6 +193,9 @@ def values() -> list[list[Any]]:
 start = time.perf_counter()
 plain, number = getters()
 hidden = values()
-print("MEASURED " + json.dumps({"version": config.version, "getters": plain, "values": hidden, "read": number,
-                                "seconds": time.perf_counter() - start}), flush=True)
+with open("/proc/self/maps") as file:
+    library = next(row.split(maxsplit=5)[5].strip() for row in file if row.rstrip().endswith("/libyade.so"))
+result = {"version": config.version, "library": library, "getters": plain, "values": hidden, "read": number,
+          "seconds": time.perf_counter() - start}
+print("MEASURED " + json.dumps(result), flush=True)
 os._exit(0)

@@ -34,23 +34,29 @@ class Found:
 
 
 def command_of(folder: Path) -> str | None:
-    """Return the command that loads the libraries of this folder, if it is known."""
+    """Return the command that is installed with the libraries of this folder, if there is one."""
     command = folder.resolve().parents[2] / "bin" / "yade"
-    return str(command) if command.exists() and command.is_relative_to("/usr") else None
+    return str(command) if command.exists() else None
 
 
 def measure(command: str, libraries: Libraries) -> Found:
     """Run the measurement inside of YADE."""
     with tempfile.TemporaryDirectory(prefix="measure-yade-") as folder:
-        done = subprocess.run([*shlex.split(command), "-n", "-x", str(SCRIPT)], cwd=folder, check=False,
-                              capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=TIMEOUT_S,
-                              env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1",
-                                   "STATEJUMP_FORCES_AT": str(libraries.forces_offset() or "")})
+        try:
+            done = subprocess.run([*shlex.split(command), "-n", "-x", str(SCRIPT)], cwd=folder, check=False,
+                                  capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=TIMEOUT_S,
+                                  env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1",
+                                       "STATEJUMP_FORCES_AT": str(libraries.forces_offset() or "")})
+        except (OSError, subprocess.TimeoutExpired) as error:
+            raise NotMeasured(f"{command} cannot be run here: {error}") from error
     line = next((one for one in done.stdout.splitlines() if one.startswith("MEASURED ")), None)
     if line is None:
         words = (done.stdout + done.stderr).strip().splitlines()[-1:]
         raise NotMeasured(f"{command} ended without an answer: {' '.join(words)}")
     said = json.loads(line.removeprefix("MEASURED "))
+    # What was unpacked into a folder starts with the paths of the system.
+    if not Path(said["library"]).samefile(libraries.folder / "libyade.so"):
+        raise NotMeasured(f"{command} runs with {said['library']}")
     members = {(row[0], row[1]): (row[2], row[3]) for row in said["getters"] + said["values"]}
     shown: dict[str, list[str]] = {}
     for row in said["getters"]:

@@ -16,10 +16,11 @@ class Interface:
 
     name: str
     sizes: dict[str, int] = field(default_factory=dict)
-    members: dict[tuple[str, str], tuple[int, str]] | None = None
+    members: dict[tuple[str, str], tuple[int, str]] = field(default_factory=dict)
     tables: dict[str, list[str]] = field(default_factory=dict)
     stored: dict[str, list[str]] = field(default_factory=dict)
-    shown: dict[str, list[str]] | None = None  # plain data members in Python
+    shown: dict[str, list[str]] = field(default_factory=dict)  # plain data members in Python
+    running: bool = False  # members and what Python shows are measured
     binaries: list[str] = field(default_factory=list)
 
     def title(self) -> str:
@@ -33,7 +34,7 @@ def _rows(path: Path) -> list[dict[str, str]]:
 
 
 def _read(name: str) -> Interface:
-    result = Interface(name, members={}, shown={})
+    result = Interface(name, running=True)
     for row in _rows(ABI / "variants" / f"{name}_members.csv"):
         if row["member"]:
             result.members[row["class"], row["member"]] = (int(row["offset_bytes"]), row["type"])
@@ -85,7 +86,7 @@ def differences(measured: Interface, reference: Interface) -> list[str]:
         if not new and not gone and len(found_table) == len(table):
             result.append(f"table of {name}: another order")
     result += _other_names("stored attributes", measured.stored, reference.stored)
-    if measured.members is not None:
+    if measured.running:
         for (name, member), place in reference.members.items():
             found_place = measured.members.get((name, member))
             if found_place != place:
@@ -110,22 +111,22 @@ def write(measured: Interface, like: Interface, folder: Path) -> None:
     """Write the three tables of a variant, with the classes and members of a known one."""
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "measured_members.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, _MEMBERS, lineterminator="\n")
-        writer.writeheader()
+        members = csv.DictWriter(file, _MEMBERS, lineterminator="\n")
+        members.writeheader()
         for row in _rows(ABI / "variants" / f"{like.name}_members.csv"):
             key = (row["class"], row["member"])
             if not row["member"] and row["seen_by"] == "allocation":
                 row["size_bytes"] = str(measured.sizes.get(row["class"], ""))
-            elif row["member"] and measured.members is not None:
-                place = measured.members.get(key, ("", ""))
-                row["offset_bytes"], row["type"] = str(place[0]), place[1]
-            writer.writerow(row)
+            elif row["member"] and measured.running:
+                place = measured.members.get(key)
+                row["offset_bytes"], row["type"] = (str(place[0]), place[1]) if place else ("", "")
+            members.writerow(row)
     with (folder / "measured_tables.csv").open("w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["class", "place", "entry"])
-        writer.writerows([name, i, entry] for name, table in measured.tables.items() for i, entry in enumerate(table))
+        tables = csv.writer(file, lineterminator="\n")
+        tables.writerow(["class", "place", "entry"])
+        tables.writerows([name, i, entry] for name, table in measured.tables.items() for i, entry in enumerate(table))
     with (folder / "measured_names.csv").open("w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["class", "where", "name"])
-        for where, names in (("stored", measured.stored), ("shown", measured.shown or {})):
-            writer.writerows([name, where, one] for name, found in names.items() for one in found)
+        attributes = csv.writer(file, lineterminator="\n")
+        attributes.writerow(["class", "where", "name"])
+        for where, names in (("stored", measured.stored), ("shown", measured.shown)):
+            attributes.writerows([name, where, one] for name, found in names.items() for one in found)

@@ -114,6 +114,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     add_options(parser)
     parser.add_argument("--random", type=int, default=0, help="so many mutations at random beside the listed ones")
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="no further random ones after this time")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="", help="regular expression: just these of the listed mutations")
     options = parser.parse_args()
@@ -134,8 +135,12 @@ def main() -> int:
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
             waiting = {pool.submit(examination.examine, one): one for one in listed}
             made = wanted = 0
-            while waiting or wanted < options.random:
-                while wanted < options.random and len(waiting) < 2 * options.jobs:
+
+            def another() -> bool:
+                return wanted < options.random and time.monotonic() - start < options.seconds
+
+            while waiting or another():
+                while another() and len(waiting) < 2 * options.jobs:
                     made, wanted = made + 1, wanted + 1
                     one = source.mutation(made)
                     waiting[pool.submit(examination.examine, one)] = one

@@ -12,7 +12,8 @@ ENVIRONMENT = {**os.environ, "PYTHONPATH": os.environ["STATEJUMP_PYTHON_DIR"]}
 
 def block(heading: str) -> str:
     """Return the first Python block below a heading."""
-    return README.read_text(encoding="utf-8").split(f"\n## {heading}\n", 1)[1].split("```python\n", 1)[1].split("```", 1)[0]
+    text = README.read_text(encoding="utf-8").split(f"\n## {heading}\n", 1)[1]
+    return text.split("```python\n", 1)[1].split("```", 1)[0]
 
 
 def test_smallest_yade_script(tmp_path: Path) -> None:

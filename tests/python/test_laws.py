@@ -2,6 +2,7 @@
 """The catalogue through Python: names, forces against formulas written down again, the figures."""
 from __future__ import annotations
 
+import json
 from math import inf, log1p, pi
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 
 from conftest import REPOSITORY
 from statejump import _engine, laws
+from statejump.laws import curves
 from statejump.kinds.registry import load_case
 
 R1, R2, LENGTH, MODULUS = 5e-3, 5.1e-3, 0.01, 70e9 / (2 * (1 - 0.3**2))
@@ -30,12 +32,55 @@ def test_names() -> None:
         "tangential_velocity": ["material", "paper"],
     }
     for kind, listed in names.items():
-        infos = _engine.laws(kind)
-        assert [info["name"] for info in infos] == listed
-        assert {tuple(info) for info in infos} == {("name", "formula", "source", "range", "holds_static_load")}
-    assert [info["holds_static_load"] for info in _engine.laws("friction")] == [False, False, True]
+        assert [law.name for law in laws.catalogue(kind)] == listed
     with pytest.raises(ValueError, match="kind = 'rolling', allowed is one of normal, dissipation, friction"):
         _engine.law_names("rolling")
+
+
+TRAITS = ("holds_static_load", "frictionless", "has_memory", "needs_axis", "accepts_bulging_wall", "point_contact")
+
+
+@pytest.mark.parametrize("kind, name, traits, parameters", [
+    ("normal", "hertz_paper", {"holds_static_load", "point_contact"}, ()),
+    ("normal", "hertz_internal", {"holds_static_load", "point_contact", "accepts_bulging_wall"}, ()),
+    *(("normal", name, {"holds_static_load", "needs_axis"}, ("contact_length",)) for name in LINE_CONTACTS),
+    ("dissipation", "none", {"holds_static_load"}, ()),
+    *(("dissipation", name, {"holds_static_load"}, ("restitution", "smallest_impact_speed"))
+      for name in ("lankarani_nikravesh", "hunt_crossley", "flores")),
+    ("friction", "none", {"frictionless"}, ()),
+    ("friction", "ambrosio", set(), ("friction_coefficient", "v0", "v1")),
+    ("friction", "mindlin", {"holds_static_load", "has_memory"}, ("friction_coefficient",)),
+    ("tangential_velocity", "material", {"holds_static_load"}, ()),
+    ("tangential_velocity", "paper", {"holds_static_load", "needs_axis"}, ()),
+])
+def test_traits(kind: str, name: str, traits: set[str], parameters: tuple[str, ...]) -> None:
+    law = laws.law(kind, name)
+    assert {trait for trait in TRAITS if getattr(law, trait)} == traits
+    assert tuple(parameter.name for parameter in law.parameters) == parameters
+
+
+def test_parameters_are_those_of_the_cases() -> None:
+    """Unit, lower end and default of a case's keys are the law's own; its upper end may be lower."""
+    keys = {"restitution": "restitution", "smallest_impact_speed": "smallest_impact_speed_m_per_s",
+            "v0": "friction_v0_m_per_s", "v1": "friction_v1_m_per_s", "contact_length": "contact_length_m",
+            "friction_coefficient": "friction_coefficient"}
+    schema = json.loads((REPOSITORY / "schema" / "umbrella.schema.json").read_text())
+    joint = schema["properties"]["joint"]["properties"]
+    seen = {parameter for kind in laws.KINDS for law in laws.catalogue(kind) for parameter in law.parameters}
+    assert {parameter.name for parameter in seen} == set(keys)
+    for parameter in seen:
+        told = joint[keys[parameter.name]]
+        low = told["exclusiveMinimum" if parameter.low_excluded else "minimum"]
+        assert (told["x-unit"], low) == (parameter.unit, parameter.low), parameter.name
+        if parameter.name != "friction_coefficient":  # of the pair, so a case has to say it
+            assert told["default"] == parameter.default, parameter.name
+        assert parameter.allows(told["maximum"]) and not parameter.allows(float("nan"))
+        assert parameter.allows(parameter.low) != parameter.low_excluded
+
+
+def test_unknown_law() -> None:
+    with pytest.raises(ValueError, match="friction_law = 'mindlyn', allowed is one of none, ambrosio, mindlin"):
+        laws.law("friction", "mindlyn")
 
 
 @pytest.mark.parametrize("name, radius", [("hertz_paper", R1 * R2 / (R1 + R2)), ("hertz_internal", R1 * R2 / (R2 - R1))])
@@ -112,9 +157,9 @@ def test_wrong_use() -> None:
 ])
 def test_impact(name: str, ratio: float) -> None:
     """a - ln(1 + a) = -a e' - ln(1 - a e') whatever the elastic law; a = chi/K times the speed."""
-    joint = laws.paper_joint()
+    joint = curves.paper_joint()
     assert _engine.damping_ratio_s_per_m(name, 0.8, 0.1) * 0.1 == pytest.approx(ratio, rel=1e-14)
-    found = laws.impact(name, joint)
+    found = curves.impact(name, joint)
     if ratio == 0:
         assert found.restitution == pytest.approx(1.0, abs=1e-6)
         energy = 0.5 * joint.reduced_mass_kg * 0.1**2
@@ -131,7 +176,7 @@ def test_impact(name: str, ratio: float) -> None:
 
 
 def test_paper_joint_is_that_of_the_case(cases: Path) -> None:
-    paper, case = laws.paper_joint(), laws.joint_of(load_case(cases / "umbrella.toml"))
+    paper, case = curves.paper_joint(), curves.joint_of(load_case(cases / "umbrella.toml"))
     for field in ("journal_radius_m", "bearing_radius_m", "contact_length_m", "effective_young_modulus_Pa",
                   "reduced_mass_kg"):
         assert getattr(paper, field) == pytest.approx(getattr(case, field), rel=1e-14)
@@ -145,19 +190,19 @@ def test_document_lists_every_law() -> None:
 
 
 def test_figure_repeats_bit_for_bit(tmp_path: Path) -> None:
-    png, svg = laws.figure(laws.paper_joint(), tmp_path, "laws")
+    png, svg = curves.figure(curves.paper_joint(), tmp_path, "laws")
     before = svg.read_text()
     for text in (*_engine.law_names("normal"), *_engine.law_names("dissipation"), "Penetration depth [mm]",
                  "Penetration depth [µm]", "Normal force [N]", "range ends: error beyond"):
         assert text in before, text
     assert png.stat().st_size > 20_000
-    laws.figure(laws.paper_joint(), tmp_path, "laws")
+    curves.figure(curves.paper_joint(), tmp_path, "laws")
     assert svg.read_text() == before
 
 
 @pytest.mark.parametrize("radius, clearance", [(1e-3, 50.0), (50.0, 1e-6), (1e-9, 1e-12)])
 def test_figure_of_odd_joints(tmp_path: Path, radius: float, clearance: float) -> None:
-    written = laws.figure(laws.Joint("odd", radius, radius + clearance, 1.0, 1e3, 1e-6), tmp_path, "odd")
+    written = curves.figure(curves.Joint("odd", radius, radius + clearance, 1.0, 1e3, 1e-6), tmp_path, "odd")
     assert written and all(path.stat().st_size > 0 for path in written)
 
 
@@ -179,5 +224,5 @@ def test_command_with_a_case_without_laws(statejump, cases: Path, tmp_path: Path
     outcome = statejump("laws", path)
     assert outcome.status == 2
     assert outcome.errors == (
-        f"error: {path}: case.kind = 'spring_slider' is not allowed: 'statejump laws' is for 'umbrella'\n")
+        f"error: {path}: case.kind = 'spring_slider' is not allowed: 'statejump laws show' is for 'umbrella'\n")
     assert list(tmp_path.iterdir()) == []

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Laws of a joint chosen by name: the catalogue inside YADE."""
-from math import e, log, log1p, pi, sqrt
+from math import e, inf, isnan, log, log1p, pi, sqrt
 
 import pytest
 
@@ -29,10 +29,12 @@ def root_of(function, low, high):
 
 
 def test_defaults_and_names(seen):
-    assert seen["defaults"] == {
+    defaults = dict(seen["defaults"])
+    assert isnan(defaults.pop("firstContactTime"))
+    assert defaults == {
         "normalLaw": "hertz_internal", "dissipationLaw": "none", "frictionLaw": "mindlin",
         "tangentialVelocity": "material", "restitution": 1.0, "smallestImpactSpeed": 1e-6,
-        "contactLength": 0.01, "v0": 0.0, "v1": 1e-3, "firstContactTime": -1.0, "contacts": 0,
+        "contactLength": 0.01, "v0": 0.0, "v1": 1e-3, "contacts": 0,
         "label": "",
     }
     assert len(seen["accepted"]) == 14
@@ -158,7 +160,7 @@ def test_ambrosio_creeps_and_mindlin_holds(seen):
     assert 0.4 * limit < creeping["stable"] < 0.5 * limit
     assert holding["stable"] > 5 * limit
     assert creeping["ks"] == 0 < holding["ks"]
-    assert creeping["radii"] == [0.02, 0.0]
+    assert creeping["radii"] == [0.02, inf]
 
 
 def ratio_of(name, restitution):
@@ -227,7 +229,7 @@ def test_energy_of_a_lossless_cycle_closes_to_second_order(seen):
 
 def test_first_contact_of_a_drifting_journal_is_exact(seen):
     for run in seen["drifting"]:
-        assert run["before"] == [-1.0, 0]
+        assert isnan(run["before"][0]) and run["before"][1] == 0
         assert run["contacts"] == 1
         assert run["seen"] > 1.6e-3
         # 8e-5 m at 0.05 m/s. Position 1e-4 rounded in each step, over the speed; the clearance is

@@ -33,7 +33,6 @@ R1, R2 = 5e-3, 5.1e-3  # m, journal (ball) and bearing (socket)
 load, mass = 1.0, 1e-3  # N, kg
 spacing = 0.02  # m, between joints that do not see each other
 cone = atan(friction)
-modulus = young / (2 * (1 - poisson**2))  # E* of two equal bodies
 shear_modulus = young / (4 * (2 - poisson) * (1 + poisson))  # G*
 
 
@@ -44,7 +43,7 @@ def effective_radius(inner_radius, wall_radius):
 
 def depth_under(force, effective):
     """Depth at which Hertz contact carries a force [m]."""
-    return (max(force, 0) / (4 / 3 * modulus * sqrt(effective))) ** (2 / 3)
+    return hertz_depth(max(force, 0), effective, young, poisson)
 
 
 def creep(effective):

@@ -6,7 +6,7 @@
 Prints the state jump: where the slider is when the temperature is back, minus where it started.
 """
 import sys
-from math import atan, sqrt
+from math import atan
 from pathlib import Path
 
 # The build tree, for a clone that is not installed.
@@ -35,9 +35,8 @@ slider.material = O.materials[aluminium]
 slider.bound = Aabb()
 slider.state.mass = density * area * length / 3
 slider.state.blockedDOFs = "zXYZ"  # a guided block: it slides and sinks in, it does not turn
-# Start where the floor carries the normal force: F = 4/3 E* sqrt(R) depth^1.5, E* = E / 2(1 - nu^2).
-hertz_stiffness = 4 / 3 * young / (2 * (1 - 0.3**2)) * sqrt(pad_radius)
-slider.state.pos = (0, -((normal_force / hertz_stiffness) ** (2 / 3)), 0)
+# Start where the floor carries the normal force.
+slider.state.pos = (0, -hertz_depth(normal_force, pad_radius, young, 0.3), 0)
 slider = O.bodies.append(slider)
 
 floor, stop_minus, stop_plus = O.bodies.append(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan, sqrt
+from math import atan
 from typing import Any
 
 import statejump_yade as sj
@@ -60,8 +60,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
         O.materials.append(material)
 
     root = fixed_point((-link["stress_free_length_m"], 0, 0))
-    effective_modulus = joint["young_modulus_Pa"] / (2 * (1 - joint["poisson_ratio"] ** 2))
-    depth = (joint["normal_force_N"] / (4 / 3 * effective_modulus * sqrt(radius))) ** (2 / 3)
+    depth = sj.hertz_depth(joint["normal_force_N"], radius, joint["young_modulus_Pa"], joint["poisson_ratio"])
     body = wrapper.Body()
     body.shape = sj.Slider(radius=radius)
     body.material = materials["pad"]

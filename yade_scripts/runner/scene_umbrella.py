@@ -190,11 +190,10 @@ def step_remedy(case: dict[str, Any], stable_s: float) -> str:
 
 def summary(case: dict[str, Any], built: UmbrellaScene) -> dict[str, Any]:
     """Return what else the run has to say, as plain values."""
-    first = built.law.firstContactTime
+    contacts = built.law.contacts
+    first = built.law.firstContactTime if contacts > 0 else None
     return {
-        "contacts": built.law.contacts,
-        "first_contact_time_s": first if first >= 0 else None,
-        "first_contact_temperature_change_K": (
-            built.program.temperatureChange(first) if first >= 0 else None
-        ),
+        "contacts": contacts,
+        "first_contact_time_s": first,
+        "first_contact_temperature_change_K": None if first is None else built.program.temperatureChange(first),
     }

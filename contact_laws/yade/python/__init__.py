@@ -31,9 +31,9 @@ if _difference:
         "it again on this machine, and if the build does not know this YADE, run scripts/measure_yade"
     )
 
-stable_time_step = _native.stable_time_step
+stable_time_step, hertz_depth = _native.stable_time_step, _native.hertz_depth
 bore_triangles, socket_triangles = _native.bore_triangles, _native.socket_triangles
-__all__ = ["slot", "stable_time_step", "bore_triangles", "socket_triangles", *_native.class_names()]
+__all__ = ["slot", "stable_time_step", "hertz_depth", "bore_triangles", "socket_triangles", *_native.class_names()]
 for _name in _native.class_names():
     globals()[_name] = getattr(_wrapper, _name)
 

@@ -12,6 +12,8 @@
 
 #include "elastic_loop_equations.hpp"
 #include "statejump/failure.hpp"
+#include "statejump/kernel/elastic_pair.hpp"
+#include "statejump/kernel/require.hpp"
 
 namespace statejump::joint_loop {
 
@@ -28,21 +30,41 @@ constexpr int halving_limit = 40;
 constexpr double limit_rounding = 1e-10;
 
 /// Refuses a law of the catalogue that the equations here do not have.
-void require_law(bool holds, const char* field, const kernel::laws::LawInfo& info,
-                 const char* allowed) {
-  if (holds) return;
-  throw kernel::OutOfRange(field, info.name, allowed);
+void validate_laws(const linkage::Linkage& model) {
+  using namespace kernel::laws;
+  const NormalLaw& normal = model.law.normal;
+  if (!has(normal, Trait::point_contact)) {
+    throw kernel::OutOfRange("normal", law_info(normal).name,
+                             names_with<NormalLaw>(Trait::point_contact) + " in the elastic loop");
+  }
+  const TangentialVelocityLaw& velocity = model.law.tangential_velocity;
+  if (has(velocity, Trait::needs_axis)) {
+    throw kernel::OutOfRange("tangential_velocity", law_info(velocity).name,
+                             names_with<TangentialVelocityLaw>(Trait::needs_axis, false) +
+                                 " in the elastic loop: friction's moments act on the links");
+  }
 }
 
-void validate_laws(const linkage::Linkage& model) {
-  const kernel::laws::NormalLaw& normal = model.law.normal;
-  require_law(std::holds_alternative<kernel::laws::HertzInternal>(normal) ||
-                  std::holds_alternative<kernel::laws::HertzPaper>(normal),
-              "normal", law_info(normal), "hertz_internal or hertz_paper in the elastic loop");
-  const kernel::laws::TangentialVelocityLaw& velocity = model.law.tangential_velocity;
-  require_law(std::holds_alternative<kernel::laws::MaterialVelocity>(velocity),
-              "tangential_velocity", law_info(velocity),
-              "material in the elastic loop: friction's moments act on the links");
+/// The equations solve a point contact as Hertz's: a law that says it is one is held to its word.
+/// @param p at ΔT = 0
+void require_hertz(const linkage::Linkage& model, const Parameters& p) {
+  const double depth = 1e-3 * model.radial_clearance();
+  const double expected = p.hertz.value * depth * std::sqrt(depth);
+  const kernel::ElasticPair pair =
+      kernel::elastic_pair(model.link_bc.young_modulus, model.link_bc.poisson_ratio,
+                           model.link_ab.young_modulus, model.link_ab.poisson_ratio);
+  const double found =
+      evaluate(model.law.normal, depth,
+               {model.journal_radius, model.bearing_radius, model.law.contact_length},
+               {pair.effective_young_modulus})
+          .force;
+  // Rounding of R2 - R1 leaves some 1e-14.
+  if (std::abs(found - expected) <= 1e-9 * expected) return;
+  char text[120];
+  std::snprintf(text, sizeof text,
+                "a law that is Hertz's point contact as it says, %.9g N, not %.9g N", expected,
+                found);
+  throw kernel::OutOfRange("normal", law_info(model.law.normal).name, text);
 }
 
 [[noreturn]] void fail(const Equilibrium& at) {
@@ -62,6 +84,7 @@ Equilibrium start(const linkage::Linkage& model, const Equations& equations, dou
   const JointPoint rigid = joint_point(model, 0.0, side, contact_angle);
   Equilibrium at;
   at.p = parameters(model, 0.0);
+  require_hertz(model, at.p);
   at.z[th2] = rigid.theta2;
   at.z[th4] = rigid.theta4;
   at.z[psi] = std::atan2(rigid.eccentricity.y(), rigid.eccentricity.x());

@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <limits>
-#include <variant>
 
 #include "statejump/kernel/elastic_pair.hpp"
 
@@ -39,7 +38,8 @@ Parameters parameters(const linkage::Linkage& model, double temperature_change) 
   p.k2 = axial(bc, p.l2);
   p.r1 = thermal(model.journal_radius, model.journal_thermal_expansion, temperature_change);
   p.r2 = thermal(model.bearing_radius, model.bearing_thermal_expansion, temperature_change);
-  const bool internal = std::holds_alternative<kernel::laws::HertzInternal>(model.law.normal);
+  // The curvature of the bearing counts with its sign, or as the paper prints it.
+  const bool internal = has(model.law.normal, kernel::laws::Trait::accepts_bulging_wall);
   const double sign = internal ? -1.0 : 1.0;
   const double sum = p.r2.value + sign * p.r1.value;
   const double root = std::sqrt(p.r1.value * p.r2.value / sum);

@@ -167,7 +167,7 @@ Run simulate_adaptive(const Linkage& model, const thermal::Program& program, con
   require(options.relative_tolerance >= 1e-14 && options.relative_tolerance <= 1e-3,
           "relative_tolerance", options.relative_tolerance, "[1e-14, 1e-3]");
   require(options.samples >= 0, "samples", options.samples, ">= 0");
-  if (has_memory(model.law.friction)) {
+  if (has(model.law.friction, kernel::laws::Trait::has_memory)) {
     throw kernel::OutOfRange("friction_law", law_info(model.law.friction).name,
                              "a law without memory in the adaptive method");
   }

@@ -75,7 +75,7 @@ void Linkage::validate() const {
 }
 
 double Linkage::friction_coefficient() const {
-  const bool none = std::holds_alternative<kernel::laws::NoFriction>(law.friction);
+  const bool none = has(law.friction, kernel::laws::Trait::frictionless);
   return none ? 0.0 : law.friction_parameters.friction_coefficient;
 }
 

@@ -34,7 +34,7 @@ Constants constants(const Linkage& m) {
   k.torsion = m.torsion_stiffness;
   k.free_angle = m.free_angle();
   k.friction = m.friction_coefficient() > 0.0;
-  k.friction_has_memory = k.friction && has_memory(m.law.friction);
+  k.friction_has_memory = k.friction && has(m.law.friction, kernel::laws::Trait::has_memory);
   k.dissipation = damping_ratio(m.law, m.law.smallest_impact_speed) > 0.0;
   k.couples = k.friction || k.pin_damping > 0.0 || k.torsion > 0.0;
   k.expanding = k.r1_rate != 0.0 || k.r2_rate != 0.0;

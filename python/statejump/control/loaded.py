@@ -8,7 +8,7 @@ from typing import Any, Callable, Optional
 
 import numpy as np
 
-from statejump import _engine
+from statejump import _engine, laws
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.control.study import Progress, Row, Study, Sweep, bisect, grid, number, ranges_that_pass
 from statejump.kinds.umbrella.control import AREA, BIAS, CLEARANCE, FRICTION, SPRING, changes, most_friction
@@ -42,8 +42,8 @@ class LoadedJump:
 
 def has_elastic_loop(case: UmbrellaCase) -> bool:
     """Whether the path with elastic links covers the laws of a case."""
-    joint = case.joint
-    return joint.normal_law in ("hertz_paper", "hertz_internal") and joint.tangential_velocity == "material"
+    velocity = laws.law("tangential_velocity", case.joint.tangential_velocity)
+    return laws.law("normal", case.joint.normal_law).point_contact and not velocity.needs_axis
 
 
 def _slips(loop: Any) -> bool:
@@ -75,7 +75,7 @@ def loaded_jump(case: UmbrellaCase) -> LoadedJump:
     _, rigid, slips_rigid = path(lambda: _engine.joint_loop(model.linkage(case), program, angle, 100))
     elastic, jump, slips, covered = None, None, False, has_elastic_loop(case)
     if covered:
-        compliance = "mindlin" if case.joint.friction_law == "mindlin" else "rigid"
+        compliance = "mindlin" if laws.law("friction", case.joint.friction_law).has_memory else "rigid"
         elastic, jump, slips = path(
             lambda: _engine.elastic_loop(model.linkage(case), program, angle, 400, compliance)
         )
@@ -196,7 +196,7 @@ def study(case: UmbrellaCase, wanted: Optional[float], with_dem: bool, progress:
             "the path with elastic links needs a Hertz normal law and tangential_velocity = 'material': link "
             "stiffness is left out"
         )
-    if case.joint.friction_law != "mindlin":
+    if not laws.law("friction", case.joint.friction_law).holds_static_load:
         result.remarks.append(
             f"friction_law = {case.joint.friction_law!r} holds no static load, a joint left alone creeps; the "
             "path stands for Coulomb friction of the same coefficient"

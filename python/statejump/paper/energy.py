@@ -11,6 +11,7 @@ from typing import Callable, Optional, Sequence
 import click
 import numpy as np
 
+from statejump import laws
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.core.errors import StatejumpError
 from statejump.core.history import History
@@ -218,7 +219,7 @@ def study(
             finished()
         for tolerance in ADAPTIVE_TOLERANCES:
             finished()
-            if variant.case.joint.friction_law == "mindlin":
+            if laws.law("friction", variant.case.joint.friction_law).has_memory:
                 continue  # not smooth enough for error control
             adaptive = model.run(
                 model.changed(

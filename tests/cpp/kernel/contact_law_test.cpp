@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "statejump/kernel/contact_law.hpp"
+#include "statejump/kernel/stable_step.hpp"
 
 #include <limits>
 #include <stdexcept>

@@ -255,7 +255,7 @@ TEST(Friction, AmbrosioRampAndCreep) {
   EXPECT_NEAR(half.force_on_1.y(), 12.0, 1e-12);
   EXPECT_NEAR(half.dissipation, 15.0 * 2e-3 * 1e-4, 1e-18);
   for (const double v : {3e-3, 1.0}) EXPECT_NEAR(force(v).force_on_1.norm(), 30.0, 1e-12) << v;
-  EXPECT_FALSE(law_info(law).holds_static_load);
+  EXPECT_FALSE(has(law, Trait::holds_static_load));
 }
 
 // A mass pushed by half of the Coulomb limit: mindlin holds it, ambrosio creeps at v0 + (v1 -

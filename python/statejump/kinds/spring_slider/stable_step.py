@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stable time step of the spring-slider scene.
 
-Leapfrog with a damping force from the lagged velocity is stable for omega dt <= 2 (sqrt(1 + zeta^2)
-- zeta) with omega^2 = k/m and zeta = c / (2 sqrt(k m)) of a mode. The slider moves along two axes:
+The limit of leapfrog for one oscillator is the kernel's, ``_engine.critical_time_step_s``. The slider moves
+along two axes:
 
 - across the floor (y): the floor's normal stiffness k_n, and k_t of a stop that it touches;
 - along the bar (x): the link, k_t of the floor and k_n of a stop.
 
-Contacts are Hertz-Mindlin, k_n = 2 E* a, k_t = 8 G* a, a = sqrt(R delta), delta =
-(F / (4/3 E* sqrt(R)))^(2/3), at the largest force they can see: the floor at twice the normal force
-(a load applied at once overshoots to twice its value), a stop at the force that would hold the whole
-thermal overlap rigidly, doubled for impact. Dashpots of all contacts of an axis are added.
+Contacts are Hertz-Mindlin at the largest force they can see: the floor at twice the normal force (a load
+applied at once overshoots to twice its value), a stop at the force that would hold the whole thermal
+overlap rigidly, doubled for impact. Dashpots of all contacts of an axis are added.
 """
 from __future__ import annotations
 
 from math import sqrt
 from typing import TYPE_CHECKING
 
+from statejump import _engine
 from statejump.core import physics
 
 if TYPE_CHECKING:
@@ -70,13 +70,10 @@ def stable_time_step(case: SpringSliderCase) -> float:
     )
     steps = []
     for spring, contacts in axes:
-        stiffness = spring + sum(contacts)
-        # c / m of all dashpots, each 2 zeta sqrt(k m)
-        damping = 2 * sqrt(1 / mass) * (
+        # Each dashpot is 2 zeta sqrt(k m).
+        damping = 2 * sqrt(mass) * (
             case.dem.link_damping_ratio * sqrt(spring)
             + case.dem.contact_damping_ratio * sum(sqrt(k) for k in contacts)
         )
-        omega = sqrt(stiffness / mass)
-        ratio = damping / (2 * omega)
-        steps.append(2 / omega * (sqrt(1 + ratio**2) - ratio))
+        steps.append(_engine.critical_time_step_s(mass, spring + sum(contacts), damping))
     return min(steps)

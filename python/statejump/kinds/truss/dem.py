@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from statejump import _engine
 from statejump.core import physics, thermal, yade_process
 from statejump.core.errors import StatejumpError
 from statejump.core.progress import Tell
@@ -92,9 +93,7 @@ def stable_time_step(case: TrussCase, path: TrussPath) -> float:
         force = IMPACT**3 * path.states["normal_force_N"].max(axis=0)
         nodes = np.stack((truss.revolutes.bearing_node, truss.revolutes.journal_node), axis=1)
         touch(nodes, revolute_stiffness(truss, force), contact)
-    with np.errstate(divide="ignore"):
-        steps = 4 / (damping + np.sqrt(damping**2 + 4 * stiffness))
-    return float(steps.min(initial=inf))
+    return float(np.min(_engine.critical_time_step_s(1.0, stiffness, damping), initial=inf))
 
 
 def number_of_steps(case: TrussCase, path: TrussPath) -> int:

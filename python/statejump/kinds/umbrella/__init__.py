@@ -16,6 +16,7 @@ from statejump.kinds.umbrella.words import WORDS
 if TYPE_CHECKING:
     from statejump.core.charts import Chart
     from statejump.core.figures import Sheet
+    from statejump.laws.curves import Joint
 
 
 class Umbrella(Kind):
@@ -56,6 +57,15 @@ class Umbrella(Kind):
         "impact_dissipation_J",
         "thermal_work_J",
     )
+
+    def laws(self, case: UmbrellaCase) -> Joint:
+        """Return the joint as the curves of the laws want it."""
+        from statejump.laws import curves
+
+        return curves.Joint(
+            case.title, case.joint.journal_radius_m, case.bearing_radius_m, case.joint.contact_length_m,
+            case.effective_young_modulus_Pa, curves.reduced_mass_kg(case.link_ab.mass_kg, case.link_bc.mass_kg),
+        )
 
     def reduced(self, case: UmbrellaCase, tell: Tell) -> Run:
         from statejump.kinds.umbrella import reduced

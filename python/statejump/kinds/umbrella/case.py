@@ -7,11 +7,10 @@ from C to B; the flare angle is theta4 - theta2.
 """
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from math import atan, atan2, pi
 from typing import Any, ClassVar
 
-from statejump import _engine
+from statejump import _engine, laws
 from statejump.core import thermal as programs
 from statejump.core.case import Case, check_radii, no_length_left
 from statejump.core.errors import NotAllowed
@@ -21,16 +20,6 @@ from statejump.schema.fields import CHOICE, Section, choice, definition, paramet
 
 PAPER = "Chen et al. (2021), Tables 2 and 3"
 NONE = "none in the paper's case"
-
-
-def _laws(kind: str) -> Callable[[], Sequence[str]]:
-    """Return what names the laws of a kind when they are needed: the catalogue grows with laws of one's own."""
-    return lambda: _engine.law_names(kind)
-
-
-def friction_has(trait: str, friction_law: str) -> bool:
-    """Whether the catalogue says so of a friction law: ``holds_static_load``, ``has_memory``."""
-    return any(law["name"] == friction_law and law[trait] for law in _engine.laws("friction"))
 
 
 @definition
@@ -61,14 +50,14 @@ class UmbrellaJoint(Section):
     journal_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, "eq. 12: constant")
     bearing_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, "eq. 12: constant")
     normal_law: str = choice(
-        "hertz_internal", _laws("normal"), CHOICE + "; it prints hertz_paper"
+        "hertz_internal", lambda: laws.names("normal"), CHOICE + "; it prints hertz_paper"
     )
-    dissipation_law: str = choice("none", _laws("dissipation"), "eq. 6: none")
+    dissipation_law: str = choice("none", lambda: laws.names("dissipation"), "eq. 6: none")
     friction_law: str = choice(
-        "mindlin", _laws("friction"), CHOICE + "; its ambrosio holds no static load"
+        "mindlin", lambda: laws.names("friction"), CHOICE + "; its ambrosio holds no static load"
     )
     tangential_velocity: str = choice(
-        "material", _laws("tangential_velocity"), CHOICE + "; eqs 14-16 are paper"
+        "material", lambda: laws.names("tangential_velocity"), CHOICE + "; eqs 14-16 are paper"
     )
     friction_coefficient: float = parameter(..., "-", 0, 10, PAPER)
     restitution: float = parameter(1.0, "-", 0, 1, CHOICE + "; dissipation laws only", above=True)
@@ -331,7 +320,7 @@ class UmbrellaCase(Case):
             if getattr(spring, key) == 0:
                 raise NotAllowed("start.mode", start.mode,
                                  f"torsion_spring.{key} is 0, and only a biased torsion spring loads the joint")
-        holds = friction_has("holds_static_load", joint.friction_law)
+        holds = laws.law("friction", joint.friction_law).holds_static_load
         largest = atan(joint.friction_coefficient) if holds else 0.0
         if abs(start.contact_angle_rad) > largest:
             raise NotAllowed(
@@ -341,7 +330,7 @@ class UmbrellaCase(Case):
             )
 
     def _check_run(self) -> None:
-        if self.reduced.method == "adaptive" and friction_has("has_memory", self.joint.friction_law):
+        if self.reduced.method == "adaptive" and laws.law("friction", self.joint.friction_law).has_memory:
             raise NotAllowed("reduced.method", "adaptive", "friction with memory is not smooth, use 'rk4'",
                              beside=f"with joint.friction_law = {self.joint.friction_law!r}")
         samples = self.output.samples_per_cycle

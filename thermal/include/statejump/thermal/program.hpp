@@ -201,9 +201,10 @@ inline void Program::validate() const {
 }
 
 inline double Program::temperature_change(double t) const {
-  const bool is_table = shape == Shape::table;
-  if (t <= 0.0) return is_table ? table_temperature_changes.front() : 0.0;
-  if (t >= duration()) return is_table ? table_temperature_changes.back() : 0.0;
+  // A program has values of a table where its shape is one, and nowhere else.
+  const auto& table = table_temperature_changes;
+  if (t <= 0.0) return table.empty() ? 0.0 : table.front();
+  if (t >= duration()) return table.empty() ? 0.0 : table.back();
   const detail::CyclePlace place = detail::cycle_place(*this, t);
   const double nearest = std::min(place.elapsed, place.remaining);
   const double half = 0.5 * period;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "statejump/kernel/elastic_pair.hpp"
 #include "statejump/kernel/hertz.hpp"
@@ -91,6 +90,116 @@ inline double add_tangential_damping(double damping, double limit, const Vector3
   return std::max(0.0, (spring - force).dot(velocity));
 }
 
+/// What a dissipation law does in one step of contact_step().
+struct ImpactDamping {
+  double ratio = 0.0;           ///< chi/K [s/m], see laws::damped_force()
+  double clearance_rate = 0.0;  ///< dc/dt by expansion [m/s]
+  double force = 0.0;           ///< out: of the dissipation law alone [N]
+};
+
+/// One step of a contact, the same for all laws. Normal:
+///
+///     F_N = max(0, F_el max(0, 1 + (chi/K) delta_dot) + c_n v_n),   c_n = 2 zeta_n sqrt(m k_n),
+///
+/// v_n = v . n being the approach speed of the bodies, delta_dot = v_n - dc/dt the rate of the
+/// depth. Tangential: the friction law, and while its spring sticks the viscous force of
+/// add_tangential_damping().
+///
+/// @tparam Laws what differs, resolved when it is compiled:
+///   normal()                      elastic state with force, stiffness, elastic_energy
+///   velocity()                    v of 1 against 2 that friction sees [m/s]
+///   tangential_stiffness(normal)  k_t [N/m]
+///   friction(k_t, mu F_N, F_N, v_t, history) -> MindlinEnergy
+///   friction_force(history)       of that step, on body 1, without the viscous part [N]
+///   dissipates                    whether impact() gives an ImpactDamping&
+///   always_spring                 friction is a spring of k_t for sure, else the history says so
+/// @param normal n, unit; @param depth delta [m]; @param time_step dt [s]
+/// @param history of this contact, rotated into the present tangent plane by the caller; updated
+template <class Laws>
+ContactResponse contact_step(Laws& laws, const ContactParameters& parameters, const Vector3& normal,
+                             double depth, double time_step, ContactHistory& history) {
+  const auto normal_state = laws.normal();
+  const Vector3& n = normal;
+  const Vector3& velocity = laws.velocity();
+  const double approach_speed = velocity.dot(n);
+
+  double normal_force = normal_state.force;
+  double damping_power = 0.0;
+  const bool touching = depth > 0.0;
+  if constexpr (Laws::dissipates) {
+    if (touching) {
+      ImpactDamping& impact = laws.impact();
+      const double rate = approach_speed - impact.clearance_rate;
+      normal_force = normal_state.force * std::max(0.0, 1.0 + impact.ratio * rate);
+      impact.force = normal_force - normal_state.force;
+      damping_power = impact.force * rate;
+    }
+  }
+  if (touching && parameters.normal_damping_ratio > 0.0) {
+    const double by_laws = normal_force;
+    normal_force =
+        damped_normal_force(by_laws,
+                            viscous_damping(parameters.normal_damping_ratio,
+                                            parameters.effective_mass, normal_state.stiffness),
+                            approach_speed);
+    damping_power += (normal_force - by_laws) * approach_speed;
+  }
+  double damping_dissipation = damping_power * time_step;
+
+  const double tangential_stiffness = laws.tangential_stiffness(normal_state);
+  const double limit = parameters.friction_coefficient * normal_force;
+  const Vector3 tangential_velocity = velocity - approach_speed * n;
+  const MindlinEnergy friction_energy =
+      laws.friction(tangential_stiffness, limit, normal_force, tangential_velocity, history);
+  Vector3 tangential_force = laws.friction_force(history);
+  if (parameters.tangential_damping_ratio > 0.0 && limit > 0.0 && !history.slipping &&
+      (Laws::always_spring || history.tangential_stiffness > 0.0)) {
+    const double damping = viscous_damping(parameters.tangential_damping_ratio,
+                                           parameters.effective_mass, tangential_stiffness);
+    damping_dissipation +=
+        add_tangential_damping(damping, limit, tangential_velocity, tangential_force) * time_step;
+  }
+
+  return {normal_force,
+          normal_state.force,
+          normal_state.stiffness,
+          Laws::always_spring ? tangential_stiffness : history.tangential_stiffness,
+          tangential_force,
+          tangential_force - normal_force * n,
+          normal_state.elastic_energy,
+          friction_energy.elastic,
+          friction_energy.dissipation,
+          damping_dissipation};
+}
+
+namespace detail {
+
+/// Laws of hertz_mindlin() for contact_step().
+struct HertzMindlinLaws {
+  const ContactParameters& parameters;
+  const ContactKinematics& kinematics;
+  static constexpr bool dissipates = false;
+  static constexpr bool always_spring = true;
+
+  HertzState normal() const {
+    return hertz(parameters.elastic.effective_young_modulus, kinematics.effective_radius,
+                 kinematics.penetration_depth);
+  }
+  const Vector3& velocity() const { return kinematics.relative_velocity; }
+  double tangential_stiffness(const HertzState& state) const {
+    return mindlin_stiffness(parameters.elastic.effective_shear_modulus, state.contact_radius);
+  }
+  MindlinEnergy friction(double stiffness, double limit, double, const Vector3& velocity,
+                         ContactHistory& history) const {
+    return mindlin_step(stiffness, limit, velocity * kinematics.time_step, history);
+  }
+  const Vector3& friction_force(const ContactHistory& history) const {
+    return history.tangential_force;
+  }
+};
+
+}  // namespace detail
+
 /// Hertz normal contact, Mindlin history friction under Coulomb's limit, viscous damping.
 ///
 /// Normal: F_el = 4/3 E* sqrt(R) delta^1.5 and k_n = 2 E* a, a = sqrt(R delta), see hertz(). With
@@ -120,50 +229,9 @@ inline double add_tangential_damping(double damping, double limit, const Vector3
 /// Limits: those of hertz() and mindlin_step(); no rolling or twisting resistance.
 inline ContactResponse hertz_mindlin(const ContactParameters& parameters,
                                      const ContactKinematics& kinematics, ContactHistory& history) {
-  const HertzState normal_state = hertz(parameters.elastic.effective_young_modulus,
-                                        kinematics.effective_radius, kinematics.penetration_depth);
-  const bool touching = kinematics.penetration_depth > 0.0;
-  const Vector3& n = kinematics.normal;
-  const double approach_speed = kinematics.relative_velocity.dot(n);
-
-  double normal_force = normal_state.force;
-  double damping_dissipation = 0.0;
-  if (touching && parameters.normal_damping_ratio > 0.0) {
-    normal_force =
-        damped_normal_force(normal_force,
-                            viscous_damping(parameters.normal_damping_ratio,
-                                            parameters.effective_mass, normal_state.stiffness),
-                            approach_speed);
-    damping_dissipation =
-        (normal_force - normal_state.force) * approach_speed * kinematics.time_step;
-  }
-
-  const double tangential_stiffness =
-      mindlin_stiffness(parameters.elastic.effective_shear_modulus, normal_state.contact_radius);
-  const double limit = parameters.friction_coefficient * normal_force;
-  const Vector3 tangential_velocity = kinematics.relative_velocity - approach_speed * n;
-  const MindlinEnergy energy = mindlin_step(tangential_stiffness, limit,
-                                            tangential_velocity * kinematics.time_step, history);
-
-  Vector3 tangential_force = history.tangential_force;
-  if (parameters.tangential_damping_ratio > 0.0 && limit > 0.0 && !history.slipping) {
-    const double damping = viscous_damping(parameters.tangential_damping_ratio,
-                                           parameters.effective_mass, tangential_stiffness);
-    damping_dissipation +=
-        add_tangential_damping(damping, limit, tangential_velocity, tangential_force) *
-        kinematics.time_step;
-  }
-
-  return {normal_force,
-          normal_state.force,
-          normal_state.stiffness,
-          tangential_stiffness,
-          tangential_force,
-          tangential_force - normal_force * n,
-          normal_state.elastic_energy,
-          energy.elastic,
-          energy.dissipation,
-          damping_dissipation};
+  const detail::HertzMindlinLaws laws{parameters, kinematics};
+  return contact_step(laws, parameters, kinematics.normal, kinematics.penetration_depth,
+                      kinematics.time_step, history);
 }
 
 /// Forces [N] and torques [N m] of one contact on the centres of its two bodies, world frame.
@@ -183,26 +251,6 @@ struct Wrench {
 inline Wrench contact_wrench(const Vector3& force_on_1, const Vector3& arm_1,
                              const Vector3& arm_2) {
   return {force_on_1, cross(arm_1, force_on_1), -force_on_1, cross(force_on_1, arm_2)};
-}
-
-/// Largest stable time step [s] of the leapfrog (velocity Verlet) scheme for one spring–dashpot
-/// oscillator whose damping force uses the velocity of the last half step, as in YADE:
-///
-///     dt = 4 m / (c + sqrt(c^2 + 4 m k)).
-///
-/// The step multiplies (v, x) by a matrix of determinant 1 - c dt/m and trace 2 - c dt/m - k
-/// dt^2/m; both eigenvalues stay inside the unit circle while k dt^2 + 2 c dt < 4 m. Without
-/// damping this is omega dt < 2, dt = 2 sqrt(m/k); with damping alone dt = 2 m/c. Take a fraction
-/// of it: 0.1 to 0.3 resolves the oscillation.
-/// @param mass m [kg], > 0; for the relative motion of two bodies m1 m2/(m1 + m2). Where the bodies
-///        can turn, the tangential motion has the smaller mass 1/(1/m + arm_1^2/I1 + arm_2^2/I2).
-/// @param stiffness_sum k [N/m], >= 0, of every spring that acts on this motion
-/// @param damping_sum c [N s/m], >= 0, of every dashpot that acts on it
-/// @return +infinity when nothing acts
-inline double critical_time_step(double mass, double stiffness_sum, double damping_sum = 0.0) {
-  const double rate =
-      damping_sum + std::sqrt(damping_sum * damping_sum + 4.0 * mass * stiffness_sum);
-  return rate > 0.0 ? 4.0 * mass / rate : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace statejump::kernel

@@ -33,6 +33,13 @@ inline double hertz_stiffness(double effective_young_modulus, double effective_r
   return 4.0 / 3.0 * effective_young_modulus * std::sqrt(effective_radius);
 }
 
+/// Depth delta = (F/K)^(2/3) [m] at which Hertz's point contact carries a force.
+/// @param effective_young_modulus E* [Pa], > 0, @param effective_radius R [m], > 0
+/// @param force F [N], >= 0
+inline double hertz_depth(double effective_young_modulus, double effective_radius, double force) {
+  return std::pow(force / hertz_stiffness(effective_young_modulus, effective_radius), 2.0 / 3.0);
+}
+
 /// Elastic normal contact at one penetration depth.
 struct HertzState {
   double force;           ///< F [N], >= 0, compressive

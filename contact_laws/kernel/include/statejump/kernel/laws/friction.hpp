@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "statejump/kernel/laws/law_info.hpp"
+#include "statejump/kernel/laws/parameters.hpp"
 #include "statejump/kernel/mindlin.hpp"
 #include "statejump/kernel/require.hpp"
 #include "statejump/kernel/vector.hpp"
@@ -13,16 +13,15 @@ namespace statejump::kernel::laws {
 
 /// Parameters of the friction laws; each reads what it needs.
 struct FrictionParameters {
-  double friction_coefficient = 0.0;  ///< mu [-], >= 0
-  double v0 = 0.0;                    ///< [m/s], 0 <= v0 < v1; ambrosio: no friction up to here
-  double v1 = 1e-3;                   ///< [m/s], ambrosio: full friction from here
+  double friction_coefficient = parameter::friction_coefficient.standard;  ///< mu [-], >= 0
+  double v0 = parameter::v0.standard;  ///< [m/s], 0 <= v0 < v1; ambrosio: no friction up to here
+  double v1 = parameter::v1.standard;  ///< [m/s], ambrosio: full friction from here
 };
 
 /// Checks friction parameters where they enter.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const FrictionParameters& parameters) {
-  const double mu = parameters.friction_coefficient;
-  require(std::isfinite(mu) && mu >= 0.0, "friction_coefficient", mu, "[0, inf)");
+  check(parameter::friction_coefficient, parameters.friction_coefficient);
   require(parameters.v0 >= 0.0 && parameters.v0 < parameters.v1, "v0", parameters.v0,
           "[0, v1) m/s");
   require(std::isfinite(parameters.v1), "v1", parameters.v1, "(v0, inf) m/s");
@@ -43,16 +42,15 @@ struct FrictionResponse {
   double dissipation;     ///< of this step [J], >= 0
 };
 
-/// A friction law either remembers (`has_memory`: it is given the slide of the step, as velocity
-/// times step) or is a function of the velocity at one instant, smooth enough for an adaptive
-/// integrator. `largest_slope()` is that of the force against the velocity [N s/m]: a viscous
-/// damper that an explicit integrator has to resolve.
+/// A friction law either remembers (Trait::has_memory: it is given the slide of the step, as
+/// velocity times step) or is a function of the velocity at one instant, smooth enough for an
+/// adaptive integrator. `largest_slope()` is that of the force against the velocity [N s/m]: a
+/// viscous damper that an explicit integrator has to resolve.
 
 /// No friction; the force is exactly zero.
 struct NoFriction {
-  static constexpr bool has_memory = false;
   static double largest_slope(const FrictionParameters&, double) { return 0.0; }
-  static constexpr LawInfo info{"none", "F_T = 0", "-", "frictionless", false};
+  static constexpr LawInfo info{"none", "F_T = 0", "-", "frictionless", Trait::frictionless, {}};
   FrictionResponse operator()(const FrictionParameters&, const FrictionKinematics&,
                               ContactHistory& history) const {
     history = {};
@@ -68,14 +66,16 @@ struct NoFriction {
 /// Limits: zero up to v0, so it cannot hold a static load: a joint left alone creeps, at
 /// v0 + (v1 - v0) T/(mu F_N) under a tangential load T. Stores no energy, has no history.
 struct AmbrosioFriction {
-  static constexpr bool has_memory = false;
   static double largest_slope(const FrictionParameters& parameters, double normal_force) {
     return parameters.friction_coefficient * normal_force / (parameters.v1 - parameters.v0);
   }
   static constexpr LawInfo info{
-      "ambrosio", "F_T = mu F_N min(1, max(0, (v - v0)/(v1 - v0))), against v",
+      "ambrosio",
+      "F_T = mu F_N min(1, max(0, (v - v0)/(v1 - v0))), against v",
       "Ambrosio, 2003; Chen, Li, Tang, Wang, Mech. Sci. 12, 2021, eqs 9-10",
-      "0 <= v0 < v1; cannot hold a static load: creeps", false};
+      "0 <= v0 < v1; cannot hold a static load: creeps",
+      {},
+      {&parameter::friction_coefficient, &parameter::v0, &parameter::v1}};
   FrictionResponse operator()(const FrictionParameters& parameters,
                               const FrictionKinematics& kinematics, ContactHistory& history) const {
     history = {};
@@ -94,11 +94,13 @@ struct AmbrosioFriction {
 /// rotates the history with the contact, see transport(). Holds a static load up to mu F_N. Its
 /// k_t = 8 G* a is that of a circular contact; for a line contact the caller says what k_t is.
 struct MindlinFriction {
-  static constexpr bool has_memory = true;
   static double largest_slope(const FrictionParameters&, double) { return 0.0; }
-  static constexpr LawInfo info{"mindlin", "dF_T = -k_t ds, |F_T| <= mu F_N, k_t = 8 G* a",
+  static constexpr LawInfo info{"mindlin",
+                                "dF_T = -k_t ds, |F_T| <= mu F_N, k_t = 8 G* a",
                                 "Mindlin, J. Appl. Mech. 16, 1949; Johnson 1985, eq. 7.44",
-                                "any load; no partial slip below the limit", true};
+                                "any load; no partial slip below the limit",
+                                Trait::holds_static_load | Trait::has_memory,
+                                {&parameter::friction_coefficient}};
   FrictionResponse operator()(const FrictionParameters& parameters,
                               const FrictionKinematics& kinematics, ContactHistory& history) const {
     const MindlinEnergy energy = mindlin_step(

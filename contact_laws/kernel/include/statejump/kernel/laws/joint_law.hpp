@@ -2,12 +2,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "statejump/kernel/elastic_pair.hpp"
+#include "statejump/kernel/laws/parameters.hpp"
 #include "statejump/kernel/laws/registry.hpp"
-#include "statejump/kernel/require.hpp"
 
 namespace statejump::kernel::laws {
 
@@ -17,12 +16,13 @@ struct JointLaw {
   DissipationLaw dissipation = NoDissipation{};
   FrictionLaw friction = NoFriction{};
   TangentialVelocityLaw tangential_velocity = MaterialVelocity{};
-  FrictionParameters friction_parameters;  ///< mu, v0, v1
-  double restitution = 1.0;                ///< e [-], in (0, 1]; dissipation laws
+  FrictionParameters friction_parameters;                ///< mu, v0, v1
+  double restitution = parameter::restitution.standard;  ///< e [-], in (0, 1]; dissipation laws
   /// Floor of the impact speed that scales dissipation [m/s], > 0. A contact that begins slower, as
   /// one that a slow expansion closes does, would otherwise be damped without bound.
-  double smallest_impact_speed = 1e-6;
-  double contact_length = 1e-2;  ///< axial length of a line contact [m], > 0; point laws ignore it
+  double smallest_impact_speed = parameter::smallest_impact_speed.standard;
+  /// Axial length of a line contact [m], > 0; point laws ignore it.
+  double contact_length = parameter::contact_length.standard;
 };
 
 /// Names of the four laws, as case files spell them.
@@ -48,11 +48,9 @@ inline JointLaw joint_law(const JointLawNames& names) {
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const JointLaw& law) {
   validate(law.friction_parameters);
-  require(std::isfinite(law.smallest_impact_speed) && law.smallest_impact_speed > 0.0,
-          "smallest_impact_speed", law.smallest_impact_speed, "(0, inf) m/s");
-  validate(ImpactParameters{law.restitution, law.smallest_impact_speed});
-  require(std::isfinite(law.contact_length) && law.contact_length > 0.0, "contact_length",
-          law.contact_length, "(0, inf) m");
+  check(parameter::restitution, law.restitution);
+  check(parameter::smallest_impact_speed, law.smallest_impact_speed);
+  check(parameter::contact_length, law.contact_length);
 }
 
 /// Tangential stiffness of any normal law, k_t = 4 (G*/E*) k_n [N/m]: Mindlin's ratio of the two

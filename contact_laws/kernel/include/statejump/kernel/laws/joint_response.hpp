@@ -36,14 +36,46 @@ struct JointResponse {
                              ///< viscous damper that an explicit integrator has to resolve
 };
 
-/// Any joint law with the viscous contact damping of hertz_mindlin(). Normal:
-///
-///     F_N = max(0, F_el max(0, 1 + (chi/K) delta_dot) + c_n v_n),   c_n = 2 zeta_n sqrt(m k_n),
-///
-/// v_n = v . n being the approach speed of the bodies, delta_dot = v_n - dc/dt the rate of the
-/// depth, see damped_force(). Tangential: the friction law with k_t = tangential_stiffness(); the
-/// viscous part c_t belongs to the history spring, so friction laws without one (none, ambrosio)
-/// have none. hertz_internal + none + mindlin + material is hertz_mindlin() up to rounding of k_t.
+namespace detail {
+
+/// Laws of the catalogue for contact_step().
+struct CatalogueLaws {
+  const JointLaw& law;
+  const ContactParameters& parameters;
+  const JointKinematics& at;
+  FrictionParameters friction_parameters;
+  NormalState normal_state;
+  Vector3 relative_velocity;
+  ImpactDamping damping;
+  Vector3 tangential_force;
+  static constexpr bool dissipates = true;
+  static constexpr bool always_spring = false;
+
+  const NormalState& normal() const { return normal_state; }
+  const Vector3& velocity() const { return relative_velocity; }
+  ImpactDamping& impact() {
+    damping.ratio = damping_ratio(law, at.impact_speed);
+    return damping;
+  }
+  double tangential_stiffness(const NormalState& state) const {
+    return laws::tangential_stiffness(parameters.elastic, state.stiffness);
+  }
+  MindlinEnergy friction(double stiffness, double, double normal_force, const Vector3& velocity,
+                         ContactHistory& history) {
+    const FrictionResponse answer =
+        evaluate(law.friction, friction_parameters,
+                 {normal_force, stiffness, velocity, at.time_step}, history);
+    tangential_force = answer.force_on_1;
+    return {answer.elastic_energy, answer.dissipation};
+  }
+  const Vector3& friction_force(const ContactHistory&) const { return tangential_force; }
+};
+
+}  // namespace detail
+
+/// Any joint law in contact_step(), with k_t = tangential_stiffness(); the viscous part c_t belongs
+/// to the history spring, so friction laws without one (none, ambrosio) have none.
+/// hertz_internal + none + mindlin + material is hertz_mindlin() up to rounding of k_t.
 ///
 /// Velocity and wrench come from one tangential velocity law, never mixed. Energy: as there.
 /// @param law its friction coefficient is not read: that of the contact pair counts
@@ -53,63 +85,27 @@ struct JointResponse {
 inline JointResponse joint_response(const JointLaw& law, const ContactParameters& parameters,
                                     const JointKinematics& at, ContactHistory& history) {
   const JointContact& contact = at.contact;
-  const Vector3& n = contact.normal;
-  const NormalState normal = evaluate(law.normal, contact.penetration_depth, at.geometry,
-                                      NormalMaterial{parameters.elastic.effective_young_modulus});
-  const Vector3 velocity = std::visit(
-      [&](const auto& l) { return l.velocity(contact, at.motion_1, at.motion_2, at.axis); },
-      law.tangential_velocity);
-  const double approach_speed = velocity.dot(n);
-
-  double normal_force = normal.force;
-  double damping_dissipation = 0.0;
-  double dissipation_force = 0.0;
-  double dissipation_slope = 0.0;
-  if (contact.penetration_depth > 0.0) {
-    const double ratio = damping_ratio(law, at.impact_speed);
-    dissipation_slope = ratio * normal.force;
-    const double penetration_rate = approach_speed - at.clearance_rate;
-    const double by_law = damped_force(normal.force, ratio, penetration_rate);
-    dissipation_force = by_law - normal.force;
-    normal_force = damped_normal_force(by_law,
-                                       viscous_damping(parameters.normal_damping_ratio,
-                                                       parameters.effective_mass, normal.stiffness),
-                                       approach_speed);
-    damping_dissipation =
-        (dissipation_force * penetration_rate + (normal_force - by_law) * approach_speed) *
-        at.time_step;
-  }
-
   FrictionParameters friction_parameters = law.friction_parameters;
   friction_parameters.friction_coefficient = parameters.friction_coefficient;
-  const double stiffness = tangential_stiffness(parameters.elastic, normal.stiffness);
-  const Vector3 tangential_velocity = velocity - approach_speed * n;
-  const FrictionResponse friction =
-      evaluate(law.friction, friction_parameters,
-               {normal_force, stiffness, tangential_velocity, at.time_step}, history);
-
-  Vector3 tangential_force = friction.force_on_1;
-  const double limit = parameters.friction_coefficient * normal_force;
-  const bool sticks = history.tangential_stiffness > 0.0 && !history.slipping;
-  if (parameters.tangential_damping_ratio > 0.0 && limit > 0.0 && sticks) {
-    const double damping =
-        viscous_damping(parameters.tangential_damping_ratio, parameters.effective_mass, stiffness);
-    damping_dissipation +=
-        add_tangential_damping(damping, limit, tangential_velocity, tangential_force) *
-        at.time_step;
-  }
-
-  const Vector3 force_on_1 = tangential_force - normal_force * n;
+  detail::CatalogueLaws laws{
+      law,
+      parameters,
+      at,
+      friction_parameters,
+      evaluate(law.normal, contact.penetration_depth, at.geometry,
+               NormalMaterial{parameters.elastic.effective_young_modulus}),
+      std::visit(
+          [&](const auto& l) { return l.velocity(contact, at.motion_1, at.motion_2, at.axis); },
+          law.tangential_velocity),
+      {0.0, at.clearance_rate, 0.0},
+      Vector3::Zero()};
+  const ContactResponse response = contact_step(laws, parameters, contact.normal,
+                                                contact.penetration_depth, at.time_step, history);
   const Wrench wrench =
-      std::visit([&](const auto& l) { return l.wrench(contact, force_on_1, at.axis); },
+      std::visit([&](const auto& l) { return l.wrench(contact, response.force_on_1, at.axis); },
                  law.tangential_velocity);
-  return {{normal_force, normal.force, normal.stiffness, history.tangential_stiffness,
-           tangential_force, force_on_1, normal.elastic_energy, friction.elastic_energy,
-           friction.dissipation, damping_dissipation},
-          wrench,
-          dissipation_force,
-          dissipation_slope,
-          largest_slope(law.friction, friction_parameters, normal_force)};
+  return {response, wrench, laws.damping.force, laws.damping.ratio * response.elastic_normal_force,
+          largest_slope(law.friction, friction_parameters, response.normal_force)};
 }
 
 /// Change of the potential V(delta, R1, R2) of the normal law when only the radii change, at fixed

@@ -1,16 +1,94 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+
+#include "statejump/kernel/require.hpp"
+
 namespace statejump::kernel::laws {
 
-/// What a law says of itself, as data for a listing.
+/// What a program may ask of a law besides its numbers. Who has to know what a law can do asks
+/// this, never its name or its type.
+enum class Trait : unsigned {
+  /// a body at rest can stay at rest under a load that this law carries
+  holds_static_load = 1U << 0,
+  /// no force at all
+  frictionless = 1U << 1,
+  /// is given the slide of the step and keeps a history; else a function of one instant's velocity
+  has_memory = 1U << 2,
+  /// has no meaning without the axis of a bearing: neither in a socket nor on a flat face
+  needs_axis = 1U << 3,
+  /// takes the negative bearing radius of a wall that bulges: the bearing's curvature has its sign
+  accepts_bulging_wall = 1U << 4,
+  /// Hertz's point contact F = 4/3 E* sqrt(R) delta^1.5, 1/R = 1/R1 - 1/R2 with
+  /// accepts_bulging_wall and 1/R1 + 1/R2 without
+  point_contact = 1U << 5,
+};
+
+/// A set of traits.
+struct Traits {
+  unsigned bits = 0;
+  constexpr Traits() = default;
+  constexpr Traits(Trait trait) : bits(static_cast<unsigned>(trait)) {}
+  constexpr bool has(Trait trait) const { return (bits & static_cast<unsigned>(trait)) != 0; }
+  friend constexpr Traits operator|(Traits a, Traits b) {
+    a.bits |= b.bits;
+    return a;
+  }
+};
+constexpr Traits operator|(Trait a, Trait b) {
+  return Traits(a) | Traits(b);
+}
+
+/// A parameter of a law, as data: one range and one default for every place that checks or lists
+/// it.
+struct LawParameter {
+  const char* name;  ///< of the field of its parameter struct
+  const char* unit;  ///< "-" for a ratio
+  double low;        ///< smallest value
+  double high;       ///< largest value, allowed unless infinite
+  bool low_excluded;
+  double standard;  ///< default value
+  const char* meaning;
+  const char* source;
+
+  /// NaN is not allowed.
+  constexpr bool allows(double value) const {
+    const bool above = low_excluded ? value > low : value >= low;
+    return above && (value < high || (value == high && high < infinity));
+  }
+  /// Range with its unit, e.g. "(0, inf) m/s" or "[0, inf)".
+  std::string range() const {
+    char text[80];
+    std::snprintf(text, sizeof text, "%s%g, %g%s", low_excluded ? "(" : "[", low, high,
+                  std::isinf(high) ? ")" : "]");
+    const std::string of = unit;
+    return of == "-" ? text : text + (" " + of);
+  }
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+};
+
+/// Checks a parameter where it enters.
+/// @throws std::invalid_argument that names the parameter, its value and its range
+inline void check(const LawParameter& parameter, double value) {
+  if (parameter.allows(value)) return;
+  require(false, parameter.name, value, parameter.range().c_str());
+}
+
+/// What a law says of itself, as data.
 struct LawInfo {
   const char* name;     ///< as case files spell it
   const char* formula;  ///< plain text
   const char* source;   ///< publication and equation
   const char* range;    ///< where it is valid; what is an error outside
-  bool
-      holds_static_load;  ///< whether a body at rest can stay at rest under a load this law carries
+  Traits traits;
+  std::array<const LawParameter*, 4> parameters;  ///< that it reads; the rest are null
+
+  constexpr bool has(Trait trait) const { return traits.has(trait); }
 };
 
 }  // namespace statejump::kernel::laws

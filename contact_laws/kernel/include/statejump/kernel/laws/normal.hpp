@@ -13,7 +13,7 @@
 #include <string>
 
 #include "statejump/kernel/hertz.hpp"
-#include "statejump/kernel/laws/law_info.hpp"
+#include "statejump/kernel/laws/parameters.hpp"
 #include "statejump/kernel/require.hpp"
 
 namespace statejump::kernel::laws {
@@ -102,9 +102,12 @@ inline NormalState logarithmic_line_contact(double depth, const NormalGeometry& 
 /// Limits: see hertz().
 struct HertzPaper {
   static constexpr LawInfo info{
-      "hertz_paper", "F = 4/3 E* sqrt(R1 R2/(R1 + R2)) delta^1.5",
+      "hertz_paper",
+      "F = 4/3 E* sqrt(R1 R2/(R1 + R2)) delta^1.5",
       "Chen, Li, Tang, Wang, Mech. Sci. 12, 2021, eqs 6-8",
-      "delta >= 0; a << R1; external radius, too soft for a pin in a hole", true};
+      "delta >= 0; a << R1; external radius, too soft for a pin in a hole",
+      Trait::holds_static_load | Trait::point_contact,
+      {}};
   static double largest_depth(const NormalGeometry&) {
     return std::numeric_limits<double>::infinity();
   }
@@ -121,9 +124,13 @@ struct HertzPaper {
 /// delta^1.5 (Johnson 1985, eqs 4.14, 4.22, 4.23). See hertz(), internal_effective_radius().
 /// Limits: a point contact, a = sqrt(R delta) << R1; a real cylinder in a bore touches on a line.
 struct HertzInternal {
-  static constexpr LawInfo info{"hertz_internal", "F = 4/3 E* sqrt(R1 R2/(R2 - R1)) delta^1.5",
-                                "Johnson, Contact Mechanics, 1985, eqs 4.14, 4.22, 4.23",
-                                "delta >= 0; a << R1; point contact", true};
+  static constexpr LawInfo info{
+      "hertz_internal",
+      "F = 4/3 E* sqrt(R1 R2/(R2 - R1)) delta^1.5",
+      "Johnson, Contact Mechanics, 1985, eqs 4.14, 4.22, 4.23",
+      "delta >= 0; a << R1; point contact",
+      Trait::holds_static_load | Trait::point_contact | Trait::accepts_bulging_wall,
+      {}};
   static double largest_depth(const NormalGeometry&) {
     return std::numeric_limits<double>::infinity();
   }
@@ -149,11 +156,14 @@ struct HertzInternal {
 /// persson.
 struct Johnson {
   static constexpr LawInfo info{
-      "johnson", "delta = f/(pi E*) (ln(4 pi E* dR/f) - 1), f = F/L",
+      "johnson",
+      "delta = f/(pi E*) (ln(4 pi E* dR/f) - 1), f = F/L",
       "Johnson, Contact Mechanics, 1985, eqs 4.43, 5.57; Pereira, Ramalho, Ambrosio, Nonlinear "
       "Dyn. "
       "63, 2011",
-      "0 <= delta < 4 dR/e^2 = 0.541 dR, error beyond; accurate for a << R1", true};
+      "0 <= delta < 4 dR/e^2 = 0.541 dR, error beyond; accurate for a << R1",
+      Trait::holds_static_load | Trait::needs_axis,
+      {&parameter::contact_length}};
   static double largest_depth(const NormalGeometry& geometry) {
     return 4.0 * std::exp(-2.0) * geometry.clearance();
   }
@@ -178,9 +188,12 @@ struct Johnson {
 /// width is 4 R1 there, so the half-plane ends long before: a < R1 needs f < pi E* dR/4.
 struct Esdu78035 {
   static constexpr LawInfo info{
-      "esdu_78035", "delta = f/(pi E*) (ln(4 pi E* dR/f) + 1), f = F/L",
+      "esdu_78035",
+      "delta = f/(pi E*) (ln(4 pi E* dR/f) + 1), f = F/L",
       "ESDU 78035, 1978, quoted by Flores, Ambrosio, Claro, Lankarani, 2006",
-      "0 <= delta < 4 dR, error beyond; accurate for a << R1", true};
+      "0 <= delta < 4 dR, error beyond; accurate for a << R1",
+      Trait::holds_static_load | Trait::needs_axis,
+      {&parameter::contact_length}};
   static double largest_depth(const NormalGeometry& geometry) { return 4.0 * geometry.clearance(); }
   NormalState operator()(double depth, const NormalGeometry& geometry,
                          const NormalMaterial& material) const {
@@ -250,7 +263,9 @@ struct Persson {
       "f = 2 pi E* dR t (1 + t)/(2 - ln(1 + t) - 2 t^2), t = tan(eps/2)^2, f = F/L; depth fixed to "
       "johnson at light load",
       "Persson, 1964; Ciavarella, Decuzzi, Int. J. Solids Struct. 38, 2001; depth derived here",
-      "0 <= delta < R1, error beyond; equal materials, thick bearing, plane strain", true};
+      "0 <= delta < R1, error beyond; equal materials, thick bearing, plane strain",
+      Trait::holds_static_load | Trait::needs_axis,
+      {&parameter::contact_length}};
   static double largest_depth(const NormalGeometry& geometry) { return geometry.journal_radius; }
   NormalState operator()(double depth, const NormalGeometry& geometry,
                          const NormalMaterial& material) const {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
-#include <utility>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -11,16 +13,18 @@
 #include "statejump/kernel/laws/friction.hpp"
 #include "statejump/kernel/laws/normal.hpp"
 #include "statejump/kernel/laws/tangential_velocity.hpp"
+#include "statejump/kernel/laws/user_law.hpp"
 
 namespace statejump::kernel::laws {
 
 /// The catalogue. A new law is one type with an `info` and one entry here; names, listing and
-/// look-up follow from it.
-using NormalLaw = std::variant<HertzPaper, HertzInternal, Johnson, Esdu78035, Persson>;
-using DissipationLaw =
-    std::variant<NoDissipation, LankaraniNikravesh, HuntCrossley, FloresDissipation>;
-using FrictionLaw = std::variant<NoFriction, AmbrosioFriction, MindlinFriction>;
-using TangentialVelocityLaw = std::variant<MaterialVelocity, PaperVelocity>;
+/// look-up follow from it. The last type stands for laws from shared objects, see user_law.hpp.
+using NormalLaw =
+    std::variant<HertzPaper, HertzInternal, Johnson, Esdu78035, Persson, UserNormalLaw>;
+using DissipationLaw = std::variant<NoDissipation, LankaraniNikravesh, HuntCrossley,
+                                    FloresDissipation, UserDissipationLaw>;
+using FrictionLaw = std::variant<NoFriction, AmbrosioFriction, MindlinFriction, UserFrictionLaw>;
+using TangentialVelocityLaw = std::variant<MaterialVelocity, PaperVelocity, UserVelocityLaw>;
 
 namespace detail {
 
@@ -29,22 +33,84 @@ struct Catalogue;
 
 template <class... Types>
 struct Catalogue<std::variant<Types...>> {
-  static std::vector<LawInfo> infos() { return {Types::info...}; }
+  using Variant = std::variant<Types...>;
+  template <class Type>
+  static constexpr bool is_loaded = std::is_base_of_v<UserLawValue, Type>;
+  static constexpr LawKind kind = std::variant_alternative_t<sizeof...(Types) - 1, Variant>::kind;
 
-  static std::variant<Types...> find(const char* kind, const std::string& name) {
-    std::variant<Types...> law;
-    const bool found = ((name == Types::info.name && (law = Types{}, true)) || ...);
-    if (found) return law;
-    std::string message = std::string(kind) + " = '" + name + "', allowed is one of ";
+  template <class Visit>  // of each type of the project, with a value of it
+  static void for_each(Visit&& visit) {
+    const auto own = [&](const auto& law) {
+      if constexpr (!is_loaded<std::decay_t<decltype(law)>>) visit(law);
+    };
+    (own(Types{}), ...);
+  }
+
+  static std::vector<LawInfo> infos() {
+    std::vector<LawInfo> all;
+    for_each([&](const auto& law) { all.push_back(law.info); });
+    for (const LoadedLaw& loaded : loaded_laws()) {
+      if (loaded.kind == kind && loaded.table) all.push_back(loaded.info);
+    }
+    return all;
+  }
+
+  static std::vector<std::string> names() {
+    std::vector<std::string> all;
+    for_each([&](const auto& law) { all.emplace_back(law.info.name); });
+    for (const LoadedLaw& loaded : loaded_laws()) {
+      const bool is_new = std::find(all.begin(), all.end(), loaded.name) == all.end();
+      if (loaded.kind == kind && is_new) all.push_back(loaded.name);
+    }
+    return all;
+  }
+
+  static std::string problem(const std::string& name) {
+    for (const LoadedLaw& loaded : loaded_laws()) {
+      if (loaded.kind == kind && loaded.name == name && !loaded.table) return loaded.problem;
+    }
+    return "";
+  }
+
+  static Variant find(const char* what, const std::string& name) {
+    std::string message = std::string(what) + " = '" + name + "'";
+    if (const std::string wrong = problem(name); !wrong.empty()) {
+      throw std::invalid_argument(message + " cannot be used: " + wrong);
+    }
+    Variant found;
+    bool known = false;
+    for_each([&](const auto& law) {
+      if (name == law.info.name) found = law, known = true;
+    });
+    for (const LoadedLaw& loaded : loaded_laws()) {
+      if (loaded.kind != kind || loaded.name != name) continue;
+      found = std::variant_alternative_t<sizeof...(Types) - 1, Variant>(loaded);
+      known = true;
+    }
+    if (known) return found;
+    message += ", allowed is one of ";
     const char* separator = "";
-    ((message += separator, message += Types::info.name, separator = ", "), ...);
+    for (const std::string& each : names()) {
+      message.append(separator).append(each);
+      separator = ", ";
+    }
     throw std::invalid_argument(message);
   }
 };
 
+template <class Law>
+const LawInfo& info_of(const Law& law) {
+  if constexpr (std::is_base_of_v<UserLawValue, Law>) {
+    return law.info();
+  } else {
+    return law.info;
+  }
+}
+
 }  // namespace detail
 
-/// Law of that name. @throws std::invalid_argument that lists the known names
+/// Law of that name.
+/// @throws std::invalid_argument that lists the known names, or says why a loaded one is unusable
 inline NormalLaw normal_law(const std::string& name) {
   return detail::Catalogue<NormalLaw>::find("normal_law", name);
 }
@@ -61,29 +127,52 @@ inline TangentialVelocityLaw tangential_velocity_law(const std::string& name) {
   return detail::Catalogue<TangentialVelocityLaw>::find("tangential_velocity_law", name);
 }
 
-/// What the laws of one kind say of themselves, e.g. law_infos<NormalLaw>().
+/// What the laws of one kind say of themselves, e.g. law_infos<NormalLaw>(); those that can be
+/// used.
 template <class Law>
 std::vector<LawInfo> law_infos() {
   return detail::Catalogue<Law>::infos();
 }
 
-/// Names of one kind, in the order of the catalogue, e.g. law_names<FrictionLaw>().
+/// Names of one kind, in the order of the catalogue, e.g. law_names<FrictionLaw>(); also of loaded
+/// laws that cannot be used, for looking these up says why.
 template <class Law>
 std::vector<std::string> law_names() {
-  std::vector<std::string> names;
-  for (const LawInfo& info : law_infos<Law>()) names.emplace_back(info.name);
-  return names;
+  return detail::Catalogue<Law>::names();
+}
+
+/// Why the loaded law of that name cannot be used; empty: it can, or there is none.
+template <class Law>
+std::string law_problem(const std::string& name) {
+  return detail::Catalogue<Law>::problem(name);
 }
 
 /// What a law says of itself.
 template <class... Types>
 const LawInfo& law_info(const std::variant<Types...>& law) {
-  return std::visit([](const auto& l) -> const LawInfo& { return l.info; }, law);
+  return std::visit([](const auto& l) -> const LawInfo& { return detail::info_of(l); }, law);
 }
 
-/// Whether a friction law remembers; see friction.hpp.
-inline bool has_memory(const FrictionLaw& law) {
-  return std::visit([](const auto& l) { return l.has_memory; }, law);
+/// Whether a law of any kind has a trait.
+template <class... Types>
+bool has(const std::variant<Types...>& law, Trait trait) {
+  return law_info(law).has(trait);
+}
+
+/// Names of the laws of one kind with, or without, a trait, in the order of the catalogue and ready
+/// for a sentence: "'hertz_paper' or 'hertz_internal'".
+template <class Law>
+std::string names_with(Trait trait, bool with = true) {
+  std::vector<const char*> names;
+  for (const LawInfo& info : law_infos<Law>()) {
+    if (info.has(trait) == with) names.push_back(info.name);
+  }
+  std::string sentence;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) sentence += i + 1 == names.size() ? " or " : ", ";
+    sentence.append("'").append(names[i]).append("'");
+  }
+  return sentence;
 }
 
 /// Largest slope of friction against velocity [N s/m]; see friction.hpp.

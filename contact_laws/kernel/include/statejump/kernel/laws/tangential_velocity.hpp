@@ -20,8 +20,12 @@ namespace statejump::kernel::laws {
 /// arm_2, and moments arm x F: what two rough surfaces do. See revolute_contact(),
 /// contact_wrench(). Forces and moments balance.
 struct MaterialVelocity {
-  static constexpr LawInfo info{"material", "v = v_C + w1 x r1 - v_D - w2 x r2, moments r x F",
-                                "rigid-body kinematics", "any motion", true};
+  static constexpr LawInfo info{"material",
+                                "v = v_C + w1 x r1 - v_D - w2 x r2, moments r x F",
+                                "rigid-body kinematics",
+                                "any motion",
+                                Trait::holds_static_load,
+                                {}};
   Vector3 velocity(const JointContact& contact, const BodyMotion&, const BodyMotion&,
                    const Vector3&) const {
     return contact.relative_velocity;
@@ -47,9 +51,12 @@ struct MaterialVelocity {
 /// one body. Axial motion is not seen. Concentric parts have no tangential part.
 struct PaperVelocity {
   static constexpr LawInfo info{
-      "paper", "v = d/dt(r_C + R1 n) - d/dt(r_D + R2 n) = d'_n + (delta/|d|) d'_t, no moments",
+      "paper",
+      "v = d/dt(r_C + R1 n) - d/dt(r_D + R2 n) = d'_n + (delta/|d|) d'_t, no moments",
       "Chen, Li, Tang, Wang, Mech. Sci. 12, 2021, eqs 14-16; forces by virtual power",
-      "spins are not seen; leaves a moment delta F_t unbalanced", true};
+      "spins are not seen; leaves a moment delta F_t unbalanced",
+      Trait::holds_static_load | Trait::needs_axis,
+      {}};
   Vector3 velocity(const JointContact& contact, const BodyMotion& journal,
                    const BodyMotion& bearing, const Vector3& axis) const {
     return across(contact, perpendicular_part(journal.velocity - bearing.velocity, axis));

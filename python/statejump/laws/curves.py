@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The catalogue of contact laws: what each says of itself, and figures of what it does."""
+"""What the contact laws do: forces of a joint, one impact, and a figure of both."""
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import cycle
 from math import inf
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from statejump import _engine
-from statejump.kinds.spring_slider import figure as plot
-from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.kinds.spring_slider.figure import plt
+from statejump.core.figures import panels, save, style
+from statejump.laws.traits import law, names
 
-KINDS = ("normal", "dissipation", "friction", "tangential_velocity")
 IMPACT_LAW = "hertz_internal"
 RESTITUTION = 0.8
 IMPACT_SPEED_m_per_s = 0.1
@@ -44,18 +45,10 @@ class Joint:
 def paper_joint() -> Joint:
     """Joint of the paper's Tables 2 and 3, with the choices of cases/umbrella.toml."""
     modulus = _engine.effective_young_modulus_Pa(70e9, 0.3, 70e9, 0.3)
-    return Joint("joint of Tables 2 and 3", 5e-3, 5.1e-3, 0.01, modulus, _reduced_mass(0.5, 1.0))
+    return Joint("joint of Tables 2 and 3", 5e-3, 5.1e-3, 0.01, modulus, reduced_mass_kg(0.5, 1.0))
 
 
-def joint_of(case: UmbrellaCase) -> Joint:
-    """Joint of a case."""
-    return Joint(
-        case.title, case.joint.journal_radius_m, case.bearing_radius_m, case.joint.contact_length_m,
-        case.effective_young_modulus_Pa, _reduced_mass(case.link_ab.mass_kg, case.link_bc.mass_kg),
-    )
-
-
-def _reduced_mass(mass_ab_kg: float, mass_bc_kg: float) -> float:
+def reduced_mass_kg(mass_ab_kg: float, mass_bc_kg: float) -> float:
     """Of two links that meet at their tips; a third of each mass is at its tip."""
     return 1 / (3 / mass_ab_kg + 3 / mass_bc_kg)
 
@@ -76,9 +69,12 @@ def range_end_m(name: str, joint: Joint) -> tuple[float, bool]:
     end = _engine.largest_depth_m(name, joint.journal_radius_m, joint.bearing_radius_m)
     if end < inf:
         return end, True
-    # Both Hertz laws: width a = sqrt(R delta).
-    at_one = normal_force(name, joint, np.array([1.0]))["contact_width_m"][0]
-    return (joint.journal_radius_m / at_one) ** 2, False
+    if law("normal", name).point_contact:  # a = sqrt(R delta)
+        at_one = normal_force(name, joint, np.array([1.0]))["contact_width_m"][0]
+        return (joint.journal_radius_m / at_one) ** 2, False
+    depth = np.geomspace(1e-9, 1.0, 1000) * joint.journal_radius_m
+    wide = normal_force(name, joint, depth)["contact_width_m"] >= joint.journal_radius_m
+    return float(depth[np.argmax(wide)] if wide.any() else depth[-1]), False
 
 
 @dataclass(frozen=True)
@@ -124,19 +120,19 @@ def impact(dissipation: str, joint: Joint, restitution: float = RESTITUTION,
 
 def figure(joint: Joint, folder: Path, name: str) -> list[Path]:
     """Write ``<name>.png`` and ``<name>.svg``: every normal law, one impact per dissipation law."""
-    with plt.rc_context(plot.STYLE):
-        drawing, (left, right) = plt.subplots(1, 2, figsize=(9.5, 4.6), constrained_layout=True)
+    with style():
+        drawing, (left, right) = panels(1, 2, (9.5, 4.6))
         _draw_normal(left, joint)
         _draw_impacts(right, joint)
         drawing.suptitle(f"Contact laws, {joint.title}", fontsize=11)
-        return plot.save(drawing, folder, name)
+        return save(drawing, folder, name)
 
 
-def _draw_normal(panel: plt.Axes, joint: Joint) -> None:
+def _draw_normal(panel: Axes, joint: Joint) -> None:
     clearance = joint.bearing_radius_m - joint.journal_radius_m
-    ends = {name: range_end_m(name, joint) for name in _engine.law_names("normal")}
+    ends = {name: range_end_m(name, joint) for name in names("normal")}
     first = 1e-4 * min(clearance, *(end for end, _ in ends.values()))
-    for style, (name, (end, refuses)) in zip(STYLES, ends.items()):
+    for style, (name, (end, refuses)) in zip(cycle(STYLES), ends.items()):
         # Dense towards the end, where the curve of some laws turns upwards.
         depth = np.geomspace(first, end, 400)[:-1]
         depth = np.append(depth, end * (1 - np.geomspace(1e-2, 1e-9, 60)))
@@ -158,14 +154,14 @@ def _draw_normal(panel: plt.Axes, joint: Joint) -> None:
     lines, labels = panel.get_legend_handles_labels()
     for refuses, text in ((True, "range ends: error beyond"), (False, "contact as wide as the journal")):
         if any(refuses == own for _, own in ends.values()):
-            lines.append(plt.Line2D([], [], linestyle="", marker="o", color="0.3", markersize=6,
+            lines.append(Line2D([], [], linestyle="", marker="o", color="0.3", markersize=6,
                                     markerfacecolor="0.3" if refuses else "white"))
             labels.append(text)
     panel.legend(lines, labels, loc="lower right", framealpha=1, fontsize=8, handlelength=3.2)
 
 
-def _draw_impacts(panel: plt.Axes, joint: Joint) -> None:
-    for style, name in zip(STYLES, _engine.law_names("dissipation")):
+def _draw_impacts(panel: Axes, joint: Joint) -> None:
+    for style, name in zip(cycle(STYLES), names("dissipation")):
         result = impact(name, joint)
         panel.plot(result.depth_m * 1e6, result.force_N, label=f"{name}: e = {result.restitution:.3f}", **style)
     panel.set_xlabel("Penetration depth [µm]")

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A law of one's own: one header, compiled against the kernel into a shared object that programs find by name."""
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+from statejump import _engine
+from statejump._paths import EIGEN_INCLUDE, KERNEL_INCLUDE
+from statejump.core.errors import NotWritten, StatejumpError, Unreadable
+from statejump.core.output import replacing
+
+COMPILERS = ("c++", "g++", "clang++")
+# As the project is compiled: results repeat bit for bit. Hidden, so that no function of this object stands in
+# for one of the program's.
+FLAGS = ("-std=c++17", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fvisibility=hidden")
+SOURCE = """\
+#include {header}
+
+#include "statejump/kernel/laws/user_law.hpp"
+
+extern "C" __attribute__((visibility("default"))) const statejump::kernel::laws::UserLawTable*
+statejump_user_law() {{
+  return statejump::kernel::laws::user_law_table<::UserLaw>("{kernel}");
+}}
+"""
+
+
+def default_folder() -> Path:
+    """Return the user's folder of laws, the last that programs search: ``~/.local/share/statejump/laws``."""
+    return Path(_engine.user_law_folders()[-1])
+
+
+def build(header: Path, folder: Path | None = None) -> Path:
+    """Compile the law of a header and put it where programs find it.
+
+    The header defines a type like those of the catalogue and says ``using UserLaw = ...;`` of it. Whatever it
+    includes is found beside it and in the kernel.
+
+    :param header: file that holds the law
+    :param folder: where the shared object goes; None: :func:`default_folder`. Another folder is searched if
+        ``$STATEJUMP_LAWS`` lists it.
+    :return: the shared object, ``<kind>_<name>.so``; an older one of that name is replaced
+    :raises StatejumpError: no such header, no compiler, other kernel headers than those of this build, a header
+        that does not compile (with the compiler's first error), or a law that cannot be used
+    """
+    header = Path(header)
+    if not header.is_file():
+        raise Unreadable("there is no such file", file=header)
+    compiler = find_compiler()
+    kernel = kernel_hash(KERNEL_INCLUDE)
+    if kernel != _engine.kernel_hash():
+        raise StatejumpError("these kernel headers are not those that the engine was compiled from",
+                             file=KERNEL_INCLUDE, remedy="build or install the project again")
+    folder = default_folder() if folder is None else Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix="statejump-law-") as scratch:
+            made = compile_law(compiler, header.resolve(), kernel, Path(scratch))
+            found = _engine.inspect_user_law(str(made))
+            if found["problem"]:
+                raise StatejumpError(found["problem"].replace(str(made), str(header)), file=header)
+            target = folder / f"{found['kind']}_{found['name']}.so"
+            with replacing(target) as aside:
+                shutil.copyfile(made, aside)
+    except OSError as error:
+        raise NotWritten("cannot be written", cause=error.strerror, file=folder) from None
+    _engine.load_user_laws()
+    return target
+
+
+def find_compiler() -> str:
+    """Return the C++ compiler, ``$CXX`` before any other. :raises StatejumpError: there is none"""
+    wanted = os.environ.get("CXX")
+    for name in (wanted,) if wanted else COMPILERS:
+        found = shutil.which(name)
+        if found:
+            return found
+    if wanted:
+        raise StatejumpError("no C++ compiler", key="CXX", value=wanted, cause=f"$CXX = {wanted!r} cannot be run")
+    raise StatejumpError("no C++ compiler", cause=f"none of {', '.join(COMPILERS)} is installed",
+                         remedy="on Debian, apt install g++ libeigen3-dev libboost-dev")
+
+
+def compile_law(compiler: str, header: Path, kernel: str, folder: Path) -> Path:
+    """Compile a header; return the shared object in the folder. :raises StatejumpError: it does not compile"""
+    source, made = folder / "law.cpp", folder / "law.so"
+    name = str(header).replace("\\", "\\\\").replace('"', '\\"')
+    source.write_text(SOURCE.format(header=f'"{name}"', kernel=kernel), encoding="utf-8")
+    done = subprocess.run(
+        [compiler, *FLAGS, f"-I{header.parent}", f"-I{KERNEL_INCLUDE}", "-isystem", str(EIGEN_INCLUDE), str(source),
+         "-o", str(made)],
+        stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": "C"},
+    )
+    if done.returncode != 0:
+        lines = done.stderr.splitlines() or [f"{compiler} ended with status {done.returncode}"]
+        first = next((line for line in lines if "error" in line), lines[0])
+        for known in (header.parent, folder, KERNEL_INCLUDE):
+            first = first.replace(f"{known}{os.sep}", "")
+        raise StatejumpError(f"{header.name} does not compile", cause=first)
+    return made
+
+
+def kernel_hash(include: Path) -> str:
+    """Return the hash of the kernel headers below a folder, as cmake/KernelHash.cmake computes it."""
+    lines = ""
+    for path in sorted(path.relative_to(include).as_posix() for path in include.glob("statejump/kernel/**/*.hpp")):
+        lines += f"{path} {hashlib.sha256((include / path).read_bytes()).hexdigest()}\n"
+    return hashlib.sha256(lines.encode()).hexdigest()

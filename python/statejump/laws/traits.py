@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the laws of the catalogue say of themselves: the traits on their types in C++, as data."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+from statejump import _engine
+
+KINDS = ("normal", "dissipation", "friction", "tangential_velocity")
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter that a law reads; ``unit`` is "-" for a ratio."""
+
+    name: str
+    unit: str
+    low: float
+    high: float
+    low_excluded: bool
+    default: float
+    meaning: str
+    source: str
+
+    def allows(self, value: float) -> bool:
+        """Return whether a value is in range; NaN is not."""
+        above = value > self.low if self.low_excluded else value >= self.low
+        return above and value <= self.high and value < inf
+
+
+@dataclass(frozen=True)
+class Law:
+    """What a law says of itself. Who has to know what a law can do asks this, never its name."""
+
+    name: str
+    formula: str
+    source: str
+    range: str  # where it is valid; what is an error outside
+    holds_static_load: bool
+    frictionless: bool
+    has_memory: bool  # keeps a history; else a smooth function of the velocity
+    needs_axis: bool  # neither in a socket nor on a flat face
+    accepts_bulging_wall: bool
+    point_contact: bool  # Hertz's
+    parameters: tuple[Parameter, ...]
+
+
+def catalogue(kind: str) -> tuple[Law, ...]:
+    """Return the laws of a kind, one of ``KINDS``, in the order of the catalogue. :raises ValueError: no such kind"""
+    return tuple(
+        Law(**{**told, "parameters": tuple(Parameter(**each) for each in told["parameters"])})
+        for told in _engine.laws(kind)
+    )
+
+
+def names(kind: str) -> list[str]:
+    """Return the names of the laws of a kind. :raises ValueError: no such kind"""
+    return _engine.law_names(kind)
+
+
+def law(kind: str, name: str) -> Law:
+    """Return the law of a kind with that name. :raises ValueError: there is none, with the names that there are"""
+    for each in catalogue(kind):
+        if each.name == name:
+            return each
+    problem = _engine.law_problem(kind, name)
+    if problem:
+        raise ValueError(f"{kind}_law = {name!r} cannot be used: {problem}")
+    raise ValueError(f"{kind}_law = {name!r}, allowed is one of {', '.join(names(kind))}")

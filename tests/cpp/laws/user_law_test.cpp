@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Laws behind a table of functions, as shared objects hold them; here the table is made in place.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "statejump/kernel/laws/joint_response.hpp"
+
+namespace statejump::kernel::laws {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+const NormalGeometry joint{5e-3, 5.1e-3, 0.01};
+const NormalMaterial aluminium{70e9 / (2.0 * 0.91)};
+
+/// Hertz again; below 1 um it is out of order.
+struct Moody {
+  static constexpr LawInfo info{
+      "moody", "F", "the tests", "any", Trait::holds_static_load | Trait::needs_axis, {}};
+  static double largest_depth(const NormalGeometry& geometry) { return geometry.clearance(); }
+  NormalState operator()(double depth, const NormalGeometry& geometry,
+                         const NormalMaterial& material) const {
+    if (depth > 0.0 && depth < 1e-7) return {nan, 0.0, 0.0, 0.0};
+    if (depth > 0.0 && depth < 1e-6) throw std::runtime_error("not today");
+    return HertzInternal{}(depth, geometry, material);
+  }
+};
+
+/// The catalogue with one law more, and one that cannot be used, as the loader leaves it.
+class UserLawTest : public ::testing::Test {
+ protected:
+  UserLawTest() {
+    LoadedLaw law;
+    law.kind = LawKind::normal;
+    law.name = Moody::info.name;
+    law.origin = "moody.so";
+    law.info = Moody::info;
+    law.table = user_law_table<Moody>("no hash");
+    loaded_laws().push_back(law);
+    law.name = "stale";
+    law.table = nullptr;
+    law.problem = "stale.so was compiled long ago";
+    loaded_laws().push_back(law);
+  }
+  ~UserLawTest() override { loaded_laws().clear(); }
+};
+
+NormalLaw moody() {
+  return normal_law("moody");
+}
+
+TEST_F(UserLawTest, IsFoundByItsNameAndCarriesItsTraits) {
+  const NormalLaw law = moody();
+  EXPECT_STREQ(law_info(law).name, "moody");
+  EXPECT_TRUE(has(law, Trait::needs_axis));
+  EXPECT_FALSE(has(law, Trait::point_contact));
+  EXPECT_EQ(law_names<NormalLaw>().back(), "stale");
+  EXPECT_STREQ(law_infos<NormalLaw>().back().name, "moody");
+  EXPECT_EQ(names_with<NormalLaw>(Trait::needs_axis, false), "'hertz_paper' or 'hertz_internal'");
+}
+
+TEST_F(UserLawTest, AnswersAsItsTypeToTheLastBit) {
+  for (const double depth : {-1e-6, 0.0, 1e-6, 3e-6, 9e-5}) {
+    const NormalState own = evaluate(normal_law("hertz_internal"), depth, joint, aluminium);
+    const NormalState loaded = evaluate(moody(), depth, joint, aluminium);
+    EXPECT_EQ(loaded.force, own.force) << depth;
+    EXPECT_EQ(loaded.stiffness, own.stiffness) << depth;
+    EXPECT_EQ(loaded.contact_width, own.contact_width) << depth;
+    EXPECT_EQ(loaded.elastic_energy, own.elastic_energy) << depth;
+  }
+}
+
+std::string complaint(double depth) {
+  try {
+    evaluate(moody(), depth, joint, aluminium);
+  } catch (const std::domain_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(UserLawTest, WrongAnswersAndExceptionsNameTheLaw) {
+  EXPECT_EQ(complaint(5e-8), "moody (moody.so): answered force = nan");
+  EXPECT_EQ(complaint(5e-7), "moody (moody.so): not today");
+  EXPECT_EQ(complaint(1e-3), "moody: penetration_depth = 0.001 m, allowed is below 0.0001 m");
+  EXPECT_EQ(complaint(nan), "moody: penetration_depth = nan m, allowed is below 0.0001 m");
+}
+
+TEST_F(UserLawTest, OneThatCannotBeUsedSaysWhy) {
+  try {
+    normal_law("stale");
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "normal_law = 'stale' cannot be used: stale.so was compiled long ago");
+  }
+  EXPECT_EQ(law_problem<NormalLaw>("moody"), "");
+}
+
+struct Doubling {
+  static constexpr LawInfo info{"doubling", "chi", "the tests", "any", Trait::holds_static_load,
+                                {}};
+  double operator()(const ImpactParameters& impact) const { return 2.0 * impact.restitution; }
+};
+
+struct Sticky {
+  static constexpr LawInfo info{"sticky", "F", "the tests", "any", Trait::has_memory, {}};
+  static double largest_slope(const FrictionParameters&, double normal_force) {
+    return normal_force;
+  }
+  FrictionResponse operator()(const FrictionParameters& parameters,
+                              const FrictionKinematics& kinematics, ContactHistory& history) const {
+    return MindlinFriction{}(parameters, kinematics, history);
+  }
+};
+
+struct Slow {
+  static constexpr LawInfo info{"slow", "v", "the tests", "any", Trait::holds_static_load, {}};
+  Vector3 velocity(const JointContact& contact, const BodyMotion&, const BodyMotion&,
+                   const Vector3&) const {
+    return 0.5 * contact.relative_velocity;
+  }
+  Wrench wrench(const JointContact&, const Vector3& force, const Vector3&) const {
+    return {0.5 * force, Vector3::Zero(), -0.5 * force, Vector3::Zero()};
+  }
+};
+
+template <class Law>
+LoadedLaw loaded() {
+  LoadedLaw law;
+  law.name = Law::info.name;
+  law.info = Law::info;
+  law.table = user_law_table<Law>("");
+  law.kind = law.table->kind;
+  return law;
+}
+
+TEST(UserLaws, EveryKindGoesThroughItsTable) {
+  const LoadedLaw chi = loaded<Doubling>();
+  EXPECT_EQ(chi.kind, LawKind::dissipation);
+  EXPECT_EQ(damping_ratio(DissipationLaw(UserDissipationLaw(chi)), {0.7, 0.1}), 1.4);
+
+  const LoadedLaw sticky = loaded<Sticky>();
+  EXPECT_EQ(sticky.kind, LawKind::friction);
+  const FrictionLaw friction = UserFrictionLaw(sticky);
+  const FrictionParameters parameters{0.3, 0.0, 1e-3};
+  ContactHistory one;
+  ContactHistory two;
+  const FrictionKinematics kinematics{100.0, 1e7, Vector3(1e-3, 0.0, 0.0), 1e-4};
+  const FrictionResponse own = MindlinFriction{}(parameters, kinematics, one);
+  const FrictionResponse through = evaluate(friction, parameters, kinematics, two);
+  EXPECT_EQ(through.force_on_1, own.force_on_1);
+  EXPECT_EQ(two.tangential_force, one.tangential_force);
+  EXPECT_EQ(largest_slope(friction, parameters, 7.0), 7.0);
+
+  const LoadedLaw slow = loaded<Slow>();
+  EXPECT_EQ(slow.kind, LawKind::tangential_velocity);
+  const UserVelocityLaw velocity(slow);
+  JointContact contact{};
+  contact.relative_velocity = Vector3(1.0, 2.0, 3.0);
+  EXPECT_EQ(velocity.velocity(contact, {}, {}, Vector3::Zero()), Vector3(0.5, 1.0, 1.5));
+  EXPECT_EQ(velocity.wrench(contact, Vector3(2.0, 0.0, 0.0), Vector3::Zero()).force_2,
+            Vector3(-1.0, 0.0, 0.0));
+}
+
+}  // namespace
+}  // namespace statejump::kernel::laws

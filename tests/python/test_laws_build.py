@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Laws of one's own: one header, compiled apart, known by its name in cases, listings and YADE scripts."""
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from conftest import BUILT, REPOSITORY
+from statejump import _engine
+from statejump.laws import build
+
+TOYS = Path(__file__).resolve().parent / "toy_laws"
+BY_LAW = """
+import json, sys
+from statejump.kinds.registry import load_case
+from statejump.kinds.umbrella import reduced as model
+case = model.changed(load_case(sys.argv[1]), json.loads(sys.argv[2]))
+run = model.run(case)
+print(json.dumps({"contacts": run.contacts, "residue": run.energy_residue_J,
+                  "columns": {name: list(run.history[name]) for name in run.history.columns}}))
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder of the toy laws, compiled once."""
+    made = tmp_path_factory.mktemp("laws")
+    for toy in sorted(TOYS.glob("*.hpp")):
+        build.build(toy, made)
+    return made
+
+
+def ended(arguments: list[object], **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run a program with the built package."""
+    return subprocess.run(
+        [str(each) for each in arguments], capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL,
+        env={**os.environ, "PYTHONPATH": str(BUILT), "XDG_DATA_HOME": "/nonexistent", **environment}, check=False,
+    )
+
+
+def rib(folder: Path, case: str, changes: dict[str, object]) -> subprocess.CompletedProcess[str]:
+    """Run the reduced model of a rib with the laws of a folder."""
+    quick = {"thermal.cycles": 1, "reduced.steps_per_cycle": 20000, "output.samples_per_cycle": 200}
+    return ended([sys.executable, "-c", BY_LAW, REPOSITORY / "cases" / case, json.dumps({**quick, **changes})],
+                 STATEJUMP_LAWS=str(folder))
+
+
+def told(done: subprocess.CompletedProcess[str]) -> dict:
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def test_compiles_in_seconds(folder: Path, tmp_path: Path) -> None:
+    start = os.times()
+    written = build.build(TOYS / "twin.hpp", tmp_path)
+    spent = os.times()
+    assert written == tmp_path / "dissipation_twin.so" and written.is_file()
+    assert list(tmp_path.iterdir()) == [written]
+    # Seconds of one processor, however busy the machine is; a change of the catalogue costs 167.
+    assert spent.children_user + spent.children_system - start.children_user - start.children_system < 20
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "dissipation_twin.so", "friction_smooth.so", "normal_cubic.so"]
+
+
+def test_same_text_same_bits(folder: Path) -> None:
+    """A law of one's own in a case: the twin of hunt_crossley moves the rib to the last bit as the original does."""
+    base = {"joint.restitution": 0.7}
+    own, twin = (told(rib(folder, "umbrella_damped.toml", {**base, "joint.dissipation_law": name}))
+                 for name in ("hunt_crossley", "twin"))
+    assert own["contacts"] > 0
+    assert own == twin
+    other = told(rib(folder, "umbrella_damped.toml", {**base, "joint.dissipation_law": "flores"}))
+    assert other["columns"] != own["columns"]
+
+
+def test_new_laws_in_a_case(folder: Path) -> None:
+    """A normal and a friction law that the project does not have: contact, and an account that closes."""
+    found = told(rib(folder, "umbrella_damped.toml", {"joint.friction_law": "smooth", "joint.normal_law": "hertz_internal"}))
+    lost = np.array(found["columns"]["friction_dissipation_J"])[-1]
+    assert found["contacts"] > 0 and lost > 0
+    plain = told(rib(folder, "umbrella_damped.toml", {"joint.friction_law": "none"}))
+    assert plain["columns"]["theta2_rad"] != found["columns"]["theta2_rad"]
+
+
+def test_traits_decide_what_a_case_may_ask(folder: Path, tmp_path: Path) -> None:
+    """The adaptive method takes a law without memory; a loaded start under one that creeps is at 0 only."""
+    assert told(rib(folder, "umbrella_damped.toml", {
+        "joint.friction_law": "smooth", "reduced.method": "adaptive"}))["contacts"] > 0
+    text = (REPOSITORY / "cases" / "umbrella_hold.toml").read_text()
+    path = tmp_path / "creeping.toml"
+    path.write_text(text.replace('friction_law = "mindlin"', 'friction_law = "smooth"'))
+    done = ended([BUILT.parent / "bin" / "statejump", "reduced", path], STATEJUMP_LAWS=str(folder))
+    assert done.returncode == 2
+    assert "must be 0 [rad]: this friction holds no static load" in done.stderr
+
+
+def test_listed(folder: Path, tmp_path: Path) -> None:
+    done = ended([BUILT.parent / "bin" / "statejump", "laws", "--results", tmp_path], STATEJUMP_LAWS=str(folder))
+    assert done.returncode == 0, done.stderr
+    for name in ("cubic", "smooth", "twin"):
+        assert f"│ {name} " in done.stdout
+    assert ">cubic<" in (tmp_path / "laws" / "laws.svg").read_text() or "cubic" in (
+        tmp_path / "laws" / "laws.svg").read_text()
+
+
+def test_same_number_in_yade(folder: Path) -> None:
+    """Force of the cubic law: kernel through the engine, kernel through the plugin, and by hand."""
+    script = Path(__file__).resolve().parents[1] / "yade" / "scripts" / "user_law.py"
+    done = ended(["yade", "-n", "-x", script], STATEJUMP_LAWS=str(folder),
+                 PYTHONPATH=os.pathsep.join([str(BUILT), str(script.parent)]))
+    match = re.search(r"RESULT (\{.*)", done.stdout)
+    assert match, done.stdout + done.stderr
+    seen = json.loads(match[1])
+    listed = ended([sys.executable, "-c", (
+        "import sys, json, numpy as np\nfrom statejump import _engine\n"
+        "d, r1, r2, length, modulus = json.loads(sys.argv[1])\n"
+        "found = _engine.normal_force('cubic', np.array([d]), r1, r2, length, modulus)\n"
+        "print(json.dumps([found[key][0] for key in ('force_N', 'stiffness_N_per_m')]))"),
+        json.dumps([seen["depth"], *seen["radii"], seen["length"], seen["modulus"]])], STATEJUMP_LAWS=str(folder))
+    assert json.loads(listed.stdout) == [seen["force"], seen["kn"]], listed.stderr
+    assert seen["force"] == pytest.approx(seen["modulus"] / seen["radii"][0] * seen["depth"] ** 3, rel=1e-14)
+    # And the twin through an impact, bit for bit.
+    assert seen["impact"]["twin"] == seen["impact"]["hunt_crossley"] != seen["impact"]["flores"]
+    assert "cubic" in seen["doc"] and "F = E*/R1 delta^3" in seen["doc"]
+
+
+NAN = '''#include <cmath>
+#include "statejump/kernel/laws/normal.hpp"
+using namespace statejump::kernel::laws;
+struct UserLaw {
+  static constexpr LawInfo info{"NAME", "F", "the tests", "any", Trait::holds_static_load, {}};
+  static double largest_depth(const NormalGeometry&) { return 1.0; }
+  NormalState operator()(double depth, const NormalGeometry&, const NormalMaterial&) const {
+    if (depth <= 0.0) return {0.0, 0.0, 0.0, 0.0};
+    BODY
+  }
+};
+'''
+
+
+@pytest.mark.parametrize("name, body, complaint", [
+    ("no_number", "return {std::nan(\"\"), 1.0, 0.0, 0.0};", "answered force = nan"),
+    ("pulls", "return {-1.0, 1.0, 0.0, 0.0};", "answered force = -1"),
+    ("throws", "throw std::runtime_error(\"no idea\");", "no idea"),
+    ("throws_a_number", "throw 42;", "an exception that is no std::exception"),
+])
+def test_wrong_answers_name_law_joint_and_time(tmp_path: Path, name: str, body: str, complaint: str) -> None:
+    header = tmp_path / "wrong.hpp"
+    header.write_text(NAN.replace("NAME", name).replace("BODY", body))
+    written = build.build(header, tmp_path)
+    done = rib(tmp_path, "umbrella_damped.toml", {"joint.normal_law": name})
+    last = done.stderr.strip().splitlines()[-1]
+    assert done.returncode == 1 and f"{name} ({written}): {complaint}" in last
+    assert re.search(r"time = [\d.e-]+ s", last), last
+    script = Path(__file__).resolve().parents[1] / "yade" / "scripts" / "user_law.py"
+    done = ended(["yade", "-n", "-x", script, name], STATEJUMP_LAWS=str(tmp_path),
+                 PYTHONPATH=os.pathsep.join([str(BUILT), str(script.parent)]))
+    assert f"{name} ({written}): {complaint} (contact of bodies 0 and 1, time 0 s" in done.stdout, done.stderr
+
+
+def mistake(statejump, *arguments: object, **environment: str) -> str:
+    outcome = statejump("laws", "build", *arguments, XDG_DATA_HOME="/nonexistent", **environment)
+    assert outcome.status == 2 and outcome.output == ""
+    assert outcome.errors.startswith("error: ") and outcome.errors.count("\n") == 1, outcome.errors
+    return outcome.errors[len("error: "):-1]
+
+
+def test_mistakes_of_a_header(statejump, tmp_path: Path) -> None:
+    missing, wrong, none, kind = (tmp_path / f"{name}.hpp" for name in ("missing", "wrong", "none", "kind"))
+    assert mistake(statejump, missing) == f"{missing}: there is no such file"
+    text = (TOYS / "twin.hpp").read_text()
+    wrong.write_text(text.replace("return 1.5", "return one_and_a_half"))
+    sentence = mistake(statejump, wrong, "--folder", tmp_path / "laws")
+    assert re.match(r"wrong\.hpp does not compile: wrong\.hpp:16:\d+: error: 'one_and_a_half'", sentence), sentence
+    none.write_text(text.replace("using UserLaw = Twin;", ""))
+    assert "none.hpp does not compile: " in mistake(statejump, none, "--folder", tmp_path / "laws")
+    kind.write_text(text.replace("double operator()", "double other"))
+    assert "UserLaw has the call operator of no kind of law" in mistake(statejump, kind, "--folder", tmp_path / "laws")
+    taken = tmp_path / "taken.hpp"
+    taken.write_text(text.replace('"twin"', '"flores"'))
+    assert mistake(statejump, taken, "--folder", tmp_path / "laws") == (
+        f"{taken}: two laws have this name, that of the project and that of {taken}")
+    assert list((tmp_path / "laws").iterdir()) == []
+
+
+def test_no_compiler(statejump, tmp_path: Path) -> None:
+    sentence = mistake(statejump, TOYS / "twin.hpp", "--folder", tmp_path, CXX="no-such-compiler")
+    assert sentence == "no C++ compiler: $CXX = 'no-such-compiler' cannot be run"
+
+
+def test_hash_is_that_of_the_build(tmp_path: Path) -> None:
+    include = REPOSITORY / "contact_laws" / "kernel" / "include"
+    assert build.kernel_hash(include) == _engine.kernel_hash()
+    copy = tmp_path / "include"
+    shutil.copytree(include, copy)
+    with (copy / "statejump" / "kernel" / "hertz.hpp").open("a") as stream:
+        stream.write("\n")
+    assert build.kernel_hash(copy) != _engine.kernel_hash()
+
+
+def test_other_kernel_and_two_of_one_name(folder: Path, tmp_path: Path, statejump, cases: Path) -> None:
+    """What cannot be used is known by name: whoever asks for it hears why, whoever does not is not disturbed."""
+    old = tmp_path / "old"
+    old.mkdir()
+    made = build.compile_law(build.find_compiler(), TOYS / "smooth.hpp", "0" * 64, old)
+    stale = made.replace(old / "friction_smooth.so")
+    twice = f"{folder}{os.pathsep}{old}"
+    case = tmp_path / "case.toml"
+    text = (cases / "umbrella_damped.toml").read_text()
+    assert 'friction_law = "mindlin"' in text
+    case.write_text(text.replace('friction_law = "mindlin"', 'friction_law = "smooth"'))
+    environment = {"XDG_DATA_HOME": "/nonexistent"}
+    for laws, reason in (
+        (str(old), f"{stale} was compiled against another version of the kernel, build it again with 'statejump laws "
+                   "build'"),
+        (twice, f"two laws have this name, that of {folder / 'friction_smooth.so'} and that of {stale}"),
+    ):
+        outcome = statejump("reduced", case, STATEJUMP_LAWS=laws, **environment)
+        assert outcome.status == 2 and reason in outcome.errors and outcome.errors.count("\n") == 1, outcome.errors
+        outcome = statejump("laws", STATEJUMP_LAWS=laws, **environment)
+        assert (outcome.status, outcome.errors) == (2, f"error: law 'smooth': {reason}\n")
+        outcome = statejump("reduced", cases / "umbrella_damped.toml", STATEJUMP_LAWS=laws, **environment)
+        assert outcome.status == 0, outcome.errors
+
+
+def test_object_that_is_no_law(statejump, tmp_path: Path) -> None:
+    (tmp_path / "other.so").write_text("no object")
+    outcome = statejump("laws", STATEJUMP_LAWS=str(tmp_path), XDG_DATA_HOME="/nonexistent")
+    assert outcome.status == 2
+    assert outcome.errors.startswith(f"error: {tmp_path / 'other.so'} is no law: ")
+
+
+def test_own_folder(statejump, tmp_path: Path) -> None:
+    """Without --folder the law goes where every program searches."""
+    environment = {"XDG_DATA_HOME": str(tmp_path / "data"), "STATEJUMP_LAWS": ""}
+    outcome = statejump("laws", "build", TOYS / "twin.hpp", **environment)
+    target = tmp_path / "data" / "statejump" / "laws" / "dissipation_twin.so"
+    assert (outcome.status, outcome.errors) == (0, "") and target.is_file()
+    assert "│ twin " in statejump("laws", **environment).output

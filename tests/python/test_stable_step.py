@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stable time steps: the kernel's limit, the two estimates made of it, and what a run in YADE reports."""
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import tomllib
+from math import inf, sqrt
+
+import numpy as np
+import pytest
+
+from conftest import BUILT, REPOSITORY
+from statejump import _engine
+from statejump.core import yade_process
+from statejump.kinds.registry import parse_case
+from statejump.kinds.spring_slider import stable_step
+from statejump.kinds.truss import dem as truss_dem
+from statejump.kinds.truss.solve import solve
+
+EPS = 2.0**-52
+
+
+def test_limit_by_hand() -> None:
+    """k dt^2 + 2 c dt = 4 m."""
+    step = _engine.critical_time_step_s
+    assert step(0.3, 4e7) == pytest.approx(2 * sqrt(0.3 / 4e7), rel=4 * EPS)
+    assert step(0.3, 0, 12.0) == pytest.approx(2 * 0.3 / 12, rel=4 * EPS)
+    assert step(1, 3, 1) == pytest.approx((-2 + sqrt(52)) / 6, rel=4 * EPS)
+    assert step(1, 0) == inf
+    found = step(1.0, np.array([3.0, 0.0, 4.0]), np.array([1.0, 0.0, 0.0]))
+    assert found.tolist() == [step(1, 3, 1), inf, 1.0]
+
+
+@pytest.fixture(scope="module")
+def undamped():
+    """Table 1 without dampers, stops out of reach: only the bar and the floor count."""
+    values = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text())
+    values["dem"].update(link_damping_ratio=0.0, contact_damping_ratio=0.0)
+    values["joint"].update(clearance_minus_m=0.1, clearance_plus_m=0.1)
+    return parse_case(values, "table1.toml")
+
+
+def test_spring_slider_by_hand(undamped) -> None:
+    """Floor at twice its 100 N, R = 50 mm, E* = 70e9/1.82, G* = 70e9/8.84: a, 2 E* a, 8 G* a; bar 1.26e6 N/m."""
+    modulus, shear = 70e9 / (2 * 0.91), 70e9 / (4 * 1.7 * 1.3)
+    width = (200 * 0.05 / (4 / 3 * modulus)) ** (1 / 3)
+    mass = 2700 * 9e-6 * 0.5 / 3 + undamped.dem.slider_mass_kg
+    across, along = 2 * modulus * width, 70e9 * 9e-6 / 0.5 + 8 * shear * width
+    expected = 2 * sqrt(mass / max(across, along))
+    assert stable_step.stable_time_step(undamped) == pytest.approx(expected, rel=1e-12)
+
+
+def test_spring_slider_as_the_dem_reports(undamped) -> None:
+    """The estimate is made of the stiffness that the DEM's contact has; the run's own is on the safe side of it."""
+    script = REPOSITORY / "tests" / "yade" / "scripts" / "stable_step.py"
+    paths = [str(BUILT), str(script.parent), str(REPOSITORY / "yade_scripts")]
+    done = subprocess.run(
+        ["yade", "-n", "-x", str(script), json.dumps(yade_process.resolved(undamped))], capture_output=True, text=True,
+        timeout=120, env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)}, stdin=subprocess.DEVNULL, check=False,
+    )
+    match = re.search(r"RESULT (\{.*)", done.stdout)
+    assert match, done.stdout + done.stderr
+    seen = json.loads(match[1])
+    # The slider starts where the floor carries its 100 N: 1 um of a position of 50 mm, rounded to 7e-18 m.
+    assert seen["force"] == pytest.approx(100, rel=1e-10)
+    link, mass = 70e9 * 9e-6 / 0.5, stable_step.tip_mass(undamped)
+    # All springs of the body together, and twice them, as its contact has two bodies.
+    assert seen["stable"] == pytest.approx(sqrt(2 * mass / (link + seen["kn"] + seen["ks"])), rel=1e-10)
+    twice = 2 ** (1 / 3)  # Hertz's stiffness at twice the force
+    expected = 2 * sqrt(mass / max(twice * seen["kn"], link + twice * seen["ks"]))
+    assert stable_step.stable_time_step(undamped) == pytest.approx(expected, rel=1e-10)
+
+
+TRUSS = """
+[case]
+name = "two_links"
+kind = "truss"
+title = "Two links on a line"
+source = "the tests"
+
+[truss]
+dimension = 2
+
+[[node]]
+name = "left"
+position_m = [0.0, 0.0]
+fixed = ["x", "y"]
+
+[[node]]
+name = "middle"
+position_m = [0.5, 0.0]
+fixed = ["y"]
+
+[[node]]
+name = "right"
+position_m = [1.0, 0.0]
+fixed = ["x", "y"]
+
+[[link]]
+name = "A"
+nodes = ["left", "middle"]
+young_modulus_Pa = 70e9
+cross_section_area_m2 = 9e-6
+density_kg_per_m3 = 2700
+thermal_expansion_per_K = 0.0
+
+[[link]]
+name = "B"
+nodes = ["middle", "right"]
+young_modulus_Pa = 70e9
+cross_section_area_m2 = 9e-6
+density_kg_per_m3 = 2700
+thermal_expansion_per_K = 0.0
+
+[thermal]
+shape = "triangle"
+temperature_change_max_K = 10
+period_s = 0.1
+
+[dem]
+link_damping_ratio = 0.0
+contact_damping_ratio = 0.0
+"""
+
+
+def test_truss_by_hand() -> None:
+    """One node between two links: a third of the mass of each, 0.0081 kg in all, and 2 x 1.26e6 N/m."""
+    case = parse_case(tomllib.loads(TRUSS), "two_links.toml")
+    found = truss_dem.stable_time_step(case, solve(case))
+    assert found == pytest.approx(2 * sqrt(2 * 2700 * 9e-6 * 0.5 / 3 / (2 * 70e9 * 9e-6 / 0.5)), rel=1e-12)
