@@ -47,6 +47,15 @@ class SpringSlider(Kind[SpringSliderCase]):
         "stage",
     )
 
+    OUTCOMES = (
+        "state_jump_m",
+        "first_slip_temperature_change_K",
+        "stop_reached_temperature_change_K",
+        "stop_left_temperature_change_K",
+        "friction_dissipation_J",
+        "largest_axial_force_N",
+    )
+
     def reduced(self, case: SpringSliderCase, tell: Tell) -> Run:
         from statejump.kinds.spring_slider import reduced
 
@@ -106,6 +115,11 @@ class SpringSlider(Kind[SpringSliderCase]):
         from statejump.kinds.spring_slider import charts
 
         return charts.charts(case)
+
+    def quick(self, case: SpringSliderCase) -> Run:
+        from statejump.kinds.spring_slider import reduced
+
+        return reduced.quick(case)
 
     def outcomes(self, case: SpringSliderCase, run: Run) -> dict[str, float]:
         from statejump.kinds.spring_slider import outcomes

@@ -57,6 +57,16 @@ class Umbrella(Kind):
         "thermal_work_J",
     )
 
+    OUTCOMES = (
+        "theta2_jump_rad",
+        "theta4_jump_rad",
+        "theta2_range_rad",
+        "theta4_range_rad",
+        "first_contact_temperature_change_K",
+        "contacts",
+        "energy_residue_J",
+    )
+
     def reduced(self, case: UmbrellaCase, tell: Tell) -> Run:
         from statejump.kinds.umbrella import reduced
 
