@@ -19,7 +19,7 @@ ability that it lacks is not there, and what needs it refuses the case with one 
 ``outcomes``        ``(case, run) -> dict[str, float]``: what a campaign records of a run, by the names of ``OUTCOMES``
 ``quick``           ``(case) -> Run``: the reduced model with as few samples as ``outcomes`` needs; else ``reduced``
 ``told``            ``(case, runs) -> list``: what a command prints of runs, tables and lines
-``control``         ``(case, settings) -> ...``: what makes the state jump smaller
+``control``         ``(case, **settings) -> Study``: what makes the state jump smaller, :mod:`statejump.control`
 ==================  =====================================================================================
 
 Further abilities are those of single commands and have their names: ``statics``, ``answers``, ``convergence``,

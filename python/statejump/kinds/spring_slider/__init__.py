@@ -14,6 +14,7 @@ from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.kinds.spring_slider.words import WORDS
 
 if TYPE_CHECKING:
+    from statejump.control.study import Study
     from statejump.core.charts import Chart
     from statejump.core.figures import Sheet
     from statejump.kinds.spring_slider.statics import RestSets
@@ -125,6 +126,12 @@ class SpringSlider(Kind[SpringSliderCase]):
         from statejump.kinds.spring_slider import outcomes
 
         return outcomes.outcomes(case, run)
+
+    def control(self, case: SpringSliderCase, **settings: Any) -> Study:
+        """Return what makes the state jump smaller; see :func:`.control.control`."""
+        from statejump.kinds.spring_slider import control
+
+        return control.control(case, **settings)
 
 
 KIND = SpringSlider()

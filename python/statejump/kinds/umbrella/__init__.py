@@ -14,6 +14,7 @@ from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.words import WORDS
 
 if TYPE_CHECKING:
+    from statejump.control.study import Study
     from statejump.core.charts import Chart
     from statejump.core.figures import Sheet
 
@@ -126,6 +127,12 @@ class Umbrella(Kind):
         from statejump.kinds.umbrella import outcomes
 
         return outcomes.outcomes(case, run)
+
+    def control(self, case: UmbrellaCase, **settings: Any) -> Study:
+        """Return what makes the state jump smaller; see :func:`.control.control`."""
+        from statejump.kinds.umbrella import control
+
+        return control.control(case, **settings)
 
 
 KIND = Umbrella()
