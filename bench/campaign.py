@@ -18,8 +18,9 @@ from statistics import median
 
 from run import BUSY_LOAD, REPOSITORY, BenchError, parse, publish
 from statejump.campaign import execute, work
-from statejump.campaign.campaign_file import MONTECARLO, Campaign, load_campaign
+from statejump.campaign.campaign_file import load_campaign
 from statejump.campaign.journal import Journal
+from statejump.campaign.plan import MONTECARLO, Plan
 from statejump.core.errors import StatejumpError
 
 CAMPAIGN = REPOSITORY / "cases" / "campaigns" / "table1_tolerances.toml"
@@ -28,7 +29,7 @@ SCALED = 60_000  # one worker is busy for seconds, so that the last batch counts
 COLUMNS = ("what", "repetition", "workers", "samples", "wall_time_s", "worker_time_s", "samples_per_second", "load")
 
 
-def measured(what: str, repetition: int, campaign: Campaign, workers: int) -> dict[str, object]:
+def measured(what: str, repetition: int, campaign: Plan, workers: int) -> dict[str, object]:
     """Run the campaign on a fresh cluster and journal; wall time without starting the cluster."""
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory(prefix="statejump-bench-") as folder:
@@ -41,7 +42,7 @@ def measured(what: str, repetition: int, campaign: Campaign, workers: int) -> di
     }
 
 
-def bare(repetition: int, campaign: Campaign) -> dict[str, object]:
+def bare(repetition: int, campaign: Plan) -> dict[str, object]:
     """The same samples in a loop of this process: no Dask, no journal."""
     load, started = os.getloadavg()[0], time.perf_counter()
     for index in range(campaign.samples):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from statejump.bore import Bore
+    from statejump.bores import Bore
     from statejump.core.tables import Shown
     from statejump.campaign import Campaign
     from statejump.results.contents import Result
@@ -92,27 +92,29 @@ def statics(case: Case, friction_coefficient: float | None = None) -> RestSets:
 
 
 def bore(
-    path: str | Path, *, unit_m: float = 1e-3, journal_radius_m: float | None = None, **settings: Any
+    path: str | Path, *, unit_m: float = 1.0, journal_radius_m: float | None = None, flip: bool = False
 ) -> Bore:
-    """Return what a measured bore is: roundness, lobes, taper, clearance to a journal.
+    """Return what a measured bore is: roundness, lobes, clearance to a journal.
 
-    :param path: STL, OBJ, PLY or VTP file of its wall
-    :param unit_m: length of one unit of the file [m]
+    :param path: OFF, STL, PLY or OBJ file of its wall
+    :param unit_m: length of one unit of the file [m]: 0.001 for millimetres
     :param journal_radius_m: radius of the journal that goes into it [m]
+    :param flip: turn every face over, of a file whose normals point into the material
     :raises StatejumpError: the file is not a bore; the sentence says what is wrong and where
     """
-    from statejump.bore import measured
+    from statejump.bores import measured
 
-    return measured(Path(path), unit_m=unit_m, journal_radius_m=journal_radius_m, **settings)
+    return measured(Path(path), unit_m=unit_m, journal_radius_m=journal_radius_m, flip=flip)
 
 
 def sweep(
-    case: Case, values: Mapping[str, Sequence[float]], *, model: str = "reduced", workers: int | None = None,
+    case: Case, values: Mapping[str, Sequence[float] | Mapping[str, Any]], *, model: str = "reduced", workers: int | None = None,
     progress: Progress = False,
 ) -> Campaign:
     """Run a case on a grid of its parameters.
 
-    :param values: values by key: ``section.key``, ``section.item.key`` of an item of a list, ``section.*.key``
+    :param values: values by key: ``section.key``, ``section.item.key`` of an item of a list, ``section.*.key``; or of
+        a key what a ``[[vary]]`` table says, as ``{"start": 0.1, "stop": 1, "count": 10, "spacing": "log"}``
     :param model: ``reduced`` or ``dem``
     :param workers: processes; None: one for each core, or none of their own where the grid is small
     :raises StatejumpError: there is no such key, or the kind of case has no outcomes

@@ -8,8 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+
+import statejump as sj
 from statejump import _engine
-from statejump.bore import bore
+from statejump.bores import measure as bore
+from statejump.bores.measure import NoBore
+from statejump.cli.bore import bore_command
 from statejump.core.errors import StatejumpError
 
 RADIUS = 5.1e-3
@@ -69,7 +73,7 @@ def test_contacts_from_python():
 
 def run(tmp_path: Path, *arguments: object):
     return CliRunner().invoke(
-        bore.bore_command, [*map(str, arguments), "--results", str(tmp_path / "results")]
+        bore_command, [*map(str, arguments), "--results", str(tmp_path / "results")]
     )
 
 
@@ -123,4 +127,31 @@ def test_journal_of_another_unit(tmp_path: Path):
         f"{file}: the bore's mean radius 0.051 m is 10.2 times the journal's 0.005 m: are the coordinates in "
         "millimetres? Then use --scale 0.001"
     )
-    assert refusal(tmp_path, file, "--journal-radius", "-1") == "journal radius = -1, allowed is (0, inf) m"
+    assert refusal(tmp_path, file, "--journal-radius", "-1") == (
+        "--journal-radius = -1.0 is not allowed: must be a number above 0 [m]"
+    )
+
+
+def test_in_python(tmp_path: Path):
+    vertices, faces = lobed()
+    file = write_off(tmp_path / "worn.off", vertices * 1e3, faces)
+    worn = sj.bore(file, unit_m=1e-3, journal_radius_m=JOURNAL)
+    frame = worn.frame()
+    assert len(frame) == bore.SECTIONS == len(worn.sections)
+    assert frame["harmonic_3_amplitude_m"].tolist() == pytest.approx([1e-5] * 5, abs=1e-10)
+    assert frame["harmonic_3_phase_rad"].tolist() == pytest.approx([0.3] * 5, abs=1e-4)
+    assert worn.clearance_m == pytest.approx(1e-4, abs=2e-8) and worn.smallest_clearance_m < worn.clearance_m
+    assert sj.bore(file, unit_m=1e-3).clearance_m is None
+    figure = worn.plot()
+    assert [len(axes.patches) for axes in figure.axes] == [0, len(bore.HARMONICS)]
+    assert worn.plot(tuple(figure.axes)) is figure
+    assert "lobes that dominate" in worn._repr_html_() and "0.00510001 m" in repr(worn)
+    with pytest.raises(StatejumpError, match="journal_radius_m = 0 is not allowed: must be a number above 0"):
+        sj.bore(file, unit_m=1e-3, journal_radius_m=0)
+    # The remedy is the setting, not the option of the command.
+    with pytest.raises(NoBore) as caught:
+        sj.bore(file)
+    assert str(caught.value).endswith("are the coordinates in millimetres? Then use unit_m=0.001")
+    assert caught.value.fields()["remedy"] == "unit_m=0.001" and caught.value.fields()["file"] == str(file)
+    with pytest.raises(NoBore, match="; flip=True turns it$"):
+        sj.bore(write_off(tmp_path / "inside_out.off", vertices, faces[:, ::-1]))

@@ -10,8 +10,9 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, Callable, Iterator
+from typing import Any
 
 import h5py
 import numpy as np
@@ -19,8 +20,10 @@ import pytest
 
 from conftest import BUILT, REPOSITORY, Outcome
 
-from statejump.campaign import execute, journal, summary, tables, work
-from statejump.campaign.campaign_file import MONTECARLO, SWEEP, Campaign, load_campaign
+import statejump as sj
+from statejump.campaign import distribute, execute, journal, summary, tables, work
+from statejump.campaign.campaign_file import load_campaign
+from statejump.campaign.plan import MONTECARLO, SWEEP, Plan
 from statejump.campaign.sampling import Distribution, Values, montecarlo_values, sweep_values
 from statejump.campaign.yade_batch import write_table
 from statejump.core.errors import StatejumpError
@@ -29,10 +32,7 @@ from statejump.core.errors import StatejumpError
 LAUNCHER = f"""
 import sys
 sys.path.insert(0, {str(BUILT)!r})
-from statejump import campaign
-from statejump.cli import cli, main
-for command in (campaign.montecarlo_command, campaign.sweep_command):
-    cli.add_command(command)
+from statejump.cli.main import main
 main()
 """
 
@@ -99,7 +99,7 @@ def command(start: Callable[..., subprocess.Popen]) -> Callable[..., Outcome]:
     return run
 
 
-def finish(campaign: Campaign, folder: Path, workers: int = 1, scheduler: str | None = None) -> tuple[bytes, bytes]:
+def finish(campaign: Plan, folder: Path, workers: int = 1, scheduler: str | None = None) -> tuple[bytes, bytes]:
     """Run the samples that are missing; return both tables."""
     folder.mkdir(exist_ok=True)
     with journal.Journal(folder, campaign, restart=False) as kept:
@@ -328,6 +328,92 @@ def test_sample_that_kills_its_worker(
     assert rows_of(tmp_path / "trial")[0]["error"] == "the run ended its worker process, time and again"
 
 
+# In Python.
+
+def test_sweep_in_python(tmp_path: Path, cases: Path) -> None:
+    """The block of the documentation; few samples need no workers."""
+    case = sj.load(cases / "table1.toml")
+    campaign = sj.sweep(case, {"joint.friction_coefficient": [0.1, 0.2], "thermal.cycles": np.array([1, 2])})
+    frame = campaign.frame()
+    assert list(frame["joint.friction_coefficient"]) == [0.1, 0.1, 0.2, 0.2]
+    assert list(frame["thermal.cycles"]) == [1, 2, 1, 2] and not frame["error"].any()
+    # f l0 / (E A), for any number of cycles
+    assert frame["state_jump_m"].tolist() == pytest.approx(frame["joint.friction_coefficient"] * 100 * 0.5 / (70e9 * 9e-6))
+    for _, row in frame.iterrows():
+        run = case.changed({"joint.friction_coefficient": row["joint.friction_coefficient"],
+                            "thermal.cycles": int(row["thermal.cycles"])}).reduced()
+        assert run.summary["state_jump_m"] == row["state_jump_m"]
+    assert campaign.summary()["outcomes"]["state_jump_m"]["count"] == 4 == len(campaign)
+    assert len(campaign.plot().axes) >= 6
+    assert "state_jump_m" in campaign._repr_html_() and "4 samples" in repr(campaign)
+    spaced = sj.sweep(case, {"joint.friction_coefficient": {"start": 0.1, "stop": 0.4, "count": 4}})
+    assert spaced.frame()["joint.friction_coefficient"].tolist() == pytest.approx([0.1, 0.2, 0.3, 0.4])
+
+
+def test_montecarlo_in_python_is_that_of_a_file(tmp_path: Path, cases: Path, write: Callable[..., Path]) -> None:
+    told: list[float] = []
+    campaign = sj.montecarlo(
+        sj.load(cases / "table1.toml"),
+        {"joint.friction_coefficient": {"distribution": "uniform", "low": -0.3, "high": 0.3}},
+        samples=50, seed=7, progress=told.append,
+    )
+    assert told == sorted(told) and told[-1] == 1.0
+    wide = FRICTION.replace('"normal"\nrelative = 0.2', '"uniform"\nlow = -0.3\nhigh = 0.3')
+    plan = load_campaign(write(wide), MONTECARLO)
+    assert campaign.plan.key == plan.key
+    finish(plan, tmp_path / "trial")  # by a worker
+    tables.write_csv(campaign.table, tmp_path / "here.csv")
+    assert (tmp_path / "here.csv").read_bytes() == (tmp_path / "trial" / "samples.csv").read_bytes()
+    assert campaign.failed > 0 and len(campaign.summary()["failures"]) == 1
+    assert "failed: " in campaign._repr_html_()
+    for name in ("distributions", "correlations"):
+        assert campaign.plot(name).axes
+    with pytest.raises(ValueError, match="must be 'distributions' or 'correlations'"):
+        campaign.plot("sweep")
+
+
+def test_few_samples_start_no_workers(tmp_path: Path) -> None:
+    """Nor is Dask imported, nor pyplot."""
+    done = subprocess.run(
+        [sys.executable, "-c", "import sys, statejump as sj\n"
+         "sj.sweep(sj.load('table1'), {'joint.friction_coefficient': [0.1, 0.2]}).plot()\n"
+         "print([name for name in ('distributed', 'dask', 'matplotlib.pyplot') if name in sys.modules])"],
+        cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(BUILT)}, capture_output=True, text=True, timeout=120,
+    )
+    assert (done.stdout, done.stderr) == ("[]\n", "")
+
+
+@pytest.mark.parametrize("values, more, sentence", [
+    ({"joint.frictoin_coefficient": [1]}, {}, "did you mean 'joint.friction_coefficient'?"),
+    ({"joint.friction_coefficient": [11.0]}, {}, "values = 11.0 is not allowed: must be between 0 and 10 [-]"),
+    ({"joint.friction_coefficient": []}, {}, "values = [] is not allowed: must be a list of numbers"),
+    ({"joint.friction_coefficient": [None]}, {}, "values = None is not allowed"),
+    ({}, {}, "what varies is missing"),
+    ({"joint.friction_coefficient": [1]}, {"workers": 0}, "workers = 0 is not allowed: must be at least 1"),
+    ({"joint.friction_coefficient": [1]}, {"model": "fem"}, "model = 'fem' is not allowed: must be 'reduced' or 'dem'"),
+])
+def test_mistakes_in_python(cases: Path, values: dict[str, Any], more: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(StatejumpError) as caught:
+        sj.sweep(sj.load(cases / "table1.toml"), values, **more)
+    assert sentence in str(caught.value)
+
+
+def test_campaign_of_a_kind_without_outcomes(tmp_path: Path, cases: Path, write: Callable[..., Path]) -> None:
+    with pytest.raises(StatejumpError, match="case.kind = 'statics' is not allowed: 'statejump sweep' is for"):
+        sj.sweep(sj.load(cases / "statics_ball.toml"), {"joint.friction_coefficient": [1]})
+    with pytest.raises(StatejumpError, match="campaign.case = '.*' is not allowed: no campaign runs 'statics'"):
+        load_campaign(write(case=cases / "statics_ball.toml"), MONTECARLO)
+
+
+def test_outcomes_are_what_kinds_say_before_any_run(cases: Path) -> None:
+    for name in ("table1", "umbrella_damped", "trusses/iwan_10"):
+        case = sj.load(cases / f"{name}.toml").definition
+        kind = case.behaviour
+        assert kind.OUTCOMES
+        if name != "umbrella_damped":  # a second; its outcomes are compared below
+            assert tuple(kind.outcomes(case, kind.reduced(case, lambda share: None))) == kind.OUTCOMES
+
+
 # Execution.
 
 def test_same_bytes_with_any_workers(tmp_path: Path, write: Callable[..., Path]) -> None:
@@ -361,8 +447,8 @@ def test_workers_that_vanish_end_the_campaign_and_keep_what_is_finished(
     from statejump.campaign.cluster import _no_main_file, kill_workers
 
     campaign = load_campaign(write(samples=50_000), MONTECARLO)
-    monkeypatch.setattr(execute, "LOOK_S", 0.1)
-    monkeypatch.setattr(execute, "NO_WORKERS_S", 0.2)  # the cluster starts another worker, in more than half a second
+    monkeypatch.setattr(distribute, "LOOK_S", 0.1)
+    monkeypatch.setattr(distribute, "NO_WORKERS_S", 0.2)  # the cluster starts another worker, in more than half a second
     (tmp_path / "trial").mkdir()
     with _no_main_file(), LocalCluster(
         n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0", local_directory=str(tmp_path)
@@ -510,12 +596,12 @@ def test_either_model_and_yade_batch(
 
 
 def test_largest_force_is_that_of_the_whole_path(write: Callable[..., Path]) -> None:
+    from statejump.kinds.loading import parse_case
     from statejump.kinds.spring_slider import reduced
-    from statejump.kinds.registry import parse_case
 
     campaign = load_campaign(write(), MONTECARLO)
     for index in range(50):
-        case = parse_case(campaign.data(index), "x")
+        case = parse_case(campaign.data(index))
         path = reduced.solve(case)
         dense = path.sample(np.linspace(0, 1, 20_001))
         found = dict(zip(campaign.units, work.run_sample(campaign, index).values))

@@ -11,15 +11,16 @@ import click
 import numpy as np
 import pytest
 
-from statejump.control import (
-    command as control, ensemble as control_ensemble, loaded as control_loaded, plot as control_plot,
-    study as control_study,
-)
-from statejump.kinds.spring_slider import control as control_spring_slider
-from statejump.kinds.registry import load_case
-from statejump.kinds.umbrella.control import FRICTION, SPRING
+from statejump.cli.control import control_command
+from statejump.control import plot as control_plot, study as control_study
+from statejump.control.study import Study
+from statejump.core.case import Case
 from statejump.core.errors import StatejumpError
-from statejump.kinds.umbrella.reduced import changed
+from statejump.kinds.loading import load_case
+from statejump.kinds.spring_slider import control as control_spring_slider
+from statejump.kinds.umbrella import control_ensemble, control_loaded
+from statejump.kinds.umbrella.control import FRICTION, SPRING
+from statejump.schema.paths import with_values as changed
 
 PRELOAD = control_spring_slider.PRELOAD
 TABLE1_JUMP = 30 / 1.26e6
@@ -44,7 +45,11 @@ def free(cases: Path):
 
 def command(*arguments: object) -> None:
     """Run as the command line does, without ending the interpreter."""
-    control.control_command.main([str(argument) for argument in arguments], standalone_mode=False)
+    control_command.main([str(argument) for argument in arguments], standalone_mode=False)
+
+
+def study_of(case: Case, jump_below: float | None = None, runs: int | None = None) -> Study:
+    return case.behaviour.ability("control", case)(case, jump_below=jump_below, runs=runs)
 
 
 # ---------------------------------------------------------------- spring_slider
@@ -103,14 +108,14 @@ def test_smallest_preload_is_smallest(table1, hottest, wanted, by) -> None:
 def test_no_preload_is_needed_or_none_is_stiff_enough(table1) -> None:
     assert control_spring_slider.smallest_preload(table1, 1e-3).by == "none"
     assert control_spring_slider.smallest_preload(table1, 1e-15) is None
-    study = control.study(table1, 1e-15)
+    study = study_of(table1, 1e-15)
     assert study.sentences == [
         "No preload spring up to 1e+15 N/m, the largest that a case may have, keeps the jump at or below 1e-09 µm."
     ]
 
 
 def test_ranges_of_the_other_remedies(table1) -> None:
-    study = control.study(table1)
+    study = study_of(table1)
     assert study.wanted == study.jump / 2 == pytest.approx(TABLE1_JUMP / 2, rel=1e-12)
     (friction,), (area,) = study.sweep(FRICTION).meets, study.sweep("link.cross_section_area_m2").meets
     assert friction[1] == pytest.approx(0.15, rel=1e-8)
@@ -140,13 +145,13 @@ def test_enough_friction_rolls_and_leaves_no_jump(loaded) -> None:
 
 
 def test_rigid_jump_does_not_depend_on_the_spring(loaded) -> None:
-    sweep = control.study(loaded).sweep(SPRING)
+    sweep = study_of(loaded).sweep(SPRING)
     rigid = sweep.column("jump_rigid_rad")
     assert np.ptp(rigid) < 1e-14 < np.nanmax(sweep.column("jump_elastic_rad")) - np.nanmin(sweep.column("jump_elastic_rad"))
 
 
 def test_found_torsion_spring_is_smallest(loaded) -> None:
-    study = control.study(loaded, 6e-5)
+    study = study_of(loaded, 6e-5)
     found = study.recommendation["stiffness_N_m_per_rad"]
 
     def jump(stiffness: float) -> float:
@@ -158,7 +163,7 @@ def test_found_torsion_spring_is_smallest(loaded) -> None:
 
 
 def test_friction_range_of_the_loaded_rib_brackets(loaded) -> None:
-    low, high = control.study(loaded, 5e-5).sweep(FRICTION).meets
+    low, high = study_of(loaded, 5e-5).sweep(FRICTION).meets
 
     def jump(mu: float) -> float:
         return control_loaded.loaded_jump(changed(loaded, {FRICTION: mu})).size_rad
@@ -168,7 +173,7 @@ def test_friction_range_of_the_loaded_rib_brackets(loaded) -> None:
 
 
 def test_law_without_elastic_path_keeps_the_rigid_one(loaded) -> None:
-    study = control.study(changed(loaded, {"joint.normal_law": "persson"}))
+    study = study_of(changed(loaded, {"joint.normal_law": "persson"}))
     assert list(study.results) == ["jump_rigid_rad"]
     assert study.jump == pytest.approx(1.0295e-4, rel=1e-3)
     assert study.recommendation["stiffness_N_m_per_rad"] is None
@@ -262,7 +267,7 @@ def test_recommended_spring_passes_on_both_ensembles_and_a_smaller_one_does_not(
         return {f"{what}_{name}_rad": value for what in ("jump", "deflection") for name, value in values.items()}
 
     monkeypatch.setattr(control_ensemble, "ensemble_measure", measure)
-    study = control.study(free, 0.5, runs=4)
+    study = study_of(free, 0.5, runs=4)
     entry = study.recommendation["for_jump"]
     found, below = entry["stiffness_N_m_per_rad"], entry["next_smaller_that_fails_N_m_per_rad"]
     assert below < 0.2 <= found < 1.08 * below
@@ -273,8 +278,9 @@ def test_recommended_spring_passes_on_both_ensembles_and_a_smaller_one_does_not(
 
 def test_free_rib_gets_an_ensemble_and_a_sentence_when_out_of_reach(free, monkeypatch) -> None:
     monkeypatch.setattr(control_ensemble, "BISECTIONS", 1)
-    study = control.study(free, 1e-9, runs=2)
-    assert study.kind == "ensemble" and "statistics of 2 runs" in study.measure
+    study = study_of(free, 1e-9, runs=2)
+    assert list(study.results) == list(control_ensemble.ENSEMBLE_RESULTS) and "statistics of 2 runs" in study.measure
+    assert study.floor is not None and study.floor[0] == SPRING
     assert study.recommendation["for_jump"]["stiffness_N_m_per_rad"] is None
     assert study.recommendation["for_jump"]["best_value_rad"] > 1e-9
     assert study.sentences[0].startswith("No torsion spring from 0 to 1000 N m/rad brings the 95 % quantile of |jump|")
@@ -311,7 +317,7 @@ def test_files_hold_units_numbers_and_marks(table1, cases: Path, tmp_path: Path,
 
 
 def test_figure_is_the_same_every_time(table1, tmp_path: Path) -> None:
-    study = control.study(table1)
+    study = study_of(table1)
     drawn = []
     for name in "ab":
         (tmp_path / name).mkdir()
@@ -341,3 +347,12 @@ def test_options_that_are_no_numbers(cases: Path, arguments) -> None:
     with pytest.raises(click.BadParameter) as caught:
         command(cases / "table1.toml", *arguments)
     assert arguments[1] in caught.value.format_message()
+
+
+@pytest.mark.parametrize("case", ["trusses/ring_12", "statics_slot"])
+def test_kinds_without_a_study_are_refused(statejump, cases: Path, case: str) -> None:
+    done = statejump("control", cases / f"{case}.toml")
+    kind = "truss" if case.startswith("trusses") else "statics"
+    assert done.status == 2
+    assert done.errors == (f"error: {cases / case}.toml: case.kind = '{kind}' is not allowed: 'statejump control' is for "
+                           "'spring_slider' and 'umbrella'\n")

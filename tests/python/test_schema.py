@@ -12,11 +12,12 @@ import jsonschema
 import pytest
 
 from conftest import REPOSITORY
-from statejump import _paths
-from statejump.schema import json_schema as schema
-from statejump.kinds.registry import KINDS, load_case
-from statejump.schema.fields import Section, StatejumpError
+from statejump import _paths, kinds
 from statejump.campaign.campaign_file import load_campaign
+from statejump.core.errors import StatejumpError
+from statejump.kinds.loading import load_case
+from statejump.schema import json_schema as schema
+from statejump.schema.fields import fields_of, rule_of, section_of, tables_of
 from test_bad_input import MISTAKES as SPRING_SLIDER_MISTAKES
 
 PUBLISHED = REPOSITORY / "schema"
@@ -34,14 +35,22 @@ def name_of(data: dict[str, Any]) -> str:
     return data["case"]["kind"]
 
 
+def validator(name: str) -> jsonschema.Draft7Validator:
+    """A validator of a published file, which finds the files beside it that it refers to."""
+    found = published(name)
+    beside = {(PUBLISHED / schema.file_name(other)).as_uri(): published(other) for other in schema.names()}
+    resolver = jsonschema.RefResolver((PUBLISHED / schema.file_name(name)).as_uri(), found, store=beside)
+    return jsonschema.Draft7Validator(found, resolver=resolver)
+
+
 def is_valid(data: dict[str, Any], name: str) -> bool:
-    return jsonschema.Draft7Validator(published(name)).is_valid(data)
+    return validator(name).is_valid(data)
 
 
 @pytest.mark.parametrize("name", schema.names())
 def test_published_schema_is_the_generated_one(name: str) -> None:
     committed = (PUBLISHED / schema.file_name(name)).read_text(encoding="utf-8")
-    assert committed == schema.to_json(schema.schema(name)), "run: statejump schema --all schema"
+    assert committed == schema.to_json(schema.schema(name, alone=False)), "run: statejump schema --all schema"
     jsonschema.Draft7Validator.check_schema(json.loads(committed))
 
 
@@ -53,9 +62,15 @@ def test_nothing_else_is_published() -> None:
 def test_case_files_fit_their_schema(path: Path) -> None:
     data = tomllib.loads(path.read_text(encoding="utf-8"))
     name = name_of(data)
-    jsonschema.validate(data, published(name))
+    validator(name).validate(data)
     if name not in CAMPAIGNS:
-        jsonschema.validate(data, published("case"))
+        validator("case").validate(data)
+
+
+def test_schema_of_all_cases_refers_to_those_of_the_kinds() -> None:
+    references = [branch["then"] for branch in published("case")["allOf"]]
+    assert references == [{"$ref": schema.file_name(kind)} for kind in kinds.names()]
+    assert "definitions" not in published("case")
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
@@ -72,21 +87,26 @@ def test_editors_find_the_schema_of_every_case_file(path: Path) -> None:
     assert found == [f"schema/{wanted}"]
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", kinds.names())
 def test_every_key_has_its_unit_and_range(kind: str) -> None:
     """Each bound of each definition is found again in the schema, one by one."""
-    sections = published(kind)["properties"]
-    for name, field in KINDS[kind].__fields__.items():
-        if not (isinstance(field.type_, type) and issubclass(field.type_, Section)) or name not in sections:
+    sections, bounds_seen = published(kind)["properties"], 0
+    for name, attribute in fields_of(kinds.kind(kind).Case).items():
+        model = section_of(attribute) or tables_of(attribute)
+        if name not in sections:
+            assert name in kinds.kind(kind).Case.NOT_IN_FILE
             continue
         found = sections[name].get("items", sections[name])["properties"]
-        assert list(found) == list(field.type_.__fields__)
-        for key, inner in field.type_.__fields__.items():
-            extra = inner.field_info.extra
-            if "low" in extra:
+        assert list(found) == list(fields_of(model))
+        for key, inner in fields_of(model).items():
+            rule = rule_of(inner)
+            if rule.allowed is not None:
+                bounds_seen += 1
                 bounds = found[key].get("items", found[key])
-                lowest = bounds["exclusiveMinimum" if extra["above"] else "minimum"]
-                assert (lowest, bounds["maximum"], found[key]["x-unit"]) == (extra["low"], extra["high"], extra["unit"])
+                lowest = bounds["exclusiveMinimum" if rule.allowed.above else "minimum"]
+                assert (lowest, bounds["maximum"], found[key]["x-unit"]) == (
+                    rule.allowed.low, rule.allowed.high, rule.unit)
+    assert bounds_seen > 8
 
 
 # What only reading the file finds: several keys together, numbers as TOML sees them, syntax.
@@ -160,7 +180,14 @@ def test_command(statejump, tmp_path: Path) -> None:
     printed = statejump("schema", "truss")
     assert (printed.status, json.loads(printed.output)) == (0, published("truss"))
     assert statejump("schema", "-o", "a.json").status == 0
-    assert json.loads((tmp_path / "a.json").read_text()) == published("case")
+    alone = json.loads((tmp_path / "a.json").read_text())  # nothing beside it: it holds the kinds
+    for name in kinds.names():
+        without = {key: part for key, part in published(name).items() if key != "$schema"}
+        assert alone["definitions"][name] == without
+    data = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text(encoding="utf-8"))
+    jsonschema.validate(data, alone)
+    data["joint"]["friction_coefficient"] = -1
+    assert not jsonschema.Draft7Validator(alone).is_valid(data)
     wrong = statejump("schema", "trus")
     assert wrong.status == 2 and wrong.errors.endswith("did you mean 'truss'?\n"), wrong.errors
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from statejump.campaign import execute, journal, tables, work
-from statejump.campaign.campaign_file import MONTECARLO, SWEEP, Campaign, load_campaign
+from statejump.campaign.campaign_file import load_campaign
+from statejump.campaign.plan import MONTECARLO, SWEEP, Plan
 from statejump.campaign.sampling import montecarlo_draws
 from statejump.core.errors import StatejumpError
 
@@ -32,8 +33,8 @@ relative = 0.1
 
 
 @pytest.fixture
-def campaign(tmp_path: Path, cases: Path) -> Callable[..., Campaign]:
-    def load(*vary: str, samples: int = 12, case: str = "iwan_10", command: str = MONTECARLO) -> Campaign:
+def campaign(tmp_path: Path, cases: Path) -> Callable[..., Plan]:
+    def load(*vary: str, samples: int = 12, case: str = "iwan_10", command: str = MONTECARLO) -> Plan:
         path = tmp_path / "trial.toml"
         text = CAMPAIGN.format(case=cases / "trusses" / f"{case}.toml", samples=samples)
         if command == SWEEP:
@@ -44,7 +45,7 @@ def campaign(tmp_path: Path, cases: Path) -> Callable[..., Campaign]:
     return load
 
 
-def test_every_item_is_drawn_on_its_own(campaign: Callable[..., Campaign]) -> None:
+def test_every_item_is_drawn_on_its_own(campaign: Callable[..., Plan]) -> None:
     trial = campaign(FRICTION, ONE)
     data = trial.data(4)
     drawn = [slider["friction_coefficient"] for slider in data["slider"]]
@@ -60,7 +61,7 @@ def test_every_item_is_drawn_on_its_own(campaign: Callable[..., Campaign]) -> No
     assert np.std(means) == pytest.approx(0.06 / np.sqrt(10), rel=0.15)
 
 
-def test_sweep_of_all_items(campaign: Callable[..., Campaign]) -> None:
+def test_sweep_of_all_items(campaign: Callable[..., Plan]) -> None:
     trial = campaign('[[vary]]\nkey = "slider.*.friction_coefficient"\nvalues = [0.1, 0.2]\n', command=SWEEP)
     assert {slider["friction_coefficient"] for slider in trial.data(1)["slider"]} == {0.2}
     jumps = [dict(zip(trial.units, work.run_sample(trial, index).values)) for index in (0, 1)]
@@ -77,18 +78,18 @@ def test_sweep_of_all_items(campaign: Callable[..., Campaign]) -> None:
     (FRICTION.replace("slider.*.friction_coefficient", "slider.*.clearance_plus_m"), "mean is missing"),
     (FRICTION + 'also = ["link.*.young_modulus_Pa"]\n', "items of 'slider.*.friction_coefficient' share their values"),
 ])
-def test_mistakes_in_a_campaign(campaign: Callable[..., Campaign], text: str, sentence: str) -> None:
+def test_mistakes_in_a_campaign(campaign: Callable[..., Plan], text: str, sentence: str) -> None:
     with pytest.raises(StatejumpError) as caught:
         campaign(text)
     assert sentence in str(caught.value)
 
 
-def test_no_dem_campaign(campaign: Callable[..., Campaign]) -> None:
+def test_no_dem_campaign(campaign: Callable[..., Plan]) -> None:
     with pytest.raises(StatejumpError, match="campaign.model = 'dem' is not allowed"):
         campaign('model = "dem"\n' + FRICTION)
 
 
-def test_half_a_campaign_resumed(tmp_path: Path, campaign: Callable[..., Campaign]) -> None:
+def test_half_a_campaign_resumed(tmp_path: Path, campaign: Callable[..., Plan]) -> None:
     """Half of the samples, a torn line as a kill leaves it, the others: the same bytes as in one go."""
     trial = campaign(FRICTION, ONE)
 

@@ -30,7 +30,7 @@ except StatejumpError as problem:
     os._exit(2)
 history = table_file.with_name(f"{table_file.name}.sample_{sample.index}.csv")
 values = history.with_suffix(".case.json")
-values.write_text(json.dumps(sample.resolved()))
+values.write_text(json.dumps(sample.dem_values()))
 os.environ["STATEJUMP_CASE_JSON"], os.environ["STATEJUMP_OUTPUT"] = str(values), str(history)
 # The same script that statejump starts; it needs the namespace of the main script.
 runner = Path(sys.argv[0]).resolve().with_name("run_case.py")

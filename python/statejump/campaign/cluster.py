@@ -11,9 +11,10 @@ import signal
 import socket
 import sys
 import tempfile
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Iterator, Optional
+from typing import Any
 
 import dask
 
@@ -28,15 +29,27 @@ dask.config.set(_QUIET)
 from distributed import Client, LocalCluster  # noqa: E402
 
 from statejump import __version__  # noqa: E402
-from statejump.core import yade_process as dem  # noqa: E402
-from statejump.core.errors import StatejumpError  # noqa: E402
+from statejump.core.errors import NotAllowed, StatejumpError, shown  # noqa: E402
+from statejump.core.yade_process import find_yade  # noqa: E402
 
+OPTION = "--scheduler"
+ADDRESS = "must be the address of a running dask scheduler, as 'tcp://host:8786'"
 CONNECT_S = 5
 WORKERS_S = 10  # how long a scheduler without workers is waited for
 
 
+class SchedulerUnusable(StatejumpError):
+    """A scheduler cannot be used: ``--scheduler = ADDRESS WHAT[: CAUSE]``."""
+
+    def __init__(self, what: str, address: str, **more: Any) -> None:
+        super().__init__(what, key=OPTION, value=address, **more)
+
+    def phrase(self) -> str:
+        return f"{self.key} = {shown(self.value)} {self.what}"
+
+
 @contextmanager
-def open_client(scheduler: Optional[str], workers: int, model: str) -> Iterator[Client]:
+def open_client(scheduler: str | None, workers: int, model: str) -> Iterator[Client]:
     """Yield a client; at the end everything that was started here is ended.
 
     :param scheduler: address of a scheduler that runs already; None: a cluster on this machine
@@ -105,7 +118,7 @@ def _close(cluster: LocalCluster) -> None:
 
 def _yade_that_dies_with_its_worker(folder: Path) -> str:
     """Return a command that starts YADE so that the kernel ends it with the worker that waits for it."""
-    yade, setpriv = dem.find_yade(), shutil.which("setpriv")
+    yade, setpriv = find_yade(), shutil.which("setpriv")
     if setpriv is None:
         return yade
     wrapper = folder / "yade"
@@ -138,33 +151,31 @@ def _no_main_file() -> Iterator[None]:
 
 @contextmanager
 def _existing(address: str) -> Iterator[Client]:
-    rule = "must be the address of a running dask scheduler, as 'tcp://host:8786'"
     found = re.fullmatch(r"(?:(?:tcp|tls)://)?(\[[0-9a-fA-F:]+\]|[^\s:/\[\]]+):(\d{1,5})", address)
     if found is None or int(found[2]) > 65535:
-        raise StatejumpError(f"--scheduler = {address!r} is not allowed: {rule}")
+        raise NotAllowed(OPTION, address, ADDRESS)
     try:
         # Whether anybody listens, before Dask begins to try again and again.
         socket.create_connection((found[1].strip("[]"), int(found[2])), timeout=CONNECT_S).close()
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError, asyncio.TimeoutError):
-        raise StatejumpError(f"--scheduler = {address!r} cannot be reached within {CONNECT_S} s: {rule}") from None
+        raise SchedulerUnusable(f"cannot be reached within {CONNECT_S} s", address, cause=ADDRESS) from None
     try:
         try:
             client.wait_for_workers(1, timeout=WORKERS_S)
         except asyncio.TimeoutError:
-            raise StatejumpError(f"--scheduler = {address!r} has no workers after {WORKERS_S} s") from None
+            raise SchedulerUnusable(f"has no workers after {WORKERS_S} s", address) from None
         try:
             versions = client.run(_version)
         except Exception as problem:  # the package is missing there, or is another one
-            raise StatejumpError(
-                f"--scheduler = {address!r}: its workers cannot import statejump {__version__}, start them with "
-                f"PYTHONPATH set: {type(problem).__name__}: {problem}"
+            raise SchedulerUnusable(
+                f"has workers that cannot import statejump {__version__}, start them with PYTHONPATH set", address,
+                cause=f"{type(problem).__name__}: {problem}",
             ) from None
         for worker, version in versions.items():
             if version != __version__:
-                raise StatejumpError(
-                    f"--scheduler = {address!r}: worker {worker} has statejump {version}, here it is {__version__}"
-                )
+                raise SchedulerUnusable(f"has a worker {worker} with statejump {version}, here it is {__version__}",
+                                        address)
         yield client
     finally:
         client.close(timeout=CONNECT_S)

@@ -11,33 +11,46 @@ import base64
 import fcntl
 import json
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
 
-from statejump.core.errors import StatejumpError
-from statejump.campaign.campaign_file import Campaign
+from statejump.campaign.plan import Plan
 from statejump.campaign.work import Batch
+from statejump.core.errors import NotWritten, StatejumpError, Unreadable
 
 NAME = "samples.journal.jsonl"
 
 
-class Journal:
-    """The journal of one campaign, locked while it is open; a context manager."""
+class Kept:
+    """Finished samples of one campaign, in memory."""
 
-    def __init__(self, folder: Path, campaign: Campaign, restart: bool) -> None:
-        """Open or begin it. :raises StatejumpError: it belongs to another campaign, or is in use"""
-        self.path = folder / NAME
+    def __init__(self) -> None:
         self.batches: list[Batch] = []
         self.finished: set[int] = set()
+
+    def add(self, batch: Batch) -> None:
+        """Keep finished samples."""
+        self.batches.append(batch)
+        self.finished.update(batch.indices)
+
+
+class Journal(Kept):
+    """The journal of one campaign, locked while it is open; a context manager."""
+
+    def __init__(self, folder: Path, campaign: Plan, restart: bool) -> None:
+        """Open or begin it. :raises StatejumpError: it belongs to another campaign, or is in use"""
+        super().__init__()
+        self.path = folder / NAME
         self._header = {
-            "campaign": campaign.key, "model": campaign.model, "columns": list(campaign.units),
+            "campaign": campaign.key, "model": campaign.model, "columns": list(campaign.outcomes),
         }
         try:
             self._stream: IO[bytes] = open(self.path, "a+b")
         except OSError as failure:
-            raise StatejumpError(f"{self.path}: cannot be written: {failure.strerror}") from None
+            raise NotWritten("cannot be written", file=self.path, cause=failure.strerror) from None
         try:
             self._open(restart)
         except BaseException:
@@ -48,7 +61,7 @@ class Journal:
         try:
             fcntl.flock(self._stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
-            raise StatejumpError(f"{self.path}: another run of this campaign is at work on it") from None
+            raise StatejumpError("another run of this campaign is at work on it", file=self.path) from None
         if restart:
             self._stream.truncate(0)
         lines = self._whole_lines()
@@ -58,13 +71,13 @@ class Journal:
         try:
             if json.loads(lines[0]) != self._header:
                 raise StatejumpError(
-                    f"{self.path}: belongs to another campaign (the campaign, its case or statejump has changed "
-                    "since); --restart drops what is there, another campaign.name keeps it"
+                    "belongs to another campaign (the campaign, its case or statejump has changed since); --restart "
+                    "drops what is there, another campaign.name keeps it", file=self.path,
                 )
             for line in lines[1:]:
-                self._keep(_batch(json.loads(line), len(self._header["columns"])))
+                super().add(_batch(json.loads(line), len(self._header["columns"])))
         except (ValueError, TypeError, KeyError, AttributeError):
-            raise StatejumpError(f"{self.path}: is damaged; --restart drops what is there") from None
+            raise Unreadable("is damaged; --restart drops what is there", file=self.path) from None
 
     def _whole_lines(self) -> list[bytes]:
         self._stream.seek(0)
@@ -80,18 +93,14 @@ class Journal:
             self._stream.flush()
             os.fsync(self._stream.fileno())
         except OSError as failure:
-            raise StatejumpError(f"{self.path}: cannot be written: {failure.strerror}") from None
-
-    def _keep(self, batch: Batch) -> None:
-        self.batches.append(batch)
-        self.finished.update(batch.indices)
+            raise NotWritten("cannot be written", file=self.path, cause=failure.strerror) from None
 
     def add(self, batch: Batch) -> None:
         """Keep finished samples; on return they are on disk."""
         self._append(_entry(batch))
-        self._keep(batch)
+        super().add(batch)
 
-    def __enter__(self) -> "Journal":
+    def __enter__(self) -> Journal:
         return self
 
     def __exit__(self, *ignored: Any) -> None:
@@ -100,11 +109,17 @@ class Journal:
 
 def _entry(batch: Batch) -> dict[str, Any]:
     packed = base64.b64encode(batch.values.astype("<f8").tobytes()).decode()
-    return {"samples": batch.indices, "values": packed, "errors": batch.errors}
+    entry = {"samples": batch.indices, "values": packed, "errors": batch.errors}
+    return {**entry, "error_kinds": batch.error_kinds} if batch.errors else entry
 
 
 def _batch(entry: dict[str, Any], columns: int) -> Batch:
     indices = tuple(int(index) for index in entry["samples"])
     values = np.frombuffer(base64.b64decode(entry["values"], validate=True), dtype="<f8")
-    errors = {int(index): str(error) for index, error in entry["errors"].items()}
-    return Batch(indices, values.reshape(len(indices), columns), errors)
+    errors = _by_index(entry["errors"])
+    kinds = {**errors, **_by_index(entry.get("error_kinds", {}))}
+    return Batch(indices, values.reshape(len(indices), columns), errors, kinds)
+
+
+def _by_index(entry: Mapping[str, Any]) -> dict[int, str]:
+    return {int(index): str(said) for index, said in entry.items()}

@@ -2,14 +2,17 @@
 """Figures of a campaign: distributions and rank correlations, or outcomes along a sweep."""
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from statejump.kinds.spring_slider.figure import STYLE, plt, save
-from statejump.campaign.campaign_file import SWEEP, Campaign
+from statejump.campaign.plan import SWEEP, Plan
+from statejump.campaign.sampling import Values
 from statejump.campaign.summary import spearman
 from statejump.campaign.tables import Table
+from statejump.core.figures import panels as new_panels, style
+from statejump.core.units import split_unit
 
 BLUE, ORANGE, DARK = "#0072B2", "#D55E00", "#000000"
 LINES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -18,22 +21,19 @@ MOST_LINES = 7
 MOST_WHOLE = 60
 
 
-def figures(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
-    """Write the figures, as PNG and SVG, and return their paths; none if every sample failed."""
+def figures(campaign: Plan, table: Table) -> dict[str, Figure]:
+    """Return the figures by the names of their files; none if every sample failed."""
     if bool(np.all(table.failed)):
-        return []
-    with plt.rc_context(STYLE):
+        return {}
+    with style():
         if campaign.command == SWEEP:
-            return _sweep(campaign, table, folder)
-        return _distributions(campaign, table, folder) + _scatter(campaign, table, folder)
+            return {"sweep": _sweep(campaign, table)}
+        return {"distributions": _distributions(campaign, table), "correlations": _scatter(campaign, table)}
 
 
 def _label(name: str, unit: str) -> str:
     """Name without its unit, then the unit."""
-    plain = name
-    for ending in (unit, unit.replace("/", "_per_").replace(" ", "_"), "per_" + unit.removeprefix("1/")):
-        plain = plain.removesuffix("_" + ending)
-    section, _, key = plain.rpartition(".")
+    section, _, key = split_unit(name)[0].rpartition(".")
     words = key.replace("_", " ").replace("temperature change", "ΔT")
     # Of every item: of a Monte Carlo campaign the mean of their values.
     every = "every " if section.endswith(".*") else ""
@@ -51,20 +51,18 @@ def _wrapped(text: str, width: int = 26) -> str:
     return "\n".join(lines)
 
 
-def _small(panel: plt.Axes) -> None:
+def _small(panel: Axes) -> None:
     panel.ticklabel_format(axis="both", style="sci", scilimits=(-3, 4), useMathText=True)
     panel.xaxis.get_offset_text().set_fontsize(7)
     panel.yaxis.get_offset_text().set_fontsize(7)
     panel.tick_params(labelsize=7)
 
 
-def _distributions(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
+def _distributions(campaign: Plan, table: Table) -> Figure:
     """Histogram and cumulated distribution of every outcome."""
     columns = 3
     rows = -(-len(table.outcomes) // columns)
-    drawing, panels = plt.subplots(
-        rows, columns, figsize=(10.5, 3.0 * rows), constrained_layout=True, squeeze=False
-    )
+    drawing, panels = new_panels(rows, columns, (10.5, 3.0 * rows), squeeze=False)
     for panel in panels.flat[len(table.outcomes):]:
         panel.set_axis_off()
     for panel, (name, values) in zip(panels.flat, table.outcomes.items()):
@@ -87,7 +85,7 @@ def _distributions(campaign: Campaign, table: Table, folder: Path) -> list[Path]
         other.tick_params(labelsize=7)
         other.set_ylabel("cumulated share", color=ORANGE)
     drawing.suptitle(f"{campaign.title}: outcomes; dashed: 5, 50 and 95 %", fontsize=11)
-    return save(drawing, folder, "distributions")
+    return drawing
 
 
 def _bins(there: np.ndarray) -> np.ndarray:
@@ -101,13 +99,11 @@ def _bins(there: np.ndarray) -> np.ndarray:
     return np.linspace(low, high, count + 1)
 
 
-def _scatter(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
+def _scatter(campaign: Plan, table: Table) -> Figure:
     """Every outcome against every varied parameter, with the rank correlation."""
     rows, columns = len(table.outcomes), len(table.parameters)
-    drawing, panels = plt.subplots(
-        rows, columns, figsize=(max(4.5, 2.25 * columns + 0.6), 1.75 * rows + 0.8), constrained_layout=True,
-        squeeze=False, sharex="col",
-    )
+    size = (max(4.5, 2.25 * columns + 0.6), 1.75 * rows + 0.8)
+    drawing, panels = new_panels(rows, columns, size, squeeze=False, sharex="col")
     for row, (name, values) in enumerate(table.outcomes.items()):
         there = np.isfinite(values)
         for column, (parameter, varied) in enumerate(table.parameters.items()):
@@ -130,10 +126,10 @@ def _scatter(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
             if row == rows - 1:
                 panel.set_xlabel(_wrapped(_label(parameter, campaign.unit_of(parameter)), 24), fontsize=8)
     drawing.suptitle(f"{campaign.title}: outcomes against what varies, ρ: Spearman", fontsize=11)
-    return save(drawing, folder, "correlations")
+    return drawing
 
 
-def _sweep(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
+def _sweep(campaign: Plan, table: Table) -> Figure:
     """Outcomes against the first parameter, one line for every combination of the others."""
     first, *others = campaign.vary
     along = table.parameters[first.keys[0]]
@@ -141,9 +137,7 @@ def _sweep(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
     combinations = sorted(set(zip(*rest))) if rest else [()]
     columns = 3
     rows = -(-len(table.outcomes) // columns)
-    drawing, panels = plt.subplots(
-        rows, columns, figsize=(10.5, 3.0 * rows + 0.3), constrained_layout=True, squeeze=False
-    )
+    drawing, panels = new_panels(rows, columns, (10.5, 3.0 * rows + 0.3), squeeze=False)
     for panel in panels.flat[len(table.outcomes):]:
         panel.set_axis_off()
     few = len(combinations) <= MOST_LINES
@@ -156,7 +150,7 @@ def _sweep(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
             text = ", ".join(
                 f"{parameter.keys[0]} = {value:g}" for parameter, value in zip(others, combination)
             )
-            colour = LINES[number] if few else plt.cm.viridis(number / (len(combinations) - 1))
+            colour = LINES[number] if few else colormaps["viridis"](number / (len(combinations) - 1))
             # Lines that cover each other stay visible: the later the thinner.
             width = 1.2 + (1.3 * (len(combinations) - 1 - number) if few else 0.0)
             panel.plot(along[here][order], values[here][order], "o-", color=colour, markersize=1.8 + width,
@@ -164,7 +158,7 @@ def _sweep(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
         panel.set_xlabel(_label(first.keys[0], campaign.unit_of(first.keys[0])))
         panel.set_ylabel(_wrapped(_label(name, campaign.units[name]), 30), fontsize=8)
         _small(panel)
-        if first.spacing == "log":
+        if isinstance(first, Values) and first.spacing == "log":
             panel.set_xscale("log")
         if not np.any(np.isfinite(values)):
             panel.set_title("in no sample", fontsize=8)
@@ -174,4 +168,4 @@ def _sweep(campaign: Campaign, table: Table, folder: Path) -> list[Path]:
     elif others:
         title += f"; {len(combinations)} lines, dark to light: {', '.join(p.keys[0] for p in others)} rising"
     drawing.suptitle(title, fontsize=11)
-    return save(drawing, folder, "sweep")
+    return drawing

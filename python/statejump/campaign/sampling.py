@@ -2,9 +2,9 @@
 """What a campaign varies, and the values of sample ``i``: they depend on the seed and ``i`` alone."""
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, fsum, inf, log, log1p, prod, sqrt
-from typing import Any, Sequence, Union
 
 import numpy as np
 from scipy.special import ndtr, ndtri
@@ -68,8 +68,12 @@ class Values:
     """A parameter that takes the values of a list."""
 
     keys: tuple[str, ...]
-    values: tuple[Union[int, float], ...]
+    values: tuple[float, ...]
     spacing: str = "linear"
+
+
+Random = Distribution | Independent
+Varied = Distribution | Independent | Values
 
 
 def number_of_points(vary: Sequence[Values]) -> int:
@@ -78,7 +82,7 @@ def number_of_points(vary: Sequence[Values]) -> int:
 
 
 def montecarlo_draws(
-    vary: Sequence[Union[Distribution, Independent]], seed: int, index: int
+    vary: Sequence[Random], seed: int, index: int
 ) -> list[tuple[Distribution, float]]:
     """All single draws of sample ``index``, in the order of the parameters and of their items."""
     generator = np.random.default_rng([seed, index])
@@ -91,7 +95,7 @@ def montecarlo_draws(
     return found
 
 
-def montecarlo_values(vary: Sequence[Union[Distribution, Independent]], seed: int, index: int) -> list[float]:
+def montecarlo_values(vary: Sequence[Random], seed: int, index: int) -> list[float]:
     """Values of sample ``index``, one per varied parameter: of an independent one the mean of its items."""
     draws = iter(montecarlo_draws(vary, seed, index))
     found = []
@@ -101,41 +105,10 @@ def montecarlo_values(vary: Sequence[Union[Distribution, Independent]], seed: in
     return found
 
 
-def sweep_values(vary: Sequence[Values], index: int) -> list[Union[int, float]]:
+def sweep_values(vary: Sequence[Values], index: int) -> list[float]:
     """Values of point ``index`` of the grid; the last list runs fastest."""
-    found: list[Union[int, float]] = []
+    found: list[float] = []
     for axis in reversed(vary):
         index, place = divmod(index, len(axis.values))
         found.append(axis.values[place])
     return found[::-1]
-
-
-def split_path(path: str) -> tuple[str, str, str]:
-    """Return section, item and key of ``section.key`` (no item: "") or ``section.item.key``; items may be
-    ``*`` and may have dots in their names."""
-    section, _, rest = path.partition(".")
-    item, _, key = rest.rpartition(".")
-    return section, item, key
-
-
-def changed_data(
-    data: dict[str, Any], parameters: Sequence[Union[Distribution, Values]], values: Sequence[float]
-) -> dict[str, Any]:
-    """Return the parsed case file with the values of one sample; those of ``*`` in every item."""
-    changed = {
-        section: [dict(table) for table in content] if isinstance(content, list) else dict(content)
-        for section, content in data.items()
-    }
-    numbers: dict[str, dict[str, int]] = {}
-    for parameter, value in zip(parameters, values):
-        for path in parameter.keys:
-            section, item, key = split_path(path)
-            if not item:
-                changed.setdefault(section, {})[key] = value
-                continue
-            tables = changed[section]
-            if section not in numbers:
-                numbers[section] = {table["name"]: number for number, table in enumerate(tables)}
-            for table in tables if item == "*" else [tables[numbers[section][item]]]:
-                table[key] = value
-    return changed

@@ -2,29 +2,23 @@
 """Statistics of a campaign: every outcome, what it follows, and what failed."""
 from __future__ import annotations
 
-import json
-import re
 from collections import Counter
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
-from scipy.stats import rankdata
 
 from statejump import __version__
-from statejump.core.output import write_atomically
-from statejump.campaign.campaign_file import Campaign
+from statejump.campaign.plan import Plan
 from statejump.campaign.sampling import Independent
 from statejump.campaign.tables import Table
+from statejump.core.tables import markdown, write_json, write_text
 
 QUANTILES = (0.05, 0.5, 0.95)
-# A decimal number where sentences have what was sampled or when it happened, not an allowed range.
-SAMPLED = re.compile(
-    r"(?<![\w.])-?\d+(?:\.\d+(?:e[+-]?\d+)?|e[+-]?\d+)(?![\w.])(?= is not allowed| s\b| K\b|,)"
-)
 
 
-def statistics(values: np.ndarray) -> dict[str, Optional[float]]:
+def statistics(values: np.ndarray) -> dict[str, float | None]:
     """Mean, standard deviation, quantiles and extremes of the values that are there."""
     there = values[np.isfinite(values)]
     names = ("mean", "standard_deviation", "minimum", "quantile_5", "median", "quantile_95", "maximum")
@@ -38,8 +32,10 @@ def statistics(values: np.ndarray) -> dict[str, Optional[float]]:
     return {"count": len(there), **dict(zip(names, numbers))}
 
 
-def spearman(parameter: np.ndarray, outcome: np.ndarray) -> Optional[float]:
+def spearman(parameter: np.ndarray, outcome: np.ndarray) -> float | None:
     """Rank correlation over the samples that have the outcome; None: one of the two is constant."""
+    from scipy.stats import rankdata
+
     there = np.isfinite(outcome)
     if np.count_nonzero(there) < 3:
         return None
@@ -49,18 +45,13 @@ def spearman(parameter: np.ndarray, outcome: np.ndarray) -> Optional[float]:
     return float(np.corrcoef(*ranks)[0, 1])
 
 
-def sentence_kind(error: str) -> str:
-    """An error without the sampled numbers, so that errors of one kind count together."""
-    return SAMPLED.sub("…", error)
-
-
-def summary(campaign: Campaign, table: Table) -> dict[str, Any]:
+def summary(campaign: Plan, table: Table) -> dict[str, Any]:
     """Everything that ``summary.json`` holds."""
-    failures = Counter(sentence_kind(error) for error in table.error if error)
+    failures = Counter(kind for kind in table.error_kind if kind)
     examples: dict[str, tuple[int, str]] = {}
-    for index, error in enumerate(table.error):
+    for index, (error, kind) in enumerate(zip(table.error, table.error_kind)):
         if error:
-            examples.setdefault(sentence_kind(error), (index, error))
+            examples.setdefault(kind, (index, error))
     return {
         "campaign": campaign.name,
         "command": campaign.command,
@@ -85,16 +76,13 @@ def summary(campaign: Campaign, table: Table) -> dict[str, Any]:
     }
 
 
-def write_summary(campaign: Campaign, found: dict[str, Any], folder: Path) -> None:
-    """Write ``summary.json`` and ``summary.md``."""
-    with write_atomically(folder / "summary.json") as stream:
-        stream.write(json.dumps(found, indent=2, ensure_ascii=False) + "\n")
-    with write_atomically(folder / "summary.md") as stream:
-        stream.write(_markdown(campaign, found))
+def write_summary(campaign: Plan, found: Mapping[str, Any], folder: Path) -> list[Path]:
+    """Write ``summary.md`` and ``summary.json`` and return their paths."""
+    return [write_text(folder / "summary.md", _lines(campaign, found)), write_json(folder / "summary.json", found)]
 
 
-def shown(value: Optional[float]) -> str:
-    """A number for a table."""
+def shown(value: float | None) -> str:
+    """Return a number for a table."""
     return "–" if value is None else f"{value:.6g}"
 
 
@@ -104,46 +92,44 @@ COLUMNS = {
 }
 
 
-def _rows(entries: dict[str, dict[str, Optional[float]]]) -> str:
-    lines = [f"| | {' | '.join(COLUMNS.values())} |", "|---|" + "--:|" * len(COLUMNS)]
-    for name, entry in entries.items():
-        lines.append(f"| `{name}` | " + " | ".join(shown(entry[key]) for key in COLUMNS) + " |")
-    return "\n".join(lines)
+def _rows(entries: Mapping[str, Mapping[str, float | None]]) -> list[str]:
+    rows = [(f"`{name}`", *(shown(entry[key]) for key in COLUMNS)) for name, entry in entries.items()]
+    return markdown(("", *COLUMNS.values()), rows, right=range(1, len(COLUMNS) + 1))
 
 
-def _markdown(campaign: Campaign, found: dict[str, Any]) -> str:
-    drawn = f", seed {found['seed']}" if found["seed"] is not None else ""
-    failures = "None.\n"
-    if found["failures"]:
-        failures = "| samples | sentence | first |\n|--:|---|---|\n" + "".join(
-            f"| {entry['samples']} | {entry['sentence']} | sample {entry['first_sample']}: "
-            f"{entry['first_sentence']} |\n"
-            for entry in found["failures"]
-        )
+def _failures(found: Mapping[str, Any]) -> list[str]:
+    if not found["failures"]:
+        return ["None."]
+    rows = [
+        (entry["samples"], entry["sentence"], f"sample {entry['first_sample']}: {entry['first_sentence']}")
+        for entry in found["failures"]
+    ]
+    return markdown(("samples", "sentence", "first"), rows, right=(0,))
+
+
+def _ranks(found: Mapping[str, Any]) -> list[str]:
     parameters = list(found["parameters"])
-    every = ""
+    rows = [
+        (f"`{name}`", *("–" if entry[key] is None else f"{entry[key]:.3f}" for key in parameters))
+        for name, entry in found["spearman"].items()
+    ]
+    return markdown(("", *(f"`{name}`" for name in parameters)), rows, right=range(1, len(parameters) + 1))
+
+
+def _lines(campaign: Plan, found: Mapping[str, Any]) -> list[str]:
+    drawn = f", seed {found['seed']}" if found["seed"] is not None else ""
+    lines = [
+        f"# {campaign.title}", "",
+        f"Case `{found['case']}`, {found['model']} model, {found['samples']:,} samples{drawn}, "
+        f"{found['failed']:,} failed.",
+        "Units are in the names; count is the number of samples that have the value.",
+    ]
     if any(isinstance(parameter, Independent) for parameter in campaign.vary):
-        every = "\nKeys with `*`: every item is drawn on its own, shown is the mean over the items of a sample."
-    ranks = "| | " + " | ".join(f"`{name}`" for name in parameters) + " |\n|---|" + "--:|" * len(parameters) + "\n"
-    for name, entry in found["spearman"].items():
-        cells = ("–" if entry[key] is None else f"{entry[key]:.3f}" for key in parameters)
-        ranks += f"| `{name}` | " + " | ".join(cells) + " |\n"
-    return f"""# {campaign.title}
-
-Case `{found['case']}`, {found['model']} model, {found['samples']:,} samples{drawn}, {found['failed']:,} failed.
-Units are in the names; count is the number of samples that have the value.{every}
-
-## Outcomes
-
-{_rows(found['outcomes'])}
-
-## Varied parameters
-
-{_rows(found['parameters'])}
-
-## Rank correlation (Spearman)
-
-{ranks}
-## Failed samples
-
-{failures}"""
+        lines.append("Keys with `*`: every item is drawn on its own, shown is the mean over the items of a sample.")
+    return [
+        *lines,
+        "", "## Outcomes", "", *_rows(found["outcomes"]),
+        "", "## Varied parameters", "", *_rows(found["parameters"]),
+        "", "## Rank correlation (Spearman)", "", *_ranks(found),
+        "", "## Failed samples", "", *_failures(found),
+    ]

@@ -2,50 +2,70 @@
 """All samples as one table: CSV and HDF5, the same bytes however the campaign was run."""
 from __future__ import annotations
 
-import csv
+import json
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Iterable
+from typing import TYPE_CHECKING
 
-import h5py
 import numpy as np
 
 from statejump import __version__
-from statejump.core.output import replacing, write_atomically
-from statejump.campaign.campaign_file import Campaign
+from statejump.campaign.plan import Plan
 from statejump.campaign.work import Batch
+from statejump.core import tables
+from statejump.core.output import replacing
+
+if TYPE_CHECKING:
+    import h5py
+    import pandas
 
 
 @dataclass(frozen=True)
 class Table:
-    """Columns over the samples; outcomes of a failed sample are NaN and ``error`` says why."""
+    """Columns over the samples; outcomes of a failed sample are NaN and ``error`` says why.
+
+    :param parameters: values by varied key
+    :param outcomes: values by outcome
+    :param error: sentences, "" of a sample that did not fail
+    :param error_kind: the same without what differs between failures of one kind
+    """
 
     parameters: dict[str, np.ndarray]
     outcomes: dict[str, np.ndarray]
     error: list[str]
+    error_kind: list[str]
 
     @property
     def failed(self) -> np.ndarray:
         """Which samples failed."""
         return np.array([bool(error) for error in self.error])
 
+    def frame(self) -> pandas.DataFrame:
+        """Return a row per sample: varied keys, outcomes, error."""
+        import pandas
 
-def make_table(campaign: Campaign, batches: Iterable[Batch]) -> Table:
+        frame = pandas.DataFrame({**self.parameters, **self.outcomes, "error": self.error})
+        frame.index.name = "sample"
+        return frame
+
+
+def make_table(campaign: Plan, batches: Iterable[Batch]) -> Table:
     """Gather all samples, in their order; batches may hold more than the campaign asks for."""
     parameters = np.array([campaign.values(index) for index in range(campaign.samples)], dtype=float)
     outcomes = np.full((campaign.samples, len(campaign.units)), np.nan)
-    errors = [""] * campaign.samples
+    errors, kinds = [""] * campaign.samples, [""] * campaign.samples
     for batch in batches:
         indices = np.array(batch.indices)
         wanted = indices < campaign.samples
         outcomes[indices[wanted]] = batch.values[wanted]
         for index, error in batch.errors.items():
             if index < campaign.samples:
-                errors[index] = error
+                errors[index], kinds[index] = error, batch.error_kinds.get(index, error)
     return Table(
         {parameter.keys[0]: parameters[:, place] for place, parameter in enumerate(campaign.vary)},
         {name: outcomes[:, place] for place, name in enumerate(campaign.units)},
-        errors,
+        errors, kinds,
     )
 
 
@@ -53,22 +73,24 @@ def write_csv(table: Table, path: Path) -> None:
     """Write one line per sample, full precision; outcomes of a failed sample are empty."""
     columns = [values.tolist() for values in (*table.parameters.values(), *table.outcomes.values())]
     count = len(table.parameters)
-    with write_atomically(path) as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["sample", *table.parameters, *table.outcomes, "error"])
-        for index, (error, *row) in enumerate(zip(table.error, *columns)):
-            outcomes = ["" if error else repr(value) for value in row[count:]]
-            writer.writerow([index, *map(repr, row[:count]), *outcomes, error])
+    # Cells as texts: NaN of a sample that did not fail is a value, it did not happen.
+    rows = (
+        [index, *map(repr, row[:count]), *("" if error else repr(value) for value in row[count:]), error]
+        for index, (error, *row) in enumerate(zip(table.error, *columns))
+    )
+    tables.write_csv(path, ["sample", *table.parameters, *table.outcomes, "error"], rows)
 
 
-def write_hdf5(campaign: Campaign, table: Table, path: Path) -> None:
+def write_hdf5(campaign: Plan, table: Table, path: Path) -> None:
     """Write groups ``parameters`` and ``outcomes``, each column with its unit, and ``failed``."""
+    import h5py
+
     with replacing(path) as aside:
         with h5py.File(aside, "w", libver=("earliest", "v110"), track_order=False) as file:
             file.attrs["campaign"] = campaign.text
             file.attrs["command"] = campaign.command
             file.attrs["model"] = campaign.model
-            file.attrs["case"] = campaign.case.json()
+            file.attrs["case"] = json.dumps(campaign.case.to_dict())
             file.attrs["key_sha256"] = campaign.key
             if campaign.seed is not None:
                 file.attrs["seed"] = campaign.seed

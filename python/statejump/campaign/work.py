@@ -3,38 +3,55 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
-from typing import Optional, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from statejump.kinds.registry import parse_case
+from statejump.campaign.plan import Recipe
+from statejump.core.case import Case
 from statejump.core.errors import StatejumpError
-from statejump.campaign.campaign_file import Campaign
-from statejump.campaign.outcomes import outcome
-
-NAME = "sample"
+from statejump.core.progress import silent
+from statejump.kinds import KINDS, register
+from statejump.kinds.loading import parse_case
 
 
 @dataclass(frozen=True)
 class Sample:
-    """A finished sample: either values or an error."""
+    """A finished sample: either values or an error, and of which kind the error is."""
 
     index: int
-    values: Optional[tuple[float, ...]]
+    values: tuple[float, ...] | None
     error: str = ""
+    error_kind: str = ""
 
 
-def run_sample(campaign: Campaign, index: int) -> Sample:
+def outcome(case: Case, model: str) -> dict[str, float]:
+    """Run one sampled case and return its outcomes.
+
+    :raises StatejumpError: the run failed
+    """
+    behaviour = case.behaviour
+    if model == "dem":
+        run = behaviour.dem(case, silent)
+    elif behaviour.can("quick"):
+        run = behaviour.ability("quick", case)(case)
+    else:
+        run = behaviour.ability("reduced", case)(case, silent)
+    found: dict[str, float] = behaviour.ability("outcomes", case)(case, run)
+    return found
+
+
+def run_sample(recipe: Recipe, index: int) -> Sample:
     """Run one sample; whatever goes wrong is its error, in one sentence."""
     try:
-        case = parse_case(campaign.data(index), NAME)
-        found = outcome(case, campaign.model)
-        return Sample(index, tuple(float(found[name]) for name in campaign.units))
+        found = outcome(parse_case(recipe.data(index)), recipe.model)
+        return Sample(index, tuple(float(found[name]) for name in recipe.outcomes))
     except StatejumpError as problem:
-        return Sample(index, None, _one_line(str(problem).removeprefix(f"{NAME}: ")))
+        return Sample(index, None, _one_line(str(problem)), _one_line(problem.general()))
     except Exception as problem:  # one sample never ends the campaign
-        return Sample(index, None, _one_line(f"the run failed: {type(problem).__name__}: {problem}"))
+        said = _one_line(f"the run failed: {type(problem).__name__}: {problem}")
+        return Sample(index, None, said, said)
 
 
 def _one_line(text: str) -> str:
@@ -43,11 +60,17 @@ def _one_line(text: str) -> str:
 
 @dataclass(frozen=True)
 class Batch:
-    """Finished samples together; values of a failed one are NaN."""
+    """Finished samples together.
+
+    :param values: outcomes (samples, outcomes); of a failed sample NaN
+    :param errors: sentences of the failed samples, by index
+    :param error_kinds: the same without what differs between failures of one kind
+    """
 
     indices: tuple[int, ...]
-    values: np.ndarray  # (samples, outcomes)
-    errors: dict[int, str]  # of the failed samples, by index
+    values: np.ndarray
+    errors: dict[int, str]
+    error_kinds: dict[int, str] = field(default_factory=dict)
 
 
 def batch_of(samples: Sequence[Sample], outcomes: int) -> Batch:
@@ -56,12 +79,16 @@ def batch_of(samples: Sequence[Sample], outcomes: int) -> Batch:
     for row, sample in zip(values, samples):
         if sample.values is not None:
             row[:] = sample.values
-    errors = {sample.index: sample.error for sample in samples if sample.values is None}
-    return Batch(tuple(sample.index for sample in samples), values, errors)
+    failed = [sample for sample in samples if sample.values is None]
+    return Batch(tuple(sample.index for sample in samples), values, {sample.index: sample.error for sample in failed},
+                 {sample.index: sample.error_kind for sample in failed})
 
 
-def run_samples(campaign: Campaign, indices: Sequence[int]) -> tuple[float, Batch]:
+def run_samples(recipe: Recipe, indices: Sequence[int]) -> tuple[float, Batch]:
     """Run several samples; return the seconds that they took, and the samples."""
     started = time.perf_counter()
-    done = batch_of([run_sample(campaign, index) for index in indices], len(campaign.units))
+    for place in recipe.kinds:
+        if place not in KINDS.values():
+            register(place)
+    done = batch_of([run_sample(recipe, index) for index in indices], len(recipe.outcomes))
     return time.perf_counter() - started, done

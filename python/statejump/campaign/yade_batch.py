@@ -7,14 +7,13 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote, unquote
 
-from statejump.core import yade_process as dem
-from statejump.kinds.registry import parse_case
-from statejump.core.errors import StatejumpError
-from statejump.core.history import History
+from statejump.campaign.campaign_file import load_campaign
+from statejump.campaign.plan import MONTECARLO, Plan
+from statejump.core.errors import NotAllowed
 from statejump.core.output import write_atomically
-from statejump.campaign.campaign_file import MONTECARLO, Campaign, load_campaign
-from statejump.campaign.outcomes import KINDS
-from statejump.campaign.work import NAME
+from statejump.core.tables import read_columns
+from statejump.kinds.loading import parse_case
+from statejump.schema.paths import filled
 
 
 def column_of(path: str) -> str:
@@ -22,13 +21,13 @@ def column_of(path: str) -> str:
     return path.replace(".", "__")
 
 
-def write_table(campaign: Campaign, path: Path) -> None:
+def write_table(campaign: Plan, path: Path) -> None:
     """Write the table: one line per sample, to be run by ``yade_scripts/runner/batch_case.py``.
 
     The script takes the values from their columns; the campaign file tells case and outcomes.
     """
-    if KINDS[campaign.case.kind].of_dem_run is None:
-        raise StatejumpError(f"{campaign.file}: --yade-batch is not allowed: no such campaign runs {campaign.case.kind!r}")
+    if campaign.file is None or "dem" not in campaign.case.behaviour.campaign_models():
+        raise NotAllowed("--yade-batch", cause=f"no such campaign runs {campaign.case.kind!r}", file=campaign.file)
     columns = [column_of(parameter.keys[0]) for parameter in campaign.vary]
     # Tables have neither blanks nor '#' in a value.
     file = quote(str(campaign.file.resolve()))
@@ -47,20 +46,18 @@ class BatchSample:
         """:raises StatejumpError: the campaign file or the sampled case is bad"""
         path, command = Path(unquote(line["campaign"])), line.get("command", MONTECARLO)
         self.campaign, self.index = load_campaign(path, command), int(line["sample"])
-        data = {section: dict(keys) for section, keys in self.campaign.case_data.items()}
-        for parameter in self.campaign.vary:
-            value = line[column_of(parameter.keys[0])]
-            for key in parameter.keys:
-                section, name = key.split(".")
-                data.setdefault(section, {})[name] = value
-        self.case = parse_case(data, NAME)
-        self.kind = KINDS[self.case.kind]
+        self.case = parse_case(filled(self.campaign.case_data, [
+            (key, line[column_of(parameter.keys[0])]) for parameter in self.campaign.vary for key in parameter.keys
+        ]))
 
-    def resolved(self) -> dict[str, Any]:
-        """What the scene needs."""
-        return self.kind.resolved(self.case)
+    def dem_values(self) -> dict[str, Any]:
+        """Return what the scene needs."""
+        return self.case.behaviour.dem_values(self.case)
 
     def outcomes(self, history: Path) -> dict[str, float]:
-        """Outcomes of a run that left its history, and its summary beside it."""
-        summary = json.loads(history.with_name(history.name + ".json").read_text(encoding="utf-8"))
-        return self.kind.of_dem_run(self.case, dem.DemRun(History.read_csv(history), summary))
+        """Return the outcomes of a run that left its history, and what it says of itself beside it."""
+        about = json.loads(history.with_name(history.name + ".json").read_text(encoding="utf-8"))
+        behaviour, case = self.case.behaviour, self.case
+        run = behaviour.ability("dem_run", case)(case, read_columns(history), about)
+        found: dict[str, float] = behaviour.ability("outcomes", case)(case, run)
+        return found

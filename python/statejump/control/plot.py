@@ -3,48 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from statejump.control.study import Study, Sweep
-from statejump.kinds.spring_slider.figure import STYLE, plt, save
+from statejump.core.figures import panels, save, style
 
-# Okabe-Ito colours, each with a line of its own.
-LINES = {
-    "spring_slider": {
-        "jump_m": ("exact model", dict(color="#E69F00", linewidth=4.0, solid_capstyle="round")),
-        "closed_form_m": (
-            "closed form f/(k + k_p),\nwhere the cycle ends sliding",
-            dict(color="#000000", linewidth=1.2, linestyle=(0, (5, 2))),
-        ),
-    },
-    "loaded": {
-        "jump_elastic_rad": ("elastic links", dict(color="#E69F00", linewidth=4.0, solid_capstyle="round")),
-        "jump_rigid_rad": ("rigid links", dict(color="#000000", linewidth=1.2, linestyle=(0, (5, 2)))),
-    },
-    "ensemble": {
-        "deflection_quantile_rad": (
-            "largest |deflection|, 95 %", dict(color="#E69F00", linewidth=2.6, marker="o", markersize=4)
-        ),
-        "deflection_mean_rad": (
-            "largest |deflection|, mean", dict(color="#E69F00", linewidth=1.2, linestyle=(0, (5, 2)))
-        ),
-        "jump_quantile_rad": ("|jump|, 95 %", dict(color="#0072B2", linewidth=2.2, marker="s", markersize=4)),
-        "jump_mean_rad": ("|jump|, mean", dict(color="#0072B2", linewidth=1.2, linestyle=(0, (5, 2)))),
-    },
-}
-OWN = dict(color="0.45", linewidth=1.2, linestyle=":", label="value of the case")
-WANTED = dict(color="#D55E00", linewidth=1.4, linestyle=(0, (8, 2, 1, 2)), label="wanted")
-RECOMMENDED = dict(color="#009E73", linewidth=1.6, label="recommended")
-STATIC = dict(color="0.3", linewidth=1.0, linestyle=(0, (1, 1)), label="static deflection, rigid links")
-DEM = dict(color="#000000", marker="D", markersize=6, markerfacecolor="white", linestyle="", zorder=6,
-           label="|jump| by DEM (YADE)")
+OWN: dict[str, Any] = dict(color="0.45", linewidth=1.2, linestyle=":", label="value of the case")
+WANTED: dict[str, Any] = dict(color="#D55E00", linewidth=1.4, linestyle=(0, (8, 2, 1, 2)), label="wanted")
+RECOMMENDED: dict[str, Any] = dict(color="#009E73", linewidth=1.6, label="recommended")
+FLOOR: dict[str, Any] = dict(color="0.3", linewidth=1.0, linestyle=(0, (1, 1)))
+DEM: dict[str, Any] = dict(color="#000000", marker="D", markersize=6, markerfacecolor="white", linestyle="", zorder=6,
+                           label="|jump| by DEM (YADE)")
 NOTHING = 1e-4  # of the jump: a joint that never touches leaves 1e-12, off any scale
-QUANTITY = {
-    "spring_slider": "|State jump| [µm]",
-    "loaded": "|Jump of θ2| [µrad]",
-    "ensemble": "|θ2 − θ2(0)| [mrad]",
-}
 
 
 def figure(title: str, study: Study, folder: Path) -> list[Path]:
@@ -52,19 +25,17 @@ def figure(title: str, study: Study, folder: Path) -> list[Path]:
     count = len(study.sweeps)
     columns = 2 if count == 4 else 3
     rows = -(-(count + (count != 4)) // columns)  # with a place for the legend
-    with plt.rc_context(STYLE):
-        drawing, panels = plt.subplots(
-            rows, columns, figsize=(9.5 if columns == 2 else 12.0, 3.3 * rows + 0.6), constrained_layout=True,
-            sharey=True,
-        )
-        places = list(np.ravel(panels))
-        handles: dict[str, object] = {}
+    with style():
+        size = (9.5 if columns == 2 else 12.0, 3.3 * rows + 0.6)
+        drawing, grid = panels(rows, columns, size, sharey=True)
+        places = list(np.ravel(grid))
+        handles: dict[str, Any] = {}
         for panel, sweep in zip(places, study.sweeps):
             _draw(panel, study, sweep)
             for line, label in zip(*panel.get_legend_handles_labels()):
                 handles.setdefault(label, line)
-        for panel in panels[:, 0]:
-            panel.set_ylabel(QUANTITY[study.kind])
+        for panel in grid[:, 0]:
+            panel.set_ylabel(study.quantity)
         for panel in places[count:]:
             panel.axis("off")
         if count < len(places):
@@ -78,18 +49,18 @@ def figure(title: str, study: Study, folder: Path) -> list[Path]:
         return save(drawing, folder, "control")
 
 
-def _draw(panel: plt.Axes, study: Study, sweep: Sweep) -> None:
+def _draw(panel: Axes, study: Study, sweep: Sweep) -> None:
     x = np.array([row.value for row in sweep.rows]) * sweep.display_scale
-    logarithmic = study.kind != "loaded"
+    logarithmic = study.logarithmic
     nothing = NOTHING * study.display_scale * max(study.jump, study.wanted or 0.0)
-    for name, (label, style) in LINES[study.kind].items():
+    for name, (label, line) in study.lines.items():
         if name not in study.results:
             continue
         y = sweep.column(name) * study.display_scale
         if logarithmic:
             y = np.where(y > nothing, y, np.nan)
         if np.isfinite(y).any():
-            panel.plot(x, y, label=label, **style)
+            panel.plot(x, y, label=label, **line)
     if sweep.scale == "log":
         positive = np.abs(x[x != 0])
         if 0.0 in x:
@@ -103,8 +74,8 @@ def _draw(panel: plt.Axes, study: Study, sweep: Sweep) -> None:
     else:
         panel.set_ylim(bottom=0)
     panel.axvline(sweep.own * sweep.display_scale, **OWN)
-    if study.static_deflection_rad and sweep.parameter.startswith("torsion_spring"):
-        panel.axhline(study.static_deflection_rad * study.display_scale, **STATIC)
+    if study.floor is not None and study.floor[0] == sweep.parameter and study.floor[2]:
+        panel.axhline(study.floor[2] * study.display_scale, label=study.floor[1], **FLOOR)
     if study.wanted is not None:
         panel.axhline(study.wanted * study.display_scale, **WANTED)
     if sweep.recommended is not None:

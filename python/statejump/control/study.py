@@ -2,17 +2,23 @@
 """What a control study is made of, whatever the case: swept parameters, wanted value, searches."""
 from __future__ import annotations
 
-import csv
-import json
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from math import isfinite
 from pathlib import Path
-from typing import Any, Callable, Optional
+from typing import Any
 
 import numpy as np
 
-from statejump.core.output import write_atomically
+from statejump.core.case import Case
+from statejump.core.errors import NotAllowed
+from statejump.core.tables import write_csv, write_json
+from statejump.schema.fields import rule_of
+from statejump.schema.paths import attribute_of
 
-Progress = Callable[[float], None]
+# How a result is drawn: its name in the legend, and its line.
+Line = tuple[str, Mapping[str, Any]]
+RUNS = 40  # of an ensemble, where nothing else is asked for
 
 
 @dataclass
@@ -20,9 +26,9 @@ class Row:
     """One value of one parameter and what comes out; None: the model has no answer, see ``note``."""
 
     value: float
-    results: dict[str, Optional[float]]
+    results: dict[str, float | None]
     note: str = ""
-    dem_jump: Optional[float] = None
+    dem_jump: float | None = None
 
 
 @dataclass
@@ -37,7 +43,7 @@ class Sweep:
     rows: list[Row]
     scale: str = "log"  # of the axis: log, linear; zero is shown on either
     meets: list[tuple[float, float]] = field(default_factory=list)  # ranges that meet the wanted value
-    recommended: Optional[float] = None
+    recommended: float | None = None
 
     def row(self, value: float) -> Row:
         """Return the row of a value."""
@@ -63,26 +69,58 @@ class Sweep:
 
 @dataclass
 class Study:
-    """A finished study."""
+    """A study of a case.
 
-    kind: str  # spring_slider, loaded, ensemble
-    measure: str  # sentence: what is measured and how
+    :param measure: sentence: what is measured and how
+    :param unit: of the jump, m or rad
+    :param results: columns: name with unit, heading
+    :param jump: of the case as it is [unit]
+    :param wanted: largest allowed jump [unit]; None: there is no jump to control
+    :param quantity: what figures call the results, with their displayed unit
+    :param lines: how results are drawn, by name
+    :param logarithmic: whether figures show the results on a logarithmic axis
+    """
+
+    measure: str
     unit: str
     display_unit: str
     display_scale: float
-    results: dict[str, str]  # columns: name with unit -> heading
-    jump: float  # of the case as it is
-    wanted: Optional[float]  # None: there is no jump to control
+    results: dict[str, str]
+    jump: float
+    wanted: float | None
+    quantity: str
+    lines: Mapping[str, Line]
+    logarithmic: bool = True
     sweeps: list[Sweep] = field(default_factory=list)
     recommendation: dict[str, Any] = field(default_factory=dict)
     sentences: list[str] = field(default_factory=list)  # the recommendation in words
     remarks: list[str] = field(default_factory=list)
     dem: list[dict[str, Any]] = field(default_factory=list)
-    static_deflection_rad: Optional[float] = None
+    # A level that one parameter alone cannot go below: key of the parameter, name in the legend, value [unit].
+    floor: tuple[str, str, float] | None = None
 
     def sweep(self, parameter: str) -> Sweep:
         """Return the sweep of a parameter."""
         return next(sweep for sweep in self.sweeps if sweep.parameter == parameter)
+
+
+def check_wanted(jump_below: float | None, unit: str) -> None:
+    """Raise NotAllowed for a wanted jump that is none."""
+    if jump_below is not None and not (isfinite(jump_below) and jump_below > 0):
+        raise NotAllowed("--jump-below", jump_below, f"must be a finite number above 0 [{unit}]")
+
+
+def refuse_runs(runs: int | None, case: Case) -> None:
+    """Raise NotAllowed for a size of an ensemble where none is run."""
+    if runs is not None:
+        raise NotAllowed("--runs", runs, f"case {case.name} has one exact path, no ensemble is run")
+
+
+def highest(case: Case, path: str) -> float:
+    """Return the largest value that a case may have for ``section.key``."""
+    allowed = rule_of(attribute_of(type(case), path)).allowed
+    assert allowed is not None
+    return allowed.high
 
 
 def bisect(
@@ -139,28 +177,22 @@ def grid(own: float, low: float, high: float, count: int, zero: bool = False) ->
     return sorted(values)
 
 
-def number(value: Optional[float], digits: int = 4) -> str:
+def number(value: float | None, digits: int = 4) -> str:
     """Return a number for a sentence or a table."""
     return "none" if value is None else f"{value:.{digits}g}"
 
 
 def write(case_name: str, study: Study, folder: Path) -> list[Path]:
     """Write ``control.csv`` and ``control.json``."""
-    table, summary = folder / "control.csv", folder / "control.json"
     names = list(study.results)
-    with write_atomically(table) as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["parameter", "value", "is_own_value", "is_recommended", *names,
-                         f"dem_jump_{study.unit}", "note"])
-        for sweep in study.sweeps:
-            for row in sweep.rows:
-                writer.writerow([
-                    sweep.parameter, repr(row.value), int(row.value == sweep.own),
-                    int(row.value == sweep.recommended),
-                    *("" if row.results.get(name) is None else repr(row.results[name]) for name in names),
-                    "" if row.dem_jump is None else repr(row.dem_jump), row.note,
-                ])
-    content = {
+    table = write_csv(
+        folder / "control.csv",
+        ["parameter", "value", "is_own_value", "is_recommended", *names, f"dem_jump_{study.unit}", "note"],
+        ([sweep.parameter, row.value, int(row.value == sweep.own), int(row.value == sweep.recommended),
+          *(row.results.get(name) for name in names), row.dem_jump, row.note]
+         for sweep in study.sweeps for row in sweep.rows),
+    )
+    summary = write_json(folder / "control.json", {
         "case": case_name,
         "measure": study.measure,
         f"jump_{study.unit}": study.jump,
@@ -175,7 +207,5 @@ def write(case_name: str, study: Study, folder: Path) -> list[Path]:
         },
         "dem": study.dem,
         "remarks": study.remarks,
-    }
-    with write_atomically(summary) as stream:
-        stream.write(json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+    })
     return [table, summary]

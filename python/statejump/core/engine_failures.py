@@ -31,6 +31,10 @@ class EngineFailed(FailedRun):
     def __str__(self) -> str:
         return ": ".join(part for part in (self._where(), self.item, self.what, self.sentence) if part)
 
+    def general(self) -> str:
+        said = ": ".join(part for part in (self._where(), self.item, self.what, self.cause) if part)
+        return f"{said}; {self.remedy}" if self.remedy else said
+
 
 @contextmanager
 def engine(what: str = "", **more: Any) -> Iterator[None]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any, ClassVar
@@ -30,6 +31,19 @@ class _Absent:
 
 
 ABSENT = _Absent()
+
+
+class _Some:
+    """Stands in a sentence for a number that is left open."""
+
+    def __repr__(self) -> str:
+        return "…"
+
+    def __format__(self, how: str) -> str:
+        return "…"
+
+
+SOME: Any = _Some()
 
 
 @dataclass(frozen=True)
@@ -144,6 +158,17 @@ class StatejumpError(Exception):
         if not self.remedy:
             return sentence
         return f"{sentence}{'; ' if self.cause else ': '}{self.remedy}"
+
+    def general(self) -> str:
+        """Return the sentence without what differs from one sample of a campaign to the next: the number that was
+        given, when it happened. Failures of one kind have the same."""
+        alike = copy(self)
+        if isinstance(self.value, float):
+            alike.value = SOME
+        for name in ("time_s", "temperature_change_K"):
+            if getattr(self, name) is not None:
+                setattr(alike, name, SOME)
+        return str(alike)
 
     def fields(self) -> dict[str, Any]:
         """Return the failure by the names of ``FIELDS``; what is not known is left out."""

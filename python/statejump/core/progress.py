@@ -9,8 +9,8 @@ from itertools import count
 Tell = Callable[[float], None]
 
 
-def _silent(share: float) -> None:
-    pass
+def silent(share: float) -> None:
+    """Tell nobody."""
 
 
 @contextmanager
@@ -22,7 +22,7 @@ def shown(progress: bool | Tell, label: str) -> Iterator[Tell]:
     if callable(progress):
         yield progress
     elif not progress:
-        yield _silent
+        yield silent
     else:
         with bar(label) as tell:
             yield tell

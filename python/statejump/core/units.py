@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 # Unit by the ending of a name, the longest first: _N_m is not _m.
 ENDINGS = {
@@ -12,6 +13,7 @@ ENDINGS = {
 }
 
 
+@lru_cache(maxsize=None)
 def split_unit(name: str) -> tuple[str, str]:
     """Return a name without its unit, and the unit; ``-`` for none."""
     ending = next((ending for ending in ENDINGS if name.endswith(ending)), "")

@@ -16,9 +16,10 @@ ability that it lacks is not there, and what needs it refuses the case with one 
 ``describe``        ``(case) -> list[str]``: the case in sentences
 ``charts``          ``(case) -> list[Chart]``: curves on the page of ``statejump report``
 ``page``            ``(result, case) -> Part | None``: a part of that page that only this kind has
-``outcomes``        ``(case, run) -> dict[str, float]``: what a campaign records of a run; their units from their names
+``outcomes``        ``(case, run) -> dict[str, float]``: what a campaign records of a run, by the names of ``OUTCOMES``
+``quick``           ``(case) -> Run``: the reduced model with as few samples as ``outcomes`` needs; else ``reduced``
 ``told``            ``(case, runs) -> list``: what a command prints of runs, tables and lines
-``control``         ``(case, settings) -> ...``: what makes the state jump smaller
+``control``         ``(case, **settings) -> Study``: what makes the state jump smaller, :mod:`statejump.control`
 ==================  =====================================================================================
 
 Further abilities are those of single commands and have their names: ``statics``, ``answers``, ``convergence``,
@@ -53,6 +54,10 @@ class Kind(Generic[CaseType]):
     # Words of this kind for report and figures: of columns, contacts, links, stages, by their keys; with "stage "
     # in front of its name what a stage means.
     WORDS: ClassVar[Mapping[str, str]] = {}
+    # Names of what a campaign records of a run, in the order of its table; each ends in its unit.
+    OUTCOMES: ClassVar[tuple[str, ...]] = ()
+    # Models whose runs ``outcomes`` can measure.
+    OUTCOMES_OF: ClassVar[tuple[str, ...]] = ("reduced", "dem")
     # Module that builds the scene in YADE, or the path of its file; by default scene_NAME beside the runner.
     SCENE: ClassVar[str] = ""
 
@@ -80,8 +85,16 @@ class Kind(Generic[CaseType]):
         """Run a case in YADE. A kind whose scene needs more than the case itself has its own."""
         from statejump.core import yade_process
 
-        values = {"scene": self.scene_module(), **self.ability("dem_input", case)(case)}
-        return yade_process.run(case, values, self.ability("dem_run", case), tell)
+        return yade_process.run(case, self.dem_values(case), self.ability("dem_run", case), tell)
+
+    def dem_values(self, case: CaseType) -> dict[str, Any]:
+        """Return what the script in YADE reads."""
+        return {"scene": self.scene_module(), **self.ability("dem_input", case)(case)}
+
+    def campaign_models(self) -> tuple[str, ...]:
+        """Return the models that campaigns run."""
+        needed = {"reduced": "reduced", "dem": "dem_run"}
+        return tuple(model for model in self.OUTCOMES_OF if self.can(needed[model]))
 
     def scene_module(self) -> str:
         """Return the module that builds the scene in YADE."""

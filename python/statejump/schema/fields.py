@@ -13,6 +13,8 @@ knows attrs.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
+from types import MappingProxyType
 from typing import Any, ClassVar, TypeVar
 
 import attrs
@@ -79,10 +81,10 @@ def switch(default: Any, source: str) -> Any:
     return _key(default, Rule(SWITCH, source))
 
 
-def text(default: Any, source: str, *, pattern: str | None = None) -> Any:
+def text(default: Any, source: str, *, pattern: str | Callable[[], str] | None = None) -> Any:
     """Declare a text.
 
-    :param pattern: regular expression that it must match as a whole
+    :param pattern: regular expression that it must match as a whole, or what returns it when it is needed
     """
     return _key(default, Rule(TEXT, source, pattern=pattern, optional=default is None))
 
@@ -108,9 +110,11 @@ def numbers(default: Any, unit: str, low: float, high: float, source: str, *, le
     return _key(default, rule, _as_floats)
 
 
-def texts(default: Any, source: str, names: Names | None = None) -> Any:
-    """Declare a list of texts, of given names if any are given."""
-    return _key(default, Rule(TEXTS, source, known=None if names is None else _called(names)))
+def texts(
+    default: Any, source: str, names: Names | None = None, *, pattern: str | Callable[[], str] | None = None
+) -> Any:
+    """Declare a list of texts, of given names if any are given; ``pattern`` as of :func:`text`, for editors."""
+    return _key(default, Rule(TEXTS, source, known=None if names is None else _called(names), pattern=pattern))
 
 
 def section(
@@ -161,14 +165,15 @@ def _plain(value: Any) -> Any:
     return [_plain(item) for item in value] if isinstance(value, list) else value
 
 
-def fields_of(model: type[Section]) -> dict[str, attrs.Attribute[Any]]:
+@lru_cache(maxsize=None)
+def fields_of(model: type[Section]) -> Mapping[str, attrs.Attribute[Any]]:
     """Return the keys of a section, or the sections of a file, in the order of their first declaration: a kind
     that declares one of them anew leaves it in its place."""
     known = {attribute.name: attribute for attribute in attrs.fields(model)}
     order = dict.fromkeys(
         attribute.name for base in reversed(model.__mro__) for attribute in base.__dict__.get("__attrs_attrs__", ())
     )
-    return {name: known[name] for name in order}
+    return MappingProxyType({name: known[name] for name in order})
 
 
 def rule_of(attribute: attrs.Attribute[Any]) -> Rule:

@@ -11,97 +11,92 @@ from __future__ import annotations
 import json
 import math
 import os
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
-
-import click
-from pydantic.fields import ModelField
+from typing import TYPE_CHECKING, Any
 
 from statejump import _paths
-from statejump.campaign import campaign_file
-from statejump.kinds.registry import KINDS
-from statejump.schema.fields import Case, Section, check_name, rule
-from statejump.schema.items import Item
-from statejump.core.errors import StatejumpError
+from statejump.core.errors import Range
 from statejump.core.output import write_atomically
+from statejump.schema.fields import (
+    Section, default_of, fields_of, is_required, rule_of, section_of, tables_of,
+)
+from statejump.schema.items import Item
+from statejump.schema.rules import NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, check_name
+
+if TYPE_CHECKING:
+    from statejump.kinds.protocol import Kind
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 ANY = "case"
 Schema = dict[str, Any]
 
 
-def _is_section(kind: Any) -> bool:
-    return isinstance(kind, type) and issubclass(kind, Section)
-
-
 def _sentence(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _described(field: ModelField) -> Schema:
+def _described(attribute: Any) -> Schema:
     """What a person reads when the editor points at a key: rule, default and where it comes from."""
-    info = field.field_info
-    source = info.description or ""
-    if field.type_ is bool:
-        parts = ["true or false"]
-    else:  # what a free text is for is said by its source
-        parts = [rule(info.extra)] if {"low", "names", "texts"} & info.extra.keys() else []
+    rule = rule_of(attribute)
+    source = rule.source
+    # What a free text is for is said by its source.
+    is_free = rule.form == TEXT and rule.known is None
+    parts = ["true or false" if rule.form == SWITCH else rule.needs()] if not is_free else []
     found: Schema = {}
-    if field.required:
+    if is_required(attribute):
         parts.append(f"Required ({source})" if source else "Required")
-    elif field.default in (None, "", []):
+    elif default_of(attribute) in (None, "", []):
         parts.append(f"Optional: {source}" if source else "Optional")
     else:
-        found["default"] = field.default
-        parts.append(f"Default {json.dumps(field.default)}" + (f" ({source})" if source else ""))
+        found["default"] = default_of(attribute)
+        parts.append(f"Default {json.dumps(found['default'])}" + (f" ({source})" if source else ""))
     found["description"] = ". ".join(map(_sentence, parts)) + "."
-    if "unit" in info.extra:
-        found["x-unit"] = info.extra["unit"]
+    if rule.unit is not None:
+        found["x-unit"] = rule.unit
     found["x-source"] = source
     return found
 
 
-def _number(extra: dict[str, Any], kind: Any) -> Schema:
-    found: Schema = {"type": "integer" if kind is int else "number"}
-    if math.isfinite(extra["low"]):
-        found["exclusiveMinimum" if extra["above"] else "minimum"] = extra["low"]
-    if math.isfinite(extra["high"]):
-        found["maximum"] = extra["high"]
+def _number(allowed: Range, form: str) -> Schema:
+    found: Schema = {"type": "integer" if form == WHOLE else "number"}
+    if math.isfinite(allowed.low):
+        found["exclusiveMinimum" if allowed.above else "minimum"] = allowed.low
+    if math.isfinite(allowed.high):
+        found["maximum"] = allowed.high
     return found
 
 
-def _text(extra: dict[str, Any]) -> Schema:
+def _text(rule: Rule) -> Schema:
     found: Schema = {"type": "string"}
-    if "names" in extra:
-        found["enum"] = list(extra["names"])
-    if "pattern" in extra:
-        found["pattern"] = f"^{extra['pattern']}$"
+    if rule.known is not None:
+        found["enum"] = list(rule.names)
+    if rule.expression is not None:
+        found["pattern"] = f"^{rule.expression}$"
     return found
 
 
-def key_schema(field: ModelField) -> Schema:
-    """Return the schema of one key of a section."""
-    extra = field.field_info.extra
-    if extra.get("texts"):
-        found: Schema = {"type": "array", "items": _text(extra)}
-    elif field.type_ is bool:
-        found = {"type": "boolean"}
-    elif "low" not in extra:
-        found = _text(extra)
-    elif extra.get("listed"):
-        found = {"type": "array", "items": _number(extra, float)}
+def key_schema(attribute: Any) -> Schema:
+    """Return the schema of one key of a section.
+
+    :param attribute: its declaration, a value of :func:`statejump.schema.fields.fields_of`
+    """
+    rule = rule_of(attribute)
+    if rule.form == SWITCH:
+        found: Schema = {"type": "boolean"}
     else:
-        found = _number(extra, field.type_)
-    if "length" in extra:
-        found.update(minItems=extra["length"], maxItems=extra["length"])
-    return found | _described(field)
+        item = _text(rule) if rule.allowed is None else _number(rule.allowed, rule.form)
+        found = {"type": "array", "items": item} if rule.form in (NUMBERS, TEXTS) else item
+    if rule.length is not None:
+        found.update(minItems=rule.length, maxItems=rule.length)
+    return found | _described(attribute)
 
 
 def _conditions(model: type[Section]) -> list[Schema]:
     """Keys that one choice of a section needs and the others refuse, see ``Section.GOES_WITH``."""
     found = []
     for choice, keys in model.GOES_WITH.items():
-        for name in model.__fields__[choice].field_info.extra["names"]:
+        for name in rule_of(fields_of(model)[choice]).names:
             needed = [key for key, names in keys.items() if name in names]
             refused = [key for key, names in keys.items() if name not in names]
             then: Schema = {}
@@ -116,14 +111,15 @@ def _conditions(model: type[Section]) -> list[Schema]:
 
 def section_schema(model: type[Section]) -> Schema:
     """Return the schema of a section: its keys and no others."""
-    properties = {key: key_schema(field) for key, field in model.__fields__.items()}
+    keys = fields_of(model)
+    properties = {key: key_schema(attribute) for key, attribute in keys.items()}
     if issubclass(model, Item):
         properties["name"]["minLength"] = 1
     found: Schema = {
         "type": "object",
         "description": " ".join((model.__doc__ or "").split()),
         "properties": properties,
-        "required": [key for key, field in model.__fields__.items() if field.required],
+        "required": [key for key, attribute in keys.items() if is_required(attribute)],
         "additionalProperties": False,
     }
     conditions = _conditions(model)
@@ -132,37 +128,42 @@ def section_schema(model: type[Section]) -> Schema:
     return found
 
 
-def _part(field: ModelField) -> Schema:
+def _part(attribute: Any) -> Schema:
     """Return the schema of what stands under one name at the top of a file."""
-    tables = field.field_info.extra.get("tables")
-    if not tables:
-        return section_schema(field.type_)
-    # Tables that code of their own judges declare their items beside the field.
-    item = section_schema(tables if _is_section(tables) else field.type_)
-    return {"type": "array", "items": item, "minItems": 1, "description": item["description"]}
+    section, table = section_of(attribute), tables_of(attribute)
+    if table is not None:
+        item = section_schema(table)
+        return {"type": "array", "items": item, "minItems": 1, "description": item["description"]}
+    assert section is not None
+    return section_schema(section)
 
 
-def _file(model: type[Section], title: str, leave_out: tuple[str, ...] = ()) -> Schema:
-    fields = {name: field for name, field in model.__fields__.items() if name not in leave_out}
+def _file(model: type[Section], title: str, leave_out: Iterable[str] = ()) -> Schema:
+    parts = {name: attribute for name, attribute in fields_of(model).items() if name not in leave_out}
     return {
         "title": title,
         "description": " ".join((model.__doc__ or "").split()),
         "type": "object",
-        "properties": {name: _part(field) for name, field in fields.items()},
-        "required": [name for name, field in fields.items() if field.required],
+        "properties": {name: _part(attribute) for name, attribute in parts.items()},
+        "required": [name for name, attribute in parts.items() if is_required(attribute)],
         "additionalProperties": False,
     }
 
 
-def _kind(model: type[Case]) -> Schema:
-    found = _file(model, f"statejump case of kind {model.KIND}", model.NOT_IN_FILE)
-    found["properties"]["case"]["properties"]["kind"].update(const=model.KIND)
+def _kind(kind: Kind) -> Schema:
+    found = _file(kind.Case, f"statejump case of kind {kind.name}", kind.Case.NOT_IN_FILE)
+    found["properties"]["case"]["properties"]["kind"].update(const=kind.name)
     return found
 
 
-def _any_case() -> Schema:
-    kinds = list(KINDS)
-    return {
+def _any_case(kinds: list[str], alone: bool) -> Schema:
+    """Case files of every kind.
+
+    :param alone: hold the schemas of the kinds instead of referring to their files
+    """
+    from statejump.kinds import kind as kind_of
+
+    found: Schema = {
         "title": "statejump case",
         "description": "A case file of any kind; case.kind says which.",
         "type": "object",
@@ -174,35 +175,41 @@ def _any_case() -> Schema:
             {
                 "if": {"properties": {"case": {"properties": {"kind": {"const": kind}}, "required": ["kind"]}},
                        "required": ["case"]},
-                "then": {"$ref": f"#/definitions/{kind}"},
+                "then": {"$ref": f"#/definitions/{kind}" if alone else file_name(kind)},
             }
             for kind in kinds
         ],
-        "definitions": {kind: _kind(KINDS[kind]) for kind in kinds},
     }
+    if alone:
+        found["definitions"] = {kind: _kind(kind_of(kind)) for kind in kinds}
+    return found
 
 
 def names() -> list[str]:
     """Return the names of all schemas: ``case``, the kinds of cases and the kinds of campaigns."""
-    return [ANY, *KINDS, *campaign_file.FILES]
+    from statejump import kinds
+    from statejump.campaign.campaign_file import FILES
+
+    return [ANY, *kinds.names(), *FILES]
 
 
-def schema(name: str = ANY) -> Schema:
+def schema(name: str = ANY, alone: bool = True) -> Schema:
     """Return a schema as a document that json can write.
 
     :param name: one of :func:`names`; ``case`` takes case files of every kind
+    :param alone: whether ``case`` holds the schemas of the kinds; else it refers to their files beside its own
     :raises StatejumpError: there is no such schema
     """
-    try:
-        check_name(name, names())
-    except ValueError as reason:
-        raise StatejumpError(f"KIND = {name!r} is not allowed: {reason}") from None
+    from statejump import kinds
+    from statejump.campaign.campaign_file import FILES
+
+    check_name("KIND", name, names())
     if name == ANY:
-        found = _any_case()
-    elif name in KINDS:
-        found = _kind(KINDS[name])
+        found = _any_case(kinds.names(), alone)
+    elif name in FILES:
+        found = _file(FILES[name], f"statejump {name} campaign")
     else:
-        found = _file(campaign_file.FILES[name], f"statejump {name} campaign")
+        found = _kind(kinds.kind(name))
     return {"$schema": DRAFT, **found}
 
 
@@ -216,6 +223,16 @@ def file_name(name: str) -> str:
     return f"{name}.schema.json"
 
 
+def write_all(folder: Path) -> list[Path]:
+    """Write every schema into a folder, each into a file of its own, and return their paths."""
+    written = []
+    for name in names():
+        with write_atomically(folder / file_name(name)) as stream:
+            stream.write(to_json(schema(name, alone=False)))
+        written.append(folder / file_name(name))
+    return written
+
+
 def head_line(name: str, file: Path) -> str:
     """Return the first line of a case file by which editors (taplo, Even Better TOML) find its schema.
 
@@ -226,30 +243,3 @@ def head_line(name: str, file: Path) -> str:
     if _paths.SCHEMA.resolve().parent in file.parents:
         return f"#:schema {Path(os.path.relpath(to, file.parent)).as_posix()}"
     return f"#:schema {to.as_uri()}"
-
-
-@click.command("schema")
-@click.argument("kind", metavar="[KIND]", default=ANY)
-@click.option("-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help="File to write instead.")
-@click.option("--all", "folder", metavar="FOLDER", type=click.Path(path_type=Path, file_okay=False),
-              help="Write every schema into a folder.")
-def schema_command(kind: str, output: Path | None, folder: Path | None) -> None:
-    """JSON Schema of case files of KIND, or of campaigns: case (every kind), spring_slider, umbrella,
-    statics, truss, montecarlo, sweep.
-
-    \b
-    Examples:
-      statejump schema truss
-      statejump schema -o case.schema.json
-    """
-    if folder is not None:
-        for name in names():
-            with write_atomically(folder / file_name(name)) as stream:
-                stream.write(to_json(schema(name)))
-        return
-    text = to_json(schema(kind))
-    if output is None:
-        click.echo(text, nl=False)
-        return
-    with write_atomically(output) as stream:
-        stream.write(text)

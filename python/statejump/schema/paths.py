@@ -3,7 +3,7 @@
 ``section.*.key`` of all its items. Names of items may hold dots: the key is what follows the last one."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import attrs
@@ -32,11 +32,15 @@ def keys_of(model: type[Section]) -> dict[str, attrs.Attribute[Any]]:
     return found
 
 
+def pattern_of(path: str) -> str:
+    """Return a path with ``*`` for the name of its item."""
+    section, item, key = split_path(path)
+    return f"{section}.{EVERY}.{key}" if item else path
+
+
 def attribute_of(model: type[Section], path: str) -> attrs.Attribute[Any]:
     """Return the declaration of a key. :raises UnknownKey: there is none"""
-    section, item, key = split_path(path)
-    known = keys_of(model)
-    pattern = f"{section}.{EVERY}.{key}" if item else path
+    known, pattern = keys_of(model), pattern_of(path)
     if pattern not in known:
         raise UnknownKey(path, **suggestion(path, list(known)))
     return known[pattern]
@@ -62,6 +66,29 @@ def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any)
             target.pop(key, None)
         else:
             target[key] = value
+
+
+def filled(data: Mapping[str, Any], values: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """Return a copy of a parsed case file with many values, those of ``*`` in every item.
+
+    :param values: paths, of which the caller knows that the case has them, and values
+    """
+    changed = {
+        section: [dict(table) for table in content] if isinstance(content, list) else dict(content)
+        for section, content in data.items()
+    }
+    places: dict[str, dict[str, int]] = {}
+    for path, value in values:
+        section, item, key = split_path(path)
+        if not item:
+            changed.setdefault(section, {})[key] = value
+            continue
+        tables = changed[section]
+        if section not in places:
+            places[section] = {table["name"]: place for place, table in enumerate(tables)}
+        for table in tables if item == EVERY else [tables[places[section][item]]]:
+            table[key] = value
+    return changed
 
 
 def value_of(case: Section, path: str) -> Any:

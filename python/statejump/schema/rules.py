@@ -26,7 +26,7 @@ class Rule:
     :param allowed: range of a number, of every number of a list
     :param known: names that a text, or every text of a list, must be one of; called when it is needed, for the
         catalogue of laws may grow
-    :param pattern: regular expression that a text must match as a whole
+    :param pattern: regular expression that a text must match as a whole, or what returns it when it is needed
     :param optional: whether None stands for a value that was not given
     :param length: how many items a list has
     """
@@ -35,7 +35,7 @@ class Rule:
     source: str = ""
     allowed: Range | None = None
     known: Callable[[], Sequence[str]] | None = None
-    pattern: str | None = None
+    pattern: str | Callable[[], str] | None = None
     optional: bool = False
     length: int | None = None
 
@@ -48,6 +48,11 @@ class Rule:
     def names(self) -> tuple[str, ...]:
         """Names that a text must be one of; empty: any text."""
         return () if self.known is None else tuple(self.known())
+
+    @property
+    def expression(self) -> str | None:
+        """Regular expression that a text must match as a whole; None: any text."""
+        return self.pattern() if callable(self.pattern) else self.pattern
 
     def needs(self) -> str:
         """Return the part of a sentence that states what the key needs."""
@@ -71,14 +76,17 @@ class Rule:
 def _number(rule: Rule, key: str, value: Any) -> None:
     assert rule.allowed is not None
     whole = rule.form == WHOLE
-    kind = "a whole number" if whole else "a number"
-    said = str(rule.allowed).removeprefix("must be ")
     if isinstance(value, bool) or not isinstance(value, int if whole else (int, float)):
-        raise NotAllowed(key, value, f"must be {kind}, {said}", allowed=rule.allowed)
+        kind = "a whole number" if whole else "a number"
+        raise NotAllowed(key, value, f"must be {kind}, {_range(rule)}", allowed=rule.allowed)
     if isinstance(value, float) and not math.isfinite(value):
-        raise NotAllowed(key, value, f"must be finite, {said}", allowed=rule.allowed)
+        raise NotAllowed(key, value, f"must be finite, {_range(rule)}", allowed=rule.allowed)
     if value not in rule.allowed:
         raise NotAllowed(key, value, allowed=rule.allowed)
+
+
+def _range(rule: Rule) -> str:
+    return str(rule.allowed).removeprefix("must be ")
 
 
 def _switch(rule: Rule, key: str, value: Any) -> None:
@@ -91,7 +99,7 @@ def _text(rule: Rule, key: str, value: Any) -> None:
         raise NotAllowed(key, value, "must be a text in quotes")
     if rule.known is not None:
         check_name(key, value, rule.names)
-    if rule.pattern is not None and not re.fullmatch(rule.pattern, value):
+    if rule.expression is not None and not re.fullmatch(rule.expression, value):
         raise NotAllowed(key, value, "must consist of letters, digits, '_' and '-'")
 
 

@@ -14,6 +14,7 @@ from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.kinds.spring_slider.words import WORDS
 
 if TYPE_CHECKING:
+    from statejump.control.study import Study
     from statejump.core.charts import Chart
     from statejump.core.figures import Sheet
     from statejump.kinds.spring_slider.statics import RestSets
@@ -45,6 +46,15 @@ class SpringSlider(Kind[SpringSliderCase]):
         "stop_contact",
         "floor_normal_force_N",
         "stage",
+    )
+
+    OUTCOMES = (
+        "state_jump_m",
+        "first_slip_temperature_change_K",
+        "stop_reached_temperature_change_K",
+        "stop_left_temperature_change_K",
+        "friction_dissipation_J",
+        "largest_axial_force_N",
     )
 
     def reduced(self, case: SpringSliderCase, tell: Tell) -> Run:
@@ -107,10 +117,21 @@ class SpringSlider(Kind[SpringSliderCase]):
 
         return charts.charts(case)
 
+    def quick(self, case: SpringSliderCase) -> Run:
+        from statejump.kinds.spring_slider import reduced
+
+        return reduced.quick(case)
+
     def outcomes(self, case: SpringSliderCase, run: Run) -> dict[str, float]:
         from statejump.kinds.spring_slider import outcomes
 
         return outcomes.outcomes(case, run)
+
+    def control(self, case: SpringSliderCase, **settings: Any) -> Study:
+        """Return what makes the state jump smaller; see :func:`.control.control`."""
+        from statejump.kinds.spring_slider import control
+
+        return control.control(case, **settings)
 
 
 KIND = SpringSlider()

@@ -3,19 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 
-from statejump.core import yade_process as dem
+from statejump.control.study import (
+    Line, Row, Study, Sweep, bisect, check_wanted, grid, highest, number, ranges_that_pass, refuse_runs,
+)
+from statejump.core.engine_failures import engine
+from statejump.core.errors import StatejumpError
+from statejump.core.physics import axial_stiffness_N_per_m
+from statejump.core.progress import Tell
 from statejump.kinds.spring_slider import reduced
-from statejump.kinds.spring_slider.case import Joint, SpringSliderCase
-from statejump.control.study import Progress, Row, Study, Sweep, bisect, grid, number, ranges_that_pass
-from statejump.kinds.umbrella.reduced import changed
+from statejump.kinds.spring_slider.case import SpringSliderCase
+from statejump.schema.paths import with_values
 
 POINTS = 49
 PRELOAD = "joint.preload_stiffness_N_per_m"
 RESULTS = {"jump_m": "|jump| [µm]", "closed_form_m": "closed form [µm]"}
+LINES: dict[str, Line] = {
+    "jump_m": ("exact model", dict(color="#E69F00", linewidth=4.0, solid_capstyle="round")),
+    "closed_form_m": (
+        "closed form f/(k + k_p),\nwhere the cycle ends sliding",
+        dict(color="#000000", linewidth=1.2, linestyle=(0, (5, 2))),
+    ),
+}
 MEASURE = (
     "exact quasi-static path of the reduced model; closed form f/(k + k_p), without preload "
     "f l0/(E A), valid for a cycle that ends sliding at ΔT = 0"
@@ -27,13 +39,14 @@ class Jump:
     """State jump of one design."""
 
     size_m: float
-    closed_form_m: Optional[float]  # None: the cycle does not end sliding at ΔT = 0
+    closed_form_m: float | None  # None: the cycle does not end sliding at ΔT = 0
     slips: bool
 
 
 def jump_of(case: SpringSliderCase) -> Jump:
-    """Solve a case for its jump. :raises ValueError: a changed case is out of range"""
-    path = reduced.solve(case)
+    """Solve a case for its jump. :raises StatejumpError: a changed case is out of range"""
+    with engine():
+        path = reduced.solve(case)
     slips = any(segment.motion == "slide" for segment in path.segments)
     last = path.segments[-1]
     closed = last.motion == "slide" and last.end_temperature_change_K == 0
@@ -44,7 +57,7 @@ def jump_of(case: SpringSliderCase) -> Jump:
 def link_stiffness(case: SpringSliderCase) -> float:
     """k = E A/l0 [N/m]."""
     link = case.link
-    return link.young_modulus_Pa * link.cross_section_area_m2 / link.stress_free_length_m
+    return axial_stiffness_N_per_m(link.young_modulus_Pa, link.cross_section_area_m2, link.stress_free_length_m)
 
 
 @dataclass(frozen=True)
@@ -56,21 +69,21 @@ class Spring:
     by: str  # none, closed form, bisection
 
 
-def smallest_preload(case: SpringSliderCase, wanted_m: float) -> Optional[Spring]:
+def smallest_preload(case: SpringSliderCase, wanted_m: float) -> Spring | None:
     """Return the spring, or None if the largest allowed one is too soft.
 
     The jump never grows with k_p: a stiffer spring slides less far and back earlier.
     """
 
     def solved(stiffness: float) -> Jump:
-        return jump_of(changed(case, {PRELOAD: stiffness}))
+        return jump_of(with_values(case, {PRELOAD: stiffness}))
 
     def passes(stiffness: float) -> bool:
         return solved(stiffness).size_m <= wanted_m
 
     if passes(0.0):
         return Spring(0.0, solved(0.0).size_m, "none")
-    largest = Joint.__fields__["preload_stiffness_N_per_m"].field_info.extra["high"]
+    largest = highest(case, PRELOAD)
     closed = case.friction_force_N / wanted_m - link_stiffness(case)
     if 0 < closed <= largest and solved(closed).closed_form_m is not None:
         # A few roundings up, so that the solved jump is not above the wanted one.
@@ -97,8 +110,8 @@ def _changes(case: SpringSliderCase, parameter: str, value: float) -> dict[str, 
 
 def _row(case: SpringSliderCase, parameter: str, value: float) -> Row:
     try:
-        jump = jump_of(changed(case, _changes(case, parameter, value)))
-    except ValueError as problem:
+        jump = jump_of(with_values(case, _changes(case, parameter, value)))
+    except StatejumpError as problem:
         return Row(value, {}, str(problem))
     note = "" if jump.closed_form_m is not None else (
         "cycle does not end sliding" if jump.slips else "no slip: no jump"
@@ -132,12 +145,23 @@ def _sweeps(case: SpringSliderCase) -> list[Sweep]:
     ]
 
 
-def study(case: SpringSliderCase, wanted: Optional[float], with_dem: bool, progress: Progress) -> Study:
-    """Sweep, search and, if wanted, check by DEM."""
+def control(
+    case: SpringSliderCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
+    tell: Tell = lambda share: None,
+) -> Study:
+    """Sweep, search and, if wanted, check by DEM.
+
+    :param jump_below: wanted largest jump [m]; None: half of what the case has
+    :param runs: there is one exact path: None
+    :raises StatejumpError: bad input, or a run failed
+    """
+    check_wanted(jump_below, "m")
+    refuse_runs(runs, case)
+    wanted = jump_below
     now = jump_of(case)
     if wanted is None and now.size_m > 0:
         wanted = now.size_m / 2
-    result = Study("spring_slider", MEASURE, "m", "µm", 1e6, RESULTS, now.size_m, wanted)
+    result = Study(MEASURE, "m", "µm", 1e6, RESULTS, now.size_m, wanted, "|State jump| [µm]", LINES)
     result.sweeps = _sweeps(case)
     if wanted is None:
         result.sentences.append("The case has no jump: there is nothing to control.")
@@ -147,7 +171,7 @@ def study(case: SpringSliderCase, wanted: Optional[float], with_dem: bool, progr
         _recommend(case, result, wanted)
     result.remarks += [*reduced.solve(case).warnings, *reduced.warnings(case)]
     if with_dem:
-        _check_by_dem(case, result, progress)
+        _check_by_dem(case, result, tell)
     return result
 
 
@@ -164,7 +188,7 @@ def _recommend(case: SpringSliderCase, result: Study, wanted: float) -> None:
     spring = smallest_preload(case, wanted)
     asked = f"{number(wanted * 1e6)} µm"
     if spring is None:
-        largest = Joint.__fields__["preload_stiffness_N_per_m"].field_info.extra["high"]
+        largest = highest(case, PRELOAD)
         result.recommendation["preload_stiffness_N_per_m"] = None
         result.sentences.append(
             f"No preload spring up to {largest:g} N/m, the largest that a case may have, keeps the jump "
@@ -194,14 +218,13 @@ def _recommend(case: SpringSliderCase, result: Study, wanted: float) -> None:
     )
 
 
-def _check_by_dem(case: SpringSliderCase, result: Study, progress: Progress) -> None:
+def _check_by_dem(case: SpringSliderCase, result: Study, tell: Tell) -> None:
     preload = result.sweep(PRELOAD)
     wanted = {preload.own, preload.own if preload.recommended is None else preload.recommended}
     for done, stiffness in enumerate(sorted(wanted)):
-        design = changed(case, {PRELOAD: stiffness})
-        run = dem.execute(dem.resolved(design), lambda part: progress((done + part) / len(wanted)))
-        position = run.history["displacement_m"]
-        jump, exact = abs(float(position[-1] - position[0])), jump_of(design).size_m
+        design = with_values(case, {PRELOAD: stiffness})
+        run = case.behaviour.dem(design, lambda share, done=done: tell((done + share) / len(wanted)))
+        jump, exact = abs(run.summary["state_jump_m"]), jump_of(design).size_m
         result.dem.append({PRELOAD: stiffness, "reduced_jump_m": exact, "dem_jump_m": jump})
         preload.row(stiffness).dem_jump = jump
         result.remarks.append(

@@ -14,6 +14,7 @@ from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.words import WORDS
 
 if TYPE_CHECKING:
+    from statejump.control.study import Study
     from statejump.core.charts import Chart
     from statejump.core.figures import Sheet
     from statejump.laws.curves import Joint
@@ -56,6 +57,16 @@ class Umbrella(Kind):
         "friction_dissipation_J",
         "impact_dissipation_J",
         "thermal_work_J",
+    )
+
+    OUTCOMES = (
+        "theta2_jump_rad",
+        "theta4_jump_rad",
+        "theta2_range_rad",
+        "theta4_range_rad",
+        "first_contact_temperature_change_K",
+        "contacts",
+        "energy_residue_J",
     )
 
     def laws(self, case: UmbrellaCase) -> Joint:
@@ -126,6 +137,12 @@ class Umbrella(Kind):
         from statejump.kinds.umbrella import outcomes
 
         return outcomes.outcomes(case, run)
+
+    def control(self, case: UmbrellaCase, **settings: Any) -> Study:
+        """Return what makes the state jump smaller; see :func:`.control.control`."""
+        from statejump.kinds.umbrella import control
+
+        return control.control(case, **settings)
 
 
 KIND = Umbrella()

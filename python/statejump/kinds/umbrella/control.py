@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parameters of an ``umbrella`` case that a control study sweeps.
+"""Control of the state jump of an ``umbrella`` case, and the parameters that it sweeps.
 
 A joint that a biased torsion spring loads from the start has one quasi-static path, so one jump:
-:mod:`statejump.control_loaded`. Without it the motion after contact is chaotic and only statistics
-of an ensemble mean anything: :mod:`statejump.control_ensemble`.
+:mod:`.control_loaded`. Without it the motion after contact is chaotic and only statistics of an ensemble mean
+anything: :mod:`.control_ensemble`.
 """
 from __future__ import annotations
 
 from typing import Any
 
-from statejump.kinds.umbrella.case import UmbrellaCase, UmbrellaJoint
+from statejump.control.study import RUNS, Study, check_wanted, refuse_runs
+from statejump.core.errors import NotAllowed
+from statejump.core.progress import Tell
+from statejump.kinds.umbrella.case import UmbrellaCase
 
 FRICTION = "joint.friction_coefficient"
 CLEARANCE = "joint.radial_clearance_m"
@@ -28,6 +31,22 @@ def changes(case: UmbrellaCase, parameter: str, value: float) -> dict[str, Any]:
     return {parameter: value}
 
 
-def most_friction() -> float:
-    """Largest friction coefficient that a case may have."""
-    return UmbrellaJoint.__fields__["friction_coefficient"].field_info.extra["high"]
+def control(
+    case: UmbrellaCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
+    tell: Tell = lambda share: None,
+) -> Study:
+    """Study a rib.
+
+    :param jump_below: wanted largest jump of θ2 [rad]; None: half of what the case has
+    :param runs: size of the ensemble; None: the default, and the only choice where none is run
+    :raises StatejumpError: bad input, or a run failed
+    """
+    from statejump.kinds.umbrella import control_ensemble, control_loaded
+
+    check_wanted(jump_below, "rad")
+    if case.start.mode == "loaded":
+        refuse_runs(runs, case)
+        return control_loaded.study(case, jump_below, with_dem, tell)
+    if runs is not None and runs < 2:
+        raise NotAllowed("--runs", runs, "must be at least 2")
+    return control_ensemble.study(case, jump_below, runs or RUNS, with_dem, tell)

@@ -2,19 +2,21 @@
 """Control of the state jump of a rib whose joint is free in its play: statistics of an ensemble."""
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import acos, floor, lgamma, log, log10
-from typing import Any, Callable, Iterable, Optional
+from typing import Any
 
 import numpy as np
 
-from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.control.study import Progress, Row, Study, Sweep, bisect, grid, number, ranges_that_pass
-from statejump.kinds.umbrella.control import AREA, CLEARANCE, DAMPING, FRICTION, SPRING, changes
+from statejump.control.study import Line, Row, Study, Sweep, bisect, grid, number, ranges_that_pass
 from statejump.core.errors import StatejumpError
+from statejump.core.progress import Tell
 from statejump.kinds.umbrella import dem, reduced as model
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.kinds.umbrella.control import AREA, CLEARANCE, DAMPING, FRICTION, SPRING, changes
+from statejump.schema.paths import with_values
 
-RUNS = 40
 QUANTILE = 0.95
 CONFIDENCE = 0.95
 BISECTIONS = 5  # finer than the scatter of a quantile
@@ -25,6 +27,17 @@ ENSEMBLE_RESULTS = {
     "jump_quantile_rad": "95 % |jump| [mrad]",
     "deflection_mean_rad": "mean largest |deflection| [mrad]",
     "deflection_quantile_rad": "95 % largest |deflection| [mrad]",
+}
+
+LINES: dict[str, Line] = {
+    "deflection_quantile_rad": (
+        "largest |deflection|, 95 %", dict(color="#E69F00", linewidth=2.6, marker="o", markersize=4)
+    ),
+    "deflection_mean_rad": (
+        "largest |deflection|, mean", dict(color="#E69F00", linewidth=1.2, linestyle=(0, (5, 2)))
+    ),
+    "jump_quantile_rad": ("|jump|, 95 %", dict(color="#0072B2", linewidth=2.2, marker="s", markersize=4)),
+    "jump_mean_rad": ("|jump|, mean", dict(color="#0072B2", linewidth=1.2, linestyle=(0, (5, 2)))),
 }
 
 
@@ -90,33 +103,34 @@ def static_deflection_rad(case: UmbrellaCase) -> float:
 class _Ensembles:
     """Ensemble measures of changed cases, each computed once, with progress."""
 
-    def __init__(self, case: UmbrellaCase, runs: int, progress: Progress) -> None:
-        self.case, self.runs, self.known = case, runs, {}
-        self.expected, self.done, self.progress = 1, 0, progress
+    def __init__(self, case: UmbrellaCase, runs: int, tell: Tell) -> None:
+        self.case, self.runs = case, runs
+        self.known: dict[tuple[Any, ...], dict[str, float]] = {}
+        self.expected, self.done, self.tell = 1, 0, tell
 
     def check(self, values: dict[str, Any]) -> dict[str, float]:
         """Measure on a larger ensemble from other starts. :raises StatejumpError: a run failed"""
         return self({**values, "ensemble.seed": self.case.ensemble.seed + 1}, CHECK * self.runs)
 
-    def __call__(self, values: dict[str, Any], runs: Optional[int] = None) -> dict[str, float]:
+    def __call__(self, values: dict[str, Any], runs: int | None = None) -> dict[str, float]:
         """:raises StatejumpError: a run failed"""
         runs = runs or self.runs
         # A change to the own value is no change: the case itself is run once.
         real = {
             path: value for path, value in values.items()
-            if getattr(getattr(self.case, path.split(".")[0]), path.split(".")[1]) != value
+            if self.case[path] != value
         }
         key = (runs, *sorted(real.items()))
         if key not in self.known:
-            self.known[key] = ensemble_measure(model.changed(self.case, real), runs, self._step)
+            self.known[key] = ensemble_measure(with_values(self.case, real), runs, self._step)
         return self.known[key]
 
     def _step(self) -> None:
         self.done += 1
-        self.progress(min(1.0, self.done / (self.expected * self.runs)))
+        self.tell(min(1.0, self.done / (self.expected * self.runs)))
 
 
-def _ensemble_plan(case: UmbrellaCase) -> list[tuple]:
+def _ensemble_plan(case: UmbrellaCase) -> list[tuple[Any, ...]]:
     joint, area = case.joint, case.link_ab.cross_section_area_m2
     friction, clearance = joint.friction_coefficient, joint.radial_clearance_m
     # A link turned against its own axial stiffness: the largest torsion stiffness of the rib.
@@ -138,25 +152,24 @@ def _ensemble_plan(case: UmbrellaCase) -> list[tuple]:
 
 
 def study(
-    case: UmbrellaCase, wanted: Optional[float], runs: int, with_dem: bool, progress: Progress
+    case: UmbrellaCase, wanted: float | None, runs: int, with_dem: bool, tell: Tell
 ) -> Study:
     """Study a joint that is free in its play."""
     plan = _ensemble_plan(case)
-    measured = _Ensembles(case, runs, (lambda part: progress(0.7 * part)) if with_dem else progress)
+    measured = _Ensembles(case, runs, (lambda part: tell(0.7 * part)) if with_dem else tell)
     # Guessed: how many springs are checked shows only as they pass.
     measured.expected = sum(len(entry[5]) - 1 for entry in plan) + 1 + (10 + BISECTIONS) * CHECK
     now = measured({})
     if wanted is None and now["jump_quantile_rad"] > 0:
         wanted = now["jump_quantile_rad"] / 2
     result = Study(
-        "ensemble",
         "no biased spring loads the joint from the start, so one run means nothing: statistics of "
         f"{runs} runs of the reduced dynamics from starts within {case.ensemble.start_spread_m:g} m "
         f"(seed {case.ensemble.seed}); jump and largest deflection are those of theta2, the 95 % "
         "quantile is a value that occurred",
-        "rad", "mrad", 1e3, ENSEMBLE_RESULTS, now["jump_quantile_rad"], wanted,
+        "rad", "mrad", 1e3, ENSEMBLE_RESULTS, now["jump_quantile_rad"], wanted, "|θ2 − θ2(0)| [mrad]", LINES,
     )
-    result.static_deflection_rad = static_deflection_rad(case)
+    result.floor = (SPRING, "static deflection, rigid links", static_deflection_rad(case))
     for key, label, unit, scale, own, values, axis in plan:
         rows = []
         for value in values:
@@ -180,7 +193,7 @@ def study(
     )
     if with_dem:
         dem_runs = min(runs, case.ensemble.dem_runs)
-        _ensemble_dem(case, result, dem_runs, lambda part: progress(0.7 + 0.3 * part))
+        _ensemble_dem(case, result, dem_runs, lambda part: tell(0.7 + 0.3 * part))
     return result
 
 
@@ -189,14 +202,14 @@ class SpringFound:
     """Smallest spring that passes on a fixed ensemble."""
 
     stiffness: float
-    below: Optional[float]  # a spring just below it that fails; None: it is the smallest scanned
+    below: float | None  # a spring just below it that fails; None: it is the smallest scanned
     up_to: float  # every scanned spring from it to here passes
     passes_all_stiffer: bool
 
 
 def smallest_spring(
     passes: Callable[[float], bool], scanned: Iterable[float]
-) -> Optional[SpringFound]:
+) -> SpringFound | None:
     """Scan, then bisect below the first spring that passes; None: none does.
 
     A statistic of chaotic runs need not fall with the spring: what is found is the edge next to the
@@ -224,7 +237,7 @@ def _ensemble_springs(measured: _Ensembles, result: Study, wanted: float) -> Non
     sweep = result.sweep(SPRING)
     # Those that the sweep could not run fail; the recommended one is not scanned.
     scanned = [row.value for row in sweep.rows if row.results]
-    static = result.static_deflection_rad or 0.0
+    static = result.floor[2] if result.floor is not None else 0.0
     asked = f"{number(wanted * 1e3)} mrad"
     beyond = (
         f"the 95 % quantile of the largest |deflection| less its static value {number(static * 1e3)} mrad "
@@ -281,18 +294,18 @@ def _ensemble_springs(measured: _Ensembles, result: Study, wanted: float) -> Non
             sweep.recommended = found.stiffness
 
 
-def _ensemble_dem(case: UmbrellaCase, result: Study, runs: int, progress: Progress) -> None:
+def _ensemble_dem(case: UmbrellaCase, result: Study, runs: int, tell: Tell) -> None:
     spring = result.sweep(SPRING)
     points = sorted({spring.own, spring.own if spring.recommended is None else spring.recommended})
     done = [0]
 
     def step() -> None:
         done[0] += 1
-        progress(done[0] / (runs * len(points)))
+        tell(done[0] / (runs * len(points)))
 
     wanted = result.wanted or 0.0
     for stiffness in points:
-        together = dem.ensemble(model.changed(case, {SPRING: stiffness}), runs, step)
+        together = dem.ensemble(with_values(case, {SPRING: stiffness}), runs, step)
         deflection = np.max(np.abs(together.deflection_rad), axis=1)
         jump = quantile(together.jump_rad)
         reduced = spring.row(stiffness).results

@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from collections.abc import Callable
 from math import pi
-from typing import Any, Callable, Optional
+from typing import Any
 
 import numpy as np
 
 from statejump import _engine, laws
-from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.control.study import Progress, Row, Study, Sweep, bisect, grid, number, ranges_that_pass
-from statejump.kinds.umbrella.control import AREA, BIAS, CLEARANCE, FRICTION, SPRING, changes, most_friction
+from statejump.control.study import Line, Row, Study, Sweep, bisect, grid, highest, number, ranges_that_pass
 from statejump.core.errors import StatejumpError
-from statejump.kinds.spring_slider.reduced import thermal_program
+from statejump.core.progress import Tell
 from statejump.kinds.umbrella import dem, reduced as model
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.kinds.umbrella.control import AREA, BIAS, CLEARANCE, FRICTION, SPRING, changes
+from statejump.schema.paths import with_values
 
 
 @dataclass(frozen=True)
 class LoadedJump:
     """Quasi-static jump of one design; None: the joint does not stay in contact, or no equilibrium."""
 
-    rigid_rad: Optional[float]
-    elastic_rad: Optional[float]
+    rigid_rad: float | None
+    elastic_rad: float | None
     slips_rigid: bool
     slips_elastic: bool
     note: str
@@ -30,7 +32,7 @@ class LoadedJump:
     elastic: Any  # its path, if it has one
 
     @property
-    def size_rad(self) -> Optional[float]:
+    def size_rad(self) -> float | None:
         """Jump by the better model that there is."""
         return self.elastic_rad if self.has_elastic else self.rigid_rad
 
@@ -57,7 +59,7 @@ def loaded_jump(case: UmbrellaCase) -> LoadedJump:
     """
     notes: list[str] = []
 
-    def path(compute: Callable[[], Any]) -> tuple[Any, Optional[float], bool]:
+    def path(compute: Callable[[], Any]) -> tuple[Any, float | None, bool]:
         try:
             loop = compute()
         except _engine.EngineFailure as problem:
@@ -71,7 +73,7 @@ def loaded_jump(case: UmbrellaCase) -> LoadedJump:
         jump = abs(loop.theta2_jump_rad)
         return loop, (0.0 if jump < 1e-14 else jump), _slips(loop)
 
-    program, angle = thermal_program(case), case.start.contact_angle_rad
+    program, angle = case.thermal_program(), case.start.contact_angle_rad
     _, rigid, slips_rigid = path(lambda: _engine.joint_loop(model.linkage(case), program, angle, 100))
     elastic, jump, slips, covered = None, None, False, has_elastic_loop(case)
     if covered:
@@ -82,7 +84,7 @@ def loaded_jump(case: UmbrellaCase) -> LoadedJump:
     return LoadedJump(rigid, jump, slips_rigid, slips, "; ".join(dict.fromkeys(notes)), covered, elastic)
 
 
-def smallest_friction_that_rolls(case: UmbrellaCase) -> Optional[float]:
+def smallest_friction_that_rolls(case: UmbrellaCase) -> float | None:
     """Smallest μ with which the loaded joint never slips, by no model; None: the largest allowed slips.
 
     A path without slip is the same for every larger μ, so the property has one threshold, here to
@@ -90,10 +92,10 @@ def smallest_friction_that_rolls(case: UmbrellaCase) -> Optional[float]:
     """
 
     def rolls(friction: float) -> bool:
-        jump = loaded_jump(model.changed(case, {FRICTION: friction}))
+        jump = loaded_jump(with_values(case, {FRICTION: friction}))
         return jump.size_rad is not None and not jump.slips_rigid and not jump.slips_elastic
 
-    most = most_friction()
+    most = highest(case, FRICTION)
     return bisect(rolls, abs(np.tan(case.start.contact_angle_rad)), most, 1e-9)[1] if rolls(most) else None
 
 
@@ -124,11 +126,15 @@ LOADED_RESULTS = {
     "jump_elastic_rad": "elastic links, |jump| [µrad]",
     "jump_rigid_rad": "rigid links, |jump| [µrad]",
 }
+LINES: dict[str, Line] = {
+    "jump_elastic_rad": ("elastic links", dict(color="#E69F00", linewidth=4.0, solid_capstyle="round")),
+    "jump_rigid_rad": ("rigid links", dict(color="#000000", linewidth=1.2, linestyle=(0, (5, 2)))),
+}
 LARGEST_STRAIN = 0.01  # of the links; beyond it small strain, on which the model rests, is gone
 
 
 def _loaded_row(case: UmbrellaCase, parameter: str, value: float) -> Row:
-    design = model.changed(case, changes(case, parameter, value))
+    design = with_values(case, changes(case, parameter, value))
     jump = loaded_jump(design)
     note = jump.note
     if not note:
@@ -138,7 +144,7 @@ def _loaded_row(case: UmbrellaCase, parameter: str, value: float) -> Row:
     return Row(value, {"jump_elastic_rad": jump.elastic_rad, "jump_rigid_rad": jump.rigid_rad}, note)
 
 
-def _loaded_size(case: UmbrellaCase, row: Row) -> Optional[float]:
+def _loaded_size(case: UmbrellaCase, row: Row) -> float | None:
     """Jump by the better model that there is [rad]."""
     return row.results.get("jump_elastic_rad" if has_elastic_loop(case) else "jump_rigid_rad")
 
@@ -148,7 +154,7 @@ def _loaded_sweeps(case: UmbrellaCase) -> list[Sweep]:
     stiffness, bias = case.torsion_spring.stiffness_N_m_per_rad, case.torsion_spring.bias_rad
     area = case.link_ab.cross_section_area_m2
     start = abs(np.tan(case.start.contact_angle_rad))
-    most = min(most_friction(), max(1.5 * (smallest_friction_that_rolls(case) or 1.0), 1.2 * friction))
+    most = min(highest(case, FRICTION), max(1.5 * (smallest_friction_that_rolls(case) or 1.0), 1.2 * friction))
     frictions = sorted({start, friction, *np.linspace(start, most, 60)[1:].tolist()})
     room = pi - case.flare_angle_rad if bias > 0 else case.flare_angle_rad
     # Half-way to where the links would be in line.
@@ -172,23 +178,22 @@ def _loaded_sweeps(case: UmbrellaCase) -> list[Sweep]:
     ]
 
 
-def study(case: UmbrellaCase, wanted: Optional[float], with_dem: bool, progress: Progress) -> Study:
+def study(case: UmbrellaCase, wanted: float | None, with_dem: bool, tell: Tell) -> Study:
     """Study a joint that a biased spring loads from the start."""
     now = loaded_jump(case)
     if now.size_rad is None:
-        raise StatejumpError(f"case {case.name}: there is no quasi-static jump to control: {now.note}")
+        raise StatejumpError("there is no quasi-static jump to control", case=case.name, cause=now.note)
     if wanted is None and now.size_rad > 0:
         wanted = now.size_rad / 2
     links = (
         "elastic links and Hertz contact, rigid links beside it" if now.has_elastic else "rigid links"
     )
     result = Study(
-        "loaded",
         f"a biased torsion spring loads the joint: jump of theta2 on the quasi-static path, exact Coulomb "
         f"friction, {links}",
         "rad", "µrad", 1e6,
         LOADED_RESULTS if now.has_elastic else {"jump_rigid_rad": LOADED_RESULTS["jump_rigid_rad"]},
-        now.size_rad, wanted,
+        now.size_rad, wanted, "|Jump of θ2| [µrad]", LINES, logarithmic=False,
     )
     result.sweeps = _loaded_sweeps(case)
     if not now.has_elastic:
@@ -209,7 +214,7 @@ def study(case: UmbrellaCase, wanted: Optional[float], with_dem: bool, progress:
             _loaded_ranges(case, sweep, wanted)
         _loaded_spring(case, result, wanted)
     if with_dem:
-        _loaded_dem(case, result, progress)
+        _loaded_dem(case, result, tell)
     return result
 
 
@@ -226,9 +231,9 @@ def _loaded_friction(case: UmbrellaCase, result: Study) -> None:
     rolls = smallest_friction_that_rolls(case)
     result.recommendation["smallest_friction_coefficient_without_slip"] = rolls
     if rolls is None:
-        result.sentences.append(f"The joint slips with every friction coefficient up to {most_friction():g}.")
+        result.sentences.append(f"The joint slips with every friction coefficient up to {highest(case, FRICTION):g}.")
         return
-    left = loaded_jump(model.changed(case, {FRICTION: rolls})).size_rad or 0.0
+    left = loaded_jump(with_values(case, {FRICTION: rolls})).size_rad or 0.0
     result.recommendation["jump_without_slip_rad"] = left
     sweep = result.sweep(FRICTION)
     sweep.recommended = rolls
@@ -259,15 +264,14 @@ def _loaded_spring(case: UmbrellaCase, result: Study, wanted: float) -> None:
     upwards = [ends for ends in sweep.meets if ends[0] > sweep.own]
     if not upwards:
         usable = [row for row in sweep.rows if _loaded_size(case, row) is not None]
-        best = min(usable, key=lambda row: _loaded_size(case, row))
+        left, best = min(((_loaded_size(case, row) or 0.0, row) for row in usable), key=lambda pair: pair[0])
         result.sentences.append(
             f"No torsion spring from {number(usable[0].value)} to {number(usable[-1].value)} N m/rad keeps "
-            f"it at or below {asked}: the best, {number(best.value)} N m/rad, leaves "
-            f"{number(_loaded_size(case, best) * 1e6)} µrad."
+            f"it at or below {asked}: the best, {number(best.value)} N m/rad, leaves {number(left * 1e6)} µrad."
         )
         return
     stiffness = upwards[0][0]
-    design = model.changed(case, {SPRING: stiffness})
+    design = with_values(case, {SPRING: stiffness})
     jump = loaded_jump(design)
     sweep.recommended = stiffness
     sweep.insert(_loaded_row(case, SPRING, stiffness))
@@ -286,25 +290,25 @@ def _loaded_spring(case: UmbrellaCase, result: Study, wanted: float) -> None:
     result.sentences.append(sentence + ".")
 
 
-def _loaded_dem(case: UmbrellaCase, result: Study, progress: Progress) -> None:
+def _loaded_dem(case: UmbrellaCase, result: Study, tell: Tell) -> None:
     points: list[tuple[str, float]] = [(SPRING, result.sweep(SPRING).own)]
     for sweep in (result.sweep(SPRING), result.sweep(FRICTION)):
         if sweep.recommended is not None:
             points.append((sweep.parameter, sweep.recommended))
-    designs = [model.changed(case, {key: value}) for key, value in points]
+    designs = [with_values(case, {key: value}) for key, value in points]
     done = [0]
 
     def step() -> None:
         done[0] += 1
-        progress(done[0] / len(points))
+        tell(done[0] / len(points))
 
     for (key, value), design, run in zip(points, designs, dem.execute_all(designs, step)):
-        angle = run.history["theta2_rad"]
-        jump = abs(float(angle[-1] - angle[0]))
+        jump = abs(run.summary["theta2_jump_rad"])
         exact = loaded_jump(design).size_rad
         result.dem.append({key: value, "reduced_jump_rad": exact, "dem_jump_rad": jump})
         result.remarks.append(
-            f"DEM with {key} = {value:.6g}: jump {number(jump * 1e6)} µrad, reduced model {number(exact * 1e6)} µrad"
+            f"DEM with {key} = {value:.6g}: jump {number(jump * 1e6)} µrad, reduced model "
+            f"{number(None if exact is None else exact * 1e6)} µrad"
         )
         for sweep in result.sweeps if (key, value) == points[0] else [result.sweep(key)]:
             sweep.row(sweep.own if (key, value) == points[0] else value).dem_jump = jump

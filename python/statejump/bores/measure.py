@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a bore given by triangles is: radius, roundness, lobes, clearance."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from statejump import _engine
+from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.tables import Shown
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+ANGLES = 1024  # samples around a section
+SECTIONS = 5  # along the bore
+HARMONICS = range(2, 13)
+MARGIN = 0.05  # of the length that the end sections stay away from the ends
+
+
+@dataclass(frozen=True)
+class Section:
+    """Roundness of the bore at one place along its axis, about its own circle of least squares."""
+
+    z_m: float  # from the wall's middle
+    mean_radius_m: float
+    offset_m: tuple[float, float]  # centre of the circle from the axis
+    deviation_m: np.ndarray  # of the radius from the circle, at ANGLES equal angles
+    amplitude_m: np.ndarray  # of HARMONICS
+    phase_rad: np.ndarray  # of HARMONICS: the angle of largest radius, in [0, 2 pi/harmonic)
+
+    @property
+    def roundness_error_m(self) -> float:
+        """Peak to valley of the radius about the circle of least squares (ISO 12181)."""
+        return float(np.ptp(self.deviation_m))
+
+
+def angles_rad() -> np.ndarray:
+    """Angles of a section's samples."""
+    return 2 * np.pi * np.arange(ANGLES) / ANGLES
+
+
+def section(mesh: _engine.BoreMesh, z_m: float) -> Section:
+    """Measure a section; StatejumpError where the wall has gaps."""
+    radii = mesh.section_radii_m(z_m, ANGLES)
+    if not np.all(np.isfinite(radii)):
+        missing = float(np.degrees(angles_rad()[int(np.argmin(np.isfinite(radii)))]))
+        raise StatejumpError(
+            f"the bore's section at {z_m:.6g} m from its middle has no wall at {missing:.1f} degrees"
+        )
+    angle = angles_rad()
+    points = radii[:, None] * np.column_stack((np.cos(angle), np.sin(angle)))
+    centre = np.zeros(2)
+    for _ in range(20):  # Gauss-Newton on the distances from the circle
+        away = points - centre
+        distance = np.linalg.norm(away, axis=1)
+        rows = np.column_stack((away / distance[:, None], np.ones(ANGLES)))
+        step = np.linalg.lstsq(rows, distance, rcond=None)[0]
+        centre = centre + step[:2]
+        if np.linalg.norm(step[:2]) < 1e-15 * distance[0]:
+            break
+    # About the circle's centre the same samples lie at uneven angles: resampled along the wave,
+    # which is smooth and periodic.
+    away = points - centre
+    around = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
+    distance = np.linalg.norm(away, axis=1)
+    even = _resample(around, distance, angle)
+    mean = float(np.mean(even))
+    spectrum = np.fft.rfft(even - mean) / ANGLES * 2
+    chosen = spectrum[list(HARMONICS)]
+    orders = np.array(HARMONICS)
+    phase = np.mod(-np.angle(chosen), 2 * np.pi) / orders
+    return Section(z_m, mean, (float(centre[0]), float(centre[1])), even - mean, np.abs(chosen), phase)
+
+
+def _resample(around: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Values at other angles, by a periodic cubic spline."""
+    closed_angles = np.append(around, around[0] + 2 * np.pi)
+    spline = CubicSpline(closed_angles, np.append(values, values[0]), bc_type="periodic")
+    values_there: np.ndarray = spline(around[0] + np.mod(wanted - around[0], 2 * np.pi))
+    return values_there
+
+
+@dataclass(frozen=True)
+class Bore:
+    """What is known of a bore.
+
+    :param name: for tables and figures: the file
+    :param mesh: the fitted wall: axis, mean radius, curvatures
+    :param sections: roundness at SECTIONS places along the axis
+    :param journal_radius_m: radius of the journal that goes into it [m]; None: no clearance
+    """
+
+    name: str
+    mesh: _engine.BoreMesh
+    sections: tuple[Section, ...]
+    journal_radius_m: float | None
+
+    @property
+    def middle(self) -> Section:
+        """The section half-way along the wall."""
+        return self.sections[len(self.sections) // 2]
+
+    @property
+    def cylindricity_m(self) -> float:
+        """Peak to valley of the radius about the cylinder of least squares, over all sections."""
+        radii = np.concatenate([self.mesh.section_radii_m(s.z_m, ANGLES) for s in self.sections])
+        return float(np.ptp(radii))
+
+    @property
+    def smallest_radius_m(self) -> float:
+        """Of all sections about the fitted axis."""
+        return min(float(np.min(self.mesh.section_radii_m(s.z_m, ANGLES))) for s in self.sections)
+
+    @property
+    def dominating_harmonic(self) -> int | None:
+        """Waves per turn of the largest lobes of the middle section; None below the mesh's error."""
+        largest = int(np.argmax(self.middle.amplitude_m))
+        if self.middle.amplitude_m[largest] <= self.mesh.reconstruction_error_m:
+            return None
+        return HARMONICS[largest]
+
+    @property
+    def clearance_m(self) -> float | None:
+        """Radial clearance to the journal, of the radius of least squares [m]; None: no journal."""
+        return None if self.journal_radius_m is None else self.mesh.mean_radius_m - self.journal_radius_m
+
+    @property
+    def smallest_clearance_m(self) -> float | None:
+        """Smallest radial clearance of a journal on the axis [m]; None: no journal."""
+        return None if self.journal_radius_m is None else self.smallest_radius_m - self.journal_radius_m
+
+    def frame(self) -> pandas.DataFrame:
+        """Return a row per section, from one end to the other, units in the names of the columns: place along the
+        axis from the middle, radius and centre of the circle of least squares, roundness error, and of every
+        harmonic amplitude and the angle of its largest radius."""
+        import pandas
+
+        rows = []
+        for each in self.sections:
+            row = {"z_m": each.z_m, "mean_radius_m": each.mean_radius_m, "offset_x_m": each.offset_m[0],
+                   "offset_y_m": each.offset_m[1], "roundness_error_m": each.roundness_error_m}
+            for order, amplitude, phase in zip(HARMONICS, each.amplitude_m, each.phase_rad):
+                row |= {f"harmonic_{order}_amplitude_m": float(amplitude), f"harmonic_{order}_phase_rad": float(phase)}
+            rows.append(row)
+        return pandas.DataFrame(rows)
+
+    def plot(self, axes: tuple[Axes, Axes] | None = None) -> Figure:
+        """Draw sections, their deviations magnified, and the harmonics of the middle one.
+
+        :param axes: axes to draw into, for the sections and for the harmonics; None: a new figure
+        :return: the figure; matplotlib's backend is left alone
+        """
+        from statejump.bores import picture
+
+        return picture.drawn(self, axes)
+
+    def told(self) -> list[Shown | str]:
+        """Return what a command prints of it."""
+        from statejump.bores import words
+
+        return words.told(self)
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write ``bore.csv`` and the picture into a folder; return the paths."""
+        from statejump.bores import picture, words
+        from statejump.core.figures import save
+
+        return [words.write(self, folder), *save(picture.drawn(self), folder, "roundness")]
+
+    def __repr__(self) -> str:
+        return f"Bore({self.name!r}, mean radius {self.mesh.mean_radius_m:.6g} m, {self.mesh.face_count:,} faces)"
+
+    def _repr_html_(self) -> str:
+        from statejump.bores import words
+
+        return words.html(self)
+
+
+# How a failure of each kind is cured: the sentence, and the setting that does it.
+CURES = {"inside_out": ("; {} turns it", "flip=True"), "too_large": (" Then use {}", "unit_m=0.001")}
+
+
+class NoBore(StatejumpError):
+    """A file, or its mesh, is no bore that can be measured.
+
+    :param what: what is wrong with it
+    :param fault: the kind of failure
+    """
+
+    def __init__(self, what: str, *, fault: str = "", file: object = None) -> None:
+        super().__init__(what, file=file, remedy=CURES[fault][1] if fault in CURES else None)
+        self.fault = fault
+
+    def __str__(self) -> str:
+        said = f"{self.file}: {self.what}" if self.file else self.what
+        return said + CURES[self.fault][0].format(self.remedy) if self.remedy else said
+
+
+def load(file: Path, unit_m: float = 1.0, flip: bool = False) -> _engine.BoreMesh:
+    """Read the wall of a bore.
+
+    :param unit_m: length of one unit of the file [m]
+    :param flip: turn every face over
+    :raises NoBore: it is none
+    """
+    try:
+        return _engine.BoreMesh.read(str(file), scale=unit_m, flip=flip)
+    except _engine.EngineFailure as failure:
+        what = failure.cause if failure.file else str(failure)
+        raise NoBore(what, fault=failure.kind, file=failure.file or None) from None
+
+
+def check_journal(key: str, radius_m: float | None) -> None:
+    """Raise NotAllowed for a radius of a journal that is none; None: there is no journal."""
+    if radius_m is not None and not 0 < radius_m < float("inf"):
+        raise NotAllowed(key, radius_m, "must be a number above 0 [m]")
+
+
+def measure(mesh: _engine.BoreMesh, name: str, journal_radius_m: float | None = None) -> Bore:
+    """Measure a bore at SECTIONS places.
+
+    :raises NotAllowed: there is no such journal
+    :raises NoBore: the wall has gaps, or its radius is far from the journal's
+    """
+    check_journal("journal_radius_m", journal_radius_m)
+    if journal_radius_m is not None:
+        ratio = mesh.mean_radius_m / journal_radius_m
+        if not 0.1 < ratio < 10:
+            raise NoBore(
+                f"the bore's mean radius {mesh.mean_radius_m:.6g} m is {ratio:.3g} times the journal's "
+                f"{journal_radius_m:.6g} m: are the coordinates in millimetres?", fault="too_large", file=name,
+            )
+    half = (0.5 - MARGIN) * mesh.length_m
+    sections = tuple(section(mesh, float(z)) for z in np.linspace(-half, half, SECTIONS))
+    return Bore(name, mesh, sections, journal_radius_m)
+
+
+def measured(
+    path: Path, *, unit_m: float = 1.0, journal_radius_m: float | None = None, flip: bool = False
+) -> Bore:
+    """Read a bore and measure it; see :func:`statejump.bores`."""
+    mesh = load(Path(path), unit_m, flip)
+    try:
+        return measure(mesh, str(path), journal_radius_m)
+    except StatejumpError as failure:
+        raise failure.located(file=path) from None

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Samples of a campaign in batches on a Dask cluster."""
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TypeVar
+
+from statejump.campaign.batches import Batches
+from statejump.campaign.cluster import open_client
+from statejump.campaign.plan import Recipe
+from statejump.campaign.work import Batch, Sample, batch_of, run_samples
+from statejump.core.errors import StatejumpError
+
+from distributed import Client, Future, KilledWorker, wait  # noqa: E402, after cluster set it up
+
+QUEUED = 2  # tasks per worker, so that none waits for the next
+LOOK_S = 5.0  # how often workers are counted while none of them has finished a task
+NO_WORKERS_S = 60.0  # how long a cluster whose workers are all gone is waited for
+KEPT = "finished samples are kept, the same command goes on with the others"
+
+
+@dataclass(frozen=True)
+class Workers:
+    """A cluster that is ready.
+
+    :param count: samples that it runs at the same time
+    :param run: yields finished batches of the samples with these numbers, and the seconds that each took
+    """
+
+    count: int
+    run: Callable[[list[int]], Iterator[tuple[float, Batch]]]
+
+
+@contextmanager
+def workers_for(recipe: Recipe, scheduler: str | None, workers: int) -> Iterator[Workers]:
+    """Yield a cluster for a campaign; at the end everything that was started here is ended.
+
+    :param scheduler: address of a scheduler that runs already; None: a cluster on this machine
+    :param workers: processes of that cluster
+    """
+    with open_client(scheduler, workers, recipe.model) as client:
+        yield Workers(_slots(client), lambda missing: _finished(client, recipe, missing))
+
+
+def _slots(client: Client) -> int:
+    workers = client.scheduler_info()["workers"].values()
+    return max(1, sum(int(worker["nthreads"]) for worker in workers))
+
+
+def _finished(
+    client: Client, recipe: Recipe, missing: list[int]
+) -> Iterator[tuple[float, Batch]]:
+    """Yield finished batches. Samples whose worker died go one by one, each alone, at the end: only a
+    sample that kills its worker also then is to blame."""
+    batches = Batches(missing, recipe.model, QUEUED)
+    running: set[Future] = set()
+    asked: dict[str, list[int]] = {}
+    suspects: list[int] = []
+
+    def submit() -> bool:
+        batch = batches.next(_slots(client))
+        if batch:
+            future = client.submit(run_samples, recipe, batch, pure=False)
+            asked[future.key] = batch
+            running.add(future)
+        return bool(batch)
+
+    while len(asked) < QUEUED * _slots(client) and submit():
+        pass
+    while running:
+        for future in _some_of(client, running):
+            running.remove(future)
+            batch = asked.pop(future.key)
+            answer = _answer(client, future)
+            future.release()
+            if answer is None:
+                suspects += batch
+            else:
+                batches.learn(len(batch), answer[0])
+                yield answer
+        while len(asked) < QUEUED * _slots(client) and submit():
+            pass
+    for index in suspects:
+        future = client.submit(run_samples, recipe, [index], pure=False)
+        lost = Sample(index, None, "the run ended its worker process, time and again")
+        yield _answer(client, future) or (0.0, batch_of([lost], len(recipe.outcomes)))
+
+
+Given = TypeVar("Given")
+
+
+def _patiently(client: Client, ask: Callable[[], Given]) -> Given:
+    """Ask until there is an answer; TimeoutError means not yet. :raises StatejumpError: the cluster is gone, or
+    all its workers have been for too long"""
+    alone_since: float | None = None
+    while True:
+        try:
+            return ask()
+        except TimeoutError:
+            now = time.monotonic()
+            alone_since = None if client.scheduler_info()["workers"] else alone_since or now
+            if alone_since is not None and now - alone_since >= NO_WORKERS_S:
+                raise StatejumpError(f"the dask scheduler has had no workers for {NO_WORKERS_S:g} s; {KEPT}") from None
+        except (CancelledError, OSError) as problem:
+            lost = f"the connection to the dask scheduler was lost ({type(problem).__name__})"
+            raise StatejumpError(f"{lost}; {KEPT}") from None
+
+
+def _some_of(client: Client, running: set[Future]) -> set[Future]:
+    """Wait for at least one future. :raises StatejumpError: see :func:`_patiently`"""
+    with client.as_current():
+        return set(_patiently(client, lambda: wait(running, timeout=LOOK_S, return_when="FIRST_COMPLETED")).done)
+
+
+def _answer(client: Client, future: Future) -> tuple[float, Batch] | None:
+    """Result of a batch; None: its worker died. A result is lost with the worker that has it, and is then
+    computed again. :raises StatejumpError: see :func:`_patiently`"""
+    try:
+        return _patiently(client, lambda: future.result(timeout=LOOK_S))
+    except KilledWorker:
+        return None

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a campaign runs: a case, which of its keys vary and how, in which model."""
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from statejump import __version__
+from statejump.campaign.sampling import Random, Values, Varied, montecarlo_draws, montecarlo_values, sweep_values
+from statejump.core.case import Case
+from statejump.core.units import unit_of
+from statejump.kinds import registered
+from statejump.schema.fields import rule_of
+from statejump.schema.paths import attribute_of, filled
+
+MONTECARLO, SWEEP = "montecarlo", "sweep"
+MOST_SAMPLES = 10_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recipe:
+    """What a worker needs to run samples.
+
+    :param command: ``montecarlo`` or ``sweep``
+    :param model: ``reduced`` or ``dem``
+    :param case_data: the case as in its file, without what it leaves out
+    :param vary: what varies
+    :param seed: of the random numbers; None in a sweep
+    :param outcomes: names of what is recorded of a run, in the order of the table
+    :param kinds: where the kinds are that are not the project's own
+    """
+
+    command: str
+    model: str
+    case_data: Mapping[str, Any]
+    vary: tuple[Varied, ...]
+    seed: int | None
+    outcomes: tuple[str, ...]
+    kinds: tuple[str, ...]
+
+    def _random(self) -> tuple[tuple[Random, ...], int]:
+        assert self.seed is not None
+        return tuple(item for item in self.vary if not isinstance(item, Values)), self.seed
+
+    def _grid(self) -> tuple[Values, ...]:
+        return tuple(item for item in self.vary if isinstance(item, Values))
+
+    def values(self, index: int) -> list[float]:
+        """Return the values of sample ``index``, one per varied parameter."""
+        if self.command == SWEEP:
+            return sweep_values(self._grid(), index)
+        return montecarlo_values(*self._random(), index)
+
+    def data(self, index: int) -> dict[str, Any]:
+        """Return the case file of sample ``index``, parsed but not checked."""
+        pairs: list[tuple[Any, float]]
+        if self.command == SWEEP:
+            pairs = list(zip(self._grid(), self.values(index)))
+        else:
+            pairs = list(montecarlo_draws(*self._random(), index))
+        return filled(self.case_data, [(path, value) for item, value in pairs for path in item.keys])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plan(Recipe):
+    """A checked campaign.
+
+    :param name: of the campaign and of its results folder
+    :param title: one line for figures
+    :param case: the case without variation
+    :param samples: how many there are
+    :param file: the campaign file; None: it was made in Python
+    :param text: the file as read
+    """
+
+    name: str
+    title: str
+    case: Case
+    samples: int
+    file: Path | None = None
+    text: str = ""
+
+    @property
+    def recipe(self) -> Recipe:
+        """What travels to the workers; the case itself does not."""
+        return Recipe(**{item.name: getattr(self, item.name) for item in fields(Recipe)})
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of every outcome, in the order of the table."""
+        return {name: unit_of(name) for name in self.outcomes}
+
+    def unit_of(self, path: str) -> str:
+        """Return the unit of a varied key."""
+        return rule_of(attribute_of(type(self.case), path)).unit or "-"
+
+    @property
+    def key(self) -> str:
+        """SHA-256 of all that a sample depends on. Name, title and number of samples are not in it:
+        a campaign may be extended."""
+        resolved = {
+            "version": __version__, "command": self.command, "model": self.model, "seed": self.seed,
+            "case": self.case.to_dict(), "vary": [asdict(parameter) for parameter in self.vary],
+        }
+        return hashlib.sha256(json.dumps(resolved, sort_keys=True).encode()).hexdigest()
+
+
+def plan_of(
+    case: Case, *, command: str, model: str, vary: tuple[Varied, ...], samples: int, seed: int | None, name: str,
+    title: str = "", file: Path | None = None, text: str = "",
+) -> Plan:
+    """Return the plan of a campaign whose parts are checked."""
+    return Plan(
+        command=command, model=model, case_data=case.origin.data, vary=vary, seed=seed,
+        outcomes=case.behaviour.OUTCOMES, kinds=tuple(registered()), name=name, title=title or name, case=case,
+        samples=samples, file=file, text=text,
+    )

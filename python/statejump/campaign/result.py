@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A finished campaign: its table, its statistics, its figures, its files."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from statejump.campaign import execute
+from statejump.campaign.execute import Statistics
+from statejump.campaign.journal import Journal, Kept
+from statejump.campaign.plan import Plan
+from statejump.campaign.summary import COLUMNS, shown, summary, write_summary
+from statejump.campaign.tables import Table, make_table, write_csv, write_hdf5
+from statejump.core.errors import Interrupted
+from statejump.core.progress import Tell
+from statejump.core.tables import Shown, write_json
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.figure import Figure
+
+    from statejump.case import Case
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """A case that was run many times.
+
+    :param plan: what was run
+    :param table: varied keys and outcomes of every sample
+    :param done: how it was run: workers, seconds
+    """
+
+    plan: Plan
+    table: Table
+    done: Statistics
+
+    @property
+    def name(self) -> str:
+        """Name of the campaign and of its results folder."""
+        return self.plan.name
+
+    @property
+    def case(self) -> Case:
+        """The case without variation."""
+        from statejump.case import Case
+
+        return Case(self.plan.case)
+
+    def __len__(self) -> int:
+        return self.plan.samples
+
+    def frame(self) -> pandas.DataFrame:
+        """Return a row per sample: varied keys, outcomes with their units in the names, and ``error``, why a sample
+        failed. NaN: it did not happen, or the sample failed."""
+        return self.table.frame()
+
+    @cached_property
+    def _summary(self) -> dict[str, Any]:
+        return summary(self.plan, self.table)
+
+    def summary(self) -> dict[str, Any]:
+        """Return mean, standard deviation, quantiles and extremes of every outcome and every varied key, rank
+        correlations, and failures by their kind."""
+        return self._summary
+
+    @property
+    def failed(self) -> int:
+        """Samples that failed."""
+        return int(self.table.failed.sum())
+
+    def plot(self, name: str | None = None) -> Figure:
+        """Draw the campaign: outcomes along the grid of a sweep, or the distributions of random samples.
+
+        :param name: ``distributions`` or ``correlations`` of random samples, ``sweep`` of a grid
+        :raises ValueError: there is no such figure, or every sample failed
+        """
+        from statejump.campaign.plots import figures
+
+        found = figures(self.plan, self.table)
+        if not found:
+            raise ValueError("nothing to draw: every sample failed")
+        if name is not None and name not in found:
+            raise ValueError(f"name = {name!r} is not allowed: must be {' or '.join(map(repr, found))}")
+        return found[name or next(iter(found))]
+
+    def told(self) -> list[Shown | str]:
+        """Return what a command prints of it, tables and lines."""
+        found, done = self.summary(), self.done
+        rows = [(name, *(shown(entry[key]) for key in COLUMNS)) for name, entry in found["outcomes"].items()]
+        lines: list[Shown | str] = [
+            Shown(self.plan.title, ("outcome", *COLUMNS.values()), rows, left=("outcome",))
+        ]
+        if done.already_there:
+            lines.append(f"{done.already_there:,} samples were there already")
+        if done.run_now:
+            lines.append(
+                f"{done.run_now:,} samples in {done.wall_time_s:.2f} s on {done.workers} worker(s), "
+                f"{shown(done.samples_per_second)} per second; {len(done.batch_sizes)} tasks of up to "
+                f"{max(done.batch_sizes)} samples"
+            )
+        return lines + [f"failed: {entry['samples']:,} sample(s): {entry['sentence']}" for entry in found["failures"]]
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write tables, summary, figures and how the last run went; return the paths of the results."""
+        from statejump.campaign.plots import figures
+        from statejump.core.figures import save
+
+        csv, hdf5 = folder / "samples.csv", folder / "samples.h5"
+        write_csv(self.table, csv)
+        write_hdf5(self.plan, self.table, hdf5)
+        written = [csv, hdf5, *write_summary(self.plan, self.summary(), folder)]
+        for name, figure in figures(self.plan, self.table).items():
+            written += save(figure, folder, name)
+        self._write_run(folder)
+        return written
+
+    def _write_run(self, folder: Path) -> None:
+        """How the last run went; not part of the result, which does not depend on it."""
+        done = self.done
+        write_json(folder / "run.json", {
+            "samples_already_there": done.already_there, "samples_run": done.run_now, "workers": done.workers,
+            "wall_time_s": done.wall_time_s, "worker_time_s": done.worker_time_s,
+            "samples_per_second": done.samples_per_second, "tasks": len(done.batch_sizes),
+            "largest_batch": max(done.batch_sizes, default=0),
+        })
+
+    def __repr__(self) -> str:
+        return f"Campaign({self.plan.command} of {self.plan.case.name!r}, {len(self):,} samples, {self.failed:,} failed)"
+
+    def _repr_html_(self) -> str:
+        from statejump.core.html import table
+
+        found = self.summary()
+        rows = [(name, *(shown(entry[key]) for key in COLUMNS)) for name, entry in found["outcomes"].items()]
+        failures = "".join(
+            f"<p>failed: {entry['samples']:,} sample(s): {escape(entry['sentence'])}</p>" for entry in found["failures"]
+        )
+        title = f"{self.plan.title}: {len(self):,} samples"
+        return f"<h4>{escape(title)}</h4>{table(('outcome', *COLUMNS.values()), rows)}{failures}"
+
+
+def run(plan: Plan, workers: int | None, tell: Tell) -> Campaign:
+    """Run a campaign that leaves no files."""
+    kept = Kept()
+    _check_yade(plan, None)
+    done = execute.run_missing(plan, kept, None, workers, tell)
+    return Campaign(plan, make_table(plan, kept.batches), done)
+
+
+def run_in(
+    plan: Plan, folder: Path, scheduler: str | None, workers: int | None, restart: bool, tell: Tell
+) -> Campaign:
+    """Run what the journal in a folder lacks.
+
+    :raises Interrupted: Ctrl-C; finished samples are kept
+    """
+    _check_yade(plan, scheduler)
+    with Journal(folder, plan, restart) as kept:
+        try:
+            done = execute.run_missing(plan, kept, scheduler, workers, tell)
+        except KeyboardInterrupt:
+            finished = sum(index < plan.samples for index in kept.finished)
+            raise Interrupted(
+                f"interrupted; {finished:,} of {plan.samples:,} samples are kept in {kept.path}, the same command goes "
+                "on with the others"
+            ) from None
+        return Campaign(plan, make_table(plan, kept.batches), done)
+
+
+def _check_yade(plan: Plan, scheduler: str | None) -> None:
+    """Raise FailedRun where the DEM is to run on this machine without YADE: before workers are started."""
+    from statejump.core.yade_process import find_yade
+
+    if plan.model == "dem" and scheduler is None:
+        find_yade()

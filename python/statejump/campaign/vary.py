@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a ``[[vary]]`` table may hold, and what it means for a case: most of its keys depend on each other.
+
+Failures name the key of the table; which table it is says the caller.
+"""
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from statejump.campaign.plan import MONTECARLO, MOST_SAMPLES, SWEEP
+from statejump.campaign.sampling import DISTRIBUTIONS, Distribution, Independent, Values, Varied
+from statejump.core.case import Case
+from statejump.core.errors import MissingKey, NotAllowed, UnknownKey
+from statejump.kinds import kind, kinds_that_can
+from statejump.schema.fields import (
+    CHOICE, Section, choice, definition, fields_of, numbers, parameter, rule_of, text, texts, whole,
+)
+from statejump.schema.paths import EVERY, attribute_of, keys_of, pattern_of, split_path
+from statejump.schema.rules import NUMBER, WHOLE, check_name, suggestion
+
+SPACINGS = ("linear", "log")
+OWN = "section.key as in the case file, of a list section.item.key, * for all items"
+LIKE = "must be section.key as in the case file"
+
+
+def numbers_of(model: type[Case]) -> dict[str, Any]:
+    """Return every key of a kind of case that holds one number, of items of a list as ``section.*.key``."""
+    return {path: key for path, key in keys_of(model).items() if rule_of(key).form in (NUMBER, WHOLE)}
+
+
+def _expression() -> str:
+    """Regular expression of the keys that can vary, for editors."""
+    paths = sorted({path for name in kinds_that_can("outcomes") for path in numbers_of(kind(name).Case)})
+    return "(?:" + "|".join(re.escape(path).replace(r"\*", ".+") for path in paths) + ")"
+
+
+def _free(source: str, *, unit: str = "as key", above: float | None = None) -> Any:
+    """Declare a number without range, in the unit of the varied key."""
+    return parameter(None, unit, -math.inf if above is None else above, math.inf, source, above=above is not None)
+
+
+@definition
+class MonteCarloVary(Section):
+    """A [[vary]] table of a Monte Carlo campaign."""
+
+    key: str = text(..., OWN, pattern=_expression)
+    also: list[str] = texts([], "keys that get the same value", pattern=_expression)
+    distribution: str = choice(..., DISTRIBUTIONS, "of the parameter")
+    mean: float | None = _free("the case's own")
+    standard_deviation: float | None = _free("this or relative", above=0)
+    relative: float | None = _free(
+        "standard deviation, of a uniform distribution the half width, over the mean", unit="-", above=0
+    )
+    low: float | None = _free("no lower limit")
+    high: float | None = _free("no upper limit")
+
+
+@definition
+class SweepVary(Section):
+    """A [[vary]] table of a sweep."""
+
+    key: str = text(..., OWN, pattern=_expression)
+    also: list[str] = texts([], "keys that get the same value", pattern=_expression)
+    values: list[float] | None = numbers(None, "as key", -math.inf, math.inf, "these, or start, stop and count")
+    start: float | None = _free("first value")
+    stop: float | None = _free("last value")
+    count: int | None = whole(None, 2, MOST_SAMPLES, "number of values")
+    spacing: str = choice("linear", SPACINGS, CHOICE)
+
+
+TABLES: dict[str, type[Section]] = {MONTECARLO: MonteCarloVary, SWEEP: SweepVary}
+
+
+def varied(table: Mapping[str, Any], case: Case, command: str) -> Varied:
+    """Return what a table means.
+
+    :param command: ``montecarlo`` or ``sweep``
+    :raises StatejumpError: what is wrong with the table, by the name of its key
+    """
+    known = list(fields_of(TABLES[command]))
+    other = SWEEP if command == MONTECARLO else MONTECARLO
+    for name in table:
+        if name in known:
+            continue
+        if name in fields_of(TABLES[other]):
+            raise NotAllowed(name, beside=f"in a campaign of 'statejump {command}'",
+                             cause=f"it is for 'statejump {other}'")
+        raise UnknownKey(name, **suggestion(name, known))
+    if "key" not in table:
+        raise MissingKey("key", LIKE)
+    main = _checked_path(table["key"], "key", case)
+    also = table.get("also", [])
+    if not isinstance(also, (list, tuple)):
+        raise NotAllowed("also", also, "must be a list of keys that get the same value")
+    keys = (main, *(_checked_path(path, "also", case) for path in also))
+    if command == SWEEP:
+        return _values(table, keys, case)
+    if split_path(main)[1] != EVERY:
+        return _distribution(table, keys, case)
+    for path in keys[1:]:
+        if split_path(path)[:2] != split_path(main)[:2]:
+            raise NotAllowed("also", path, f"items of {main!r} share their values with their own keys")
+    return Independent(keys, tuple(
+        _distribution(table, tuple(path.replace(f".{EVERY}.", f".{item}.", 1) for path in keys), case)
+        for item in _items(case, main)
+    ))
+
+
+def check_apart(found: list[Varied]) -> None:
+    """Raise NotAllowed if the last of the varied parameters has a key in common with itself or another."""
+    taken = [key for parameter in found[:-1] for key in parameter.keys]
+    for key in found[-1].keys:
+        if any(_overlap(key, other) for other in taken) or found[-1].keys.count(key) > 1:
+            raise NotAllowed("key", key, "it varies already")
+
+
+def _overlap(one: str, other: str) -> bool:
+    """Whether two paths have a number of the case in common."""
+    if pattern_of(one) != pattern_of(other):
+        return False
+    return one == other or EVERY in (split_path(one)[1], split_path(other)[1])
+
+
+def _items(case: Case, path: str) -> list[str]:
+    """Names of the items that a path with ``*`` stands for."""
+    return [item.name for item in getattr(case, split_path(path)[0])]
+
+
+def _own_value(case: Case, path: str) -> float | None:
+    """What the case itself says, for ``*`` if its items agree; None: nothing."""
+    section, item, key = split_path(path)
+    if not item:
+        found: float | None = getattr(getattr(case, section), key)
+        return found
+    values = {getattr(one, key) for one in getattr(case, section) if item in (EVERY, one.name)}
+    return values.pop() if len(values) == 1 else None
+
+
+def _checked_path(path: Any, name: str, case: Case) -> str:
+    if not isinstance(path, str):
+        raise NotAllowed(name, path, "must be a text such as 'joint.friction_coefficient'")
+    known = numbers_of(type(case))
+    section, item, _ = split_path(path)
+    if pattern_of(path) in known:
+        names = _items(case, path) if item else []
+        if item and not names:
+            raise NotAllowed(name, path, f"the case has no [[{section}]]")
+        if not item or item == EVERY or item in names:
+            return path
+        raise UnknownKey(name, value=path, cause=f"the case has no {section} {item!r}", remedy=_meant(item, names))
+    if pattern_of(path) in keys_of(type(case)):
+        raise NotAllowed(name, path, "it is not a number")
+    remedy = _meant(path, list(known))
+    raise UnknownKey(name, value=path, beside=f"in a case of kind {case.kind!r}", cause=None if remedy else LIKE,
+                     remedy=remedy)
+
+
+def _meant(word: str, known: list[str]) -> str | None:
+    near = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
+    return f"did you mean {near[0]!r}?" if near else None
+
+
+def _number(table: Mapping[str, Any], name: str, *, above: float | None = None) -> float | None:
+    """Return a finite number of a table; None: it is not there."""
+    if name not in table:
+        return None
+    value = table[name]
+    needs = "must be a finite number" + ("" if above is None else f" above {above:g}")
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise NotAllowed(name, value, needs)
+    if above is not None and not value > above:
+        raise NotAllowed(name, value, needs)
+    return float(value)
+
+
+def _distribution(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -> Distribution:
+    rules = {path: rule_of(attribute_of(type(case), path)) for path in keys}
+    for path, rule in rules.items():
+        if rule.form == WHOLE:
+            raise NotAllowed("key", path, "it is a whole number, only 'statejump sweep' varies it")
+    kind_name = table.get("distribution")
+    if kind_name is None:
+        raise MissingKey("distribution", "must be " + " or ".join(repr(name) for name in DISTRIBUTIONS))
+    check_name("distribution", kind_name, DISTRIBUTIONS)
+    low, high = _number(table, "low"), _number(table, "high")
+    deviation, relative = (_number(table, name, above=0) for name in ("standard_deviation", "relative"))
+    limits = {"low": low, "high": high}
+    bounded = kind_name in ("uniform", "truncated_normal")
+    for name, value in limits.items():
+        if value is not None and not bounded:
+            raise NotAllowed(name, cause=f"a {kind_name} distribution has no limits")
+    if low is not None and high is not None and not low < high:
+        raise NotAllowed("high", high, f"must be above low = {low!r}")
+    if kind_name == "uniform" and relative is None:
+        needs = "a uniform distribution has low and high, or relative"
+        for name in ("mean", "standard_deviation"):
+            if name in table:
+                raise NotAllowed(name, cause=needs)
+        for name, value in limits.items():
+            if value is None:
+                raise MissingKey(name, needs)
+        assert low is not None and high is not None
+        return Distribution(keys, kind_name, low=low, high=high)
+    mean = table.get("mean", _own_value(case, keys[0]))
+    if mean is None:
+        raise MissingKey("mean", f"the case gives no {keys[0]}")
+    rules[keys[0]].check("mean", mean)
+    mean = float(mean)
+    if relative is not None:
+        if mean == 0:
+            raise NotAllowed("relative", relative, "the mean is 0")
+        if deviation is not None:
+            raise NotAllowed("relative", beside="beside standard_deviation")
+        deviation = relative * abs(mean)
+    if deviation is None:
+        raise MissingKey("standard_deviation", "either it or relative is needed, above 0")
+    if kind_name == "uniform":
+        if low is not None or high is not None:
+            raise NotAllowed("relative", beside="beside low and high")
+        return Distribution(keys, kind_name, low=mean - deviation, high=mean + deviation)
+    if kind_name == "lognormal" and not mean > 0:
+        raise NotAllowed("mean", mean, "must be above 0 for a lognormal distribution")
+    if kind_name != "truncated_normal":
+        return Distribution(keys, kind_name, mean, deviation)
+    if low is None and high is None:
+        raise MissingKey("low", "a truncated_normal distribution has low or high or both")
+    found = Distribution(keys, kind_name, mean, deviation, -math.inf if low is None else low,
+                         math.inf if high is None else high)
+    below, up_to, _ = found.probabilities()
+    if not up_to - below > 1e-12:
+        raise NotAllowed("mean", mean, "practically nothing of the normal distribution is left between the limits")
+    return found
+
+
+def _spaced(table: Mapping[str, Any], spacing: str, is_whole: bool) -> list[Any]:
+    """Return the values of a table with start, stop and count."""
+    for name in ("start", "stop", "count"):
+        if name not in table:
+            raise MissingKey(name, "either values, or start, stop and count are needed")
+    start, stop, count = _number(table, "start"), _number(table, "stop"), table["count"]
+    assert start is not None and stop is not None
+    if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MOST_SAMPLES:
+        raise NotAllowed("count", count, f"must be a whole number, between 2 and {MOST_SAMPLES}")
+    if spacing == "log" and not (start > 0 and stop > 0):
+        raise NotAllowed("start", start, "must, as stop, be above 0 for a log spacing")
+    space = np.geomspace if spacing == "log" else np.linspace
+    wanted = [float(value) for value in space(start, stop, count)]
+    return [int(value) if value.is_integer() else value for value in wanted] if is_whole else wanted
+
+
+def _values(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -> Values:
+    rules = [rule_of(attribute_of(type(case), path)) for path in keys]
+    is_whole = rules[0].form == WHOLE
+    spacing = table.get("spacing", "linear")
+    if not isinstance(spacing, str) or spacing not in SPACINGS:
+        raise NotAllowed("spacing", spacing, "must be " + " or ".join(repr(name) for name in SPACINGS))
+    if "values" in table:
+        for name in ("start", "stop", "count"):
+            if name in table:
+                raise NotAllowed(name, beside="beside values")
+        name, wanted = "values", table["values"]
+        if not isinstance(wanted, (list, tuple)) or not wanted:
+            raise NotAllowed(name, wanted, "must be a list of numbers")
+    else:
+        name, wanted = "start", _spaced(table, spacing, is_whole)
+    checked = []
+    for value in wanted:
+        for rule in rules:
+            if value is None:
+                raise NotAllowed(name, value, rule.needs())
+            rule.check(name, value)
+        checked.append(value if is_whole else float(value))
+    if len(set(checked)) != len(checked):
+        raise NotAllowed(name, cause="a value is there twice")
+    return Values(keys, tuple(checked), spacing)

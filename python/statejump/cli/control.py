@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``statejump control``: what governs the state jump of a case, and what keeps it below a value."""
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+
+from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown, undivided
+from statejump.control import study
+from statejump.control.study import Study, Sweep, number
+from statejump.core.output import results_folder
+from statejump.core.tables import Shown
+
+
+def _table(title: str, done: Study, sweep: Sweep, unit: str) -> Shown:
+    def shown(value: float | None) -> str:
+        return "" if value is None else number(value * done.display_scale, 5)
+
+    with_dem, rows = bool(done.dem), []
+    for row in sweep.shown():
+        marks = [name for name, value in (("case", sweep.own), ("recommended", sweep.recommended))
+                 if value == row.value]
+        rows.append((
+            number(row.value * sweep.display_scale, 5), *(shown(row.results.get(name)) for name in done.results),
+            *([shown(row.dem_jump)] if with_dem else []), "; ".join(filter(None, [*marks, row.note])),
+        ))
+    heads = (sweep.label + unit, *done.results.values(), *([f"DEM [{done.display_unit}]"] if with_dem else []), "")
+    return Shown(f"{title}: {sweep.parameter}", heads, rows, left=("",))
+
+
+def _told(title: str, done: Study) -> Iterator[Shown | str]:
+    yield f"measure: {done.measure}"
+    for sweep in done.sweeps:
+        unit = "" if sweep.display_unit == "-" else f" [{sweep.display_unit}]"
+        yield _table(title, done, sweep, unit)
+        if done.wanted is not None:
+            scale = sweep.display_scale
+            ends = [f"{number(low * scale)} to {number(high * scale)}" for low, high in sweep.meets]
+            yield f"not above the wanted jump:{unit} {', '.join(ends) if ends else 'no scanned value'}"
+    yield f"jump of the case: {number(done.jump * done.display_scale, 6)} {done.display_unit}"
+    if done.wanted is not None:
+        yield f"wanted: at most {number(done.wanted * done.display_scale, 6)} {done.display_unit}"
+    yield from done.sentences
+    yield from (f"remark: {remark}" for remark in done.remarks)
+
+
+@click.command("control")
+@CASE
+@click.option("--jump-below", type=float, metavar="VALUE",
+              help="Wanted largest jump, in m or, for an umbrella, rad.  [default: half of the case's]")
+@click.option("--runs", type=int, metavar="N",
+              help=f"Runs of each ensemble, where one is needed.  [default: {study.RUNS}]")
+@click.option("--dem", "with_dem", is_flag=True, help="Check the case and what is recommended in YADE too.")
+@RESULTS
+@QUIET
+def control_command(
+    case_file: Path, jump_below: float | None, runs: int | None, with_dem: bool, results: Path, quiet: bool
+) -> None:
+    """What governs the state jump of CASE, and the smallest spring that keeps it below a value.
+
+    \b
+    Example:
+      statejump control cases/table1.toml --jump-below 5e-6
+    """
+    from statejump.control import plot
+
+    console = make_console(quiet)
+    case = loaded(case_file, "control")
+    folder = results_folder(results, case.name)
+    with undivided(console, "control") as tell:
+        done: Study = case.behaviour.ability("control", case)(
+            case, jump_below=jump_below, runs=runs, with_dem=with_dem, tell=tell)
+    written = study.write(case.name, done, folder) + plot.figure(case.title, done, folder)
+    print_shown(list(_told(case.title, done)), console)
+    console.print(f"results: {', '.join(str(path) for path in written)}")
