@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Starts YADE on the scripts beside this file; each prints one line, ``RESULT`` and JSON."""
 from __future__ import annotations
 

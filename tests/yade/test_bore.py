@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Journals and balls in bores given by triangles."""
 from math import atan2, hypot
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The plugin's classes follow YADE's conventions."""
 import re
 import subprocess

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Revolute joint in motion: energy, momentum and invariance under rotation."""
 import pytest
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Laws of a joint chosen by name: the catalogue inside YADE."""
 from math import e, inf, isnan, log, log1p, pi, sqrt
 

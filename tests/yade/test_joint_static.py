@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Revolute joint and slider at prescribed positions against closed forms (Table 2)."""
 from math import sqrt
 

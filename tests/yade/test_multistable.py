@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """yade_scripts/multistable.py: released joints stay where the friction cone says, and only there."""
 import csv
 import re

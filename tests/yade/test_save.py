@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """O.save and O.load: a resumed run is the same run, bit for bit; energies, which are sums over
 contacts in the order of YADE's container, to the rounding of another order."""
 import pytest

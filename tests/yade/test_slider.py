@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The Table 1 scene (1-D clearance joint) against the closed forms, in a short orbit."""
 import pytest
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Time steps and wrong use: what is promised holds, what is wrong is said."""
 from math import sqrt
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """yade_scripts/table1.py by itself."""
 import re
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Torsion springs between two links and viscous pins, against closed forms."""
 from math import pi
 

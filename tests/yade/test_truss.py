@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What trusses in space need: guide planes and torsion springs in planes of any direction."""
 import pytest
 

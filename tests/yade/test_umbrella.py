@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """yade_scripts/umbrella.py by itself, and what it records for ParaView."""
 import json
 import re

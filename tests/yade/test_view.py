@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """YADE's own 3-D view draws all our shapes. Needs an X server without a screen."""
 import os
 import shutil

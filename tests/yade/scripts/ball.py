@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Ball in a socket: force curve, friction that holds, moments, laws that need an axis."""
 import statejump_yade as sj
 from yade.minieigenHP import Vector3

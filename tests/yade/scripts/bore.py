@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Journals and balls in bores of triangles. `bore.py checks` or `bore.py save FOLDER` or `bore.py many`."""
 import inspect
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What YADE users expect of classes: constructors, dict(), documentation, ranges."""
 import statejump_yade as sj
 from yade import wrapper

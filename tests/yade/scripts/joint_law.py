@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Laws of a joint chosen by name."""
 import statejump_yade as sj
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Revolute joint at prescribed positions: force curve, friction, moments, static load."""
 import statejump_yade as sj
 from yade import wrapper

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """200 joints with friction, damping and expansion; run with -j1 and -j2. Then one with a failure."""
 import sys
 

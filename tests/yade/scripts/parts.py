@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Bodies, engines and readings that the scripts of these tests share. Runs under ``yade``."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Resume: `save.py write DIR LAW` saves in mid-contact and goes on; `save.py read FILE` loads and goes
 on. LAW: hertz_mindlin, or by_name for laws by name, torsion spring and pin damping."""
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Table 1 through scene.py: a short version of the orbit."""
 import scene_spring_slider
 import statejump_yade as sj

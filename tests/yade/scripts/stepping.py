@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Time steps: GlobalStiffnessTimeStepper, stable_time_step(), and wrong use."""
 from math import inf, sqrt
 

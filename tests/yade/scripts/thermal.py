@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Temperature programs, expansion of bodies, thermal links."""
 from math import cos, pi, sin, sqrt
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Torsion springs between links, viscous pins."""
 from math import cos, pi, sin, sqrt
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Guide planes and torsion springs in planes of any direction."""
 import statejump_yade as sj
 from yade.minieigenHP import Quaternion, Vector3

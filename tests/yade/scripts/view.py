@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """3-D view of a joint and of a slot, under an X server without a screen: `view.py FOLDER`.
 
 YADE's user interface is there before this script imports the plugin.
