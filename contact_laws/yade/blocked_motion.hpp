@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Which motions of a body are blocked, and what its mass then counts for.
 #pragma once
 

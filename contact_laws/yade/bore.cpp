@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bore.hpp"
 
 #include <algorithm>
@@ -206,14 +207,8 @@ namespace {
   text.precision(9);
   text << "the wall of the MeshBore conforms too closely: its radius of curvature is "
        << wall_radius << " m, that of the " << inner << " " << radius << " m,";
-  text << " at the contact at (" << point.x() << ", " << point.y() << ", " << point.z() << ") m"
-       << where(scene, contact.id1, contact.id2);
-  record_failure(text.str());
-}
-
-[[gnu::cold, gnu::noinline]] void fail_search(const std::string& sentence, const yade::Scene& scene,
-                                              const yade::Interaction& contact) {
-  record_failure(sentence + where(scene, contact.id1, contact.id2));
+  text << " at the contact at (" << point.x() << ", " << point.y() << ", " << point.z() << ") m";
+  record_failure(text.str(), scene, contact);
 }
 
 }  // namespace
@@ -232,7 +227,7 @@ bool BoreContacts::find(const Probe& probe, const MeshBore& bore, const yade::St
   try {
     return find_or_throw(probe, bore, state1, state2, shift2, force, contact, scene);
   } catch (const std::exception& error) {
-    fail_search(error.what(), scene, *contact);
+    record_failure(error.what(), scene, *contact);
     return false;
   }
 }
@@ -243,7 +238,7 @@ bool BoreContacts::find_or_throw(const Probe& probe, const MeshBore& bore,
                                  const yade::shared_ptr<yade::Interaction>& contact,
                                  yade::Scene& scene) const {
   if (!bore.mesh()) {
-    fail_search("a MeshBore has neither a file nor triangles", scene, *contact);
+    record_failure("a MeshBore has neither a file nor triangles", scene, *contact);
     return false;
   }
   const geometry::BoreMesh& mesh = *bore.mesh();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bores and cups given by a triangle mesh: shape, contacts and law. The geometry is that of
 // statejump/geometry, the law of one contact that of the joints (joint.hpp).
 #pragma once

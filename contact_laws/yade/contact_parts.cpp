@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact_parts.hpp"
 
 #include <set>
@@ -35,36 +36,30 @@ std::string when(const yade::Scene& scene) {
   return text.str();
 }
 
-std::string where(const yade::Scene& scene, int id1, int id2) {
-  return " (contact of bodies " + std::to_string(id1) + " and " + std::to_string(id2) + ", " +
-         when(scene) + ")";
-}
-
 void fail_closed(const char* inner, Real inner_radius, const char* outer, Real outer_radius,
                  const yade::Scene& scene, const yade::Interaction& contact) {
   std::ostringstream text;
   text.precision(9);
   text << "the clearance is closed: " << inner << " radius " << inner_radius << " m, " << outer
-       << " radius " << outer_radius << " m at the current temperature"
-       << where(scene, contact.id1, contact.id2);
-  record_failure(text.str());
+       << " radius " << outer_radius << " m at the current temperature";
+  record_failure(text.str(), scene, contact);
 }
 
 void fail_tilted(const yade::Scene& scene, const yade::Interaction& contact) {
   record_failure(
       "the axes of journal and bearing are tilted by more than maxTilt, and contact "
-      "at the edges is not covered" +
-      where(scene, contact.id1, contact.id2));
+      "at the edges is not covered",
+      scene, contact);
 }
 
 void fail_unstable(Real effective_mass, Real stiffness, const yade::Scene& scene,
                    const yade::Interaction& contact) {
+  const Real stable = kernel::critical_time_step(effective_mass, stiffness);
   std::ostringstream text;
   text.precision(6);
-  text << "the time step " << scene.dt << " s is above the stable one, "
-       << kernel::critical_time_step(effective_mass, stiffness) << " s"
-       << where(scene, contact.id1, contact.id2);
-  record_failure(text.str());
+  text << "the time step " << scene.dt << " s is above the stable one, " << stable << " s";
+  record_failure({Failure::Part::contact, contact.id1, contact.id2, text.str(), "", scene.time,
+                  stable, when(scene)});
 }
 
 }  // namespace statejump::dem

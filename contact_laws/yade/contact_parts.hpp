@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the geometry and law functors of all joints share.
 #pragma once
 
@@ -28,7 +29,5 @@ inline yade::Vector3r axis_of(const yade::Quaternionr& q) {
 // "time 0.5 s, temperature change 40 K": every change that a thermal engine imposes, none if there
 // is no such engine.
 std::string when(const yade::Scene& scene);
-// The end of a sentence on a contact: which bodies and when.
-std::string where(const yade::Scene& scene, int id1, int id2);
 
 }  // namespace statejump::dem

@@ -1,11 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "failure.hpp"
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <iostream>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
+#include "contact_parts.hpp"
 #include "yade_api.hpp"
 
 namespace statejump::dem {
@@ -13,7 +18,8 @@ namespace {
 
 std::atomic<bool> failed{false};
 std::mutex message_mutex;
-std::string first_message;
+Failure first_failure;
+std::optional<Failure> thrown_failure;
 const yade::Scene* failed_scene = nullptr;
 long failed_iteration = 0;
 
@@ -25,17 +31,37 @@ bool raised_by_an_engine(const yade::Scene& scene) {
 
 }  // namespace
 
-void record_failure(const std::string& message) {
+std::string Failure::sentence() const {
+  const std::string bodies = std::to_string(id1) + " and " + std::to_string(id2);
+  switch (part) {
+    case Part::contact:
+      return before + after + " (contact of bodies " + bodies + ", " + when + ")";
+    case Part::link:
+      return before + "the link between bodies " + bodies + after + " (" + when + ")";
+    case Part::torsion_spring:
+      break;
+  }
+  return before + "the torsion spring between the links of bodies " + bodies + after + " (" + when +
+         ")";
+}
+
+void record_failure(const std::string& sentence, const yade::Scene& scene,
+                    const yade::Interaction& contact) {
+  record_failure({Failure::Part::contact, contact.id1, contact.id2, sentence, "", scene.time,
+                  std::numeric_limits<yade::Real>::quiet_NaN(), when(scene)});
+}
+
+void record_failure(Failure failure) {
   const std::lock_guard<std::mutex> lock(message_mutex);
   yade::Scene* scene = yade::Omega::instance().getScene().get();
   if (failed && failed_scene == scene && failed_iteration == scene->iter) return;
-  first_message = message;
+  first_failure = std::move(failure);
   failed_scene = scene;
   failed_iteration = scene->iter;
   failed = true;
   if (raised_by_an_engine(*scene)) return;
   // Nobody will raise it: say it and end the run.
-  std::cerr << "statejump_yade: " << message << std::endl;
+  std::cerr << "statejump_yade: " << first_failure.sentence() << std::endl;
   scene->stopAtIter = scene->iter + 1;
 }
 
@@ -47,7 +73,33 @@ void throw_recorded_failure() {
   const yade::Scene* scene = yade::Omega::instance().getScene().get();
   const long since = scene->iter - failed_iteration;
   if (scene != failed_scene || since < 0 || since > 1) return;
-  throw std::runtime_error(first_message);
+  thrown_failure = first_failure;
+  throw std::runtime_error(first_failure.sentence());
+}
+
+void throw_failure(Failure failure) {
+  const std::lock_guard<std::mutex> lock(message_mutex);
+  const std::string sentence = failure.sentence();
+  thrown_failure = std::move(failure);
+  throw std::runtime_error(sentence);
+}
+
+boost::python::object take_failure() {
+  namespace py = boost::python;
+  const std::lock_guard<std::mutex> lock(message_mutex);
+  if (!thrown_failure) return py::object();
+  const Failure failure = *std::exchange(thrown_failure, std::nullopt);
+  const char* const parts[] = {"contact", "link", "torsion_spring"};
+  py::dict result;
+  result["part"] = parts[static_cast<std::size_t>(failure.part)];
+  result["bodies"] = py::make_tuple(failure.id1, failure.id2);
+  result["before"] = failure.before;
+  result["after"] = failure.after;
+  result["time"] = failure.time;
+  result["stable_time_step"] =
+      std::isnan(failure.stable_time_step) ? py::object() : py::object(failure.stable_time_step);
+  result["sentence"] = failure.sentence();
+  return result;
 }
 
 }  // namespace statejump::dem

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Errors inside YADE's interaction loop.
 //
 // The loop runs the functors in an OpenMP parallel region, which an exception may not leave: it
@@ -7,7 +8,10 @@
 // because functors know no engine.
 #pragma once
 
+#include <limits>
 #include <string>
+
+#include "yade_api.hpp"
 
 namespace statejump::dem {
 
@@ -24,8 +28,36 @@ class RaisesFailures {
   virtual ~RaisesFailures() = default;
 };
 
-void record_failure(const std::string& message);
+// What went wrong, as fields: scripts name the part by what their model calls it, and read no
+// sentence.
+struct Failure {
+  // What the two bodies stand for.
+  enum class Part : unsigned char { contact, link, torsion_spring };
+  Part part = Part::contact;
+  int id1 = -1;
+  int id2 = -1;  // of a torsion spring: the tips of its two links
+  // The sentence around the name of a link or spring; of a contact, which is named at the end, all
+  // of it stands in `before`.
+  std::string before = {};
+  std::string after = {};
+  yade::Real time = 0;  // [s]
+  // Where the step is too long: the longest that this part allows [s].
+  yade::Real stable_time_step = std::numeric_limits<yade::Real>::quiet_NaN();
+  std::string when = {};  // time and temperature changes in words
+  std::string sentence() const;
+};
+
+// For functors: keeps the first failure of a step, for an engine to throw.
+void record_failure(Failure failure);
+// For functors: a failure of a contact.
+void record_failure(const std::string& sentence, const yade::Scene& scene,
+                    const yade::Interaction& contact);
+// For engines: throws std::runtime_error with the sentence.
+[[noreturn]] void throw_failure(Failure failure);
 // Throws std::runtime_error and forgets the failure, if one was recorded.
 void throw_recorded_failure();
+// The failure that was thrown last and not taken yet, as a dict: part, bodies, before, after, time,
+// stable_time_step (None where the step is not the fault), sentence; None: there is none.
+boost::python::object take_failure();
 
 }  // namespace statejump::dem

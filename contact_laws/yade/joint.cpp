@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "joint.hpp"
 
 #include <boost/make_shared.hpp>
@@ -150,14 +151,14 @@ void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
     physics->effectiveYoungModulus = elastic.effective_young_modulus;
     physics->effectiveShearModulus = elastic.effective_shear_modulus;
   } catch (const std::invalid_argument& error) {
-    record_failure(error.what() + where(*scene, contact->id1, contact->id2));
+    record_failure(error.what(), *scene, *contact);
   }
   physics->tangensOfFrictionAngle = std::tan(std::min(first.frictionAngle, second.frictionAngle));
   if (!(physics->tangensOfFrictionAngle >= 0)) {
     std::ostringstream text;
     text << "frictionAngle = " << std::min(first.frictionAngle, second.frictionAngle)
-         << ", allowed is [0, pi/2) rad" << where(*scene, contact->id1, contact->id2);
-    record_failure(text.str());
+         << ", allowed is [0, pi/2) rad";
+    record_failure(text.str(), *scene, *contact);
   }
   const Real inverse =
       inverse_mass_of(*scene, contact->id1) + inverse_mass_of(*scene, contact->id2);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Contact of a clearance joint in YADE: geometry, physics and law. The physics itself is the
 // kernel's (statejump/kernel); these classes move numbers between YADE's objects and it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Entries of the joint contacts in O.energy. Laws run in several threads and share them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every law of the joints reads from a contact's JointGeom and JointPhys for the kernel, and
 // writes back. On the path of every step: inline.
 #pragma once

@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The extension module: checks YADE's interface and registers the classes with the running YADE.
 // Adding a class is one entry in the list below.
 #include <boost/make_shared.hpp>
 
 #include "bore.hpp"
+#include "failure.hpp"
 #include "guide.hpp"
 #include "joint.hpp"
 #include "object_list.hpp"
@@ -153,6 +155,12 @@ BOOST_PYTHON_MODULE(_native) {
           "Depth [m] at which Hertz's point contact of two bodies of one material carries a force "
           "[N]: start there, and nothing rings. effectiveRadius is that of the pads on a SlotFace, "
           "R1 R2 / (R2 - R1) in a bearing [m].");
+  py::def(
+      "take_failure", &statejump::dem::take_failure,
+      "What ended the last run, as fields, and forget it: a dict with part ('contact', 'link' or "
+      "'torsion_spring'), bodies (two ids), before and after (the sentence around the name of "
+      "a link or spring), time [s], stable_time_step [s] (None unless the step was too long) "
+      "and sentence. None: nothing of this plugin failed.");
   py::def("stable_time_step", &statejump::dem::stable_time_step_of_scene,
           "Stable time step of the current scene [s], on the safe side: smallest of "
           "4 / (c + sqrt(c^2 + 4 k)) over the bodies, k and c twice the sums of stiffness and "

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -61,11 +62,6 @@ std::string pair_of(const yade::Scene& scene, const yade::Interaction& contact, 
   std::string text = "a ";
   text.append(shape(contact.id1)).append(flat ? " on a " : " in a ").append(shape(contact.id2));
   return text;
-}
-
-[[gnu::cold, gnu::noinline]] void fail_law(const std::string& sentence, const yade::Scene& scene,
-                                           const yade::Interaction& contact) {
-  record_failure(sentence + where(scene, contact.id1, contact.id2));
 }
 
 }  // namespace
@@ -137,19 +133,20 @@ void NamedJointLaw::begin(const JointGeom& geometry, JointPhys& physics, const y
 bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
                          const yade::Interaction& contact, yade::Scene& scene) {
   if (geometry.bearingRadius < 0 && !laws::has(law_.normal, laws::Trait::accepts_bulging_wall)) {
-    fail_law("a wall that bulges needs normalLaw " +
-                 laws::names_with<laws::NormalLaw>(laws::Trait::accepts_bulging_wall) + ", not '" +
-                 normalLaw + "'",
-             scene, contact);
+    record_failure("a wall that bulges needs normalLaw " +
+                       laws::names_with<laws::NormalLaw>(laws::Trait::accepts_bulging_wall) +
+                       ", not '" + normalLaw + "'",
+                   scene, contact);
     return true;
   }
   if (needs_axis_ && geometry.axis.isZero()) {
-    fail_law(pair_of(scene, contact, std::isinf(geometry.bearingRadius)) + " needs normalLaw " +
-                 laws::names_with<laws::NormalLaw>(laws::Trait::needs_axis, false) +
-                 " and tangentialVelocity " +
-                 laws::names_with<laws::TangentialVelocityLaw>(laws::Trait::needs_axis, false) +
-                 ", not '" + normalLaw + "' and '" + tangentialVelocity + "'",
-             scene, contact);
+    record_failure(
+        pair_of(scene, contact, std::isinf(geometry.bearingRadius)) + " needs normalLaw " +
+            laws::names_with<laws::NormalLaw>(laws::Trait::needs_axis, false) +
+            " and tangentialVelocity " +
+            laws::names_with<laws::TangentialVelocityLaw>(laws::Trait::needs_axis, false) +
+            ", not '" + normalLaw + "' and '" + tangentialVelocity + "'",
+        scene, contact);
     return true;
   }
   const bool touching = geometry.penetrationDepth > 0;
@@ -193,7 +190,7 @@ bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
     physics.dissipationSlope = response.dissipation_slope;
     physics.frictionSlope = response.friction_slope;
   } catch (const std::exception& error) {
-    fail_law(error.what(), scene, contact);
+    record_failure(error.what(), scene, contact);
   }
   return true;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Conversion between a Python list of objects and the C++ vector of pointers to them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Range checks of attributes: one sentence naming class, attribute, value and allowed range.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What YADE expects of every class beside its physics: a name, a documented attribute list, keyword
 // construction, dict(), serialization and a dispatch index.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "thermal.hpp"
 
 #include <algorithm>
@@ -36,20 +37,22 @@ Real damping_coefficient(const ThermalLink& link, const yade::State& root, const
 
 [[gnu::cold, gnu::noinline]] void refuse_time_step(const yade::Scene& scene,
                                                    const ThermalLink& link, Real stable) {
-  std::ostringstream text;
-  text.precision(6);
-  text << "the time step " << scene.dt << " s is above the stable one of the link between bodies "
-       << link.id1 << " and " << link.id2 << ", " << stable << " s (" << when(scene) << ")";
-  throw std::runtime_error(text.str());
+  std::ostringstream before, after;
+  before.precision(6);
+  after.precision(6);
+  before << "the time step " << scene.dt << " s is above the stable one of ";
+  after << ", " << stable << " s";
+  throw_failure({Failure::Part::link, link.id1, link.id2, before.str(), after.str(), scene.time,
+                 stable, when(scene)});
 }
 
 // Coinciding ends, or positions that are no numbers any more.
 [[gnu::cold, gnu::noinline]] void fail_length(const yade::Scene& scene, const ThermalLink& link,
                                               Real length) {
-  throw std::runtime_error(
-      (length == 0 ? "the two ends coincide of " : "the positions have no finite distance of ") +
-      ("the link between bodies " + std::to_string(link.id1)) + " and " + std::to_string(link.id2) +
-      " (" + when(scene) + ")");
+  const char* const what =
+      length == 0 ? "the two ends coincide of " : "the positions have no finite distance of ";
+  throw_failure({Failure::Part::link, link.id1, link.id2, what, "", scene.time,
+                 std::numeric_limits<Real>::quiet_NaN(), when(scene)});
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Temperature programs, the engine that imposes them on shapes, and links that expand.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "torsion.hpp"
 
 #include <cmath>
@@ -22,14 +23,14 @@ void require_planar(const yade::Scene& scene, const ThermalLink& link, const Vec
                     const Vector3r& axis) {
   const Real tilt = direction.dot(axis);
   if (std::abs(tilt) <= largest_tilt) return;
-  std::ostringstream text;
-  text.precision(9);
-  text << "TorsionSpring: the link between bodies " << link.id1 << " and " << link.id2
-       << (axis == Vector3r::UnitZ() ? " leaves the x-y plane, z component of its direction "
-                                     : " leaves the plane across the axis, component of its "
-                                       "direction along it ")
-       << tilt << ", allowed is at most " << largest_tilt << " (" << when(scene) << ")";
-  throw std::invalid_argument(text.str());
+  std::ostringstream after;
+  after.precision(9);
+  after << (axis == Vector3r::UnitZ() ? " leaves the x-y plane, z component of its direction "
+                                      : " leaves the plane across the axis, component of its "
+                                        "direction along it ")
+        << tilt << ", allowed is at most " << largest_tilt;
+  throw_failure({Failure::Part::link, link.id1, link.id2, "TorsionSpring: ", after.str(),
+                 scene.time, std::numeric_limits<Real>::quiet_NaN(), when(scene)});
 }
 
 // 1/I of turning the link by a couple on its two ends [1/(kg m2)].
@@ -72,12 +73,13 @@ void TorsionSprings::act(TorsionSpring& spring) {
   if (inverse > 0) {
     const Real stable = kernel::critical_time_step(1 / inverse, spring.stiffness);
     if (scene->dt > stable) {
-      std::ostringstream text;
-      text.precision(6);
-      text << "the time step " << scene->dt << " s is above the stable one of the torsion spring "
-           << "between the links of bodies " << spring.link1->id2 << " and " << spring.link2->id2
-           << ", " << stable << " s (" << when(*scene) << ")";
-      throw std::runtime_error(text.str());
+      std::ostringstream before, after;
+      before.precision(6);
+      after.precision(6);
+      before << "the time step " << scene->dt << " s is above the stable one of ";
+      after << ", " << stable << " s";
+      throw_failure({Failure::Part::torsion_spring, spring.link1->id2, spring.link2->id2,
+                     before.str(), after.str(), scene->time, stable, when(*scene)});
     }
   }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Torsion springs between the two links of a joint.
 #pragma once
 

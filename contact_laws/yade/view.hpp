@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Journals, bearings, balls, sockets, sliders and slots in YADE's 3-D view.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The one place where the plugin chooses its YADE interface: the declared one (stock Debian YADE,
 // no headers needed) or the real headers of a YADE source tree (-DYADE_SOURCE_DIR, any other
 // version).

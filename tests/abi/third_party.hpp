@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the declared headers include, precompiled once for all mutations.
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """State jump contact laws for YADE: clearance joints with dry friction under thermal expansion.
 
 Import it in an ordinary script run by ``yade``::
@@ -31,9 +32,12 @@ if _difference:
         "it again on this machine, and if the build does not know this YADE, run scripts/measure_yade"
     )
 
-stable_time_step, hertz_depth = _native.stable_time_step, _native.hertz_depth
+stable_time_step, hertz_depth, take_failure = _native.stable_time_step, _native.hertz_depth, _native.take_failure
 bore_triangles, socket_triangles = _native.bore_triangles, _native.socket_triangles
-__all__ = ["slot", "stable_time_step", "hertz_depth", "bore_triangles", "socket_triangles", *_native.class_names()]
+__all__ = [
+    "slot", "stable_time_step", "hertz_depth", "take_failure", "bore_triangles", "socket_triangles",
+    *_native.class_names(),
+]
 for _name in _native.class_names():
     globals()[_name] = getattr(_wrapper, _name)
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Bodies of a one-dimensional clearance joint."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What a contact keeps, who raises a failure, and what its sentence calls the bodies."""
 from __future__ import annotations
 

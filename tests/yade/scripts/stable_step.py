@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A spring-slider case at rest, after one step: contact stiffnesses and the stable step that a run reports."""
 import json
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A law from a shared object: its force at one depth, impacts, documentation; or what a wrong one says."""
 from __future__ import annotations
 

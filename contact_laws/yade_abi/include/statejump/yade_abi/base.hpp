@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Declared interface of YADE (Debian's packages, amd64, double): roots of its class hierarchy.
 //
 // Debian ships YADE's libraries without headers. This folder declares the part of the binary

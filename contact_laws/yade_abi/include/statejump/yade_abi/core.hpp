@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Declared interface of YADE: bodies, interactions, scene and containers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Declared interface of YADE: functors of the multiple dispatch, and engines.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // YADE's own serialization of the base classes, used and not repeated: the (de)serializers of each
 // archive are instantiated in YADE's libraries and only declared here.
 #pragma once
