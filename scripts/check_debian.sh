@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Runs the two commands of the README in a bare Debian, from a fresh clone of the last commit:
 #
 #     sudo scripts/check_debian.sh 12|13|testing [FOLDER]

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Installs a Debian package of statejump in a fresh minimal Debian and runs it there, far from any
 # source or build tree:
 #

@@ -1,4 +1,5 @@
 # shellcheck shell=bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # For check_debian.sh and check_package.sh: a bare Debian in a folder.
 #
 #     make_debian 12|13|testing FOLDER    makes it with debootstrap, unless it is there already

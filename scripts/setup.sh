@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Installs, with apt, the Debian packages of the groups that are named; without a name, of all groups:
 #
 #     scripts/setup.sh run build

@@ -41,7 +41,8 @@ def compare(first: Run, second: Run) -> Comparison:
     :raises StatejumpError: they are not of the same case, or one of them is not complete
     """
     if first.definition != second.definition:
-        raise StatejumpError("not comparable", cause=f"the runs are of other cases: {first.definition.name}, {second.definition.name}")
+        names = f"{first.definition.name}, {second.definition.name}"
+        raise StatejumpError("not comparable", cause=f"the runs are of other cases: {names}")
     for run in (first, second):
         if not run.complete:
             raise StatejumpError("not comparable", cause="a run was interrupted and is not complete")
@@ -87,7 +88,8 @@ def statics(case: Case, friction_coefficient: float | None = None) -> RestSets:
     :param friction_coefficient: instead of the case's own
     :raises StatejumpError: the kind of case has no such answer, or its mesh cannot be used
     """
-    found: RestSets = case.definition.behaviour.ability("statics", case.definition)(case.definition, friction_coefficient)
+    definition = case.definition
+    found: RestSets = definition.behaviour.ability("statics", definition)(definition, friction_coefficient)
     return found
 
 
@@ -108,7 +110,8 @@ def bore(
 
 
 def sweep(
-    case: Case, values: Mapping[str, Sequence[float] | Mapping[str, Any]], *, model: str = "reduced", workers: int | None = None,
+    case: Case, values: Mapping[str, Sequence[float] | Mapping[str, Any]], *, model: str = "reduced",
+    workers: int | None = None,
     progress: Progress = False,
 ) -> Campaign:
     """Run a case on a grid of its parameters.

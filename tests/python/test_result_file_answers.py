@@ -58,7 +58,8 @@ def test_tables_are_those_of_the_csv_files(folder: Path) -> None:
                  for value in row.values()] for row in rows] == written[1:], name
     summary = json.loads((folder / "answers.json").read_text())
     assert (found.output, found.verdict, found.notes) == tuple(summary[key] for key in ("output", "verdict", "notes"))
-    assert {name: scalar.value for name, scalar in found.summary.items()} == {name: summary[name] for name in found.summary}
+    told = {name: scalar.value for name, scalar in found.summary.items()}
+    assert told == {name: summary[name] for name in found.summary}
     assert found.summary["jump"] == Scalar(summary["jump"], "m") and found.verdict == "shakedown"
     # A ring of nodes has no focal length: no number, neither here nor there.
     assert {row["focal_length_m"] for row in found.tables["surface"]} == {None}

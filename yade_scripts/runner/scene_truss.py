@@ -305,7 +305,8 @@ def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
         return sum(energy.get(name, 0.0) for name in names)
 
     if O.interactions.countReal() > sum(_contact(*pair) is not None for pair in built.pairs):
-        raise SceneFailure(f"{_strangers(case, built)} touch and are of different joints: the model has no such contact")
+        strangers = _strangers(case, built)
+        raise SceneFailure(f"{strangers} touch and are of different joints: the model has no such contact")
     states = [O.bodies[body].state for body in built.nodes]
     kinetic = sum(
         0.5 * states[node].mass * _velocity_now(built.nodes[node]).squaredNorm() for node in built.free

@@ -47,7 +47,8 @@ def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
         runs = {"reduced": case.reduced(tell)}
     _told(case, runs, console)
     _warn(runs, console)
-    console.print(f"results: {save('reduced', case.definition, runs, folder)}, history: {folder / 'reduced_history.csv'}")
+    written = save("reduced", case.definition, runs, folder)
+    console.print(f"results: {written}, history: {folder / 'reduced_history.csv'}")
 
 
 def _dem(command: str, case: Case, before: dict[str, Run], folder: Path, console: Console) -> Run:

@@ -17,6 +17,7 @@ from statejump.cli.truss_answers import answers_command
 from statejump.core.errors import NotWritten, StatejumpError
 from statejump.core.output import results_folder
 from statejump.core.thermal import SHAPES
+from statejump.core.units import split_unit
 from statejump.kinds.truss.case import Revolute, TrussReduced
 from statejump.kinds.truss.generate.document import write
 from statejump.schema.fields import fields_of, rule_of
@@ -42,7 +43,7 @@ def truss_command() -> None:
 
 def _shown(key: str) -> str:
     """Return the option of a key: the unit is in the help text."""
-    return "--" + re.sub(r"_(N_m_per_rad|N_per_m|N|K|m4|m|s|rad)$", "", key).replace("_", "-")
+    return "--" + split_unit(key)[0].replace("_", "-")
 
 
 def _summary(function: Callable[..., Case]) -> tuple[str, dict[str, str]]:

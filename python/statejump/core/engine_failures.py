@@ -18,7 +18,9 @@ class EngineFailed(FailedRun):
     :param remedy: what would help besides
     """
 
-    def __init__(self, failure: _engine.EngineFailure, what: str = "", *, remedy: str | None = None, **more: Any) -> None:
+    def __init__(
+        self, failure: _engine.EngineFailure, what: str = "", *, remedy: str | None = None, **more: Any
+    ) -> None:
         super().__init__(
             what, joint=failure.joint, nodes=failure.nodes, time_s=failure.time_s,
             temperature_change_K=failure.temperature_change_K, cause=failure.cause or failure.message,

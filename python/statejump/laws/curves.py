@@ -12,7 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from statejump import _engine
-from statejump.core.figures import panels, save, style
+from statejump.core.figures import panels, save
+from statejump.core.figures import style as project_style
 from statejump.laws.traits import law, names
 
 IMPACT_LAW = "hertz_internal"
@@ -120,7 +121,7 @@ def impact(dissipation: str, joint: Joint, restitution: float = RESTITUTION,
 
 def figure(joint: Joint, folder: Path, name: str) -> list[Path]:
     """Write ``<name>.png`` and ``<name>.svg``: every normal law, one impact per dissipation law."""
-    with style():
+    with project_style():
         drawing, (left, right) = panels(1, 2, (9.5, 4.6))
         _draw_normal(left, joint)
         _draw_impacts(right, joint)

@@ -129,7 +129,8 @@ ENTRIES = (
 # Tables of /answers: what a row is, and the columns in the order of the CSV file.
 _JUMP = ("jump_x_m", "jump_y_m", "jump_z_m", "jump_m")
 TABLES: dict[str, tuple[str, tuple[str, ...]]] = {
-    "cycles": ("a cycle: largest motion of a node over it, heat of friction", ("cycle", "largest_jump_m", "dissipation_J")),
+    "cycles": ("a cycle: largest motion of a node over it, heat of friction",
+               ("cycle", "largest_jump_m", "dissipation_J")),
     "node_jumps": ("a node after a cycle, against the start", ("node", "cycle", *_JUMP)),
     "joint_jumps": ("a joint after a cycle: jump of its slide or eccentricity, heat of friction",
                     ("joint", "kind", "cycle", *_JUMP, "dissipation_of_cycle_J", "dissipation_J")),

@@ -266,4 +266,3 @@ def _section(keys: type[SectionType], name: str, given: Mapping[str, Any]) -> Se
         refused.value = given.get(refused.key, refused.value)  # 1, not 1.0, if the file says so
         refused.key = f"{name}.{refused.key}"
         raise
-

@@ -60,7 +60,8 @@ def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any)
         targets = [table for table in tables if item in (EVERY, table.get("name"))]
         if not targets:
             names = [str(table.get("name")) for table in tables]
-            raise UnknownKey(path, **(suggestion(item, names) if names else {"cause": f"the case has no [[{section}]]"}))
+            none = {"cause": f"the case has no [[{section}]]"}
+            raise UnknownKey(path, **(suggestion(item, names) if names else none))
     for target in targets:
         if value is None:
             target.pop(key, None)

@@ -110,8 +110,8 @@ class SpringSliderCase(Case):
                 if not self.clearance_m(side, change) > 0:
                     raise NotAllowed(
                         f"joint.{key}", getattr(joint, key),
-                        f"the expansion of pad and slot closes it at a temperature change of {change:g} K, it must stay "
-                        "above 0 [m] within the program",
+                        f"the expansion of pad and slot closes it at a temperature change of {change:g} K, it must "
+                        "stay above 0 [m] within the program",
                     )
         if joint.clearance_minus_m >= link.stress_free_length_m:
             raise NotAllowed("joint.clearance_minus_m", joint.clearance_minus_m,

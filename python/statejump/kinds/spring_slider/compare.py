@@ -115,7 +115,8 @@ def difference(case: SpringSliderCase, first: Run, second: Run) -> list[Quantity
     if case.friction_force_N > 0:
         found = [first_cycle_events(case, run) for run in (first, second)]
         rows += [
-            models(f"{kind}_temperature_change", "K", found[0][kind], found[1][kind], case.tolerance.event_temperature_K)
+            models(f"{kind}_temperature_change", "K", found[0][kind], found[1][kind],
+                   case.tolerance.event_temperature_K)
             for kind in COMPARED_EVENTS
         ]
     return [*rows, _displacement_row(case, first, second)]

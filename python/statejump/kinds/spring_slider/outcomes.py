@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from statejump.core.run import Run, change
+from statejump.core.run import Run
 from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.kinds.spring_slider.compare import COMPARED_EVENTS, dem_event_temperatures, first_cycle_events
 

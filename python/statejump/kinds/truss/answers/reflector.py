@@ -123,14 +123,14 @@ def surface(truss: ResolvedTruss) -> Surface | None:
     known = {**zero, **({} if given is None else {"curvature": 1 / (4 * given)})}
     curvature = () if given is not None else ("curvature",)
     notes: list[str] = []
+    flat = f"the nodes do not determine the focal length: the fit is a {'line' if lateral == 1 else 'plane'}"
     for free, note in (
         (("depth", *tilts, *curvature, *shifts), ""),
         (("depth", *tilts, *curvature),
          "the nodes do not determine the lateral shift of the vertex beside the tilt: it is held"),
-        (("depth", *tilts), "the nodes do not determine the focal length: the fit is a "
-         + ("line" if lateral == 1 else "plane")),
+        (("depth", *tilts), flat if curvature else ""),  # a focal length that is given is none to be determined
     ):
-        if note and (curvature or not note.startswith("the nodes do not determine the focal")):
+        if note:
             notes.append(note)
         held = {name: value for name, value in known.items() if name not in free}
         if len(drawn) <= len(free):
