@@ -265,8 +265,8 @@ class UmbrellaCase(Case):
         if not 0 < flare + bias < pi:
             raise NotAllowed(
                 "torsion_spring.bias_rad", bias,
-                f"must be above {-flare:.9g} and below {pi - flare:.9g} [rad], so that the free flare angle lies between "
-                "0 and pi",
+                f"must be above {-flare:.9g} and below {pi - flare:.9g} [rad], so that the free flare angle lies "
+                "between 0 and pi",
             )
 
     def _check_joint(self) -> None:
@@ -303,8 +303,8 @@ class UmbrellaCase(Case):
         elif start.eccentricity_m > clearance:
             raise NotAllowed(
                 "start.eccentricity_m", start.eccentricity_m,
-                f"must be between 0 and joint.radial_clearance_m = {clearance!r} [m], beyond it the joint starts in deep "
-                "penetration",
+                f"must be between 0 and joint.radial_clearance_m = {clearance!r} [m], beyond it the joint starts in "
+                "deep penetration",
             )
         if self.ensemble.start_spread_m > clearance:
             raise NotAllowed("ensemble.start_spread_m", self.ensemble.start_spread_m,
