@@ -229,11 +229,11 @@ def test_reasons_of_measures_follow_their_verdicts() -> None:
 
 def test_former_rules_are_told_with_the_numbers_of_the_case() -> None:
     """What the rules said before they were changed is computed, not remembered."""
-    assert "would be *holds*, now *holds*; with a monotone fall" in text_of(all_true())
+    assert "would be *holds*, as it is now; with a monotone fall" in text_of(all_true())
     near = replace(all_true(), end_shift_dem_m=np.array([5e-5, 5e-6]))  # beyond the spread, not beyond ten times of it
-    assert "would be *holds in the mean*, now *holds*" in text_of(near)
+    assert "would be *holds in the mean* instead of *holds*" in text_of(near)
     up_again = groups([3, 1, 2], 0.1, (0.0, 1.0, 100.0))
-    assert "would be *does not hold*, now *holds*." in text_of(replace(all_true(), jump_by_spring=up_again))
+    assert "would be *does not hold* instead of *holds*." in text_of(replace(all_true(), jump_by_spring=up_again))
 
 
 def test_calm_start_is_not_said_to_ring() -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from statejump import _engine, laws
-from statejump.core.errors import FailedRun
+from statejump.core.engine_failures import engine
 from statejump.core.figures import DEM, REDUCED, panels, save, style
 from statejump.core.output import results_folder
 from statejump.core.progress import Tell, counted
@@ -301,10 +301,8 @@ def make(case: UmbrellaCase, results: Path, tell: Tell) -> Held:
     :raises FailedRun: the joint cannot be loaded as the case wants it
     """
     command, case = made_by("hold", case), held(case)
-    try:
+    with engine("the joint cannot be loaded", case=case.name):
         creep = predict(case)
-    except ValueError as error:
-        raise FailedRun("the joint cannot be loaded", case=case.name, cause=str(error)) from None
     folder = results_folder(results, case.name)
     wanted = [(law, rate) for law in LAWS for rate in STEPS_PER_SECOND]
     finished = counted(tell, 2 * len(wanted))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from statejump import _engine
+from statejump.core.engine_failures import engine
 from statejump.core.errors import FailedRun
 from statejump.core.physics import axial_stiffness_N_per_m, hertz_depth_m
 from statejump.kinds.umbrella import reduced as model
@@ -19,13 +20,11 @@ ANGLES = ("theta2", "theta4")
 
 def quasi_static(case: UmbrellaCase) -> _engine.ElasticLoop:
     """Path that slow dynamics tends to. :raises FailedRun: statics leaves it open"""
-    try:
+    with engine("there is no quasi-static path", case=case.name):
         loop = _engine.elastic_loop(
             model.linkage(case), case.thermal_program(), case.start.contact_angle_rad, LOOP_SAMPLES,
             "mindlin",
         )
-    except (ValueError, RuntimeError) as error:
-        raise FailedRun("there is no quasi-static path", case=case.name, cause=str(error)) from None
     if loop.separated:
         where = loop.events[-1]["temperature_change_K"]
         raise FailedRun(

@@ -64,7 +64,7 @@ class Measure:
 
 
 def _change(means: list[float], before: float) -> str:
-    spread = f"{min(means) * MRAD:.3f} to {max(means) * MRAD:.3f}"
+    spread = " to ".join(f"{mean * MRAD:.3f}" for mean in sorted({min(means), max(means)}))
     return f"mean |jump| {before * MRAD:.3f} mrad without it, {spread} with it"
 
 
@@ -99,8 +99,9 @@ def _why(m: Measure, verdict: str, size: Groups) -> str:
         return "no value of the study lies on the side of the measure"
     means = [float(np.mean(runs)) for runs in _taken(size, m.without, m.larger)]
     before = float(np.mean(size.at(m.without)))
-    reasons = {HOLDS: m.reduces, IN_PART: "it tells at some of its values only"}
-    reason = reasons[verdict] if verdict in reasons else m.fails(means, before)
+    reason = m.reduces if verdict == HOLDS else m.fails(means, before)
+    if verdict == IN_PART:
+        reason = f"it tells at some of its values only; {reason}"
     return f"{_change(means, before)}: {reason}"
 
 

@@ -27,17 +27,20 @@ def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
 
 def _rules_changed(f: Findings, claims: Sequence[Claim], rules: Sequence[str]) -> str:
     """Return that rules were not all laid down beforehand, and what the former ones would say here."""
-    jump = claims[0]
     spring = next(one for one in measures(f) if one.jump is f.jump_by_spring)
     now = measure(spring.jump.absolute(), spring.without, spring.larger)
     before = trend(spring.jump.absolute(), rising=False).verdict
     return (
         "Two rules were changed after a first look at numbers of the paper's case. With ten times the spread as the "
         "threshold of rule 1 the first statement of this page would be "
-        f"*{jump_verdict(f, 10 * f.start_spread_m)}*, now *{jump.verdict}*; with a monotone fall asked for, as in "
+        f"{_former(jump_verdict(f, 10 * f.start_spread_m), claims[0].verdict)}; with a monotone fall asked for, as in "
         f"rule {rules.index(TREND_RULE) + 1}, instead of rule {rules.index(MEASURE_RULE) + 1}, that on {spring.name} "
-        f"would be *{before}*, now *{now}*."
+        f"would be {_former(before, now)}."
     )
+
+
+def _former(before: str, now: str) -> str:
+    return f"*{before}*, as it is now" if before == now else f"*{before}* instead of *{now}*"
 
 
 def _certainty(f: Findings) -> list[str]:

@@ -11,8 +11,8 @@ from statejump.core.run import Run
 from statejump.kinds.umbrella import compare, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.compare import first_contact_K
-from statejump.paper.findings import Amplification, Envelope, Findings, FirstContact
-from statejump.paper.statistics import Groups, two_sample_test
+from statejump.paper.claims.findings import Amplification, Envelope, Findings, FirstContact
+from statejump.paper.claims.statistics import Groups, two_sample_test
 from statejump.paper.figures.closed_forms import (
     closed_form_first_contact, envelope, static_deflection, static_deflection_elastic,
 )

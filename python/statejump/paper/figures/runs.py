@@ -15,8 +15,8 @@ from statejump.core.run import Run
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.compare import first_contact_K
-from statejump.paper.findings import FirstContact
-from statejump.paper.statistics import Groups
+from statejump.paper.claims.findings import FirstContact
+from statejump.paper.claims.statistics import Groups
 from statejump.paper.figures.closed_forms import closed_form_first_contact
 from statejump.schema.paths import with_values
 
