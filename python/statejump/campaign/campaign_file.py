@@ -103,8 +103,6 @@ def _campaign(path: Path, text_read: str, data: Mapping[str, Any], command: str)
 
 
 def _check_sections(data: Mapping[str, Any]) -> None:
-    import difflib
-
     hints = {"campaign": "did you mean [campaign]?", "vary": "did you mean [[vary]]?"}
     for name in data:
         if name in hints:
