@@ -1,5 +1,5 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Throughput of a campaign: 10 000 samples of the single joint, and two workers beside one; writes
 results/bench/campaign.md and campaign.csv.
 

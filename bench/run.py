@@ -1,5 +1,5 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Cost of a joint contact beside YADE's own sphere-sphere Hertz-Mindlin law, in one YADE each.
 
     PYTHONPATH=build/python /usr/bin/python3 bench/run.py --build build

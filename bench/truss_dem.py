@@ -1,5 +1,5 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Cost of a joint and step of trusses in the DEM; writes results/bench/truss_dem.md and truss_dem.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 bench/truss_dem.py

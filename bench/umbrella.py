@@ -1,5 +1,5 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Speed of the umbrella rib in both models; writes results/bench/umbrella.md and umbrella.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 bench/umbrella.py --build build

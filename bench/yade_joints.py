@@ -25,7 +25,7 @@ import os
 import runpy
 import sys
 import time
-from math import atan, ceil, pi, sqrt
+from math import atan, ceil, sqrt
 from pathlib import Path
 
 

@@ -13,7 +13,8 @@ FIRST_LINES = 3  # a line that names the interpreter may come before it
 
 def main() -> int:
     """Print the files without the line."""
-    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], capture_output=True, text=True, check=True)
+    command = ["git", "ls-files", "-co", "--exclude-standard"]
+    listed = subprocess.run(command, capture_output=True, text=True, check=True)
     missing = []
     for name in listed.stdout.splitlines():
         path = Path(name)

@@ -338,7 +338,8 @@ def test_sweep_in_python(tmp_path: Path, cases: Path) -> None:
     assert list(frame["joint.friction_coefficient"]) == [0.1, 0.1, 0.2, 0.2]
     assert list(frame["thermal.cycles"]) == [1, 2, 1, 2] and not frame["error"].any()
     # f l0 / (E A), for any number of cycles
-    assert frame["state_jump_m"].tolist() == pytest.approx(frame["joint.friction_coefficient"] * 100 * 0.5 / (70e9 * 9e-6))
+    exact = frame["joint.friction_coefficient"] * 100 * 0.5 / (70e9 * 9e-6)
+    assert frame["state_jump_m"].tolist() == pytest.approx(exact.tolist())
     for _, row in frame.iterrows():
         run = case.changed({"joint.friction_coefficient": row["joint.friction_coefficient"],
                             "thermal.cycles": int(row["thermal.cycles"])}).reduced()
@@ -414,6 +415,37 @@ def test_outcomes_are_what_kinds_say_before_any_run(cases: Path) -> None:
             assert tuple(kind.outcomes(case, kind.reduced(case, lambda share: None))) == kind.OUTCOMES
 
 
+def test_failures_are_counted_by_their_fields() -> None:
+    """Two samples that fail alike have other numbers; a range is none of them."""
+    first, second = (
+        sj.errors.FailedRun("the run failed", cause="it buckles", time_s=time_s, temperature_change_K=10 * time_s)
+        for time_s in (0.25, 0.5)
+    )
+    assert first.general() == second.general()
+    refused = [sj.errors.NotAllowed("joint.friction_coefficient", value, allowed=sj.errors.Range(0, 10))
+               for value in (-0.25, -1e-3)]
+    assert {failure.general() for failure in refused} == {
+        "joint.friction_coefficient = … is not allowed: must be between 0 and 10 [-]"
+    }
+    assert sj.errors.NotAllowed("a", "b", "c").general() == "a = 'b' is not allowed: c"
+
+
+def test_workers_know_kinds_of_ones_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A worker imports the kind from where this process does; its samples are those of this process."""
+    from statejump import kinds
+
+    monkeypatch.syspath_prepend(str(Path(__file__).resolve().parent / "toy"))
+    monkeypatch.setattr(kinds, "KINDS", dict(kinds.KINDS))
+    kinds.register("toy_kind:KIND")
+    case = sj.load({
+        "case": {"name": "rod", "kind": "toy"}, "rod": {"length_m": 2.0},
+        "thermal": {"shape": "triangle", "temperature_change_max_K": 100.0},
+    })
+    here, there = (sj.sweep(case, {"rod.residue": [0.0, 0.1, 0.2]}, workers=count) for count in (None, 1))
+    assert not there.failed and there.done.workers == 1
+    assert here.frame().equals(there.frame())
+
+
 # Execution.
 
 def test_same_bytes_with_any_workers(tmp_path: Path, write: Callable[..., Path]) -> None:
@@ -448,7 +480,8 @@ def test_workers_that_vanish_end_the_campaign_and_keep_what_is_finished(
 
     campaign = load_campaign(write(samples=50_000), MONTECARLO)
     monkeypatch.setattr(distribute, "LOOK_S", 0.1)
-    monkeypatch.setattr(distribute, "NO_WORKERS_S", 0.2)  # the cluster starts another worker, in more than half a second
+    # The cluster starts another worker, in more than half a second.
+    monkeypatch.setattr(distribute, "NO_WORKERS_S", 0.2)
     (tmp_path / "trial").mkdir()
     with _no_main_file(), LocalCluster(
         n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0", local_directory=str(tmp_path)

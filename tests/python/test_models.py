@@ -11,12 +11,15 @@ import numpy as np
 import pytest
 
 from statejump import _engine
-from statejump.core import comparison as compare, yade_process as dem
-from statejump.kinds.spring_slider import figure as plot, reduced, stable_step
-from statejump.kinds.registry import Case, load_case
+from statejump.core.comparison import Comparison
 from statejump.core.errors import StatejumpError
-from statejump.core.history import History
+from statejump.core.figures import save
 from statejump.core.output import replacing, write_atomically
+from statejump.core.run import Run
+from statejump.core.tables import read_columns
+from statejump.kinds.loading import load_case
+from statejump.kinds.spring_slider import compare, dem, reduced, result, stable_step
+from statejump.kinds.spring_slider.case import SpringSliderCase as Case
 
 E, A, L0, ALPHA, FRICTION, CLEARANCE = 70e9, 9e-6, 0.5, 23.4e-6, 30.0, 1e-3
 # Closed forms of a handful of operations: rounding of a few units in the last place each.
@@ -52,23 +55,24 @@ def test_wide_clearance_never_meets_the_stop(cases: Path) -> None:
 
 
 def test_preload_reduces_the_jump(table1: Case) -> None:
-    stiff = table1.copy(update={"joint": table1.joint.copy(update={"preload_stiffness_N_per_m": 2e6})})
-    path = reduced.solve(stiff)
+    path = reduced.solve(table1.changed({"joint.preload_stiffness_N_per_m": 2e6}))
     assert path.state_jump_m == pytest.approx(FRICTION / (E * A / L0 + 2e6), rel=RELATIVE)
 
 
-def test_table_program_is_stretched_to_the_dem_period(cases: Path, edited) -> None:
+def test_table_program_lasts_as_long_as_its_times_say(cases: Path, edited) -> None:
     path = edited(('"half_sine"', '"table"'), ("temperature_change_max_K = 100",
-                  "table_time_s = [0, 3000, 5400]\ntable_temperature_change_K = [0, 100, 0]"))
+                  "table_time_s = [0, 3000, 5400]\ntable_temperature_change_K = [0, 100, 0]"),
+                  ("period_s = 1.0", ""))
     case = load_case(path)
-    assert case.table_time_s == [0, pytest.approx(3000 / 5400), 1.0]
+    assert case.period_s == 5400 and case.thermal.table_time_s == [0, 3000, 5400]
     assert reduced.solve(case).state_jump_m == pytest.approx(FRICTION * L0 / (E * A), rel=RELATIVE)
-    assert dem.resolved(case)["thermal"]["table_time_s"] == case.table_time_s
+    assert case.thermal_program().temperature_change(3000.0) == pytest.approx(100.0, rel=RELATIVE)
+    assert dem.dem_input(case)["thermal"]["table_time_s"] == case.thermal.table_time_s
 
 
 def test_expanding_pads_are_announced(table1: Case) -> None:
     assert reduced.warnings(table1) == []
-    case = table1.copy(update={"joint": table1.joint.copy(update={"pad_thermal_expansion_per_K": 1e-5})})
+    case = table1.changed({"joint.pad_thermal_expansion_per_K": 1e-5})
     assert "keeps the clearances" in reduced.warnings(case)[0]
 
 
@@ -79,10 +83,17 @@ def test_steps_fill_the_program_exactly(table1: Case) -> None:
     assert 0 < dem.time_step(table1) <= wanted
 
 
-def synthetic(case: Case) -> History:
-    """A DEM history that repeats the reduced model exactly."""
+Columns = dict[str, np.ndarray]
+
+
+def exact_run(case: Case) -> Run:
+    return reduced.run(case, lambda share: None)
+
+
+def synthetic(case: Case) -> Columns:
+    """Columns of a DEM run that repeats the reduced model exactly."""
     path = reduced.solve(case)
-    columns = dict(reduced.sample(path, reduced.sample_times(case)).columns)
+    columns = exact_run(case).flat()
     count = len(columns["time_s"])
     stage = columns.pop("stage")
     columns["slipping"] = (np.isin(stage, ("S2", "S5"))).astype(float)
@@ -94,15 +105,15 @@ def synthetic(case: Case) -> History:
     columns["stop_contact"][half:] = change[half:] >= left
     for name in ("contact_energy_J", "kinetic_energy_J", "damping_dissipation_J", "external_work_J"):
         columns[name] = np.zeros(count)
-    return History(columns)
+    return columns
 
 
-def changed(history: History, **columns: np.ndarray) -> History:
-    return History({**history.columns, **columns})
+def compared(case: Case, columns: Columns) -> Comparison:
+    return compare.compare(case, exact_run(case), result.dem_run(case, columns, {}))
 
 
-def missed(case: Case, history: History) -> list[str]:
-    return [row.name for row in compare.compare(case, reduced.solve(case), history) if not row.passed]
+def missed(case: Case, columns: Columns) -> list[str]:
+    return compared(case, columns).missed
 
 
 def test_equal_histories_pass(table1: Case) -> None:
@@ -114,54 +125,62 @@ def test_each_tolerance_can_be_missed(table1: Case) -> None:
     x, change = history["displacement_m"], history["temperature_change_K"]
     last = np.zeros_like(x)
     last[-1] = 1.01 * 0.005 * x[-1]
-    assert missed(table1, changed(history, displacement_m=x + last)) == ["state_jump"]
+    assert missed(table1, {**history, "displacement_m": x + last}) == ["state_jump"]
     late = ((change > 2.7) & (np.arange(len(x)) < len(x) // 2)).astype(float)
-    assert missed(table1, changed(history, slipping=late)) == ["first_slip_temperature_change"]
+    assert missed(table1, {**history, "slipping": late}) == ["first_slip_temperature_change"]
     never = np.zeros_like(x)
-    assert missed(table1, changed(history, stop_contact=never)) == [
+    assert missed(table1, {**history, "stop_contact": never}) == [
         "stop_reached_temperature_change", "stop_left_temperature_change"]
     wave = 0.015e-3 * np.sin(np.linspace(0, np.pi, len(x)))  # 1.06 % of 1 mm in RMS
-    assert missed(table1, changed(history, displacement_m=x + wave)) == ["displacement_rms_over_largest"]
+    assert missed(table1, {**history, "displacement_m": x + wave}) == ["displacement_rms_over_largest"]
     work = history["thermal_work_J"] * 1.0011
-    assert missed(table1, changed(history, thermal_work_J=work)) == ["energy_residual_over_friction_work"]
+    assert missed(table1, {**history, "thermal_work_J": work}) == ["energy_residual_over_friction_work"]
     broken = x.copy()
     broken[1000] = np.nan
-    assert "displacement_rms_over_largest" in missed(table1, changed(history, displacement_m=broken))
+    assert "displacement_rms_over_largest" in missed(table1, {**history, "displacement_m": broken})
 
 
 def test_drift_of_later_cycles_is_noticed(cases: Path) -> None:
     case = load_case(cases / "table1_ten_cycles.toml")
-    path = reduced.solve(case)
-    columns = reduced.sample(path, reduced.sample_times(case)).columns
+    columns = exact_run(case).flat()
+    columns["slipping"] = columns["stop_contact"] = np.zeros(len(columns["time_s"]))
+    del columns["stage"]
     x = columns["displacement_m"]
-    exact = compare.loop_drift(History(columns), case.dem.samples_per_cycle, 10)
-    assert exact < 1e-15  # the exact loop closes to rounding of 1 mm
-    drifting = x + np.linspace(0, 1e-5, len(x))
-    drift = compare.loop_drift(History({**columns, "displacement_m": drifting}), case.dem.samples_per_cycle, 10)
+
+    def drift_of(displacement_m: np.ndarray) -> float:
+        run = result.dem_run(case, {**columns, "displacement_m": displacement_m}, {})
+        return compare.loop_drift(run, case.dem.samples_per_cycle, 10)
+
+    assert drift_of(x) < 1e-15  # the exact loop closes to rounding of 1 mm
+    drift = drift_of(x + np.linspace(0, 1e-5, len(x)))
     assert drift == pytest.approx(8e-6, rel=1e-3)  # eight periods of 1e-5 / 10 each
 
 
 def test_comparison_files(table1: Case, tmp_path: Path) -> None:
-    rows = compare.compare(table1, reduced.solve(table1), synthetic(table1))
-    bad = dataclasses.replace(rows[0], dem=None, difference=None, passed=False)
-    compare.write_comparison(table1, [bad, *rows[1:]], tmp_path)
+    found = compared(table1, synthetic(table1))
+    first_row = found.rows[0]
+    bad = dataclasses.replace(first_row, values={**first_row.values, "dem": None}, difference=None, passed=False)
+    dataclasses.replace(found, rows=(bad, *found.rows[1:])).write(tmp_path)
     document = json.loads((tmp_path / "comparison.json").read_text())
     assert document["pass"] is False and document["case"] == "table1"
     assert list(document["quantities"][0]) == ["name", "unit", "reduced", "dem", "difference", "tolerance", "pass"]
     assert document["quantities"][0]["name"] == "state_jump"
     with (tmp_path / "comparison.csv").open() as stream:
-        assert next(csv.reader(stream))[0] == "name"
+        rows = list(csv.reader(stream))
+    assert rows[0] == ["name", "unit", "reduced", "dem", "difference", "tolerance", "pass"]
+    assert rows[1][3:5] == ["", ""] and rows[1][-1] == "False"
 
 
 def test_history_survives_its_file(table1: Case, tmp_path: Path) -> None:
-    history = reduced.sample(reduced.solve(table1), np.linspace(0, 1, 7))
-    history.write_csv(tmp_path / "h.csv")
-    again = History.read_csv(tmp_path / "h.csv")
-    for name, values in history.columns.items():
+    run = exact_run(table1).at(np.linspace(0, 1, 7))
+    run.write_csv(tmp_path / "h.csv")
+    again = read_columns(tmp_path / "h.csv")
+    assert list(again) == list(run.flat())
+    for name, values in run.flat().items():
         assert np.array_equal(values, again[name]), name
-    (tmp_path / "x.csv").write_text("time_s,colour\n0,1\n")
-    with pytest.raises(StatejumpError, match="unknown column colour"):
-        History.read_csv(tmp_path / "x.csv")
+    (tmp_path / "x.csv").write_text("time_s,colour\n")
+    with pytest.raises(StatejumpError, match="x.csv: holds no samples"):
+        read_columns(tmp_path / "x.csv")
 
 
 def test_a_failed_write_leaves_nothing(tmp_path: Path) -> None:
@@ -179,15 +198,15 @@ def test_a_failed_write_leaves_nothing(tmp_path: Path) -> None:
 
 
 def test_figure_shows_both_models_and_repeats_bit_for_bit(table1: Case, tmp_path: Path) -> None:
-    path, history = reduced.solve(table1), synthetic(table1)
-    png, svg = plot.figure(table1, path, history, tmp_path)
+    found = compared(table1, synthetic(table1))
+    png, svg = save(found.plot(), tmp_path, "table1")
     text = svg.read_text()
     for label in ("reduced model (exact)", "DEM (YADE)", "S1", "S5", "stop", "Temperature change [K]",
                   "Axial force, compression positive [N]", "state jump 23.81"):
         assert label in text, label
     assert png.stat().st_size > 20_000
     before = text
-    plot.figure(table1, path, history, tmp_path)
+    save(found.plot(), tmp_path, "table1")
     assert svg.read_text() == before
 
 

@@ -294,8 +294,8 @@ def test_library(tmp_path: Path) -> None:
 
     backend = matplotlib.get_backend()
     case = sj.load({
-        "case": {"name": "two", "kind": "statics"}, "joint": {"type": "journal", "clearance_m": C,
-                                                             "friction_coefficient": 0.3},
+        "case": {"name": "two", "kind": "statics"},
+        "joint": {"type": "journal", "clearance_m": C, "friction_coefficient": 0.3},
         "force": [{"force_N": [1, 0, 0]}, {"force_N": [0, 1, 0], "name": "up"}],
     })
     statics = sj.statics(case)

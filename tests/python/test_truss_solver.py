@@ -10,7 +10,7 @@ import pytest
 
 from statejump import _engine
 from statejump.kinds.spring_slider import reduced
-from statejump.core.errors import FailedRun, Interrupted, StatejumpError
+from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import load_case, parse_case
 from statejump.kinds.truss import contacts, generate, solve
 from statejump.kinds.truss.generate.document import document, finished, node

@@ -4,33 +4,41 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from math import inf, nan
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from statejump import _engine
-from statejump.kinds.registry import load_case
-from statejump.core.yade_process import DemRun
+from statejump.cli.paper import figures_command
 from statejump.core.errors import Interrupted, StatejumpError
+from statejump.core.yade_process import Samples
+from statejump.kinds.loading import load_case
 from statejump.kinds.umbrella import dem, reduced as model
-from statejump.paper import claims
-from statejump.paper.figures import closed_forms, command
+from statejump.paper.claims import measures, verdicts
+from statejump.paper.claims.findings import Amplification, Envelope, Findings, FirstContact
+from statejump.paper.claims.page import page
+from statejump.paper.claims.statistics import (
+    FAILS, HOLDS, IN_PART, IN_THE_MEAN, UNTESTED, Groups, trend, two_sample_test,
+)
+from statejump.paper.claims.verdicts import Claim
+from statejump.paper.figures import closed_forms, study
 from statejump.paper.figures.runs import Study
+from statejump.schema.paths import with_values
 
 RANDOM = np.random.default_rng(7)
 NOISE = RANDOM.normal(size=(8, 200))
-HOLDS, IN_THE_MEAN, IN_PART, FAILS = claims.HOLDS, claims.IN_THE_MEAN, claims.IN_PART, claims.FAILS
 
 
-def groups(means: list[float], spread: float, values: tuple[float, ...] = (0.0, 0.1, 0.3, 0.5)) -> claims.Groups:
+def groups(means: list[float], spread: float, values: tuple[float, ...] = (0.0, 0.1, 0.3, 0.5)) -> Groups:
     """Runs about given means; always the same noise, without a mean of its own."""
     noise = NOISE - NOISE.mean(axis=1, keepdims=True)
-    return claims.Groups(values, tuple(mean + spread * row for mean, row in zip(means, noise)))
+    return Groups(values, tuple(mean + spread * row for mean, row in zip(means, noise)))
 
 
 @pytest.mark.parametrize(
@@ -46,7 +54,7 @@ def groups(means: list[float], spread: float, values: tuple[float, ...] = (0.0, 
     ],
 )
 def test_trend(means: list[float], spread: float, rising: bool, verdict: str) -> None:
-    found = claims.trend(groups(means, spread), rising)
+    found = trend(groups(means, spread), rising)
     assert found.verdict == verdict
     assert len(found.against) == (1 if means == [1, 2, 3, 2] else 3 if verdict == FAILS and spread == 0.1 else 0)
 
@@ -59,39 +67,39 @@ def test_trend(means: list[float], spread: float, rising: bool, verdict: str) ->
         ([3, 4, 1, 2], 0.0, True, FAILS),  # larger at one value
         ([3, 3, 3, 3], 0.0, True, FAILS),
         ([1, 2, 3, 9], 0.3, False, HOLDS),  # values on the other side do not count
-        ([1, 2, 3, 0], 0.5, True, claims.UNTESTED),
+        ([1, 2, 3, 0], 0.5, True, UNTESTED),
     ],
 )
 def test_measure(means: list[float], without: float, larger: bool, verdict: str) -> None:
-    assert claims.measure(groups(means, 0.3), without, larger) == verdict
+    assert measures.measure(groups(means, 0.3), without, larger) == verdict
 
 
 def test_two_samples() -> None:
     first, second = NOISE[0], NOISE[1]
-    assert claims.two_sample_test("same", first, second).agree
-    shifted = claims.two_sample_test("shifted", first, second + 1)
+    assert two_sample_test("same", first, second).agree
+    shifted = two_sample_test("shifted", first, second + 1)
     assert shifted.p_mean < 1e-6 and shifted.p_spread > 0.01 and not shifted.agree
-    wider = claims.two_sample_test("wider", first, 3 * (second - second.mean()) + first.mean())
+    wider = two_sample_test("wider", first, 3 * (second - second.mean()) + first.mean())
     assert wider.p_spread < 1e-6 and wider.p_mean > 0.01 and not wider.agree
-    assert claims.two_sample_test("one run", first, first[:1]).p_mean == 1
+    assert two_sample_test("one run", first, first[:1]).p_mean == 1
 
 
-def all_true() -> claims.Findings:
+def all_true() -> Findings:
     """Findings under which every statement holds."""
     limit = 2.85e-4
     clearances = (5e-5, 1e-4, 3e-4)
     springs = (0.0, 1.0, 100.0)
     contacts = tuple(
-        claims.FirstContact(c, *(3 * [c / 2.85e-6] if c < limit else 3 * [None])) for c in clearances
+        FirstContact(c, *(3 * [c / 2.85e-6] if c < limit else 3 * [None])) for c in clearances
     )
-    return claims.Findings(
+    return Findings(
         start_spread_m=1e-6,
         end_shift_reduced_m=np.full(5, 5e-5),
         end_shift_dem_m=np.full(5, 5e-5),
         first_contacts=contacts,
         tolerance_reduced_K=1e-6,
         tolerance_dem_K=1e-3,
-        onset_K=claims.Groups(clearances, tuple(np.array(3 * [17.6 if c < 9e-5 else 35.2 if c < limit else inf])
+        onset_K=Groups(clearances, tuple(np.array(3 * [17.6 if c < 9e-5 else 35.2 if c < limit else inf])
                                                 for c in clearances)),
         onset_dem_K=(17.6, 35.2, inf),
         clearance_limit_m=limit,
@@ -105,50 +113,132 @@ def all_true() -> claims.Findings:
         jump_by_stiffness=groups([3, 2, 1], 0.1, (0.25, 1.0, 4.0)),
         free_turn_rad=8.3e-4,
         spring_bias_rad=0.0,
-        tests=(claims.two_sample_test("range of θ2", NOISE[0], NOISE[1]),),
-        envelopes=(claims.Envelope("fig14, reduced, single", 5, -1e-6, 1e-6, 0),),
-        amplification=claims.Amplification(1e-12, 1e-8, 1e-3),
+        tests=(two_sample_test("range of θ2", NOISE[0], NOISE[1]),),
+        envelopes=(Envelope("fig14, reduced, single", 5, -1e-6, 1e-6, 0),),
+        amplification=Amplification(1e-12, 1e-8, 1e-3),
+        spring_stiffness_N_m_per_rad=0.0,
+        damped=False,
+        rings=True,
     )
 
 
 def test_true_claims_hold() -> None:
-    verdicts = [claim.verdict for claim in claims.all_claims(all_true())]
-    assert verdicts == [HOLDS] * 10 + [claims.UNTESTED]
+    verdicts = [claim.verdict for claim in measures.all_claims(all_true())]
+    assert verdicts == [HOLDS] * 10 + [UNTESTED]
 
 
 @pytest.mark.parametrize(
     "claim, change, verdict",
     [
-        (claims.state_jump_occurs, {"end_shift_dem_m": np.array([5e-5, 1e-7])}, IN_THE_MEAN),
-        (claims.state_jump_occurs, {"end_shift_reduced_m": np.full(9, 1e-8)}, FAILS),
-        (claims.smaller_clearance_earlier, {"onset_dem_K": (35.2, 17.6, inf)}, FAILS),
-        (claims.smaller_clearance_earlier, {"tolerance_reduced_K": -1.0}, IN_THE_MEAN),  # off the closed form
-        (claims.large_clearance_never_touches, {"clearance_limit_m": 2e-5}, FAILS),
-        (claims.large_clearance_never_touches, {"onset_dem_K": (17.6, 35.2, 90.0)}, FAILS),
-        (claims.large_clearance_never_touches, {"clearance_limit_m": 1.0}, claims.UNTESTED),
-        (claims.large_clearance_never_touches, {"clearance_limit_m": nan}, claims.UNTESTED),
-        (claims.more_friction_larger_range, {"range_by_friction": groups([4, 3, 2, 1], 0.1)}, FAILS),
-        (claims.friction_is_the_reason, {"jump_by_friction": groups([2, 2, 3, 3], 0.1)}, IN_THE_MEAN),
-        (claims.friction_is_the_reason, {"jump_by_friction": groups([4, 3, 3, 3], 0.1)}, FAILS),
-        (claims.spring_reduces_deflection, {"largest_by_spring": groups([1, 2, 3], 0.1, (0.0, 1.0, 9.0))}, FAILS),
-        (claims.spring_ends_at_static, {"static_rigid_rad": 3.0e-3}, FAILS),
-        (claims.spring_ends_at_static, {"static_rigid_rad": None}, claims.UNTESTED),
+        (verdicts.state_jump_occurs, {"end_shift_dem_m": np.array([5e-5, 1e-7])}, IN_THE_MEAN),
+        (verdicts.state_jump_occurs, {"end_shift_reduced_m": np.full(9, 1e-8)}, FAILS),
+        (verdicts.smaller_clearance_earlier, {"onset_dem_K": (35.2, 17.6, inf)}, FAILS),
+        (verdicts.smaller_clearance_earlier, {"tolerance_reduced_K": -1.0}, IN_THE_MEAN),  # off the closed form
+        (verdicts.large_clearance_never_touches, {"clearance_limit_m": 2e-5}, FAILS),
+        (verdicts.large_clearance_never_touches, {"onset_dem_K": (17.6, 35.2, 90.0)}, FAILS),
+        (verdicts.large_clearance_never_touches, {"clearance_limit_m": 1.0}, UNTESTED),
+        (verdicts.large_clearance_never_touches, {"clearance_limit_m": nan}, UNTESTED),
+        (verdicts.more_friction_larger_range, {"range_by_friction": groups([4, 3, 2, 1], 0.1)}, FAILS),
+        (verdicts.friction_is_the_reason, {"jump_by_friction": groups([2, 2, 3, 3], 0.1)}, IN_THE_MEAN),
+        (verdicts.friction_is_the_reason, {"jump_by_friction": groups([4, 3, 3, 3], 0.1)}, FAILS),
+        (verdicts.spring_reduces_deflection, {"largest_by_spring": groups([1, 2, 3], 0.1, (0.0, 1.0, 9.0))}, FAILS),
+        (verdicts.spring_ends_at_static, {"static_rigid_rad": 3.0e-3}, FAILS),
+        (verdicts.spring_ends_at_static, {"static_rigid_rad": None}, UNTESTED),
     ],
 )
 def test_false_claims_come_out_false(
-    claim: Callable[[claims.Findings], claims.Claim], change: dict[str, Any], verdict: str
+    claim: Callable[[Findings], Claim], change: dict[str, Any], verdict: str
 ) -> None:
     assert claim(replace(all_true(), **change)).verdict == verdict
 
 
+def text_of(f: Findings) -> str:
+    return "\n".join(page("A case", "statejump figures a.toml", f))
+
+
 def test_text_follows_the_verdicts() -> None:
-    text = claims.readme("A case", "statejump figures a.toml", all_true())
+    text = text_of(all_true())
     assert text.count("**holds**") == 10 and "Chaotic" in text
     calm = replace(
-        all_true(), amplification=claims.Amplification(1e-12, 1e-12, 1e-12), range_by_friction=groups([1] * 4, 1.0)
+        all_true(), amplification=Amplification(1e-12, 1e-12, 1e-12), range_by_friction=groups([1] * 4, 1.0)
     )
-    text = claims.readme("A case", "statejump figures a.toml", calm)
+    text = text_of(calm)
     assert text.count("**holds**") == 9 and "**does not hold**" in text and "Chaotic" not in text
+
+
+UNDAMPED = "nothing else takes up the energy of the impacts"
+NO_LIMIT = {"clearance_limit_m": nan}
+
+
+@pytest.mark.parametrize(
+    "claim, change, said, not_said",
+    [
+        (verdicts.state_jump_occurs, {}, "without a torsion spring", "c/|AC|"),
+        (verdicts.state_jump_occurs, {"spring_stiffness_N_m_per_rad": 2.0}, "c/|AC| = 0.83 mrad", "without a torsion"),
+        (verdicts.state_jump_occurs, {"damped": True}, "end far apart", "nothing damps"),
+        (verdicts.state_jump_occurs, {"amplification": Amplification(1e-12, 1e-12, 1e-12)}, "nothing damps", "far apart"),
+        (verdicts.state_jump_occurs, {"end_shift_reduced_m": np.full(9, 1e-8)}, "9 of 14 runs end where", "statics"),
+        (verdicts.smaller_clearance_earlier, {}, "met by both models", "overlapping"),
+        (verdicts.smaller_clearance_earlier, {"tolerance_dem_K": -1.0}, "by more than its tolerance", "met by both"),
+        (verdicts.smaller_clearance_earlier, {"onset_dem_K": (35.2, 17.6, inf)}, "does not always", "overlapping"),
+        (verdicts.smaller_clearance_earlier, NO_LIMIT, "no closed form", "tolerance"),
+        (verdicts.large_clearance_never_touches, {}, "ends at the limit", "against"),
+        (verdicts.large_clearance_never_touches, {"onset_dem_K": (17.6, 35.2, 90.0)}, "runs at c = 0.3 mm", "ends at"),
+        (verdicts.large_clearance_never_touches, {"clearance_limit_m": 1.0}, "no clearance of the study", "ends at"),
+        (verdicts.large_clearance_never_touches, NO_LIMIT, "no closed form", "ends at"),
+        (verdicts.more_friction_larger_range, {}, "the farther AB is carried", "chance"),
+        (verdicts.more_friction_larger_range, {"range_by_friction": groups([1.0, 1.3, 1.6, 1.9], 1.0)},
+         "the scatter of the runs is as large", "do not show"),
+        (verdicts.more_friction_larger_range, {"range_by_friction": groups([4, 3, 2, 1], 0.1)}, "the other way",
+         "carried"),
+        (verdicts.friction_is_the_reason, {}, "curves close", UNDAMPED),
+        (verdicts.friction_is_the_reason, {"jump_by_friction": groups([4, 3, 3, 3], 0.1)}, UNDAMPED, "curves close"),
+        (verdicts.friction_is_the_reason, {"jump_by_friction": groups([4, 3, 3, 3], 0.1), "damped": True},
+         "do not close at μ = 0", UNDAMPED),
+        (verdicts.friction_is_the_reason, {"jump_by_friction": groups([2, 2, 3, 3], 0.1)}, "a part of 0.67", "curves"),
+        (verdicts.friction_is_the_reason, {"friction_coefficient": 0.0}, "the case has no friction", "curves"),
+        (verdicts.spring_ends_at_static, {}, "2.0 %, is the swing of the links, which nothing damps", "below"),
+        (verdicts.spring_ends_at_static, {"damped": True}, "2.0 %, is the swing of the links;", "nothing damps"),
+        (verdicts.spring_ends_at_static, {"static_rigid_rad": 4e-3}, "stay 12.5 % below it", "swing"),
+        (verdicts.spring_ends_at_static, {"spring_bias_rad": 0.1}, "free there", "no static deflection"),
+    ],
+)
+def test_reasons_follow_from_numbers_and_verdict(
+    claim: Callable[[Findings], Claim], change: dict[str, Any], said: str, not_said: str
+) -> None:
+    why = claim(replace(all_true(), **change)).why
+    assert said in why and not_said not in why
+
+
+def test_reasons_of_measures_follow_their_verdicts() -> None:
+    def whys(**change: Any) -> list[str]:
+        return [claim.why for claim in measures.control(replace(all_true(), **change))]
+
+    friction, stiffness, spring, stressed = whys()
+    assert "less friction leaves less" in friction and "stiffer links give less" in stiffness
+    assert "holds the flare angle; both links" in spring and "bias_rad" in stressed
+    worse = groups([5, 4, 3, 3], 0.1)
+    assert "speed of the impacts stays" in whys(jump_by_friction=worse)[0]
+    assert "speed of the impacts" not in whys(jump_by_friction=worse, damped=True)[0]
+    same = groups([1e-3] * 3, 1e-4, (0.25, 1.0, 4.0))
+    assert "1.2 times c/|AC|" in whys(jump_by_stiffness=same)[1]
+    assert "some of its values only" in whys(jump_by_spring=groups([3, 2, 3], 0.1, (0.0, 1.0, 100.0)))[2]
+    biased = measures.control(replace(all_true(), spring_bias_rad=0.1))
+    assert len(biased) == 3 and "pre-stressed torsion springs" in biased[2].statement
+
+
+def test_former_rules_are_told_with_the_numbers_of_the_case() -> None:
+    """What the rules said before they were changed is computed, not remembered."""
+    assert "would be *holds*, as it is now; with a monotone fall" in text_of(all_true())
+    near = replace(all_true(), end_shift_dem_m=np.array([5e-5, 5e-6]))  # beyond the spread, not beyond ten times of it
+    assert "would be *holds in the mean* instead of *holds*" in text_of(near)
+    up_again = groups([3, 1, 2], 0.1, (0.0, 1.0, 100.0))
+    assert "would be *does not hold* instead of *holds*." in text_of(replace(all_true(), jump_by_spring=up_again))
+
+
+def test_calm_start_is_not_said_to_ring() -> None:
+    assert "start at rest ring" in text_of(all_true())
+    assert "start at rest ring" not in text_of(replace(all_true(), rings=False))
 
 
 def test_envelope(cases: Path) -> None:
@@ -164,17 +254,17 @@ def test_envelope(cases: Path) -> None:
 
 def test_static_deflection(cases: Path) -> None:
     """Damped slow runs without friction end where statics says; rigid links are the soft spring's limit."""
-    case = model.changed(load_case(cases / "umbrella.toml"), {
+    case = with_values(load_case(cases / "umbrella.toml"), {
         "joint.friction_coefficient": 0.0, "start.mode": "matched", "damping.axial_damping_ratio": 0.1,
         "damping.pin_damping_N_m_s_per_rad": 0.05, "reduced.steps_per_cycle": 100_000, "thermal.period_s": 2.0,
     })
     assert closed_forms.static_deflection(case, 35.0) is None
     rigid = closed_forms.static_deflection(case, 100.0)
     for stiffness in (1.0, 100.0):
-        sprung = model.changed(case, {"torsion_spring.stiffness_N_m_per_rad": stiffness})
+        sprung = with_values(case, {"torsion_spring.stiffness_N_m_per_rad": stiffness})
         elastic = closed_forms.static_deflection_elastic(sprung, 100.0)
         assert 0 < rigid - elastic < 1e-6 * stiffness
-        history = model.run(sprung).history
+        history = model.run(sprung)
         warmest = int(np.argmax(history["temperature_change_K"]))
         deflection = history["theta2_rad"][warmest] - history["theta2_rad"][0]
         assert deflection == pytest.approx(elastic, abs=0.3 * (rigid - elastic) if stiffness > 1 else 2e-5)
@@ -184,11 +274,10 @@ def test_static_deflection(cases: Path) -> None:
 def tiny(edited: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> Path:
     """A case of few runs and steps; the reduced model with other steps stands for YADE."""
 
-    def execute(case: Any, offset_m: np.ndarray | None = None) -> DemRun:
-        done = model.run(model.changed(case, {"reduced.steps_per_cycle": case.dem.steps_per_cycle}), offset_m)
-        return DemRun(
-            done.history, {"first_contact_temperature_change_K": done.first_contact_temperature_change_K}
-        )
+    def execute(case: Any, offset_m: np.ndarray | None = None) -> Samples:
+        done = model.integrate(with_values(case, {"reduced.steps_per_cycle": case.dem.steps_per_cycle}), offset_m)
+        keys = ("first_contact_time_s", "first_contact_temperature_change_K")
+        return Samples(done.columns(), {key: getattr(done, key) for key in keys})
 
     monkeypatch.setattr(dem, "execute", execute)
     return edited(
@@ -202,7 +291,7 @@ def tiny(edited: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def invoke(case_file: Path, results: Path) -> Any:
-    return CliRunner().invoke(command.figures_command, [str(case_file), "--results", str(results)])
+    return CliRunner().invoke(figures_command, [str(case_file), "--results", str(results)])
 
 
 def test_command(tiny: Path, tmp_path: Path) -> None:
@@ -246,14 +335,14 @@ def test_command(tiny: Path, tmp_path: Path) -> None:
 def test_interruption_leaves_what_is_finished(
     tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    drawn = command.figure_of
+    drawn = study.figure_of
 
-    def figure_of(study: Study, *rest: Any) -> list[Path]:
-        if study.figure == "fig15":
+    def figure_of(what: Study, *rest: Any) -> list[Path]:
+        if what.figure == "fig15":
             raise KeyboardInterrupt
-        return drawn(study, *rest)
+        return drawn(what, *rest)
 
-    monkeypatch.setattr(command, "figure_of", figure_of)
+    monkeypatch.setattr(study, "figure_of", figure_of)
     outcome = invoke(tiny, tmp_path / "out")
     folder = tmp_path / "out" / "umbrella"
     assert isinstance(outcome.exception, Interrupted)

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from statejump.kinds.registry import load_case
+from conftest import BUILT
+from statejump import _paths
+from statejump.cli import paper as commands
+from statejump.core import yade_process
 from statejump.core.errors import StatejumpError
+from statejump.kinds.loading import load_case
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.paper import energy, hold, slow
+from statejump.paper.common import made_by
+from statejump.schema.paths import with_values
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +44,7 @@ def block(case, name: str) -> slow.Block:
 
 def differences(of: slow.Block, periods) -> np.ndarray:
     """theta2 and theta4 jump less the quasi-static one, per period."""
-    found = [slow.jumps(model.run(slow.at_period(of.case, period)).history) for period in periods]
+    found = [slow.jumps(model.run(slow.at_period(of.case, period))) for period in periods]
     return np.array(found) - of.quasi_static_rad
 
 
@@ -77,7 +85,7 @@ def test_dem_jump_is_the_reduced_one(bias):
     # that costs omega^2 dt^2 of its amplitude, c atan(mu) at most; over the joint's height h that is an
     # angle. omega^2 = F |AC|^2/(c I): pendulum of both links' inertia I under the joint force F.
     case = slow.at_period(bias, 2.0)
-    ours, other = slow.jumps(model.run(case).history), slow.jumps(dem.execute(case).history)
+    ours, other = slow.jumps(model.run(case)), slow.jumps(dem.execute_all([case])[0])
     height, play = bias.ideal_position_m[1], bias.joint.radial_clearance_m
     force = bias.torsion_spring.stiffness_N_m_per_rad * bias.torsion_spring.bias_rad / height
     inertia = sum(link.mass_kg / 3 * link.stress_free_length_m**2 for link in (bias.link_ab, bias.link_bc))
@@ -132,32 +140,32 @@ def test_energy_residue_falls_with_the_steps(damped):
 def test_energy_book_sees_what_is_missing(damped):
     """An account without one of its terms does not close."""
     variant = energy.variants(damped)[0]
-    history = model.run(energy.with_steps(variant.case, 200_000)).history
-    whole = abs(energy.energy_residual(history))
+    columns = model.run(energy.with_steps(variant.case, 200_000)).flat()
+    whole = abs(energy.residue_J(columns))
     for name in ("friction_dissipation_J", "axial_dissipation_J", "pin_dissipation_J"):
-        without = type(history)({**history.columns, name: 0 * history[name]})
-        assert abs(energy.energy_residual(without)) > 100 * whole, name
+        assert abs(energy.residue_J({**columns, name: 0 * columns[name]})) > 100 * whole, name
 
 
 MISTAKES = {
-    "slow, other kind": (slow.slow_command, "table1", (), "is for 'umbrella'"),
-    "slow, not loaded": (slow.slow_command, "umbrella_damped", (), "start.mode = 'matched' is not allowed"),
-    "slow, undamped": (slow.slow_command, "umbrella_bias", (("axial_damping_ratio = 0.1", "axial_damping_ratio = 0"),),
-                       "must be above 0: without damping"),
-    "slow, no memory": (slow.slow_command, "umbrella_bias",
-                        (('friction_law = "mindlin"', 'friction_law = "ambrosio"'),), "joint.friction_law = 'ambrosio' is not allowed"),
-    "slow, force vanishes": (slow.slow_command, "umbrella_bias", (("bias_rad = 0.05", "bias_rad = -0.003"),),
+    "slow, other kind": (commands.slow_command, "table1", (), "is for 'umbrella'"),
+    "slow, not loaded": (commands.slow_command, "umbrella_damped", (), "start.mode = 'matched' is not allowed"),
+    "slow, undamped": (commands.slow_command, "umbrella_bias", (("axial_damping_ratio = 0.1", "axial_damping_ratio = 0"),),
+                       "damping.axial_damping_ratio = 0.0 is not allowed: must be above 0: without damping"),
+    "slow, no memory": (commands.slow_command, "umbrella_bias",
+                        (('friction_law = "mindlin"', 'friction_law = "ambrosio"'),),
+                        "needs friction that holds a static load, 'mindlin'"),
+    "slow, force vanishes": (commands.slow_command, "umbrella_bias", (("bias_rad = 0.05", "bias_rad = -0.003"),),
                              "the contact force vanishes"),
-    "slow, line contact": (slow.slow_command, "umbrella_bias", (('"hertz_internal"', '"johnson"'),),
+    "slow, line contact": (commands.slow_command, "umbrella_bias", (('"hertz_internal"', '"johnson"'),),
                            "there is no quasi-static path: normal = 'johnson'"),
-    "hold, other kind": (hold.hold_command, "table1", (), "is for 'umbrella'"),
-    "hold, no spring": (hold.hold_command, "umbrella_damped", (), "with a biased torsion spring"),
-    "hold, no friction": (hold.hold_command, "umbrella_bias",
+    "hold, other kind": (commands.hold_command, "table1", (), "is for 'umbrella'"),
+    "hold, no spring": (commands.hold_command, "umbrella_damped", (), "with a biased torsion spring"),
+    "hold, no friction": (commands.hold_command, "umbrella_bias",
                           (("friction_coefficient = 0.15", "friction_coefficient = 0"),), "nothing holds the joint"),
-    "hold, no clearance to load": (hold.hold_command, "umbrella_bias", (("bias_rad = 0.05", "bias_rad = 0.001"),),
+    "hold, no clearance to load": (commands.hold_command, "umbrella_bias", (("bias_rad = 0.05", "bias_rad = 0.001"),),
                                    "the joint cannot be loaded"),
-    "energy, other kind": (energy.energy_command, "table1", (), "is for 'umbrella'"),
-    "energy, constant temperature": (energy.energy_command, "umbrella_hold", (), "there is no thermal work"),
+    "energy, other kind": (commands.energy_command, "table1", (), "is for 'umbrella'"),
+    "energy, constant temperature": (commands.energy_command, "umbrella_hold", (), "there is no thermal work"),
 }
 
 
@@ -171,20 +179,66 @@ def test_mistake_is_one_sentence(name, edited, cases, tmp_path):
     assert not (tmp_path / "results").exists()
 
 
+@pytest.mark.parametrize("name, shipped", [("figures", "umbrella"), ("slow", "umbrella_bias"), ("hold", "umbrella_hold")])
+def test_shipped_case_is_found_from_every_folder(name, shipped, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    command = getattr(commands, f"{name}_command")
+    given = command.make_context(name, []).params["case_file"]
+    assert given == _paths.SHARE / "cases" / f"{shipped}.toml" and load_case(given).name == shipped
+
+
+def test_energy_finds_a_shipped_case_from_every_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for word in ("cases/umbrella_damped.toml", "umbrella_damped"):
+        given = commands.energy_command.make_context("energy", [word]).params["case_file"]
+        assert load_case(given).name == "umbrella_damped"
+
+
+def test_pages_name_the_case_file_that_was_given(edited, cases, tmp_path, monkeypatch):
+    own = edited(case="umbrella_damped")
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert made_by("slow", load_case(own)) == "statejump slow bad.toml"
+    # A shipped case by the name under which it is found from every folder.
+    assert made_by("slow", load_case("umbrella_bias")) == "statejump slow cases/umbrella_bias.toml"
+    monkeypatch.chdir(elsewhere)
+    assert made_by("hold", load_case(own)) == f"statejump hold {Path('..') / 'bad.toml'}"
+    # What is not in a file cannot be named.
+    assert made_by("hold", load_case(load_case(own).to_dict())) == "statejump hold"
+    assert made_by("hold", load_case(own).changed({"joint.friction_coefficient": 0.2})) == "statejump hold"
+
+
+def test_studies_leave_the_callers_matplotlib_alone():
+    """Neither the backend nor pyplot, which opens windows of its own, is touched by drawing."""
+    program = """
+import sys
+import matplotlib
+matplotlib.use("svg")
+import statejump.kinds.umbrella.figure, statejump.paper.energy, statejump.paper.hold, statejump.paper.slow
+import statejump.paper.figures.study
+from statejump.core.figures import panels
+panels(1, 1, (2, 2))
+print(matplotlib.get_backend().lower(), "matplotlib.pyplot" in sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", program], env={"PYTHONPATH": str(BUILT)}, capture_output=True, text=True)
+    assert done.stdout.split() == ["svg", "False"], done.stderr
+
+
 def test_dem_gives_the_same_bits_twice(bias):
-    values = dem.resolved(model.changed(bias, {
-        "thermal.period_s": 0.5, "dem.steps_per_cycle": 50_000, "output.samples_per_cycle": 500, "dem.threads": 1}))
-    first, second = (dem.dem.execute(values, lambda fraction: None) for _ in range(2))
+    values = {"scene": "scene_umbrella", **dem.dem_input(with_values(bias, {
+        "thermal.period_s": 0.5, "dem.steps_per_cycle": 50_000, "output.samples_per_cycle": 500, "dem.threads": 1}))}
+    first, second = (yade_process.execute(values, lambda share: None) for _ in range(2))
     for run in (first, second):
-        del run.summary["wall_time_s"], run.summary["cpu_time_s"]
-    assert first.summary == second.summary
-    assert first.history.columns.keys() == second.history.columns.keys()
-    for column, column_values in first.history.columns.items():
-        assert column_values.tobytes() == second.history[column].tobytes(), column
+        del run.about["wall_time_s"], run.about["cpu_time_s"]
+    assert first.about == second.about
+    assert first.columns.keys() == second.columns.keys()
+    for column, column_values in first.columns.items():
+        assert column_values.tobytes() == second.columns[column].tobytes(), column
 
 
 def test_ensemble_does_not_depend_on_the_number_of_workers(cases, monkeypatch):
-    case = model.changed(load_case(cases / "umbrella.toml"), {
+    case = with_values(load_case(cases / "umbrella.toml"), {
         "ensemble.reduced_steps_per_cycle": 20_000, "output.samples_per_cycle": 100})
     found = {}
     for workers in (1, 2):

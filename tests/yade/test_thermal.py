@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Temperature programs, expansion of bodies, thermal links against closed forms."""
-from math import asin, hypot, pi, sin, sqrt
+from math import asin, hypot, pi, sin
 
 import pytest
 

@@ -129,8 +129,8 @@ class Campaign:
         })
 
     def __repr__(self) -> str:
-        what = f"{self.plan.command} of {self.plan.case.name!r}"
-        return f"Campaign({what}, {len(self):,} samples, {self.failed:,} failed)"
+        counts = f"{len(self):,} samples, {self.failed:,} failed"
+        return f"Campaign({self.plan.command} of {self.plan.case.name!r}, {counts})"
 
     def _repr_html_(self) -> str:
         from statejump.core.html import table

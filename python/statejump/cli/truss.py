@@ -69,7 +69,7 @@ def _generator_command(kind: str, function: Callable[..., Case]) -> click.Comman
     def make(n: int, output: Path, force: bool, quiet: bool, **values: Any) -> None:
         console = make_console(quiet)
         if output.exists() and not force:
-            raise StatejumpError("exists already", file=output, remedy="--force overwrites it")
+            raise StatejumpError(cause="exists already", file=output, remedy="--force overwrites it")
         if not output.parent.is_dir():
             raise NotWritten("cannot be written", file=output, cause=f"there is no folder {output.parent}")
         try:

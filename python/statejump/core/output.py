@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Iterator
+from typing import IO, TYPE_CHECKING
 
+from statejump import _paths
 from statejump.core.errors import NotWritten
+
+if TYPE_CHECKING:
+    from statejump.core.case import Case
 
 
 @contextmanager
@@ -43,3 +48,19 @@ def results_folder(root: Path, name: str) -> Path:
         raise NotWritten("cannot be written", file=folder, place=f"results folder {folder}",
                          cause=error.strerror or str(error), remedy="choose another with --results") from None
     return folder
+
+
+def made_by(command: str, case: Case) -> str:
+    """Return how a file was made, for its text: the command with the case file, relative to the current folder or as
+    the case that comes with the program is called.
+
+    :param command: as ``statejump hold``
+    """
+    file = case.origin.file
+    if file is None:
+        return f"`{command}` of case {case.name}, which was made in Python"
+    for folder in (Path.cwd(), _paths.SHARE):
+        if file.resolve().is_relative_to(folder.resolve()):
+            file = file.resolve().relative_to(folder.resolve())
+            break
+    return f"`{command} {file.as_posix()}`"

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The umbrella antenna's rib: both models of ``umbrella`` cases and what is made of them."""
+"""Studies of the paper: its figures and claims, slow heating, a joint left alone, the energy account."""

@@ -1,31 +1,36 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump energy``: what the energy account leaves over, against the steps of both models."""
+"""What the energy account leaves over, against the steps of both models: ``statejump energy``."""
 from __future__ import annotations
 
-import csv
 import math
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
-from typing import Callable, Optional, Sequence
+from typing import Any
 
-import click
 import numpy as np
+from matplotlib.axes import Axes
 
 from statejump import laws
-from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.core.errors import StatejumpError
-from statejump.core.history import History
-from statejump.core.output import results_folder, write_atomically
-from statejump.kinds.spring_slider.figure import DEM, REDUCED, STYLE, plt, save
-from statejump.cli.terminal import QUIET, RESULTS, counted, load_kind, make_console, undivided
+from statejump.core.errors import FailedRun
+from statejump.core.figures import DEM, REDUCED, panels, save, style
+from statejump.core.output import results_folder
+from statejump.core.physics import axial_stiffness_N_per_m
+from statejump.core.progress import Tell, counted
+from statejump.core.run import Columns, Run, energy_residue_J
+from statejump.core.tables import markdown, write_rows, write_text
 from statejump.kinds.umbrella import dem, reduced as model
-from statejump.kinds.umbrella.compare import energy_residual
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.kinds.umbrella.compare import DISSIPATED, STORED, largest_temperature
+from statejump.paper.common import made_by, refused
+from statejump.schema.paths import with_values
 
 REDUCED_STEPS_PER_SECOND = tuple(12_500 * 2**i for i in range(8))
 DEM_STEPS_PER_SECOND = tuple(50_000 * 2**i for i in range(5))
 ADAPTIVE_TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
 LONGEST_PERIOD_s = 1.0
 SAMPLES = 250  # divides every number of steps
+SUPPLIED = "thermal_work_J"
 INSTANTS = ("before contact", "heating", "end")
 EXPECTED = {  # observed order of the residue
     ("as_case", "reduced"): "5 ringing, 2.5 to 3 edges of contact, 1 to 2 friction with memory",
@@ -64,11 +69,11 @@ class Row:
     model: str
     instant: str
     steps_per_second: float
-    tolerance: Optional[float]
+    tolerance: float | None
     residue_J: float
     residue_over_thermal_work: float
-    order: Optional[float] = None
-    fit: Optional[float] = None
+    order: float | None = None
+    fit: float | None = None
 
 
 @dataclass(frozen=True)
@@ -83,22 +88,17 @@ class Variant:
 def variants(case: UmbrellaCase) -> list[Variant]:
     """The case itself, and free of friction and damping with ringing links."""
     if case.thermal.shape == "table":
-        raise StatejumpError(
-            f"case {case.name}: thermal.shape = 'table' is not allowed: 'statejump energy' shortens the period"
-        )
+        raise refused(case, "thermal.shape", "table", "'statejump energy' shortens the period")
     if case.thermal.temperature_change_max_K == 0:
-        raise StatejumpError(
-            f"case {case.name}: thermal.temperature_change_max_K = 0 is not allowed: there is no thermal work to "
-            "account for"
-        )
+        raise refused(case, "thermal.temperature_change_max_K", 0, "there is no thermal work to account for")
     common = {
         "thermal.period_s": min(case.period_s, LONGEST_PERIOD_s),
         "thermal.cycles": 1,
         "output.samples_per_cycle": SAMPLES,
         "reduced.method": "rk4",
     }
-    own = model.changed(case, common)
-    free = model.changed(
+    own = with_values(case, common)
+    free = with_values(
         own,
         {
             "joint.friction_law": "none",
@@ -118,23 +118,25 @@ def variants(case: UmbrellaCase) -> list[Variant]:
 def with_steps(case: UmbrellaCase, steps_per_second: float) -> UmbrellaCase:
     """Return the case with steps in both models."""
     steps = SAMPLES * max(1, round(case.period_s * steps_per_second / SAMPLES))
-    return model.changed(case, {"reduced.steps_per_cycle": steps, "dem.steps_per_cycle": steps})
+    return with_values(case, {"reduced.steps_per_cycle": steps, "dem.steps_per_cycle": steps})
 
 
-def until(history: History, sample: int) -> History:
-    """Return the history up to a sample."""
-    return History({name: values[: sample + 1] for name, values in history.columns.items()})
+def residue_J(columns: Columns | Run, sample: int = -1) -> float:
+    """Return the residue of the account [J] from the start to a sample, by default the last."""
+    end = sample + 1 or None
+    return energy_residue_J({name: columns[name][:end] for name in (SUPPLIED, *STORED, *DISSIPATED)}, (SUPPLIED,),
+                            STORED, DISSIPATED)
 
 
-def instants(case: UmbrellaCase, finest: model.ReducedRun) -> dict[str, int]:
-    """Samples at which the account is drawn up, from the finest run."""
-    history = finest.history
-    hottest = int(np.argmax(np.abs(history["temperature_change_K"])))
-    found = {INSTANTS[1]: max(hottest - 1, 1), INSTANTS[2]: len(history) - 1}
-    if finest.first_contact_time_s is None:
+def instants(case: UmbrellaCase, finest: Run) -> dict[str, int]:
+    """Return the samples at which the account is drawn up, from the finest run."""
+    hottest = largest_temperature(finest)
+    found = {INSTANTS[1]: max(hottest - 1, 1), INSTANTS[2]: len(finest) - 1}
+    first = finest.events.first("first_contact")
+    if first is None:
         return found
     # One sample earlier than needed: with other steps the first contact comes a little sooner.
-    before = int(finest.first_contact_time_s / case.period_s * SAMPLES) - 1
+    before = int(first.time_s / case.period_s * SAMPLES) - 1
     return {INSTANTS[0]: before, **found} if before > 0 else found
 
 
@@ -152,10 +154,12 @@ def corner_W(case: UmbrellaCase) -> float:
     """Dashpots' power [W] right after a triangle's corner, c (2 dl/dt)^2 of both links."""
     if case.thermal.shape != "triangle":
         return 0.0
-    rate = abs(float(model.thermal_program(case).temperature_rate(0.0)))
+    rate = abs(float(case.thermal_program().temperature_rate(0.0)))
     total = 0.0
     for link in (case.link_ab, case.link_bc):
-        stiffness = link.young_modulus_Pa * link.cross_section_area_m2 / link.stress_free_length_m
+        stiffness = axial_stiffness_N_per_m(
+            link.young_modulus_Pa, link.cross_section_area_m2, link.stress_free_length_m
+        )
         dashpot = 2 * case.damping.axial_damping_ratio * math.sqrt(stiffness * link.mass_kg / 3)
         total += dashpot * (2 * link.thermal_expansion_per_K * link.stress_free_length_m * rate) ** 2
     return total
@@ -178,11 +182,18 @@ def with_orders(rows: Sequence[Row], floor: float) -> list[Row]:
             octaves = math.log2(row.steps_per_second / result[-1].steps_per_second)
             if octaves > 0.2:  # an adaptive run may take as many steps for another tolerance
                 order = math.log2(abs(result[-1].residue_J / row.residue_J)) / octaves
-        result.append(Row(**{**asdict(row), "order": order, "fit": fit}))
+        result.append(replace(row, order=order, fit=fit))
     return result
 
 
-Run = tuple[str, float, Optional[float], History]  # model, steps per second, tolerance, history
+@dataclass(frozen=True)
+class Sampled:
+    """A run of one model with its steps per second, or with its tolerance."""
+
+    model: str
+    steps_per_second: float
+    tolerance: float | None
+    run: Run
 
 
 @dataclass(frozen=True)
@@ -202,59 +213,57 @@ class Result:
 
 def study(
     chosen: Sequence[Variant],
-    report: Callable[[float], None],
+    tell: Tell,
     reduced_steps: Sequence[int] = REDUCED_STEPS_PER_SECOND,
     dem_steps: Sequence[int] = DEM_STEPS_PER_SECOND,
 ) -> list[Result]:
     """Run all variants in both models."""
-    found: dict[str, list[Run]] = {}
-    finest: dict[str, model.ReducedRun] = {}
+    found: dict[str, list[Sampled]] = {}
+    finest: dict[str, Run] = {}
     total = len(chosen) * (len(reduced_steps) + len(dem_steps) + len(ADAPTIVE_TOLERANCES))
-    finished = counted(report, total)
+    finished = counted(tell, total)
     for variant in chosen:
         runs = found[variant.name] = []
         for rate in reduced_steps:
             finest[variant.name] = model.run(with_steps(variant.case, rate))
-            runs.append(("reduced", float(rate), None, finest[variant.name].history))
+            runs.append(Sampled("reduced", float(rate), None, finest[variant.name]))
             finished()
         for tolerance in ADAPTIVE_TOLERANCES:
             finished()
             if laws.law("friction", variant.case.joint.friction_law).has_memory:
                 continue  # not smooth enough for error control
             adaptive = model.run(
-                model.changed(
+                with_values(
                     variant.case,
                     {"reduced.method": "adaptive", "reduced.relative_tolerance": tolerance},
                 )
             )
-            runs.append(("adaptive", adaptive.steps / variant.case.period_s, tolerance, adaptive.history))
+            runs.append(Sampled("adaptive", adaptive.summary["steps"] / variant.case.period_s, tolerance, adaptive))
     pairs = sorted(((variant, rate) for variant in chosen for rate in dem_steps), key=lambda pair: -pair[1])
-    histories = dem.execute_all([with_steps(variant.case, rate) for variant, rate in pairs], finished)
-    for (variant, rate), run in sorted(zip(pairs, histories), key=lambda entry: entry[0][1]):
-        found[variant.name].append(("DEM", float(rate), None, run.history))
+    done = dem.execute_all([with_steps(variant.case, rate) for variant, rate in pairs], finished)
+    for (variant, rate), run in sorted(zip(pairs, done), key=lambda entry: entry[0][1]):
+        found[variant.name].append(Sampled("DEM", float(rate), None, run))
     return [_result(variant, finest[variant.name], found[variant.name]) for variant in chosen]
 
 
-def _result(variant: Variant, finest: model.ReducedRun, runs: Sequence[Run]) -> Result:
-    work = float(np.max(np.abs(finest.history["thermal_work_J"])))
+def _result(variant: Variant, finest: Run, runs: Sequence[Sampled]) -> Result:
+    work = float(np.max(np.abs(finest[SUPPLIED])))
     if not work > 0:
-        raise StatejumpError(f"case {variant.case.name}: there is no thermal work to account for")
-    dissipated = sum(
-        float(values[-1]) for name, values in finest.history.columns.items() if name.endswith("_dissipation_J")
-    )
-    result = Result(variant, work, dissipated, [])
+        raise FailedRun("there is no thermal work to account for", case=variant.case.name)
+    result = Result(variant, work, sum(float(finest[name][-1]) for name in DISSIPATED), [])
     for name in ("reduced", "adaptive", "DEM"):
         for instant, sample in instants(variant.case, finest).items():
             rows = []
-            for own, rate, tolerance, history in runs:
-                if own == name:
-                    residue = energy_residual(until(history, sample))
-                    rows.append(Row(variant.name, name, instant, rate, tolerance, residue, residue / work))
+            for one in runs:
+                if one.model == name:
+                    residue = residue_J(one.run, sample)
+                    rows.append(Row(variant.name, name, instant, one.steps_per_second, one.tolerance, residue,
+                                    residue / work))
             result.rows.extend(with_orders(rows, result.floor))
     return result
 
 
-STYLES = {
+STYLES: dict[str, dict[str, Any]] = {
     "reduced": {**REDUCED, "label": "reduced model, RK4"},
     "DEM": {**DEM, "label": "DEM (YADE), leapfrog"},
     "adaptive": dict(color="#009E73", linewidth=1.4, linestyle=(0, (6, 1, 1, 1)),
@@ -268,13 +277,13 @@ MARKERS = {INSTANTS[0]: "o", INSTANTS[1]: "s", INSTANTS[2]: "D"}
 def figure(case: UmbrellaCase, results: Sequence[Result], folder: Path) -> list[Path]:
     """Write ``energy.png`` and ``energy.svg``: relative residue against steps per second."""
     names = [name for name in INSTANTS if any(row.instant == name for result in results for row in result.rows)]
-    with plt.rc_context(STYLE):
-        drawing, panels = plt.subplots(
-            len(results), len(names), figsize=(3.6 * len(names) + 0.6, 3.6 * len(results) + 0.9), squeeze=False,
-            sharex=True, sharey=True, constrained_layout=True,
+    with style():
+        drawing, grid = panels(
+            len(results), len(names), (3.6 * len(names) + 0.6, 3.6 * len(results) + 0.9), squeeze=False,
+            sharex=True, sharey=True,
         )
-        panels[0, 0].set_xlim(9e3, 2.2e6)
-        for line, result in zip(panels, results):
+        grid[0, 0].set_xlim(9e3, 2.2e6)
+        for line, result in zip(grid, results):
             for panel, instant in zip(line, names):
                 # Nothing happens before contact if the links follow their expansion.
                 mine = [row for row in result.rows if row.instant == instant]
@@ -283,26 +292,26 @@ def figure(case: UmbrellaCase, results: Sequence[Result], folder: Path) -> list[
                     continue
                 _draw(panel, result, instant)
                 panel.set_title(f"{result.variant.title}:\n{instant}", fontsize=8)
-        for panel in panels[-1]:
+        for panel in grid[-1]:
             panel.set_xlabel("Steps per second [1/s]")
-        for line in panels:
+        for line in grid:
             shown = [panel for panel in line if panel.get_visible()]
             shown[0].set_ylabel("|residue| / largest thermal work [-]")
             shown[0].yaxis.set_tick_params(labelleft=True)
-        for panel in panels[:, -1]:
+        for panel in grid[:, -1]:
             panel.legend(loc="upper right", framealpha=1, fontsize=7, handlelength=3.2)
         drawing.suptitle(f"{case.title}: energy account against steps (numbers: order, fitted)", fontsize=11)
         return save(drawing, folder, "energy")
 
 
-def _draw(panel: plt.Axes, result: Result, instant: str) -> None:
+def _draw(panel: Axes, result: Result, instant: str) -> None:
     panel.set_xscale("log")
     panel.set_yscale("log")
-    for name, style in STYLES.items():
+    for name, line in STYLES.items():
         mine = [row for row in result.rows if row.model == name and row.instant == instant and row.residue_J]
         if mine:
             panel.plot([row.steps_per_second for row in mine], [abs(row.residue_over_thermal_work) for row in mine],
-                       marker=MARKERS[instant], markersize=7 if name == "reduced" else 4, **style)
+                       marker=MARKERS[instant], markersize=7 if name == "reduced" else 4, **line)
             if mine[0].fit is not None:
                 which, place, side = LABELS[name]
                 panel.annotate(
@@ -313,61 +322,65 @@ def _draw(panel: plt.Axes, result: Result, instant: str) -> None:
     panel.margins(y=0.12)
 
 
-def write(case: UmbrellaCase, results: Sequence[Result], folder: Path) -> list[Path]:
-    """Write ``energy.csv`` and ``energy.md``."""
-    with write_atomically(folder / "energy.csv") as stream:
-        writer = csv.DictWriter(stream, fieldnames=[field.name for field in fields(Row)])
-        writer.writeheader()
-        writer.writerows(asdict(row) for result in results for row in result.rows)
-    lines = [f"# Energy account against steps: {case.title}", "", f"Made by `statejump energy cases/{case.name}.toml`.",
-             "", EXPLANATION]
+def write(case: UmbrellaCase, results: Sequence[Result], command: str, folder: Path) -> list[Path]:
+    """Write ``energy.csv`` and ``energy.md``.
+
+    :param command: that makes them
+    """
+    table = write_rows(folder / "energy.csv", [asdict(row) for result in results for row in result.rows],
+                       [field.name for field in fields(Row)])
+    lines = [f"# Energy account against steps: {case.title}", "", f"Made by `{command}`.", "", EXPLANATION]
     if case.period_s > LONGEST_PERIOD_s:
         lines += [f"The period is {LONGEST_PERIOD_s:g} s here instead of the case's {case.period_s:g} s.", ""]
-    for result in results:
+    header = ("model", "instant", "steps/s", "tolerance", "residue [J]", "over thermal work", "order", "fit",
+              "expected")
+    for number, result in enumerate(results):
         variant = result.variant
         lines += [
-            f"## {variant.title}", "",
+            *([""] if number else []), f"## {variant.title}", "",
             f"Largest thermal work {result.thermal_work_J:.4e} J, dissipation {result.dissipation_J:.4e} J, "
             f"rounding {rounding_J(variant.case):.1e} J, corner {corner_W(variant.case):.3e} W times the step.", "",
-            "| model | instant | steps/s | tolerance | residue [J] | over thermal work | order | fit | expected |",
-            "|" + "---|" * 9,
+            *markdown(header, map(_cells, result.rows)),
         ]
-        for row in result.rows:
-            tolerance, order, fit = (
-                "" if value is None else f"{value:{form}}"
-                for value, form in ((row.tolerance, ".0e"), (row.order, ".2f"), (row.fit, ".2f"))
-            )
-            lines.append(
-                f"| {row.model} | {row.instant} | {row.steps_per_second:.0f} | {tolerance} | {row.residue_J:.3e} "
-                f"| {row.residue_over_thermal_work:.3e} | {order} | {fit} "
-                f"| {EXPECTED.get((row.variant, row.model), '')} |"
-            )
-        lines.append("")
-    with write_atomically(folder / "energy.md") as stream:
-        stream.write("\n".join(lines))
-    return [folder / "energy.md", folder / "energy.csv"]
+    return [write_text(folder / "energy.md", lines), table]
 
 
-@click.command("energy")
-@click.argument("case_file", metavar="CASE", type=click.Path(path_type=Path))
-@RESULTS
-@QUIET
-def energy_command(case_file: Path, results: Path, quiet: bool) -> None:
-    """Energy account of CASE against the steps of both models, also without friction and damping.
+def _cells(row: Row) -> list[str]:
+    tolerance, order, fit = (
+        "" if value is None else f"{value:{form}}"
+        for value, form in ((row.tolerance, ".0e"), (row.order, ".2f"), (row.fit, ".2f"))
+    )
+    return [row.model, row.instant, f"{row.steps_per_second:.0f}", tolerance, f"{row.residue_J:.3e}",
+            f"{row.residue_over_thermal_work:.3e}", order, fit, EXPECTED.get((row.variant, row.model), "")]
 
-    \b
-    Example:
-      statejump energy cases/umbrella_damped.toml
+
+@dataclass(frozen=True)
+class Accounts:
+    """The accounts of all variants, and the files that were written."""
+
+    results: Sequence[Result]
+    written: list[Path]
+
+    def told(self) -> list[str]:
+        """Return the lines that a command prints."""
+        lines = []
+        for result in self.results:
+            fits = {(row.model, row.instant): row.fit for row in result.rows if row.fit is not None}
+            lines += [
+                f"{result.variant.title}: {name}, {instant}: residue of order {fit:.2f}"
+                for (name, instant), fit in fits.items()
+            ]
+        return lines
+
+
+def make(case: UmbrellaCase, results: Path, tell: Tell) -> Accounts:
+    """Run all variants of a case and write figure and tables.
+
+    :param results: gets a folder of the case's name
+    :param tell: takes the finished share
+    :raises NotAllowed: the study does not fit the case
     """
-    console = make_console(quiet)
-    case = load_kind(case_file, UmbrellaCase)
     chosen = variants(case)
     folder = results_folder(results, case.name)
-    with undivided(console, "runs") as tell:
-        found = study(chosen, tell)
-    written = write(case, found, folder) + figure(case, found, folder)
-    for result in found:
-        fits = {(row.model, row.instant): row.fit for row in result.rows if row.fit is not None}
-        for (name, instant), fit in fits.items():
-            console.print(f"{result.variant.title}: {name}, {instant}: residue of order {fit:.2f}")
-    console.print(f"results: {', '.join(str(name) for name in written)}")
+    found = study(chosen, tell)
+    return Accounts(found, write(case, found, made_by("energy", case), folder) + figure(case, found, folder))

@@ -1,24 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump hold``: a loaded joint left alone at constant temperature, by two friction laws."""
+"""A loaded joint left alone at constant temperature, by two friction laws: ``statejump hold``."""
 from __future__ import annotations
 
-import csv
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Sequence
+from typing import Any
 
-import click
 import numpy as np
+from matplotlib.lines import Line2D
 
-from statejump import _engine
-from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.core.errors import FailedRun, StatejumpError
-from statejump.core.history import History
-from statejump.core.output import results_folder, write_atomically
-from statejump.kinds.spring_slider.figure import DEM, REDUCED, STYLE, plt, save
-from statejump.cli.terminal import QUIET, RESULTS, counted, load_kind, make_console, undivided
+from statejump import _engine, laws
+from statejump.core.engine_failures import engine
+from statejump.core.figures import DEM, REDUCED, panels, save, style
+from statejump.core.output import results_folder
+from statejump.core.progress import Tell, counted
+from statejump.core.run import Run
+from statejump.core.tables import markdown, write_csv, write_text
 from statejump.kinds.umbrella import dem, reduced as model
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.paper.common import made_by, refused
+from statejump.schema.paths import with_values
 
 PERIOD_s = 10.0
 STEPS_PER_SECOND = (50_000, 100_000, 200_000)
@@ -77,18 +80,14 @@ class Hold:
 
 def held(case: UmbrellaCase, period_s: float = PERIOD_s) -> UmbrellaCase:
     """Return the case at constant temperature; the contact at half the friction angle unless it says
-    otherwise. :raises StatejumpError: nothing loads its joint"""
+    otherwise. :raises NotAllowed: nothing loads its joint"""
     if case.start.mode != "loaded":
-        raise StatejumpError(
-            f"case {case.name}: start.mode = {case.start.mode!r} is not allowed: 'statejump hold' needs 'loaded', "
-            "with a biased torsion spring"
-        )
+        raise refused(case, "start.mode", case.start.mode,
+                      "'statejump hold' needs 'loaded', with a biased torsion spring")
     friction = case.joint.friction_coefficient
     if not friction > 0:
-        raise StatejumpError(
-            f"case {case.name}: joint.friction_coefficient = {friction!r} is not allowed: nothing holds the joint"
-        )
-    return model.changed(
+        raise refused(case, "joint.friction_coefficient", friction, "nothing holds the joint")
+    return with_values(
         case,
         {
             "thermal.shape": "triangle",
@@ -105,7 +104,7 @@ def by_law(case: UmbrellaCase, law: str, steps_per_second: int) -> UmbrellaCase:
     """Return the held case with a friction law and steps."""
     samples = case.output.samples_per_cycle
     steps = samples * math.ceil(case.period_s * steps_per_second / samples)
-    return model.changed(
+    return with_values(
         case,
         {
             "joint.friction_law": law,
@@ -116,7 +115,7 @@ def by_law(case: UmbrellaCase, law: str, steps_per_second: int) -> UmbrellaCase:
     )
 
 
-def _measure(case: UmbrellaCase, name: str, steps_per_second: int, history: History) -> Hold:
+def _measure(case: UmbrellaCase, name: str, steps_per_second: int, history: Run) -> Hold:
     side = -1 if history["eccentricity_x_m"][0] < 0 else 1
     angle = np.arctan2(side * history["eccentricity_y_m"], side * history["eccentricity_x_m"])
     slide = _arc(case, angle, history["theta2_rad"], history["theta4_rad"])
@@ -136,15 +135,15 @@ def _arc(case: UmbrellaCase, angle: np.ndarray, theta2: np.ndarray, theta4: np.n
 def run_reduced(case: UmbrellaCase, law: str, steps_per_second: int) -> Hold:
     """Run the held case in the reduced model."""
     wanted = by_law(case, law, steps_per_second)
-    return _measure(wanted, "reduced", steps_per_second, model.run(wanted).history)
+    return _measure(wanted, "reduced", steps_per_second, model.run(wanted))
 
 
-def run_dem(cases: Sequence[tuple[str, int]], case: UmbrellaCase, report: Callable[[], None]) -> list[Hold]:
+def run_dem(cases: Sequence[tuple[str, int]], case: UmbrellaCase, finished: Callable[[], None]) -> list[Hold]:
     """Run the held case in the DEM, by law and steps per second."""
     wanted = [by_law(case, law, rate) for law, rate in cases]
-    runs = dem.execute_all(wanted, report)
+    runs = dem.execute_all(wanted, finished)
     return [
-        _measure(one, "DEM", rate, run.history) for one, (_, rate), run in zip(wanted, cases, runs)
+        _measure(one, "DEM", rate, run) for one, (_, rate), run in zip(wanted, cases, runs)
     ]
 
 
@@ -187,17 +186,17 @@ def _shown(runs: Sequence[Hold]) -> list[Hold]:
 
 def figure(case: UmbrellaCase, runs: Sequence[Hold], creep: Prediction, folder: Path) -> list[Path]:
     """Write ``hold.png`` and ``hold.svg``: contact angle and slide over time."""
-    with plt.rc_context(STYLE):
-        drawing, (left, right) = plt.subplots(1, 2, figsize=(9.5, 4.4), constrained_layout=True)
+    with style():
+        drawing, (left, right) = panels(1, 2, (9.5, 4.4))
         for run in _shown(runs):
-            style = dict({"reduced": {**REDUCED, "label": "reduced model"}, "DEM": DEM}[run.model])
+            line = dict({"reduced": {**REDUCED, "label": "reduced model"}, "DEM": DEM}[run.model])
             if run.law != LAWS[0]:
-                del style["label"]
-            left.plot(run.time_s[1:], np.degrees(run.contact_angle_rad[1:]), **style)
+                del line["label"]
+            left.plot(run.time_s[1:], np.degrees(run.contact_angle_rad[1:]), **line)
             slide = np.abs(run.slide_m[1:])
             if np.max(slide) > 1e-11:  # what only rounding moves is not drawn
-                right.plot(run.time_s[1:], np.maximum(slide, 1e-11), **style)
-        blue = dict(color="#0072B2", linewidth=1.6, linestyle=(0, (1, 1.5)), zorder=4)
+                right.plot(run.time_s[1:], np.maximum(slide, 1e-11), **line)
+        blue: dict[str, Any] = dict(color="#0072B2", linewidth=1.6, linestyle=(0, (1, 1.5)), zorder=4)
         inside = creep.time_s > 0
         left.plot(creep.time_s[inside], np.degrees(creep.contact_angle_rad[inside]), **blue)
         first = np.geomspace(5e-4, 0.1, 50)
@@ -221,7 +220,7 @@ def figure(case: UmbrellaCase, runs: Sequence[Hold], creep: Prediction, folder: 
         right.annotate("mindlin, reduced model: below 1e-11 m", (0.03, creep.first_slide_m), xytext=(0, -16),
                        textcoords="offset points", fontsize=8)
         lines, labels = left.get_legend_handles_labels()
-        lines += [plt.Line2D([], [], **blue), plt.Line2D([], [], **{**blue, "color": "#D55E00"})]
+        lines += [Line2D([], [], **blue), Line2D([], [], **{**blue, "color": "#D55E00"})]
         labels += ["ambrosio, predicted", "v0 + (v1 \u2212 v0) T/(\u03bc F_N) of the start"]
         right.legend(lines, labels, loc="upper left", framealpha=1, fontsize=8, handlelength=3.2)
         drawing.suptitle(f"{case.title}: {PERIOD_s:g} s at constant temperature", fontsize=11)
@@ -235,8 +234,11 @@ def creep_rate_at_start(case: UmbrellaCase) -> float:
     return joint.friction_v0_m_per_s + (joint.friction_v1_m_per_s - joint.friction_v0_m_per_s) * load
 
 
-def write(case: UmbrellaCase, runs: Sequence[Hold], creep: Prediction, folder: Path) -> list[Path]:
-    """Write ``hold.csv`` and ``hold.md``."""
+def write(case: UmbrellaCase, runs: Sequence[Hold], creep: Prediction, command: str, folder: Path) -> list[Path]:
+    """Write ``hold.csv`` and ``hold.md``.
+
+    :param command: that makes them
+    """
     shown = _shown(runs)
     times = shown[0].time_s
     wanted = np.unique(np.searchsorted(times, np.geomspace(times[1], times[-1], ROWS) * (1 - 1e-12)))
@@ -245,14 +247,23 @@ def write(case: UmbrellaCase, runs: Sequence[Hold], creep: Prediction, folder: P
         columns[f"contact_angle_{run.law}_{run.model.lower()}_rad"] = run.contact_angle_rad[wanted]
         columns[f"slide_{run.law}_{run.model.lower()}_m"] = run.slide_m[wanted]
     columns["slide_ambrosio_predicted_m"] = np.interp(times[wanted], creep.time_s, creep.slide_m)
-    with write_atomically(folder / "hold.csv") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(columns)
-        writer.writerows([f"{value:.9e}" for value in row] for row in zip(*columns.values()))
+    table = write_csv(folder / "hold.csv", list(columns),
+                      ([f"{value:.9e}" for value in row] for row in zip(*columns.values())))
     predicted = creep.creep_rate_m_per_s
-    lines = [
+
+    def cells(run: Hold) -> list[str]:
+        rate = run.creep_rate_m_per_s
+        creep_cells = ["", ""] if laws.law("friction", run.law).holds_static_load else [
+            f"{rate:.4e}", f"{rate / predicted:.4f}"
+        ]
+        return [run.law, run.model, str(run.steps_per_second), f"{math.degrees(run.contact_angle_rad[-1]):.9f}",
+                f"{run.drift_m:.3e}", f"{run.settled_drift_m:.3e}", *creep_cells]
+
+    header = ("law", "model", "steps/s", "angle at the end [\u00b0]", "largest slide [m]", f"after {SETTLED_s:g} s [m]",
+              "creep rate [m/s]", "over predicted")
+    return [write_text(folder / "hold.md", [
         f"# A loaded joint left alone: {case.title}", "",
-        f"Made by `statejump hold cases/{case.name}.toml`: {case.period_s:g} s, contact angle "
+        f"Made by `{command}`: {case.period_s:g} s, contact angle "
         f"{math.degrees(case.start.contact_angle_rad):.4f}\u00b0 at the start, \u03bc = "
         f"{case.joint.friction_coefficient:g}, v0 = {case.joint.friction_v0_m_per_s:g} m/s, v1 = "
         f"{case.joint.friction_v1_m_per_s:g} m/s.", "",
@@ -260,54 +271,44 @@ def write(case: UmbrellaCase, runs: Sequence[Hold], creep: Prediction, folder: P
         f"Expected first slide of a fresh contact T/k_t: {creep.first_slide_m:.3e} m. Predicted creep rate: "
         f"{creep_rate_at_start(case):.4e} m/s at the start, {predicted:.4e} m/s from {RATE_FROM_s * 1e3:g} to "
         f"{RATE_TO_s * 1e3:g} ms, where it is measured.", "",
-        "| law | model | steps/s | angle at the end [\u00b0] | largest slide [m] "
-        f"| after {SETTLED_s:g} s [m] | creep rate [m/s] | over predicted |", "|" + "---|" * 8,
-    ]
-    for run in runs:
-        rate = run.creep_rate_m_per_s
-        creeping = run.law == "ambrosio"
-        lines.append(
-            f"| {run.law} | {run.model} | {run.steps_per_second} | {math.degrees(run.contact_angle_rad[-1]):.9f} "
-            f"| {run.drift_m:.3e} | {run.settled_drift_m:.3e} | {f'{rate:.4e}' if creeping else ''} "
-            f"| {f'{rate / predicted:.4f}' if creeping else ''} |"
-        )
-    with write_atomically(folder / "hold.md") as stream:
-        stream.write("\n".join([*lines, ""]))
-    return [folder / "hold.md", folder / "hold.csv"]
+        *markdown(header, map(cells, runs)),
+    ]), table]
 
 
-@click.command("hold")
-@click.argument(
-    "case_file", metavar="[CASE]", default="cases/umbrella_hold.toml", type=click.Path(path_type=Path)
-)
-@RESULTS
-@QUIET
-def hold_command(case_file: Path, results: Path, quiet: bool) -> None:
-    """Loaded joint of CASE left alone for 10 s, both models: Mindlin's friction holds, Ambrosio's creeps.
+@dataclass(frozen=True)
+class Held:
+    """The runs of a case left alone, and the files that were written."""
 
-    \b
-    Example:
-      statejump hold cases/umbrella_hold.toml
+    case: UmbrellaCase
+    runs: Sequence[Hold]
+    creep: Prediction
+    written: list[Path]
+
+    def told(self) -> list[str]:
+        """Return the lines that a command prints."""
+        return [
+            f"{run.law}, {run.model}: slide {run.drift_m:.3e} m in {self.case.period_s:g} s, contact angle "
+            f"{math.degrees(run.contact_angle_rad[-1]):.6f}\u00b0" for run in _shown(self.runs)
+        ]
+
+
+def make(case: UmbrellaCase, results: Path, tell: Tell) -> Held:
+    """Run a case left alone in both models, by both laws, and write figure and tables.
+
+    :param results: gets a folder of the case's name
+    :param tell: takes the finished share
+    :raises NotAllowed: nothing loads the joint of the case
+    :raises FailedRun: the joint cannot be loaded as the case wants it
     """
-    console = make_console(quiet)
-    case = held(load_kind(case_file, UmbrellaCase))
-    try:
+    command, case = made_by("hold", case), held(case)
+    with engine("the joint cannot be loaded", case=case.name):
         creep = predict(case)
-    except ValueError as error:
-        raise FailedRun(f"case {case.name}: the joint cannot be loaded: {error}") from None
     folder = results_folder(results, case.name)
     wanted = [(law, rate) for law in LAWS for rate in STEPS_PER_SECOND]
-    with undivided(console, "runs") as tell:
-        finished = counted(tell, 2 * len(wanted))
-        runs = []
-        for law, rate in wanted:
-            runs.append(run_reduced(case, law, rate))
-            finished()
-        runs += run_dem(wanted, case, finished)
-    written = write(case, runs, creep, folder) + figure(case, runs, creep, folder)
-    for run in _shown(runs):
-        console.print(
-            f"{run.law}, {run.model}: slide {run.drift_m:.3e} m in {case.period_s:g} s, contact angle "
-            f"{math.degrees(run.contact_angle_rad[-1]):.6f}\u00b0"
-        )
-    console.print(f"results: {', '.join(str(name) for name in written)}")
+    finished = counted(tell, 2 * len(wanted))
+    runs = []
+    for law, rate in wanted:
+        runs.append(run_reduced(case, law, rate))
+        finished()
+    runs += run_dem(wanted, case, finished)
+    return Held(case, runs, creep, write(case, runs, creep, command, folder) + figure(case, runs, creep, folder))

@@ -1,33 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump slow``: the jump of both dynamics against the quasi-static path, ever slower cycles."""
+"""The jump of both dynamics against the quasi-static path, ever slower cycles: ``statejump slow``."""
 from __future__ import annotations
 
-import csv
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
-from typing import Any, Callable, Optional, Sequence
 
-import click
-import numpy as np
-
-from statejump import _engine
-from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.core.errors import StatejumpError
-from statejump.core.history import History
-from statejump.core.output import results_folder, write_atomically
-from statejump.kinds.spring_slider.figure import DEM, REDUCED, STYLE, plt, save
-from statejump.cli.terminal import QUIET, RESULTS, counted, load_kind, make_console, undivided
+from statejump import _engine, laws
+from statejump.core.figures import DEM, REDUCED, panels, save, style
+from statejump.core.output import results_folder
+from statejump.core.progress import Tell, counted
+from statejump.core.run import Run
+from statejump.core.tables import markdown, write_rows, write_text
 from statejump.kinds.umbrella import dem, reduced as model
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.paper.common import made_by, refused
+from statejump.paper.slow_statics import ANGLES, lag, lag_at_parting, quasi_static
+from statejump.schema.paths import with_values
 
 STEPS_PER_SECOND = 100_000
 SAMPLES = 100  # only the ends of the histories are used
 REDUCED_PERIODS_s = (1, 2, 4, 8, 16, 32, 64, 128)
 DEM_PERIODS_s = (1, 2, 4, 8, 16, 32)
 DEM_PERIODS_OF_VARIANTS_s = (1, 2, 4, 8, 16)
-LOOP_SAMPLES = 2000  # per branch of the quasi-static path
 RAISED = 10  # factor of the variants on pin damping and spring
-ANGLES = ("theta2", "theta4")
 
 EXPLANATION = """\
 `difference` is the jump less that of the quasi-static path with elastic links, Hertz's contact and
@@ -52,6 +49,9 @@ the period, of no meaning while a swing is left in the difference (below).
 """
 
 
+Lags = tuple[float | None, float | None]  # of theta2 and theta4 [rad]
+
+
 @dataclass(frozen=True)
 class Block:
     """One variant of the case, and what it tends to."""
@@ -63,7 +63,7 @@ class Block:
     quasi_static_rad: tuple[float, float]  # jumps of theta2 and theta4
     rigid_rad: tuple[float, float]  # the same with rigid links
     predicted_order: float
-    predict: Callable[[float], tuple[Optional[float], Optional[float]]]  # difference at a period
+    predict: Callable[[float], Lags]  # difference at a period
 
 
 @dataclass(frozen=True)
@@ -77,16 +77,16 @@ class Row:
     theta4_jump_rad: float
     theta2_difference_rad: float
     theta4_difference_rad: float
-    theta2_predicted_rad: Optional[float]
-    theta4_predicted_rad: Optional[float]
-    theta2_order: Optional[float] = None
-    theta4_order: Optional[float] = None
+    theta2_predicted_rad: float | None
+    theta4_predicted_rad: float | None
+    theta2_order: float | None = None
+    theta4_order: float | None = None
 
 
 def at_period(case: UmbrellaCase, period_s: float) -> UmbrellaCase:
     """Return the case with another period, the same steps per second in both models."""
     steps = SAMPLES * math.ceil(period_s * STEPS_PER_SECOND / SAMPLES)
-    return model.changed(
+    return with_values(
         case,
         {
             "thermal.period_s": float(period_s),
@@ -98,131 +98,10 @@ def at_period(case: UmbrellaCase, period_s: float) -> UmbrellaCase:
     )
 
 
-def jumps(history: History) -> tuple[float, float]:
-    """Jump of theta2 and of theta4 [rad]."""
-    first, second = (float(history[f"{a}_rad"][-1] - history[f"{a}_rad"][0]) for a in ANGLES)
+def jumps(run: Run) -> tuple[float, float]:
+    """Return the jump of theta2 and of theta4 [rad]."""
+    first, second = (run.summary[f"{a}_jump_rad"] for a in ANGLES)
     return first, second
-
-
-def quasi_static(case: UmbrellaCase) -> _engine.ElasticLoop:
-    """Path that slow dynamics tends to. :raises StatejumpError: statics leaves it open"""
-    try:
-        loop = _engine.elastic_loop(
-            model.linkage(case), model.thermal_program(case), case.start.contact_angle_rad, LOOP_SAMPLES,
-            "mindlin",
-        )
-    except (ValueError, RuntimeError) as error:
-        raise StatejumpError(f"case {case.name}: there is no quasi-static path: {error}") from None
-    if loop.separated:
-        where = loop.events[-1]["temperature_change_K"]
-        raise StatejumpError(
-            f"case {case.name}: the quasi-static path ends at a temperature change of {where:.6g} K, where "
-            "the contact force vanishes: load the joint with a larger torsion_spring.bias_rad"
-        )
-    return loop
-
-
-def _end_rate(case: UmbrellaCase) -> float:
-    """Rate [K/s] with which the program ends."""
-    program = model.thermal_program(case)
-    return float(program.temperature_rate(program.duration_s * (1 - 1e-9)))
-
-
-def _cross(a: np.ndarray, b: np.ndarray) -> float:
-    return float(a[0] * b[1] - a[1] * b[0])
-
-
-def equilibrium(
-    case: UmbrellaCase, guess: dict[str, Any], couples_N_m: tuple[float, float]
-) -> tuple[float, float]:
-    """theta2 and theta4 [rad] of the sliding joint at ΔT = 0 with a couple on each link.
-
-    :param guess: point of the elastic loop nearby; its F_t/F_N is kept
-    """
-    frame = np.array([case.frame.length_m, 0.0])
-    links = (case.link_ab, case.link_bc)
-    length = [link.stress_free_length_m for link in links]
-    stiffness = [
-        link.young_modulus_Pa * link.cross_section_area_m2 / link.stress_free_length_m for link in links
-    ]
-    hertz = float(
-        _engine.normal_force(
-            case.joint.normal_law, np.array([1.0]), case.joint.journal_radius_m, case.bearing_radius_m,
-            case.joint.contact_length_m, case.effective_young_modulus_Pa,
-        )["force_N"][0]
-    )
-    play = case.joint.radial_clearance_m
-    normal = np.array([guess["eccentricity_x_m"], guess["eccentricity_y_m"]])
-    normal /= np.linalg.norm(normal)
-    normal_force, tangential_force = guess["normal_force_N"], guess["tangential_force_N"]
-    start_force = normal_force * normal - tangential_force * np.array([-normal[1], normal[0]])
-    angle = math.atan2(tangential_force, normal_force)  # from the force to the normal, kept in slip
-    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-
-    def residual(x: np.ndarray) -> np.ndarray:
-        u2, u4 = (np.array([math.cos(theta), math.sin(theta)]) for theta in x[:2])
-        force = x[2:]  # on the bearing
-        size = float(np.linalg.norm(force))
-        n = turn @ force / size
-        depth = (size * math.cos(angle) / hertz) ** (2 / 3)
-        bearing = (length[0] + force @ u2 / stiffness[0]) * u2
-        journal = (length[1] - force @ u4 / stiffness[1]) * u4
-        contact = bearing + (case.bearing_radius_m + depth / 2) * n
-        moment = case.torsion_spring.stiffness_N_m_per_rad * (x[1] - x[0] - case.free_flare_angle_rad)
-        gap = (frame + journal - bearing - (play + depth) * n) / play
-        return np.array([
-            *gap,
-            (_cross(contact, force) + moment + couples_N_m[0]) / (size * length[0]),
-            (_cross(contact - frame, force) + moment - couples_N_m[1]) / (size * length[0]),
-        ])
-
-    x = np.array([guess["theta2_rad"], guess["theta4_rad"], *start_force])
-    for _ in range(12):
-        steps = np.array([1e-6, 1e-6, *(1e-6 * np.linalg.norm(x[2:]) for _ in range(2))])
-        jacobian = np.column_stack([
-            (residual(x + step * axis) - residual(x - step * axis)) / (2 * step)
-            for step, axis in zip(steps, np.eye(4))
-        ])
-        x = x - np.linalg.solve(jacobian, residual(x))
-    return float(x[0]), float(x[1])
-
-
-def lag(case: UmbrellaCase, loop: _engine.ElasticLoop) -> tuple[Optional[float], Optional[float]]:
-    """Predicted difference of both jumps [rad]: the pins' couples at the end of the program.
-
-    None if the joint does not slide there: what it then keeps is decided earlier.
-    """
-    last = loop.events[-1]
-    path = loop.columns()
-    if not path["slipping"][-1]:
-        return None, None
-    span = path["temperature_change_K"][-1] - path["temperature_change_K"][-2]
-    pin, rate = case.damping.pin_damping_N_m_s_per_rad, _end_rate(case)
-    couples = [
-        -pin * rate * (path[f"{a}_rad"][-1] - path[f"{a}_rad"][-2]) / span for a in ANGLES
-    ]
-    moved, still = equilibrium(case, last, (couples[0], couples[1])), equilibrium(case, last, (0.0, 0.0))
-    return moved[0] - still[0], moved[1] - still[1]
-
-
-def lag_at_parting(case: UmbrellaCase) -> tuple[float, float]:
-    """Predicted false jump [rad] of a frictionless joint whose contact force vanishes as it slides."""
-    linkage = model.linkage(case)
-    parting = linkage.first_contact_temperature_change()
-
-    def slope(change: float, angle: float) -> dict[str, float]:
-        """Half the difference of the points at ± the steps."""
-        up = _engine.joint_point(linkage, parting + change, -1, angle)
-        down = _engine.joint_point(linkage, parting - change, -1, -angle)
-        return {k: (up[k] - down[k]) / 2 for k in ("theta2_rad", "theta4_rad", "spring_moment_N_m")}
-
-    by_angle, by_change = slope(0.0, 1e-5), slope(1e-3, 0.0)
-    height = case.ideal_position_m[1]
-    force_rate = abs(by_change["spring_moment_N_m"]) / 1e-3 / height  # F' [N/K]
-    rates = (by_change["theta2_rad"] + by_change["theta4_rad"]) / 1e-3
-    pin = case.damping.pin_damping_N_m_s_per_rad
-    reach = math.sqrt(math.pi * pin * abs(_end_rate(case)) / (case.joint.radial_clearance_m * force_rate))
-    return tuple(by_angle[f"{a}_rad"] / 1e-5 * rates / 2 * reach for a in ANGLES)  # type: ignore[return-value]
 
 
 def _parts(case: UmbrellaCase) -> bool:
@@ -233,28 +112,32 @@ def _parts(case: UmbrellaCase) -> bool:
 
 
 def check(case: UmbrellaCase) -> None:
-    """:raises StatejumpError: the study does not fit the case"""
-    wanted = (("start.mode", case.start.mode, "loaded"), ("joint.friction_law", case.joint.friction_law, "mindlin"),
-              ("thermal.shape", case.thermal.shape, "triangle"))
-    for key, value, needed in wanted:
+    """:raises NotAllowed: the study does not fit the case"""
+    for key, value, needed in (("start.mode", case.start.mode, "loaded"),
+                               ("thermal.shape", case.thermal.shape, "triangle")):
         if value != needed:
-            raise StatejumpError(
-                f"case {case.name}: {key} = {value!r} is not allowed: 'statejump slow' needs {needed!r}"
-            )
-    if not model.is_reproducible(case):
-        raise StatejumpError(
-            f"case {case.name}: damping.axial_damping_ratio and damping.pin_damping_N_m_s_per_rad must be above "
-            "0: without damping the motion does not become quasi-static"
-        )
+            raise refused(case, key, value, f"'statejump slow' needs {needed!r}")
+    if not laws.law("friction", case.joint.friction_law).holds_static_load:
+        holding = " or ".join(repr(law.name) for law in laws.catalogue("friction") if law.holds_static_load)
+        raise refused(case, "joint.friction_law", case.joint.friction_law,
+                      f"'statejump slow' needs friction that holds a static load, {holding}")
+    for key in ("damping.axial_damping_ratio", "damping.pin_damping_N_m_s_per_rad"):
+        if not case[key] > 0:
+            raise refused(case, key, case[key],
+                          "must be above 0: without damping the motion does not become quasi-static")
+
+
+def _lag_of(case: UmbrellaCase, loop: _engine.ElasticLoop) -> Callable[[float], Lags]:
+    return lambda period: lag(at_period(case, period), loop)
 
 
 def blocks(case: UmbrellaCase) -> list[Block]:
     """Return the variants of the case that the study runs."""
     check(case)
     pin, spring = case.damping.pin_damping_N_m_s_per_rad, case.torsion_spring.stiffness_N_m_per_rad
-    damped = model.changed(case, {"damping.pin_damping_N_m_s_per_rad": RAISED * pin})
-    smooth = model.changed(case, {"joint.friction_law": "none", "start.contact_angle_rad": 0.0})
-    unloaded = model.changed(
+    damped = with_values(case, {"damping.pin_damping_N_m_s_per_rad": RAISED * pin})
+    smooth = with_values(case, {"joint.friction_law": "none", "start.contact_angle_rad": 0.0})
+    unloaded = with_values(
         smooth,
         {
             "torsion_spring.bias_rad": 0.0,
@@ -276,7 +159,7 @@ def blocks(case: UmbrellaCase) -> list[Block]:
             (loop.theta2_jump_rad, loop.theta4_jump_rad),
             (rigid.theta2_jump_rad, rigid.theta4_jump_rad) if rigid else (math.nan, math.nan),
             1.0,
-            lambda period, variant=variant, loop=loop: lag(at_period(variant, period), loop),
+            _lag_of(variant, loop),
         ))
     if _parts(unloaded):
         result.append(Block(
@@ -291,33 +174,35 @@ def _rows_of(block: Block, name: str, periods: Sequence[float], found: Sequence[
     result: list[Row] = []
     for period, jump in zip(periods, found):
         difference = [jump[i] - block.quasi_static_rad[i] for i in range(2)]
-        order: list[Optional[float]] = [None, None]
+        order: list[float | None] = [None, None]
         if result and period == 2 * result[-1].period_s:
             before = (result[-1].theta2_difference_rad, result[-1].theta4_difference_rad)
             order = [
                 math.log2(abs(before[i] / difference[i])) if before[i] and difference[i] else None for i in range(2)
             ]
-        result.append(Row(block.name, name, float(period), *jump, *difference, *block.predict(period), *order))
+        theta2, theta4 = block.predict(period)
+        result.append(Row(block.name, name, float(period), jump[0], jump[1], difference[0], difference[1],
+                          theta2, theta4, order[0], order[1]))
     return result
 
 
 def study(
-    chosen: Sequence[Block], report: Callable[[float], None], reduced_periods_s: Sequence[float] = REDUCED_PERIODS_s
+    chosen: Sequence[Block], tell: Tell, reduced_periods_s: Sequence[float] = REDUCED_PERIODS_s
 ) -> list[Row]:
     """Run all blocks in both models; the longest DEM runs first, as many at a time as cores."""
     pairs = [(block, period) for block in chosen for period in block.dem_periods_s]
     pairs.sort(key=lambda pair: -pair[1])
     total = sum(len(block.dem_periods_s) for block in chosen) + len(chosen) * len(reduced_periods_s)
-    finished = counted(report, total)
+    finished = counted(tell, total)
     rows: list[Row] = []
     for block in chosen:
         found = []
         for period in reduced_periods_s:
-            found.append(jumps(model.run(at_period(block.case, period)).history))
+            found.append(jumps(model.run(at_period(block.case, period))))
             finished()
         rows += _rows_of(block, "reduced", reduced_periods_s, found)
     runs = dem.execute_all([at_period(block.case, period) for block, period in pairs], finished)
-    of_run = {(block.name, period): jumps(run.history) for (block, period), run in zip(pairs, runs)}
+    of_run = {(block.name, period): jumps(run) for (block, period), run in zip(pairs, runs)}
     for block in chosen:
         periods = block.dem_periods_s
         rows += _rows_of(block, "DEM", periods, [of_run[block.name, period] for period in periods])
@@ -326,18 +211,16 @@ def study(
 
 def figure(case: UmbrellaCase, chosen: Sequence[Block], rows: Sequence[Row], folder: Path) -> list[Path]:
     """Write ``slow.png`` and ``slow.svg``: distance from the quasi-static jump against the period."""
-    with plt.rc_context(STYLE):
-        drawing, grid = plt.subplots(
-            2, 2, figsize=(9.5, 7.4), constrained_layout=True, sharex=True, squeeze=False
-        )
-        panels = list(grid.flat)
-        for panel in panels[len(chosen):]:
+    with style():
+        drawing, grid = panels(2, 2, (9.5, 7.4), sharex=True, squeeze=False)
+        places = list(grid.flat)
+        for panel in places[len(chosen):]:
             panel.set_visible(False)
-        for panel, block in zip(panels, chosen):
-            for name, style in (("reduced", {**REDUCED, "label": "reduced model", "marker": "o", "markersize": 8}),
+        for panel, block in zip(places, chosen):
+            for name, line in (("reduced", {**REDUCED, "label": "reduced model", "marker": "o", "markersize": 8}),
                                 ("DEM", {**DEM, "marker": "s", "markersize": 4})):
                 mine = [row for row in rows if row.block == block.name and row.model == name]
-                panel.plot([row.period_s for row in mine], [abs(row.theta2_difference_rad) for row in mine], **style)
+                panel.plot([row.period_s for row in mine], [abs(row.theta2_difference_rad) for row in mine], **line)
             lags = {
                 row.period_s: abs(row.theta2_predicted_rad)
                 for row in rows if row.block == block.name and row.theta2_predicted_rad
@@ -359,46 +242,49 @@ def figure(case: UmbrellaCase, chosen: Sequence[Block], rows: Sequence[Row], fol
         return save(drawing, folder, "slow")
 
 
-def _cell(value: Optional[float], form: str) -> str:
+def _cell(value: float | None, form: str) -> str:
     return "" if value is None or not math.isfinite(value) else f"{value:{form}}"
 
 
-def write(case: UmbrellaCase, chosen: Sequence[Block], rows: Sequence[Row], folder: Path) -> list[Path]:
-    """Write ``slow.csv`` and ``slow.md``."""
-    names = [field.name for field in fields(Row)]
-    with write_atomically(folder / "slow.csv") as stream:
-        writer = csv.DictWriter(stream, fieldnames=names)
-        writer.writeheader()
-        writer.writerows(asdict(row) for row in rows)
+def write(
+    case: UmbrellaCase, chosen: Sequence[Block], rows: Sequence[Row], command: str, folder: Path
+) -> list[Path]:
+    """Write ``slow.csv`` and ``slow.md``.
+
+    :param command: that makes them
+    """
+    table = write_rows(folder / "slow.csv", [asdict(row) for row in rows], [field.name for field in fields(Row)])
     lines = [
         f"# Slow heating against statics: {case.title}", "",
-        f"Made by `statejump slow cases/{case.name}.toml`; {STEPS_PER_SECOND} steps per second in both models.", "",
+        f"Made by `{command}`; {STEPS_PER_SECOND} steps per second in both models.", "",
         EXPLANATION,
     ]
-    for block in chosen:
-        lines += [f"## {block.title[0].upper()}{block.title[1:]}", ""]
+    for number, block in enumerate(chosen):
+        lines += [*([""] if number else []), f"## {block.title[0].upper()}{block.title[1:]}", ""]
         for name, values in (("elastic", block.quasi_static_rad), ("rigid links", block.rigid_rad)):
             lines.append(f"- quasi-static, {name}: θ2 {values[0]:.9e} rad, θ4 {values[1]:.9e} rad")
-        lines += ["", "| model | T [s] | θ2 jump [rad] | difference | predicted | order "
-                  "| θ4 jump [rad] | difference | predicted | order |", "|" + "---|" * 10]
-        for row in rows:
-            if row.block == block.name:
-                cells = [row.model, f"{row.period_s:g}"]
-                for angle in ANGLES:
-                    entry = asdict(row)
-                    cells += [
-                        _cell(entry[f"{angle}_jump_rad"], ".9e"), _cell(entry[f"{angle}_difference_rad"], ".3e"),
-                        _cell(entry[f"{angle}_predicted_rad"], ".3e"), _cell(entry[f"{angle}_order"], ".2f"),
-                    ]
-                lines.append("| " + " | ".join(cells) + " |")
-        lines += ["", _closing(block, rows), ""]
-    with write_atomically(folder / "slow.md") as stream:
-        stream.write("\n".join(lines))
-    return [folder / "slow.md", folder / "slow.csv"]
+        lines += ["", *markdown(HEADER, [_cells(row) for row in rows if row.block == block.name]), "",
+                  closing(block, rows)]
+    return [write_text(folder / "slow.md", lines), table]
 
 
-def _closing(block: Block, rows: Sequence[Row]) -> str:
-    """One sentence on the largest distance between the models and the slowest run."""
+HEADER = ("model", "T [s]", "θ2 jump [rad]", "difference", "predicted", "order", "θ4 jump [rad]", "difference",
+          "predicted", "order")
+
+
+def _cells(row: Row) -> list[str]:
+    entry = asdict(row)
+    cells = [row.model, f"{row.period_s:g}"]
+    for angle in ANGLES:
+        cells += [
+            _cell(entry[f"{angle}_jump_rad"], ".9e"), _cell(entry[f"{angle}_difference_rad"], ".3e"),
+            _cell(entry[f"{angle}_predicted_rad"], ".3e"), _cell(entry[f"{angle}_order"], ".2f"),
+        ]
+    return cells
+
+
+def closing(block: Block, rows: Sequence[Row]) -> str:
+    """Return one sentence on the largest distance between the models and the slowest run."""
     mine = {(row.model, row.period_s): row for row in rows if row.block == block.name}
     both = [period for name, period in mine if name == "DEM"]
     apart = max(
@@ -414,26 +300,29 @@ def _closing(block: Block, rows: Sequence[Row]) -> str:
     return text + "."
 
 
-@click.command("slow")
-@click.argument(
-    "case_file", metavar="[CASE]", default="cases/umbrella_bias.toml", type=click.Path(path_type=Path)
-)
-@RESULTS
-@QUIET
-def slow_command(case_file: Path, results: Path, quiet: bool) -> None:
-    """Jump of both models of CASE against the quasi-static path, for slower and slower cycles.
+@dataclass(frozen=True)
+class Slow:
+    """The runs of all variants, and the files that were written."""
 
-    \b
-    Example:
-      statejump slow cases/umbrella_bias.toml
+    blocks: Sequence[Block]
+    rows: Sequence[Row]
+    written: list[Path]
+
+    def told(self) -> list[str]:
+        """Return the lines that a command prints."""
+        return [f"{block.title}: {closing(block, self.rows)}" for block in self.blocks]
+
+
+def make(case: UmbrellaCase, results: Path, tell: Tell) -> Slow:
+    """Run all variants of a case in both models, ever slower, and write figure and tables.
+
+    :param results: gets a folder of the case's name
+    :param tell: takes the finished share
+    :raises NotAllowed: the study does not fit the case
+    :raises FailedRun: statics leaves the path open
     """
-    console = make_console(quiet)
-    case = load_kind(case_file, UmbrellaCase)
     chosen = blocks(case)
     folder = results_folder(results, case.name)
-    with undivided(console, "runs") as tell:
-        rows = study(chosen, tell)
-    written = write(case, chosen, rows, folder) + figure(case, chosen, rows, folder)
-    for block in chosen:
-        console.print(f"{block.title}: {_closing(block, rows)}")
-    console.print(f"results: {', '.join(str(name) for name in written)}")
+    rows = study(chosen, tell)
+    written = write(case, chosen, rows, made_by("slow", case), folder) + figure(case, chosen, rows, folder)
+    return Slow(chosen, rows, written)

@@ -13,7 +13,6 @@ knows attrs.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, ClassVar, TypeVar
 
@@ -165,15 +164,19 @@ def _plain(value: Any) -> Any:
     return [_plain(item) for item in value] if isinstance(value, list) else value
 
 
-@lru_cache(maxsize=None)
+_KNOWN: dict[type[Section], Mapping[str, attrs.Attribute[Any]]] = {}
+
+
 def fields_of(model: type[Section]) -> Mapping[str, attrs.Attribute[Any]]:
     """Return the keys of a section, or the sections of a file, in the order of their first declaration: a kind
     that declares one of them anew leaves it in its place."""
-    known = {attribute.name: attribute for attribute in attrs.fields(model)}
-    order = dict.fromkeys(
-        attribute.name for base in reversed(model.__mro__) for attribute in base.__dict__.get("__attrs_attrs__", ())
-    )
-    return MappingProxyType({name: known[name] for name in order})
+    if model not in _KNOWN:
+        known = {attribute.name: attribute for attribute in attrs.fields(model)}  # type: ignore[arg-type]
+        order = dict.fromkeys(
+            attribute.name for base in reversed(model.__mro__) for attribute in base.__dict__.get("__attrs_attrs__", ())
+        )
+        _KNOWN[model] = MappingProxyType({name: known[name] for name in order})
+    return _KNOWN[model]
 
 
 def rule_of(attribute: attrs.Attribute[Any]) -> Rule:

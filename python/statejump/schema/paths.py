@@ -26,8 +26,9 @@ def keys_of(model: type[Section]) -> dict[str, attrs.Attribute[Any]]:
     """Return every key of a kind of case by its path, ``section.*.key`` for those of items."""
     found = {}
     for name, attribute in fields_of(model).items():
-        keys, item = section_of(attribute), tables_of(attribute)
-        for key, inner in fields_of(keys or item).items() if keys or item else ():
+        item = tables_of(attribute)
+        keys = item or section_of(attribute)
+        for key, inner in fields_of(keys).items() if keys else ():
             found[f"{name}.{EVERY}.{key}" if item else f"{name}.{key}"] = inner
     return found
 
@@ -60,8 +61,8 @@ def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any)
         targets = [table for table in tables if item in (EVERY, table.get("name"))]
         if not targets:
             names = [str(table.get("name")) for table in tables]
-            none = {"cause": f"the case has no [[{section}]]"}
-            raise UnknownKey(path, **(suggestion(item, names) if names else none))
+            known = suggestion(item, names) if names else {"cause": f"the case has no [[{section}]]"}
+            raise UnknownKey(path, **known)
     for target in targets:
         if value is None:
             target.pop(key, None)
@@ -74,7 +75,7 @@ def filled(data: Mapping[str, Any], values: Iterable[tuple[str, Any]]) -> dict[s
 
     :param values: paths, of which the caller knows that the case has them, and values
     """
-    changed = {
+    changed: dict[str, Any] = {
         section: [dict(table) for table in content] if isinstance(content, list) else dict(content)
         for section, content in data.items()
     }

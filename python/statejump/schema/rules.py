@@ -108,10 +108,9 @@ def _numbers(rule: Rule, key: str, value: Any) -> None:
         raise NotAllowed(key, value, f"must be a list of numbers [{rule.unit}]")
     if rule.length is not None and len(value) != rule.length:
         raise NotAllowed(key, value, f"must be a list of {rule.length} numbers [{rule.unit}]")
-    one = attrs.evolve(rule, form=NUMBER)
     for item in value:
         try:
-            _number(one, key, item)
+            _number(rule, key, item)
         except NotAllowed as refused:
             raise NotAllowed(key, value, refused.cause, allowed=rule.allowed) from None
 

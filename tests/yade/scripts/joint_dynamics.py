@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Revolute joint in motion: energy, momentum, rotation invariance."""
-from math import cos, pi, sin
 
 import statejump_yade as sj
 from yade.minieigenHP import Quaternion, Vector3

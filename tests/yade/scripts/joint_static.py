@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Revolute joint at prescribed positions: force curve, friction, moments, static load."""
 import statejump_yade as sj
-from yade import wrapper
 from yade.minieigenHP import Quaternion, Vector3
 
 from parts import *  # noqa: F403
@@ -89,7 +88,7 @@ def sliding_pad():
     radius, depth, speed = 0.05, 2e-6, 0.1
     metal = material()
     pad = body((0, -depth, 0), sj.Slider(radius=radius), metal, velocity=(speed, 0, 0))
-    floor = body(
+    body(
         shape=sj.SlotFace(normal=(0, -1, 0), distance=radius, halfSize=radius), made_of=metal
     )
     engines()

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """200 joints with friction, damping and expansion; run with -j1 and -j2. Then one with a failure."""
-import sys
 
 import statejump_yade as sj
 
@@ -15,7 +14,7 @@ def many(count):
     pins, links = [], []
     for i in range(count):
         x, y = 0.05 * (i % 20), 0.05 * (i // 20)
-        hole = body((x, y, 0), sj.Bearing(radius=R2), other)
+        body((x, y, 0), sj.Bearing(radius=R2), other)
         pin = body(
             (x + 1.0e-4, y + 0.3e-4 + 1e-7 * i, 0), sj.Journal(radius=R1), metal, mass=0.02,
             inertia=3e-7, blocked=PLANAR, velocity=(0.02, 0.03, 0), spin=(0, 0, 10 + 0.1 * i),

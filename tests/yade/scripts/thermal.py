@@ -3,7 +3,6 @@
 from math import cos, pi, sin, sqrt
 
 import statejump_yade as sj
-from yade import wrapper
 from yade.minieigenHP import Quaternion, Vector3
 
 from parts import *  # noqa: F403

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from statejump.control.study import Study
     from statejump.core.charts import Chart
     from statejump.core.figures import Sheet
+    from statejump.kinds.spring_slider.convergence import Convergence
     from statejump.kinds.spring_slider.statics import RestSets
 
 
@@ -132,6 +133,12 @@ class SpringSlider(Kind[SpringSliderCase]):
         from statejump.kinds.spring_slider import control
 
         return control.control(case, **settings)
+
+    def convergence(self, case: SpringSliderCase, tell: Tell) -> Convergence:
+        """Return how the DEM approaches the reduced model."""
+        from statejump.kinds.spring_slider import convergence
+
+        return convergence.convergence(case, tell)
 
 
 KIND = SpringSlider()

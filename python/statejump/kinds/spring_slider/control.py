@@ -12,10 +12,10 @@ from statejump.control.study import (
 )
 from statejump.core.engine_failures import engine
 from statejump.core.errors import StatejumpError
-from statejump.core.physics import axial_stiffness_N_per_m
 from statejump.core.progress import Tell
 from statejump.kinds.spring_slider import reduced
 from statejump.kinds.spring_slider.case import SpringSliderCase
+from statejump.kinds.spring_slider.stable_step import link_stiffness
 from statejump.schema.paths import with_values
 
 POINTS = 49
@@ -52,12 +52,6 @@ def jump_of(case: SpringSliderCase) -> Jump:
     closed = last.motion == "slide" and last.end_temperature_change_K == 0
     # A block that has not moved keeps the zero that it started from.
     return Jump(abs(path.state_jump_m), path.model.state_jump_m if closed else None, slips)
-
-
-def link_stiffness(case: SpringSliderCase) -> float:
-    """k = E A/l0 [N/m]."""
-    link = case.link
-    return axial_stiffness_N_per_m(link.young_modulus_Pa, link.cross_section_area_m2, link.stress_free_length_m)
 
 
 @dataclass(frozen=True)

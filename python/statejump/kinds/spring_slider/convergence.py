@@ -2,19 +2,23 @@
 """How the DEM approaches the reduced model: slower cycles, shorter time steps."""
 from __future__ import annotations
 
-import csv
 import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from statejump.core import comparison as compare, yade_process as dem
-from statejump.kinds.spring_slider import reduced, stable_step
+from statejump.core import physics
+from statejump.core.errors import Interrupted
+from statejump.core.output import made_by
+from statejump.core.progress import Tell
+from statejump.core.run import Run
+from statejump.core.tables import markdown, write_rows, write_text
+from statejump.core.units import plain
+from statejump.kinds.spring_slider import compare, dem, reduced, stable_step
 from statejump.kinds.spring_slider.case import SpringSliderCase
-from statejump.core.history import History
-from statejump.core.output import write_atomically
 
 PERIOD_FACTORS = (1 / 256, 1 / 64, 1 / 16, 1 / 4, 1, 4)
 # Time steps are compared on a fast cycle, where the motion is not quasi-static and they matter; few
@@ -22,25 +26,6 @@ PERIOD_FACTORS = (1 / 256, 1 / 64, 1 / 16, 1 / 4, 1, 4)
 STEP_PERIOD_FACTOR = 1 / 16
 STEP_SAMPLES = 50
 STEP_FRACTIONS = (0.8, 0.4, 0.2, 0.1, 0.05, 0.025)
-
-EXPLANATION = """\
-First the duration of the cycle, then the time step (on a fast cycle, where it matters most).
-
-The error of the jump, the energy residue and the lag of the events fall as the cycle becomes slower:
-inertia and damping forces fall with it. The last column is the RMS distance of the displacement
-history from that of the finest time step: it falls in proportion to the step (slip and impact begin
-at a step, dashpots see the velocity of half a step before). Against the physics it is nothing: even
-at 0.8 of the stable step it is 1e-5 of the largest displacement.
-
-What stays is elasticity and geometry that the reduced model does not have:
-
-- the tangential stiffness k_t of the floor contact delays the first slip by f/k_t of thermal
-  displacement, and events are known to half a sample;
-- the Hertz stiffness of the stop lets the slider sink in: nearly the whole remaining RMS difference;
-- the slider sinks into the floor by delta, so the bar is inclined by delta/l0. That takes f delta/l0
-  off the normal force and delta^2/(2 l0) off the projected length, together -3.3e-6 of the jump of
-  the Table 1 case (delta = 4.2 um), which is where its error settles.
-"""
 
 
 @dataclass(frozen=True)
@@ -60,57 +45,105 @@ class Row:
     displacement_rms_from_finest_step_m: float = math.nan
 
 
-def _with_dem(case: SpringSliderCase, **changes: Any) -> SpringSliderCase:
-    return case.copy(update={"dem": case.dem.copy(update=changes)})
+@dataclass(frozen=True)
+class Convergence:
+    """Runs of a case with slower cycles, then with shorter steps."""
+
+    case: SpringSliderCase
+    slower: tuple[Row, ...]  # the period grows
+    finer: tuple[Row, ...]  # the time step falls
+
+    @property
+    def rows(self) -> tuple[Row, ...]:
+        """All runs."""
+        return (*self.slower, *self.finer)
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write ``convergence.csv`` and ``convergence.md``."""
+        entries = [asdict(row) for row in self.rows]
+        shown = [["" if math.isnan(value) else f"{value:.4g}" for value in entry.values()] for entry in entries]
+        lines = [
+            f"# DEM against reduced model: {self.case.title}", "",
+            f"Made by {made_by('statejump convergence', self.case)}.", "",
+            *markdown(list(entries[0]), shown), "", *explanation(self),
+        ]
+        return [write_rows(folder / "convergence.csv", entries), write_text(folder / "convergence.md", lines)]
 
 
-def variants(case: SpringSliderCase) -> list[SpringSliderCase]:
-    """Cases to run: each period at the case's own step, then each step on a fast cycle."""
-    period = case.dem.period_s
-    periods = [_with_dem(case, period_s=period * factor, time_step_s=None) for factor in PERIOD_FACTORS]
-    fast = _with_dem(
-        case, period_s=period * STEP_PERIOD_FACTOR, time_step_s=None, samples_per_cycle=STEP_SAMPLES
+def _variant(case: SpringSliderCase, factor: float, **settings: Any) -> SpringSliderCase:
+    """Return the case with a cycle that lasts so many times as long, at its own fraction of the stable step."""
+    changes = {f"dem.{key}": value for key, value in settings.items()} | {"dem.time_step_s": None}
+    times = case.thermal.table_time_s
+    if times is None:
+        changes["dem.period_s"] = case.period_s * factor
+    else:  # it lasts as long as its last time says
+        changes |= {"dem.period_s": None, "thermal.table_time_s": [time * factor for time in times]}
+    changed = case.changed(changes)
+    assert isinstance(changed, SpringSliderCase)
+    return changed
+
+
+def variants(case: SpringSliderCase) -> tuple[list[SpringSliderCase], list[SpringSliderCase]]:
+    """Return cases to run: each period at the case's own step, and each step on a fast cycle."""
+    return (
+        [_variant(case, factor) for factor in PERIOD_FACTORS],
+        [_variant(case, STEP_PERIOD_FACTOR, samples_per_cycle=STEP_SAMPLES, time_step_fraction=fraction)
+         for fraction in STEP_FRACTIONS],
     )
-    steps = [_with_dem(fast, time_step_fraction=fraction) for fraction in STEP_FRACTIONS]
-    return periods + steps
 
 
-def rows(cases: list[SpringSliderCase], histories: list[History]) -> list[Row]:
-    """Errors of all runs of :func:`variants`, in its order; the last has the finest time step."""
-    result = [_row(case, history) for case, history in zip(cases, histories)]
-    first_step_run = len(PERIOD_FACTORS)
-    finest = histories[-1]["displacement_m"]
-    for i in range(first_step_run, len(cases)):
+def convergence(case: SpringSliderCase, tell: Tell = lambda share: None) -> Convergence:
+    """Run the DEM with slower cycles, then with shorter steps.
+
+    :param tell: takes the finished share, 0 to 1
+    :raises StatejumpError: a run failed
+    """
+    slower, finer = variants(case)
+    every = [*slower, *finer]
+    runs: list[Run] = []
+    for place, variant in enumerate(every):
+        try:
+            runs.append(case.behaviour.dem(variant, lambda share, place=place: tell((place + share) / len(every))))
+        except Interrupted:
+            raise Interrupted("interrupted; no table was written") from None
+    return compared(case, (slower, finer), (runs[: len(slower)], runs[len(slower) :]))
+
+
+def compared(
+    case: SpringSliderCase, cases: tuple[Sequence[SpringSliderCase], Sequence[SpringSliderCase]],
+    runs: tuple[Sequence[Run], Sequence[Run]],
+) -> Convergence:
+    """Return the errors of the runs of :func:`variants`; the last one has the finest time step."""
+    slower = tuple(_row(variant, run) for variant, run in zip(cases[0], runs[0], strict=True))
+    finest = runs[1][-1]["displacement_m"]
+    finer = []
+    for variant, run in zip(cases[1], runs[1], strict=True):
+        rms = float(np.sqrt(np.mean((run["displacement_m"] - finest) ** 2)))
         # Events are known to half a sample, and these runs have few samples.
-        result[i] = replace(
-            result[i],
-            first_slip_error_K=math.nan,
-            stop_reached_error_K=math.nan,
-            stop_left_error_K=math.nan,
-        )
-    for i in range(first_step_run, len(cases) - 1):
-        distance = histories[i]["displacement_m"] - finest
-        rms = float(np.sqrt(np.mean(distance**2)))
-        result[i] = replace(result[i], displacement_rms_from_finest_step_m=rms)
-    return result
+        finer.append(replace(
+            _row(variant, run), first_slip_error_K=math.nan, stop_reached_error_K=math.nan, stop_left_error_K=math.nan,
+            displacement_rms_from_finest_step_m=math.nan if run is runs[1][-1] else rms,
+        ))
+    return Convergence(case, slower, tuple(finer))
 
 
-def _row(case: SpringSliderCase, history: History) -> Row:
+def _row(case: SpringSliderCase, run: Run) -> Row:
     """Errors of one run."""
-    compared = {entry.name: entry for entry in compare.compare(case, reduced.solve(case), history)}
+    exact = reduced.run(case, lambda share: None)
+    found = {entry.name: entry for entry in compare.compare(case, exact, run).rows}
 
     def difference(name: str) -> float:
-        entry = compared.get(name)
+        entry = found.get(name)
         return math.nan if entry is None or entry.difference is None else entry.difference
 
-    jump = compared["state_jump"]
+    jump = found["state_jump"]
     step = dem.time_step(case)
     return Row(
-        period_s=case.dem.period_s,
+        period_s=case.period_s,
         time_step_s=step,
         time_step_over_stable=step / stable_step.stable_time_step(case),
         state_jump_m=jump.dem or 0.0,
-        state_jump_error_relative=jump.difference / jump.reduced if jump.reduced else math.nan,
+        state_jump_error_relative=(jump.difference or 0.0) / jump.reduced if jump.reduced else math.nan,
         first_slip_error_K=difference("first_slip_temperature_change"),
         stop_reached_error_K=difference("stop_reached_temperature_change"),
         stop_left_error_K=difference("stop_left_temperature_change"),
@@ -119,24 +152,72 @@ def _row(case: SpringSliderCase, history: History) -> Row:
     )
 
 
-def write(case: SpringSliderCase, rows: list[Row], folder: Path) -> None:
-    """Write ``convergence.csv`` and ``convergence.md``."""
-    entries = [asdict(entry) for entry in rows]
-    names = list(entries[0])
-    with write_atomically(folder / "convergence.csv") as stream:
-        writer = csv.DictWriter(stream, fieldnames=names)
-        writer.writeheader()
-        writer.writerows(entries)
-    lines = [
-        f"# DEM against reduced model: {case.case.title or case.name}",
-        "",
-        f"Made by `statejump convergence cases/{case.name}.toml`.",
-        "",
-        "| " + " | ".join(names) + " |",
-        "|" + "---|" * len(names),
-        *("| " + " | ".join("" if math.isnan(entry[name]) else f"{entry[name]:.4g}" for name in names) + " |" for entry in entries),
-        "",
-        EXPLANATION,
+def explanation(found: Convergence) -> list[str]:
+    """Return what the numbers say, as lines: what falls with slower cycles and shorter steps, and what stays."""
+    return ["First the duration of the cycle, then the time step (on a fast cycle, where it matters most).", "",
+            *_of_cycles(found.slower), *_of_steps(found), "", *_what_stays(found)]
+
+
+def _of_cycles(rows: Sequence[Row]) -> list[str]:
+    fastest, slowest = rows[0], rows[-1]
+    lines = [f"From cycles of {plain(fastest.period_s, 's', 4)} to cycles of {plain(slowest.period_s, 's', 4)}, by size:"]
+    quantities = (
+        ("relative error of the jump", "state_jump_error_relative"),
+        ("energy residue over the work of friction", "energy_residual_over_friction_work"),
+        ("RMS distance over the largest displacement", "displacement_rms_over_largest"),
+    )
+    for label, name in quantities:
+        first, last = (abs(getattr(row, name)) for row in (fastest, slowest))
+        if math.isnan(first) or math.isnan(last):
+            continue
+        verdict = "falls" if last < first else "does not fall"
+        lines.append(f"- the {label} {verdict}, {first:.2g} to {last:.2g};")
+    lines[-1] = lines[-1].removesuffix(";") + "."
+    return [*lines, "", "Inertia and damping forces fall with slower cycles; what they cause falls with them.", ""]
+
+
+def _of_steps(found: Convergence) -> list[str]:
+    largest = float(np.max(np.abs(reduced.run(found.case, lambda share: None)["displacement_m"])))
+    rows = [row for row in found.finer if row.displacement_rms_from_finest_step_m > 0]
+    if len(rows) < 2 or not largest > 0:
+        return ["The time step makes no difference to the displacement."]
+    coarse, fine = rows[0], rows[-1]
+    steps = math.log(coarse.time_step_s / fine.time_step_s)
+    order = math.log(coarse.displacement_rms_from_finest_step_m / fine.displacement_rms_from_finest_step_m) / steps
+    return [
+        "The last column is the RMS distance of the displacement from that of the finest time step. Slip and impact",
+        "begin at a step, dashpots see the velocity of half a step before: first order is expected, the distance falls",
+        f"with the power {order:.2g} of the step. At {coarse.time_step_over_stable:.2g} of the stable step it is "
+        f"{coarse.displacement_rms_from_finest_step_m / largest:.1g} of the largest displacement.",
     ]
-    with write_atomically(folder / "convergence.md") as stream:
-        stream.write("\n".join(lines))
+
+
+def _what_stays(found: Convergence) -> list[str]:
+    case, slowest = found.case, found.slower[-1]
+    link, joint = case.link, case.joint
+    hertz = physics.hertz_stiffness_N_per_m15(
+        physics.effective_young_modulus_Pa(joint.young_modulus_Pa, joint.poisson_ratio), joint.pad_radius_m)
+    depth = physics.hertz_depth_m(joint.normal_force_N, hertz)
+    lines = ["What stays is elasticity and geometry that the reduced model does not have:", ""]
+    rate = abs(link.thermal_expansion_per_K) * link.stress_free_length_m
+    if case.friction_force_N > 0 and rate > 0:
+        slide = case.friction_force_N / stable_step.contact_stiffness(case, joint.normal_force_N)[1]
+        lines.append(
+            f"- the tangential stiffness k_t of the floor contact delays the first slip by f/k_t = {plain(slide, 'm', 2)}, "
+            f"{plain(slide / rate, 'K', 2)} of thermal displacement"
+            + ("" if math.isnan(slowest.first_slip_error_K)
+               else f" ({plain(slowest.first_slip_error_K, 'K', 2)} in the slowest cycle, where events are known to half "
+                    "a sample)") + ";")
+    push = stable_step.largest_stop_force(case)
+    if push > 0 and not math.isnan(slowest.stop_reached_error_K):
+        lines.append(f"- the Hertz stiffness of the stop lets the slider sink in, by up to "
+                     f"{plain(physics.hertz_depth_m(push, hertz), 'm', 2)}; the RMS difference of the slowest cycle is "
+                     f"{slowest.displacement_rms_over_largest:.2g} of the largest displacement;")
+    jump = abs(reduced.solve(case).state_jump_m)
+    tilt = f"- the slider sinks into the floor by δ = {plain(depth, 'm', 2)}, so the bar is inclined by δ/l0"
+    if jump > 0:
+        expected = -(joint.friction_coefficient * depth + depth**2 / (2 * jump)) / link.stress_free_length_m
+        tilt += (f". That takes f δ/l0 off the normal force and δ²/(2 l0) off the projected length, together "
+                 f"{expected:.2g} of the jump; the error of the slowest cycle is "
+                 f"{slowest.state_jump_error_relative:.2g}")
+    return [*lines, tilt + "."]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from statejump.results.contents import Result
 
 
-class Truss(Kind):
+class Truss(Kind[TrussCase]):
     """The kind as one object."""
 
     name: ClassVar[str] = "truss"

@@ -142,7 +142,7 @@ class TrussThermal(Thermal):
 class Program(Item, Thermal):
     """Another temperature program, for links and joints that name it; it lasts as long as the common one."""
 
-    cycles: int | None = whole(None, 1, 100_000, "as [thermal]")
+    cycles: int | None = whole(None, 1, 100_000, "as [thermal]")  # type: ignore[assignment]
     period_s: float | None = parameter(None, "s", 0, 1e6, "as [thermal]; of a table its last time", above=True)
 
     def completed(self, common: TrussThermal) -> TrussThermal:

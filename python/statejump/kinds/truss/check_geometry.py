@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.kinds.truss.check_references import MOST_LISTED, listed
-from statejump.kinds.truss.resolved import GROUND, ResolvedTruss, distances
+from statejump.kinds.truss.resolved import GROUND, Links, ResolvedTruss, Springs, distances
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.case import TrussCase
@@ -36,10 +36,11 @@ def _of_revolute(truss: ResolvedTruss, index: int) -> dict[str, Any]:
 
 
 def _lengths(truss: ResolvedTruss) -> None:
-    for section, items in (("link", truss.links), ("spring", truss.springs)):
+    sections: tuple[tuple[str, Links | Springs], ...] = (("link", truss.links), ("spring", truss.springs))
+    for section, items in sections:
         for index in np.flatnonzero(distances(truss.nodes.position_m, items.nodes) == 0)[:1]:
             ends = [truss.nodes.names[node] for node in items.nodes[index]]
-            place = [float(value) for value in truss.nodes.position_m[items.nodes[index, 0], : truss.dimension]]
+            place = truss.nodes.position_m[items.nodes[index, 0]][: truss.dimension].tolist()
             raise StatejumpError(
                 f"nodes {' and '.join(map(repr, ends))} are at one place, {place} m",
                 cause=f"the {section} has no length", item=f"{section} {items.names[index]!r}", key="nodes", value=ends,

@@ -71,7 +71,7 @@ def _programs(case: TrussCase) -> None:
         for item in getattr(case, section):
             if item.program is not None and item.program not in programs:
                 known_name("program", item.program, item.program, programs, "program", item=f"{section} {item.name!r}",
-                       joint=item.name if section == "revolute" else None)
+                           joint=item.name if section == "revolute" else None)
 
 
 def _alternatives(case: TrussCase) -> None:

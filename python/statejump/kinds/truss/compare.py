@@ -74,8 +74,8 @@ def difference(case: TrussCase, first: Run, second: Run) -> list[Quantity]:
     jumps = [jumps_m(run) for run in (first, second)]
     node = int(np.argmax(np.linalg.norm(jumps[0], axis=1)))
     scale = jump_scale_m(case, first)
-    lengths = [float(np.linalg.norm(jump[node])) for jump in jumps]
-    rows.append(models(f"jump_of_node_{case.node[node].name}", "m", *lengths, tolerance.jump_relative * scale))
+    ours_m, other_m = (float(np.linalg.norm(jump[node])) for jump in jumps)
+    rows.append(models(f"jump_of_node_{case.node[node].name}", "m", ours_m, other_m, tolerance.jump_relative * scale))
     rows.append(_relative("jump_largest_difference_over_largest_jump_or_loop",
                           float(np.linalg.norm(jumps[1] - jumps[0], axis=1).max()), scale, tolerance.jump_relative))
     forces = [run.links["axial_force_N"].values for run in (first, second)]

@@ -23,7 +23,7 @@ from statejump.core.run import Run
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.check_geometry import SAME_DIRECTION
 from statejump.kinds.truss.contacts import pad_hertz_stiffness, pads, revolute_stiffness
-from statejump.kinds.truss.resolved import GROUND, ResolvedTruss
+from statejump.kinds.truss.resolved import GROUND, ResolvedTruss, Revolutes, Sliders
 from statejump.kinds.truss.solve import TrussPath, solve
 
 CONTACT_GROUPS = 30  # bits of a body's mask in YADE that are free to use
@@ -162,12 +162,13 @@ def check(case: TrussCase) -> None:
         raise refuse(case, f"node {nodes.names[index]!r} has no mass because no link ends there, the DEM needs one",
                      nodes=(nodes.names[index],))
     roles: dict[int, tuple[Any, ...]] = {}
-    for kind, items, node_of, shape in (
-        ("slider", sliders, sliders.nodes[:, 0], sliders.pad_radius_m),
-        ("revolute", joints, joints.bearing_node, joints.bearing_radius_m),
-        ("revolute", joints, joints.journal_node, joints.journal_radius_m),
-    ):
-        part = "pad" if kind == "slider" else "journal" if node_of is joints.journal_node else "bearing"
+    parts: tuple[tuple[str, Sliders | Revolutes, np.ndarray, np.ndarray], ...] = (
+        ("pad", sliders, sliders.nodes[:, 0], sliders.pad_radius_m),
+        ("bearing", joints, joints.bearing_node, joints.bearing_radius_m),
+        ("journal", joints, joints.journal_node, joints.journal_radius_m),
+    )
+    for part, items, node_of, shape in parts:
+        kind = "slider" if part == "pad" else "revolute"
         link = joints.bearing_link if part == "bearing" else joints.journal_link
         for index, node in enumerate(node_of):
             role = (part, float(shape[index]), float(items.friction_coefficient[index]),

@@ -59,8 +59,8 @@ def _bowed(truss: ResolvedTruss) -> list[np.ndarray]:
 def _zigzag(a: np.ndarray, b: np.ndarray, height: float) -> np.ndarray:
     along, turns = (b - a), 7
     across = np.array([-along[1], along[0]]) / np.linalg.norm(along) * height
-    t = np.concatenate(([0, 0.3], 0.3 + 0.4 * (np.arange(2 * turns) + 0.5) / (2 * turns), [0.7, 1]))
-    side = np.concatenate(([0, 0], np.where(np.arange(2 * turns) % 2 == 0, 1, -1), [0, 0]))
+    t = np.array([0, 0.3, *(0.3 + 0.4 * (np.arange(2 * turns) + 0.5) / (2 * turns)), 0.7, 1])
+    side = np.array([0, 0, *np.where(np.arange(2 * turns) % 2 == 0, 1, -1), 0, 0])
     return a + t[:, None] * along + side[:, None] * across
 
 

@@ -78,8 +78,10 @@ def _joints(case: TrussCase) -> list[str]:
 def _tied(case: TrussCase) -> list[str]:
     cables = [spring for spring in case.spring if spring.cable]
     springs = [spring for spring in case.spring if not spring.cable]
-    tied = [_count(found, name) for found, name in ((springs, "spring"), (cables, "cable"),
-                                                   (case.torsion_spring, "torsion spring")) if found]
+    kinds: tuple[tuple[Sequence[object], str], ...] = (
+        (springs, "spring"), (cables, "cable"), (case.torsion_spring, "torsion spring"),
+    )
+    tied = [_count(found, name) for found, name in kinds if found]
     return [f"It has {' and '.join(filter(None, [', '.join(tied[:-1]), tied[-1]]))}."] if tied else []
 
 

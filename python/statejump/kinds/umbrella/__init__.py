@@ -14,10 +14,17 @@ from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.words import WORDS
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from statejump.control.study import Study
     from statejump.core.charts import Chart
     from statejump.core.figures import Sheet
     from statejump.laws.curves import Joint
+    from statejump.paper.energy import Accounts
+    from statejump.paper.figures.runs import Part
+    from statejump.paper.figures.study import Figures
+    from statejump.paper.hold import Held
+    from statejump.paper.slow import Slow
 
 
 class Umbrella(Kind):
@@ -143,6 +150,30 @@ class Umbrella(Kind):
         from statejump.kinds.umbrella import control
 
         return control.control(case, **settings)
+
+    def figures(self, case: UmbrellaCase, results: Path, part: Part) -> Figures:
+        """Draw the paper's Figures 13 to 16 of the case in both models, and test its claims."""
+        from statejump.paper.figures import study
+
+        return study.make(case, results, part)
+
+    def slow(self, case: UmbrellaCase, results: Path, tell: Tell) -> Slow:
+        """Hold both models against the quasi-static path, ever slower."""
+        from statejump.paper import slow
+
+        return slow.make(case, results, tell)
+
+    def hold(self, case: UmbrellaCase, results: Path, tell: Tell) -> Held:
+        """Leave the loaded joint alone, by friction that holds and by friction that creeps."""
+        from statejump.paper import hold
+
+        return hold.make(case, results, tell)
+
+    def energy(self, case: UmbrellaCase, results: Path, tell: Tell) -> Accounts:
+        """Draw up the energy account against the steps of both models."""
+        from statejump.paper import energy
+
+        return energy.make(case, results, tell)
 
 
 KIND = Umbrella()

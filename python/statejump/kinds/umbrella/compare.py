@@ -87,8 +87,9 @@ def history_rows(case: UmbrellaCase, ours: Run, other: Run) -> list[Quantity]:
     rows = []
     if reproducible:
         for angle in ("theta2", "theta4"):
-            jumps = [run.summary[f"{angle}_jump_rad"] for run in (ours, other)]
-            rows.append(models(f"{angle}_jump", "rad", *jumps, tolerance.final_theta2_rad))
+            name = f"{angle}_jump"
+            rows.append(models(name, "rad", ours.summary[f"{name}_rad"], other.summary[f"{name}_rad"],
+                               tolerance.final_theta2_rad))
     end = len(ours) if reproducible else largest_temperature(ours) + 1
     until = "" if reproducible else "_until_largest_temperature"
     for angle in ("theta2", "theta4"):
@@ -120,6 +121,6 @@ def difference(case: UmbrellaCase, first: Run, second: Run) -> list[Quantity]:
     """Compare two runs of one model at the same times."""
     rows = []
     if case.start.mode != "loaded":
-        changes = [first_contact_K(run) for run in (first, second)]
-        rows.append(models(FIRST_CONTACT, "K", *changes, case.tolerance.first_contact_dem_K))
+        rows.append(models(FIRST_CONTACT, "K", first_contact_K(first), first_contact_K(second),
+                           case.tolerance.first_contact_dem_K))
     return rows + history_rows(case, first, second)

@@ -84,7 +84,7 @@ def quasi_static(case: UmbrellaCase, samples: int = 400) -> _engine.JointLoop | 
         return _engine.joint_loop(
             linkage(case), case.thermal_program(), case.start.contact_angle_rad, samples
         )
-    except ValueError:
+    except _engine.EngineFailure:
         return None
 
 

@@ -32,7 +32,7 @@ def names(case: UmbrellaCase) -> dict[str, list[str]]:
 def scene(case: UmbrellaCase) -> dict[str, Any]:
     """Frame, two links, journal of BC in the bearing of AB; both turn with their links."""
     joint, frame = case.joint, case.frame.length_m
-    pins = {"link_ab": [0.0, 0.0, 0.0], "link_bc": [frame, 0.0, 0.0]}
+    pins: dict[str, drawing.Point] = {"link_ab": [0.0, 0.0, 0.0], "link_bc": [frame, 0.0, 0.0]}
     tips: dict[str, drawing.Point] = {
         part: [drawing.ref(f"history/{part}_x_m"), drawing.ref(f"history/{part}_y_m"), 0.0]
         for part in ("bearing", "journal")

@@ -2,34 +2,25 @@
 """What geometry and statics of the rib say without a run: limits of θ2, first contact, static path."""
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
 from statejump import _engine
-from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.core.physics import apex_m, axial_stiffness_N_per_m
 from statejump.kinds.umbrella import compare, reduced as model
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.schema.paths import with_values
 
 CIRCLE = np.linspace(0, 2 * np.pi, 721)
 
 
 def _theta2(case: UmbrellaCase, lengths: tuple[Any, Any], eccentricity: tuple[Any, Any]) -> Any:
-    """θ2 of links of given lengths whose tips are d apart (numbers or arrays that broadcast)."""
-    first, second = lengths
+    """Return θ2 of links of given lengths whose tips are d apart (numbers or arrays that broadcast)."""
     x, y = case.frame.length_m - eccentricity[0], -np.asarray(eccentricity[1])
-    between = np.hypot(x, y)
-    foot = (between**2 + (first - second) * (first + second)) / (2 * between)
-    return np.arctan2(y, x) + np.arctan2(np.sqrt((first - foot) * (first + foot)), foot)
-
-
-def link_lengths(case: UmbrellaCase, change_K: Any) -> tuple[Any, Any]:
-    """Lengths of AB and BC without load [m]."""
-    ab, bc = (
-        link.stress_free_length_m * (1 + link.thermal_expansion_per_K * change_K)
-        for link in (case.link_ab, case.link_bc)
-    )
-    return ab, bc
+    foot, height = apex_m(*lengths, np.hypot(x, y))
+    return np.arctan2(y, x) + np.arctan2(height, foot)
 
 
 def envelope(case: UmbrellaCase, change_K: np.ndarray, margin_m: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -39,34 +30,34 @@ def envelope(case: UmbrellaCase, change_K: np.ndarray, margin_m: float = 0.0) ->
     """
     change = np.linspace(np.min(change_K), np.max(change_K), 201)[:, None]
     radius = np.array([case.clearance_m(value) for value in change[:, 0]])[:, None] + margin_m
-    angles = _theta2(case, link_lengths(case, change), (radius * np.cos(CIRCLE), radius * np.sin(CIRCLE)))
+    angles = _theta2(case, case.link_lengths_m(change), (radius * np.cos(CIRCLE), radius * np.sin(CIRCLE)))
     low, high = (np.interp(change_K, change[:, 0], side) for side in (angles.min(axis=1), angles.max(axis=1)))
     return low, high
 
 
-def closed_form_first_contact(case: UmbrellaCase) -> Optional[float]:
+def closed_form_first_contact(case: UmbrellaCase) -> float | None:
     """ΔT_c [K] of a start without ringing; None without a closed form, infinity without contact."""
-    return compare.closed_form_first_contact(model.changed(case, {"start.mode": "matched"}))
+    return compare.closed_form_first_contact(with_values(case, {"start.mode": "matched"}))
 
 
-def static_deflection(case: UmbrellaCase, change_K: float) -> Optional[float]:
+def static_deflection(case: UmbrellaCase, change_K: float) -> float | None:
     """θ2 − θ2(0) [rad] of rigid links in contact without friction; None before the first contact."""
     contact = closed_form_first_contact(case)
     if contact is None or change_K < contact:
         return None
-    return _engine.joint_point(model.linkage(case), change_K, -1, 0.0)["theta2_rad"] - case.theta2_rad
+    return float(_engine.joint_point(model.linkage(case), change_K, -1, 0.0)["theta2_rad"] - case.theta2_rad)
 
 
-def static_deflection_elastic(case: UmbrellaCase, change_K: float) -> Optional[float]:
+def static_deflection_elastic(case: UmbrellaCase, change_K: float) -> float | None:
     """The same of elastic links, contact and spring: root of the spring's moment in the joint force
     F, which lies along AC."""
     spring = case.torsion_spring.stiffness_N_m_per_rad
     if spring == 0 or static_deflection(case, change_K) is None:
         return None
     joint, free = case.joint, case.free_flare_angle_rad
-    first, second = link_lengths(case, change_K)
+    first, second = case.link_lengths_m(change_K)
     stiffness = [
-        link.young_modulus_Pa * link.cross_section_area_m2 / length
+        axial_stiffness_N_per_m(link.young_modulus_Pa, link.cross_section_area_m2, length)
         for link, length in ((case.link_ab, first), (case.link_bc, second))
     ]
 
@@ -103,7 +94,7 @@ def static_deflection_elastic(case: UmbrellaCase, change_K: float) -> Optional[f
         return None
 
 
-def quasi_static(case: UmbrellaCase, change_K: np.ndarray) -> Optional[np.ndarray]:
+def quasi_static(case: UmbrellaCase, change_K: np.ndarray) -> np.ndarray | None:
     """Frictionless path in contact, NaN where the spring leaves the joint open; None without spring."""
     spring = case.torsion_spring
     if spring.stiffness_N_m_per_rad == 0 or spring.bias_rad != 0:

@@ -2,18 +2,19 @@
 """Tables and text beside Figures 13 to 16."""
 from __future__ import annotations
 
-import csv
-import json
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
-from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.core.output import write_atomically
+from statejump.core.tables import write_csv, write_json, write_text
 from statejump.kinds.umbrella import reduced as model
-from statejump.paper import claims
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.paper.claims.findings import Findings
+from statejump.paper.claims.measures import all_claims
+from statejump.paper.claims.page import page
 from statejump.paper.figures.closed_forms import envelope, quasi_static
 from statejump.paper.figures.runs import Study, Variant, single_deflection
 
@@ -43,10 +44,10 @@ def write_ensembles(
             for v in variants:
                 yield from of(study.figure, study.key, v.value, "reduced ensemble", v.ensemble)
                 for name in ("reduced", "dem"):
-                    single = model.gather([getattr(v, name).history])
+                    single = model.gather([getattr(v, name)])
                     yield from of(study.figure, study.key, v.value, f"{name} single", single)
 
-    _write_csv(
+    _write_table(
         folder / "ensembles.csv",
         ("figure", "parameter", "value", "model", "run", "largest_deflection_rad", "range_rad", "jump_rad",
          "end_eccentricity_x_m", "end_eccentricity_y_m"),
@@ -68,14 +69,14 @@ def write_curves(done: Sequence[tuple[Study, Sequence[Variant]]], folder: Path) 
                 path = quasi_static(v.case, change)
                 columns = (
                     runs.time_s[take], change, deflection.mean(axis=0), deflection.std(axis=0),
-                    single_deflection(v.reduced.history)[take], single_deflection(v.dem.history)[take],
+                    single_deflection(v.reduced)[take], single_deflection(v.dem)[take],
                     low - v.case.theta2_rad, high - v.case.theta2_rad,
                 )
                 for i, row in enumerate(np.array(columns).T):
                     static = "" if path is None or np.isnan(path[i]) else float(path[i])
                     yield (study.figure, study.key, float(v.value), *(float(cell) for cell in row), static)
 
-    _write_csv(
+    _write_table(
         folder / "curves.csv",
         ("figure", "parameter", "value", "time_s", "temperature_change_K", "ensemble_mean_deflection_rad",
          "ensemble_sd_deflection_rad", "reduced_deflection_rad", "dem_deflection_rad", "envelope_low_rad",
@@ -84,30 +85,27 @@ def write_curves(done: Sequence[tuple[Study, Sequence[Variant]]], folder: Path) 
     )
 
 
-def write_claims(case: UmbrellaCase, case_file: Path, findings: claims.Findings, folder: Path) -> None:
-    """Write ``ensembles.json`` and ``README.md``."""
+def write_claims(case: UmbrellaCase, command: str, findings: Findings, folder: Path) -> None:
+    """Write ``ensembles.json`` and ``README.md``.
+
+    :param command: that makes them
+    """
     content = {
         "case": case.name,
-        "claims": [asdict(claim) for claim in claims.all_claims(findings)],
+        "claims": [asdict(claim) for claim in all_claims(findings)],
         "two_sample_tests": [{**asdict(test), "agree": test.agree} for test in findings.tests],
         "findings": {key: value for key, value in asdict(findings).items() if key != "tests"},
     }
-    with write_atomically(folder / "ensembles.json") as stream:
-        stream.write(json.dumps(_plain(content), indent=1, ensure_ascii=False) + "\n")
-    with write_atomically(folder / "README.md") as stream:
-        stream.write(claims.readme(case.title, f"statejump figures {case_file}", findings))
+    write_json(folder / "ensembles.json", _plain(content), indent=1)
+    write_text(folder / "README.md", page(case.title, command, findings))
 
 
-def _write_csv(path: Path, heads: Sequence[str], rows: Iterator[Sequence[Any]]) -> None:
-    with write_atomically(path) as stream:
-        writer = csv.writer(stream)
-        writer.writerow(heads)
-        for row in rows:
-            writer.writerow([f"{cell:.9g}" if isinstance(cell, float) else cell for cell in row])
+def _write_table(path: Path, header: Sequence[str], rows: Iterator[Sequence[Any]]) -> None:
+    write_csv(path, header, ([f"{cell:.9g}" if isinstance(cell, float) else cell for cell in row] for row in rows))
 
 
 def _plain(value: Any) -> Any:
-    """What JSON knows: lists for arrays, null for what is not finite."""
+    """Return what JSON knows, in as many digits as count: lists for arrays, None for what is not finite."""
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):

@@ -3,25 +3,30 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import Any, Callable, Sequence
+from typing import Any
 
 import numpy as np
 
-from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.core.yade_process import DemRun
-from statejump.core.errors import StatejumpError
-from statejump.core.history import History
+from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.run import Run
 from statejump.kinds.umbrella import dem, reduced as model
-from statejump.paper import claims
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.kinds.umbrella.compare import first_contact_K
+from statejump.paper.claims.findings import FirstContact
+from statejump.paper.claims.statistics import Groups
 from statejump.paper.figures.closed_forms import closed_form_first_contact
+from statejump.schema.paths import with_values
 
 CLEARANCES = (0.5, 1.0, 1.5, 2.0, 3.0)  # over that of the case
 FRICTIONS = (0.0, 0.1, 0.3, 0.5)
 SPRINGS_N_m_per_rad = (0.0, 0.01, 0.1, 1.0, 10.0, 100.0)
 SECTIONS = (0.25, 1.0, 4.0)  # over that of the case: stiffness of the links
 
-Part = Callable[[str, int], Any]  # context of a part of the work by its name and number of runs
+# Context of a part of the work, by its name and number of runs; gives what to call after each of them.
+Part = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
 
 
 @dataclass(frozen=True)
@@ -30,14 +35,14 @@ class Variant:
 
     value: float
     case: UmbrellaCase
-    reduced: model.ReducedRun
+    reduced: Run
     ensemble: model.EnsembleOfRuns
-    dem: DemRun
+    dem: Run
 
     @property
     def runs(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
         """Temperatures and θ2 (runs, samples) by kind of run."""
-        single = self.reduced.history, self.dem.history
+        single = self.reduced, self.dem
         return {
             "reduced, ensemble": (self.ensemble.temperature_change_K, self.ensemble.theta2_rad),
             **{
@@ -78,11 +83,13 @@ def studies(case: UmbrellaCase) -> tuple[Study, ...]:
 
 
 def variant_case(case: UmbrellaCase, key: str, value: float) -> UmbrellaCase:
-    """The case with one value changed. :raises StatejumpError: the value does not fit it"""
-    variant = model.changed(case, {key: value})
-    problem = variant.problem()
-    if problem is not None:
-        raise StatejumpError(f"case {case.name}: cannot vary {key}: {problem}")
+    """Return the case with one value changed. :raises StatejumpError: the value does not fit it"""
+    try:
+        variant = with_values(case, {key: value})
+        variant.check()
+    except NotAllowed as refused:
+        raise StatejumpError(f"cannot vary {key}", file=case.origin.file, case=case.name, key=refused.key,
+                             value=refused.value, allowed=refused.allowed, cause=str(refused)) from None
     return variant
 
 
@@ -107,13 +114,13 @@ def run_variants(case: UmbrellaCase, study: Study, known: dict[str, Variant], pa
 
 
 def _key(case: UmbrellaCase) -> str:
-    return json.dumps(case.dict(), sort_keys=True, default=str)
+    return json.dumps(case.to_dict(), sort_keys=True, default=str)
 
 
-def first_contacts(case: UmbrellaCase, values: Sequence[float], part: Part) -> tuple[claims.FirstContact, ...]:
+def first_contacts(case: UmbrellaCase, values: Sequence[float], part: Part) -> tuple[FirstContact, ...]:
     """First contact of both models at every clearance, links that do not ring."""
     start = {"start.mode": "matched", "start.eccentricity_m": 0.0}
-    cases = [model.changed(variant_case(case, "joint.radial_clearance_m", value), start) for value in values]
+    cases = [with_values(variant_case(case, "joint.radial_clearance_m", value), start) for value in values]
     with part("first contact, both models", 2 * len(cases)) as step:
         dem_runs = dem.execute_all(cases, step)
         result = []
@@ -121,15 +128,14 @@ def first_contacts(case: UmbrellaCase, values: Sequence[float], part: Part) -> t
             exact = closed_form_first_contact(variant)
             if exact is not None and exact > variant.temperature_range_K[1]:
                 exact = None
-            result.append(claims.FirstContact(
-                value, exact, model.run(variant).first_contact_temperature_change_K,
-                dem_run.summary["first_contact_temperature_change_K"],
+            result.append(FirstContact(
+                value, exact, first_contact_K(model.run(variant)), first_contact_K(dem_run)
             ))
             step()
     return tuple(result)
 
 
-def stiffness_jumps(case: UmbrellaCase, base: Variant, part: Part) -> claims.Groups:
+def stiffness_jumps(case: UmbrellaCase, base: Variant, part: Part) -> Groups:
     """Jumps with links of other sections, as many runs as for the figures."""
     others = [factor for factor in SECTIONS if factor != 1]
     jumps = {1.0: base.ensemble.jump_rad}
@@ -139,10 +145,10 @@ def stiffness_jumps(case: UmbrellaCase, base: Variant, part: Part) -> claims.Gro
                 f"{name}.cross_section_area_m2": factor * getattr(case, name).cross_section_area_m2
                 for name in ("link_ab", "link_bc")
             }
-            jumps[factor] = model.ensemble(model.changed(case, areas), progress=step).jump_rad
-    return claims.Groups(SECTIONS, tuple(jumps[factor] for factor in SECTIONS))
+            jumps[factor] = model.ensemble(with_values(case, areas), progress=step).jump_rad
+    return Groups(SECTIONS, tuple(jumps[factor] for factor in SECTIONS))
 
 
-def single_deflection(history: History) -> np.ndarray:
-    """θ2 − θ2(0) of one run [rad]."""
-    return history["theta2_rad"] - history["theta2_rad"][0]
+def single_deflection(run: Run) -> np.ndarray:
+    """Return θ2 − θ2(0) of one run [rad]."""
+    return run["theta2_rad"] - run["theta2_rad"][0]

@@ -114,7 +114,8 @@ def sensitivities(
 def _differences(
     truss: ResolvedTruss, section: str, key: str, which: np.ndarray, output: Output, own_jump: float, step: float
 ) -> tuple[float, float, str]:
-    jumps, slopes, gaps, histories = [], [], [], []
+    jumps: list[float] = []
+    slopes, gaps, histories = [], [], []
     for size in (step, step / 2):
         pair = [quick_path(changed(truss, section, key, np.where(which, 1 + sign * size, 1.0)), cycle_ends_only=True)
                 for sign in (1, -1)]
@@ -125,7 +126,7 @@ def _differences(
         histories += [_histories(one) for one in pair]
     whole, half = slopes
     largest = max(abs(whole), abs(half))
-    noise = NOISE * max(map(abs, jumps)) / step
+    noise = NOISE * max(abs(jump) for jump in jumps) / step
     # A kink may have slopes that cancel each other.
     if gaps[1] > max(AGREE * largest, 0.75 * gaps[0], noise):
         word = "not differentiable"

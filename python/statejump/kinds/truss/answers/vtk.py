@@ -35,8 +35,8 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
     truss, states = found.truss, found.states
     frames = frames_of(len(states["time_s"]), wanted_frames)
     temperatures = link_temperatures(truss, states["time_s"])
-    links, springs, sliders, revolutes = (len(part.names) for part in (
-        truss.links, truss.springs, truss.sliders, truss.revolutes))
+    links, springs = len(truss.links.names), len(truss.springs.names)
+    sliders, revolutes = len(truss.sliders.names), len(truss.revolutes.names)
     lines = np.concatenate((truss.links.nodes, truss.springs.nodes)).ravel()
     places = np.concatenate((truss.sliders.nodes[:, 0], truss.revolutes.bearing_node))
     drawn = cells([2] * (links + springs) + [1] * (sliders + revolutes), np.concatenate((lines, places)))

@@ -14,7 +14,7 @@ from statejump.core.output import write_atomically
 Document = dict[str, Any]
 
 # The bar of the paper's Table 1.
-TABLE1_BAR = {
+TABLE1_BAR: dict[str, Any] = {
     "young_modulus_Pa": 70e9, "cross_section_area_m2": 9e-6, "thermal_expansion_per_K": 23.4e-6,
     "density_kg_per_m3": 2700.0,
 }
@@ -60,7 +60,7 @@ def node(name: str, position_m: Sequence[float], fixed: str = "", **more: Any) -
 
 def to_toml(made: Mapping[str, Any]) -> str:
     """Return a document as TOML, short lists on one line."""
-    text = tomli_w.dumps(made)
+    text = tomli_w.dumps(dict(made))
     # The writer puts every item of a list on a line of its own; texts have no line ends.
     return re.sub(r"\[\n((?:    [^\n]*,\n)+)\]", _on_one_line, text)
 

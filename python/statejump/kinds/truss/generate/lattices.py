@@ -8,7 +8,7 @@ from typing import Any
 from statejump.kinds.truss.generate.document import Document, document, finished, node, tidy
 
 # Aluminium tubes, 40 mm in diameter, wall 0.8 mm: the Euler load of half a metre is 50 kN.
-TUBE = {
+TUBE: dict[str, Any] = {
     "young_modulus_Pa": 70e9, "cross_section_area_m2": 1e-4, "thermal_expansion_per_K": 23.4e-6,
     "density_kg_per_m3": 2700.0,
 }
@@ -189,7 +189,7 @@ def mast(
         for side, other, fraction in (("L", "R", 1.0), ("R", "L", shaded_fraction)):
             # Lower half from this side, upper half to the other; an upper half is named after where it ends.
             foot = f"{side}{k}j" if 0 < k and radial_clearance_m else f"{side}{k}"
-            bar = {**TUBE, "temperature_fraction": fraction}
+            bar: dict[str, Any] = {**TUBE, "temperature_fraction": fraction}
             made["link"] += [
                 {"name": f"{side}{k}d", "nodes": [foot, f"M{k}"], **bar},
                 {"name": f"{other}{k}u", "nodes": [f"M{k}", f"{other}{k + 1}"], **bar},

@@ -103,7 +103,7 @@ def iwan(
 # The rib of the umbrella antenna, as cases/umbrella_bias.toml has it.
 FRAME_M, AB_M, BC_M = 0.12, 0.05, 0.1
 AB_KG, BC_KG = 0.5, 1.0
-RIB_BAR = {
+RIB_BAR: dict[str, Any] = {
     "young_modulus_Pa": 70e9, "cross_section_area_m2": 9e-6, "thermal_expansion_per_K": 23.75e-6,
     "poisson_ratio": 0.3,
 }

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the studies of the paper share: how they refuse a case, and how their pages say where they come from."""
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from statejump import _paths
+from statejump.core.case import Case
+from statejump.core.errors import NotAllowed
+
+
+def refused(case: Case, key: str, value: Any, cause: str) -> NotAllowed:
+    """Return why a study does not run a case."""
+    return NotAllowed(key, value, cause, file=case.origin.file, case=case.name)
+
+
+def made_by(command: str, case: Case) -> str:
+    """Return the command that makes a page again: with the case file as one finds it from the current folder, or
+    by its shipped name; without, if the case was made or changed in Python."""
+    origin = case.origin
+    if origin.file is None or not origin.text:
+        return f"statejump {command}"
+    file = origin.file.resolve()
+    for folder in (Path.cwd(), _paths.SHARE.resolve()):
+        if file.is_relative_to(folder):
+            return f"statejump {command} {file.relative_to(folder)}"
+    return f"statejump {command} {os.path.relpath(file)}"

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figures 13 to 16: run everything and write each file as soon as its runs are there."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from statejump.core.errors import Interrupted
+from statejump.core.output import results_folder
+from statejump.kinds.umbrella import dem, reduced as model
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.paper.claims.findings import Findings
+from statejump.paper.claims.measures import all_claims
+from statejump.paper.common import made_by, refused
+from statejump.paper.figures.drawing import figure_13, figure_of
+from statejump.paper.figures.files import write_claims, write_curves, write_ensembles
+from statejump.paper.figures.findings import findings_of
+from statejump.paper.figures.runs import Part, Study, Variant, first_contacts, run_variants, stiffness_jumps, studies
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What the runs say of the paper's claims, and the files that were written."""
+
+    findings: Findings
+    written: list[Path]
+
+    def told(self) -> list[str]:
+        """Return the verdicts, as a command prints them."""
+        return [f"{claim.verdict}: {claim.statement}" for claim in all_claims(self.findings)]
+
+
+def make(case: UmbrellaCase, results: Path, part: Part) -> Figures:
+    """Run everything; write each file as soon as its runs are there.
+
+    :param results: gets a folder of the case's name
+    :param part: gets the name and the number of runs of a part
+    :raises NotAllowed: the figures do not fit the case
+    :raises Interrupted: Ctrl-C; names the files that are finished
+    """
+    if case.start.mode == "loaded":
+        raise refused(case, "start.mode", "loaded", "the figures vary what would load the joint")
+    folder = results_folder(results, case.name)
+    command = made_by("figures", case)
+    case = model.for_ensemble(case)
+    written: list[Path] = []
+    try:
+        known: dict[str, Variant] = {}
+        itself = Study("fig13", "joint.radial_clearance_m", (case.joint.radial_clearance_m,), "", "", "")
+        (base,) = run_variants(case, itself, known, part)
+        with part("fig13, DEM ensemble", case.ensemble.dem_runs) as step:
+            dem_ensemble = dem.ensemble(case, progress=step)
+        written += figure_13(base, dem_ensemble, case.title, folder)
+        done = []
+        for study in studies(case):
+            variants = run_variants(case, study, known, part)
+            written += figure_of(study, variants, case.title, folder)
+            done.append((study, variants))
+            write_curves(done, folder)
+            write_ensembles(done, dem_ensemble, base, folder)
+        contacts = first_contacts(case, [variant.value for variant in done[0][1]], part)
+        stiffness = stiffness_jumps(case, base, part)
+        findings = findings_of(case, done, base, dem_ensemble, contacts, stiffness)
+        write_claims(case, command, findings, folder)
+    except (KeyboardInterrupt, Interrupted):
+        finished = ", ".join(path.name for path in written if path.suffix == ".png") or "nothing"
+        raise Interrupted(f"interrupted; finished in {folder}: {finished}") from None
+    written += [folder / name for name in ("curves.csv", "ensembles.csv", "ensembles.json", "README.md")]
+    return Figures(findings, written)
