@@ -161,9 +161,9 @@ def test_mistakes_in_a_case(edited: object, name: str) -> None:
 
 
 def test_other_kinds_are_refused() -> None:
-    done = CliRunner().invoke(statics_command, [str(CASES / "table1.toml")])
+    done = CliRunner().invoke(statics_command, [str(CASES / "umbrella.toml")])
     assert isinstance(done.exception, StatejumpError)
-    assert "'statejump statics' is for 'statics'" in str(done.exception)
+    assert "'statejump statics' is for 'spring_slider' and 'statics'" in str(done.exception)
 
 
 def test_forces_over_temperature() -> None:
