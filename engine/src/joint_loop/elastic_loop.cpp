@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "elastic_loop_equations.hpp"
+#include "numerics/change_between.hpp"
 #include "statejump/failure.hpp"
 #include "statejump/kernel/elastic_pair.hpp"
 #include "statejump/kernel/require.hpp"
@@ -271,16 +272,13 @@ class Walk {
   /// meaning with the force: no convergence counts as no contact.
   Equilibrium last_contact(double to) const {
     Equilibrium last = now_;
-    for (int i = 0; i < 200; ++i) {
-      const double middle = 0.5 * (last.p.temperature_change + to);
-      if (middle == last.p.temperature_change || middle == to) break;
+    const auto parts = [&](double change) {
       Equilibrium trial = last;
-      if (reach(middle, trial) && equations_.touches(trial)) {
-        last = trial;
-      } else {
-        to = middle;
-      }
-    }
+      const bool touches = reach(change, trial) && equations_.touches(trial);
+      if (touches) last = trial;
+      return !touches;
+    };
+    numerics::change_between(last.p.temperature_change, to, parts);
     return last;
   }
 

@@ -4,25 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/change_between.hpp"
 #include "statejump/failure.hpp"
 
 namespace statejump::joint_loop {
 
 using Eigen::Vector2d;
 using kernel::require;
+using numerics::change_between;
 
 namespace {
-
-/// Root of an increasing function's sign change: bisection until the interval is two neighbours.
-template <class IsBeyond>
-double bisect(double before, double after, IsBeyond&& is_beyond) {
-  for (int i = 0; i < 200; ++i) {
-    const double middle = 0.5 * (before + after);
-    if (middle == before || middle == after) break;
-    (is_beyond(middle) ? after : before) = middle;
-  }
-  return after;
-}
 
 /// Walks along the path; `arc` is the constant of the roll in progress.
 class Walk {
@@ -63,8 +54,8 @@ class Walk {
   double rolling_angle(double temperature_change) const {
     if (arc_at(temperature_change, limit_) <= arc_) return limit_;
     if (arc_at(temperature_change, -limit_) >= arc_) return -limit_;
-    return bisect(-limit_, limit_,
-                  [&](double angle) { return arc_at(temperature_change, angle) >= arc_; });
+    const auto is_beyond = [&](double angle) { return arc_at(temperature_change, angle) >= arc_; };
+    return change_between(-limit_, limit_, is_beyond).after;
   }
 
   const linkage::Linkage& model_;
@@ -173,8 +164,9 @@ RigidLoop rigid_loop(const linkage::Linkage& model, const thermal::Program& prog
       const bool slips = walk.slips(to);
       const JointPoint reached = walk.next(to);
       if (!walk.loaded(reached)) {
-        const double at =
-            bisect(from, to, [&](double heat) { return !walk.loaded(walk.next(heat)); });
+        const double at = change_between(from, to, [&](double heat) {
+                            return !walk.loaded(walk.next(heat));
+                          }).after;
         walk.accept(walk.next(at), JointMotion::separated);
         event(walk.now());
         loop.points.push_back(walk.now());
@@ -190,7 +182,8 @@ RigidLoop rigid_loop(const linkage::Linkage& model, const thermal::Program& prog
             change.motion = JointMotion::roll;
             event(change);
           }
-          change = walk.next(bisect(from, to, [&](double heat) { return walk.slips(heat); }));
+          const auto slips_at = [&](double heat) { return walk.slips(heat); };
+          change = walk.next(change_between(from, to, slips_at).after);
           change.motion = JointMotion::slip;
           loop.points.push_back(change);
         }

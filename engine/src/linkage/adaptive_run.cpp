@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "numerics/change_between.hpp"
 #include "rates.hpp"
 #include "statejump/kernel/require.hpp"
 
@@ -90,11 +91,8 @@ class AdaptiveRun {
       bool touches = beyond(end, y) > 0.0;
       const bool changes = touches != touching_;
       if (changes) {  // the step ends at the edge of contact, where the law's memory changes
-        double inside = begin;
-        for (int i = 0; i < 60; ++i) {
-          const double middle = 0.5 * (inside + end);
-          ((beyond(middle, at(middle)) > 0.0) == touches ? end : inside) = middle;
-        }
+        const auto changed = [&](double time) { return (beyond(time, at(time)) > 0.0) == touches; };
+        end = numerics::change_between(begin, end, changed, numerics::fine * (end - begin)).after;
         y = at(end);
       }
       sample(course, at, end);

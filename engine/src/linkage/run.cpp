@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "numerics/change_between.hpp"
 #include "rates.hpp"
 #include "statejump/kernel/require.hpp"
 
@@ -39,14 +40,10 @@ typename Kind::Vector step(const Constants& k, const Course& course, double t, d
 template <class Kind>
 FirstContact locate(const Constants& k, const Course& course, double t, double h,
                     const typename Kind::Vector& y) {
-  double before = 0.0;
-  double after = h;
-  for (int i = 0; i < 60; ++i) {
-    const double tau = 0.5 * (before + after);
-    const auto at = step<Kind>(k, course, t, tau, y, {});
-    const bool touches = overlap<Kind>(k, at, course(t + tau).change) > 0.0;
-    (touches ? after : before) = tau;
-  }
+  const auto touches = [&](double tau) {
+    return overlap<Kind>(k, step<Kind>(k, course, t, tau, y, {}), course(t + tau).change) > 0.0;
+  };
+  const double after = numerics::change_between(0.0, h, touches, numerics::fine * h).after;
   return {t + after, course(t + after).change};
 }
 

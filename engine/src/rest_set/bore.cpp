@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "arcs.hpp"
+#include "numerics/change_between.hpp"
 
 namespace statejump::rest_set {
 
@@ -68,12 +69,8 @@ CanSet can_set(const Vector3d& force, double mu) {
     if ((high ? set.high_disc : set.low_disc) || (radial > 0.0 && held(pi))) {
       rim.add(0.0, 2.0 * pi);
     } else if (radial > 0.0 && push >= -mu * radial) {
-      double inside = 0.0, outside = pi;
-      for (int i = 0; i < 200; ++i) {
-        const double middle = 0.5 * (inside + outside);
-        if (middle == inside || middle == outside) break;
-        (held(middle) ? inside : outside) = middle;
-      }
+      const auto is_free = [&](double phi) { return !held(phi); };
+      double inside = numerics::change_between(0.0, pi, is_free).before;
       if (mu == 0.0) inside = 0.0;  // what rounding lets through
       rim.add(direction - inside, direction + inside);
     }

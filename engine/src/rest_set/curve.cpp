@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "detail.hpp"
+#include "numerics/change_between.hpp"
 
 namespace statejump::rest_set {
 
@@ -69,13 +70,19 @@ struct Implicit {
     return {p, -slope(p).normalized()};
   }
 
-  /// Root on a grid line between points of different sign.
-  Vector2d root(Vector2d inside, Vector2d outside) const {
-    for (int i = 0; i < 60; ++i) {
-      const Vector2d middle = 0.5 * (inside + outside);
-      (value(middle) < 0.0 ? inside : outside) = middle;
-    }
-    return 0.5 * (inside + outside);
+  /// Root on a grid line between points of different sign: one of their coordinates differs.
+  Vector2d root(const Vector2d& inside, const Vector2d& outside) const {
+    const int k = inside.x() != outside.x() ? 0 : 1;
+    Vector2d p = inside;
+    const auto is_outside = [&](double coordinate) {
+      p[k] = coordinate;
+      return !(value(p) < 0.0);
+    };
+    const double width = std::abs(outside[k] - inside[k]);
+    const auto found =
+        numerics::change_between(inside[k], outside[k], is_outside, numerics::fine * width);
+    p[k] = 0.5 * (found.before + found.after);
+    return p;
   }
 };
 
@@ -116,14 +123,10 @@ Intervals rest_on_curve(const Curve& curve, const Vector2d& force, double alpha)
       double here = first + 1.0;
       const double level = k < levels.size() ? levels[k] : stop;
       if (k < levels.size()) {
-        double low = before, high = here;
-        for (int j = 0; j < 200; ++j) {
-          const double middle = 0.5 * (low + high);
-          if (middle == low || middle == high) break;
-          const double now = continued(curve, reaction, middle, start);
-          ((now - level) * (stop - start) < 0.0 ? low : high) = middle;
-        }
-        here = high;
+        const auto reached = [&](double t) {
+          return !((continued(curve, reaction, t, start) - level) * (stop - start) < 0.0);
+        };
+        here = numerics::change_between(before, here, reached).after;
       }
       if (std::abs(wrapped(0.5 * (before_level + level))) <= alpha) result.add(before, here);
       before = here;

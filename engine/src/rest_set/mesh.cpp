@@ -5,6 +5,7 @@
 #include <map>
 
 #include "detail.hpp"
+#include "numerics/change_between.hpp"
 
 namespace statejump::rest_set {
 
@@ -118,12 +119,11 @@ Mesh implicit_surface(const SpaceFunction& gamma, const SpaceGradient& gradient,
     const auto [found, fresh] =
         on_edge.try_emplace(std::minmax(a, b), static_cast<int>(mesh.vertices.size()));
     if (fresh) {
-      Vector3d inside = grid[free[a] ? a : b], outside = grid[free[a] ? b : a];
-      for (int i = 0; i < 50; ++i) {
-        const Vector3d middle = 0.5 * (inside + outside);
-        (value(middle) < 0.0 ? inside : outside) = middle;
-      }
-      mesh.vertices.push_back(0.5 * (inside + outside));
+      const Vector3d& inside = grid[free[a] ? a : b];
+      const Vector3d edge = grid[free[a] ? b : a] - inside;
+      const auto is_outside = [&](double t) { return !(value(inside + t * edge) < 0.0); };
+      const auto crossing = numerics::change_between(0.0, 1.0, is_outside, numerics::fine);
+      mesh.vertices.push_back(inside + 0.5 * (crossing.before + crossing.after) * edge);
       mesh.normals.push_back(-slope(mesh.vertices.back()).normalized());
     }
     return found->second;

@@ -8,6 +8,7 @@
 
 #include "detail.hpp"
 #include "mesh.hpp"
+#include "numerics/change_between.hpp"
 #include "region.hpp"
 
 namespace statejump::rest_set {
@@ -139,14 +140,12 @@ class Cutter {
       return cone_angle(cone.axis, mesh_.normal(mesh_.project(a + at * (b - a)))) -
              std::atan(cone.mu);
     };
-    double low = std::max(0.0, s - 0.1), high = std::min(1.0, s + 0.1);
+    const double low = std::max(0.0, s - 0.1), high = std::min(1.0, s + 0.1);
     const double at_low = excess(low);
     if (at_low * excess(high) > 0.0) return s;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (low + high);
-      (excess(middle) * at_low > 0.0 ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
+    const auto passed = [&](double at) { return !(excess(at) * at_low > 0.0); };
+    const auto found = numerics::change_between(low, high, passed, numerics::fine * (high - low));
+    return 0.5 * (found.before + found.after);
   }
 
   /// Spans of the forces on an edge of triangle t.

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+namespace statejump::numerics {
+
+/// Where a condition changes: the last place found where it does not hold, the first where it does.
+struct Change {
+  double before;
+  double after;
+};
+
+/// Halvings of an interval that leave 2^-60 of it: below the rounding of what was measured over it.
+constexpr double fine = 0x1p-60;
+
+/// Halves the interval between `before`, where a condition does not hold, and `after`, where it
+/// does, until both are neighbours or no further apart than `tolerance` (Boost.Math's bisection, at
+/// most 200 halvings: an interval of doubles about zero takes more only for roots below 1e-60 of
+/// it). `after` may be smaller than `before`.
+/// @param holds condition(x); not asked at the ends, which the caller knows
+/// @param tolerance in the unit of the ends; 0: neighbours
+/// @throws std::logic_error if an end is not finite
+template <class Condition>
+Change change_between(double before, double after, Condition&& holds, double tolerance = 0.0) {
+  if (before == after) return {before, after};
+  if (!(std::isfinite(before) && std::isfinite(after))) {
+    throw std::logic_error("no interval in which a condition could change");
+  }
+  const auto side = [&](double x) {
+    const bool beyond = x == after || (x != before && holds(x));
+    return beyond ? 1.0 : -1.0;
+  };
+  std::uintmax_t most = 203;  // three of them at the ends
+  const auto found = boost::math::tools::bisect(
+      side, std::min(before, after), std::max(before, after),
+      [tolerance](double a, double b) { return std::abs(b - a) <= tolerance; }, most);
+  return before < after ? Change{found.first, found.second} : Change{found.second, found.first};
+}
+
+}  // namespace statejump::numerics
