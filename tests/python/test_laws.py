@@ -12,7 +12,7 @@ import pytest
 from conftest import REPOSITORY
 from statejump import _engine, laws
 from statejump.laws import curves
-from statejump.kinds.registry import load_case
+from statejump.kinds.loading import load_case
 
 R1, R2, LENGTH, MODULUS = 5e-3, 5.1e-3, 0.01, 70e9 / (2 * (1 - 0.3**2))
 CLEARANCE = R2 - R1

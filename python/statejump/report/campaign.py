@@ -174,7 +174,7 @@ class CampaignDocument:
             "title": outcome.title, "label": outcome.label, "counts": counts.tolist(),
             "edges": edges.tolist(),
             "note": f"in {_count(len(there))} of {_count(self.samples)} samples" if len(there) < self.samples else "",
-            "quantiles": [found[key] * scale for key in QUANTILES if found[key] is not None],
+            "quantiles": [value * scale for key in QUANTILES if (value := found[key]) is not None],
         }
 
     def _ranks(self, outcome: Variable) -> dict[str, Any]:

@@ -226,8 +226,8 @@ class Document:
                 continue
             values, times = column.values, run.time_s
             change = run.history["temperature_change_K"].values
-            starts = np.concatenate(([0], np.flatnonzero(values[1:] != values[:-1]) + 1))
-            ends = np.concatenate((starts[1:], [len(values) - 1]))
+            starts = np.append(0, np.flatnonzero(values[1:] != values[:-1]) + 1)
+            ends = np.append(starts[1:], len(values) - 1)
             named = [self._words.stage(label) for label in column.labels]
             return [
                 {

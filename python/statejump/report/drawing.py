@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -200,12 +201,14 @@ class Drawing:
             )
         return self._arms[key]
 
+    def _vector_N(self, force: dict[str, Any], run: Run) -> np.ndarray:
+        return resolve_point(force["vector_N"], run, self.result.names)
+
     def _forces(self) -> list[dict[str, Any]]:
-        names = self.result.names
         drawn = [
             self._force(
                 place, f"{force['kind'].capitalize()} force on {self._words.plain(force['on']).lower()}", force["kind"],
-                force["on"], force["at"], lambda run, f=force: resolve_point(f["vector_N"], run, names),
+                force["on"], force["at"], partial(self._vector_N, force),
             )
             for place, force in enumerate(self.result.scene["forces"])
         ]

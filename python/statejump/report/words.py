@@ -84,7 +84,7 @@ def of_kind(name: str) -> Words:
 
 def described(case: Case) -> list[str]:
     """Return a case in sentences: what its kind says of it, then its temperature program."""
-    told: list[str] = case.behaviour.describe(case) if case.behaviour.can("describe") else []
+    told: list[str] = case.behaviour.ability("describe", case)(case) if case.behaviour.can("describe") else []
     return [*told, _temperature(case)]
 
 

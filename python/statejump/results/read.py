@@ -124,7 +124,7 @@ def _model(model: str, group: h5py.Group) -> Run:
     events = group["events"]
     return Run(
         model,
-        **columns,
+        columns["history"], columns["energy"], columns["links"], columns["contacts"],
         events=Events([
             Event(kind, float(time), float(change), joint, float(uncertainty))
             for kind, time, change, joint, uncertainty in zip(

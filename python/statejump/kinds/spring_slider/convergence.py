@@ -160,7 +160,8 @@ def explanation(found: Convergence) -> list[str]:
 
 def _of_cycles(rows: Sequence[Row]) -> list[str]:
     fastest, slowest = rows[0], rows[-1]
-    lines = [f"From cycles of {plain(fastest.period_s, 's', 4)} to cycles of {plain(slowest.period_s, 's', 4)}, by size:"]
+    ends = [plain(row.period_s, "s", 4) for row in (fastest, slowest)]
+    lines = [f"From cycles of {ends[0]} to cycles of {ends[1]}, by size:"]
     quantities = (
         ("relative error of the jump", "state_jump_error_relative"),
         ("energy residue over the work of friction", "energy_residual_over_friction_work"),
@@ -202,12 +203,12 @@ def _what_stays(found: Convergence) -> list[str]:
     rate = abs(link.thermal_expansion_per_K) * link.stress_free_length_m
     if case.friction_force_N > 0 and rate > 0:
         slide = case.friction_force_N / stable_step.contact_stiffness(case, joint.normal_force_N)[1]
+        late = slowest.first_slip_error_K
+        seen = f" ({plain(late, 'K', 2)} in the slowest cycle, where events are known to half a sample)"
         lines.append(
-            f"- the tangential stiffness k_t of the floor contact delays the first slip by f/k_t = {plain(slide, 'm', 2)}, "
-            f"{plain(slide / rate, 'K', 2)} of thermal displacement"
-            + ("" if math.isnan(slowest.first_slip_error_K)
-               else f" ({plain(slowest.first_slip_error_K, 'K', 2)} in the slowest cycle, where events are known to half "
-                    "a sample)") + ";")
+            "- the tangential stiffness k_t of the floor contact delays the first slip by f/k_t = "
+            f"{plain(slide, 'm', 2)}, {plain(slide / rate, 'K', 2)} of thermal displacement"
+            f"{'' if math.isnan(late) else seen};")
     push = stable_step.largest_stop_force(case)
     if push > 0 and not math.isnan(slowest.stop_reached_error_K):
         lines.append(f"- the Hertz stiffness of the stop lets the slider sink in, by up to "

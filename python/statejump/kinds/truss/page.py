@@ -206,8 +206,8 @@ class TrussPart:
         found.append(f"Over the cycles: {verdict}.")
         if "sum_of_contributions" in numbers:
             total = text(numbers["sum_of_contributions"].value, unit, 4)
-            missing = numbers["sum_error_relative"].value
-            found.append(f"The contributions of all joints add up to {total}, the jump but for {missing:.1g} of it.")
+            error = numbers["sum_error_relative"].value
+            found.append(f"The contributions of all joints add up to {total}, the jump but for {error:.1g} of it.")
         return found
 
     def _without_answers(self) -> list[str]:
