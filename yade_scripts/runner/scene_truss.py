@@ -305,8 +305,8 @@ def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
         return sum(energy.get(name, 0.0) for name in names)
 
     if O.interactions.countReal() > sum(_contact(*pair) is not None for pair in built.pairs):
-        strangers = _strangers(case, built)
-        raise SceneFailure(f"{strangers} touch and are of different joints: the model has no such contact")
+        strangers, joint = _strangers(case, built)
+        raise SceneFailure(f"{strangers} touch and are of different joints: the model has no such contact", joint)
     states = [O.bodies[body].state for body in built.nodes]
     kinetic = sum(
         0.5 * states[node].mass * _velocity_now(built.nodes[node]).squaredNorm() for node in built.free
@@ -356,11 +356,14 @@ def _bodies(case: dict[str, Any], built: TrussScene) -> dict[int, str]:
     return found
 
 
-def _strangers(case: dict[str, Any], built: TrussScene) -> str:
-    """Return the words for two bodies that touch and may not."""
+def _strangers(case: dict[str, Any], built: TrussScene) -> tuple[str, str]:
+    """Return the words for two bodies that touch and may not, and the slider whose face one of them is."""
     words, allowed = _bodies(case, built), {pair(*bodies) for bodies in built.pairs}
+    sliders = {face: name for name, (floor, stops) in zip(case["slider"]["names"], built.faces)
+               for face in (floor, *stops)}
     found = ((contact.id1, contact.id2) for contact in O.interactions if contact.isReal)
-    return next(f"{words[one]} and {words[other]}" for one, other in found if pair(one, other) not in allowed)
+    one, other = next(bodies for bodies in found if pair(*bodies) not in allowed)
+    return f"{words[one]} and {words[other]}", sliders.get(one, sliders.get(other, ""))
 
 
 def names(case: dict[str, Any], built: TrussScene) -> Names:

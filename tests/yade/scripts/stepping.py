@@ -21,7 +21,7 @@ def global_stepper():
     metal = material()
     depth, masses = 3e-6, (0.02, 0.07)
     direction = Vector3(0.6, 0.8, 0)
-    body((CLEARANCE + depth) * direction, sj.Journal(radius=R1), metal, mass=masses[0],
+    pin = body((CLEARANCE + depth) * direction, sj.Journal(radius=R1), metal, mass=masses[0],
                inertia=3e-5, blocked="")
     hole = body((0, 0, 0), sj.Bearing(radius=R2), metal, mass=masses[1], inertia=9e-5, blocked="")
     engines()
@@ -123,7 +123,7 @@ def joint(factor, inertia_factor):
 def too_large_contact():
     reset()
     metal = material()
-    pin = body((CLEARANCE + 5e-6, 0, 0), sj.Journal(radius=R1), metal, mass=0.02, blocked="zXYZ")
+    body((CLEARANCE + 5e-6, 0, 0), sj.Journal(radius=R1), metal, mass=0.02, blocked="zXYZ")
     body((0, 0, 0), sj.Bearing(radius=R2), metal)
     engines()
     O.dt = 1e-3
