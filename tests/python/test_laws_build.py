@@ -159,7 +159,7 @@ def test_wrong_answers_name_law_joint_and_time(tmp_path: Path, name: str, body: 
     done = rib(tmp_path, "umbrella_damped.toml", {"joint.normal_law": name})
     last = done.stderr.strip().splitlines()[-1]
     assert done.returncode == 1 and f"{name} ({written}): {complaint}" in last
-    assert re.search(r"time = [\d.e-]+ s", last), last
+    assert re.search(r"t = [\d.e-]+ s", last), last
     script = Path(__file__).resolve().parents[1] / "yade" / "scripts" / "user_law.py"
     done = ended(["yade", "-n", "-x", script, name], STATEJUMP_LAWS=str(tmp_path),
                  PYTHONPATH=os.pathsep.join([str(BUILT), str(script.parent)]))
