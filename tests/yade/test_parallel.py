@@ -5,7 +5,6 @@ import pytest
 from conftest import EPS
 
 
-
 def test_two_threads_give_the_same_motion(run_script):
     one, two = (run_script("parallel.py", threads=n) for n in (1, 2))
     assert one["threads"] == 1 and two["threads"] == 2
