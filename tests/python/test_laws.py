@@ -176,7 +176,8 @@ def test_impact(name: str, ratio: float) -> None:
 
 
 def test_paper_joint_is_that_of_the_case(cases: Path) -> None:
-    paper, case = curves.paper_joint(), curves.joint_of(load_case(cases / "umbrella.toml"))
+    umbrella = load_case(cases / "umbrella.toml")
+    paper, case = curves.paper_joint(), umbrella.behaviour.ability("laws", umbrella)(umbrella)
     for field in ("journal_radius_m", "bearing_radius_m", "contact_length_m", "effective_young_modulus_Pa",
                   "reduced_mass_kg"):
         assert getattr(paper, field) == pytest.approx(getattr(case, field), rel=1e-14)
@@ -224,5 +225,5 @@ def test_command_with_a_case_without_laws(statejump, cases: Path, tmp_path: Path
     outcome = statejump("laws", path)
     assert outcome.status == 2
     assert outcome.errors == (
-        f"error: {path}: case.kind = 'spring_slider' is not allowed: 'statejump laws show' is for 'umbrella'\n")
+        f"error: {path}: case.kind = 'spring_slider' is not allowed: 'statejump laws' is for 'umbrella'\n")
     assert list(tmp_path.iterdir()) == []

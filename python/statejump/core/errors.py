@@ -217,6 +217,12 @@ class NotAllowed(StatejumpError):
         given = self.key if self.value is ABSENT else f"{self.key} = {shown(self.value)}"
         return f"{given} is not allowed" + (f" {self.beside}" if self.beside else "")
 
+    def fields(self) -> dict[str, Any]:
+        found = super().fields()
+        if self.beside and "cause" not in found:  # what it does not go with is why
+            found["cause"] = self.beside
+        return {name: found[name] for name in FIELDS if name in found}
+
 
 class MissingKey(StatejumpError):
     """A key or a section that must be there is not: ``KEY is missing[: NEEDS]``."""
