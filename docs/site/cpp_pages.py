@@ -19,6 +19,7 @@ SUBJECTS = (
     ("loops", "Engine: quasi-static path of a loaded joint", ("statejump/joint_loop/*.hpp",)),
     ("truss", "Engine: trusses", ("statejump/truss/*.hpp",)),
     ("rest_sets", "Engine: rest sets", ("statejump/rest_set/*.hpp",)),
+    ("failures", "Engine: failures", ("statejump/*.hpp",)),
     ("geometry", "Geometry: bores of triangles", ("statejump/geometry/*.hpp",)),
 )
 DIRECTIVES = {

@@ -7,6 +7,8 @@ import xml.etree.ElementTree as xml
 from pathlib import Path
 from typing import Any, Iterator
 
+from statejump import _engine, kinds
+from statejump.core.units import unit_of
 from statejump.schema import json_schema as schema
 
 # Names of the table of symbols that are YADE's own, or say in words how to get a value.
@@ -151,15 +153,24 @@ def symbols_page(document: str, members: Path, yade_page: str) -> str:
     return "\n".join(lines)
 
 
+def columns_page() -> str:
+    """Return the page of the columns of histories: every kind's own, with the units that their names end in."""
+    lines = [heading("Columns of histories", "="),
+             "The columns of ``*_history.csv`` and of ``Run.frame()``, in their order; the unit ends the name. What "
+             "belongs to several items has the item's name in brackets, a vector its axis behind them: "
+             "``displacement_m[J].x``. "
+             "All places of a result file: :doc:`/docs/result_file`.\n"]
+    for name in kinds.names():
+        columns = kinds.kind(name).COLUMNS
+        if columns:
+            lines += [heading(name, "-"), ".. list-table::\n   :header-rows: 1\n\n   * - column\n     - unit",
+                      *(f"   * - ``{column}``\n     - {unit_of(column)}" for column in columns), ""]
+    return "\n".join(lines)
+
+
 def history_columns() -> set[str]:
     """Return the columns of histories and the arguments that the engine's module documents."""
-    from statejump import _engine
-    from statejump.core import history
-
-    found: set[str] = set()
-    for value in vars(history).values():
-        if isinstance(value, tuple) and all(isinstance(item, str) for item in value):
-            found.update(value)
+    found = {column for name in kinds.names() for column in kinds.kind(name).COLUMNS}
     for value in vars(_engine).values():
         inner = vars(value) if isinstance(value, type) else {}
         found.update(inner)

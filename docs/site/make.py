@@ -154,13 +154,15 @@ def main() -> None:
             (reference / part / f"{name}.rst").write_text(text, encoding="utf-8")
     for name, text in (
         ("keys", key_pages.keys_page()),
+        ("columns", key_pages.columns_page()),
         ("help", command_pages.help_page()),
         ("names", key_pages.symbols_page((REPOSITORY / "docs" / "symbols.md").read_text(encoding="utf-8"), members,
                                          (reference / "yade.rst").read_text(encoding="utf-8"))),
     ):
         (reference / f"{name}.rst").write_text(text, encoding="utf-8")
     documents.add_way(source, {"Reference": [
-        ("Keys of case files", f"{REFERENCE}/keys"), ("Where each name is documented", f"{REFERENCE}/names"),
+        ("Keys of case files", f"{REFERENCE}/keys"), ("Columns of histories", f"{REFERENCE}/columns"),
+        ("Where each name is documented", f"{REFERENCE}/names"),
         ("Options of the commands", f"{REFERENCE}/help"), ("Python package", f"{REFERENCE}/python/index"),
         ("YADE classes", f"{REFERENCE}/yade"), ("C++ headers", f"{REFERENCE}/cpp/index"),
     ]})

@@ -111,7 +111,7 @@ def executed(made: NotebookNode, build: Path) -> NotebookNode:
         os.environ["JUPYTER_RUNTIME_DIR"] = str(private)
         environment = dict(
             os.environ, REPOSITORY=str(REPOSITORY), PYTHONDONTWRITEBYTECODE="1", IPYTHONDIR=str(private),
-            PYTHONPATH=f"{build / 'python'}:{place}", PATH=f"{build / 'bin'}:/usr/bin:{os.environ['PATH']}",
+            PYTHONPATH=f"{build / 'python'}:.", PATH=f"{build / 'bin'}:/usr/bin:{os.environ['PATH']}",
             XDG_DATA_HOME=str(private), STATEJUMP_LAWS="",  # laws of one's own stay in this folder
         )
         try:

@@ -60,7 +60,7 @@ class Case:
 
     def to_dict(self) -> dict[str, Any]:
         """Return sections and keys with all defaults, as a dict that :func:`statejump.load` takes."""
-        return self.definition.to_dict()
+        return self.definition.as_file()
 
     def changed(self, changes: Mapping[str, Any]) -> Case:
         """Return the case with other values, checked as a whole.

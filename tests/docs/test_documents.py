@@ -64,3 +64,14 @@ def test_headings_that_links_name_exist() -> None:
 def test_notebook_is_that_of_its_page(page: Path) -> None:
     made = notebooks.stored(notebooks.notebook(page.read_text(encoding="utf-8")))
     assert page.with_suffix(".ipynb").read_text(encoding="utf-8") == made, "run docs/site/notebooks.py"
+
+
+def test_files_that_contributing_lists_exist() -> None:
+    text = (REPOSITORY / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    for heading in "Adding a kind", "Adding a law", "Adding a joint":
+        listed = text.split(f"## {heading}\n", 1)[1].split("```\n", 1)[1].split("```", 1)[0].split()
+        assert listed
+        # NAME is the new one; what holds it must be there.
+        lost = [name for name in listed if not (REPOSITORY / name.partition("NAME")[0]).parent.exists()
+                or "NAME" not in name and not (REPOSITORY / name).exists()]
+        assert lost == [], heading

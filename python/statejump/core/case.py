@@ -79,7 +79,13 @@ class Case(Section):
         found: Origin | None = self.__dict__.get("_origin")
         if found is not None:
             return found
-        return Origin({name: part for name, part in self.to_dict().items() if name not in self.NOT_IN_FILE})
+        return Origin(self.as_file())
+
+    def as_file(self) -> dict[str, Any]:
+        """Return sections and keys with all defaults as a file of this kind may have them: sections that the case lacks
+        and lists without items are left out."""
+        return {name: part for name, part in self.to_dict().items()
+                if name not in self.NOT_IN_FILE and part is not None and part != []}
 
     def _with_origin(self, origin: Origin) -> Case:
         object.__setattr__(self, "_origin", origin)
