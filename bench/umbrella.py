@@ -14,9 +14,8 @@ from pathlib import Path
 from statistics import median
 
 from run import REPOSITORY, TIMEOUT_S, BenchError, parse, publish
-from statejump.kinds.registry import load_case
+import statejump
 from statejump.core.errors import StatejumpError
-from statejump.kinds.umbrella import dem, reduced as model
 
 STEPS = 100_000  # of one run of the reduced model, the paper's number
 DEM_STEPS = 400_000
@@ -53,10 +52,9 @@ def dem_rows(repetitions: int) -> list[dict[str, object]]:
     """Run the DEM scene; wall time of the steps, start of YADE excluded."""
     rows = []
     for name in ("umbrella_damped", "umbrella"):
-        case = model.changed(load_case(REPOSITORY / "cases" / f"{name}.toml"),
-                             {"dem.steps_per_cycle": DEM_STEPS})
+        case = statejump.load(REPOSITORY / "cases" / f"{name}.toml").changed({"dem.steps_per_cycle": DEM_STEPS})
         for repetition in range(repetitions):
-            seconds = dem.execute(case).summary["wall_time_s"]
+            seconds = case.dem().about["wall_time_s"]
             rows.append({
                 "model": "DEM", "scene": name, "repetition": repetition, "steps": DEM_STEPS,
                 "time_s": seconds, "ns_per_step": seconds / DEM_STEPS * 1e9,

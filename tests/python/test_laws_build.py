@@ -20,12 +20,13 @@ from statejump.laws import build
 TOYS = Path(__file__).resolve().parent / "toy_laws"
 BY_LAW = """
 import json, sys
-from statejump.kinds.registry import load_case
-from statejump.kinds.umbrella import reduced as model
-case = model.changed(load_case(sys.argv[1]), json.loads(sys.argv[2]))
-run = model.run(case)
-print(json.dumps({"contacts": run.contacts, "residue": run.energy_residue_J,
-                  "columns": {name: list(run.history[name]) for name in run.history.columns}}))
+import statejump as sj
+try:
+    run = sj.load(sys.argv[1]).changed(json.loads(sys.argv[2])).reduced()
+except sj.StatejumpError as failure:
+    sys.exit(str(failure))
+print(json.dumps({"contacts": run.summary["contacts"], "residue": run.summary["energy_residue_J"],
+                  "columns": {name: list(values) for name, values in run.flat().items()}}))
 """
 
 

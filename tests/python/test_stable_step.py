@@ -14,8 +14,7 @@ import pytest
 
 from conftest import BUILT, REPOSITORY
 from statejump import _engine
-from statejump.core import yade_process
-from statejump.kinds.registry import parse_case
+from statejump.kinds.loading import parse_case
 from statejump.kinds.spring_slider import stable_step
 from statejump.kinds.truss import dem as truss_dem
 from statejump.kinds.truss.solve import solve
@@ -40,7 +39,7 @@ def undamped():
     values = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text())
     values["dem"].update(link_damping_ratio=0.0, contact_damping_ratio=0.0)
     values["joint"].update(clearance_minus_m=0.1, clearance_plus_m=0.1)
-    return parse_case(values, "table1.toml")
+    return parse_case(values)
 
 
 def test_spring_slider_by_hand(undamped) -> None:
@@ -56,9 +55,9 @@ def test_spring_slider_by_hand(undamped) -> None:
 def test_spring_slider_as_the_dem_reports(undamped) -> None:
     """The estimate is made of the stiffness that the DEM's contact has; the run's own is on the safe side of it."""
     script = REPOSITORY / "tests" / "yade" / "scripts" / "stable_step.py"
-    paths = [str(BUILT), str(script.parent), str(REPOSITORY / "yade_scripts")]
+    paths = [str(BUILT), str(script.parent), str(REPOSITORY / "yade_scripts" / "runner")]
     done = subprocess.run(
-        ["yade", "-n", "-x", str(script), json.dumps(yade_process.resolved(undamped))], capture_output=True, text=True,
+        ["yade", "-n", "-x", str(script), json.dumps(undamped.behaviour.dem_input(undamped))], capture_output=True, text=True,
         timeout=120, env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)}, stdin=subprocess.DEVNULL, check=False,
     )
     match = re.search(r"RESULT (\{.*)", done.stdout)
@@ -128,6 +127,6 @@ contact_damping_ratio = 0.0
 
 def test_truss_by_hand() -> None:
     """One node between two links: a third of the mass of each, 0.0081 kg in all, and 2 x 1.26e6 N/m."""
-    case = parse_case(tomllib.loads(TRUSS), "two_links.toml")
+    case = parse_case(tomllib.loads(TRUSS))
     found = truss_dem.stable_time_step(case, solve(case))
     assert found == pytest.approx(2 * sqrt(2 * 2700 * 9e-6 * 0.5 / 3 / (2 * 70e9 * 9e-6 / 0.5)), rel=1e-12)

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from copy import deepcopy
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
-
-import attrs
 
 from statejump.core import thermal as programs
 from statejump.core.errors import NotAllowed
 from statejump.core.thermal import Thermal
-from statejump.schema.fields import CHOICE, Section, definition, section, text
+from statejump.schema.fields import CHOICE, Section, definition, evolved, section, text
 from statejump.schema.paths import set_value
 from statejump.schema.rules import FOLDER_NAME
 
@@ -33,7 +32,7 @@ class CaseHeader(Section):
     source: str = text("", "where the numbers come from")
 
 
-@attrs.frozen
+@dataclass(frozen=True)
 class Origin:
     """Where a case comes from.
 
@@ -71,7 +70,7 @@ class Case(Section):
         part, key = self.PERIOD_KEY.split(".")
         if hasattr(self, part) and hasattr(getattr(self, part), key):
             lasts = programs.period_of(self.thermal, getattr(getattr(self, part), key), self.PERIOD_KEY)
-            object.__setattr__(self, part, attrs.evolve(getattr(self, part), **{key: lasts}))
+            object.__setattr__(self, part, evolved(getattr(self, part), **{key: lasts}))
 
     @property
     def origin(self) -> Origin:
@@ -87,7 +86,8 @@ class Case(Section):
         return {name: part for name, part in self.to_dict().items()
                 if name not in self.NOT_IN_FILE and part is not None and part != []}
 
-    def _with_origin(self, origin: Origin) -> Case:
+    def with_origin(self, origin: Origin) -> Case:
+        """Say where the case comes from, and return the case itself."""
         object.__setattr__(self, "_origin", origin)
         return self
 

@@ -45,7 +45,7 @@ def parse_case(data: Mapping[str, Any], file: Path | None = None, text: str = ""
         made = kind(_kind_name(data)).case_from(data)
     except StatejumpError as failure:
         raise failure.located(file=file) from None
-    return made._with_origin(Origin(data, file, text))
+    return made.with_origin(Origin(data, file, text))
 
 
 def found_case(path: str | Path) -> Path:

@@ -167,6 +167,11 @@ def _plain(value: Any) -> Any:
 _KNOWN: dict[type[Section], Mapping[str, attrs.Attribute[Any]]] = {}
 
 
+def evolved(made: SectionType, **values: Any) -> SectionType:
+    """Return a section with other values, checked again."""
+    return attrs.evolve(made, **values)
+
+
 def fields_of(model: type[Section]) -> Mapping[str, attrs.Attribute[Any]]:
     """Return the keys of a section, or the sections of a file, in the order of their first declaration: a kind
     that declares one of them anew leaves it in its place."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -187,6 +187,8 @@ def _of_cycles(case: TrussCase, cycles: int | None) -> TrussCase:
             raise NotAllowed("cycles", ABSENT, f"program {program.name!r} of the case has cycles of its own")
     changed = case.changed({"thermal.cycles": cycles})
     assert isinstance(changed, TrussCase)
+    # The file that was given is named with the answers; how many cycles were run, the resolved case says.
+    changed.with_origin(replace(changed.origin, text=case.origin.text))
     return changed
 
 
