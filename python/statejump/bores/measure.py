@@ -213,7 +213,10 @@ def load(file: Path, unit_m: float = 1.0, flip: bool = False) -> _engine.BoreMes
     try:
         return _engine.BoreMesh.read(str(file), scale=unit_m, flip=flip)
     except _engine.EngineFailure as failure:
-        what = failure.cause if failure.file else str(failure)
+        what = str(failure)
+        if failure.file:
+            assert failure.cause is not None  # of a file the engine says both
+            what = failure.cause
         raise NoBore(what, fault=failure.kind, file=failure.file or None) from None
 
 

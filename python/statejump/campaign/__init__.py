@@ -21,7 +21,7 @@ def sweep(
     from statejump.campaign.campaign_file import points_of
     from statejump.campaign.plan import SWEEP
 
-    tables = {
+    tables: dict[str, dict[str, Any]] = {
         key: {"key": key, **wanted} if isinstance(wanted, Mapping) else {"key": key, "values": _plain(wanted)}
         for key, wanted in values.items()
     }

@@ -45,7 +45,8 @@ class Table:
         """Return a row per sample: varied keys, outcomes, error."""
         import pandas
 
-        frame = pandas.DataFrame({**self.parameters, **self.outcomes, "error": self.error})
+        columns: dict[str, np.ndarray | list[str]] = {**self.parameters, **self.outcomes, "error": self.error}
+        frame = pandas.DataFrame(columns)
         frame.index.name = "sample"
         return frame
 

@@ -249,8 +249,8 @@ def _spaced(table: Mapping[str, Any], spacing: str, is_whole: bool) -> list[Any]
         raise NotAllowed("count", count, f"must be a whole number, between 2 and {MOST_SAMPLES}")
     if spacing == "log" and not (start > 0 and stop > 0):
         raise NotAllowed("start", start, "must, as stop, be above 0 for a log spacing")
-    space = np.geomspace if spacing == "log" else np.linspace
-    wanted = [float(value) for value in space(start, stop, count)]
+    spaced = np.geomspace(start, stop, count) if spacing == "log" else np.linspace(start, stop, count)
+    wanted = [float(value) for value in spaced]
     return [int(value) if value.is_integer() else value for value in wanted] if is_whole else wanted
 
 

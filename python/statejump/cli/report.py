@@ -62,7 +62,7 @@ def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> 
 
     console = make_console(quiet)
     files = list(dict.fromkeys(path for run in runs for path in result_files(run)))
-    documents = [
+    documents: list[Document | CampaignDocument] = [
         CampaignDocument(path, f"run{place}") if is_campaign(path)
         else Document(read(path), path.name, f"run{place}", BUDGET_BYTES / len(files))
         for place, path in enumerate(files, start=1)

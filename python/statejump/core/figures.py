@@ -95,11 +95,11 @@ def drawn(case: Case, runs: Sequence[Run], axes: Axes | Sequence[Axes] | None = 
     with style():
         rows = -(-len(sheet.panels) // sheet.columns)
         figure, places = panels(rows, sheet.columns, sheet.size, squeeze=False)
-        for panel, place in zip(sheet.panels, places.flat):
-            if panel is None:
+        for draw, place in zip(sheet.panels, places.flat):
+            if draw is None:
                 place.set_axis_off()
             else:
-                panel(place)
+                draw(place)
         figure.suptitle(sheet.title, fontsize=11)
     return figure
 

@@ -13,43 +13,51 @@ Value = TypeVar("Value", float, np.ndarray)
 
 def effective_young_modulus_Pa(young_modulus_Pa: Value, poisson_ratio: Value) -> Value:
     """Return E* [Pa] of a contact of two parts of one material, E/(2 (1 - ν²))."""
-    return young_modulus_Pa / (2 * (1 - poisson_ratio**2))
+    modulus_Pa: Value = young_modulus_Pa / (2 * (1 - poisson_ratio**2))
+    return modulus_Pa
 
 
 def shear_over_normal_stiffness(poisson_ratio: Value) -> Value:
     """Return k_t/k_n = 4 G*/E* = 2 (1 - ν)/(2 - ν) of a contact of two parts of one material (Mindlin)."""
-    return 2 * (1 - poisson_ratio) / (2 - poisson_ratio)
+    ratio: Value = 2 * (1 - poisson_ratio) / (2 - poisson_ratio)
+    return ratio
 
 
 def hertz_stiffness_N_per_m15(effective_young_modulus_Pa: Value, effective_radius_m: Value) -> Value:
     """Return K of F = K δ^1.5 [N/m^1.5], 4/3 E* sqrt(R)."""
-    return 4 / 3 * effective_young_modulus_Pa * np.sqrt(effective_radius_m)
+    stiffness: Value = 4 / 3 * effective_young_modulus_Pa * np.sqrt(effective_radius_m)
+    return stiffness
 
 
 def conforming_radius_m(journal_radius_m: Value, bearing_radius_m: Value, radial_clearance_m: Value) -> Value:
     """Return the effective radius of a journal in its bearing [m], R1 R2/(R2 - R1)."""
-    return journal_radius_m * bearing_radius_m / radial_clearance_m
+    radius_m: Value = journal_radius_m * bearing_radius_m / radial_clearance_m
+    return radius_m
 
 
 def hertz_depth_m(force_N: Value, hertz_stiffness: Value) -> Value:
     """Return the penetration depth [m] at a normal force, (F/K)^(2/3)."""
-    return (force_N / hertz_stiffness) ** (2 / 3)
+    depth_m: Value = (force_N / hertz_stiffness) ** (2 / 3)
+    return depth_m
 
 
 def hertz_tangent_N_per_m(force_N: Value, hertz_stiffness: Value) -> Value:
     """Return dF/dδ [N/m] of F = K δ^1.5 at a force."""
-    return 1.5 * hertz_stiffness ** (2 / 3) * np.cbrt(force_N)
+    stiffness_N_per_m: Value = 1.5 * hertz_stiffness ** (2 / 3) * np.cbrt(force_N)
+    return stiffness_N_per_m
 
 
 def hertz_tangent_at_depth_N_per_m(effective_young_modulus_Pa: Value, effective_radius_m: Value,
                                    depth_m: Value) -> Value:
     """Return dF/dδ [N/m] of F = K δ^1.5 at a depth, 2 E* sqrt(R δ)."""
-    return 2 * effective_young_modulus_Pa * np.sqrt(effective_radius_m * depth_m)
+    stiffness_N_per_m: Value = 2 * effective_young_modulus_Pa * np.sqrt(effective_radius_m * depth_m)
+    return stiffness_N_per_m
 
 
 def axial_stiffness_N_per_m(young_modulus_Pa: Value, cross_section_area_m2: Value, length_m: Value) -> Value:
     """Return E A / l [N/m], the paper's equation (4)."""
-    return young_modulus_Pa * cross_section_area_m2 / length_m
+    stiffness_N_per_m: Value = young_modulus_Pa * cross_section_area_m2 / length_m
+    return stiffness_N_per_m
 
 
 def apex_m(left_m: Value, right_m: Value, base_m: Value) -> tuple[Value, Value]:

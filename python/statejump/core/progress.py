@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import count
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 Tell = Callable[[float], None]
 
@@ -38,12 +42,10 @@ def bar(label: str) -> Iterator[Tell]:
 
 
 @contextmanager
-def on_console(console: object, label: str) -> Iterator[Tell]:
+def on_console(console: Console, label: str) -> Iterator[Tell]:
     """Yield what shows the finished share on a console of rich: a bar on a terminal, else a line every tenth."""
-    from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    assert isinstance(console, Console)
     if console.is_terminal:
         columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"),
                    TimeElapsedColumn(), TimeRemainingColumn())
@@ -61,6 +63,11 @@ def on_console(console: object, label: str) -> Iterator[Tell]:
             console.print(f"{label}: {100 * share:.0f} %")
 
     yield line
+
+
+def one_of(tell: Tell, done: int, total: int) -> Tell:
+    """Return what a run tells, so many of ``total`` alike runs being done, for ``tell`` to take the share of all."""
+    return lambda share: tell((done + share) / total)
 
 
 def counted(tell: Tell, total: int) -> Callable[[], None]:

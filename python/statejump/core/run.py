@@ -48,7 +48,8 @@ class Column:
     @property
     def shown(self) -> np.ndarray:
         """The values, of labels the texts themselves."""
-        return np.array(self.labels)[self.values] if self.labels else self.values
+        found: np.ndarray = np.array(self.labels)[self.values] if self.labels else self.values
+        return found
 
 
 @dataclass(frozen=True)

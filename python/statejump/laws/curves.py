@@ -156,7 +156,7 @@ def _draw_normal(panel: Axes, joint: Joint) -> None:
     for refuses, text in ((True, "range ends: error beyond"), (False, "contact as wide as the journal")):
         if any(refuses == own for _, own in ends.values()):
             lines.append(Line2D([], [], linestyle="", marker="o", color="0.3", markersize=6,
-                                    markerfacecolor="0.3" if refuses else "white"))
+                                markerfacecolor="0.3" if refuses else "white"))
             labels.append(text)
     panel.legend(lines, labels, loc="lower right", framealpha=1, fontsize=8, handlelength=3.2)
 

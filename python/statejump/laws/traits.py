@@ -49,7 +49,7 @@ class Law:
 def catalogue(kind: str) -> tuple[Law, ...]:
     """Return the laws of a kind, one of ``KINDS``, in the order of the catalogue. :raises ValueError: no such kind"""
     return tuple(
-        Law(**{**told, "parameters": tuple(Parameter(**each) for each in told["parameters"])})
+        Law(**dict(told, parameters=tuple(Parameter(**each) for each in told["parameters"])))
         for told in _engine.laws(kind)
     )
 

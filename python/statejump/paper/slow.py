@@ -218,7 +218,7 @@ def figure(case: UmbrellaCase, chosen: Sequence[Block], rows: Sequence[Row], fol
             panel.set_visible(False)
         for panel, block in zip(places, chosen):
             for name, line in (("reduced", {**REDUCED, "label": "reduced model", "marker": "o", "markersize": 8}),
-                                ("DEM", {**DEM, "marker": "s", "markersize": 4})):
+                               ("DEM", {**DEM, "marker": "s", "markersize": 4})):
                 mine = [row for row in rows if row.block == block.name and row.model == name]
                 panel.plot([row.period_s for row in mine], [abs(row.theta2_difference_rad) for row in mine], **line)
             lags = {

@@ -66,7 +66,8 @@ def case_differences(first: Result, second: Result) -> tuple[list[str], list[str
     """Return what differs between the cases: what they are, and how they are computed; as
     ``section.key = first and second``."""
     entries = [dict(_entries(json.loads(result.case_json))) for result in (first, second)]
-    physical, numerical = [], []
+    physical: list[str] = []
+    numerical: list[str] = []
     for key in dict.fromkeys([*entries[0], *entries[1]]):
         values = [found.get(key) for found in entries]
         if values[0] != values[1]:

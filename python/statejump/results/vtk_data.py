@@ -39,7 +39,7 @@ def points(values: np.ndarray) -> vtkPoints:
 def cells(lengths: list[int], connectivity: np.ndarray) -> vtkCellArray:
     """Return cells of so many points each; ``connectivity`` holds their numbers, one cell after another."""
     made = vtkCellArray()
-    offsets = np.concatenate(([0], np.cumsum(lengths, dtype=np.int64))).astype(np.int64)
+    offsets = np.concatenate((np.zeros(1, dtype=np.int64), np.cumsum(lengths, dtype=np.int64)))
     made.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True),
                  numpy_to_vtkIdTypeArray(np.ascontiguousarray(connectivity, dtype=np.int64), deep=True))
     return made

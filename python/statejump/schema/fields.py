@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
-from typing import Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import attrs
 
@@ -89,7 +89,10 @@ def text(default: Any, source: str, *, pattern: str | Callable[[], str] | None =
 
 
 def _called(names: Names) -> Callable[[], Sequence[str]]:
-    return names if callable(names) else lambda: names
+    if callable(names):
+        return names
+    given = names
+    return lambda: given
 
 
 def choice(default: Any, names: Names, source: str) -> Any:
@@ -153,6 +156,10 @@ class Section:
     # Choice of the section: keys that some of its names need and the others refuse.
     GOES_WITH: ClassVar[dict[str, dict[str, tuple[str, ...]]]] = {}
 
+    if TYPE_CHECKING:
+        # Made by attrs, one for each class; what may be given are the keys, and their checks are those of the rules.
+        def __init__(self, **keys: Any) -> None: ...
+
     def to_dict(self) -> dict[str, Any]:
         """Return keys and values in the order of their declaration, sections as dicts."""
         return {name: _plain(getattr(self, name)) for name in fields_of(type(self))}
@@ -209,8 +216,8 @@ def is_required(attribute: attrs.Attribute[Any]) -> bool:
 
 def default_of(attribute: attrs.Attribute[Any]) -> Any:
     """Return the default of a key that is not required."""
-    made = attribute.default
-    return made.factory() if isinstance(made, attrs.Factory) else made  # type: ignore[arg-type]
+    made: Any = attribute.default
+    return made.factory() if isinstance(made, attrs.Factory) else made  # type: ignore[arg-type]  # it is a class
 
 
 def structure(model: type[SectionType], data: Mapping[str, Any]) -> SectionType:
@@ -271,6 +278,7 @@ def _section(keys: type[SectionType], name: str, given: Mapping[str, Any]) -> Se
     try:
         return keys(**given)
     except NotAllowed as refused:
+        assert refused.key is not None
         refused.value = given.get(refused.key, refused.value)  # 1, not 1.0, if the file says so
         refused.key = f"{name}.{refused.key}"
         raise

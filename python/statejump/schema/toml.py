@@ -33,7 +33,7 @@ def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
 def _reason(failure: tomllib.TOMLDecodeError, text: str) -> tuple[str, int]:
     """Return what the parser says and in which line. Python 3.14 gives both as attributes; before, they are the
     two halves of its message."""
-    if hasattr(failure, "lineno"):
+    if hasattr(failure, "msg") and hasattr(failure, "lineno"):
         return str(failure.msg), int(failure.lineno)
     reason, _, place = str(failure).rpartition(" (at ")
     words = place.replace(",", " ").split()

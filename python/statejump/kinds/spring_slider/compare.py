@@ -23,7 +23,7 @@ def dem_event_temperatures(dem: Run, samples_per_cycle: int) -> dict[str, float 
 
     def starts(column: str) -> np.ndarray:
         flags = dem[column][first] > 0.5
-        return np.flatnonzero(flags & ~np.concatenate(([False], flags[:-1])))
+        return np.flatnonzero(flags & ~np.concatenate((np.zeros(1, dtype=bool), flags[:-1])))
 
     slips = starts("slipping")
     reached = starts("stop_contact")

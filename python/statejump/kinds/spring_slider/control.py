@@ -12,7 +12,7 @@ from statejump.control.study import (
 )
 from statejump.core.engine_failures import engine
 from statejump.core.errors import StatejumpError
-from statejump.core.progress import Tell
+from statejump.core.progress import Tell, one_of
 from statejump.kinds.spring_slider import reduced
 from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.kinds.spring_slider.stable_step import link_stiffness
@@ -217,7 +217,7 @@ def _check_by_dem(case: SpringSliderCase, result: Study, tell: Tell) -> None:
     wanted = {preload.own, preload.own if preload.recommended is None else preload.recommended}
     for done, stiffness in enumerate(sorted(wanted)):
         design = with_values(case, {PRELOAD: stiffness})
-        run = case.behaviour.dem(design, lambda share, done=done: tell((done + share) / len(wanted)))
+        run = case.behaviour.dem(design, one_of(tell, done, len(wanted)))
         jump, exact = abs(run.summary["state_jump_m"]), jump_of(design).size_m
         result.dem.append({PRELOAD: stiffness, "reduced_jump_m": exact, "dem_jump_m": jump})
         preload.row(stiffness).dem_jump = jump

@@ -13,7 +13,7 @@ import numpy as np
 from statejump.core import physics
 from statejump.core.errors import Interrupted
 from statejump.core.output import made_by
-from statejump.core.progress import Tell
+from statejump.core.progress import Tell, one_of
 from statejump.core.run import Run
 from statejump.core.tables import markdown, write_rows, write_text
 from statejump.core.units import plain
@@ -103,7 +103,7 @@ def convergence(case: SpringSliderCase, tell: Tell = lambda share: None) -> Conv
     runs: list[Run] = []
     for place, variant in enumerate(every):
         try:
-            runs.append(case.behaviour.dem(variant, lambda share, place=place: tell((place + share) / len(every))))
+            runs.append(case.behaviour.dem(variant, one_of(tell, place, len(every))))
         except Interrupted:
             raise Interrupted("interrupted; no table was written") from None
     return compared(case, (slower, finer), (runs[: len(slower)], runs[len(slower) :]))

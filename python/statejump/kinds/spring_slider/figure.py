@@ -29,7 +29,12 @@ ABSCISSAE = (("temperature_change_K", "Temperature change [K]"), ("time_s", "Tim
 def sheet(case: SpringSliderCase, runs: Sequence[Run]) -> Sheet:
     """Return displacement and axial force over temperature and over time."""
     path = reduced.solve(case)
-    shown = [(_dense(path, run), REDUCED) if run.model == "reduced" else (run, DEM) for run in runs]
+    shown: list[tuple[Run | dict[str, np.ndarray], dict[str, Any]]] = []
+    for run in runs:
+        if run.model == "reduced":
+            shown.append((_dense(path, run), REDUCED))
+        else:
+            shown.append((run, DEM))
     exact = any(run.model == "reduced" for run in runs)
 
     def panel(quantity: int, abscissa: int) -> Any:

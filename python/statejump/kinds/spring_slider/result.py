@@ -78,7 +78,9 @@ def _contacts(case: SpringSliderCase, history: Columns) -> dict[str, Column]:
     samples, radius = len(x), case.joint.pad_radius_m
     states = _states(case, history)
     reduced = "slipping" not in history
-    pad = radius * (1 if reduced else 1 + case.joint.pad_thermal_expansion_per_K * change)
+    pad: float | np.ndarray = radius
+    if not reduced:
+        pad = radius * (1 + case.joint.pad_thermal_expansion_per_K * change)
     normal, tangential, point = (np.zeros((samples, len(CONTACTS), 3)) for _ in range(3))
     gap = np.zeros((samples, len(CONTACTS)))
     if "floor_normal_force_N" in history:
@@ -89,9 +91,9 @@ def _contacts(case: SpringSliderCase, history: Columns) -> dict[str, Column]:
     tangential[:, 0, 0] = history["friction_force_N"]
     point[:, 0] = np.stack([x, np.full(samples, -radius), np.zeros(samples)], axis=1)
     for place, side in ((1, -1), (2, 1)):
-        clearance = case.clearance_m(side, 0.0) if reduced else (
-            case.clearance_m(side, 0.0) + (case.clearance_m(side, 1.0) - case.clearance_m(side, 0.0)) * change
-        )
+        clearance: float | np.ndarray = case.clearance_m(side, 0.0)
+        if not reduced:
+            clearance = clearance + (case.clearance_m(side, 1.0) - clearance) * change
         gap[:, place] = clearance - side * x
         point[:, place, 0] = x + side * pad
         push = history["stop_force_N"]

@@ -68,7 +68,7 @@ def stable_time_step(case: SpringSliderCase) -> float:
         (0.0, (floor_normal, stop_tangential)),
         (link, (floor_tangential, stop_normal)),
     )
-    steps = []
+    steps: list[float] = []
     for spring, contacts in axes:
         # Each dashpot is 2 zeta sqrt(k m).
         damping = 2 * sqrt(mass) * (

@@ -131,6 +131,7 @@ def _cone(panel: Axes, apex: np.ndarray, axis: np.ndarray, mu: float, size: floa
 
 def _ring(panel: Axes, case: StaticsCase, statics: Statics) -> None:
     """Journal: the closed curve of its centre, rest arcs, forces, a friction cone at an arc's end."""
+    assert case.joint.clearance_m is not None
     c = case.joint.clearance_m * MICRO
     if statics.curve is None:
         angle = np.linspace(0, 2 * pi, 361)
@@ -183,6 +184,7 @@ def _ring(panel: Axes, case: StaticsCase, statics: Statics) -> None:
 
 def _slot(panel: Axes, case: StaticsCase, statics: Statics) -> None:
     """Block in a slot: its centre between the stops, drawn in the plane of axis and force."""
+    assert case.joint.clearance_m is not None
     c = case.joint.clearance_m * MICRO
     panel.plot([-c, c], [0, 0], color="0.55", linewidth=1.2, linestyle=(0, (4, 3)), zorder=1.5)
     panel.axhspan(-0.6 * c, -0.12 * c, color="0.9", zorder=0)
@@ -248,7 +250,7 @@ def _space(panel: Any, statics: Statics) -> list[Any]:
     view = np.array([cos(np.radians(rise)) * cos(np.radians(azimuth)),
                      cos(np.radians(rise)) * sin(np.radians(azimuth)), sin(np.radians(rise))])
     side = np.cross(view, (0.0, 0.0, 1.0))
-    lamp = view + 0.5 * side / max(np.linalg.norm(side), 1e-9) + np.array([0, 0, 0.5])
+    lamp = view + 0.5 * side / max(float(np.linalg.norm(side)), 1e-9) + np.array([0, 0, 0.5])
     light = 0.55 + 0.45 * np.abs(outwards @ (lamp / np.linalg.norm(lamp)))
     shaded = np.clip(colours * light[:, None], 0, 1)
     surface = Poly3DCollection(polygons, facecolors=shaded, edgecolors=shaded, linewidths=0.15, zorder=1)

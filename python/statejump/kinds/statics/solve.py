@@ -128,14 +128,17 @@ def solve(case: StaticsCase, friction_coefficient: float | None = None) -> Stati
     curve = mesh = None
     with engine("the rest sets cannot be computed", file=case.origin.file, case=case.name):
         if joint.type == "slot":
+            assert joint.clearance_m is not None
             found = _engine.rest_in_slot(joint.clearance_m, forces, mu)
         elif joint.type == "journal":
+            assert joint.clearance_m is not None
             found = _engine.rest_in_bearing(joint.clearance_m, [force[:2] for force in forces], mu)
         elif joint.type == "lobed":
-            assert joint.lobe_amplitude_m is not None and joint.clearance_m is not None
+            assert joint.clearance_m is not None and joint.lobe_amplitude_m is not None and joint.lobes is not None
             curve = _engine.lobed_curve(joint.clearance_m, joint.lobe_amplitude_m / joint.clearance_m, joint.lobes)
             found = _engine.rest_on_curves([curve], [force[:2] for force in forces], mu)
         elif joint.type == "ball":
+            assert joint.clearance_m is not None
             found = _engine.rest_in_socket(joint.clearance_m, forces, mu)
             mesh = _engine.clearance_sphere(joint.clearance_m, SPHERE_LEVEL)
         elif joint.type == "cylinder":

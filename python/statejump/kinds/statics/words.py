@@ -36,7 +36,7 @@ def _angle(part: dict[str, Any]) -> str:
 
 def rows(statics: Statics) -> list[tuple[str, ...]]:
     """Return every set and, if it has several parts, every part, as cells of ``HEADINGS``."""
-    found = []
+    found: list[tuple[str, ...]] = []
     for name, one in statics.named():
         parts = one["parts"]
         found.append((name, str(len(parts)), *_measure(one), _angle(parts[0]) if len(parts) == 1 else "-",

@@ -7,7 +7,7 @@ the histories, and joints are ranked by how far they move and by their heat: not
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ import numpy as np
 from statejump.core.charts import TEMPERATURE, Axis, Chart
 from statejump.core.run import Run
 from statejump.core.units import scale_of, text, unit_of
-from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.case import Link, Spring, TrussCase
 from statejump.kinds.truss.words import is_guided, is_held
 from statejump.report import words
 from statejump.report.drawing import round_down
@@ -333,8 +333,9 @@ class TrussPart:
         start = self._run.history["position_m"].values[0]
         size = float(np.ptp(start, axis=0).max())
         largest = float(self._size_m.max())
+        between: dict[str, Sequence[Link | Spring]] = {"link": self.case.link, "spring": self.case.spring}
         lines = [{"nodes": [self._number[name] for name in item.nodes], "kind": kind, "name": item.name}
-                 for kind, items in (("link", self.case.link), ("spring", self.case.spring)) for item in items]
+                 for kind, items in between.items() for item in items]
         return {
             "dimension": self.case.truss.dimension,
             "nodes": self.nodes,

@@ -151,6 +151,12 @@ def _ensemble_plan(case: UmbrellaCase) -> list[tuple[Any, ...]]:
     ]
 
 
+def _jump_quantile_rad(row: Row) -> float:
+    """Return the 95 % quantile of |jump|; of a row that could not be run it is infinite."""
+    found = row.results.get("jump_quantile_rad")
+    return np.inf if found is None else found
+
+
 def study(
     case: UmbrellaCase, wanted: float | None, runs: int, with_dem: bool, tell: Tell
 ) -> Study:
@@ -184,7 +190,7 @@ def study(
         for sweep in result.sweeps:
             sweep.meets = ranges_that_pass(
                 [row.value for row in sweep.rows],
-                [row.results.get("jump_quantile_rad", np.inf) <= wanted for row in sweep.rows],
+                [_jump_quantile_rad(row) <= wanted for row in sweep.rows],
             )
         _ensemble_springs(measured, result, wanted)
     result.remarks.append(
@@ -309,11 +315,13 @@ def _ensemble_dem(case: UmbrellaCase, result: Study, runs: int, tell: Tell) -> N
         deflection = np.max(np.abs(together.deflection_rad), axis=1)
         jump = quantile(together.jump_rad)
         reduced = spring.row(stiffness).results
+        reduced_mean, reduced_quantile = reduced["jump_mean_rad"], reduced["jump_quantile_rad"]
+        assert reduced_mean is not None and reduced_quantile is not None  # ensembles have statistics
         result.dem.append({
             SPRING: stiffness, "runs": runs,
-            "reduced_jump_mean_rad": reduced["jump_mean_rad"],
+            "reduced_jump_mean_rad": reduced_mean,
             "dem_jump_mean_rad": float(np.mean(np.abs(together.jump_rad))),
-            "reduced_jump_quantile_rad": reduced["jump_quantile_rad"], "dem_jump_quantile_rad": jump,
+            "reduced_jump_quantile_rad": reduced_quantile, "dem_jump_quantile_rad": jump,
             "reduced_deflection_quantile_rad": reduced["deflection_quantile_rad"],
             "dem_deflection_quantile_rad": quantile(deflection),
         })
@@ -323,5 +331,5 @@ def _ensemble_dem(case: UmbrellaCase, result: Study, runs: int, tell: Tell) -> N
             f"DEM, {runs} runs, {number(stiffness)} N m/rad: 95 % quantile of |jump| {number(jump * 1e3)} mrad "
             f"({'not ' if jump <= wanted else ''}above the wanted value), mean "
             f"{number(float(np.mean(np.abs(together.jump_rad))) * 1e3)} mrad; reduced model "
-            f"{number(reduced['jump_quantile_rad'] * 1e3)} and {number(reduced['jump_mean_rad'] * 1e3)} mrad"
+            f"{number(reduced_quantile * 1e3)} and {number(reduced_mean * 1e3)} mrad"
         )

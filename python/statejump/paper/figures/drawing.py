@@ -28,7 +28,7 @@ MEAN: Line = {"color": "#0072B2", "linewidth": 2.6, "label": "reduced, ensemble:
 SINGLE: Line = {"color": "#E69F00", "linewidth": 1.6, "label": "reduced, single run"}
 DEM: Line = {"color": "#000000", "linewidth": 0.9, "linestyle": (0, (5, 2)), "label": "DEM (YADE), single run"}
 CONTACT: Line = {"color": "#D55E00", "linewidth": 1.2, "linestyle": (0, (1, 1.5)),
-           "label": "first contact, c/(α |AC|)"}
+                 "label": "first contact, c/(α |AC|)"}
 STATIC: Line = {"color": "#009E73", "linewidth": 4.2, "alpha": 0.5, "label": "quasi-static, frictionless"}
 LIMITS: Line = {"color": "0.6", "linewidth": 0.9, "label": "all that the play allows"}
 
