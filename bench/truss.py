@@ -63,8 +63,8 @@ def main() -> None:
         "`PYTHONPATH=build/python /usr/bin/python3 bench/truss.py`: one cycle, ten points a branch, CPU time of one",
         "core (the solver is serial, so its results do not depend on threads). Events: changes of stick, slip and",
         "contact. The ring of many bays is stiff around each joint, and none slips from 100 on; in the umbrella every",
-        "joint slips out and back, each at its own temperature. Memory: peak of the process, 50 MB of it Python itself,",
-        "most of the rest the case as Python objects.", "",
+        "joint slips out and back, each at its own temperature. Memory: peak of the process, 50 MB of it Python",
+        "itself, most of the rest the case as Python objects.", "",
         "| truss | joints | unknowns | events | solves | factorizations | CPU time [s] | per joint [µs] | "
         "per factorization and unknown [µs] | peak memory [MB] |",
         "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|",

@@ -4,7 +4,8 @@
 
     PYTHONPATH=build/python /usr/bin/python3 bench/truss_dem.py
 
-Chains of blocks with friction from 100 to 10 000 joints, one thread, with energy account. Two runs of different length each: their difference has neither start nor samples.
+Chains of blocks with friction from 100 to 10 000 joints, one thread, with energy account. Two runs of different
+length each: their difference has neither start nor samples.
 """
 from __future__ import annotations
 

@@ -88,7 +88,8 @@ GROUPS: dict[str, tuple[Mistake, ...]] = {
 # What only the run finds; command 'dem'.
 RUNS: tuple[Mistake, ...] = (
     Mistake("too few steps", "umbrella_damped", "steps_per_cycle = 400000", "steps_per_cycle = 2000", "dem"),
-    Mistake("law of a contact beyond its range", "umbrella_damped", 'radial_clearance_m = 1e-4\nnormal_law = "hertz_internal"',
+    Mistake("law of a contact beyond its range", "umbrella_damped",
+            'radial_clearance_m = 1e-4\nnormal_law = "hertz_internal"',
             'radial_clearance_m = 1e-9\nnormal_law = "johnson"', "dem"),
     Mistake("stop that holds the slider above its floor", "table1", "[joint]",
             "[joint]\nslot_thermal_expansion_per_K = -1.5e-4", "dem"),

@@ -72,8 +72,11 @@ def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, tell: Tell) ->
     except Interrupted as stopped:
         if stopped.run is not None:
             samples: Samples = stopped.run
-            stopped.run = replace(make_run(case, samples.columns, samples.about), complete=False)
-        raise
+            try:
+                stopped.run = replace(make_run(case, samples.columns, samples.about), complete=False)
+            except (KeyError, IndexError, ValueError):  # cut so early that there is no run in it
+                stopped = Interrupted("interrupted before a whole sample; nothing was written")
+        raise stopped from None
     return make_run(case, done.columns, done.about)
 
 

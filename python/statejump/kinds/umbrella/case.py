@@ -243,6 +243,7 @@ class UmbrellaCase(Case):
 
     def check(self) -> None:
         """Raise StatejumpError for what is wrong between several keys."""
+        self._check_laws()
         self._check_geometry()
         self._check_joint()
         self._check_start()
@@ -268,6 +269,14 @@ class UmbrellaCase(Case):
                 f"must be above {-flare:.9g} and below {pi - flare:.9g} [rad], so that the free flare angle lies "
                 "between 0 and pi",
             )
+
+    def _check_laws(self) -> None:
+        for kind, key in (("normal", "normal_law"), ("dissipation", "dissipation_law"), ("friction", "friction_law"),
+                          ("tangential_velocity", "tangential_velocity")):
+            name = getattr(self.joint, key)
+            problem = _engine.law_problem(kind, name)
+            if problem:  # a law of one's own that is known and cannot be used
+                raise NotAllowed(f"joint.{key}", name, problem)
 
     def _check_joint(self) -> None:
         joint = self.joint
