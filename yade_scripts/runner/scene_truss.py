@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """YADE scene of ``truss`` cases: nodes are bodies, bars are links, joints are contacts.
 
-What the DEM cannot represent has been refused before: ``statejump/truss/dem.py``, which also says how
+What the DEM cannot represent has been refused before: ``statejump/kinds/truss/dem.py``, which also says how
 masses are lumped. A slider's pad is held at the depth at which its floor carries the normal force.
 """
 from __future__ import annotations
