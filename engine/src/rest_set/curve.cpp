@@ -53,7 +53,7 @@ struct Implicit {
   }
 
   Vector2d slope(const Vector2d& p) const {
-    const Vector2d result = gradient(p);
+    Vector2d result = gradient(p);
     const double norm = result.norm();
     require(std::isfinite(norm) && norm > 0.0, "size of the gradient of gamma on the curve", norm,
             "finite, > 0");
@@ -326,7 +326,7 @@ std::vector<Curve> implicit_curves(const PlaneFunction& gamma, const PlaneGradie
 
 namespace {
 
-Curve by_angle(std::function<CurvePoint(double)> at_angle, int samples) {
+Curve by_angle(const std::function<CurvePoint(double)>& at_angle, int samples) {
   Curve curve;
   curve.closed = true;
   curve.at = [at_angle, samples](double t) { return at_angle(2.0 * pi * t / samples); };

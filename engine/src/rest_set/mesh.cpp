@@ -92,7 +92,7 @@ Mesh implicit_surface(const SpaceFunction& gamma, const SpaceGradient& gradient,
     return result;
   };
   const auto slope = [gradient](const Vector3d& p) -> Vector3d {
-    const Vector3d result = gradient(p);
+    Vector3d result = gradient(p);
     const double norm = result.norm();
     require(std::isfinite(norm) && norm > 0.0, "size of the gradient of gamma on the surface", norm,
             "finite, > 0");
