@@ -4,7 +4,8 @@
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/version.h>
-#if CGAL_VERSION_NR >= 1060000000  // the tree's parts carry their dimension in their names since then
+#if CGAL_VERSION_NR >= \
+    1060000000  // the tree's parts carry their dimension in their names since then
 #include <CGAL/AABB_traits_3.h>
 #include <CGAL/AABB_triangle_primitive_3.h>
 #else

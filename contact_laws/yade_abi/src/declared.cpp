@@ -18,11 +18,12 @@
 #define STATEJUMP_HAS_VIEW
 #endif
 
-#define STATEJUMP_TABLES(X)                                                                       \
-  X(Serializable)                                                                                 \
-  X(Shape)                                                                                        \
-  X(IGeom) X(IPhys) X(Material) X(Functor) X(Engine) X(GenericSpheresContact) X(FrictMat)         \
-      X(FrictPhys) X(Aabb) X(State) X(BoundFunctor) X(IGeomFunctor) X(IPhysFunctor) X(LawFunctor) \
+#define STATEJUMP_TABLES(X)                                                                   \
+  X(Serializable)                                                                             \
+  X(Shape)                                                                                    \
+  X(IGeom)                                                                                    \
+  X(IPhys) X(Material) X(Functor) X(Engine) X(GenericSpheresContact) X(FrictMat) X(FrictPhys) \
+      X(Aabb) X(State) X(BoundFunctor) X(IGeomFunctor) X(IPhysFunctor) X(LawFunctor)          \
           X(GlobalEngine)
 #ifdef STATEJUMP_HAS_VIEW
 #define STATEJUMP_VIEW_TABLES(X) X(GlShapeFunctor)
