@@ -53,7 +53,7 @@ class Case:
         return self.definition[path]
 
     def __eq__(self, other: object) -> bool:
-        return type(other) is type(self) and self.definition == other.definition
+        return isinstance(other, type(self)) and self.definition == other.definition
 
     def __hash__(self) -> int:
         return hash((self.kind, self.name))
