@@ -64,3 +64,8 @@ def test_ten_lines_of_python(tmp_path: Path) -> None:
                    check=True, timeout=300)
     python(MAKE_BORE)
     assert "the block ran" in python(block("From Python") + CHECK)
+
+
+def test_the_same_lines_stand_in_the_tutorial() -> None:
+    page = (README.parent / "docs" / "tutorials" / "ten_lines.md").read_text(encoding="utf-8")
+    assert block("From Python") in page
