@@ -27,6 +27,17 @@ def _warn(runs: dict[str, Run], console: Console) -> None:
         console.print(f"warning: {warning}")
 
 
+def _finish(model: str, case: Case, run: Run, folder: Path, console: Console) -> None:
+    """Tell of the run of one model, and write it."""
+    from statejump.results.record import save
+
+    runs = {model: run}
+    _told(case, runs, console)
+    _warn(runs, console)
+    written = save(model, case.definition, runs, folder)
+    console.print(f"results: {written}, history: {folder / f'{model}_history.csv'}")
+
+
 @click.command("reduced")
 @CASE
 @RESULTS
@@ -38,17 +49,12 @@ def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
     Example:
       statejump reduced cases/table1.toml
     """
-    from statejump.results.record import save
-
     console = make_console(quiet)
     case = Case(loaded(case_file, "reduced"))
     folder = results_folder(results, case.name)
     with progress(console, "reduced model") as tell:
-        runs = {"reduced": case.reduced(tell)}
-    _told(case, runs, console)
-    _warn(runs, console)
-    written = save("reduced", case.definition, runs, folder)
-    console.print(f"results: {written}, history: {folder / 'reduced_history.csv'}")
+        run = case.reduced(tell)
+    _finish("reduced", case, run, folder, console)
 
 
 def _dem(command: str, case: Case, before: dict[str, Run], folder: Path, console: Console) -> Run:
@@ -76,15 +82,10 @@ def dem_command(case_file: Path, results: Path, quiet: bool) -> None:
     Example:
       statejump dem cases/table1.toml
     """
-    from statejump.results.record import save
-
     console = make_console(quiet)
     case = Case(loaded(case_file, "dem_input"))
     folder = results_folder(results, case.name)
-    runs = {"dem": _dem("dem", case, {}, folder, console)}
-    _told(case, runs, console)
-    _warn(runs, console)
-    console.print(f"results: {save('dem', case.definition, runs, folder)}, history: {folder / 'dem_history.csv'}")
+    _finish("dem", case, _dem("dem", case, {}, folder, console), folder, console)
 
 
 @click.command("compare")
