@@ -8,7 +8,6 @@ distances along the normal, to first order in the error. Least squares by scipy.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -140,8 +139,3 @@ def surface(truss: ResolvedTruss) -> Surface | None:
         if (lengths > 0).all() and np.linalg.svd(jacobian / lengths, compute_uv=False)[-1] > LEAST_SINGULAR_VALUE:
             return Surface(reflector.nodes, frame, origin, drawn, free, held, tuple(notes))
     return None
-
-
-def tilt_angle_deg(tilt_rad: np.ndarray) -> float:
-    """Return the angle [deg] of a tilt."""
-    return float(np.linalg.norm(tilt_rad)) * 180 / pi
