@@ -428,6 +428,27 @@ def normal_force(
 ) -> _Columns: ...
 def largest_depth_m(name: str, journal_radius_m: float, bearing_radius_m: float) -> float: ...
 def damping_ratio_s_per_m(name: str, restitution: float, impact_speed_m_per_s: float) -> float: ...
+def drive_contact(
+    *,
+    kind: str,
+    name: str,
+    effective_young_modulus_Pa: float,
+    effective_shear_modulus_Pa: float,
+    effective_radius_m: float,
+    radial_clearance_m: float,
+    contact_length_m: float,
+    friction_coefficient: float,
+    v0_m_per_s: float,
+    v1_m_per_s: float,
+    restitution: float,
+    smallest_impact_speed_m_per_s: float,
+    normal: ArrayLike,
+    normal_is_force: bool,
+    along: ArrayLike,
+    along_is_force: bool,
+    across_m: ArrayLike | None = ...,
+    time_s: ArrayLike | None = ...,
+) -> dict[str, Any]: ...  # columns, and the text "problem"
 def effective_young_modulus_Pa(
     young_modulus_1_Pa: float, poisson_ratio_1: float, young_modulus_2_Pa: float, poisson_ratio_2: float
 ) -> float: ...

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One contact led along a given path, by any law of the catalogue: what a law does, and how one tests it."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from difflib import get_close_matches
+from math import inf
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from statejump import _engine
+from statejump.core.errors import FailedRun, MissingKey, NotAllowed, StatejumpError, UnknownKey, Unreadable
+from statejump.core.tables import read_columns, write_columns
+from statejump.laws.traits import Law, catalogue
+
+# Kinds whose laws answer a path; the first that knows a name has it.
+DRIVEN = ("friction", "normal", "dissipation")
+NORMAL = ("penetration_depth_m", "normal_force_N")
+ALONG = ("slide_m", "slide_x_m", "tangential_force_N")
+COLUMNS = ("time_s", *NORMAL, *ALONG, "slide_y_m")
+# A refined path stays in memory as a whole.
+MOST_STEPS = 10_000_000
+
+
+def drive(
+    law: str,
+    history: Mapping[str, Any] | str | Path,
+    *,
+    effective_young_modulus_Pa: float,
+    effective_shear_modulus_Pa: float,
+    effective_radius_m: float,
+    friction_coefficient: float,
+    steps_per_row: int = 1,
+    radial_clearance_m: float = inf,
+    contact_length_m: float | None = None,
+    restitution: float | None = None,
+    smallest_impact_speed_m_per_s: float | None = None,
+    v0_m_per_s: float | None = None,
+    v1_m_per_s: float | None = None,
+) -> dict[str, np.ndarray]:
+    """Lead one contact along a path and return what a law of the catalogue answers.
+
+    The contact is made at the first row, without slide. A row is a turning point of the path, or a point of a
+    straight part. A negative penetration depth is an open contact: no force, and friction forgets what it carried;
+    where the depth is positive again a new contact begins.
+
+    Columns of the history: ``penetration_depth_m`` or ``normal_force_N``; ``slide_m``, or ``slide_x_m`` with
+    ``slide_y_m``, or ``tangential_force_N``; ``time_s`` for a law that depends on velocity. Slides are those of body 1
+    against body 2; a tangential force is positive along the slide that causes it.
+
+    :param law: name of a friction law, under Hertz's pressure; of a normal law, with Mindlin's friction; or of a
+        dissipation law, with both
+    :param history: the columns, or a CSV file with them
+    :param effective_young_modulus_Pa: E* [Pa], 1/E* = (1 - ν1²)/E1 + (1 - ν2²)/E2
+    :param effective_shear_modulus_Pa: G* [Pa], 1/G* = (2 - ν1)/G1 + (2 - ν2)/G2
+    :param effective_radius_m: R [m]; of a journal in a bore R1 R2/(R2 - R1)
+    :param friction_coefficient: μ [-]
+    :param steps_per_row: equal steps from one row to the next
+    :param radial_clearance_m: R2 - R1 [m], by default of a flat wall; a law of a line contact needs it
+    :param contact_length_m: of a line contact [m]; the default of the catalogue
+    :param restitution: what a dissipation law is asked for [-], likewise
+    :param smallest_impact_speed_m_per_s: likewise
+    :param v0_m_per_s: of the friction law that reads it, likewise
+    :param v1_m_per_s: likewise
+    :return: arrays by column, a value for each step: the columns of the history, ``row`` (counted from 1, with
+        fractions between), and where they are not there yet ``penetration_depth_m``, the slides,
+        ``normal_force_N``, ``tangential_force_N`` (or ``tangential_force_x_N``, ``tangential_force_y_N``); energies
+        ``normal_elastic_energy_J`` and ``tangential_elastic_energy_J``; ``friction_dissipation_J`` and
+        ``damping_dissipation_J`` since the first row; ``slipping``, 1 where friction is at its limit
+    :raises StatejumpError: an unknown law, a column that is missing or has no meaning here, a value that is no number
+        or out of range; :class:`~statejump.core.errors.FailedRun`, with the row: a depth that the normal law does not
+        cover, a force that friction does not reach
+    """
+    kind, known = _driven(law)
+    file, columns = _columns(history)
+    try:
+        _check(columns, kind, known)
+    except StatejumpError as error:
+        raise error.located(file=file) from None
+    if not (isinstance(steps_per_row, int) and steps_per_row >= 1):
+        raise NotAllowed("steps_per_row", steps_per_row, "must be a whole number from 1")
+    rows = len(next(iter(columns.values())))
+    if (rows - 1) * steps_per_row >= MOST_STEPS:
+        raise NotAllowed("steps_per_row", steps_per_row,
+                         f"{rows} rows of that many steps are more than {MOST_STEPS} in all")
+    row, path = _refined(columns, steps_per_row)
+    normal = next(name for name in NORMAL if name in path)
+    along = next(name for name in ALONG if name in path)
+    arguments = {
+        "effective_young_modulus_Pa": effective_young_modulus_Pa,
+        "effective_shear_modulus_Pa": effective_shear_modulus_Pa,
+        "effective_radius_m": effective_radius_m,
+        "friction_coefficient": friction_coefficient,
+        "radial_clearance_m": radial_clearance_m,
+        "contact_length_m": _or_default("contact_length", contact_length_m),
+        "restitution": _or_default("restitution", restitution),
+        "smallest_impact_speed_m_per_s": _or_default("smallest_impact_speed", smallest_impact_speed_m_per_s),
+        "v0_m_per_s": _or_default("v0", v0_m_per_s),
+        "v1_m_per_s": _or_default("v1", v1_m_per_s),
+    }
+    try:
+        answer = _engine.drive_contact(
+            **arguments, kind=kind, name=law, normal=path[normal], normal_is_force=normal == "normal_force_N",
+            along=path[along], along_is_force=along == "tangential_force_N", across_m=path.get("slide_y_m"),
+            time_s=path.get("time_s"),
+        )
+    except _engine.EngineFailure as failure:
+        key = next(name for name in arguments if name.startswith(failure.key or ""))
+        raise NotAllowed(key, arguments[key], failure.cause) from None
+    problem = answer.pop("problem")
+    if problem:
+        reached = row[len(answer["slide_x_m"])]
+        raise FailedRun(file=file, item=f"row {reached:g}", cause=f"law {law!r}: {problem}")
+    return _named({"row": row} | path, answer)
+
+
+def drive_file(law: str, history: Path, written: Path, **options: Any) -> Path:
+    """As :func:`drive`, from a CSV file to a CSV file. Return the file written."""
+    write_columns(drive(law, history, **options), written)
+    return written
+
+
+def _driven(name: str) -> tuple[str, Law]:
+    """Return the kind of a law and what it says of itself."""
+    names: list[str] = []
+    for kind in DRIVEN:
+        for law in catalogue(kind):
+            if law.name == name:
+                return kind, law
+            names.append(law.name)
+    for kind in DRIVEN:
+        if problem := _engine.law_problem(kind, name):
+            raise NotAllowed("law", name, problem)
+    raise NotAllowed("law", name, f"must be one of {', '.join(dict.fromkeys(names))}", allowed=tuple(names))
+
+
+def _columns(history: Mapping[str, Any] | str | Path) -> tuple[Path | None, dict[str, np.ndarray]]:
+    """Return the file that a history is from, and its columns as they are there."""
+    if isinstance(history, Mapping):
+        return None, {str(name): np.atleast_1d(np.asarray(values)) for name, values in history.items()}
+    file = Path(history)
+    try:
+        return file, read_columns(file)
+    except OSError as error:
+        raise Unreadable("cannot be read", cause=error.strerror, file=file) from None
+    except (UnicodeDecodeError, IndexError):
+        raise Unreadable("is no CSV file with as many cells in each row as in the first", file=file) from None
+
+
+def _check(columns: Mapping[str, np.ndarray], kind: str, law: Law) -> None:
+    """Refuse columns that do not make a path for the law. :raises StatejumpError: the first thing that is wrong"""
+    for name in columns:
+        if name not in COLUMNS:
+            near = get_close_matches(name, COLUMNS, 1)
+            raise UnknownKey(name, section=f"column {name}", cause=f"did you mean {near[0]}?" if near else
+                             f"known are {', '.join(COLUMNS)}")
+    _one_of(columns, NORMAL, "penetration_depth_m or normal_force_N")
+    _one_of(columns, ALONG, "slide_m, slide_x_m with slide_y_m, or tangential_force_N")
+    if ("slide_x_m" in columns) != ("slide_y_m" in columns):
+        there, missing = sorted(("slide_x_m", "slide_y_m"), key=lambda name: name not in columns)
+        raise MissingKey(missing, f"{there} goes with it", section=f"column {missing}")
+    if len({len(values) for values in columns.values()}) > 1:
+        raise StatejumpError("columns differ in length", cause=", ".join(
+            f"{name} has {len(values)}" for name, values in columns.items()))
+    for name, values in columns.items():
+        if values.ndim != 1 or not np.issubdtype(values.dtype, np.number):
+            raise NotAllowed(name, beside="as a column", cause="every row needs a number there")
+        wrong = np.flatnonzero(~np.isfinite(values))
+        if wrong.size:
+            raise NotAllowed(name, float(values[wrong[0]]), "must be a finite number", item=f"row {wrong[0] + 1}")
+    if "normal_force_N" in columns:
+        below = np.flatnonzero(columns["normal_force_N"] < 0)
+        if below.size:
+            raise NotAllowed("normal_force_N", float(columns["normal_force_N"][below[0]]),
+                             "must be at least 0 [N]: the bodies do not pull on each other", item=f"row {below[0] + 1}")
+    if "tangential_force_N" in columns and columns["tangential_force_N"][0] != 0:
+        raise NotAllowed("tangential_force_N", float(columns["tangential_force_N"][0]),
+                         "must be 0 [N] in the first row, where the contact is made", item="row 1")
+    timed = kind == "dissipation" and law.parameters or kind == "friction" and not (law.has_memory or law.frictionless)
+    if timed and "time_s" not in columns:
+        raise MissingKey("time_s", f"law {law.name!r} depends on velocity", section="column time_s")
+    if "time_s" in columns:
+        late = np.flatnonzero(np.diff(columns["time_s"]) <= 0)
+        if late.size:
+            raise NotAllowed("time_s", float(columns["time_s"][late[0] + 1]), "must grow from row to row [s]",
+                             item=f"row {late[0] + 2}")
+    if kind == "dissipation" and law.parameters and "normal_force_N" in columns:
+        raise NotAllowed("normal_force_N", beside=f"with law {law.name!r}",
+                         cause="its force depends on the rate of penetration_depth_m, which has to be given")
+
+
+def _one_of(columns: Mapping[str, np.ndarray], names: tuple[str, ...], told: str) -> None:
+    there = [name for name in names if name in columns]
+    if not there:
+        raise MissingKey(names[0], f"the history needs {told}", section=f"column {names[0]}")
+    if len(there) > 1:
+        raise NotAllowed(there[1], beside=f"beside {there[0]}", cause=f"the history needs {told}, one of them")
+
+
+def _refined(columns: Mapping[str, np.ndarray], steps: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Return the number of the row and the columns, with equal steps from row to row."""
+    rows = len(next(iter(columns.values())))
+    row = np.arange((rows - 1) * steps + 1) / steps
+    return row + 1, {name: np.interp(row, np.arange(rows), values) for name, values in columns.items()}
+
+
+def _or_default(parameter: str, value: float | None) -> float:
+    if value is not None:
+        return value
+    parameters = (each for kind in DRIVEN for law in catalogue(kind) for each in law.parameters)
+    return next(each.default for each in parameters if each.name == parameter)
+
+
+def _named(path: dict[str, np.ndarray], answer: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the path and what it does not have yet of the answer; of a path in one direction without the other."""
+    if "slide_y_m" not in path:
+        for name in ("slide_y_m", "tangential_force_y_N"):
+            del answer[name]
+        answer = {name.replace("_x_", "_"): values for name, values in answer.items()}
+    return path | {name: values for name, values in answer.items() if name not in path}

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One contact along a path, from Python and from the command line."""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import statejump as sj
+from statejump import laws
+from statejump.core.tables import read_columns
+
+CONTACT: dict[str, Any] = dict(effective_young_modulus_Pa=38.5e9, effective_shear_modulus_Pa=7.9e9,
+                               effective_radius_m=0.01, friction_coefficient=0.3)
+OPTIONS = ["--effective-young-modulus", "38.5e9", "--effective-shear-modulus", "7.9e9", "--effective-radius", "0.01",
+           "--friction-coefficient", "0.3"]
+LOOP = {"slide_m": [0, 5e-8, -5e-8, 5e-8], "penetration_depth_m": [1e-6] * 4}
+
+
+def test_spring_of_mindlin() -> None:
+    stiffness = 8 * 7.9e9 * np.sqrt(0.01 * 1e-6)
+    answer = laws.drive("mindlin", LOOP, **CONTACT, steps_per_row=10)
+    assert answer["row"][[0, 1, -1]].tolist() == [1.0, 1.1, 4.0]
+    np.testing.assert_allclose(answer["tangential_force_N"], stiffness * answer["slide_m"], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(answer["normal_force_N"], 4 / 3 * 38.5e9 * 0.1 * 1e-9, rtol=1e-14)
+    assert not answer["slipping"].any() and not answer["friction_dissipation_J"].any()
+
+
+def test_forces_and_displacements_are_inverse() -> None:
+    there = laws.drive("mindlin", LOOP, **CONTACT, steps_per_row=4)
+    back = sj.laws.drive("mindlin", {name: there[name] for name in ("normal_force_N", "tangential_force_N")}, **CONTACT)
+    for name in ("slide_m", "penetration_depth_m"):
+        np.testing.assert_allclose(back[name], there[name], rtol=0, atol=1e-20)
+
+
+def test_in_the_plane() -> None:
+    path = {"slide_x_m": [0, 3e-8], "slide_y_m": [0, 4e-8], "penetration_depth_m": [1e-6, 1e-6]}
+    answer = laws.drive("mindlin", path, **CONTACT)
+    assert answer["tangential_force_y_N"][-1] / answer["tangential_force_x_N"][-1] == pytest.approx(4 / 3, rel=1e-14)
+
+
+@pytest.mark.parametrize("kind", ["friction", "normal", "dissipation"])
+def test_every_law(kind: str) -> None:
+    """Loaded, slid, parted, loaded: whatever the law, no force where the contact is open."""
+    path = {"time_s": np.arange(5) * 1e-3, "slide_m": [0, 1e-7, 1e-7, 0, 1e-7],
+            "penetration_depth_m": [1e-7, 1e-6, -1e-6, 1e-6, 1e-6]}
+    for law in laws.catalogue(kind):
+        answer = laws.drive(law.name, path, **CONTACT, steps_per_row=8, radial_clearance_m=1e-4, restitution=0.5)
+        open_ = answer["penetration_depth_m"] <= 0
+        assert open_.any()
+        assert not answer["normal_force_N"][open_].any() and not answer["tangential_force_N"][open_].any()
+        assert (answer["normal_force_N"][~open_] > 0).all() or kind == "dissipation"
+        for heat in ("friction_dissipation_J", "damping_dissipation_J"):
+            assert (np.diff(answer[heat]) >= 0).all(), law.name
+
+
+@pytest.mark.parametrize("law, change, sentence", [
+    ("mindlyn", {}, "law = 'mindlyn' is not allowed: must be one of none, ambrosio, mindlin, "),
+    ("material", {}, "law = 'material' is not allowed: must be one of none, ambrosio, mindlin, "),
+    ("mindlin", {"slide_m": None}, "column slide_m is missing: the history needs slide_m, slide_x_m with slide_y_m, or "
+                                   "tangential_force_N"),
+    ("mindlin", {"penetration_depth_m": None}, "column penetration_depth_m is missing: the history needs "
+                                               "penetration_depth_m or normal_force_N"),
+    ("mindlin", {"slide_mm": [0, 1, 2, 3]}, "column slide_mm is unknown: did you mean slide_m?"),
+    ("mindlin", {"tangential_force_N": [0.0] * 4}, "tangential_force_N is not allowed beside slide_m: the history "
+                                                   "needs slide_m, slide_x_m with slide_y_m, or tangential_force_N, "
+                                                   "one of them"),
+    ("mindlin", {"normal_force_N": [1.0] * 4}, "normal_force_N is not allowed beside penetration_depth_m: the history "
+                                               "needs penetration_depth_m or normal_force_N, one of them"),
+    ("mindlin", {"slide_m": None, "slide_x_m": [0.0] * 4}, "column slide_y_m is missing: slide_x_m goes with it"),
+    ("mindlin", {"slide_m": [0, np.nan, 0, 0]}, "row 2: slide_m = nan is not allowed: must be a finite number"),
+    ("mindlin", {"slide_m": ["0", "a", "0", "0"]}, "slide_m is not allowed as a column: every row needs a number there"),
+    ("mindlin", {"slide_m": [0, 1]}, "columns differ in length: slide_m has 2, penetration_depth_m has 4"),
+    ("mindlin", {"penetration_depth_m": None, "normal_force_N": [1, 1, -1, 1]},
+     "row 3: normal_force_N = -1.0 is not allowed: must be at least 0 [N]: the bodies do not pull on each other"),
+    ("mindlin", {"slide_m": None, "tangential_force_N": [1e-3, 0, 0, 0]},
+     "row 1: tangential_force_N = 0.001 is not allowed: must be 0 [N] in the first row, where the contact is made"),
+    ("mindlin", {"slide_m": None, "tangential_force_N": [0, 0, 2, 0]},
+     "row 3: law 'mindlin': tangential_force = 2 N, allowed is what friction carries, at most 1.54 N"),
+    ("ambrosio", {}, "column time_s is missing: law 'ambrosio' depends on velocity"),
+    ("flores", {}, "column time_s is missing: law 'flores' depends on velocity"),
+    ("flores", {"time_s": [0, 1, 1, 2]}, "row 3: time_s = 1.0 is not allowed: must grow from row to row [s]"),
+    ("flores", {"time_s": [0, 1, 2, 3], "penetration_depth_m": None, "normal_force_N": [1.0] * 4},
+     "normal_force_N is not allowed with law 'flores': its force depends on the rate of penetration_depth_m, which has "
+     "to be given"),
+    ("johnson", {}, "radial_clearance_m = inf is not allowed: allowed is finite for a line contact [m]"),
+])
+def test_bad_history(law: str, change: dict[str, Any], sentence: str) -> None:
+    history = {name: values for name, values in {**LOOP, **change}.items() if values is not None}
+    with pytest.raises(sj.StatejumpError) as refused:
+        laws.drive(law, history, **CONTACT)
+    assert str(refused.value).startswith(sentence)
+
+
+@pytest.mark.parametrize("change, sentence", [
+    ({"effective_radius_m": -1.0}, "effective_radius_m = -1.0 is not allowed: allowed is (0, inf) m"),
+    ({"effective_shear_modulus_Pa": 0.0}, "effective_shear_modulus_Pa = 0.0 is not allowed: allowed is (0, inf) Pa"),
+    ({"friction_coefficient": -0.1}, "friction_coefficient = -0.1 is not allowed: allowed is [0, inf)"),
+    ({"steps_per_row": 0}, "steps_per_row = 0 is not allowed: must be a whole number from 1"),
+])
+def test_bad_contact(change: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(sj.StatejumpError) as refused:
+        laws.drive("mindlin", LOOP, **{**CONTACT, **change})
+    assert str(refused.value) == sentence
+
+
+def test_command(statejump, tmp_path: Path) -> None:
+    (tmp_path / "history.csv").write_text("slide_m,penetration_depth_m\n0,1e-6\n5e-8,1e-6\n")
+    outcome = statejump("laws", "--drive", "history.csv", "--law", "mindlin", *OPTIONS, "--steps-per-row", "5", "-o",
+                        "out.csv")
+    assert (outcome.status, outcome.output) == (0, "written: out.csv\n"), outcome.errors
+    written = read_columns(tmp_path / "out.csv")
+    wanted = laws.drive("mindlin", tmp_path / "history.csv", **CONTACT, steps_per_row=5)
+    assert list(written) == list(wanted)
+    for name, values in wanted.items():
+        assert written[name].tolist() == values.tolist(), name
+
+
+@pytest.mark.parametrize("text, sentence", [
+    (None, "error: history.csv: cannot be read: No such file or directory\n"),
+    ("slide_m,penetration_depth_m\n", "error: history.csv: holds no samples\n"),
+    ("slide_m,penetration_depth_m\n0\n", "error: history.csv: is no CSV file with as many cells in each row as in the "
+                                         "first\n"),
+    ("slide_m\n0\n", "error: history.csv: column penetration_depth_m is missing: the history needs "
+                     "penetration_depth_m or normal_force_N\n"),
+])
+def test_bad_file(statejump, tmp_path: Path, text: str | None, sentence: str) -> None:
+    if text is not None:
+        (tmp_path / "history.csv").write_text(text)
+    outcome = statejump("laws", "--drive", "history.csv", "--law", "mindlin", *OPTIONS, "-o", "out.csv")
+    assert (outcome.status, outcome.errors) == (2, sentence)
+    assert not (tmp_path / "out.csv").exists()
