@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <variant>
+
+namespace statejump::complementarity {
+
+/// Delassus matrix, dense or sparse.
+using Delassus = std::variant<Eigen::MatrixXd, Eigen::SparseMatrix<double>>;
+
+/// Local frictional contact problem: velocities u = W r + q with Coulomb's law at every contact.
+///
+/// Each contact has a block of `dimension` numbers, its normal component first: reaction
+/// r = (r_n, r_t), velocity u = (u_n, u_t), u_n > 0 opening. Coulomb's law is
+///
+///     r_n >= 0,  u_n >= 0,  r_n u_n = 0,  |r_t| <= mu r_n,  r_t = -mu r_n u_t/|u_t| where u_t != 0
+///
+/// and in one line (De Saxcé, Feng 1998): with û = u + mu |u_t| n,
+///
+///     K* ∋ û ⟂ r ∈ K,   K = {|r_t| <= mu r_n},   K* = {mu |û_t| <= û_n}.
+///
+/// Units are the caller's: r may be forces, impulses or their rates, u velocities, displacements or
+/// gap rates, W what leads from the one to the other. W is the condensed compliance or inverse
+/// mass, symmetric positive semidefinite in mechanics and of any rank; symmetry is not used.
+struct Problem {
+  int dimension = 3;   ///< of a contact's block, 2 or 3
+  Delassus delassus;   ///< W, square, rows and columns contacts * dimension
+  Eigen::VectorXd q;   ///< velocities without reactions
+  Eigen::VectorXd mu;  ///< friction coefficient of each contact, >= 0
+
+  /// Number of contacts.
+  Eigen::Index contacts() const { return mu.size(); }
+};
+
+/// Checks sizes and values.
+/// @throws kernel::OutOfRange for a dimension but 2 and 3, sizes that do not fit, values that are
+/// not finite, mu < 0
+void validate(const Problem& problem);
+
+/// u = W r + q.
+Eigen::VectorXd velocities(const Problem& problem, const Eigen::VectorXd& reactions);
+
+/// How far reactions are from a solution; 0 for an exact one.
+struct Merit {
+  /// |r - P_K(r - û)| / max(|q|, |r|, |u|), Euclidean norms over all contacts, u = W r + q: the
+  /// natural map in the problem's own units, as fc3d_compute_error() of Siconos 4.4 takes it.
+  double natural_map = 0.0;
+  /// |r - P_K(r - û)| / |q| after W was divided by its mean diagonal and r multiplied by it:
+  /// independent of the units, whose choice can make the first one blind to u or to r, and not made
+  /// small by reactions that grow beyond bounds where there is no solution.
+  double scaled = 0.0;
+
+  /// What a tolerance is compared with.
+  double largest() const { return natural_map > scaled ? natural_map : scaled; }
+};
+
+/// Merit of reactions. @throws kernel::OutOfRange as validate(), and if `reactions` has another
+/// size
+Merit merit(const Problem& problem, const Eigen::VectorXd& reactions);
+
+}  // namespace statejump::complementarity

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "linear/sparse_factor.hpp"
+#include "scaled_problem.hpp"
+
+namespace statejump::complementarity {
+
+/// Contacts with their blocks of A and B, in order.
+struct BlockRows {
+  std::vector<Eigen::Index> contacts;
+  std::vector<BlockMatrix> a;
+  std::vector<BlockMatrix> b;
+};
+
+/// Factors of A W + B among some contacts, A and B block diagonal: dense where W is, else sparse.
+class BlockSystem {
+ public:
+  BlockSystem(const ScaledProblem& problem, const BlockRows& rows);
+
+  /// Solution r of (A W + B) r = c, with zero for the contacts that take no part; nothing if the
+  /// equations are singular to rounding.
+  /// @param c one block for each contact that takes part
+  std::optional<Eigen::VectorXd> solve(const std::vector<Block>& c) const;
+
+ private:
+  void factor_dense(const Eigen::MatrixXd& w, const BlockRows& rows);
+  void factor_sparse(const Eigen::SparseMatrix<double>& w, const BlockRows& rows);
+
+  int dimension_;
+  Eigen::Index size_;  ///< Of the result.
+  std::vector<Eigen::Index> contacts_;
+  std::optional<Eigen::PartialPivLU<Eigen::MatrixXd>> dense_;
+  std::unique_ptr<linear::SparseFactor> sparse_;
+  bool regular_ = true;
+};
+
+}  // namespace statejump::complementarity

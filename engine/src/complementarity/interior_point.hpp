@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "iterate.hpp"
+
+namespace statejump::complementarity {
+
+/// Path-following interior point on De Saxcé's form of Coulomb's law.
+///
+/// With a diagonal D = (1/(c mu), 1/c) of each contact, c = max(1, 1/mu), x = D^-1 r and z = D û
+/// lie both in Lorentz' cone x_n >= |x_t|, and û = u + mu |u_t| n reads z = D (W r + q) + |z_t|
+/// e_n. The steps are Newton's on x∘z = sigma e (Jordan product) and that equation, the friction
+/// term with its derivative, in the scaling of Nesterov and Todd: P x = P^-1 z, and
+///
+///     (D W D + A P^2) dx = A P v + (residual of z),   A = I - e_n (z_t/|z_t|)^T,
+///
+/// with v from the centring and Mehrotra's (1992) second-order term. Without friction's A the
+/// problem is convex and the method polynomial; with it there is no theory, only practice (Acary,
+/// Armand, Nguyen, Shpakovych 2023). Contacts without friction have one number, x_n = r_n.
+/// @returns best iterate, after `most` factorisations, within the tolerance, or where steps vanish
+Iterate interior_point(const ScaledProblem& problem, int most, double tolerance, int& counted);
+
+}  // namespace statejump::complementarity

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "cone.hpp"
+#include "statejump/complementarity/problem.hpp"
+
+namespace statejump::complementarity {
+
+/// Merit::natural_map of reactions and their velocities.
+double natural_map_merit(const Problem& problem, const Eigen::VectorXd& reactions,
+                         const Eigen::VectorXd& velocities);
+
+/// A problem without units: W over its mean diagonal, q over its mean entry. Coulomb's cones
+/// stay what they are.
+class ScaledProblem {
+ public:
+  /// @param problem valid
+  explicit ScaledProblem(const Problem& problem);
+
+  int dimension() const { return dimension_; }
+  Eigen::Index contacts() const { return mu_.size(); }
+  const Eigen::VectorXd& mu() const { return mu_; }
+  const Eigen::VectorXd& q() const { return q_; }
+  const Delassus& delassus() const { return delassus_; }
+  /// Diagonal block of W of each contact.
+  const std::vector<BlockMatrix>& blocks() const { return blocks_; }
+
+  /// W r.
+  Eigen::VectorXd times(const Eigen::VectorXd& r) const;
+  /// Adds W's columns of a contact times `delta` to u.
+  void add_columns(Eigen::Index contact, const Block& delta, Eigen::VectorXd& u) const;
+  /// Natural map by |q|.
+  double merit(const Eigen::VectorXd& r, const Eigen::VectorXd& u) const {
+    const double norm = natural_map_norm(dimension_, mu_, r, u);
+    return norm > 0.0 ? norm / size_of_q_ : 0.0;
+  }
+
+  /// Reactions of the problem per reaction here.
+  double reaction_unit() const { return reaction_unit_; }
+  /// Velocities of the problem per velocity here.
+  double velocity_unit() const { return velocity_unit_; }
+
+ private:
+  int dimension_;
+  Delassus delassus_;
+  Eigen::VectorXd q_;
+  double size_of_q_ = 1.0;
+  Eigen::VectorXd mu_;
+  std::vector<BlockMatrix> blocks_;
+  double reaction_unit_ = 1.0;
+  double velocity_unit_ = 1.0;
+};
+
+}  // namespace statejump::complementarity
