@@ -16,7 +16,7 @@ import pytest
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
-from conftest import COMMAND, REPOSITORY
+from conftest import COMMAND, REPOSITORY, sealed
 import statejump as sj
 from statejump.core.errors import StatejumpError
 from statejump.core.run import AT_STOP, GROUPS, SEPARATED, SLIP, STICK, Column, Event, Events, Run
@@ -315,6 +315,7 @@ def test_interrupted_run_keeps_both_models_and_says_so(compared, tmp_path: Path,
 def damage(path: Path, change: Callable[[h5py.File], None]) -> None:
     with h5py.File(path, "r+") as file:
         change(file)
+    sealed(path)
 
 
 def not_hdf5(path: Path) -> None:
@@ -325,6 +326,20 @@ def foreign(path: Path) -> None:
     path.unlink()
     with h5py.File(path, "w") as file:
         file["samples"] = [1, 2]
+    sealed(path)
+
+
+def without_checksum(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[512:])
+
+
+def newer_head(path: Path) -> None:
+    path.write_bytes(path.read_bytes().replace(b"statejump HDF5 1", b"statejump HDF5 2", 1))
+
+
+def altered(path: Path) -> None:
+    with h5py.File(path, "r+") as file:
+        file["models/dem/summary/state_jump_m"][()] *= 2
 
 
 def shorter(path: Path) -> None:
@@ -333,11 +348,15 @@ def shorter(path: Path) -> None:
 
 MISTAKES = {
     "no file": (Path.unlink, "no such result file"),
-    "not HDF5": (not_hdf5, "not a result file: it is not HDF5"),
+    "not HDF5": (not_hdf5, "not a result file: it does not begin with 'statejump HDF5'"),
     "another program's": (foreign, "not a result file: HDF5, but its attribute format is not 'statejump result'"),
     "newer": (lambda path: damage(path, lambda file: file.attrs.__setitem__("layout_version", layout.VERSION + 1)),
               f"layout version {layout.VERSION + 1} is newer than {layout.VERSION}, the newest that this statejump reads"),
-    "cut off": (shorter, "the file is cut off: it is shorter than it says"),
+    "newer as a whole": (newer_head, "version 2 is newer than 1, the newest that this statejump reads"),
+    "without checksum": (without_checksum, "not a result file: HDF5, but without the checksum that this version writes; "
+                         "run what made it again"),
+    "cut off": (shorter, "damaged: its checksum is that of other contents: it was cut off or altered; run what made it again"),
+    "altered": (altered, "damaged: its checksum is that of other contents: it was cut off or altered; run what made it again"),
     "missing group": (lambda path: damage(path, lambda file: file.__delitem__("models/dem/events")),
                       "/models/dem/events is missing"),
     "missing column": (lambda path: damage(path, lambda file: file.__delitem__("models/dem/history/time_s")),
@@ -372,7 +391,7 @@ def test_commands_refuse_bad_files(compared, tmp_path: Path, command: str) -> No
     more = [compared("table1") / "comparison.h5"] if command == "compare" else []
     done = run(tmp_path, command, "bad.h5", *more)
     assert done.returncode == 2
-    assert done.stderr == "error: bad.h5: not a result file: it is not HDF5\n"
+    assert done.stderr == "error: bad.h5: not a result file: it does not begin with 'statejump HDF5'\n"
     assert [entry.name for entry in tmp_path.iterdir()] == ["bad.h5"]
 
 
@@ -384,6 +403,29 @@ def test_file_cut_anywhere_is_refused(compared, tmp_path: Path) -> None:
         with pytest.raises(StatejumpError) as raised:
             read(path)
         assert "\n" not in str(raised.value)
+
+
+def test_random_bytes_never_reach_the_library(compared, tmp_path: Path) -> None:
+    """Whatever is changed in a file, wherever: it is refused before HDF5 takes the bytes for lengths and addresses."""
+    whole = (compared("table1") / "comparison.h5").read_bytes()
+    rng, path = np.random.default_rng(1), tmp_path / "random.h5"
+    for count in (1, 1, 1, 3, 10, 100) * 20:
+        content = bytearray(whole)
+        for place in rng.integers(0, len(whole), count):
+            content[place] ^= int(rng.integers(1, 256))
+        path.write_bytes(content)
+        with pytest.raises(StatejumpError, match="damaged: its checksum|not a result file|is newer"):
+            read(path)
+    for command in (["info"], ["export", "--to", "out"], ["report"]):
+        done = run(tmp_path, *command, path)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr
+    assert [entry.name for entry in tmp_path.iterdir()] == ["random.h5"]
+
+
+def test_other_programs_read_the_file(compared) -> None:
+    """The checksum stands in the user block that HDF5 leaves to programs."""
+    with h5py.File(compared("table1") / "comparison.h5") as file:
+        assert file.userblock_size == 512 and file.attrs["format"] == layout.FORMAT
 
 
 def test_info_shows_what_is_in_it(compared, tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 import pytest
 
-from conftest import REPOSITORY
+from conftest import REPOSITORY, sealed
 from test_result_file import check_layout, run
 
 from statejump.core.errors import StatejumpError
@@ -106,6 +106,7 @@ def test_damaged_answers_are_one_sentence(folder: Path, tmp_path: Path) -> None:
     with h5py.File(path, "r+") as file:
         del file["answers/node_jumps/node"]
         file["answers/node_jumps"]["node"] = ["A1"]
+    sealed(path)
     with pytest.raises(StatejumpError, match="bad.h5: damaged: ") as raised:
         read(path)
     assert "\n" not in str(raised.value)

@@ -6,14 +6,11 @@ import asyncio
 import logging
 import os
 import re
-import shutil
 import signal
 import socket
 import sys
-import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
 from typing import Any
 
 import dask
@@ -30,7 +27,7 @@ from distributed import Client, LocalCluster  # noqa: E402
 
 from statejump import __version__  # noqa: E402
 from statejump.core.errors import NotAllowed, StatejumpError, shown  # noqa: E402
-from statejump.core.yade_process import find_yade  # noqa: E402
+from statejump.core.scratch import scratch  # noqa: E402
 
 OPTION = "--scheduler"
 ADDRESS = "must be the address of a running dask scheduler, as 'tcp://host:8786'"
@@ -49,7 +46,7 @@ class SchedulerUnusable(StatejumpError):
 
 
 @contextmanager
-def open_client(scheduler: str | None, workers: int, model: str) -> Iterator[Client]:
+def open_client(scheduler: str | None, workers: int) -> Iterator[Client]:
     """Yield a client; at the end everything that was started here is ended.
 
     :param scheduler: address of a scheduler that runs already; None: a cluster on this machine
@@ -59,7 +56,7 @@ def open_client(scheduler: str | None, workers: int, model: str) -> Iterator[Cli
     with ExitStack() as stack:
         stack.enter_context(_quiet())
         if scheduler is None:
-            client = stack.enter_context(_local(workers, model))
+            client = stack.enter_context(_local(workers))
         else:
             client = stack.enter_context(_existing(scheduler))
         yield client
@@ -80,17 +77,15 @@ def _quiet() -> Iterator[None]:
 
 
 @contextmanager
-def _local(workers: int, model: str) -> Iterator[Client]:
-    with tempfile.TemporaryDirectory(prefix="statejump-", ignore_cleanup_errors=True) as scratch:
-        environment = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "TMPDIR": scratch}
-        if model == "dem":
-            environment["STATEJUMP_YADE"] = _yade_that_dies_with_its_worker(Path(scratch))
+def _local(workers: int) -> Iterator[Client]:
+    with scratch() as folder:
+        environment = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "TMPDIR": str(folder)}
         with _no_main_file(), ExitStack() as stack:
             with _interrupt_blocked():
                 cluster = LocalCluster(
                     n_workers=workers, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0",
                     worker_dashboard_address="127.0.0.1:0",
-                    silence_logs=logging.CRITICAL + 1, local_directory=scratch, memory_limit=0,
+                    silence_logs=logging.CRITICAL + 1, local_directory=str(folder), memory_limit=0,
                     env=environment,
                 )
                 stack.callback(_close, cluster)
@@ -114,17 +109,6 @@ def kill_workers(cluster: LocalCluster) -> None:
 def _close(cluster: LocalCluster) -> None:
     kill_workers(cluster)
     cluster.close(timeout=10)
-
-
-def _yade_that_dies_with_its_worker(folder: Path) -> str:
-    """Return a command that starts YADE so that the kernel ends it with the worker that waits for it."""
-    yade, setpriv = find_yade(), shutil.which("setpriv")
-    if setpriv is None:
-        return yade
-    wrapper = folder / "yade"
-    wrapper.write_text(f'#!/bin/sh\nexec "{setpriv}" --pdeathsig KILL "{os.path.abspath(yade)}" "$@"\n')
-    wrapper.chmod(0o755)
-    return str(wrapper)
 
 
 @contextmanager

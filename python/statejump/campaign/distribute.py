@@ -42,7 +42,7 @@ def workers_for(recipe: Recipe, scheduler: str | None, workers: int) -> Iterator
     :param scheduler: address of a scheduler that runs already; None: a cluster on this machine
     :param workers: processes of that cluster
     """
-    with open_client(scheduler, workers, recipe.model) as client:
+    with open_client(scheduler, workers) as client:
         yield Workers(_slots(client), lambda missing: _finished(client, recipe, missing))
 
 

@@ -27,6 +27,7 @@ class Statistics:
     wall_time_s: float = 0.0  # of the samples, without starting the cluster
     worker_time_s: float = 0.0  # sum over all tasks
     batch_sizes: list[int] = field(default_factory=list)
+    note: str = ""  # of the journal
 
     @property
     def samples_per_second(self) -> float:

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finished samples on disk, batch by batch, so that a killed campaign goes on where it was.
 
-JSON lines: first the campaign's key and columns, then one line per batch, written at once and
-synced; values are packed (base64 of little-endian doubles, row by row). A line that a kill has torn
-is dropped.
+Lines, each a checksum (SHA-256), a blank and JSON: first format, version and the campaign's key and columns, then one
+line per batch, written at once and synced; values are packed (base64 of little-endian doubles, row by row). A last line
+that was torn is cut off, and its samples are run again; a damaged line before it is refused. Whoever opens a journal
+holds its folder, see :mod:`statejump.core.results_folder`.
 """
 from __future__ import annotations
 
 import base64
-import fcntl
+import hashlib
 import json
 import os
 from collections.abc import Mapping
@@ -21,7 +22,9 @@ from statejump.campaign.plan import Plan
 from statejump.campaign.work import Batch
 from statejump.core.errors import NotWritten, StatejumpError, Unreadable
 
-NAME = "samples.journal.jsonl"
+NAME = "samples.journal"
+FORMAT = "statejump journal"
+VERSION = 2
 
 
 class Kept:
@@ -38,14 +41,16 @@ class Kept:
 
 
 class Journal(Kept):
-    """The journal of one campaign, locked while it is open; a context manager."""
+    """The journal of one campaign; a context manager. ``note``: what was cut off, "" for nothing."""
 
     def __init__(self, folder: Path, campaign: Plan, restart: bool) -> None:
-        """Open or begin it. :raises StatejumpError: it belongs to another campaign, or is in use"""
+        """Open or begin it. :raises StatejumpError: it belongs to another campaign, or is damaged"""
         super().__init__()
-        self.path = folder / NAME
+        self.path, self.note = folder / NAME, ""
+        self._columns = len(campaign.outcomes)
         self._header = {
-            "campaign": campaign.key, "model": campaign.model, "columns": list(campaign.outcomes),
+            "format": FORMAT, "version": VERSION, "campaign": campaign.key, "model": campaign.model,
+            "columns": list(campaign.outcomes),
         }
         try:
             self._stream: IO[bytes] = open(self.path, "a+b")
@@ -58,38 +63,46 @@ class Journal(Kept):
             raise
 
     def _open(self, restart: bool) -> None:
-        try:
-            fcntl.flock(self._stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise StatejumpError("another run of this campaign is at work on it", file=self.path) from None
         if restart:
             self._stream.truncate(0)
-        lines = self._whole_lines()
-        if not lines:
+        entries = self._entries()
+        if not entries:
             self._append(self._header)
             return
-        try:
-            if json.loads(lines[0]) != self._header:
-                raise StatejumpError(
-                    "belongs to another campaign (the campaign, its case or statejump has changed since); --restart "
-                    "drops what is there, another campaign.name keeps it", file=self.path,
-                )
-            for line in lines[1:]:
-                super().add(_batch(json.loads(line), len(self._header["columns"])))
-        except (ValueError, TypeError, KeyError, AttributeError):
-            raise Unreadable("is damaged; --restart drops what is there", file=self.path) from None
+        if entries[0] != self._header:
+            raise StatejumpError(
+                "belongs to another campaign (the campaign, its case or statejump has changed since); --restart "
+                "drops what is there, another campaign.name keeps it", file=self.path,
+            )
+        for place, entry in enumerate(entries[1:], start=2):
+            try:
+                super().add(_batch(entry, self._columns))
+            except (ValueError, TypeError, KeyError, AttributeError):
+                raise self._damaged(place) from None
 
-    def _whole_lines(self) -> list[bytes]:
+    def _entries(self) -> list[Any]:
+        """Return what all lines say; a torn end is cut off."""
         self._stream.seek(0)
-        content = self._stream.read()
-        whole = content.rfind(b"\n") + 1
-        if whole < len(content):
-            self._stream.truncate(whole)  # a line torn by a kill
-        return content[:whole].splitlines()
+        lines = self._stream.read().splitlines(keepends=True)
+        entries, length = [], 0
+        for place, line in enumerate(lines, start=1):
+            try:
+                entries.append(_entry_of(line))
+            except ValueError:
+                if place < len(lines):
+                    raise self._damaged(place) from None
+                self._stream.truncate(length)
+                self.note = f"{self.path}: the last line was torn and is cut off; its samples are run again"
+            length += len(line)
+        return entries
+
+    def _damaged(self, line: int) -> Unreadable:
+        return Unreadable(f"line {line} is damaged", cause="its checksum is that of other contents",
+                          remedy="--restart drops what is there", file=self.path)
 
     def _append(self, entry: Any) -> None:
         try:
-            self._stream.write(json.dumps(entry, separators=(",", ":")).encode() + b"\n")
+            self._stream.write(_line(entry))
             self._stream.flush()
             os.fsync(self._stream.fileno())
         except OSError as failure:
@@ -105,6 +118,19 @@ class Journal(Kept):
 
     def __exit__(self, *ignored: Any) -> None:
         self._stream.close()
+
+
+def _line(entry: Any) -> bytes:
+    text = json.dumps(entry, separators=(",", ":")).encode()
+    return b"%s %s\n" % (hashlib.sha256(text).hexdigest().encode(), text)
+
+
+def _entry_of(line: bytes) -> Any:
+    """Return what a line says. :raises ValueError: it is torn or altered"""
+    digest, _, text = line.removesuffix(b"\n").partition(b" ")
+    if not line.endswith(b"\n") or digest != hashlib.sha256(text).hexdigest().encode():
+        raise ValueError
+    return json.loads(text)
 
 
 def _entry(batch: Batch) -> dict[str, Any]:

@@ -94,6 +94,8 @@ class Campaign:
         lines: list[Shown | str] = [
             Shown(self.plan.title, ("outcome", *COLUMNS.values()), rows, left=("outcome",))
         ]
+        if done.note:
+            lines.append(f"warning: {done.note}")
         if done.already_there:
             lines.append(f"{done.already_there:,} samples were there already")
         if done.run_now:
@@ -163,6 +165,7 @@ def run_in(
     with Journal(folder, plan, restart) as kept:
         try:
             done = execute.run_missing(plan, kept, scheduler, workers, tell)
+            done.note = kept.note
         except KeyboardInterrupt:
             finished = sum(index < plan.samples for index in kept.finished)
             raise Interrupted(

@@ -14,7 +14,7 @@ from statejump import __version__
 from statejump.campaign.plan import Plan
 from statejump.campaign.work import Batch
 from statejump.core import tables
-from statejump.core.output import replacing
+from statejump.core.hdf5 import made
 
 if TYPE_CHECKING:
     import h5py
@@ -86,28 +86,27 @@ def write_hdf5(campaign: Plan, table: Table, path: Path) -> None:
     """Write groups ``parameters`` and ``outcomes``, each column with its unit, and ``failed``."""
     import h5py
 
-    with replacing(path) as aside:
-        with h5py.File(aside, "w", libver=("earliest", "v110"), track_order=False) as file:
-            file.attrs["campaign"] = campaign.text
-            file.attrs["command"] = campaign.command
-            file.attrs["model"] = campaign.model
-            file.attrs["case"] = json.dumps(campaign.case.to_dict())
-            file.attrs["key_sha256"] = campaign.key
-            if campaign.seed is not None:
-                file.attrs["seed"] = campaign.seed
-            file.attrs["statejump_version"] = __version__
-            file.attrs["numpy_version"] = np.__version__
-            file.attrs["h5py_version"] = h5py.__version__
-            _dataset(file, "sample", np.arange(len(table.error)), "-")
-            for name, values in table.parameters.items():
-                _dataset(file, f"parameters/{name}", values, campaign.unit_of(name))
-            for name, values in table.outcomes.items():
-                _dataset(file, f"outcomes/{name}", values, campaign.units[name])
-            failed = np.flatnonzero(table.failed)
-            texts = [table.error[index].encode() for index in failed]
-            longest = max([1, *map(len, texts)])
-            _dataset(file, "failed/sample", failed, "-")
-            _dataset(file, "failed/error", np.array(texts, dtype=h5py.string_dtype("utf-8", longest)), "-")
+    with made(path) as file:
+        file.attrs["campaign"] = campaign.text
+        file.attrs["command"] = campaign.command
+        file.attrs["model"] = campaign.model
+        file.attrs["case"] = json.dumps(campaign.case.to_dict())
+        file.attrs["key_sha256"] = campaign.key
+        if campaign.seed is not None:
+            file.attrs["seed"] = campaign.seed
+        file.attrs["statejump_version"] = __version__
+        file.attrs["numpy_version"] = np.__version__
+        file.attrs["h5py_version"] = h5py.__version__
+        _dataset(file, "sample", np.arange(len(table.error)), "-")
+        for name, values in table.parameters.items():
+            _dataset(file, f"parameters/{name}", values, campaign.unit_of(name))
+        for name, values in table.outcomes.items():
+            _dataset(file, f"outcomes/{name}", values, campaign.units[name])
+        failed = np.flatnonzero(table.failed)
+        texts = [table.error[index].encode() for index in failed]
+        longest = max([1, *map(len, texts)])
+        _dataset(file, "failed/sample", failed, "-")
+        _dataset(file, "failed/error", np.array(texts, dtype=h5py.string_dtype("utf-8", longest)), "-")
 
 
 def _dataset(file: h5py.File, name: str, values: np.ndarray, unit: str) -> None:

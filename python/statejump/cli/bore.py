@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from statejump.cli.terminal import QUIET, RESULTS, make_console, print_shown
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results
 
 # The settings of the library as options of the command.
 OPTIONS = {"inside_out": "--flip", "too_large": "--scale 0.001"}
@@ -23,7 +23,7 @@ OPTIONS = {"inside_out": "--flip", "too_large": "--scale 0.001"}
 @RESULTS
 @QUIET
 def bore_command(
-    file: Path, journal_radius: float | None, scale: float, flip: bool, results: Path, quiet: bool
+    file: Path, journal_radius: float | None, scale: float, flip: bool, results: Results, quiet: bool
 ) -> None:
     """What the bore in FILE (OFF, STL, PLY, OBJ) is: radius, roundness, lobes, clearance.
 
@@ -40,6 +40,7 @@ def bore_command(
     except NoBore as failure:
         failure.remedy = OPTIONS.get(failure.fault)
         raise
-    folder = results_folder(results, f"bore_{file.stem}")
+    with results.folder(f"bore_{file.stem}") as folder:
+        written = folder.publish(bore.write(folder.staged))
     print_shown(bore.told(), console)
-    console.print(f"results: {', '.join(str(path) for path in bore.write(folder))}")
+    console.print(f"results: {', '.join(str(path) for path in written)}")

@@ -10,7 +10,7 @@ from statejump.campaign.campaign_file import check_workers, load_campaign
 from statejump.campaign.plan import MONTECARLO, SWEEP
 from statejump.cli.terminal import QUIET, RESULTS, CaseFile, make_console, print_shown, progress
 from statejump.core.errors import FailedRun, NotAllowed
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results
 
 
 def _command(name: str, text: str) -> click.Command:
@@ -25,7 +25,7 @@ def _command(name: str, text: str) -> click.Command:
     @RESULTS
     @QUIET
     def command(
-        file: Path, workers: int | None, scheduler: str | None, restart: bool, table: Path | None, results: Path,
+        file: Path, workers: int | None, scheduler: str | None, restart: bool, table: Path | None, results: Results,
         quiet: bool,
     ) -> None:
         from statejump.campaign.result import run_in
@@ -40,10 +40,10 @@ def _command(name: str, text: str) -> click.Command:
             write_table(plan, table)
             console.print(f"table of {plan.samples:,} samples: {table}")
             return
-        folder = results_folder(results, plan.name)
-        with progress(console, f"{plan.name}, {plan.samples:,} samples") as tell:
-            campaign = run_in(plan, folder, scheduler, workers, restart, tell)
-        written = campaign.write(folder)
+        with results.folder(plan.name) as folder:
+            with progress(console, f"{plan.name}, {plan.samples:,} samples") as tell:
+                campaign = run_in(plan, folder.path, scheduler, workers, restart, tell)
+            written = folder.publish(campaign.write(folder.staged))
         print_shown(campaign.told(), console)
         console.print(f"results: {', '.join(str(path) for path in written)}")
         if campaign.failed == plan.samples:

@@ -10,7 +10,7 @@ import click
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown, undivided
 from statejump.control import study
 from statejump.control.study import Study, Sweep, number
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results
 from statejump.core.tables import Shown
 
 
@@ -56,7 +56,7 @@ def _told(title: str, done: Study) -> Iterator[Shown | str]:
 @RESULTS
 @QUIET
 def control_command(
-    case_file: Path, jump_below: float | None, runs: int | None, with_dem: bool, results: Path, quiet: bool
+    case_file: Path, jump_below: float | None, runs: int | None, with_dem: bool, results: Results, quiet: bool
 ) -> None:
     """What governs the state jump of CASE, and the smallest spring that keeps it below a value.
 
@@ -68,10 +68,11 @@ def control_command(
 
     console = make_console(quiet)
     case = loaded(case_file, "control")
-    folder = results_folder(results, case.name)
-    with undivided(console, "control") as tell:
-        done: Study = case.behaviour.ability("control", case)(
-            case, jump_below=jump_below, runs=runs, with_dem=with_dem, tell=tell)
-    written = study.write(case.name, done, folder) + plot.figure(case.title, done, folder)
+    with results.folder(case.name) as folder:
+        with undivided(console, "control") as tell:
+            done: Study = case.behaviour.ability("control", case)(
+                case, jump_below=jump_below, runs=runs, with_dem=with_dem, tell=tell)
+        written = folder.publish(
+            study.write(case.name, done, folder.staged) + plot.figure(case.title, done, folder.staged))
     print_shown(list(_told(case.title, done)), console)
     console.print(f"results: {', '.join(str(path) for path in written)}")

@@ -7,14 +7,14 @@ from pathlib import Path
 import click
 
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, progress
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results
 
 
 @click.command("convergence")
 @CASE
 @RESULTS
 @QUIET
-def convergence_command(case_file: Path, results: Path, quiet: bool) -> None:
+def convergence_command(case_file: Path, results: Results, quiet: bool) -> None:
     """DEM error of CASE against the duration of the cycle and the time step, as a table.
 
     \b
@@ -23,8 +23,8 @@ def convergence_command(case_file: Path, results: Path, quiet: bool) -> None:
     """
     console = make_console(quiet)
     case = loaded(case_file, "convergence")
-    folder = results_folder(results, case.name)
-    with progress(console, "convergence") as tell:
-        found = case.behaviour.ability("convergence", case)(case, tell)
-    _, text = found.write(folder)
+    with results.folder(case.name) as folder:
+        with progress(console, "convergence") as tell:
+            found = case.behaviour.ability("convergence", case)(case, tell)
+        _, text = folder.publish(found.write(folder.staged))
     console.print(text.read_text(encoding="utf-8"))

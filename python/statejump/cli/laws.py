@@ -13,7 +13,7 @@ from rich.table import Table
 from statejump import _engine
 from statejump.cli.terminal import QUIET, RESULTS, CaseFile, loaded, make_console
 from statejump.core.errors import StatejumpError
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results
 from statejump.laws import build, curves
 from statejump.laws.drive import drive_file
 from statejump.laws.traits import KINDS, catalogue
@@ -50,14 +50,13 @@ def laws_command() -> None:
 @click.argument("case_file", metavar="[CASE]", required=False, type=CaseFile())
 @RESULTS
 @QUIET
-def show_command(case_file: Path | None, results: Path, quiet: bool) -> None:
+def show_command(case_file: Path | None, results: Results, quiet: bool) -> None:
     """Print the catalogue; draw the curves for the joint of CASE (the paper's without)."""
     problems = _engine.user_law_problems()
     if problems:
         raise StatejumpError("; ".join(problems))
     console = make_console(quiet)
     case = loaded(case_file, "laws") if case_file is not None else None
-    folder = results_folder(results, "laws")
     for kind in KINDS:
         table = Table(title=f"{kind} laws", show_lines=True)
         for heading in ("name", "formula", "range", "source", "holds a static load"):
@@ -65,10 +64,12 @@ def show_command(case_file: Path | None, results: Path, quiet: bool) -> None:
         for law in catalogue(kind):
             table.add_row(law.name, law.formula, law.range, law.source, "yes" if law.holds_static_load else "no")
         console.print(table)
-    if case is None:
-        written = curves.figure(curves.paper_joint(), folder, "laws")
-    else:
-        written = curves.figure(case.behaviour.ability("laws", case)(case), folder, f"laws_{case.name}")
+    with results.folder("laws") as folder:
+        if case is None:
+            joint, name = curves.paper_joint(), "laws"
+        else:
+            joint, name = case.behaviour.ability("laws", case)(case), f"laws_{case.name}"
+        written = folder.publish(curves.figure(joint, folder.staged, name))
     console.print(f"curves: {', '.join(str(name) for name in written)}")
 
 

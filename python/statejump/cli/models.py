@@ -13,7 +13,7 @@ from statejump.cli.terminal import (
 )
 from statejump.case import Case
 from statejump.core.errors import Interrupted, TolerancesMissed
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results, ResultsFolder
 from statejump.core.run import Run
 
 
@@ -27,22 +27,22 @@ def _warn(runs: dict[str, Run], console: Console) -> None:
         console.print(f"warning: {warning}")
 
 
-def _finish(model: str, case: Case, run: Run, folder: Path, console: Console) -> None:
-    """Tell of the run of one model, and write it."""
+def _finish(model: str, case: Case, run: Run, folder: ResultsFolder, console: Console) -> None:
+    """Write the run of one model, and tell of it."""
     from statejump.results.record import save
 
     runs = {model: run}
+    written = folder.publish([save(model, case.definition, runs, folder.staged)])
     _told(case, runs, console)
     _warn(runs, console)
-    written = save(model, case.definition, runs, folder)
-    console.print(f"results: {written}, history: {folder / f'{model}_history.csv'}")
+    console.print(f"results: {written[0]}, history: {folder.path / f'{model}_history.csv'}")
 
 
 @click.command("reduced")
 @CASE
 @RESULTS
 @QUIET
-def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
+def reduced_command(case_file: Path, results: Results, quiet: bool) -> None:
     """Reduced model of CASE: events, state jump, history.
 
     \b
@@ -51,13 +51,13 @@ def reduced_command(case_file: Path, results: Path, quiet: bool) -> None:
     """
     console = make_console(quiet)
     case = Case(loaded(case_file, "reduced"))
-    folder = results_folder(results, case.name)
-    with progress(console, "reduced model") as tell:
-        run = case.reduced(tell)
-    _finish("reduced", case, run, folder, console)
+    with results.folder(case.name) as folder:
+        with progress(console, "reduced model") as tell:
+            run = case.reduced(tell)
+        _finish("reduced", case, run, folder, console)
 
 
-def _dem(command: str, case: Case, before: dict[str, Run], folder: Path, console: Console) -> Run:
+def _dem(command: str, case: Case, before: dict[str, Run], folder: ResultsFolder, console: Console) -> Run:
     """Run the DEM; what an interrupted one has is written, with the runs before it."""
     from statejump.results.record import save
 
@@ -66,8 +66,8 @@ def _dem(command: str, case: Case, before: dict[str, Run], folder: Path, console
             return case.dem(tell)
     except Interrupted as stopped:
         if isinstance(stopped.run, Run):
-            kept = save(command, case.definition, {**before, "dem": stopped.run}, folder)
-            raise Interrupted(f"interrupted; the {len(stopped.run)} samples so far are in {kept}") from None
+            kept = folder.publish([save(command, case.definition, {**before, "dem": stopped.run}, folder.staged)])
+            raise Interrupted(f"interrupted; the {len(stopped.run)} samples so far are in {kept[0]}") from None
         raise
 
 
@@ -75,7 +75,7 @@ def _dem(command: str, case: Case, before: dict[str, Run], folder: Path, console
 @CASE
 @RESULTS
 @QUIET
-def dem_command(case_file: Path, results: Path, quiet: bool) -> None:
+def dem_command(case_file: Path, results: Results, quiet: bool) -> None:
     """DEM run of CASE in YADE: history.
 
     \b
@@ -84,15 +84,15 @@ def dem_command(case_file: Path, results: Path, quiet: bool) -> None:
     """
     console = make_console(quiet)
     case = Case(loaded(case_file, "dem_input"))
-    folder = results_folder(results, case.name)
-    _finish("dem", case, _dem("dem", case, {}, folder, console), folder, console)
+    with results.folder(case.name) as folder:
+        _finish("dem", case, _dem("dem", case, {}, folder, console), folder, console)
 
 
 @click.command("compare")
 @click.argument("files", metavar="CASE|FILE FILE", nargs=-1, required=True, type=CaseFile())
 @RESULTS
 @QUIET
-def compare_command(files: tuple[Path, ...], results: Path, quiet: bool) -> None:
+def compare_command(files: tuple[Path, ...], results: Results, quiet: bool) -> None:
     """Both models of CASE side by side, or two result files of the same case. The exit status is 1 when a
     tolerance is missed, 2 when the files are of different cases.
 
@@ -112,20 +112,21 @@ def compare_command(files: tuple[Path, ...], results: Path, quiet: bool) -> None
         _compare_case(files[0], results, console)
 
 
-def _compare_case(case_file: Path, results: Path, console: Console) -> None:
+def _compare_case(case_file: Path, results: Results, console: Console) -> None:
     from statejump.core.figures import save as save_figure
     from statejump.results.record import save
 
     case = Case(loaded(case_file, "compare", "dem_input"))
-    folder = results_folder(results, case.name)
-    with progress(console, "reduced model") as tell:
-        reduced = case.reduced(tell)
-    dem = _dem("compare", case, {"reduced": reduced}, folder, console)
-    comparison = api.compare(reduced, dem)
-    runs = dict(comparison.models)
-    files = comparison.write(folder)
-    figures = save_figure(comparison.plot(), folder, case.name)
-    written = [save("compare", case.definition, runs, folder, comparison), files[0], *figures]
+    with results.folder(case.name) as folder:
+        with progress(console, "reduced model") as tell:
+            reduced = case.reduced(tell)
+        dem = _dem("compare", case, {"reduced": reduced}, folder, console)
+        comparison = api.compare(reduced, dem)
+        runs = dict(comparison.models)
+        files = comparison.write(folder.staged)
+        figures = save_figure(comparison.plot(), folder.staged, case.name)
+        written = folder.publish(
+            [save("compare", case.definition, runs, folder.staged, comparison), files[0], *figures])
     _told(case, runs, console)
     print_comparison(case.title, comparison.rows, console)
     for note in comparison.notes:

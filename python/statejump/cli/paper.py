@@ -14,6 +14,7 @@ from rich.console import Console
 from statejump.cli.terminal import (
     CASE, QUIET, RESULTS, CaseFile, counted, loaded, make_console, print_shown, progress, undivided,
 )
+from statejump.core.results_folder import Results
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -23,7 +24,7 @@ def _case_or(shipped: str) -> Callable[[Command], Command]:
     return click.argument("case_file", metavar="[CASE]", default=f"cases/{shipped}.toml", type=CaseFile())
 
 
-def _study(ability: str, case_file: Path, results: Path, quiet: bool) -> None:
+def _study(ability: str, case_file: Path, results: Results, quiet: bool) -> None:
     console = make_console(quiet)
     case = loaded(case_file, ability)
     study = case.behaviour.ability(ability, case)
@@ -52,7 +53,7 @@ def _part(console: Console, text: str, runs: int) -> Iterator[Callable[[], None]
 @_case_or("umbrella")
 @RESULTS
 @QUIET
-def figures_command(case_file: Path, results: Path, quiet: bool) -> None:
+def figures_command(case_file: Path, results: Results, quiet: bool) -> None:
     """Figures 13 to 16 of the paper for CASE, both models, and a test of each of its claims.
 
     \b
@@ -68,7 +69,7 @@ def figures_command(case_file: Path, results: Path, quiet: bool) -> None:
 @_case_or("umbrella_bias")
 @RESULTS
 @QUIET
-def slow_command(case_file: Path, results: Path, quiet: bool) -> None:
+def slow_command(case_file: Path, results: Results, quiet: bool) -> None:
     """Jump of both models of CASE against the quasi-static path, for slower and slower cycles.
 
     \b
@@ -82,7 +83,7 @@ def slow_command(case_file: Path, results: Path, quiet: bool) -> None:
 @_case_or("umbrella_hold")
 @RESULTS
 @QUIET
-def hold_command(case_file: Path, results: Path, quiet: bool) -> None:
+def hold_command(case_file: Path, results: Results, quiet: bool) -> None:
     """Loaded joint of CASE left alone for 10 s, both models: Mindlin's friction holds, Ambrosio's creeps.
 
     \b
@@ -96,7 +97,7 @@ def hold_command(case_file: Path, results: Path, quiet: bool) -> None:
 @CASE
 @RESULTS
 @QUIET
-def energy_command(case_file: Path, results: Path, quiet: bool) -> None:
+def energy_command(case_file: Path, results: Results, quiet: bool) -> None:
     """Energy account of CASE against the steps of both models, also without friction and damping.
 
     \b

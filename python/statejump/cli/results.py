@@ -10,10 +10,10 @@ import click
 import numpy as np
 from rich.console import Console
 
-from statejump.cli.terminal import QUIET, make_console, number, print_comparison, print_table, progress
+from statejump.cli.terminal import QUIET, WAIT, make_console, number, print_comparison, print_table, progress
 from statejump.core.comparison import FIRST, SECOND
 from statejump.core.errors import Interrupted, StatejumpError, TolerancesMissed
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results
 from statejump.core.run import GROUPS, Column
 from statejump.core.tables import Shown
 from statejump.core.units import unit_of
@@ -141,8 +141,11 @@ def _extremes(column: Column) -> tuple[str, str]:
               help="Folder that gets the files. [default: FILE without its suffix]")
 @click.option("--frames", type=click.IntRange(min=0), default=FRAMES, show_default=True,
               help="Samples in the VTK series, evenly spread; 0: all.")
+@WAIT
 @QUIET
-def export_command(file: Path, form: str, folder: Path | None, frames: int, quiet: bool) -> None:
+def export_command(
+    file: Path, form: str, folder: Path | None, frames: int, wait: bool, quiet: bool
+) -> None:
     """CSV tables and ParaView files of a result FILE.
 
     \b
@@ -154,20 +157,21 @@ def export_command(file: Path, form: str, folder: Path | None, frames: int, quie
     target = folder if folder is not None else file.with_suffix("")
     if target == file:
         raise StatejumpError("has no suffix to leave out", file=file, remedy="choose a folder with --to")
-    target = results_folder(target.parent, target.name)
-    written: list[Path] = []
-    if form in ("csv", "all"):
-        written += export_csv.write_all(result, target)
-    if form != "csv":
-        from statejump.results import export_vtk, paraview_script  # VTK takes half a second to load
+    with Results(target.parent, wait).folder(target.name) as there:
+        written: list[Path] = []
+        if form in ("csv", "all"):
+            written += export_csv.write_all(result, there.staged)
+        if form != "csv":
+            from statejump.results import export_vtk, paraview_script  # VTK takes half a second to load
 
-        try:
-            with progress(console, "VTK files") as report:
-                written += export_vtk.write_all(result, target, frames, report)
-        except KeyboardInterrupt:
-            raise Interrupted(f"interrupted; the files so far are in {target}, without their series") from None
-        if form != "vtu":
-            written.append(paraview_script.write_script(result, target))
+            try:
+                with progress(console, "VTK files") as report:
+                    written += export_vtk.write_all(result, there.staged, frames, report)
+            except KeyboardInterrupt:
+                raise Interrupted() from None
+            if form != "vtu":
+                written.append(paraview_script.write_script(result, there.staged))
+        written = there.publish(written)
     console.print(f"written: {', '.join(str(path) for path in written)}")
 
 

@@ -7,14 +7,14 @@ from pathlib import Path
 import click
 
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results
 
 
 @click.command("statics")
 @CASE
 @RESULTS
 @QUIET
-def statics_command(case_file: Path, results: Path, quiet: bool) -> None:
+def statics_command(case_file: Path, results: Results, quiet: bool) -> None:
     """Where the joint of CASE can rest: parts, measure, and the largest jump that friction allows.
 
     \b
@@ -26,7 +26,8 @@ def statics_command(case_file: Path, results: Path, quiet: bool) -> None:
 
     console = make_console(quiet)
     case = Case(loaded(case_file, "statics"))
-    folder = results_folder(results, case.name)
-    statics = api.statics(case)
+    with results.folder(case.name) as folder:
+        statics = api.statics(case)
+        written = folder.publish(statics.write(folder.staged))
     print_shown(statics.told(), console)
-    console.print(f"results: {', '.join(str(path) for path in statics.write(folder))}")
+    console.print(f"results: {', '.join(str(path) for path in written)}")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
 
 import click
 from rich.console import Console
@@ -15,11 +16,15 @@ from statejump.core.case import Case
 from statejump.core.comparison import Quantity, sides
 from statejump.core.errors import Interrupted
 from statejump.core.progress import counted, on_console
+from statejump.core.results_folder import Results
 from statejump.core.tables import Shown
 from statejump.kinds.loading import found_case, load_case
 
-__all__ = ["CASE", "QUIET", "RESULTS", "CaseFile", "counted", "loaded", "make_console", "number", "print_comparison",
-           "print_shown", "print_table", "progress", "undivided"]
+__all__ = ["CASE", "QUIET", "RESULTS", "WAIT", "CaseFile", "counted", "loaded", "make_console", "number",
+           "print_comparison", "print_shown", "print_table", "progress", "undivided"]
+
+
+Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class CaseFile(click.Path):
@@ -34,10 +39,22 @@ class CaseFile(click.Path):
 
 
 CASE = click.argument("case_file", metavar="CASE", type=CaseFile())
-RESULTS = click.option(
-    "--results", default="results", show_default=True, type=click.Path(path_type=Path),
-    help="Folder that gets one folder per case.",
-)
+WAIT = click.option("--wait", is_flag=True, help="Wait where another run is at work in the same folder.")
+
+
+def RESULTS(command: Command) -> Command:
+    """Give a command the options of its results folder, as one argument ``results``."""
+
+    @wraps(command)
+    def called(results: Path, wait: bool, **values: Any) -> Any:
+        return command(results=Results(results, wait), **values)
+
+    return cast(Command, click.option(
+        "--results", default="results", show_default=True, type=click.Path(path_type=Path),
+        help="Folder that gets one folder per case.",
+    )(WAIT(called)))
+
+
 QUIET = click.option("--quiet", is_flag=True, help="Print errors only.")
 
 

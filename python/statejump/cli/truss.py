@@ -15,7 +15,7 @@ from statejump.case import Case
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console
 from statejump.cli.truss_answers import answers_command
 from statejump.core.errors import NotWritten, StatejumpError
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results
 from statejump.core.thermal import SHAPES
 from statejump.core.units import split_unit
 from statejump.kinds.truss.case import Revolute, TrussReduced
@@ -115,7 +115,7 @@ for _kind, _function in MAKERS.items():
 @CASE
 @RESULTS
 @QUIET
-def draw_command(case_file: Path, results: Path, quiet: bool) -> None:
+def draw_command(case_file: Path, results: Results, quiet: bool) -> None:
     """Draw CASE: nodes, links by temperature, supports, joints, springs, loads.
 
     \b
@@ -126,8 +126,8 @@ def draw_command(case_file: Path, results: Path, quiet: bool) -> None:
 
     console = make_console(quiet)
     case = loaded(case_file, "draw")
-    folder = results_folder(results, case.name)
-    written = save(case.behaviour.ability("draw", case)(case), folder, f"{case.name}_truss")
+    with results.folder(case.name) as folder:
+        written = folder.publish(save(case.behaviour.ability("draw", case)(case), folder.staged, f"{case.name}_truss"))
     console.print(f"drawing: {', '.join(str(path) for path in written)}")
 
 

@@ -9,7 +9,7 @@ import click
 
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, progress
 from statejump.core.errors import Interrupted, NotAllowed, Range
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results
 from statejump.core.progress import Tell
 from statejump.core.units import plain
 from statejump.schema.rules import WHOLE, Rule
@@ -32,7 +32,7 @@ OPTIONS = {name: f"--{name}" for name in ("output", "cycles", "step", "frames")}
 @QUIET
 def answers_command(
     case_file: Path, output: str, cycles: int | None, each: bool, step: float, skip_sensitivity: bool, frames: int,
-    results: Path, quiet: bool,
+    results: Results, quiet: bool,
 ) -> None:
     """What a designer asks of CASE: jumps, whether they settle, which joints hold them, what they follow.
 
@@ -47,13 +47,13 @@ def answers_command(
     def phase(label: str) -> AbstractContextManager[Tell]:
         return progress(console, f"{case.name}, {label}")
 
-    folder = results_folder(results, case.name)
     try:
-        FRAMES.check("frames", frames)
-        found = case.behaviour.ability("answers", case)(
-            case, output=output, cycles=cycles, each=each, step=step, sensitivity=not skip_sensitivity, phase=phase,
-        )
-        written = found.write(folder, frames, phase)
+        with results.folder(case.name) as folder:
+            FRAMES.check("frames", frames)
+            found = case.behaviour.ability("answers", case)(
+                case, output=output, cycles=cycles, each=each, step=step, sensitivity=not skip_sensitivity, phase=phase,
+            )
+            written = folder.publish(found.write(folder.staged, frames, phase))
     except NotAllowed as refused:
         refused.key = OPTIONS.get(refused.key or "", refused.key)
         raise

@@ -18,7 +18,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from statejump.core.output import replacing
+from statejump.core.output import write_bytes
 
 if TYPE_CHECKING:
     from statejump.core.case import Case
@@ -110,7 +110,7 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
     with style():
         for suffix, extra in ((".png", {"dpi": 160}), (".svg", {"metadata": {"Date": None}})):
             target = folder / f"{name}{suffix}"
-            with replacing(target) as aside:
-                figure.savefig(aside, **extra)
-            written.append(target)
+            stream = BytesIO()
+            figure.savefig(stream, format=suffix[1:], **extra)
+            written.append(write_bytes(target, stream.getvalue()))
     return written

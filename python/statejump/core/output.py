@@ -1,10 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files appear whole or not at all: written aside, then renamed."""
+"""The one door through which files are written: a file appears whole or not at all, and is on disk when it does.
+
+A file is written aside under a name of its own, synced, and renamed. What a kill leaves aside is locked by nobody,
+and goes when a file of that name is next written. A whole set of files that belong together: :mod:`.results_folder`.
+"""
 from __future__ import annotations
 
+import fcntl
 import os
+import secrets
+import stat
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
@@ -14,40 +21,111 @@ from statejump.core.errors import NotWritten
 if TYPE_CHECKING:
     from statejump.core.case import Case
 
+PARTIAL = ".partial"
 
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Yield a path beside ``path`` to write to; rename on success, remove on failure."""
-    aside = path.with_name(f".{path.stem}.partial{path.suffix}")
+
+def unique() -> str:
+    """Return a part of a name that no other run has."""
+    return secrets.token_hex(6)
+
+
+def not_written(path: Path, error: OSError) -> NotWritten:
+    """Return why a file cannot be written, of what the system says."""
+    return NotWritten("cannot be written", file=path, cause=error.strerror or str(error))
+
+
+def synced(path: Path) -> None:
+    """Return when a file, or what a folder lists, is on disk. :raises OSError: it cannot be"""
+    descriptor = os.open(path, os.O_RDONLY)
     try:
-        yield aside
-        os.replace(aside, path)
-    except OSError as error:
-        raise NotWritten("cannot be written", file=path, cause=error.strerror or str(error)) from None
+        os.fsync(descriptor)
     finally:
-        aside.unlink(missing_ok=True)
+        os.close(descriptor)
+
+
+def check_target(path: Path) -> None:
+    """Raise NotWritten where no file can take the place: a folder, a device or a pipe is there."""
+    with suppress(FileNotFoundError):
+        if not stat.S_ISREG(os.stat(path).st_mode):
+            raise NotWritten("cannot be written", file=path, cause="there is something else than a file")
+
+
+def _sweep(path: Path) -> None:
+    """Remove what killed runs left beside a file: nobody holds it."""
+    for name in os.listdir(path.parent):
+        if name.startswith(f".{path.name}.") and name.endswith(PARTIAL):
+            with suppress(OSError):
+                descriptor = os.open(path.with_name(name), os.O_RDONLY)
+                try:
+                    fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                    path.with_name(name).unlink()
+                finally:
+                    os.close(descriptor)
+
+
+def _opened(path: Path) -> tuple[int, Path]:
+    """Return a new file beside a path, locked, and its name."""
+    while True:
+        aside = path.with_name(f".{path.name}.{unique()}{PARTIAL}")
+        descriptor = os.open(aside, os.O_CREAT | os.O_EXCL | os.O_WRONLY | os.O_CLOEXEC, 0o666)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+            if os.fstat(descriptor).st_nlink:  # not swept by another run before it was locked
+                return descriptor, aside
+        except BaseException:
+            with suppress(OSError):
+                aside.unlink()
+            os.close(descriptor)
+            raise
+        os.close(descriptor)
 
 
 @contextmanager
 def write_atomically(path: Path) -> Iterator[IO[str]]:
-    """Open a text file that appears under its name when it is complete."""
-    with replacing(path) as aside:
-        with aside.open("w", encoding="utf-8", newline="") as stream:
+    """Open a text file that appears under its name when it is complete and on disk.
+
+    :raises NotWritten: it cannot be written; what was there before stays
+    """
+    with _replacing(path) as descriptor:
+        with open(descriptor, "w", encoding="utf-8", newline="", closefd=False) as stream:
             yield stream
 
 
-def results_folder(root: Path, name: str) -> Path:
-    """Make (if needed) and return ``root/name``; NotWritten if it cannot be written to."""
-    folder = root / name
+def write_bytes(path: Path, content: bytes) -> Path:
+    """Write a file that appears under its name when it is complete and on disk; return the path.
+
+    :raises NotWritten: it cannot be written; what was there before stays
+    """
+    with _replacing(path) as descriptor:
+        with open(descriptor, "wb", buffering=0, closefd=False) as stream:
+            left = memoryview(content)
+            while left:
+                left = left[stream.write(left):]
+    return path
+
+
+@contextmanager
+def _replacing(path: Path) -> Iterator[int]:
+    check_target(path)
+    aside_folder = path.parent.name.endswith(PARTIAL)  # all of it is synced when it is published
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".writable.partial"
-        probe.touch()
-        probe.unlink()
+        if not aside_folder:
+            _sweep(path)
+        descriptor, aside = _opened(path)
+        try:
+            yield descriptor
+            if aside_folder:
+                os.replace(aside, path)
+            else:
+                os.fsync(descriptor)
+                os.replace(aside, path)
+                synced(path.parent)
+        finally:
+            with suppress(OSError):
+                aside.unlink()
+            os.close(descriptor)
     except OSError as error:
-        raise NotWritten("cannot be written", file=folder, place=f"results folder {folder}",
-                         cause=error.strerror or str(error), remedy="choose another with --results") from None
-    return folder
+        raise not_written(path, error) from None
 
 
 def made_by(command: str, case: Case) -> str:

@@ -11,7 +11,6 @@ import os
 import shutil
 import signal
 import subprocess
-import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -24,9 +23,11 @@ from statejump.core.case import Case
 from statejump.core.errors import FailedRun, Interrupted, StatejumpError
 from statejump.core.progress import Tell
 from statejump.core.run import Run
+from statejump.core.scratch import scratch
 from statejump.core.tables import read_columns
 
 MARK = "STATEJUMP "
+PR_SET_PDEATHSIG = 1  # prctl(2)
 Columns = Mapping[str, np.ndarray]
 MakeRun = Callable[[Case, Columns, Mapping[str, Any]], Run]
 
@@ -58,6 +59,19 @@ def find_yade() -> str:
     return found
 
 
+def _dying_with_us() -> Callable[[], None]:
+    """Return what a new process calls so that the kernel kills it with the thread that waits for it: a YADE whose
+    caller was killed would run on."""
+    import ctypes
+
+    prctl = ctypes.PyDLL(None).prctl  # found before the process is there, which shall do as little as it can
+
+    def ask() -> None:
+        prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+    return ask
+
+
 def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, tell: Tell) -> Run:
     """Run a case in YADE.
 
@@ -84,8 +98,8 @@ def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
     """Run a resolved case in YADE; see :func:`run`. Of an interrupted one ``run`` is :class:`Samples`."""
     name, threads = values["case"]["name"], values["dem"]["threads"]
     command = [find_yade(), "-n", "-x", f"-j{threads}", str(_paths.YADE_SCRIPTS / "runner" / "run_case.py")]
-    with tempfile.TemporaryDirectory(prefix="statejump-") as scratch:
-        input_file, output = Path(scratch) / "case.json", Path(scratch) / "dem_history.csv"
+    with scratch() as folder:
+        input_file, output = folder / "case.json", folder / "dem_history.csv"
         input_file.write_text(json.dumps(values), encoding="utf-8")
         modules = str(Path(__file__).resolve().parents[2])
         environment = dict(
@@ -94,6 +108,7 @@ def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
             STATEJUMP_OUTPUT=str(output),
             PYTHONPATH=os.pathsep.join(filter(None, [modules, os.environ.get("PYTHONPATH")])),
             OMP_NUM_THREADS=str(threads),
+            TMPDIR=str(folder),  # YADE's own temporary folder goes with ours
         )
         try:
             _watch(command, environment, tell)
@@ -122,6 +137,7 @@ def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
         stderr=subprocess.STDOUT,
         text=True,
         errors="replace",
+        preexec_fn=_dying_with_us(),
         start_new_session=True,  # Ctrl-C reaches us alone; we end YADE in order
     ) as process:
         try:

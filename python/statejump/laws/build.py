@@ -12,7 +12,7 @@ from pathlib import Path
 from statejump import _engine
 from statejump._paths import EIGEN_INCLUDE, KERNEL_INCLUDE
 from statejump.core.errors import NotWritten, StatejumpError, Unreadable
-from statejump.core.output import replacing
+from statejump.core.output import write_bytes
 
 COMPILERS = ("c++", "g++", "clang++")
 # As the project is compiled: results repeat bit for bit. Hidden, so that no function of this object stands in
@@ -65,8 +65,7 @@ def build(header: Path, folder: Path | None = None) -> Path:
             if found["problem"]:
                 raise StatejumpError(found["problem"].replace(str(made), str(header)), file=header)
             target = folder / f"{found['kind']}_{found['name']}.so"
-            with replacing(target) as aside:
-                shutil.copyfile(made, aside)
+            write_bytes(target, made.read_bytes())
     except OSError as error:
         raise NotWritten("cannot be written", cause=error.strerror, file=folder) from None
     _engine.load_user_laws()

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from statejump import laws
 from statejump.core.errors import FailedRun
 from statejump.core.figures import DEM, REDUCED, panels, save, style
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results
 from statejump.core.physics import axial_stiffness_N_per_m
 from statejump.core.progress import Tell, counted
 from statejump.core.run import Columns, Run, energy_residue_J
@@ -373,7 +373,7 @@ class Accounts:
         return lines
 
 
-def make(case: UmbrellaCase, results: Path, tell: Tell) -> Accounts:
+def make(case: UmbrellaCase, results: Results, tell: Tell) -> Accounts:
     """Run all variants of a case and write figure and tables.
 
     :param results: gets a folder of the case's name
@@ -381,6 +381,7 @@ def make(case: UmbrellaCase, results: Path, tell: Tell) -> Accounts:
     :raises NotAllowed: the study does not fit the case
     """
     chosen = variants(case)
-    folder = results_folder(results, case.name)
-    found = study(chosen, tell)
-    return Accounts(found, write(case, found, made_by("energy", case), folder) + figure(case, found, folder))
+    with results.folder(case.name) as folder:
+        found = study(chosen, tell)
+        written = write(case, found, made_by("energy", case), folder.staged) + figure(case, found, folder.staged)
+        return Accounts(found, folder.publish(written))

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from statejump import _engine, laws
 from statejump.core.engine_failures import engine
 from statejump.core.figures import DEM, REDUCED, panels, save, style
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results
 from statejump.core.progress import Tell, counted
 from statejump.core.run import Run
 from statejump.core.tables import markdown, write_csv, write_text
@@ -292,7 +292,7 @@ class Held:
         ]
 
 
-def make(case: UmbrellaCase, results: Path, tell: Tell) -> Held:
+def make(case: UmbrellaCase, results: Results, tell: Tell) -> Held:
     """Run a case left alone in both models, by both laws, and write figure and tables.
 
     :param results: gets a folder of the case's name
@@ -303,12 +303,13 @@ def make(case: UmbrellaCase, results: Path, tell: Tell) -> Held:
     command, case = made_by("hold", case), held(case)
     with engine("the joint cannot be loaded", case=case.name):
         creep = predict(case)
-    folder = results_folder(results, case.name)
-    wanted = [(law, rate) for law in LAWS for rate in STEPS_PER_SECOND]
-    finished = counted(tell, 2 * len(wanted))
-    runs = []
-    for law, rate in wanted:
-        runs.append(run_reduced(case, law, rate))
-        finished()
-    runs += run_dem(wanted, case, finished)
-    return Held(case, runs, creep, write(case, runs, creep, command, folder) + figure(case, runs, creep, folder))
+    with results.folder(case.name) as folder:
+        wanted = [(law, rate) for law in LAWS for rate in STEPS_PER_SECOND]
+        finished = counted(tell, 2 * len(wanted))
+        runs = []
+        for law, rate in wanted:
+            runs.append(run_reduced(case, law, rate))
+            finished()
+        runs += run_dem(wanted, case, finished)
+        written = write(case, runs, creep, command, folder.staged) + figure(case, runs, creep, folder.staged)
+        return Held(case, runs, creep, folder.publish(written))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from statejump import _engine, laws
 from statejump.core.figures import DEM, REDUCED, panels, save, style
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results
 from statejump.core.progress import Tell, counted
 from statejump.core.run import Run
 from statejump.core.tables import markdown, write_rows, write_text
@@ -313,7 +313,7 @@ class Slow:
         return [f"{block.title}: {closing(block, self.rows)}" for block in self.blocks]
 
 
-def make(case: UmbrellaCase, results: Path, tell: Tell) -> Slow:
+def make(case: UmbrellaCase, results: Results, tell: Tell) -> Slow:
     """Run all variants of a case in both models, ever slower, and write figure and tables.
 
     :param results: gets a folder of the case's name
@@ -322,7 +322,8 @@ def make(case: UmbrellaCase, results: Path, tell: Tell) -> Slow:
     :raises FailedRun: statics leaves the path open
     """
     chosen = blocks(case)
-    folder = results_folder(results, case.name)
-    rows = study(chosen, tell)
-    written = write(case, chosen, rows, made_by("slow", case), folder) + figure(case, chosen, rows, folder)
-    return Slow(chosen, rows, written)
+    with results.folder(case.name) as folder:
+        rows = study(chosen, tell)
+        staged = folder.staged
+        written = write(case, chosen, rows, made_by("slow", case), staged) + figure(case, chosen, rows, staged)
+        return Slow(chosen, rows, folder.publish(written))

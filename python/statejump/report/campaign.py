@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 
 from statejump.core.errors import Unreadable
+from statejump.core.hdf5 import is_ours, opened
 from statejump.core.units import scale_of, text
 from statejump.report import words
 
@@ -45,9 +46,9 @@ class Variable:
 
 def is_campaign(path: Path) -> bool:
     """Whether a file is the table of samples of a campaign."""
-    if not (path.is_file() and h5py.is_hdf5(path)):
+    if not is_ours(path):
         return False
-    with h5py.File(path, "r") as file:
+    with opened(path) as file:
         return "campaign" in file.attrs and "outcomes" in file
 
 
@@ -65,7 +66,7 @@ class CampaignDocument:
 
         self.source, self.identifier = path.name, identifier
         try:
-            with h5py.File(path, "r") as file:
+            with opened(path) as file:
                 attributes = dict(file.attrs)
                 header = json.loads(attributes["case"])["case"]
                 self._words = words.of_kind(str(header["kind"]))
@@ -80,7 +81,7 @@ class CampaignDocument:
             self.text = str(attributes["campaign"])
             campaign = tomllib.loads(self.text)["campaign"]
             self.command, self.model = str(attributes["command"]), str(attributes["model"])
-        except (OSError, KeyError, ValueError, TypeError) as error:
+        except (KeyError, ValueError, TypeError) as error:
             raise Unreadable("damaged", cause=" ".join(str(error).split()), file=path) from None
         self.seed: Any | None = attributes.get("seed")
         self.title = str(campaign.get("title") or campaign.get("name"))

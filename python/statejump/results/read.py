@@ -13,52 +13,29 @@ import numpy as np
 
 from statejump.core.comparison import SIDES, Quantity
 from statejump.core.errors import Unreadable
+from statejump.core.hdf5 import is_ours, opened
 from statejump.core.run import Column, Event, Events, Run
 from statejump.results.contents import Answers, Mesh, Result, Scalar
 from statejump.results.layout import ENTRIES, FORMAT, MODELS, SUFFIX, TABLES, VERSION
 
-# Of the longest superblock that ends with its addresses.
-SUPERBLOCK_BYTES = 56
-
 
 def is_result_file(path: Path) -> bool:
-    """Whether a path is meant as a result file: it is HDF5, or is called so."""
-    return path.suffix in (SUFFIX, ".hdf5") or (path.is_file() and h5py.is_hdf5(path))
+    """Whether a path is meant as a result file: it is one, or is called so."""
+    return path.suffix in (SUFFIX, ".hdf5") or is_ours(path)
 
 
 def read(path: str | Path) -> Result:
     """Return what a result file holds.
 
-    :raises Unreadable: no such file, not HDF5, not ours, of a newer layout, cut off, a part is
-        missing or damaged
+    :raises Unreadable: no such file, not ours, of a newer layout, cut off or altered, a part is missing
     """
     path = Path(path)
-    if not path.is_file():
-        raise Unreadable("no such result file", file=path)
     try:
-        if not h5py.is_hdf5(path):
-            raise Unreadable("not a result file", cause="it is not HDF5", file=path)
-        if path.stat().st_size < _stored_size(path):
-            raise Unreadable("the file is cut off", cause="it is shorter than it says", file=path)
-        with h5py.File(path, "r") as file:
+        with opened(path) as file:
             _check(file, path)
             return _result(file)
-    except (OSError, RuntimeError) as error:
-        reason = " ".join(str(error).split())
-        raise Unreadable("cannot be read", cause=reason, file=path) from None
     except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
         raise Unreadable("damaged", cause=" ".join(str(error).split()), file=path) from None
-
-
-def _stored_size(path: Path) -> int:
-    """Return how many bytes an HDF5 file says that it has: the end-of-file address of its superblock; 0 where the
-    superblock has another size of addresses, or a user block stands before it."""
-    with path.open("rb") as stream:
-        head = stream.read(SUPERBLOCK_BYTES)
-    version = head[8:9]
-    # "HDF5 File Format Specification", II.A: versions 0 and 1 have more fields before the addresses than 2 and 3.
-    sizes, place = (head[13:14], 40 if version == b"\0" else 44) if version in (b"\0", b"\1") else (head[9:10], 28)
-    return int.from_bytes(head[place : place + 8], "little") if sizes == b"\x08" else 0
 
 
 def _check(file: h5py.File, path: Path) -> None:

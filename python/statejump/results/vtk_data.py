@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkFieldD
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter, vtkXMLWriter
 
 from statejump.core.errors import NotWritten
-from statejump.core.output import replacing
+from statejump.core.output import write_bytes
 from statejump.core.tables import write_json
 
 
@@ -58,18 +58,18 @@ def add_array(field: vtkFieldData, name: str, values: Any) -> None:
 
 
 def write(data: vtkDataObject, path: Path, time_s: float | None = None) -> None:
-    """Write a .vtu or .vtp file aside and rename it; the time becomes the field array ``time_s``.
+    """Write a .vtu or .vtp file; the time becomes the field array ``time_s``.
 
     :raises NotWritten: VTK cannot write the file
     """
     if time_s is not None:
         add_array(data.GetFieldData(), "time_s", np.array([time_s]))
     writer: vtkXMLWriter = vtkXMLUnstructuredGridWriter() if path.suffix == ".vtu" else vtkXMLPolyDataWriter()
-    with replacing(path) as aside:
-        writer.SetFileName(str(aside))
-        writer.SetInputData(data)
-        if not writer.Write():
-            raise NotWritten("cannot be written", file=path)
+    writer.SetWriteToOutputString(True)
+    writer.SetInputData(data)
+    if not writer.Write():
+        raise NotWritten("cannot be written", file=path)
+    write_bytes(path, writer.GetOutputString().encode())
 
 
 def write_series(path: Path, files: list[tuple[str, float]]) -> None:

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 import h5py
 import numpy as np
 
-from statejump.core.output import replacing
 from statejump.core.comparison import SIDES, sides
+from statejump.core.hdf5 import made
 from statejump.core.run import Column, Run
 from statejump.core.units import unit_of
 from statejump.results.contents import Answers, Result
@@ -21,38 +21,33 @@ COMPRESSED_FROM = 4096  # bytes; below, a chunk's administration is larger than 
 
 
 def write(result: Result, path: Path) -> None:
-    """Write the file aside, then rename it. StatejumpError if it cannot be written.
-
-    No object keeps a time of its making and no order of creation (which would bring the times back
-    for groups): everything is written, as it is read, in the order of the names.
-    """
-    with replacing(path) as aside:
-        with h5py.File(aside, "w", libver=("earliest", "v110"), track_order=False) as file:
-            file.attrs["format"] = FORMAT
-            file.attrs["layout_version"] = VERSION
-            file.attrs["complete"] = result.complete
-            file.attrs["command"] = result.command
-            case = file.create_group("case")
-            for key in ("name", "kind", "title", "source"):
-                case.attrs[key] = getattr(result, key)
-            _text(case, "text", result.case_text)
-            _text(case, "resolved", result.case_json)
-            file.create_group("provenance").attrs.update(dict(sorted(result.provenance.items())))
-            names = file.create_group("names")
-            for key, values in sorted(result.names.items()):
-                _texts(names, key, values)
-            _text(file, "scene", json.dumps(result.scene, indent=1))
-            _texts(file, "warnings", result.warnings)
-            for name, mesh in sorted(result.meshes.items()):
-                _numbers(file, f"meshes/{name}/vertices_m", mesh.vertices_m, "m")
-                _numbers(file, f"meshes/{name}/triangles", mesh.triangles.astype(np.int64), "-")
-            models = file.create_group("models")
-            for model, run in result.models.items():
-                _model(models.create_group(model), run)
-            if result.rows is not None:
-                _comparison(file.create_group("comparison"), result)
-            if result.answers is not None:
-                _answers(file.create_group("answers"), result.answers)
+    """Write the file, everything in the order of the names. :raises NotWritten: it cannot be written"""
+    with made(path) as file:
+        file.attrs["format"] = FORMAT
+        file.attrs["layout_version"] = VERSION
+        file.attrs["complete"] = result.complete
+        file.attrs["command"] = result.command
+        case = file.create_group("case")
+        for key in ("name", "kind", "title", "source"):
+            case.attrs[key] = getattr(result, key)
+        _text(case, "text", result.case_text)
+        _text(case, "resolved", result.case_json)
+        file.create_group("provenance").attrs.update(dict(sorted(result.provenance.items())))
+        names = file.create_group("names")
+        for key, values in sorted(result.names.items()):
+            _texts(names, key, values)
+        _text(file, "scene", json.dumps(result.scene, indent=1))
+        _texts(file, "warnings", result.warnings)
+        for name, mesh in sorted(result.meshes.items()):
+            _numbers(file, f"meshes/{name}/vertices_m", mesh.vertices_m, "m")
+            _numbers(file, f"meshes/{name}/triangles", mesh.triangles.astype(np.int64), "-")
+        models = file.create_group("models")
+        for model, run in result.models.items():
+            _model(models.create_group(model), run)
+        if result.rows is not None:
+            _comparison(file.create_group("comparison"), result)
+        if result.answers is not None:
+            _answers(file.create_group("answers"), result.answers)
 
 
 def _model(group: h5py.Group, run: Run) -> None:

@@ -14,11 +14,10 @@ from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.words import WORDS
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from statejump.control.study import Study
     from statejump.core.charts import Chart
     from statejump.core.figures import Sheet
+    from statejump.core.results_folder import Results
     from statejump.laws.curves import Joint
     from statejump.paper.energy import Accounts
     from statejump.paper.figures.runs import Part
@@ -151,25 +150,25 @@ class Umbrella(Kind):
 
         return control.control(case, **settings)
 
-    def figures(self, case: UmbrellaCase, results: Path, part: Part) -> Figures:
+    def figures(self, case: UmbrellaCase, results: Results, part: Part) -> Figures:
         """Draw the paper's Figures 13 to 16 of the case in both models, and test its claims."""
         from statejump.paper.figures import study
 
         return study.make(case, results, part)
 
-    def slow(self, case: UmbrellaCase, results: Path, tell: Tell) -> Slow:
+    def slow(self, case: UmbrellaCase, results: Results, tell: Tell) -> Slow:
         """Hold both models against the quasi-static path, ever slower."""
         from statejump.paper import slow
 
         return slow.make(case, results, tell)
 
-    def hold(self, case: UmbrellaCase, results: Path, tell: Tell) -> Held:
+    def hold(self, case: UmbrellaCase, results: Results, tell: Tell) -> Held:
         """Leave the loaded joint alone, by friction that holds and by friction that creeps."""
         from statejump.paper import hold
 
         return hold.make(case, results, tell)
 
-    def energy(self, case: UmbrellaCase, results: Path, tell: Tell) -> Accounts:
+    def energy(self, case: UmbrellaCase, results: Results, tell: Tell) -> Accounts:
         """Draw up the energy account against the steps of both models."""
         from statejump.paper import energy
 

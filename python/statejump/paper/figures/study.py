@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from statejump.core.errors import Interrupted
-from statejump.core.output import results_folder
+from statejump.core.results_folder import Results
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.paper.claims.findings import Findings
@@ -30,7 +30,7 @@ class Figures:
         return [f"{claim.verdict}: {claim.statement}" for claim in all_claims(self.findings)]
 
 
-def make(case: UmbrellaCase, results: Path, part: Part) -> Figures:
+def make(case: UmbrellaCase, results: Results, part: Part) -> Figures:
     """Run everything; write each file as soon as its runs are there.
 
     :param results: gets a folder of the case's name
@@ -40,30 +40,32 @@ def make(case: UmbrellaCase, results: Path, part: Part) -> Figures:
     """
     if case.start.mode == "loaded":
         raise refused(case, "start.mode", "loaded", "the figures vary what would load the joint")
-    folder = results_folder(results, case.name)
     command = made_by("figures", case)
     case = model.for_ensemble(case)
     written: list[Path] = []
-    try:
-        known: dict[str, Variant] = {}
-        itself = Study("fig13", "joint.radial_clearance_m", (case.joint.radial_clearance_m,), "", "", "")
-        (base,) = run_variants(case, itself, known, part)
-        with part("fig13, DEM ensemble", case.ensemble.dem_runs) as step:
-            dem_ensemble = dem.ensemble(case, progress=step)
-        written += figure_13(base, dem_ensemble, case.title, folder)
-        done = []
-        for study in studies(case):
-            variants = run_variants(case, study, known, part)
-            written += figure_of(study, variants, case.title, folder)
-            done.append((study, variants))
-            write_curves(done, folder)
-            write_ensembles(done, dem_ensemble, base, folder)
-        contacts = first_contacts(case, [variant.value for variant in done[0][1]], part)
-        stiffness = stiffness_jumps(case, base, part)
-        findings = findings_of(case, done, base, dem_ensemble, contacts, stiffness)
-        write_claims(case, command, findings, folder)
-    except (KeyboardInterrupt, Interrupted):
-        finished = ", ".join(path.name for path in written if path.suffix == ".png") or "nothing"
-        raise Interrupted(f"interrupted; finished in {folder}: {finished}") from None
-    written += [folder / name for name in ("curves.csv", "ensembles.csv", "ensembles.json", "README.md")]
+    with results.folder(case.name) as folder:
+        try:
+            known: dict[str, Variant] = {}
+            itself = Study("fig13", "joint.radial_clearance_m", (case.joint.radial_clearance_m,), "", "", "")
+            (base,) = run_variants(case, itself, known, part)
+            with part("fig13, DEM ensemble", case.ensemble.dem_runs) as step:
+                dem_ensemble = dem.ensemble(case, progress=step)
+            written += folder.publish(figure_13(base, dem_ensemble, case.title, folder.staged))
+            done = []
+            for study in studies(case):
+                variants = run_variants(case, study, known, part)
+                figure = figure_of(study, variants, case.title, folder.staged)
+                done.append((study, variants))
+                write_curves(done, folder.staged)
+                write_ensembles(done, dem_ensemble, base, folder.staged)
+                written += folder.publish(figure)
+            contacts = first_contacts(case, [variant.value for variant in done[0][1]], part)
+            stiffness = stiffness_jumps(case, base, part)
+            findings = findings_of(case, done, base, dem_ensemble, contacts, stiffness)
+            write_claims(case, command, findings, folder.staged)
+            folder.publish()
+        except (KeyboardInterrupt, Interrupted):
+            finished = ", ".join(path.name for path in written if path.suffix == ".png") or "nothing"
+            raise Interrupted(f"interrupted; finished in {folder.path}: {finished}") from None
+    written += [folder.path / name for name in ("curves.csv", "ensembles.csv", "ensembles.json", "README.md")]
     return Figures(findings, written)

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The folder that gets what one run leaves: one run at a time, and all of its files or none.
+
+A run holds a lock on the folder and writes into a folder of its own inside of it, ``.ID.partial``. When everything is
+there and on disk, that folder is renamed to ``.ID.ready``: this instant decides. Its files are then moved to their
+places; where a kill comes in between, the next run in the folder moves the others first. What a kill leaves before
+that instant is removed by the next run.
+"""
+from __future__ import annotations
+
+import fcntl
+import os
+import shutil
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from statejump.core.errors import NotWritten
+from statejump.core.output import PARTIAL, check_target, not_written, synced, unique
+
+READY = ".ready"
+SYNCED_AT_ONCE = 32
+OTHER = "choose another with --results"
+
+
+@dataclass(frozen=True)
+class Results:
+    """Where results go.
+
+    :param root: gets one folder per case
+    :param wait: wait for another run in the same folder instead of being refused
+    """
+
+    root: Path
+    wait: bool = False
+
+    @contextmanager
+    def folder(self, name: str) -> Iterator[ResultsFolder]:
+        """Make (if needed), lock and yield ``root/name``. What is not published is dropped at the end.
+
+        :raises NotWritten: it cannot be written to, or another run is at work in it
+        """
+        path = self.root / name
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            descriptor = self._locked(path)
+        except OSError as error:
+            raise _unusable(path, error.strerror or str(error), OTHER) from None
+        try:
+            try:
+                _recover(path)
+                own = path / f".{unique()}{PARTIAL}"
+                own.mkdir()
+            except OSError as error:
+                raise _unusable(path, error.strerror or str(error), OTHER) from None
+            found = ResultsFolder(path, own)
+            try:
+                yield found
+            finally:
+                shutil.rmtree(found.staged, ignore_errors=True)
+        finally:
+            os.close(descriptor)
+
+    def _locked(self, path: Path) -> int:
+        """Return an open descriptor of the folder that holds its lock; the kernel lets go of it with the process."""
+        while True:
+            descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+            try:
+                try:
+                    fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if self.wait else fcntl.LOCK_NB))
+                except BlockingIOError:
+                    raise _unusable(path, "another run is at work in it", f"wait for it with --wait, or {OTHER}",
+                                    what="is in use") from None
+                with suppress(FileNotFoundError):
+                    if os.path.samestat(os.fstat(descriptor), os.stat(path)):
+                        return descriptor
+            except BaseException:
+                os.close(descriptor)
+                raise
+            os.close(descriptor)  # the folder was deleted while we waited
+            path.mkdir(parents=True, exist_ok=True)
+
+
+@dataclass
+class ResultsFolder:
+    """A results folder that is held.
+
+    :param path: the folder, as readers know it
+    :param staged: where files are written until they are published
+    """
+
+    path: Path
+    staged: Path
+
+    def check_space(self, needed_bytes: float) -> None:
+        """Raise NotWritten where the file system has no room for so many bytes."""
+        free = shutil.disk_usage(self.path).free
+        if needed_bytes > free:
+            raise _unusable(self.path, f"the results need about {size(needed_bytes)}, the file system has {size(free)} "
+                            "left", OTHER, what="no space left")
+
+    def publish(self, written: Sequence[Path] = ()) -> list[Path]:
+        """Let everything that was written appear, together; return the paths of files of ``staged`` as they are then.
+
+        More can be written and published afterwards.
+
+        :raises NotWritten: it could not be brought to disk, nothing appears; or a file could not be moved to its place
+        """
+        from concurrent.futures import ThreadPoolExecutor
+
+        ready = self.path / f"{self.staged.name.removesuffix(PARTIAL)}{READY}"
+        try:
+            folders = [(Path(folder), files) for folder, _, files in os.walk(self.staged)]
+            staged = [folder / name for folder, files in folders for name in files]
+            for file in staged:
+                check_target(self.path / file.relative_to(self.staged))
+            # Side by side: a file system brings many files to disk at once.
+            with ThreadPoolExecutor(SYNCED_AT_ONCE) as pool:
+                list(pool.map(synced, [*staged, *(folder for folder, _ in folders)]))
+            os.rename(self.staged, ready)
+        except OSError as error:
+            raise not_written(self.path, error) from None
+        before, self.staged = self.staged, self.path / f".{unique()}{PARTIAL}"
+        try:
+            synced(self.path)
+            _move(ready, self.path)
+            self.staged.mkdir()
+        except OSError as error:
+            cause = error.strerror or str(error)
+            if ready.exists():
+                cause += f"; {ready.name} in it is complete, the next run in this folder moves what is left of it"
+            raise _unusable(self.path, cause, OTHER) from None
+        return [self.path / file.relative_to(before) if file.is_relative_to(before) else file for file in written]
+
+
+def _move(ready: Path, path: Path) -> None:
+    """Move files that are complete to their places; what was there is replaced."""
+    for folder, _, files in os.walk(ready, topdown=False):
+        place = path / Path(folder).relative_to(ready)
+        place.mkdir(parents=True, exist_ok=True)
+        for name in sorted(files):
+            os.replace(Path(folder) / name, place / name)
+        synced(place)
+        os.rmdir(folder)
+
+
+def _recover(path: Path) -> None:
+    """Finish what a killed run had decided, and remove what it had not."""
+    for ready in sorted(path.glob(f".*{READY}")):
+        _move(ready, path)
+    for left in path.glob(f".*{PARTIAL}"):
+        if left.is_dir():
+            shutil.rmtree(left)
+
+
+def size(count: float) -> str:
+    """Return a number of bytes for a sentence."""
+    for unit in ("bytes", "kB", "MB", "GB"):
+        if count < 1000:
+            break
+        count /= 1000
+    else:
+        unit = "TB"
+    return f"{count:.3g} {unit}"
+
+
+def _unusable(path: Path, cause: str, remedy: str, what: str = "cannot be written") -> NotWritten:
+    return NotWritten(what, file=path, place=f"results folder {path}", cause=cause, remedy=remedy)

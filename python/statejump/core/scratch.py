@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Temporary folders that go also when the run that made them was killed: each is locked while it is used, and
+whoever makes the next one removes those that nobody holds."""
+from __future__ import annotations
+
+import fcntl
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+PREFIX = "statejump-"
+YOUNG_S = 60.0  # a folder this young may be one that is not locked yet
+
+
+@contextmanager
+def scratch() -> Iterator[Path]:
+    """Yield a new folder below ``$TMPDIR``, removed at the end.
+
+    :raises OSError: there is no place for it
+    """
+    _sweep(Path(tempfile.gettempdir()))
+    folder = Path(tempfile.mkdtemp(prefix=PREFIX))
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+        os.close(descriptor)
+
+
+def _sweep(place: Path) -> None:
+    """Remove our own folders that nobody holds."""
+    for left in place.glob(f"{PREFIX}*"):
+        with suppress(OSError):
+            about = left.lstat()
+            if about.st_uid != os.geteuid() or time.time() - about.st_mtime < YOUNG_S:
+                continue
+            descriptor = os.open(left, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                shutil.rmtree(left, ignore_errors=True)
+            finally:
+                os.close(descriptor)

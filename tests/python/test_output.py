@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The door through which files are written: whole or not at all, together or not at all, one run at a time."""
+from __future__ import annotations
+
+import multiprocessing
+import os
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from conftest import COMMAND
+from statejump.core import output, results_folder, scratch
+from statejump.core.errors import NotWritten
+from statejump.core.output import write_atomically, write_bytes
+from statejump.core.results_folder import Results
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(entry.name for entry in folder.iterdir())
+
+
+def test_what_fails_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = write_bytes(tmp_path / "a.txt", b"before")
+    with pytest.raises(ZeroDivisionError):
+        with write_atomically(path) as stream:
+            stream.write("half")
+            1 / 0
+    for call in ("fsync", "replace"):
+        with monkeypatch.context() as there:
+            there.setattr(os, call, failing)
+            with pytest.raises(NotWritten, match="a.txt: cannot be written: No space left on device"):
+                write_bytes(path, b"after")
+    assert path.read_bytes() == b"before" and names(tmp_path) == ["a.txt"]
+
+
+def failing(*arguments: object) -> None:
+    raise OSError(28, "No space left on device")
+
+
+@pytest.mark.parametrize("kind", ["folder", "pipe"])
+def test_only_a_file_is_replaced(tmp_path: Path, kind: str) -> None:
+    path = tmp_path / "a"
+    path.mkdir() if kind == "folder" else os.mkfifo(path)
+    with pytest.raises(NotWritten, match="there is something else than a file"):
+        write_bytes(path, b"")
+    assert not path.is_file()
+
+
+def test_writers_of_one_name_do_not_meet(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    with write_atomically(path) as first:
+        with write_atomically(path) as second:
+            second.write("second")
+        first.write("first")
+    assert path.read_text() == "first" and names(tmp_path) == ["a.txt"]
+
+
+def test_what_a_kill_leaves_goes_with_the_next_writing(tmp_path: Path) -> None:
+    (tmp_path / f".a.txt.0123{output.PARTIAL}").write_text("half")
+    (tmp_path / f".b.txt.0123{output.PARTIAL}").write_text("another file's")
+    write_bytes(tmp_path / "a.txt", b"")
+    assert names(tmp_path) == [f".b.txt.0123{output.PARTIAL}", "a.txt"]
+
+
+def test_results_appear_together(tmp_path: Path) -> None:
+    with Results(tmp_path).folder("case") as folder:
+        written = [write_bytes(folder.staged / name, b"1") for name in ("a", "b")]
+        (folder.staged / "below").mkdir()
+        write_bytes(folder.staged / "below" / "c", b"1")
+        assert not [name for name in names(folder.path) if not name.startswith(".")]
+        assert folder.publish(written) == [tmp_path / "case" / "a", tmp_path / "case" / "b"]
+        write_bytes(folder.staged / "a", b"2")  # and again
+        folder.publish()
+        write_bytes(folder.staged / "never", b"")
+    assert names(tmp_path / "case") == ["a", "b", "below"] and names(tmp_path / "case" / "below") == ["c"]
+    assert (tmp_path / "case" / "a").read_bytes() == b"2"
+
+
+@pytest.mark.parametrize("call", ["rename", "fsync"])
+def test_nothing_appears_if_one_thing_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: str) -> None:
+    with pytest.raises(NotWritten):
+        with Results(tmp_path).folder("case") as folder:
+            for name in ("a", "b"):
+                write_bytes(folder.staged / name, b"")
+            monkeypatch.setattr(os, call, failing)
+            folder.publish()
+    assert names(tmp_path / "case") == []
+
+
+def test_a_folder_in_the_place_of_a_file(tmp_path: Path) -> None:
+    (tmp_path / "case" / "b").mkdir(parents=True)
+    with pytest.raises(NotWritten, match="case/b: cannot be written: there is something else"):
+        with Results(tmp_path).folder("case") as folder:
+            for name in ("a", "b"):
+                write_bytes(folder.staged / name, b"")
+            folder.publish()
+    assert names(tmp_path / "case") == ["b"]
+
+
+def test_a_kill_between_two_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was decided is finished by the next run in the folder, what was not goes."""
+    moved = os.replace
+    case = tmp_path / "case"
+
+    def once(source: Path, target: Path) -> None:
+        if (case / "a").exists():
+            raise OSError(5, "Input/output error")
+        moved(source, target)
+
+    with pytest.raises(NotWritten, match="Input/output error; .* is complete, the next run in this folder moves"):
+        with Results(tmp_path).folder("case") as folder:
+            for name in ("a", "b"):
+                write_bytes(folder.staged / name, b"1")
+            monkeypatch.setattr(results_folder.os, "replace", once)
+            folder.publish()
+    monkeypatch.undo()
+    (case / f".0123{output.PARTIAL}").mkdir()
+    (case / f".0123{output.PARTIAL}" / "half").write_text("")
+    with Results(tmp_path).folder("case"):
+        pass
+    assert names(case) == ["a", "b"]
+
+
+def hold(root: Path, held: multiprocessing.synchronize.Event, go: multiprocessing.synchronize.Event) -> None:
+    with Results(root).folder("case") as folder:
+        held.set()
+        go.wait(30)
+        write_bytes(folder.staged / "first", b"")
+        folder.publish()
+
+
+def test_one_run_at_a_time(tmp_path: Path) -> None:
+    context = multiprocessing.get_context("fork")
+    held, go = context.Event(), context.Event()
+    other = context.Process(target=hold, args=(tmp_path, held, go))
+    other.start()
+    assert held.wait(30)
+    with pytest.raises(NotWritten) as refused:
+        with Results(tmp_path).folder("case"):
+            pass
+    assert str(refused.value) == (
+        f"results folder {tmp_path}/case: is in use: another run is at work in it; wait for it with --wait, or choose "
+        "another with --results")
+    go.set()
+    with Results(tmp_path, wait=True).folder("case") as folder:
+        assert names(folder.path)[1:] == ["first"]
+    other.join()
+    assert names(tmp_path / "case") == ["first"]
+
+
+def test_a_killed_run_lets_go(tmp_path: Path) -> None:
+    context = multiprocessing.get_context("fork")
+    held, go = context.Event(), context.Event()
+    other = context.Process(target=hold, args=(tmp_path, held, go))
+    other.start()
+    assert held.wait(30)
+    other.kill()
+    other.join()
+    assert [name.endswith(output.PARTIAL) for name in names(tmp_path / "case")] == [True]
+    with Results(tmp_path).folder("case"):
+        pass
+    assert names(tmp_path / "case") == []
+
+
+def test_two_commands_at_once(cases: Path, tmp_path: Path) -> None:
+    """Both wait for each other where they are told to, and both are done."""
+    runs = [subprocess.Popen([COMMAND, "reduced", cases / "table1.toml", "--wait"], cwd=tmp_path, text=True,
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE) for _ in range(3)]
+    for run in runs:
+        _, errors = run.communicate(timeout=120)
+        assert (run.returncode, errors) == (0, "")
+    assert names(tmp_path / "results" / "table1") == ["reduced.h5", "reduced_history.csv"]
+
+
+def test_space_is_asked_for(tmp_path: Path) -> None:
+    with Results(tmp_path).folder("case") as folder:
+        folder.check_space(1)
+        with pytest.raises(NotWritten, match=r"no space left: the results need about 100 TB, the file system has"):
+            folder.check_space(1e14)
+
+
+def test_read_only_folder(statejump, cases: Path, tmp_path: Path) -> None:
+    if os.geteuid() == 0:
+        pytest.skip("the superuser writes everywhere")
+    (tmp_path / "results").mkdir(mode=0o555)
+    outcome = statejump("reduced", cases / "table1.toml")
+    assert outcome.status == 2 and "Permission denied; choose another with --results" in outcome.errors
+
+
+def test_scratch_of_killed_runs_goes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(scratch.tempfile, "tempdir", str(tmp_path))
+    for name, age_s in (("old", 100), ("young", 0)):
+        left = tmp_path / f"{scratch.PREFIX}{name}"
+        (left / "below").mkdir(parents=True)
+        os.utime(left, (time.time() - age_s,) * 2)
+    with scratch.scratch() as held:
+        os.utime(held, (0, 0))
+        with scratch.scratch() as other:
+            assert names(tmp_path) == sorted([held.name, other.name, f"{scratch.PREFIX}young"])
+    assert names(tmp_path) == [f"{scratch.PREFIX}young"]
