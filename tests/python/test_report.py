@@ -224,7 +224,7 @@ def test_events_of_both_models_stand_in_one_row() -> None:
     ("name", "content", "sentence"),
     [
         ("missing.h5", None, "missing.h5: no such result file"),
-        ("text.h5", b"time_s\n0\n", "text.h5: not a result file: it is not HDF5"),
+        ("text.h5", b"time_s\n0\n", "text.h5: not a result file: it does not begin with 'statejump HDF5'"),
         ("empty", "folder", "empty: no result file: no *.h5 in this folder; 'statejump compare CASE' writes one"),
     ],
 )
