@@ -14,7 +14,7 @@ from statejump import _engine
 from statejump.core.comparison import Comparison
 from statejump.core.errors import StatejumpError
 from statejump.core.figures import save
-from statejump.core.output import replacing, write_atomically
+from statejump.core.output import write_atomically
 from statejump.core.run import Run
 from statejump.core.tables import read_columns
 from statejump.kinds.loading import load_case
@@ -192,8 +192,8 @@ def test_a_failed_write_leaves_nothing(tmp_path: Path) -> None:
             raise RuntimeError("stop here")
     assert target.read_text() == "old"
     with pytest.raises(StatejumpError, match="cannot be written"):
-        with replacing(tmp_path / "no" / "folder.csv") as aside:
-            aside.write_text("x")
+        with write_atomically(tmp_path / "no" / "folder.csv") as stream:
+            stream.write("x")
     assert [entry.name for entry in tmp_path.iterdir()] == ["table.csv"]
 
 

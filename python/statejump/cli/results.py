@@ -198,7 +198,7 @@ def compare_files(files: Sequence[Path], console: Console) -> None:
     missed: list[str] = []
     for runs in found:
         _print_difference(first.title, runs, console)
-        missed += [row.name for row in runs.rows or () if not row.passed]
+        missed += runs.missed
     if not (first.complete and second.complete):
         console.print("not judged: a run is not complete; its common time is compared")
     if missed:
@@ -222,5 +222,9 @@ def _print_difference(title: str, runs: RunDifference, console: Console) -> None
         "events", ("event", "first: count", "second: count", "first: ΔT [K]", "second: ΔT [K]"),
         [(event.kind, *map(str, event.counts), *map(number, event.first_K)) for event in runs.events], left=("event",),
     ), console)
+    for name in runs.lacking:
+        console.print(f"not compared: only one file has {name}")
+    for name in runs.not_finite:
+        console.print(f"not finite in one file where it is in the other: {name}")
     if runs.rows is not None:
         print_comparison("against the tolerances of the case", runs.rows, console, names)

@@ -110,7 +110,7 @@ def print_comparison(title: str, rows: Sequence[Quantity], console: Console,
     for row in rows:
         values = [number(row.values[side]) if side in row.values else "" for side in known]
         table.add_row(row.name, row.unit, *values, number(row.difference), number(row.tolerance),
-                      "pass" if row.passed else "MISSED")
+                      "pass" if row.passed else "MISSED" if row.finite else "NOT FINITE")
     console.print(table)
 
 

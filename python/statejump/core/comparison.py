@@ -2,6 +2,7 @@
 """Models beside each other, quantity by quantity, against the tolerances of the case."""
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -42,6 +43,12 @@ class Quantity:
     tolerance: float
     passed: bool
 
+    @property
+    def finite(self) -> bool:
+        """Whether every value that the row has is a finite number."""
+        known = [value for value in (*self.values.values(), self.difference, self.tolerance) if value is not None]
+        return all(map(math.isfinite, known))
+
     def __getattr__(self, name: str) -> float | None:
         if name in SIDES:
             return self.values.get(name)
@@ -64,6 +71,16 @@ def quantity(name: str, unit: str, tolerance: float, **values: float | None) -> 
     difference = second - first
     # Written so that NaN fails.
     return Quantity(name, unit, values, difference, tolerance, passed=bool(abs(difference) <= tolerance))
+
+
+def share(difference: float, scale: float) -> float:
+    """Return a difference over what it is measured by: 0 where both are zero, for then nothing happens and nothing
+    differs; infinite for a difference without a scale. A number that is none stays one, so that its row fails."""
+    if difference == 0 and scale == 0:
+        return 0.0
+    if scale > 0:
+        return difference / scale
+    return math.nan if math.isnan(scale) else math.copysign(math.inf, difference)
 
 
 def models(name: str, unit: str, reduced: float | None, dem: float | None, tolerance: float) -> Quantity:

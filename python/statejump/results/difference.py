@@ -18,6 +18,8 @@ from statejump.results.contents import Result
 
 # How a case is computed, written and judged; the other sections say what it is.
 NUMERICAL_SECTIONS = ("case", "dem", "reduced", "output", "ensemble", "tolerance")
+# Groups of columns that are compared: of a contact that opens there are columns that are no number.
+COMPARED = ("history", "energy", "links")
 SAME_TIME = 1e-9  # of the duration: rounding of the last sample's time
 
 
@@ -45,13 +47,27 @@ class EventDifference:
 
 @dataclass(frozen=True)
 class RunDifference:
-    """Two runs beside each other. ``rows``: against the tolerances; None if a run is not complete."""
+    """Two runs beside each other. ``rows``: against the tolerances; None if a run is not complete.
+
+    :param lacking: columns that only one of the runs has
+    :param not_finite: columns that are a finite number in one run where they are none in the other
+    """
 
     names: tuple[str, str]
     summary: list[tuple[str, str, float, float]]  # quantity, unit, first, second; NaN: none
     columns: list[ColumnDifference]
     events: list[EventDifference]
     rows: list[Quantity] | None
+    lacking: list[str]
+    not_finite: list[str]
+
+    @property
+    def missed(self) -> list[str]:
+        """What is not as it should be: rows beyond their tolerance, columns that cannot be compared. Two models need
+        not have the same columns."""
+        beyond = [row.name for row in self.rows or () if not row.passed]
+        alone = [f"{name} (in one file only)" for name in self.lacking] if self.names[0] == self.names[1] else []
+        return beyond + alone + [f"{name} (not finite)" for name in self.not_finite]
 
 
 def _entries(values: Any, path: str = "") -> Iterator[tuple[str, Any]]:
@@ -99,14 +115,36 @@ def pairs(first: Result, second: Result) -> list[tuple[str, str]]:
     return [(next(iter(first.models)), next(iter(second.models)))]
 
 
+def _lacking(first: Run, second: Run) -> list[str]:
+    return sorted(
+        f"{group}/{name}" for group in COMPARED
+        for name in set(getattr(first, group)).symmetric_difference(getattr(second, group))
+    )
+
+
+def _not_finite(first: Run, second: Run) -> list[str]:
+    """Return columns that are finite in one run where they are not in the other, or otherwise not finite."""
+    found = []
+    for group in COMPARED:
+        for name, column in getattr(first, group).items():
+            other = getattr(second, group).get(name)
+            if other is None or column.labels or other.labels:
+                continue
+            one, two = (np.where(np.isfinite(values), 0.0, values) for values in (column.values, other.values))
+            if not np.array_equal(one, two, equal_nan=True):
+                found.append(f"{group}/{name}")
+    return found
+
+
 def _columns(first: Run, second: Run) -> list[ColumnDifference]:
     found = []
-    for group in ("history", "energy", "links"):
+    for group in COMPARED:
         other = getattr(second, group)
         for name, column in getattr(first, group).items():
             if name == "time_s" or column.labels or name not in other:
                 continue
-            difference = np.abs(other[name].values - column.values).reshape(len(first.time_s), -1)
+            with np.errstate(invalid="ignore"):  # both are infinite
+                difference = np.abs(other[name].values - column.values).reshape(len(first.time_s), -1)
             over_items = np.where(np.isnan(difference), -1.0, difference).max(axis=1, initial=-1.0)
             place = int(np.argmax(over_items))
             if over_items[place] < 0:
@@ -153,12 +191,13 @@ def difference(first: Result, second: Result) -> list[RunDifference]:
     for names in pairs(first, second):
         one, other = first.models[names[0]], second.models[names[1]]
         ends = float(one.time_s[-1]), float(other.time_s[-1])
-        if complete and abs(ends[0] - ends[1]) > SAME_TIME * max(ends):
+        if complete and not abs(ends[0] - ends[1]) <= SAME_TIME * max(ends):
             raise StatejumpError("not comparable", cause=f"the runs last {ends[0]:g} s and {ends[1]:g} s")
         times = one.time_s[one.time_s <= min(ends) * (1 + SAME_TIME)]
         left, right = one.at(times), other.at(times)
         found.append(RunDifference(
             names, _summary(one, other), _columns(left, right), _events(one, other),
             of_two(judge(first.definition, left, right)) if complete else None,
+            _lacking(left, right), _not_finite(left, right),
         ))
     return found

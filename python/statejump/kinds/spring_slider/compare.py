@@ -2,11 +2,9 @@
 """Comparison of the DEM run of a ``spring_slider`` case with the reduced model."""
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from statejump.core.comparison import Comparison, Quantity, models
+from statejump.core.comparison import Comparison, Quantity, models, share
 from statejump.core.run import Run, change, energy_residue_J
 from statejump.kinds.spring_slider.case import SpringSliderCase
 
@@ -53,7 +51,7 @@ def loop_drift(dem: Run, samples_per_cycle: int, cycles: int) -> float:
     """Return the largest distance of any later loop from the second one at the same phase [m]."""
     x = dem["displacement_m"]
     loops = [x[k * samples_per_cycle : (k + 1) * samples_per_cycle + 1] for k in range(1, cycles)]
-    return float(max(np.max(np.abs(loop - loops[0])) for loop in loops))
+    return float(np.max(np.abs(np.stack(loops) - loops[0])))
 
 
 def first_cycle_events(case: SpringSliderCase, run: Run) -> dict[str, float | None]:
@@ -72,7 +70,7 @@ def _displacement_row(case: SpringSliderCase, exact: Run, other: Run) -> Quantit
     x, y = exact["displacement_m"], other["displacement_m"]
     largest = float(np.max(np.abs(x)))
     rms = float(np.sqrt(np.mean((y - x) ** 2)))
-    return models("displacement_rms_over_largest", "-", 0.0, rms / largest if largest > 0 else math.nan,
+    return models("displacement_rms_over_largest", "-", 0.0, share(rms, largest),
                   case.tolerance.displacement_rms_relative)
 
 
@@ -99,12 +97,12 @@ def compare(case: SpringSliderCase, reduced: Run, dem: Run) -> Comparison:
     if not reference > 0:  # without friction the stored energy is the scale
         reference = float(np.max(dem["elastic_energy_J"] + dem["contact_energy_J"]))
         name = "energy_residual_over_largest_stored"
-    rows.append(models(name, "-", 0.0, energy_residual(dem) / reference if reference > 0 else math.nan,
+    rows.append(models(name, "-", 0.0, share(energy_residual(dem), reference),
                        tolerance.energy_balance_relative))
     if case.thermal.cycles > 2:
         largest = float(np.max(np.abs(exact["displacement_m"])))
         drift = loop_drift(dem, samples, case.thermal.cycles)
-        rows.append(models("loop_drift_over_largest_displacement", "-", 0.0, drift / largest,
+        rows.append(models("loop_drift_over_largest_displacement", "-", 0.0, share(drift, largest),
                            tolerance.drift_relative))
     return Comparison(case, {"reduced": exact, "dem": dem}, tuple(rows), warnings=reduced.warnings)
 

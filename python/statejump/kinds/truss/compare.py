@@ -2,13 +2,12 @@
 """Comparison of the DEM run of a ``truss`` case with its quasi-static path."""
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from statejump.core.comparison import Comparison, Quantity, models
+from statejump.core.comparison import Comparison, Quantity, models, share
 from statejump.core.run import Column, Run, change, energy_residue_J
 from statejump.kinds.truss.case import TrussCase
 
@@ -54,8 +53,7 @@ def jump_scale_m(case: TrussCase, run: Run) -> float:
 
 def _relative(name: str, difference: float, scale: float, tolerance: float) -> Quantity:
     """Return one row; two models without any motion or force agree."""
-    value = 0.0 if difference == 0 else difference / scale if scale > 0 else math.inf
-    return models(name, "-", 0.0, value, tolerance)
+    return models(name, "-", 0.0, share(difference, scale), tolerance)
 
 
 def difference(case: TrussCase, first: Run, second: Run) -> list[Quantity]:
@@ -90,7 +88,7 @@ def loop_drift_m(case: TrussCase, run: Run) -> float:
     """Largest distance of a node in any later cycle from where it was in the second at the same phase [m]."""
     samples, displacement = case.samples_per_cycle, run["displacement_m"]
     loops = [displacement[k * samples : (k + 1) * samples + 1] for k in range(1, case.thermal.cycles)]
-    return float(max(np.linalg.norm(loop - loops[0], axis=2).max() for loop in loops))
+    return float(np.linalg.norm(np.stack(loops) - loops[0], axis=3).max())
 
 
 def _energy_row(case: TrussCase, dem: Run) -> Quantity:
@@ -101,7 +99,7 @@ def _energy_row(case: TrussCase, dem: Run) -> Quantity:
     if not scale > 0:
         scale = float(np.ptp(dem["elastic_energy_J"]) + dem["damping_dissipation_J"][-1])
         name = "energy_residual_over_largest_stored"
-    return models(name, "-", 0.0, residual / scale if scale > 0 else 0.0, case.tolerance.energy_balance_relative)
+    return models(name, "-", 0.0, share(residual, scale), case.tolerance.energy_balance_relative)
 
 
 def compare(case: TrussCase, reduced: Run, dem: Run) -> Comparison:

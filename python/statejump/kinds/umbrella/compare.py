@@ -2,11 +2,9 @@
 """Comparison of the DEM run of an ``umbrella`` case with the reduced model."""
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from statejump.core.comparison import Comparison, Quantity, models, quantity
+from statejump.core.comparison import Comparison, Quantity, models, quantity, share
 from statejump.core.run import Run, energy_residue_J
 from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
@@ -36,9 +34,7 @@ def _energy_row(case: UmbrellaCase, reduced: Run, dem: Run) -> Quantity:
     scale = float(np.max(about))
     tolerance = case.tolerance.energy_balance_relative
     name = "energy_residual_over_largest_energy"
-    if not scale > 0:
-        return models(name, "-", 0.0, 0.0, tolerance)
-    ours, other = energy_residual(reduced) / scale, energy_residual(dem) / scale
+    ours, other = share(energy_residual(reduced), scale), share(energy_residual(dem), scale)
     passed = bool(abs(ours) <= tolerance and abs(other) <= tolerance)
     return Quantity(name, "-", {"reduced": ours, "dem": other}, other - ours, tolerance, passed)
 
@@ -98,7 +94,7 @@ def history_rows(case: UmbrellaCase, ours: Run, other: Run) -> list[Quantity]:
         largest = float(np.max(np.abs(other[column][:end] - ours[column][:end])))
         rows.append(
             models(f"{angle}_largest_difference_over_range{until}", "-", 0.0,
-                   largest / span if span > 0 else math.nan, tolerance.history_relative)
+                   share(largest, span), tolerance.history_relative)
         )
     return rows
 
