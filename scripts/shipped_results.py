@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Results of the shipped cases on two machines, releases or builds, value by value.
+
+    PYTHONPATH=build/python scripts/shipped_results.py run FOLDER [--model dem] [--case NAME ...]
+    PYTHONPATH=build/python scripts/shipped_results.py compare FIRST SECOND
+
+``run`` leaves a result file of every shipped case that the model can run in FOLDER/MODEL/CASE. A case whose result is
+there is left out, so an interrupted call goes on. ``compare`` prints a Markdown table: a row for each case and model,
+how many numbers there are, how many differ in a bit, and of those the column with the largest difference beside the
+largest value of that column. Exit status 1: a number differs, or a file stands on one side alone.
+"""
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import statejump as sj
+from statejump import _paths
+from statejump.core.run import GROUPS, Run
+from statejump.core.tables import markdown
+from statejump.results.record import FILES, save
+from statejump.results.layout import SUFFIX
+
+# What the kind of a case must be able to do for a run of the model.
+ABILITIES = {"reduced": "reduced", "dem": "dem_run"}
+HEADER = ("case", "numbers", "that differ", "largest difference / largest value")
+
+
+def shipped() -> list[Path]:
+    """Return the files of the shipped cases."""
+    folder = _paths.SHARE / "cases"
+    return sorted([*folder.glob("*.toml"), *folder.glob("trusses/*.toml")])
+
+
+def run(folder: Path, models: list[str], names: list[str]) -> None:
+    """Run the shipped cases that a model can run, one after the other."""
+    for path in shipped():
+        case = sj.load(path)
+        for model in models:
+            target = folder / model / path.stem
+            unable = getattr(case.definition.behaviour, ABILITIES[model], None) is None
+            if unable or (names and path.stem not in names) or (target / f"{FILES[model]}{SUFFIX}").exists():
+                continue
+            start = time.monotonic()
+            try:
+                made: Run = getattr(case, model)()
+            except sj.StatejumpError as failure:
+                print(f"{path.stem} {model}: {failure}", flush=True)
+                continue
+            target.mkdir(parents=True, exist_ok=True)
+            save(model, case.definition, {model: made}, target)
+            print(f"{path.stem} {model}: {time.monotonic() - start:.1f} s", flush=True)
+
+
+def numbers(made: Run) -> dict[str, np.ndarray]:
+    """Return every number of a run by a name: columns, times of events, summary."""
+    found = {name: np.asarray(column.values) for group in GROUPS for name, column in getattr(made, group).items()}
+    found["times of events"] = np.array([event.time_s for event in made.events])
+    found["summary"] = np.array(list(made.summary.values()))
+    return found
+
+
+def row(name: str, first: Run, second: Run) -> tuple[list[str], bool]:
+    """Return what a comparison says of a case and model, by :data:`HEADER`, and whether all bits are the same."""
+    one, other = numbers(first), numbers(second)
+    count = differing = 0
+    worst, worst_column = 0.0, ""
+    for column in sorted({*one, *other}):
+        values, others = one.get(column, np.empty(0)), other.get(column, np.empty(0))
+        count += values.size
+        if values.shape != others.shape:
+            differing, worst, worst_column = differing + values.size, np.inf, column
+            continue
+        differs = ~((values == others) | ((values != values) & (others != others)))
+        differing += int(differs.sum())
+        if differs.any():
+            largest = np.nanmax(np.abs(values.astype(float)))
+            relative = float(np.nanmax(np.abs(values.astype(float) - others))) / largest if largest else np.inf
+            if relative >= worst:
+                worst, worst_column = relative, column
+    return [name, str(count), str(differing), f"{worst:.2g} {worst_column}" if differing else ""], not differing
+
+
+def compare(first: Path, second: Path) -> int:
+    """Print the table; return the exit status."""
+    rows: list[list[str]] = []
+    status = 0
+    files = sorted({path.relative_to(folder) for folder in (first, second) for path in folder.rglob(f"*{SUFFIX}")})
+    for file in files:
+        name, model = file.parent.name, file.parent.parent.name
+        if not (first / file).exists() or not (second / file).exists():
+            print(f"{file}: only in {first if (first / file).exists() else second}", file=sys.stderr)
+            status = 1
+            continue
+        one, other = (sj.read(folder / file).models[model] for folder in (first, second))
+        cells, equal = row(f"{name}, {model}", one, other)
+        rows.append(cells)
+        status = status if equal else 1
+    print("\n".join(markdown(HEADER, rows, right=(1, 2))))
+    return status
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", required=True)
+    runs = commands.add_parser("run")
+    runs.add_argument("folder", type=Path)
+    runs.add_argument("--model", action="append", choices=("reduced", "dem"))
+    runs.add_argument("--case", action="append", default=[])
+    comparison = commands.add_parser("compare")
+    comparison.add_argument("first", type=Path)
+    comparison.add_argument("second", type=Path)
+    given = parser.parse_args()
+    if given.command == "compare":
+        sys.exit(compare(given.first, given.second))
+    run(given.folder, given.model or ["reduced", "dem"], given.case)
