@@ -6,7 +6,8 @@
 #     in_debian FOLDER COMMAND            runs a command of bash in it, as root with a bare environment
 #     leave_debian FOLDER                 ends what make_debian mounted
 #
-# The mirror is MIRROR, else that of the apt of this machine.
+# Certificates of this machine's own (/usr/local/share/ca-certificates) hold in it too: behind a proxy that opens
+# TLS, npm reaches no registry without them. The mirror is MIRROR, else that of the apt of this machine.
 
 make_debian() {
   local release=$1 root=$2 codename mirror=${MIRROR:-}
@@ -25,6 +26,10 @@ make_debian() {
       /usr/share/debootstrap/scripts/sid >/dev/null
   fi
   cp /etc/resolv.conf "$root/etc/resolv.conf"
+  if compgen -G "/usr/local/share/ca-certificates/*.crt" >/dev/null; then
+    mkdir -p "$root/usr/local/share/ca-certificates"
+    cp /usr/local/share/ca-certificates/*.crt "$root/usr/local/share/ca-certificates/"
+  fi
   mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
   mkdir -p "$root/dev/shm"
   mountpoint -q "$root/dev/shm" || mount -t tmpfs tmpfs "$root/dev/shm"
@@ -32,6 +37,7 @@ make_debian() {
 
 in_debian() {
   chroot "$1" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
+    NODE_EXTRA_CA_CERTS=/etc/ssl/certs/ca-certificates.crt \
     bash -euo pipefail -c "$2"
 }
 

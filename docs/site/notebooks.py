@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import itertools
 import os
 import re
 import sys
@@ -133,7 +134,7 @@ def executed(made: NotebookNode, build: Path) -> NotebookNode:
 
 def _printed(cell: NotebookNode) -> str:
     parts = []
-    for output in cell.outputs:
+    for output in _joined(cell.outputs):
         if output.output_type == "stream":
             parts.append(output.text)
         elif "data" in output:
@@ -184,13 +185,20 @@ def page(made: NotebookNode, name: str, folder: Path) -> str:
 
 
 def _joined(outputs: list[NotebookNode]) -> list[NotebookNode]:
-    """Return outputs with what was printed in a row as one, standard error too."""
+    """Return outputs with what was printed between two others as one, standard output before standard error: in which
+    pieces the two arrive depends on the kernel."""
     found: list[NotebookNode] = []
-    for output in outputs:
-        if found and output.output_type == found[-1].output_type == "stream":
-            found[-1].text += output.text
-        else:
-            found.append(output.copy())
+    for is_stream, some in itertools.groupby(outputs, lambda output: output.output_type == "stream"):
+        if not is_stream:
+            found.extend(some)
+            continue
+        streams: dict[str, NotebookNode] = {}
+        for output in some:
+            if output.name in streams:
+                streams[output.name].text += output.text
+            else:
+                streams[output.name] = output.copy()
+        found.extend(streams[name] for name in ("stdout", "stderr") if name in streams)
     return found
 
 

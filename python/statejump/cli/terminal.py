@@ -2,6 +2,7 @@
 """What commands share on the terminal: console, options, progress, tables."""
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
@@ -35,7 +36,7 @@ class CaseFile(click.Path):
         super().__init__(path_type=Path)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        return found_case(super().convert(value, param, ctx))
+        return found_case(Path(os.fsdecode(super().convert(value, param, ctx))))
 
 
 CASE = click.argument("case_file", metavar="CASE", type=CaseFile())

@@ -201,7 +201,9 @@ class Run:
             here, there = column.values[before], column.values[after]
             return replace(column, values=here + np.clip(weight, 0, 1).reshape(shape) * (there - here))
 
-        groups = {group: {name: moved(column) for name, column in getattr(self, group).items()} for group in GROUPS}
+        groups: dict[str, Any] = {
+            group: {name: moved(column) for name, column in getattr(self, group).items()} for group in GROUPS
+        }
         return replace(self, **groups, native=None)
 
     def flat(self, groups: Sequence[str] = ("history", "energy")) -> dict[str, np.ndarray]:

@@ -235,7 +235,7 @@ class Document:
                     "start_s": float(times[start]), "end_s": float(times[end]),
                     "start_K": text(float(change[start]), "K", 4), "end_K": text(float(change[end]), "K", 4),
                 }
-                for start, end in zip(starts.tolist(), ends.tolist())
+                for start, end in zip(map(int, starts), map(int, ends))
             ]
         return []
 
@@ -301,7 +301,7 @@ class Document:
         always = np.unique(np.concatenate((turns, turns + 1)))
         chosen, guides = always if len(always) <= most else always[:0], moving[:: math.ceil(len(moving) / MOST_GUIDES)]
         for _ in range(2):  # the second time by the columns that the first ones do not stand for
-            chosen = kept_samples(time_s, np.stack(guides, axis=1).astype(float), most, TOLERANCE, chosen.tolist())
+            chosen = kept_samples(time_s, np.stack(guides, axis=1).astype(float), most, TOLERANCE, map(int, chosen))
             missed = errors(time_s, moving, chosen)
             if missed.max(initial=0.0) <= TOLERANCE or len(chosen) >= most:
                 break

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
 
 import attrs
 
@@ -176,7 +176,8 @@ _KNOWN: dict[type[Section], Mapping[str, attrs.Attribute[Any]]] = {}
 
 def evolved(made: SectionType, **values: Any) -> SectionType:
     """Return a section with other values, checked again."""
-    return attrs.evolve(made, **values)
+    changed: SectionType = attrs.evolve(cast(Any, made), **values)  # every class of sections is one of attrs
+    return changed
 
 
 def fields_of(model: type[Section]) -> Mapping[str, attrs.Attribute[Any]]:

@@ -62,7 +62,8 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> list[ItemTyp
             field = fields.get(key)
             if field is None:
                 raise UnknownKey(key, item=where(section, table, number), **suggestion(key, list(fields)))
-            converted = field.converter(given) if field.converter is not None else given
+            convert: Any = field.converter  # attrs gives it a type of its own, by its version
+            converted = given if convert is None else convert(given)
             try:
                 rules[key].check(key, converted)
                 if key == "name" and not given:

@@ -9,7 +9,7 @@ from typing import Any
 import attrs
 
 from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey
-from statejump.schema.fields import Section, SectionType, fields_of, section_of, tables_of
+from statejump.schema.fields import Section, SectionType, evolved, fields_of, section_of, tables_of
 from statejump.schema.rules import suggestion
 
 EVERY = "*"
@@ -125,8 +125,8 @@ def with_values(case: SectionType, changes: Mapping[str, Any]) -> SectionType:
     made = {}
     for section, values in sections.items():
         try:
-            made[section] = attrs.evolve(getattr(case, section), **values)
+            made[section] = evolved(getattr(case, section), **values)
         except NotAllowed as refused:
             refused.key = f"{section}.{refused.key}"
             raise
-    return attrs.evolve(case, **made)
+    return evolved(case, **made)

@@ -153,7 +153,8 @@ def _torsion_springs(truss: ResolvedTruss) -> None:
 def supported(truss: ResolvedTruss) -> np.ndarray:
     """Return which nodes (n,) have a support."""
     nodes = truss.nodes
-    return nodes.fixed[:, : truss.dimension].any(axis=1) | nodes.guide_normal.any(axis=1)
+    held, guided = nodes.fixed[:, : truss.dimension].any(axis=1), nodes.guide_normal.any(axis=1)
+    return np.asarray(held | guided)
 
 
 def _supports(truss: ResolvedTruss) -> None:

@@ -54,7 +54,9 @@ def known_name(key: str, value: Any, name: str, known: Mapping[str, Any], what: 
 def _nodes(case: TrussCase, nodes: Mapping[str, Any]) -> None:
     for section, (least, most) in _NODES_OF.items():
         for item in getattr(case, section):
-            where = {"item": f"{section} {item.name!r}", "joint": item.name if section == "slider" else None}
+            where: dict[str, Any] = {
+                "item": f"{section} {item.name!r}", "joint": item.name if section == "slider" else None,
+            }
             if not least <= len(item.nodes) <= most:
                 many = "2 nodes" if least == most else "1 node, on ground, or 2 nodes"
                 raise NotAllowed("nodes", item.nodes, f"must be {many}", **where)

@@ -76,7 +76,9 @@ def _vectors(case: TrussCase) -> None:
         _vector("axis", slider.axis, "-", dimension, True, item=f"slider {slider.name!r}", joint=slider.name)
     for section in ("revolute", "torsion_spring"):
         for item in getattr(case, section):
-            where = {"item": f"{section} {item.name!r}", "joint": item.name if section == "revolute" else None}
+            where: dict[str, Any] = {
+                "item": f"{section} {item.name!r}", "joint": item.name if section == "revolute" else None,
+            }
             if dimension == 2 and item.axis is not None:
                 raise NotAllowed("axis", item.axis, "in a planar truss it is z", **where)
             if dimension == 3 and item.axis is None:

@@ -42,7 +42,7 @@ def refuse(case: TrussCase, why: str, **fields: Any) -> StatejumpError:
 def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
     """Return the mass of every node [kg]."""
     mass = np.zeros(len(truss.nodes.names))
-    held = truss.nodes.fixed.all(axis=1)
+    held = np.asarray(truss.nodes.fixed.all(axis=1))
     for ends, link in zip(truss.links.nodes, truss.links.mass_kg):
         share = link / 3 if held[ends].any() else link / 2
         mass[ends] += share

@@ -74,7 +74,7 @@ def _points(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> Non
     """Supports, joints, nodes, torsion springs, loads and the nodes of the surface."""
     nodes, positions = truss.nodes, truss.nodes.position_m
     dots = dict(linestyle="none", markeredgewidth=max(0.4, size / 12))
-    held = nodes.fixed.any(axis=1)
+    held = np.asarray(nodes.fixed.any(axis=1))
     axes.plot(*positions[held].T, marker="^", color="0.25", markerfacecolor="white", markersize=0.8 * size, zorder=4,
               **dots)
     bare = ~held

@@ -118,7 +118,7 @@ class _Section:
 def _changes(truss: ResolvedTruss, time_s: np.ndarray, part: Any) -> np.ndarray:
     """Temperature change [K] of every item (samples, items)."""
     programs = [engine_program(program) for program in truss.programs]
-    used = sorted(set(np.asarray(part.program).tolist()))
+    used = [int(number) for number in np.unique(part.program)]
     found = {number: np.array([programs[number].temperature_change(time) for time in time_s]) for number in used}
     if not len(part.names):
         return np.zeros((len(time_s), 0))
