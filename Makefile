@@ -9,7 +9,7 @@ configure = { test -e $(BUILD)/build.ninja || cmake --preset demo -B $(BUILD); }
             cmake $(foreach part,$(1),-DSTATEJUMP_BUILD_$(part)=ON) $(BUILD) >/dev/null
 compile = cmake --build $(BUILD) --parallel $(JOBS)
 
-.PHONY: demo build test bench package docs sanitize format clean
+.PHONY: demo build test quick bench package docs sanitize format clean
 demo:
 	./scripts/setup.sh run build
 	$(call configure)
@@ -26,6 +26,13 @@ test:
 	$(call configure,REPORT TESTS)
 	$(compile)
 	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
+
+# Both models and their tests of some seconds each.
+quick:
+	./scripts/setup.sh run build test
+	$(call configure,TESTS)
+	$(compile) --target demo
+	ctest --test-dir $(BUILD) -L quick -LE lint --output-on-failure --parallel $(JOBS) --no-tests=error
 
 bench:
 	./scripts/setup.sh run build bench

@@ -10,20 +10,25 @@
 # TLS, npm reaches no registry without them. The mirror is MIRROR, else that of the apt of this machine.
 
 make_debian() {
-  local release=$1 root=$2 codename mirror=${MIRROR:-}
+  local release=$1 root=$2 codename said mirror=${MIRROR:-}
   case $release in
     12) codename=bookworm ;;
     13) codename=trixie ;;
     testing) codename=testing ;;
     *) echo "release $release: 12, 13 or testing is needed" >&2; return 2 ;;
   esac
-  [[ $(id -u) -eq 0 ]] || { echo "needs root" >&2; return 2; }
-  command -v debootstrap >/dev/null || { echo "debootstrap is missing: apt-get install debootstrap" >&2; return 2; }
+  [[ $(id -u) -eq 0 ]] || { echo "needs root" >&2; return 1; }
+  command -v debootstrap >/dev/null || { echo "debootstrap is missing: apt-get install debootstrap" >&2; return 1; }
   [[ -n $mirror ]] || mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' | head -1)
   if [[ ! -e $root/etc/debian_version ]]; then
     # The script of unstable serves every newer release that this debootstrap does not know by name.
-    debootstrap --variant=minbase "$codename" "$root" "${mirror:-http://deb.debian.org/debian}" \
-      /usr/share/debootstrap/scripts/sid >/dev/null
+    if ! said=$(debootstrap --variant=minbase "$codename" "$root" "${mirror:-http://deb.debian.org/debian}" \
+      /usr/share/debootstrap/scripts/sid 2>&1); then
+      leave_debian "$root"
+      rm -rf --one-file-system "$root"
+      echo "debootstrap: $(echo "$said" | tail -n 1)" >&2
+      return 1
+    fi
   fi
   cp /etc/resolv.conf "$root/etc/resolv.conf"
   if compgen -G "/usr/local/share/ca-certificates/*.crt" >/dev/null; then

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The extension module: checks YADE's interface and registers the classes with the running YADE.
 // Adding a class is one entry in the list below.
+#include <boost/archive/basic_archive.hpp>
 #include <boost/make_shared.hpp>
 
 #include "bore.hpp"
@@ -75,6 +76,12 @@ double hertz_depth(double force, double effectiveRadius, double young, double po
       force);
 }
 
+// Of the files that this YADE's O.save writes; it changes with the version of Boost.
+unsigned archive_version() {
+  const auto version = boost::archive::BOOST_ARCHIVE_VERSION();
+  return version;
+}
+
 double stable_time_step_of_scene() {
   return stable_time_step(*yade::Omega::instance().getScene());
 }
@@ -135,6 +142,7 @@ BOOST_PYTHON_MODULE(_native) {
   namespace py = boost::python;
   py::def("setup", &statejump::dem::setup, py::arg("wrapper"));
   py::def("built_for", &statejump::yade_abi::built_for);
+  py::def("archive_version", &statejump::dem::archive_version);
   py::def("class_names", &statejump::dem::OurClasses::names);
   py::def(
       "bore_triangles", &statejump::dem::bore_triangles,

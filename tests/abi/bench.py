@@ -27,8 +27,6 @@ def add_options(parser: ArgumentParser) -> None:
     parser.add_argument("--variant", required=True, help="of the declared interface")
     parser.add_argument("--package", required=True, type=Path, help="Python part of the plugin")
     parser.add_argument("--include", action="append", default=[], help="Eigen, Python")
-    parser.add_argument("--boost-python", required=True, help="library name without lib")
-    parser.add_argument("--yade", required=True, type=Path, help="folder of libyade.so")
     parser.add_argument("--jobs", type=int, default=2)
 
 
@@ -84,10 +82,9 @@ class Compiler:
             capture_output=True, text=True, check=False)
         if done.returncode:
             return done.stderr
-        libraries = [str(self.options.yade / f"lib{name}.so") for name in ("yade", "pkg_common", "pkg_dem")]
-        self._run([self.options.compiler, "-shared", "-fopenmp", "-Wl,--allow-shlib-undefined",
-                   *map(str, objects or self.objects), str(declared), *libraries,
-                   f"-l{self.options.boost_python}", "-o", str(folder / "_native.so")])
+        # The YADE that loads it has all libraries open already; reading them here would take longer than compiling.
+        self._run([self.options.compiler, "-shared", "-fopenmp", *map(str, objects or self.objects), str(declared),
+                   "-o", str(folder / "_native.so")])
         return ""
 
 

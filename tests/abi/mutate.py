@@ -23,7 +23,7 @@ from bench import HEADERS, NO_ALIGNMENT, Compiler, Yade, add_options
 from mutations import Mutation, Random, named
 
 # Checks that neither call nor write anything of YADE's.
-HARMLESS = {"compiler", "size", "table", "getter", "coverage"}
+HARMLESS = {"compiler", "loader", "size", "table", "getter", "coverage"}
 
 
 class Examination:
@@ -58,7 +58,7 @@ class Examination:
             if "crash" in said:
                 return "crash", f"(status {said['crash']})", "YADE crashed"
             if "error" in said:  # a function that YADE does not have: the module cannot be loaded
-                return "compiler", said["error"], ""
+                return "loader", said["error"], ""
             if said["description"] == self.description:
                 return "", "", "changes nothing" if mutation.check else ""
             wrong = ""
@@ -121,7 +121,7 @@ def main() -> int:
     start = time.monotonic()
     failures = same = 0
     counts: collections.Counter[tuple[str, str]] = collections.Counter()
-    called = 0
+    called = crashes = elsewhere = 0
     with tempfile.TemporaryDirectory(prefix="statejump-abi-") as name:
         compiler = Compiler(options, Path(name))
         yade = Yade(Path(name))
@@ -134,15 +134,19 @@ def main() -> int:
         source = Random(compiler.headers, options.seed)
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
             waiting = {pool.submit(examination.examine, one): one for one in listed}
-            made = wanted = 0
+            made = 0
+            # Half of them where the list has none.
+            wanted = {True: options.random // 2, False: options.random - options.random // 2}
 
             def another() -> bool:
-                return wanted < options.random and time.monotonic() - start < options.seconds
+                return max(wanted.values()) > 0 and time.monotonic() - start < options.seconds
 
             while waiting or another():
                 while another() and len(waiting) < 2 * options.jobs:
-                    made, wanted = made + 1, wanted + 1
-                    one = source.mutation(made)
+                    in_list = wanted[True] > wanted[False]
+                    made += 1
+                    wanted[in_list] -= 1
+                    one = source.mutation(made, in_list)
                     waiting[pool.submit(examination.examine, one)] = one
                 done, _ = concurrent.futures.wait(waiting, return_when=concurrent.futures.FIRST_COMPLETED)
                 for task in done:
@@ -150,11 +154,13 @@ def main() -> int:
                     check, sentence, wrong = task.result()
                     if not check and not wrong:  # no mutation: make another one
                         same += 1
-                        wanted -= 1
+                        wanted[one.listed] += 1
                         continue
                     failures += bool(wrong)
                     counts[one.kind, check] += 1
                     called += check not in HARMLESS
+                    crashes += check == "crash"
+                    elsewhere += one.kind != "listed" and not one.listed
                     if wrong or one.kind == "listed":
                         print(f"{'FAILED' if wrong else 'ok':6} {one.name:38} {check:9} {sentence}"
                               + (f"  <-- {wrong}" if wrong else ""), flush=True)
@@ -166,8 +172,9 @@ def main() -> int:
     for kind in sorted({kind for kind, _ in counts}):
         row = [counts[kind, check] for check in checks]
         print(f"{kind:18}" + "".join(f"{count:10d}" for count in row) + f"{sum(row):10d}")
-    print(f"{sum(counts.values())} mutations, {failures} not as they should be; {called} were "
-          f"refused by checks that call YADE's functions on objects of the guard's own; "
+    print(f"{sum(counts.values())} mutations, {elsewhere} of them in parts of classes that the list leaves alone; "
+          f"{failures} not as they should be, {crashes} crashes; {called} were refused by checks that call YADE's "
+          f"functions on objects of the guard's own; "
           f"{same} edits changed nothing; {time.monotonic() - start:.0f} s")
     return 1 if failures else 0
 

@@ -20,6 +20,7 @@ class Mutation:
     changed: str
     check: str = ""  # which check of the guard is meant to see it; empty: any
     aligned: bool = False  # with Eigen's own alignment
+    listed: bool = False  # the list has an edit of the same part, members or table, of the same class
 
 
 # Name, header, class, edits inside of the class, and the check of the guard that has to see it.
@@ -150,6 +151,8 @@ RETYPED = {
     "std::string": ["std::array<char, 32>", "Quaternionr", "std::vector<char>"],
     "Scene*": ["Body*", "void*", "shared_ptr<Scene>"], "ForceContainer": ["Unused<304>", "Unused<296>"],
 }
+# Members or table of a class, as the list edits them: a mutation elsewhere is of no kind that was thought of.
+LISTED_PARTS = {(class_name, check == "table") for _, _, class_name, _, check in NAMED}
 HEADERS_OF_CLASSES = {
     "base": ["Serializable", "Indexable"],
     "core": ["Shape", "Bound", "Aabb", "State", "Material", "ElastMat", "FrictMat", "IGeom", "GenericSpheresContact",
@@ -180,14 +183,16 @@ class Random:
         self.places = [(header, one) for header, classes in HEADERS_OF_CLASSES.items() for one in classes]
         self.made: set[str] = set()
 
-    def mutation(self, number: int) -> Mutation:
-        """Return one that was not made before."""
+    def mutation(self, number: int, listed: bool) -> Mutation:
+        """Return one that was not made before, in a part that the list edits or in one that it does not."""
         kinds = {"member moved": self._moved, "member added": self._added, "member removed": self._removed,
                  "member retyped": self._typed, "entry exchanged": self._exchanged, "entry added": self._entry_added,
                  "entry removed": self._entry_removed, "size changed": self._size}
         while True:
             kind = self.choose.choice(list(kinds))
             header, class_name = self.choose.choice(self.places)
+            if ((class_name, kind.startswith("entry")) in LISTED_PARTS) != listed:
+                continue
             text = self.texts[header]
             start, end = class_range(text, class_name)
             changed = kinds[kind](text[start:end])
@@ -197,7 +202,7 @@ class Random:
             if whole in self.made:
                 continue
             self.made.add(whole)
-            return Mutation(f"{number:04d} {class_name}", kind, header, whole)
+            return Mutation(f"{number:04d} {class_name}", kind, header, whole, listed=listed)
 
     def _members(self, part: str) -> list[re.Match[str]]:
         return list(MEMBER.finditer(part))

@@ -32,6 +32,10 @@ if _difference:
         "it again on this machine, and if the build does not know this YADE, run scripts/measure_yade"
     )
 
+from .saved_files import explained as _explained  # noqa: E402
+
+_wrapper.Omega.load = _explained(_wrapper.Omega.load, _native.archive_version(), _native.built_for())
+
 stable_time_step, hertz_depth, take_failure = _native.stable_time_step, _native.hertz_depth, _native.take_failure
 bore_triangles, socket_triangles = _native.bore_triangles, _native.socket_triangles
 __all__ = [

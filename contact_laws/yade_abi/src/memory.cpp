@@ -62,13 +62,13 @@ const void* symbol(const std::string& name) {
 }
 
 const void* own_symbol(const std::string& name) {
-  Dl_info info;
-  if (!dladdr(reinterpret_cast<const void*>(&own_symbol), &info)) return nullptr;
-  void* module = dlopen(info.dli_fname, RTLD_LAZY | RTLD_NOLOAD);
-  if (!module) return nullptr;
-  const void* found = dlsym(module, name.c_str());
-  dlclose(module);
-  return found;
+  // Looked for once: the way from an address to its library is slow.
+  static void* const module = []() -> void* {
+    Dl_info info;
+    if (!dladdr(reinterpret_cast<const void*>(&own_symbol), &info)) return nullptr;
+    return dlopen(info.dli_fname, RTLD_LAZY | RTLD_NOLOAD);
+  }();
+  return module ? dlsym(module, name.c_str()) : nullptr;
 }
 
 Word table_pointer(const std::string& class_name) {

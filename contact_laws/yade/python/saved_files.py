@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""O.load of a file that another YADE saved: one sentence instead of what Boost.Serialization throws."""
+from __future__ import annotations
+
+import bz2
+import functools
+import gzip
+import re
+from pathlib import Path
+from typing import Any, Callable
+
+SIGNATURE = b"serialization::archive"
+OPENED_BY = {".gz": gzip.open, ".bz2": bz2.open}
+
+
+def archive_version(path: Path) -> int | None:
+    """Return the version of Boost's archive format that the file names at its beginning; None: it names none."""
+    try:
+        with OPENED_BY.get(path.suffix, open)(path, "rb") as stream:
+            head = stream.read(512)
+    except (OSError, EOFError):
+        return None
+    if written := re.search(SIGNATURE + rb'" version="(\d+)"', head):
+        return int(written[1])
+    place = head.find(SIGNATURE)
+    return int.from_bytes(head[place + len(SIGNATURE):][:2], "little") if place >= 0 else None
+
+
+def explained(load: Callable[..., None], own_version: int, built_for: str) -> Callable[..., None]:
+    """Return YADE's O.load, which then says when it failed at a file that another YADE saved.
+
+    :param own_version: version of the archives that this YADE writes
+    :param built_for: which YADE that is
+    :raises RuntimeError: the sentence; everything else that YADE raises passes unchanged
+    """
+    @functools.wraps(load, assigned=("__doc__",), updated=())
+    def explained_load(self: Any, file: str, *arguments: Any, **named: Any) -> None:
+        try:
+            load(self, file, *arguments, **named)
+        except Exception as error:
+            found = archive_version(Path(file))
+            if found in (None, own_version):
+                raise
+            raise RuntimeError(
+                f"{file} was saved by another YADE than this one, {built_for} (archive version {found}, here "
+                f"{own_version}); YADE reads files of its own version alone: load it in the YADE that saved it"
+            ) from error
+
+    return explained_load
