@@ -4,8 +4,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <thread>
 
+#include "statejump/geometry/mesh_failure.hpp"
 #include "statejump/kernel/require.hpp"
 
 namespace statejump::geometry {
@@ -19,7 +21,9 @@ constexpr int bore_columns = 256;
 constexpr int bore_rows = 33;
 constexpr int socket_columns = 96;
 constexpr int socket_rows = 49;
-constexpr int most_steps = 4096;  // faces on the way of follow()
+constexpr int most_steps = 4096;               // faces on the way of follow()
+constexpr double prominence_per_mismatch = 4;  // see BoreMesh::prominence()
+constexpr double least_prominence = 1e-12;     // [m]
 
 /// Runs work(begin, end) over 0..count in a few threads. The result must not depend on the split.
 template <class Work>
@@ -87,6 +91,7 @@ BoreMesh::Impl::Impl(Triangles given, const BoreOptions& options, const std::str
   tree.accelerate_distance_queries();
   estimate_error();
   make_grid();
+  refuse_coarse(name);
   make_hollow();
 }
 
@@ -192,12 +197,13 @@ void BoreMesh::Impl::estimate_error() {
       // Not half-way, where equal errors of both would cancel.
       const Vector3 point = 0.75 * a.origin + 0.25 * b.origin;
       const Vector3 normal = (a.normal + b.normal).normalized();
-      mismatch.push_back(std::abs(a.meet(point, normal, 0) - b.meet(point, normal, 0)));
+      const double apart = std::abs(a.meet(point, normal, 0) - b.meet(point, normal, 0));
+      mismatch.push_back(std::isnan(apart) ? std::numeric_limits<double>::infinity() : apart);
     }
   error = *std::max_element(mismatch.begin(), mismatch.end());
   const auto high = mismatch.begin() + static_cast<std::ptrdiff_t>(0.95 * double(mismatch.size()));
   std::nth_element(mismatch.begin(), high, mismatch.end());
-  prominence = 4 * *high + 1e-12;
+  prominence = prominence_per_mismatch * *high + least_prominence;
 }
 
 void BoreMesh::Impl::make_grid() {
@@ -251,6 +257,24 @@ void BoreMesh::Impl::make_grid() {
         if (std::abs(other - here) > largest_step) largest_step = std::abs(other - here);
     }
   grid.least = least - largest_step - prominence;
+}
+
+/// Refuses facets that leave open where the surface between them is. Known it must be to a fiftieth
+/// of the radius, which is the whole clearance of a wide joint, at 19 of 20 edges; sharp edges in
+/// the wall may be worse, but nowhere by half a radius, and nowhere may the polynomials run away.
+void BoreMesh::Impl::refuse_coarse(const std::string& name) const {
+  const double usual = (prominence - least_prominence) / prominence_per_mismatch;
+  const double allowed = 0.02 * wall.radius;
+  const bool is_near = std::all_of(grid.radius.begin(), grid.radius.end(), [&](double radius) {
+    return std::isnan(radius) || (radius > 0 && radius < 5 * wall.radius);
+  });
+  if (usual <= allowed && error <= 0.5 * wall.radius && is_near) return;
+  char text[192];
+  std::snprintf(text, sizeof text,
+                "the facets are too coarse: they leave the surface between them open by %.3g m, "
+                "allowed is %.3g m, a fiftieth of the mean radius; a cylinder needs 16 around",
+                std::max({usual, error, is_near ? 0 : wall.radius}), allowed);
+  throw MeshFailure(name, MeshFault::too_coarse, text);
 }
 
 void BoreMesh::Impl::make_hollow() {

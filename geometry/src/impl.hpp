@@ -94,6 +94,7 @@ struct BoreMesh::Impl {
   void make_grid();
   void make_hollow();
   void estimate_error();
+  void refuse_coarse(const std::string& name) const;
 };
 
 /// Principal curvatures (convex positive) and directions of a hit.

@@ -22,6 +22,9 @@ namespace pmp = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
+/// [m] Squares of areas beyond would overflow.
+constexpr double farthest = 1e60;
+
 std::string face_name(const Triangles& mesh, int face) {
   const auto& corner = mesh.faces[face];
   return "face " + std::to_string(face) + " (vertices " + std::to_string(corner[0]) + ", " +
@@ -38,6 +41,9 @@ void check_faces(const Triangles& mesh, const std::string& name) {
   for (int i = 0; i < count; ++i)
     if (!mesh.vertices[i].allFinite())
       refuse(name, "vertex " + std::to_string(i) + " is not finite");
+    else if (mesh.vertices[i].cwiseAbs().maxCoeff() > farthest)
+      refuse(name, "vertex " + std::to_string(i) + " at " + place(mesh.vertices[i]) +
+                       " is too far away for any joint");
   for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f) {
     for (const int corner : mesh.faces[f])
       if (corner < 0 || corner >= count)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 from pathlib import Path
 
 import numpy as np
@@ -118,6 +119,46 @@ def test_refusals(tmp_path: Path):
     missing = tmp_path / "none.stl"
     with pytest.raises(StatejumpError, match="cannot be opened"):
         bore.load(missing)
+
+
+@pytest.mark.parametrize(("name", "content", "cause"), [
+    ("bore.ply", "ply\nformat ascii 1.0\nelemen vertex 3\nproperty float x\nend_header\n",
+     "not readable as PLY: line 3 is no line of a PLY header"),
+    ("bore.ply", "ply\nformat ascii 1.0\nproperty float x\nelement vertex 3\nend_header\n",
+     "not readable as PLY: line 3 has a property before any element"),
+    ("bore.off", "OFF\n100000000 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0",
+     "not readable as OFF: it declares 100000000 vertices and 1 faces, which do not fit into its 39 bytes"),
+])
+def test_hostile_files(tmp_path: Path, name: str, content: str, cause: str):
+    file = tmp_path / name
+    file.write_text(content)
+    assert refusal(tmp_path, file) == f"{file}: {cause}"
+
+
+def test_pipe_is_not_opened(tmp_path: Path):
+    file = tmp_path / "bore.stl"
+    os.mkfifo(file)
+    with pytest.raises(StatejumpError, match="is no regular file"):
+        bore.load(file)
+
+
+def test_too_coarse(tmp_path: Path):
+    file = write_off(tmp_path / "three.off", *_engine.bore_triangles(RADIUS, 10e-3, 3, 2))
+    assert refusal(tmp_path, file).startswith(f"{file}: the facets are too coarse: ")
+
+
+def test_section_that_is_no_ring():
+    """Its circle's centre lies outside of it: seen from there it runs to and fro."""
+    angle = bore.angles_rad()
+
+    class Corner:
+        """What a section is measured on: two arms at right angles."""
+
+        def section_radii_m(self, z_m: float, count: int) -> np.ndarray:
+            return RADIUS * np.where((angle < 0.2) | (abs(angle - np.pi / 2) < 0.2), 1.0, 0.1)
+
+    with pytest.raises(StatejumpError, match="the bore's section at 0.001 m from its middle is no ring"):
+        bore.section(Corner(), 1e-3)  # type: ignore[arg-type]
 
 
 def test_journal_of_another_unit(tmp_path: Path):

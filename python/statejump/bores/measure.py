@@ -47,7 +47,7 @@ def angles_rad() -> np.ndarray:
 
 
 def section(mesh: _engine.BoreMesh, z_m: float) -> Section:
-    """Measure a section; StatejumpError where the wall has gaps."""
+    """Measure a section; StatejumpError where the wall has gaps or turns back about the centre of its circle."""
     radii = mesh.section_radii_m(z_m, ANGLES)
     if not np.all(np.isfinite(radii)):
         missing = float(np.degrees(angles_rad()[int(np.argmin(np.isfinite(radii)))]))
@@ -69,6 +69,10 @@ def section(mesh: _engine.BoreMesh, z_m: float) -> Section:
     # which is smooth and periodic.
     away = points - centre
     around = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
+    if not (np.all(np.diff(around) > 0) and around[-1] < around[0] + 2 * np.pi):
+        raise StatejumpError(
+            f"the bore's section at {z_m:.6g} m from its middle is no ring about the centre of its circle of least squares"
+        )
     distance = np.linalg.norm(away, axis=1)
     even = _resample(around, distance, angle)
     mean = float(np.mean(even))

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every refusal with its sentence, and the files that are read.
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdint>
@@ -282,13 +283,24 @@ TEST_F(BoreFiles, Refusals) {
   std::string file = write("empty.off", "");
   EXPECT_EQ(sentence(file), file + ": the file is empty");
   file = write("rubbish.off", "this is no mesh\n");
-  EXPECT_EQ(sentence(file), file + ": not readable as OFF");
-  file = write("cut.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n");
-  EXPECT_EQ(sentence(file), file + ": not readable as OFF");
+  EXPECT_EQ(sentence(file), file + ": not readable as OFF: line 1 does not begin with OFF");
   file = write("none.off", "OFF\n0 0 0\n");
   EXPECT_EQ(sentence(file), file + ": the mesh has no faces");
-  file = write("far.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
-  EXPECT_NE(sentence(file).find(file + ": "), std::string::npos);
+}
+
+TEST_F(BoreFiles, WhatIsNoFileIsNotOpened) {
+  const std::string pipe = path("pipe.off");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(refusal([&] { read_triangles(pipe); }), pipe + ": is no regular file");
+  std::remove(pipe.c_str());
+  const std::string zeros = path("zeros.stl");
+  ASSERT_EQ(::symlink("/dev/zero", zeros.c_str()), 0);
+  EXPECT_EQ(refusal([&] { read_triangles(zeros); }), zeros + ": is no regular file");
+  std::remove(zeros.c_str());
+  const std::string folder = path("folder.ply");
+  ASSERT_EQ(::mkdir(folder.c_str(), 0700), 0);
+  EXPECT_EQ(refusal([&] { read_triangles(folder); }), folder + ": is no regular file");
+  ::rmdir(folder.c_str());
 }
 
 TEST(BoreChecks, RefusalsAreTyped) {
@@ -320,13 +332,41 @@ TEST(BoreChecks, VertexWithManyNeighboursIsFittedToAllOfThem) {
   EXPECT_NEAR(bottom.curvature_1, bottom.curvature_2, 1e-6 / radius);
 }
 
-TEST(BoreChecks, VertexWithManyNeighboursBeyondCreasesIsFitted) {
-  // All neighbours of the bottom lie beyond a crease and are taken nevertheless, each of 150 from
-  // both of its faces: more than the 64 equations that fit on the stack.
+TEST(BoreChecks, TooCoarse) {
+  // Three to six facets around leave the polynomials open: they once returned depths of 1e7 m.
+  for (const int around : {3, 4, 5, 6})
+    for (const int along : {1, 2, 4, 20}) {
+      const std::string sentence = refusal(bore_triangles(round_bore(), around, along));
+      EXPECT_EQ(sentence.find("mesh: the facets are too coarse: they leave the surface between"),
+                0u)
+          << around << ' ' << along << ": " << sentence;
+    }
+  EXPECT_EQ(refusal(bore_triangles(round_bore(), 3, 2)),
+            "mesh: the facets are too coarse: they leave the surface between them open by 0.00765 "
+            "m, allowed is 0.000102 m, a fiftieth of the mean radius; a cylinder needs 16 around");
+  for (const int around : {7, 8, 9, 12, 16})
+    EXPECT_NO_THROW(BoreMesh(bore_triangles(round_bore(), around, 3))) << around;
+  // All neighbours of a cup's bottom lie beyond a crease and are taken nevertheless, each of 150
+  // from both of its faces: more than the 64 equations that fit on the stack.
   BoreOptions socket;
   socket.kind = SurfaceKind::socket;
-  const BoreMesh cup(socket_triangles(8e-3, 0.4, 150, 2), socket);
-  EXPECT_TRUE(std::isfinite(cup.largest_curvature()));
+  EXPECT_NE(refusal(socket_triangles(8e-3, 0.4, 150, 2), socket).find("too coarse"),
+            std::string::npos);
+}
+
+TEST(BoreChecks, HugeAndTinyCoordinates) {
+  BoreOptions any;
+  any.smallest_radius = 0;
+  any.largest_radius = INFINITY;
+  for (const double size : {1e-320, 1e-200, 1e-160, 1e63, 1e150, 1e300, 1e308}) {
+    Triangles mesh = tube();
+    for (auto& vertex : mesh.vertices) vertex *= size;
+    const std::string sentence = refusal(mesh, any);
+    EXPECT_EQ(sentence.find("mesh: "), 0u) << size << sentence;
+  }
+  Triangles mesh = tube();
+  mesh.vertices[5] = {1e61, 0, 0};
+  EXPECT_EQ(refusal(mesh), "mesh: vertex 5 at (1e+61, 0, 0) m is too far away for any joint");
 }
 
 }  // namespace

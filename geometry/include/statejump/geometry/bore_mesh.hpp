@@ -90,7 +90,8 @@ class BoreMesh {
   ///         corner that does not exist, a vertex that is not finite, a face without area, an edge
   ///         of three faces, a vertex where two sheets meet, several parts, a hole, faces that
   ///         intersect, normals that point away from the axis, a radius out of the range that
-  ///         options allow
+  ///         options allow, facets so coarse that they leave the surface open by a fiftieth of the
+  ///         radius (of a cylinder fewer than 7 around)
   explicit BoreMesh(Triangles triangles, const BoreOptions& options = {},
                     const std::string& name = "mesh");
 

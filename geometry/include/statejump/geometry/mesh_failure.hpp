@@ -15,6 +15,7 @@ enum class MeshFault : unsigned char {
   open,             ///< ends are missing or there are holes
   inside_out,       ///< normals point away from the axis or centre
   no_bore,          ///< the faces surround no axis or face no centre
+  too_coarse,       ///< too few facets to say where the true surface is
   too_large,        ///< mean radius above the largest
   too_small         ///< mean radius below the smallest
 };
@@ -34,6 +35,8 @@ inline const char* to_string(MeshFault fault) {
       return "inside_out";
     case MeshFault::no_bore:
       return "no_bore";
+    case MeshFault::too_coarse:
+      return "too_coarse";
     case MeshFault::too_large:
       return "too_large";
     case MeshFault::too_small:

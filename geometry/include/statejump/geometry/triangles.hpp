@@ -15,12 +15,13 @@ struct Triangles {
                                           ///< the normal points to
 };
 
-/// Reads OFF, STL (text or binary), PLY or OBJ with CGAL::IO; the name's ending says which.
+/// Reads OFF, STL (text or binary), PLY or OBJ; the name's ending says which.
 ///
-/// Equal vertices become one (STL has no shared ones) and polygons become triangles. Vertices and
-/// faces keep their order.
-/// @throws std::runtime_error with one sentence that starts with the file's name: no such file, an
-///         ending of another format, not readable as that format, or without faces
+/// The file may come from a stranger: pipes, devices and files of more than 2 GiB are refused, and
+/// so are counts that do not fit into the file. Equal vertices become one (STL has no shared ones)
+/// and polygons become triangles. Vertices and faces keep their order.
+/// @throws MeshFailure no such file, an ending of another format, not readable as that format (with
+///         the line of a text), corners that do not exist, vertices that are not finite, no faces
 Triangles read_triangles(const std::string& file);
 
 /// A wave on a round bore, r = R + amplitude cos(harmonic (theta - phase)).
