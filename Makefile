@@ -42,6 +42,7 @@ bench:
 	PYTHONPATH=$(BUILD)/python $(PYTHON) bench/umbrella.py --build $(BUILD)
 
 package: build
+	./scripts/setup.sh package
 	cd $(BUILD) && cpack
 
 docs:

@@ -7,7 +7,7 @@
 #     run     what the command needs, and so what the Debian package depends on
 #     build   compiling                             test    tests and checks
 #     page    bundling the page of the report       bench   benchmarks
-#                                                   docs    documentation
+#     package making the Debian package             docs    documentation
 #
 # A group is a file in scripts/packages. Does nothing when everything is there. Root and sudo alike.
 set -euo pipefail
