@@ -14,7 +14,8 @@ root_doc = "docs/index"
 breathe_default_project = "statejump"
 autodoc_typehints = "description"
 autodoc_member_order = "bysource"
-autodoc_default_options = {"undoc-members": False}
+# matplotlib writes a method "set" into every class of figures, with words in roles of its own.
+autodoc_default_options = {"undoc-members": False, "exclude-members": "set"}
 # Several kinds of cases have a Link, a Joint, ...: a type that is not unique stays text.
 suppress_warnings = ["ref.python"]
 myst_enable_extensions = ["dollarmath"]
