@@ -289,11 +289,7 @@ void bind_truss(py::module_& module) {
         options.cycle_ends_only = cycle_ends_only;
         options.progress = [&progress](double done) {
           py::gil_scoped_acquire lock;
-          // Ctrl-C ends the path; what was found so far is returned.
-          if (PyErr_CheckSignals() != 0) {
-            PyErr_Clear();
-            return false;
-          }
+          if (PyErr_CheckSignals() != 0) throw py::error_already_set();  // Ctrl-C
           return progress.is_none() || !progress(done).is(py::bool_(false));
         };
         truss::Path path;
@@ -322,8 +318,8 @@ void bind_truss(py::module_& module) {
       "  temperature_fraction\n\n"
       "Returns states and cycle_ends (dicts of arrays, first axis the state; axial force positive\n"
       "in compression), events, complete, solves, factorizations, unknowns, largest residuals.\n"
-      "progress(share) may return False to end the path early, as Ctrl-C does: complete is then\n"
-      "False. Raises ValueError for items out of range, RuntimeError that names joint or nodes "
+      "progress(share) may return False to end the path early: complete is then False. Raises "
+      "ValueError for items out of range, RuntimeError that names joint or nodes "
       "and\n"
       "temperature for mechanisms, unloaded joints and failed equilibrium.");
 }

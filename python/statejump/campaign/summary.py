@@ -13,7 +13,7 @@ from statejump import __version__
 from statejump.campaign.plan import Plan
 from statejump.campaign.sampling import Independent
 from statejump.campaign.tables import Table
-from statejump.core.tables import markdown, write_json, write_text
+from statejump.core.tables import markdown, write_json, write_markdown
 
 QUANTILES = (0.05, 0.5, 0.95)
 
@@ -78,7 +78,7 @@ def summary(campaign: Plan, table: Table) -> dict[str, Any]:
 
 def write_summary(campaign: Plan, found: Mapping[str, Any], folder: Path) -> list[Path]:
     """Write ``summary.md`` and ``summary.json`` and return their paths."""
-    return [write_text(folder / "summary.md", _lines(campaign, found)), write_json(folder / "summary.json", found)]
+    return [write_markdown(folder / "summary.md", _lines(campaign, found)), write_json(folder / "summary.json", found)]
 
 
 def shown(value: float | None) -> str:

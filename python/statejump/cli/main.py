@@ -3,19 +3,22 @@
 command is called. Exit statuses: docs/mistakes.md."""
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import traceback
 from collections.abc import Sequence
 from importlib import import_module
 from itertools import takewhile
+from pathlib import Path
 from typing import Any
 
 import click
 
 from statejump import __version__
+from statejump.cli import streams
 from statejump.core import errors
-from statejump.core.errors import Interrupted, StatejumpError, TolerancesMissed
+from statejump.core.errors import Interrupted, StatejumpError, TolerancesMissed, printable
 
 JSON = "--json"
 
@@ -83,7 +86,7 @@ def _told(error: BaseException, as_json: bool) -> int:
         failure = errors.fields("interrupted", "interrupted", Interrupted.exit_status)
     else:  # a fault of the program: status 1 would say that a tolerance is missed
         failure = errors.fields(
-            "internal", f"a fault of statejump itself: {type(error).__name__}: {error}", 2,
+            "internal", f"a fault of statejump itself: {type(error).__name__}: {error}", errors.INTERNAL_STATUS,
             remedy="run the command without --json for the traceback",
         )
         if not as_json:
@@ -92,15 +95,25 @@ def _told(error: BaseException, as_json: bool) -> int:
         click.echo(errors.to_json(failure), err=True)
     else:
         is_error = failure["kind"] not in (TolerancesMissed.kind, Interrupted.kind)
-        click.echo(("error: " if is_error else "") + failure["message"], err=True)
+        click.echo(printable(("error: " if is_error else "") + failure["message"]), err=True)
     status: int = failure["exit_status"]
     return status
 
 
+def _wants_json(arguments: Sequence[str]) -> bool:
+    return JSON in takewhile(lambda word: word.startswith("-"), arguments)
+
+
 def run(arguments: Sequence[str]) -> int:
     """Run the command with these arguments and return its exit status; failures go to standard error."""
-    as_json = JSON in takewhile(lambda word: word.startswith("-"), arguments)
+    as_json = _wants_json(arguments)
     try:
+        try:
+            Path.cwd()
+        except FileNotFoundError:
+            raise StatejumpError("the folder where the command was started does not exist any more") from None
+        # Figures go to files: a backend of windows that the environment names is none of ours, nor of YADE's.
+        os.environ["MPLBACKEND"] = "agg"
         cli.main(list(arguments), standalone_mode=False)
     except click.exceptions.Exit as end:
         return int(end.exit_code)
@@ -113,8 +126,25 @@ def _ended(number: int, frame: Any) -> None:
     sys.exit(128 + number)
 
 
+# Ended from outside, or by a terminal that is closed, it ends YADE and cleans up as on Ctrl-C.
+ENDING = (signal.SIGTERM, signal.SIGHUP)
+
+
 def main() -> None:
     """Entry point of the launcher."""
-    # Ended from outside, it ends YADE and cleans up as on Ctrl-C.
-    signal.signal(signal.SIGTERM, _ended)
-    sys.exit(run(sys.argv[1:]))
+    streams.install()
+    for number in ENDING:
+        if signal.getsignal(number) is not signal.SIG_IGN:  # as of nohup
+            signal.signal(number, _ended)
+    arguments = sys.argv[1:]
+    try:
+        # The launcher was started with these blocked: until now there was nobody to take them.
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, *ENDING})
+        status = run(arguments)
+    except KeyboardInterrupt as early:
+        status = _told(early, _wants_json(arguments))
+    lost = streams.finish()
+    if lost is not None:
+        told = _told(lost, _wants_json(arguments))
+        status = status or told
+    sys.exit(status)

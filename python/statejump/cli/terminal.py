@@ -16,7 +16,7 @@ from rich.table import Table
 from statejump.core.case import Case
 from statejump.core.comparison import Quantity, sides
 from statejump.core.errors import Interrupted
-from statejump.core.progress import counted, on_console
+from statejump.core.progress import console, counted, on_console
 from statejump.core.results_folder import Results
 from statejump.core.tables import Shown
 from statejump.kinds.loading import found_case, load_case
@@ -61,11 +61,10 @@ QUIET = click.option("--quiet", is_flag=True, help="Print errors only.")
 
 def make_console(quiet: bool) -> Console:
     """Return the console of a command."""
-    # Units stand in square brackets, which rich would take for styles.
-    console = Console(quiet=quiet, highlight=False, soft_wrap=True, markup=False)
-    if not console.is_terminal:  # a pipe or a log has no width: do not cut numbers short
-        console.width = 160
-    return console
+    made = console(quiet=quiet)
+    if not made.is_terminal:  # a pipe or a log has no width: do not cut numbers short
+        made.width = 160
+    return made
 
 
 def loaded(case_file: Path, *abilities: str) -> Case:

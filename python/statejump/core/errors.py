@@ -7,6 +7,7 @@ the same facts by name. Nothing ever reads a sentence back.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass
@@ -18,6 +19,16 @@ FIELDS = (
     "kind", "message", "file", "case", "item", "key", "value", "allowed", "time_s", "temperature_change_K", "joint",
     "nodes", "cause", "remedy", "exit_status",
 )
+
+
+# Of a fault of the program itself; EX_SOFTWARE of sysexits.h. 1 says that a tolerance is missed.
+INTERNAL_STATUS = 70
+_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f]")
+
+
+def printable(text: str) -> str:
+    """Return a text that a terminal takes as nothing but text: control characters but new lines as ``\\x1b``."""
+    return _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
 class _Absent:
@@ -310,4 +321,5 @@ def fields(kind: str, message: str, exit_status: int, **details: Any) -> dict[st
 
 def to_json(failure: dict[str, Any]) -> str:
     """Return the fields of a failure as one line."""
-    return json.dumps(failure, ensure_ascii=False, allow_nan=False)
+    line = json.dumps(failure, ensure_ascii=False, allow_nan=False)
+    return _CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", line)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import count
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from statejump.core.errors import printable
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -32,12 +34,23 @@ def shown(progress: bool | Tell, label: str) -> Iterator[Tell]:
             yield tell
 
 
+def console(**settings: Any) -> Console:
+    """Return a console of rich on which a text is nothing but text: no style, no control character of a title."""
+    from rich.console import Console
+    from rich.text import Text
+
+    class Plain(Console):
+        def render_str(self, text: str, *arguments: Any, **more: Any) -> Text:
+            return super().render_str(printable(text), *arguments, **more)
+
+    # Units stand in square brackets, which rich would take for styles.
+    return Plain(highlight=False, soft_wrap=True, markup=False, **settings)
+
+
 @contextmanager
 def bar(label: str) -> Iterator[Tell]:
     """Yield what moves a bar on a terminal, and prints a line every tenth elsewhere; on standard error."""
-    from rich.console import Console
-
-    with on_console(Console(stderr=True, highlight=False, soft_wrap=True, markup=False), label) as tell:
+    with on_console(console(stderr=True), label) as tell:
         yield tell
 
 

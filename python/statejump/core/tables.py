@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -96,6 +97,11 @@ def markdown(header: Sequence[str], rows: Iterable[Sequence[Any]], right: Iterab
     lines = ["| " + " | ".join(header) + " |",
              "|" + "|".join("---:" if place in places else "---" for place in range(len(header))) + "|"]
     return lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
+
+
+def write_markdown(path: Path, lines: Sequence[str]) -> Path:
+    """Write lines of Markdown and return the path. Markdown hands HTML on: what would begin an element becomes text."""
+    return write_text(path, [re.sub("<(?=[A-Za-z/!?])", "&lt;", line) for line in lines])
 
 
 def write_text(path: Path, lines: Sequence[str]) -> Path:

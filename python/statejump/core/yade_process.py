@@ -108,6 +108,7 @@ def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
             STATEJUMP_OUTPUT=str(output),
             PYTHONPATH=os.pathsep.join(filter(None, [modules, os.environ.get("PYTHONPATH")])),
             OMP_NUM_THREADS=str(threads),
+            HOME=os.environ.get("HOME") or str(folder),  # without, YADE does not start
             TMPDIR=str(folder),  # YADE's own temporary folder goes with ours
         )
         try:

@@ -18,7 +18,7 @@ from statejump.core.results_folder import Results
 from statejump.core.physics import axial_stiffness_N_per_m
 from statejump.core.progress import Tell, counted
 from statejump.core.run import Columns, Run, energy_residue_J
-from statejump.core.tables import markdown, write_rows, write_text
+from statejump.core.tables import markdown, write_rows, write_markdown
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.compare import DISSIPATED, STORED, largest_temperature
@@ -342,7 +342,7 @@ def write(case: UmbrellaCase, results: Sequence[Result], command: str, folder: P
             f"rounding {rounding_J(variant.case):.1e} J, corner {corner_W(variant.case):.3e} W times the step.", "",
             *markdown(header, map(_cells, result.rows)),
         ]
-    return [write_text(folder / "energy.md", lines), table]
+    return [write_markdown(folder / "energy.md", lines), table]
 
 
 def _cells(row: Row) -> list[str]:

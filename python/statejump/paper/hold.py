@@ -17,7 +17,7 @@ from statejump.core.figures import DEM, REDUCED, panels, save, style
 from statejump.core.results_folder import Results
 from statejump.core.progress import Tell, counted
 from statejump.core.run import Run
-from statejump.core.tables import markdown, write_csv, write_text
+from statejump.core.tables import markdown, write_csv, write_markdown
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.paper.common import made_by, refused
@@ -261,7 +261,7 @@ def write(case: UmbrellaCase, runs: Sequence[Hold], creep: Prediction, command: 
 
     header = ("law", "model", "steps/s", "angle at the end [\u00b0]", "largest slide [m]", f"after {SETTLED_s:g} s [m]",
               "creep rate [m/s]", "over predicted")
-    return [write_text(folder / "hold.md", [
+    return [write_markdown(folder / "hold.md", [
         f"# A loaded joint left alone: {case.title}", "",
         f"Made by `{command}`: {case.period_s:g} s, contact angle "
         f"{math.degrees(case.start.contact_angle_rad):.4f}\u00b0 at the start, \u03bc = "

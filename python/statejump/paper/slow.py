@@ -12,7 +12,7 @@ from statejump.core.figures import DEM, REDUCED, panels, save, style
 from statejump.core.results_folder import Results
 from statejump.core.progress import Tell, counted
 from statejump.core.run import Run
-from statejump.core.tables import markdown, write_rows, write_text
+from statejump.core.tables import markdown, write_rows, write_markdown
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.paper.common import made_by, refused
@@ -265,7 +265,7 @@ def write(
             lines.append(f"- quasi-static, {name}: θ2 {values[0]:.9e} rad, θ4 {values[1]:.9e} rad")
         lines += ["", *markdown(HEADER, [_cells(row) for row in rows if row.block == block.name]), "",
                   closing(block, rows)]
-    return [write_text(folder / "slow.md", lines), table]
+    return [write_markdown(folder / "slow.md", lines), table]
 
 
 HEADER = ("model", "T [s]", "θ2 jump [rad]", "difference", "predicted", "order", "θ4 jump [rad]", "difference",

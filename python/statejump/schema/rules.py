@@ -10,7 +10,7 @@ from typing import Any
 
 import attrs
 
-from statejump.core.errors import ABSENT, NotAllowed, Range
+from statejump.core.errors import ABSENT, NotAllowed, Range, printable
 
 FOLDER_NAME = "[A-Za-z0-9][A-Za-z0-9_-]*"
 # Types of values.
@@ -97,6 +97,8 @@ def _switch(rule: Rule, key: str, value: Any) -> None:
 def _text(rule: Rule, key: str, value: Any) -> None:
     if not isinstance(value, str):
         raise NotAllowed(key, value, "must be a text in quotes")
+    if not value.isprintable() and printable(value) != value:
+        raise NotAllowed(key, value, "must have no control characters")
     if rule.known is not None:
         check_name(key, value, rule.names)
     if rule.expression is not None and not re.fullmatch(rule.expression, value):

@@ -15,7 +15,7 @@ from statejump.core.errors import Interrupted
 from statejump.core.output import made_by
 from statejump.core.progress import Tell, one_of
 from statejump.core.run import Run
-from statejump.core.tables import markdown, write_rows, write_text
+from statejump.core.tables import markdown, write_rows, write_markdown
 from statejump.core.units import plain
 from statejump.kinds.spring_slider import compare, dem, reduced, stable_step
 from statejump.kinds.spring_slider.case import SpringSliderCase
@@ -67,7 +67,7 @@ class Convergence:
             f"Made by {made_by('statejump convergence', self.case)}.", "",
             *markdown(list(entries[0]), shown), "", *explanation(self),
         ]
-        return [write_rows(folder / "convergence.csv", entries), write_text(folder / "convergence.md", lines)]
+        return [write_rows(folder / "convergence.csv", entries), write_markdown(folder / "convergence.md", lines)]
 
 
 def _variant(case: SpringSliderCase, factor: float, **settings: Any) -> SpringSliderCase:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from statejump.core.tables import write_csv, write_json, write_text
+from statejump.core.tables import write_csv, write_json, write_markdown
 from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.paper.claims.findings import Findings
@@ -97,7 +97,7 @@ def write_claims(case: UmbrellaCase, command: str, findings: Findings, folder: P
         "findings": {key: value for key, value in asdict(findings).items() if key != "tests"},
     }
     write_json(folder / "ensembles.json", _plain(content), indent=1)
-    write_text(folder / "README.md", page(case.title, command, findings))
+    write_markdown(folder / "README.md", page(case.title, command, findings))
 
 
 def _write_table(path: Path, header: Sequence[str], rows: Iterator[Sequence[Any]]) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from statejump.core.figures import save
-from statejump.core.tables import markdown, write_json, write_text
+from statejump.core.tables import markdown, write_json, write_markdown
 from statejump.core.units import plain
 from statejump.kinds.truss.answers.rows import Row
 from statejump.kinds.truss.answers.study import Phase, TrussAnswers
@@ -23,7 +23,7 @@ def write(found: TrussAnswers, folder: Path, frames: int, phase: Phase) -> list[
     case, tables = found.case, found.tables
     written = [record.save("truss answers", case, {"reduced": found.run}, folder, answers=found.record),
                *(folder / f"{name}.csv" for name in tables),
-               write_text(folder / "answers.md", _markdown(found)),
+               write_markdown(folder / "answers.md", _markdown(found)),
                write_json(folder / "answers.json", _document(found), indent=1)]
     written += save(found.plot(), folder, "jumps")
     if found.shares is not None:
