@@ -105,7 +105,9 @@ temperature and, where it is known, what helps; its samples are dropped. This pa
 |---|---|
 | 0 | done |
 | 1 | done, and a tolerance of the case file is missed |
-| 2 | bad input, or a run that could not be finished |
+| 2 | bad input, a run that could not be finished, or results that could not be written |
+| 70 | a fault of the program itself, with a traceback; please report it |
+| 129 | ended by the terminal that was closed, as 143 |
 | 130 | interrupted by Ctrl-C; the message says what was kept |
 | 143 | ended by SIGTERM: nothing half-written is left, nothing is said |
 

@@ -90,8 +90,10 @@ class Case:
         return self._run("dem", "DEM", progress)
 
     def _run(self, ability: str, label: str, progress: Progress) -> Run:
+        from statejump.core.limits import check_memory
         from statejump.core.progress import shown
 
+        check_memory(self.definition, ability)
         model = self.definition.behaviour.ability(ability, self.definition)
         with shown(progress, label) as tell:
             run: Run = model(self.definition, tell)

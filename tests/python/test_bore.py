@@ -168,6 +168,9 @@ def test_journal_of_another_unit(tmp_path: Path):
         f"{file}: the bore's mean radius 0.051 m is 10.2 times the journal's 0.005 m: are the coordinates in "
         "millimetres? Then use --scale 0.001"
     )
+    assert refusal(tmp_path, file, "--journal-radius", "0.06") == (
+        f"{file}: --journal-radius = 0.06 is not allowed: the journal does not go into the bore of mean radius 0.051 m"
+    )
     assert refusal(tmp_path, file, "--journal-radius", "-1") == (
         "--journal-radius = -1.0 is not allowed: must be a number above 0 [m]"
     )

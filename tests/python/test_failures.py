@@ -148,7 +148,7 @@ ENDS = [
     (errors.TolerancesMissed(["state jump"], file="a.toml"), 1, "tolerance_missed"),
     (errors.Interrupted("interrupted; nothing was written"), 130, "interrupted"),
     (KeyboardInterrupt(), 130, "interrupted"),
-    (ZeroDivisionError("division by zero"), 2, "internal"),
+    (ZeroDivisionError("division by zero"), errors.INTERNAL_STATUS, "internal"),
 ]
 
 

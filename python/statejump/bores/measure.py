@@ -71,7 +71,8 @@ def section(mesh: _engine.BoreMesh, z_m: float) -> Section:
     around = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
     if not (np.all(np.diff(around) > 0) and around[-1] < around[0] + 2 * np.pi):
         raise StatejumpError(
-            f"the bore's section at {z_m:.6g} m from its middle is no ring about the centre of its circle of least squares"
+            f"the bore's section at {z_m:.6g} m from its middle is no ring about the centre of its circle of least "
+            "squares"
         )
     distance = np.linalg.norm(away, axis=1)
     even = _resample(around, distance, angle)
@@ -244,6 +245,9 @@ def measure(mesh: _engine.BoreMesh, name: str, journal_radius_m: float | None = 
                 f"the bore's mean radius {mesh.mean_radius_m:.6g} m is {ratio:.3g} times the journal's "
                 f"{journal_radius_m:.6g} m: are the coordinates in millimetres?", fault="too_large", file=name,
             )
+        if ratio <= 1:
+            raise NotAllowed("journal_radius_m", journal_radius_m, file=name,
+                             cause=f"the journal does not go into the bore of mean radius {mesh.mean_radius_m:.6g} m")
     half = (0.5 - MARGIN) * mesh.length_m
     sections = tuple(section(mesh, float(z)) for z in np.linspace(-half, half, SECTIONS))
     return Bore(name, mesh, sections, journal_radius_m)

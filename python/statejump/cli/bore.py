@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from statejump.cli.terminal import QUIET, RESULTS, make_console, print_shown
+from statejump.core.errors import NotAllowed
 from statejump.core.results_folder import Results
 
 # The settings of the library as options of the command.
@@ -37,6 +38,9 @@ def bore_command(
     check_journal("--journal-radius", journal_radius)
     try:
         bore = measured(file, unit_m=scale, journal_radius_m=journal_radius, flip=flip)
+    except NotAllowed as refused:
+        refused.key = "--journal-radius"
+        raise
     except NoBore as failure:
         failure.remedy = OPTIONS.get(failure.fault)
         raise

@@ -13,6 +13,7 @@ from statejump.cli.terminal import (
 )
 from statejump.case import Case
 from statejump.core.errors import Interrupted, TolerancesMissed
+from statejump.core.limits import check_memory, history_of
 from statejump.core.results_folder import Results, ResultsFolder
 from statejump.core.run import Run
 
@@ -25,6 +26,13 @@ def _told(case: Case, runs: dict[str, Run], console: Console) -> None:
 def _warn(runs: dict[str, Run], console: Console) -> None:
     for warning in dict.fromkeys(warning for run in runs.values() for warning in run.warnings):
         console.print(f"warning: {warning}")
+
+
+def _check(case: Case, folder: ResultsFolder, *models: str) -> None:
+    """Refuse what the machine has no memory or no room for, before anything is computed."""
+    for model in models:
+        check_memory(case.definition, model)
+    folder.check_space(sum(history_of(case.definition, model).disk_bytes for model in models))
 
 
 def _finish(model: str, case: Case, run: Run, folder: ResultsFolder, console: Console) -> None:
@@ -52,6 +60,7 @@ def reduced_command(case_file: Path, results: Results, quiet: bool) -> None:
     console = make_console(quiet)
     case = Case(loaded(case_file, "reduced"))
     with results.folder(case.name) as folder:
+        _check(case, folder, "reduced")
         with progress(console, "reduced model") as tell:
             run = case.reduced(tell)
         _finish("reduced", case, run, folder, console)
@@ -85,6 +94,7 @@ def dem_command(case_file: Path, results: Results, quiet: bool) -> None:
     console = make_console(quiet)
     case = Case(loaded(case_file, "dem_input"))
     with results.folder(case.name) as folder:
+        _check(case, folder, "dem")
         _finish("dem", case, _dem("dem", case, {}, folder, console), folder, console)
 
 
@@ -118,6 +128,7 @@ def _compare_case(case_file: Path, results: Results, console: Console) -> None:
 
     case = Case(loaded(case_file, "compare", "dem_input"))
     with results.folder(case.name) as folder:
+        _check(case, folder, "reduced", "dem")
         with progress(console, "reduced model") as tell:
             reduced = case.reduced(tell)
         dem = _dem("compare", case, {"reduced": reduced}, folder, console)

@@ -16,7 +16,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from statejump.core.errors import NotWritten
+from statejump.core.errors import NotWritten, size
 from statejump.core.output import PARTIAL, check_target, not_written, synced, unique
 
 READY = ".ready"
@@ -152,17 +152,6 @@ def _recover(path: Path) -> None:
     for left in path.glob(f".*{PARTIAL}"):
         if left.is_dir():
             shutil.rmtree(left)
-
-
-def size(count: float) -> str:
-    """Return a number of bytes for a sentence."""
-    for unit in ("bytes", "kB", "MB", "GB"):
-        if count < 1000:
-            break
-        count /= 1000
-    else:
-        unit = "TB"
-    return f"{count:.3g} {unit}"
 
 
 def _unusable(path: Path, cause: str, remedy: str, what: str = "cannot be written") -> NotWritten:

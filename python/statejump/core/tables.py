@@ -17,6 +17,9 @@ from statejump.core.errors import Unreadable
 from statejump.core.output import write_atomically
 
 
+BLOCK = 4096  # rows that are written at once
+
+
 def _cell(value: Any) -> Any:
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
@@ -46,11 +49,13 @@ def write_rows(path: Path, rows: Sequence[Mapping[str, Any]], header: Sequence[s
 
 def write_columns(columns: Mapping[str, np.ndarray], path: Path) -> None:
     """Write columns of equal length; NaN stays ``nan``, for it is a value that a model gave."""
-    rows = zip(*(values.tolist() for values in columns.values()))
+    length = max((len(values) for values in columns.values()), default=0)
     with write_atomically(path) as stream:
         writer = csv.writer(stream)
         writer.writerow(columns)
-        writer.writerows([value if isinstance(value, str) else repr(value) for value in row] for row in rows)
+        for start in range(0, length, BLOCK):  # as numbers of Python a column takes four times the memory
+            rows = zip(*(values[start:start + BLOCK].tolist() for values in columns.values()))
+            writer.writerows([value if isinstance(value, str) else repr(value) for value in row] for row in rows)
 
 
 def read_columns(path: Path) -> dict[str, np.ndarray]:

@@ -96,6 +96,10 @@ class Kind(Generic[CaseType]):
         needed = {"reduced": "reduced", "dem": "dem_run"}
         return tuple(model for model in self.OUTCOMES_OF if self.can(needed[model]))
 
+    def samples(self, case: CaseType, model: str) -> int:
+        """Return how many samples a run of a model has."""
+        return case.samples_per_cycle * case.thermal.cycles + 1
+
     def scene_module(self) -> str:
         """Return the module that builds the scene in YADE."""
         return self.SCENE or f"scene_{self.name}"

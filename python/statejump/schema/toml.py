@@ -6,7 +6,9 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from statejump.core.errors import Unreadable
+from statejump.core.errors import Unreadable, size
+
+LARGEST_BYTES = 1 << 28  # a truss of 100 000 joints has a tenth of it
 
 
 def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
@@ -16,7 +18,11 @@ def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
     :raises Unreadable: one sentence with the file and, if it is not TOML, the line
     """
     try:
-        text = Path(path).read_bytes().decode("utf-8")
+        with Path(path).open("rb") as stream:
+            content = stream.read(LARGEST_BYTES + 1)  # a device has no end
+        if len(content) > LARGEST_BYTES:
+            raise Unreadable("cannot be read", cause=f"it is larger than {size(LARGEST_BYTES)}", file=path)
+        text = content.decode("utf-8")
     except FileNotFoundError:
         raise Unreadable(f"no such {what} file", file=path) from None
     except UnicodeDecodeError:
@@ -28,6 +34,10 @@ def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
     except tomllib.TOMLDecodeError as failure:
         reason, line = _reason(failure, text)
         raise Unreadable(f"not TOML, line {line}", cause=reason, file=path) from None
+    except RecursionError:
+        raise Unreadable("not TOML", cause="tables or lists stand too deeply in each other", file=path) from None
+    except ValueError as failure:  # what Python refuses to make a number of
+        raise Unreadable("not TOML", cause=" ".join(str(failure).split(";")[0].split()), file=path) from None
 
 
 def _reason(failure: tomllib.TOMLDecodeError, text: str) -> tuple[str, int]:

@@ -63,6 +63,11 @@ class SpringSlider(Kind[SpringSliderCase]):
 
         return reduced.run(case, tell)
 
+    def samples(self, case: SpringSliderCase, model: str) -> int:
+        from statejump.kinds.spring_slider import reduced
+
+        return len(reduced.sample_times(case)) if model == "reduced" else super().samples(case, model)
+
     def dem_input(self, case: SpringSliderCase) -> dict[str, Any]:
         from statejump.kinds.spring_slider import dem
 

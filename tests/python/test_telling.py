@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The door through which commands tell: whatever becomes of it, the run and its files are complete, and the status is
+that of the run. 1 says that a tolerance is missed and nothing else."""
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conftest import COMMAND
+from statejump import load
+from statejump.cli import streams
+from statejump.core import errors
+from statejump.core.errors import printable
+from statejump.core.progress import console
+from statejump.core.tables import write_markdown
+
+FILES = ["reduced.h5", "reduced_history.csv"]
+
+
+def shell(line: str, folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run a line of the shell; ``statejump`` in it is the command."""
+    return subprocess.run(
+        ["bash", "-c", f'statejump() {{ "{COMMAND}" "$@"; }}\n{line}'], cwd=folder, text=True, timeout=200,
+        env={**os.environ, **environment}, capture_output=True, stdin=subprocess.DEVNULL, errors="replace",
+    )
+
+
+def written(folder: Path) -> list[str]:
+    return sorted(entry.name for entry in (folder / "results" / "table1").iterdir())
+
+
+@pytest.mark.parametrize("output, status, said", [
+    ("| head -c 1 > /dev/null; exit ${PIPESTATUS[0]}", 0, ""),
+    ("| true; exit ${PIPESTATUS[0]}", 0, ""),
+    (">&-", 0, ""), ("2>&-", 0, ""), (">&- 2>&- <&-", 0, ""), ("2>/dev/full", 0, ""),
+    (">/dev/full", 2, "error: standard output cannot be written: No space left on device\n"),
+])
+def test_run_survives_what_becomes_of_its_output(cases: Path, tmp_path: Path, output: str, status: int, said: str) -> None:
+    done = shell(f"statejump reduced {cases}/table1.toml {output}", tmp_path)
+    assert (done.returncode, done.stderr) == (status, said)
+    assert written(tmp_path) == FILES
+
+
+@pytest.mark.parametrize("where", ["2>&-", "2>/dev/full", "2> >(true)"])
+def test_failure_keeps_its_status_where_nobody_hears_it(tmp_path: Path, where: str) -> None:
+    for words in ("reduced nowhere.toml", "--json reduced nowhere.toml", "frobnicate"):
+        assert shell(f"statejump {words} {where}", tmp_path).returncode == 2, words
+
+
+@pytest.mark.parametrize("environment", [
+    {"PYTHONIOENCODING": "ascii"}, {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+    {"MPLBACKEND": "nonsense"}, {"TERM": "nonsense"}, {"COLUMNS": "x"},
+], ids=lambda given: "-".join(given))
+def test_run_survives_its_environment(cases: Path, tmp_path: Path, environment: dict[str, str]) -> None:
+    (tmp_path / "time 1-2 s.toml").write_text((cases / "table1.toml").read_text())
+    done = shell("statejump reduced 'time 1-2 s.toml'; statejump laws --quiet", tmp_path, **environment)
+    assert (done.returncode, done.stderr) == (0, ""), done.stderr
+    assert "state jump: 2.38095" in done.stdout and written(tmp_path) == FILES
+    refused = shell("statejump reduced 'time 1-2 s ΔT.toml'", tmp_path, **environment)
+    assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "no such case file" in refused.stderr
+
+
+def test_folder_that_was_deleted(cases: Path, tmp_path: Path) -> None:
+    done = shell(f"mkdir gone && cd gone && rmdir ../gone && statejump dem {cases}/table1.toml --results {tmp_path}", tmp_path)
+    assert done.returncode == 2
+    assert done.stderr == "error: the folder where the command was started does not exist any more\n"
+
+
+def test_home_that_is_not_set(cases: Path, tmp_path: Path, fake_yade) -> None:
+    """YADE does not start without; it gets its own temporary folder."""
+    yade = fake_yade('test -d "$HOME" || exit 7\ntest "$HOME" = "$TMPDIR" || exit 8\nexit 9\n')
+    done = shell(f"unset HOME; statejump dem {cases}/table1.toml", tmp_path, STATEJUMP_YADE=yade)
+    assert "YADE ended with status 9" in done.stderr
+
+
+@pytest.mark.parametrize("number, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+@pytest.mark.parametrize("delay_s", [0.0, 0.1, 0.4])
+def test_signal_while_it_starts(cases: Path, tmp_path: Path, number: int, status: int, delay_s: float) -> None:
+    # A first byte of standard input is waited for, so that the command cannot be over before it is signalled.
+    os.mkfifo(tmp_path / "pipe.toml")
+    run = subprocess.Popen([COMMAND, "reduced", "/dev/stdin"], cwd=tmp_path, text=True, stdin=subprocess.PIPE,
+                           stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    with pytest.raises(subprocess.TimeoutExpired):
+        run.wait(timeout=0.05 + delay_s)
+    run.send_signal(number)
+    _, said = run.communicate(timeout=60)
+    assert run.returncode in (status, -number) and "Traceback" not in said
+    assert run.returncode == status or number != signal.SIGINT
+    assert said == ("interrupted\n" if number == signal.SIGINT else "")
+
+
+@pytest.mark.parametrize("number, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize("phase", ["path", "contributions", "sensitivities"])
+def test_signal_while_the_engine_is_at_work(
+    cases: Path, tmp_path: Path, number: int, status: int, phase: str
+) -> None:
+    """The engine hands a signal on to Python; a path that it ends is no result."""
+    run = subprocess.Popen(
+        [COMMAND, "truss", "answers", str(cases / "trusses/ring_12.toml")], cwd=tmp_path, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    )
+    assert run.stdout is not None
+    for line in run.stdout:
+        if phase in line:
+            break
+    run.send_signal(number)
+    _, said = run.communicate(timeout=200)
+    assert run.returncode == status, said
+    assert said == ("interrupted; nothing was written\n" if number == signal.SIGINT else "")
+    assert list((tmp_path / "results" / "ring_12").iterdir()) == []
+
+
+def test_internal_fault_has_a_status_of_its_own(tmp_path: Path) -> None:
+    """Also where the fault comes while a failure is told, or before there is anybody to tell it."""
+    launcher = Path(COMMAND).read_text()
+    for broken in ("import statejump.cli.main as cli; cli._told = None; cli.cli = None", "raise MemoryError"):
+        script = tmp_path / "broken.py"
+        script.write_text(launcher.replace("from statejump.cli.main import main", f"{broken}\nfrom statejump.cli.main import main"))
+        done = subprocess.run([sys.executable, str(script), "reduced", "x"], capture_output=True, text=True)
+        assert done.returncode == errors.INTERNAL_STATUS and "Traceback" in done.stderr
+
+
+ODD = "a\x1b[31mred\x9b1m\x07\x00"
+
+
+@pytest.mark.parametrize("key", ["title", "source"])
+def test_control_characters_are_refused_in_texts(cases: Path, key: str) -> None:
+    with pytest.raises(errors.NotAllowed) as refused:
+        load(cases / "table1.toml").changed({f"case.{key}": ODD})
+    assert "must have no control characters" in str(refused.value)
+    assert printable(str(refused.value)) == str(refused.value)
+
+
+def test_control_characters_do_not_reach_the_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from statejump.cli.terminal import print_table
+    from statejump.core.tables import Shown
+
+    shown = console(force_terminal=True, width=100, color_system=None)
+    shown.print(ODD)
+    print_table(Shown(ODD, (ODD, "b"), [(ODD, "1")]), shown)
+    said = capsys.readouterr().out
+    assert "\x1b[31m" not in said and "\x9b" not in said and "\x07" not in said and "\x00" not in said
+    assert said.count("\\x1b[31mred") == 4
+    done = subprocess.run([COMMAND, "reduced", "a\x1b[31m.toml"], capture_output=True, text=True, cwd=tmp_path)
+    assert done.stderr == "error: a\\x1b[31m.toml: no such case file\n"
+    done = subprocess.run([COMMAND, "--json", "reduced", "a\x9b\x1b[31m.toml"], capture_output=True, text=True, cwd=tmp_path)
+    assert "\x9b" not in done.stderr and json.loads(done.stderr)["file"] == "a\x9b\x1b[31m.toml"
+
+
+def test_markdown_holds_no_html(tmp_path: Path) -> None:
+    lines = ["# <script>alert(1)</script>", "a < 1, b <c>, <!-- -->, 1<2"]
+    text = write_markdown(tmp_path / "a.md", lines).read_text()
+    assert text == "# &lt;script>alert(1)&lt;/script>\na < 1, b &lt;c>, &lt;!-- -->, 1<2\n"
+
+
+def test_stream_that_is_lost_is_lost_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Broken:
+        encoding = "utf-8"
+
+        def write(self, text: str) -> int:
+            raise OSError(5, "Input/output error")
+
+        def fileno(self) -> int:
+            return 1000
+
+    def none(*arguments: Any) -> None:
+        pass
+
+    monkeypatch.setattr(streams.os, "dup2", none)
+    stream = streams.Stream(Broken())  # type: ignore[arg-type]
+    assert stream.write("abc") == 3 and stream.lost is not None and stream.lost.errno == 5
+    assert streams.Stream(None).write("abc") == 3
