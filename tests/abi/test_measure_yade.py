@@ -123,6 +123,30 @@ def test_a_changed_binary_is_found(tmp_path: Path, reference: variants.Interface
     assert f"size of FrictPhys: {size + 8} bytes, {size} in" in done.stdout
 
 
+def test_a_member_that_the_binary_has_elsewhere_is_found(tmp_path: Path):
+    """A YADE whose getter and setter of State.vel look 8 bytes further on, with the build identifiers of the known."""
+    folder = tmp_path / FOLDER.relative_to("/usr")
+    folder.mkdir(parents=True)
+    for file in FOLDER.iterdir():
+        (folder / file.name).symlink_to(file)
+    library = binary.Library(FOLDER / "libyade.so")
+    symbol = library.by_name["_ZN4yade5State15pyRegisterClassEN5boost6python3api6objectE"]
+    code = library.bytes_at(symbol.address, symbol.size)
+    changed = code
+    for load in (b"\xb9", b"\xba"):  # mov $144, %ecx and %edx
+        assert code.count(load + (144).to_bytes(4, "little")) == 1
+        changed = changed.replace(load + (144).to_bytes(4, "little"), load + (152).to_bytes(4, "little"))
+    assert library.data.count(code) == 1
+    (folder / "libyade.so").unlink()
+    (folder / "libyade.so").write_bytes(library.data.replace(code, changed))
+    command = f"env YADE_PREFIX={tmp_path} LD_LIBRARY_PATH={folder} yade"
+    done = subprocess.run([str(SCRIPTS / "measure_yade"), str(folder), "--yade", command], capture_output=True,
+                          text=True, check=False)
+    assert done.returncode == 1, done.stderr
+    listed = done.stdout.split("differences from it:\n")[1].splitlines()
+    assert len(listed) == 1 and listed[0].startswith("  State.vel: at 152, ")
+
+
 def test_the_command_names_the_variant(tmp_path: Path):
     done = subprocess.run([str(SCRIPTS / "measure_yade"), str(FOLDER), "--variant-only"], capture_output=True,
                           text=True, check=False, cwd=tmp_path)
