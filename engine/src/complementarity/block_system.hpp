@@ -24,6 +24,8 @@ class BlockSystem {
  public:
   BlockSystem(const ScaledProblem& problem, const BlockRows& rows);
 
+  /// Whether the matrix is regular to rounding.
+  bool regular() const { return regular_; }
   /// Solution r of (A W + B) r = c, with zero for the contacts that take no part; nothing if the
   /// equations are singular to rounding.
   /// @param c one block for each contact that takes part

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "block_system.hpp"
@@ -13,13 +14,27 @@ namespace {
 
 /// Share of the way to the cone's boundary that a step goes.
 constexpr double share_of_way = 0.995;
-/// A shorter step gets nowhere.
-constexpr double shortest_step = 1e-8;
+/// Least share of the present gap that a corrector aims at.
+constexpr double least_centring = 1e-3;
+/// A shorter step is taken for a sign of contacts that are off the centre.
+constexpr double short_step = 0.1;
+/// Compliance, over the mean one, that makes a singular system regular: tried from the least on.
+constexpr double least_added = 1e-14;
+constexpr double most_added = 1e-7;
+/// Share of the present gap that is then aimed at.
+constexpr double centring_after_short_step = 0.5;
 
 /// Determinant of Lorentz' cone, without cancellation of squares.
 double determinant(const Block& x) {
   const double size = x.tail<2>().norm();
   return (x[0] - size) * (x[0] + size);
+}
+
+/// x, with x_n a few roundings larger where rounding has put it on the boundary.
+Block kept_inside(Block x) {
+  constexpr double roundings = 8.0 * std::numeric_limits<double>::epsilon();
+  x[0] = std::max(x[0], x.tail<2>().norm() * (1.0 + roundings));
+  return x;
 }
 
 /// Jordan product.
@@ -58,8 +73,10 @@ double step_to_boundary(const Block& x, const Block& dx, double most) {
   return step;
 }
 
+}  // namespace
+
 /// Nesterov's and Todd's scaling of a pair: P x = P^-1 z = lambda.
-struct Scaling {
+struct InteriorPoint::Scaling {
   Scaling(const Block& x, const Block& z) {
     const double dx = std::sqrt(determinant(x));
     const double dz = std::sqrt(determinant(z));
@@ -84,161 +101,148 @@ struct Scaling {
   Block lambda;
 };
 
-/// Contact in the variables of the cone.
-struct Cone {
-  int size;  ///< Numbers that are sought: one without friction.
-  Block d;   ///< Diagonal D.
-  Block x;
-  Block z;
-};
+InteriorPoint::InteriorPoint(const ScaledProblem& problem) : problem_(problem) {
+  for (Eigen::Index i = 0; i < problem.contacts(); ++i) {
+    const double mu = problem.mu()[i];
+    Cone cone;
+    cone.size = mu > 0.0 ? problem.dimension() : 1;
+    cone.d = Block::Constant(mu > 0.0 && mu < 1.0 ? mu : 1.0);
+    cone.d[0] = mu > 1.0 ? 1.0 / mu : 1.0;
+    cone.x = Block::Zero();
+    cone.x[0] = 1.0;
+    cone.z = cone.x;
+    cones_.push_back(cone);
+  }
+}
 
-class InteriorPoint {
- public:
-  explicit InteriorPoint(const ScaledProblem& problem) : problem_(problem) {
-    for (Eigen::Index i = 0; i < problem.contacts(); ++i) {
-      const double mu = problem.mu()[i];
-      Cone cone;
-      cone.size = mu > 0.0 ? problem.dimension() : 1;
-      cone.d = Block::Constant(mu > 0.0 && mu < 1.0 ? mu : 1.0);
-      cone.d[0] = mu > 1.0 ? 1.0 / mu : 1.0;
-      cone.x = Block::Zero();
-      cone.x[0] = 1.0;
-      cone.z = cone.x;
-      cones_.push_back(cone);
+Eigen::VectorXd InteriorPoint::reactions() const {
+  Eigen::VectorXd r = Eigen::VectorXd::Zero(problem_.q().size());
+  for (std::size_t i = 0; i < cones_.size(); ++i) {
+    set_block(r, static_cast<Eigen::Index>(i), problem_.dimension(),
+              cones_[i].d.cwiseProduct(cones_[i].x));
+  }
+  return r;
+}
+
+double InteriorPoint::advance() {
+  const std::size_t count = cones_.size();
+  const int d = problem_.dimension();
+  const Eigen::VectorXd u = problem_.times(reactions()) + problem_.q();
+  std::vector<Scaling> scalings;
+  std::vector<Block> residuals(count);
+  std::vector<BlockMatrix> a(count);
+  std::vector<Block> squares(count);
+  double gap = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Cone& cone = cones_[i];
+    scalings.emplace_back(cone.x, cone.z);
+    squares[i] = product(scalings[i].lambda, scalings[i].lambda);
+    gap += cone.x.dot(cone.z);
+    const double slip = cone.z.tail<2>().norm();
+    residuals[i] = cone.z - cone.d.cwiseProduct(block_of(u, static_cast<Eigen::Index>(i), d));
+    residuals[i].tail(3 - cone.size).setZero();
+    residuals[i][0] -= slip;
+    a[i] = BlockMatrix::Identity();
+    if (slip > 0.0) a[i].row(0).tail<2>() -= cone.z.tail<2>() / slip;
+  }
+  gap /= static_cast<double>(count);
+  const BlockSystem system = factored(scalings, a);
+
+  // Predictor: straight to the boundary.
+  std::vector<Block> aims(count);
+  for (std::size_t i = 0; i < count; ++i) aims[i] = -squares[i];
+  Direction direction;
+  if (!solve(system, scalings, a, residuals, aims, direction)) return 0.0;
+  const double affine = std::min(1.0, longest_step(direction));
+  double affine_gap = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    affine_gap +=
+        (cones_[i].x + affine * direction.dx[i]).dot(cones_[i].z + affine * direction.dz[i]);
+  }
+  affine_gap /= static_cast<double>(count);
+
+  // Corrector: centred the more, the less of the way the predictor went.
+  const double ratio = std::clamp(affine_gap / gap, 0.0, 1.0);
+  const double sigma = std::max(ratio * ratio * ratio, least_centring);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Block scaled_dx = scalings[i].p * direction.dx[i];
+    // P^-1 dz = v - P dx, with v of the predictor -lambda.
+    aims[i] -= product(scaled_dx, -scalings[i].lambda - scaled_dx);
+    aims[i][0] += sigma * gap;
+  }
+  if (!solve(system, scalings, a, residuals, aims, direction)) return 0.0;
+  double step = std::min(1.0, share_of_way * longest_step(direction));
+  if (step < short_step) {
+    // Some contacts have come too close to the boundary: back to the centre, without second order.
+    for (std::size_t i = 0; i < count; ++i) {
+      aims[i] = -squares[i];
+      aims[i][0] += centring_after_short_step * gap;
+    }
+    Direction centring;
+    if (!solve(system, scalings, a, residuals, aims, centring)) return 0.0;
+    const double other = std::min(1.0, share_of_way * longest_step(centring));
+    if (other > step) {
+      step = other;
+      direction = std::move(centring);
     }
   }
-
-  Eigen::VectorXd reactions() const {
-    const int d = problem_.dimension();
-    Eigen::VectorXd r = Eigen::VectorXd::Zero(problem_.q().size());
-    for (std::size_t i = 0; i < cones_.size(); ++i) {
-      set_block(r, static_cast<Eigen::Index>(i), d, cones_[i].d.cwiseProduct(cones_[i].x));
-    }
-    return r;
+  for (std::size_t i = 0; i < count; ++i) {
+    cones_[i].x = kept_inside(cones_[i].x + step * direction.dx[i]);
+    cones_[i].z = kept_inside(cones_[i].z + step * direction.dz[i]);
   }
+  return step;
+}
 
-  /// One predictor-corrector step about the velocities of the present reactions; its length.
-  double advance(const Eigen::VectorXd& u, int& counted) {
-    const std::size_t count = cones_.size();
-    const int d = problem_.dimension();
-    std::vector<Scaling> scalings;
-    std::vector<Block> residuals(count);
-    std::vector<BlockMatrix> a(count);
-    double gap = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Cone& cone = cones_[i];
-      scalings.emplace_back(cone.x, cone.z);
-      gap += cone.x.dot(cone.z);
-      const double slip = cone.z.tail<2>().norm();
-      residuals[i] = cone.z - cone.d.cwiseProduct(block_of(u, static_cast<Eigen::Index>(i), d));
-      residuals[i].tail(3 - cone.size).setZero();
-      residuals[i][0] -= slip;
-      a[i] = BlockMatrix::Identity();
-      if (slip > 0.0) a[i].row(0).tail<2>() -= cone.z.tail<2>() / slip;
-    }
-    gap /= static_cast<double>(count);
-
-    std::vector<Block> aims(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      aims[i] = -product(scalings[i].lambda, scalings[i].lambda);
-    }
-    ++counted;
-    const BlockSystem system = factored(scalings, a);
-    if (!directions(system, scalings, a, residuals, aims)) return 0.0;
-    const double affine = std::min(1.0, longest_step());
-    double affine_gap = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-      affine_gap += (cones_[i].x + affine * dx_[i]).dot(cones_[i].z + affine * dz_[i]);
-    }
-    affine_gap /= static_cast<double>(count);
-    const double ratio = std::clamp(affine_gap / gap, 0.0, 1.0);
-    const double sigma = std::max(ratio * ratio * ratio, 1e-3);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Block scaled_dx = scalings[i].p * dx_[i];
-      // P^-1 dz = v - P dx, with v of the predictor -lambda.
-      const Block scaled_dz = -scalings[i].lambda - scaled_dx;
-      aims[i] -= product(scaled_dx, scaled_dz);
-      aims[i][0] += sigma * gap;
-    }
-    if (!directions(system, scalings, a, residuals, aims)) return 0.0;
-    const double step = std::min(1.0, share_of_way * longest_step());
-    for (std::size_t i = 0; i < count; ++i) {
-      cones_[i].x += step * dx_[i];
-      cones_[i].z += step * dz_[i];
-    }
-    return step;
+BlockSystem InteriorPoint::factored(const std::vector<Scaling>& scalings,
+                                    const std::vector<BlockMatrix>& a) const {
+  BlockRows rows;
+  for (std::size_t i = 0; i < cones_.size(); ++i) {
+    const Cone& cone = cones_[i];
+    BlockMatrix left = BlockMatrix::Zero();
+    left.diagonal().head(cone.size) = cone.d.head(cone.size);
+    rows.contacts.push_back(static_cast<Eigen::Index>(i));
+    rows.a.push_back(left);
+    rows.b.emplace_back(a[i] * scalings[i].square * cone.d.cwiseInverse().asDiagonal());
   }
-
- private:
-  BlockSystem factored(const std::vector<Scaling>& scalings,
-                       const std::vector<BlockMatrix>& a) const {
-    BlockRows rows;
-    for (std::size_t i = 0; i < cones_.size(); ++i) {
-      const Cone& cone = cones_[i];
-      BlockMatrix left = BlockMatrix::Zero();
-      left.diagonal().head(cone.size) = cone.d.head(cone.size);
-      const BlockMatrix right = a[i] * scalings[i].square * cone.d.cwiseInverse().asDiagonal();
-      rows.contacts.push_back(static_cast<Eigen::Index>(i));
-      rows.a.push_back(left);
-      rows.b.push_back(right);
-    }
-    return BlockSystem(problem_, rows);
+  BlockSystem system(problem_, rows);
+  // Near the end a W of less than full rank has little beside it. A compliance added to it changes
+  // the direction, not the solution.
+  for (double added = least_added; !system.regular() && added < most_added; added *= 10.0) {
+    for (std::size_t i = 0; i < cones_.size(); ++i) rows.b[i] += added * rows.a[i];
+    system = BlockSystem(problem_, rows);
   }
+  return system;
+}
 
-  /// dx and dz for given right-hand sides of the Jordan products.
-  bool directions(const BlockSystem& system, const std::vector<Scaling>& scalings,
-                  const std::vector<BlockMatrix>& a, const std::vector<Block>& residuals,
-                  const std::vector<Block>& aims) {
-    const std::size_t count = cones_.size();
-    const int d = problem_.dimension();
-    std::vector<Block> v(count);
-    std::vector<Block> right(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      v[i] = quotient(aims[i], scalings[i].lambda);
-      right[i] = a[i] * (scalings[i].p * v[i]) + residuals[i];
-    }
-    const std::optional<Eigen::VectorXd> dr = system.solve(right);
-    if (!dr) return false;
-    dx_.resize(count);
-    dz_.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Cone& cone = cones_[i];
-      dx_[i] = block_of(*dr, static_cast<Eigen::Index>(i), d).cwiseQuotient(cone.d);
-      dz_[i] = scalings[i].p * v[i] - scalings[i].square * dx_[i];
-    }
-    return true;
+bool InteriorPoint::solve(const BlockSystem& system, const std::vector<Scaling>& scalings,
+                          const std::vector<BlockMatrix>& a, const std::vector<Block>& residuals,
+                          const std::vector<Block>& aims, Direction& direction) const {
+  const std::size_t count = cones_.size();
+  std::vector<Block> v(count);
+  std::vector<Block> right(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    v[i] = quotient(aims[i], scalings[i].lambda);
+    right[i] = a[i] * (scalings[i].p * v[i]) + residuals[i];
   }
-
-  double longest_step() const {
-    double step = 1.0 / share_of_way;
-    for (std::size_t i = 0; i < cones_.size(); ++i) {
-      step = std::min(step, step_to_boundary(cones_[i].x, dx_[i], step));
-      step = std::min(step, step_to_boundary(cones_[i].z, dz_[i], step));
-    }
-    return step;
+  const std::optional<Eigen::VectorXd> dr = system.solve(right);
+  if (!dr) return false;
+  direction.dx.resize(count);
+  direction.dz.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    direction.dx[i] = block_of(*dr, static_cast<Eigen::Index>(i), problem_.dimension())
+                          .cwiseQuotient(cones_[i].d);
+    direction.dz[i] = scalings[i].p * v[i] - scalings[i].square * direction.dx[i];
   }
+  return true;
+}
 
-  const ScaledProblem& problem_;
-  std::vector<Cone> cones_;
-  std::vector<Block> dx_;
-  std::vector<Block> dz_;
-};
-
-}  // namespace
-
-Iterate interior_point(const ScaledProblem& problem, int most, double tolerance, int& counted) {
-  InteriorPoint path(problem);
-  Iterate best(problem, path.reactions());
-  Iterate now = best;
-  for (int k = 0; k < most; ++k) {
-    const double step = path.advance(now.u, counted);
-    if (!(step > shortest_step)) break;
-    now = Iterate(problem, path.reactions());
-    if (!std::isfinite(now.merit)) break;
-    if (now.merit < best.merit) best = now;
-    if (best.merit <= tolerance) break;
+double InteriorPoint::longest_step(const Direction& direction) const {
+  double step = 1.0 / share_of_way;
+  for (std::size_t i = 0; i < cones_.size(); ++i) {
+    step = std::min(step, step_to_boundary(cones_[i].x, direction.dx[i], step));
+    step = std::min(step, step_to_boundary(cones_[i].z, direction.dz[i], step));
   }
-  return best;
+  return step;
 }
 
 }  // namespace statejump::complementarity

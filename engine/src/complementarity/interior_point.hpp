@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "iterate.hpp"
+#include <Eigen/Core>
+#include <vector>
+
+#include "block_system.hpp"
+#include "scaled_problem.hpp"
 
 namespace statejump::complementarity {
 
@@ -17,7 +21,39 @@ namespace statejump::complementarity {
 /// with v from the centring and Mehrotra's (1992) second-order term. Without friction's A the
 /// problem is convex and the method polynomial; with it there is no theory, only practice (Acary,
 /// Armand, Nguyen, Shpakovych 2023). Contacts without friction have one number, x_n = r_n.
-/// @returns best iterate, after `most` factorisations, within the tolerance, or where steps vanish
-Iterate interior_point(const ScaledProblem& problem, int most, double tolerance, int& counted);
+class InteriorPoint {
+ public:
+  /// Starts far from the boundary.
+  explicit InteriorPoint(const ScaledProblem& problem);
+
+  /// One predictor-corrector step, one factorisation; its length, 1 at most and 0 at the end.
+  double advance();
+  Eigen::VectorXd reactions() const;
+
+ private:
+  struct Scaling;
+  /// Contact in the variables of the cone.
+  struct Cone {
+    int size;  ///< Numbers that are sought: one without friction.
+    Block d;   ///< Diagonal D.
+    Block x;
+    Block z;
+  };
+  struct Direction {
+    std::vector<Block> dx;
+    std::vector<Block> dz;
+  };
+
+  BlockSystem factored(const std::vector<Scaling>& scalings,
+                       const std::vector<BlockMatrix>& a) const;
+  /// Direction for given Jordan products x∘z + dx∘z + x∘dz; false if the equations are singular.
+  bool solve(const BlockSystem& system, const std::vector<Scaling>& scalings,
+             const std::vector<BlockMatrix>& a, const std::vector<Block>& residuals,
+             const std::vector<Block>& aims, Direction& direction) const;
+  double longest_step(const Direction& direction) const;
+
+  const ScaledProblem& problem_;
+  std::vector<Cone> cones_;
+};
 
 }  // namespace statejump::complementarity

@@ -17,6 +17,11 @@ namespace {
 using kernel::OutOfRange;
 using kernel::require;
 
+/// A dense matrix with fewer entries that are not zero, as a share of all, is factored faster as a
+/// sparse one, if it is not small. Measured on piles of bodies: at 0.05 the factors are as fast.
+constexpr double most_sparse_share = 0.05;
+constexpr Eigen::Index least_sparse_size = 200;
+
 bool all_finite(const Delassus& delassus) {
   if (const auto* dense = std::get_if<Eigen::MatrixXd>(&delassus)) return dense->allFinite();
   const auto& sparse = std::get<Eigen::SparseMatrix<double>>(delassus);
@@ -95,6 +100,13 @@ ScaledProblem::ScaledProblem(const Problem& problem)
   q_ /= velocity_unit_;
   if (size_of_q > 0.0) size_of_q_ = q_.norm();
   std::visit([&](auto& matrix) { matrix /= compliance; }, delassus_);
+  if (const auto* dense = std::get_if<Eigen::MatrixXd>(&delassus_)) {
+    const auto entries = static_cast<double>((dense->array() != 0.0).count());
+    if (dense->rows() >= least_sparse_size &&
+        entries < most_sparse_share * static_cast<double>(dense->size())) {
+      delassus_ = Eigen::SparseMatrix<double>(dense->sparseView());
+    }
+  }
 
   blocks_.reserve(static_cast<std::size_t>(contacts()));
   for (Eigen::Index i = 0; i < contacts(); ++i) {

@@ -7,6 +7,7 @@
 
 #include "gauss_seidel.hpp"
 #include "interior_point.hpp"
+#include "lemke.hpp"
 #include "newton.hpp"
 #include "statejump/kernel/require.hpp"
 
@@ -22,7 +23,18 @@ constexpr int first_sweeps = 20;
 /// Linear systems of one attempt of Newton's: it converges within ten or not from there.
 constexpr int newton_systems = 30;
 /// Factorisations of the interior point: each lowers the gap by a factor of some five.
-constexpr int interior_factors = 60;
+constexpr int interior_factors = 100;
+/// Contacts up to which Lemke's table is smaller work than the interior point, and the pivots after
+/// which it is given up: random problems take about six a contact.
+constexpr int lemke_contacts = 40;
+constexpr int pivots_per_contact = 100;
+/// Merit of the interior point at which it is first seen whether Newton converges from there, the
+/// ratio of merits or the steps until it is seen again, and the linear systems that it may then
+/// take.
+constexpr double first_handover = 1e-2;
+constexpr double handover_ratio = 0.1;
+constexpr int steps_per_handover = 10;
+constexpr int handover_systems = 4;
 
 /// The methods in turn, with the best that any of them found.
 class Driver {
@@ -46,10 +58,13 @@ class Driver {
           sweep(options_.most_sweeps);
           break;
         case Method::newton:
-          run_newton();
+          run_newton(best_, newton_systems);
           break;
         case Method::interior_point:
           run_interior_point();
+          break;
+        case Method::lemke:
+          run_lemke();
           break;
       }
     }
@@ -68,13 +83,13 @@ class Driver {
  private:
   void automatic() {
     sweep(std::min(first_sweeps, options_.most_sweeps));
-    if (!ended()) run_newton();
+    if (!ended()) run_newton(best_, newton_systems);
+    if (!ended() && problem_.dimension == 2 && problem_.contacts() <= lemke_contacts) run_lemke();
     if (!ended()) run_interior_point();
-    if (!ended()) run_newton();
     int sweeps = 10 * first_sweeps;
     while (!ended() && counted_.gauss_seidel < options_.most_sweeps) {
       sweep(std::min(sweeps, options_.most_sweeps - counted_.gauss_seidel));
-      if (!ended()) run_newton();
+      if (!ended()) run_newton(best_, newton_systems);
       sweeps *= 2;
     }
   }
@@ -88,12 +103,35 @@ class Driver {
       sweeps -= now;
     }
   }
-  void run_newton() {
-    judge(newton(scaled_, best_, newton_systems, aim(), counted_.newton), Method::newton);
+  void run_newton(Iterate from, int systems) {
+    judge(newton(scaled_, std::move(from), systems, aim(), counted_.newton), Method::newton);
+  }
+  void run_lemke() {
+    const int most = pivots_per_contact * static_cast<int>(problem_.contacts());
+    if (std::optional<Eigen::VectorXd> r = lemke(scaled_, most, counted_.pivots)) {
+      Iterate now(scaled_, std::move(*r));
+      judge(now, Method::lemke);
+      // Takes off the rounding of the pivots.
+      if (!ended()) run_newton(std::move(now), handover_systems);
+    }
   }
   void run_interior_point() {
-    judge(interior_point(scaled_, interior_factors, aim(), counted_.interior_point),
-          Method::interior_point);
+    InteriorPoint path(scaled_);
+    double next_merit = first_handover;
+    int next_step = steps_per_handover;
+    for (int k = 1; k <= interior_factors && !ended(); ++k) {
+      const double step = path.advance();
+      ++counted_.interior_point;
+      if (step == 0.0) break;
+      Iterate now(scaled_, path.reactions());
+      if (!std::isfinite(now.merit)) break;
+      judge(now, Method::interior_point);
+      if (options_.method == Method::automatic && (now.merit <= next_merit || k >= next_step)) {
+        next_merit = handover_ratio * now.merit;
+        next_step = k + steps_per_handover;
+        if (!ended()) run_newton(std::move(now), handover_systems);
+      }
+    }
   }
 
   /// Tolerance of the scaled merit: a tenth leaves room for the natural map in the caller's units.
@@ -137,6 +175,8 @@ const char* to_string(Method method) {
       return "newton";
     case Method::interior_point:
       return "interior_point";
+    case Method::lemke:
+      return "lemke";
   }
   return "unknown";
 }
@@ -157,6 +197,8 @@ Solution solve(const Problem& problem, const Options& options) {
   validate(problem);
   require(options.tolerance > 0.0, "tolerance", options.tolerance, "> 0");
   require(options.most_sweeps >= 0, "most_sweeps", options.most_sweeps, ">= 0");
+  require(options.method != Method::lemke || problem.dimension == 2, "dimension", problem.dimension,
+          "2 for Lemke's method");
   if (options.guess) {
     const auto size = static_cast<double>(options.guess->size());
     require(options.guess->size() == problem.q.size(), "size of the guess", size,

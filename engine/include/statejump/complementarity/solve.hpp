@@ -11,10 +11,11 @@ namespace statejump::complementarity {
 
 /// A way to solve a problem.
 enum class Method : unsigned char {
-  automatic,      ///< The others in turn; see solve().
-  gauss_seidel,   ///< Contact by contact, each solved exactly. Slow but sure progress.
-  newton,         ///< Semismooth Newton on the Alart-Curnier equations.
-  interior_point  ///< Path-following on De Saxcé's second-order cones.
+  automatic,       ///< The others in turn; see solve().
+  gauss_seidel,    ///< Contact by contact, each solved exactly. Slow but sure progress.
+  newton,          ///< Semismooth Newton on the Alart-Curnier equations.
+  interior_point,  ///< Path-following on De Saxcé's second-order cones.
+  lemke            ///< Pivoting; dimension 2 only.
 };
 
 /// "automatic", "gauss_seidel", …: the enumerator's name.
@@ -43,6 +44,7 @@ struct Iterations {
   int gauss_seidel = 0;    ///< Sweeps over all contacts.
   int newton = 0;          ///< Linear systems solved.
   int interior_point = 0;  ///< Linear systems factored.
+  int pivots = 0;          ///< Of Lemke's table.
 };
 
 struct Solution {
@@ -59,9 +61,9 @@ struct Solution {
 ///
 /// Where W is rank-deficient the velocities are determined further than the reactions; of several
 /// solutions one is given. `automatic` sweeps by Gauss-Seidel, hands over to Newton, falls back to
-/// the interior point, and sweeps on.
+/// the interior point (in small planar problems to Lemke before), and sweeps on.
 /// @throws kernel::OutOfRange as validate(); for a tolerance <= 0, sweeps < 0, a guess of another
-/// size or that is not finite
+/// size or that is not finite, Lemke in dimension 3
 Solution solve(const Problem& problem, const Options& options = {});
 
 }  // namespace statejump::complementarity
