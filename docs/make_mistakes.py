@@ -104,7 +104,7 @@ temperature and, where it is known, what helps; its samples are dropped. This pa
 | exit status | meaning |
 |---|---|
 | 0 | done |
-| 1 | done, and a tolerance of the case file is missed |
+| 1 | done, and a tolerance of the case file is missed, or a contact problem is not solved to its tolerance |
 | 2 | bad input, a run that could not be finished, or results that could not be written |
 | 70 | a fault of the program itself, with a traceback; please report it |
 | 129 | ended by the terminal that was closed, as 143 |
@@ -113,7 +113,7 @@ temperature and, where it is known, what helps; its samples are dropped. This pa
 
 With `--json` before the command (`statejump --json compare CASE`) a failure is one line of JSON on standard
 error instead; standard output stays as it is. Fields, present where known: `kind` (`usage`, `bad_input`,
-`output`: a file cannot be written, `failed_run`, `tolerance_missed`, `interrupted`, `internal`: a fault of the
+`output`: a file cannot be written, `failed_run`, `tolerance_missed`, `not_solved`, `interrupted`, `internal`: a fault of the
 program), `message`, `file`, `case`, `item` (of a list of tables), `key`, `value` (as text where JSON has no such
 number), `allowed` (a range with its unit, or the names),
 `time_s`, `temperature_change_K`, `joint`, `nodes`, `cause`, `remedy`, `exit_status`. In Python they are

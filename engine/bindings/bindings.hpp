@@ -26,6 +26,9 @@ void bind_rest_set(pybind11::module_& module);
 /// Adds truss_path. Call after bind_thermal_program.
 void bind_truss(pybind11::module_& module);
 
+/// Adds FrictionProblem.
+void bind_complementarity(pybind11::module_& module);
+
 /// Adds BoreMesh and the generators of bore meshes.
 void bind_geometry(pybind11::module_& module);
 

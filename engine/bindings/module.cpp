@@ -15,5 +15,6 @@ PYBIND11_MODULE(_engine, module) {
   statejump::bindings::bind_linkage(module);
   statejump::bindings::bind_rest_set(module);
   statejump::bindings::bind_truss(module);
+  statejump::bindings::bind_complementarity(module);
   statejump::bindings::bind_geometry(module);
 }

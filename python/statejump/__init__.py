@@ -44,8 +44,8 @@ _PLACES = {
     **dict.fromkeys(("Column", "Event", "Run"), "statejump.core.run"),
     "Kind": "statejump.kinds.protocol",
 }
-_MODULES = {"errors": "statejump.core.errors", "kinds": "statejump.kinds", "laws": "statejump.laws",
-            "truss": "statejump.truss"}
+_MODULES = {"errors": "statejump.core.errors", "fclib": "statejump.fclib", "kinds": "statejump.kinds",
+            "laws": "statejump.laws", "truss": "statejump.truss"}
 __all__ = ["__version__", *_PLACES, *_MODULES]
 
 

@@ -320,6 +320,30 @@ def implicit_surface(
 def clearance_sphere(clearance_m: float, level: int) -> RestMesh: ...
 def rest_on_mesh(mesh: RestMesh, forces_N: ArrayLike, friction_coefficient: float) -> _Fields: ...
 
+FRICTION_METHODS: tuple[str, ...]
+
+class FrictionProblem(metaclass=_pybind11_type):
+    def __init__(self, dimension: int, delassus: ArrayLike, q: ArrayLike, mu: ArrayLike) -> None: ...
+    @staticmethod
+    def of_columns(
+        dimension: int,
+        starts: Sequence[int],
+        rows: Sequence[int],
+        values: ArrayLike,
+        q: ArrayLike,
+        mu: ArrayLike,
+    ) -> FrictionProblem: ...
+    def velocities(self, reactions: ArrayLike) -> _Array: ...
+    def merit(self, reactions: ArrayLike) -> dict[str, float]: ...
+    def solve(
+        self,
+        tolerance: float = ...,
+        method: str = ...,
+        most_sweeps: int = ...,
+        guess: ArrayLike | None = ...,
+        progress: Callable[[float], None] | None = ...,
+    ) -> _Fields: ...
+
 _Items = Mapping[str, Any]
 
 def truss_path(

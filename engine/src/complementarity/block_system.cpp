@@ -3,6 +3,13 @@
 
 namespace statejump::complementarity {
 
+namespace {
+
+/// Rows of a singular sparse matrix that is still factored as a dense one: 72 MB, some seconds.
+constexpr Eigen::Index most_dense_rows = 3000;
+
+}  // namespace
+
 BlockSystem::BlockSystem(const ScaledProblem& problem, const BlockRows& rows)
     : dimension_(problem.dimension()), size_(problem.q().size()), contacts_(rows.contacts) {
   if (contacts_.empty()) return;
@@ -56,13 +63,15 @@ void BlockSystem::factor_sparse(const Eigen::SparseMatrix<double>& w, const Bloc
   Eigen::SparseMatrix<double> matrix(count * d, count * d);
   matrix.setFromTriplets(entries.begin(), entries.end());
   sparse_ = std::make_unique<linear::SparseFactor>();
-  regular_ = sparse_->factorize(matrix);
+  if (sparse_->factorize(matrix)) return;
+  sparse_.reset();
+  if (matrix.rows() <= most_dense_rows) dense_.emplace(Eigen::MatrixXd(matrix));
 }
 
 std::optional<Eigen::VectorXd> BlockSystem::solve(const std::vector<Block>& c) const {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(size_);
   if (contacts_.empty()) return result;
-  if (!regular_) return {};
+  if (!dense_ && !sparse_) return {};
   const int d = dimension_;
   Eigen::VectorXd right(static_cast<Eigen::Index>(contacts_.size()) * d);
   for (std::size_t i = 0; i < contacts_.size(); ++i) {

@@ -20,12 +20,12 @@ struct BlockRows {
 };
 
 /// Factors of A W + B among some contacts, A and B block diagonal: dense where W is, else sparse.
+/// Sparse factors that are singular to rounding are replaced by dense ones, whose pivots are sought
+/// in whole columns, up to a size.
 class BlockSystem {
  public:
   BlockSystem(const ScaledProblem& problem, const BlockRows& rows);
 
-  /// Whether the matrix is regular to rounding.
-  bool regular() const { return regular_; }
   /// Solution r of (A W + B) r = c, with zero for the contacts that take no part; nothing if the
   /// equations are singular to rounding.
   /// @param c one block for each contact that takes part
@@ -40,7 +40,6 @@ class BlockSystem {
   std::vector<Eigen::Index> contacts_;
   std::optional<Eigen::PartialPivLU<Eigen::MatrixXd>> dense_;
   std::unique_ptr<linear::SparseFactor> sparse_;
-  bool regular_ = true;
 };
 
 }  // namespace statejump::complementarity

@@ -23,24 +23,19 @@ inline void set_block(Eigen::VectorXd& all, Eigen::Index contact, int dimension,
   all.segment(contact * dimension, dimension) = block.head(dimension);
 }
 
-/// Projection onto Coulomb's cone |x_t| <= mu x_n.
-inline Block project_on_cone(const Block& x, double mu) {
-  const double normal = x[0];
-  const double tangential = x.tail<2>().norm();
-  if (tangential <= mu * normal) return x;
-  Block result = Block::Zero();
-  if (mu * tangential <= -normal) return result;
-  result[0] = (mu * tangential + normal) / (mu * mu + 1.0);
-  // With tangential = 0 one of the two above has returned.
-  result.tail<2>() = x.tail<2>() * (mu * result[0] / tangential);
-  return result;
-}
-
-/// r - P_K(r - û) of one contact: zero where Coulomb's law holds.
+/// r - P_K(r - û) of one contact: zero where Coulomb's law holds. P_K projects onto the cone
+/// |x_t| <= mu x_n. Each branch is written so that a small û does not vanish beside a large r.
 inline Block natural_map(const Block& r, const Block& u, double mu) {
-  Block x = r - u;
-  x[0] -= mu * u.tail<2>().norm();
-  return r - project_on_cone(x, mu);
+  Block modified = u;
+  modified[0] += mu * u.tail<2>().norm();
+  const Block x = r - modified;
+  const double size = x.tail<2>().norm();
+  if (size <= mu * x[0]) return modified;
+  if (mu * size <= -x[0]) return r;
+  // Onto the edge: with size = 0 one of the two above has returned.
+  Block edge(1.0, mu * x[1] / size, mu * x[2] / size);
+  edge /= std::sqrt(1.0 + mu * mu);
+  return r - edge * edge.dot(r) + edge * edge.dot(modified);
 }
 
 /// Euclidean norm of the natural map over all contacts.

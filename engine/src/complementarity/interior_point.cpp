@@ -18,11 +18,13 @@ constexpr double share_of_way = 0.995;
 constexpr double least_centring = 1e-3;
 /// A shorter step is taken for a sign of contacts that are off the centre.
 constexpr double short_step = 0.1;
-/// Compliance, over the mean one, that makes a singular system regular: tried from the least on.
-constexpr double least_added = 1e-14;
-constexpr double most_added = 1e-7;
 /// Share of the present gap that is then aimed at.
 constexpr double centring_after_short_step = 0.5;
+/// Steps with lagged friction after the first short step; twice as many after the next.
+constexpr int first_lag = 5;
+/// Largest residual of a contact's velocity times its reaction, over the gap, at which a lagged
+/// step lowers the gap.
+constexpr double residual_per_gap = 10.0;
 
 /// Determinant of Lorentz' cone, without cancellation of squares.
 double determinant(const Block& x) {
@@ -127,12 +129,15 @@ Eigen::VectorXd InteriorPoint::reactions() const {
 double InteriorPoint::advance() {
   const std::size_t count = cones_.size();
   const int d = problem_.dimension();
+  const bool lagged = lag_ > 0;
   const Eigen::VectorXd u = problem_.times(reactions()) + problem_.q();
   std::vector<Scaling> scalings;
   std::vector<Block> residuals(count);
   std::vector<BlockMatrix> a(count);
   std::vector<Block> squares(count);
   double gap = 0.0;
+  double reaction_squares = 0.0;
+  double residual_squares = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     const Cone& cone = cones_[i];
     scalings.emplace_back(cone.x, cone.z);
@@ -142,8 +147,10 @@ double InteriorPoint::advance() {
     residuals[i] = cone.z - cone.d.cwiseProduct(block_of(u, static_cast<Eigen::Index>(i), d));
     residuals[i].tail(3 - cone.size).setZero();
     residuals[i][0] -= slip;
+    reaction_squares += cone.x.squaredNorm();
+    residual_squares += residuals[i].squaredNorm();
     a[i] = BlockMatrix::Identity();
-    if (slip > 0.0) a[i].row(0).tail<2>() -= cone.z.tail<2>() / slip;
+    if (slip > 0.0 && !lagged) a[i].row(0).tail<2>() -= cone.z.tail<2>() / slip;
   }
   gap /= static_cast<double>(count);
   const BlockSystem system = factored(scalings, a);
@@ -163,7 +170,11 @@ double InteriorPoint::advance() {
 
   // Corrector: centred the more, the less of the way the predictor went.
   const double ratio = std::clamp(affine_gap / gap, 0.0, 1.0);
-  const double sigma = std::max(ratio * ratio * ratio, least_centring);
+  double sigma = std::max(ratio * ratio * ratio, least_centring);
+  // Lagged friction moves on only as fast as the gap lets it.
+  const double size = std::sqrt(reaction_squares / static_cast<double>(count));
+  const double error = std::sqrt(residual_squares / static_cast<double>(count));
+  if (lagged && error * size > residual_per_gap * gap) sigma = 1.0;
   for (std::size_t i = 0; i < count; ++i) {
     const Block scaled_dx = scalings[i].p * direction.dx[i];
     // P^-1 dz = v - P dx, with v of the predictor -lambda.
@@ -190,6 +201,12 @@ double InteriorPoint::advance() {
     cones_[i].x = kept_inside(cones_[i].x + step * direction.dx[i]);
     cones_[i].z = kept_inside(cones_[i].z + step * direction.dz[i]);
   }
+  if (lagged) {
+    --lag_;
+  } else if (step < short_step) {
+    lag_length_ = lag_length_ == 0 ? first_lag : 2 * lag_length_;
+    lag_ = lag_length_;
+  }
   return step;
 }
 
@@ -204,14 +221,7 @@ BlockSystem InteriorPoint::factored(const std::vector<Scaling>& scalings,
     rows.a.push_back(left);
     rows.b.emplace_back(a[i] * scalings[i].square * cone.d.cwiseInverse().asDiagonal());
   }
-  BlockSystem system(problem_, rows);
-  // Near the end a W of less than full rank has little beside it. A compliance added to it changes
-  // the direction, not the solution.
-  for (double added = least_added; !system.regular() && added < most_added; added *= 10.0) {
-    for (std::size_t i = 0; i < cones_.size(); ++i) rows.b[i] += added * rows.a[i];
-    system = BlockSystem(problem_, rows);
-  }
-  return system;
+  return BlockSystem(problem_, rows);
 }
 
 bool InteriorPoint::solve(const BlockSystem& system, const std::vector<Scaling>& scalings,

@@ -18,9 +18,12 @@ namespace statejump::complementarity {
 ///
 ///     (D W D + A P^2) dx = A P v + (residual of z),   A = I - e_n (z_t/|z_t|)^T,
 ///
-/// with v from the centring and Mehrotra's (1992) second-order term. Without friction's A the
+/// with v from the centring and Mehrotra's (1992) second-order term. Without friction's term the
 /// problem is convex and the method polynomial; with it there is no theory, only practice (Acary,
-/// Armand, Nguyen, Shpakovych 2023). Contacts without friction have one number, x_n = r_n.
+/// Armand, Nguyen, Shpakovych 2023). Where the steps become short, some follow with A = I: the
+/// friction term lags a step, so that each step is one of a convex problem (the fixed point of
+/// Acary and Cadoux 2013), and the gap x.z is lowered only as fast as the residual follows, which
+/// keeps the pairs off the boundary. Contacts without friction have one number, x_n = r_n.
 class InteriorPoint {
  public:
   /// Starts far from the boundary.
@@ -54,6 +57,8 @@ class InteriorPoint {
 
   const ScaledProblem& problem_;
   std::vector<Cone> cones_;
+  int lag_ = 0;         ///< Steps with lagged friction that are still to come.
+  int lag_length_ = 0;  ///< Their number when it was last chosen.
 };
 
 }  // namespace statejump::complementarity

@@ -62,6 +62,8 @@ void validate(const Problem& problem) {
 }
 
 Eigen::VectorXd velocities(const Problem& problem, const Eigen::VectorXd& reactions) {
+  require(reactions.size() == problem.q.size(), "size of r", static_cast<double>(reactions.size()),
+          (std::to_string(problem.q.size()) + ", contacts times dimension").c_str());
   return std::visit(
       [&](const auto& matrix) -> Eigen::VectorXd { return matrix * reactions + problem.q; },
       problem.delassus);
@@ -76,8 +78,6 @@ double natural_map_merit(const Problem& problem, const Eigen::VectorXd& reaction
 
 Merit merit(const Problem& problem, const Eigen::VectorXd& reactions) {
   validate(problem);
-  require(reactions.size() == problem.q.size(), "size of r", static_cast<double>(reactions.size()),
-          (std::to_string(problem.q.size()) + ", contacts times dimension").c_str());
   const Eigen::VectorXd u = velocities(problem, reactions);
   const ScaledProblem scaled(problem);
   return {natural_map_merit(problem, reactions, u),

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "gauss_seidel.hpp"
@@ -20,14 +21,19 @@ using kernel::require;
 /// Sweeps before Newton is tried: enough to know most contacts' statuses, cheaper than one of
 /// Newton's linear systems.
 constexpr int first_sweeps = 20;
+/// Sweeps after the other methods have failed; twice as many each time.
+constexpr int more_sweeps = 200;
 /// Linear systems of one attempt of Newton's: it converges within ten or not from there.
 constexpr int newton_systems = 30;
-/// Factorisations of the interior point: each lowers the gap by a factor of some five.
-constexpr int interior_factors = 100;
-/// Contacts up to which Lemke's table is smaller work than the interior point, and the pivots after
-/// which it is given up: random problems take about six a contact.
-constexpr int lemke_contacts = 40;
-constexpr int pivots_per_contact = 100;
+/// Factorisations of the interior point: twenty are usual, with lagged friction up to a hundred.
+constexpr int interior_factors = 300;
+/// Steps in which its merit is not halved, after which it is given up.
+constexpr int steps_without_progress = 100;
+/// Contacts up to which Lemke's table is smaller work than the interior point, those up to which it
+/// is tried at all (seconds), and the pivots per contact after which it is given up: ten are many.
+constexpr Eigen::Index few_contacts = 40;
+constexpr Eigen::Index many_contacts = 250;
+constexpr int pivots_per_contact = 50;
 /// Merit of the interior point at which it is first seen whether Newton converges from there, the
 /// ratio of merits or the steps until it is seen again, and the linear systems that it may then
 /// take.
@@ -55,7 +61,7 @@ class Driver {
           automatic();
           break;
         case Method::gauss_seidel:
-          sweep(options_.most_sweeps);
+          sweep(best_, options_.most_sweeps);
           break;
         case Method::newton:
           run_newton(best_, newton_systems);
@@ -82,26 +88,41 @@ class Driver {
 
  private:
   void automatic() {
-    sweep(std::min(first_sweeps, options_.most_sweeps));
+    Iterate swept = sweep(best_, std::min(first_sweeps, options_.most_sweeps));
     if (!ended()) run_newton(best_, newton_systems);
-    if (!ended() && problem_.dimension == 2 && problem_.contacts() <= lemke_contacts) run_lemke();
+    const Eigen::Index planar_contacts = problem_.dimension == 2 ? problem_.contacts() : 0;
+    const bool is_small = planar_contacts > 0 && planar_contacts <= few_contacts;
+    if (!ended() && is_small) run_lemke();
     if (!ended()) run_interior_point();
-    int sweeps = 10 * first_sweeps;
-    while (!ended() && counted_.gauss_seidel < options_.most_sweeps) {
-      sweep(std::min(sweeps, options_.most_sweeps - counted_.gauss_seidel));
-      if (!ended()) run_newton(best_, newton_systems);
-      sweeps *= 2;
+    if (!ended() && !is_small && planar_contacts > 0 && planar_contacts <= many_contacts)
+      run_lemke();
+    // From the best that was found a few sweeps may settle what Newton could not, and from where
+    // they had stopped many.
+    if (!ended()) finish(best_, more_sweeps);
+    for (int sweeps = more_sweeps; !ended() && sweeps_left() > 0; sweeps *= 2) {
+      swept = finish(std::move(swept), sweeps);
     }
   }
 
-  void sweep(int sweeps) {
+  /// Sweeps on and tries Newton from there; returns where the sweeps ended.
+  Iterate finish(Iterate from, int sweeps) {
+    Iterate swept = sweep(std::move(from), std::min(sweeps, sweeps_left()));
+    if (!ended()) run_newton(swept, newton_systems);
+    return swept;
+  }
+  int sweeps_left() const { return options_.most_sweeps - counted_.gauss_seidel; }
+
+  /// Sweeps on from an iterate; returns where it ends.
+  Iterate sweep(Iterate from, int sweeps) {
     constexpr int sweeps_per_report = 500;
     while (sweeps > 0 && !ended()) {
       const int now = std::min(sweeps, sweeps_per_report);
-      judge(gauss_seidel(scaled_, swept_ ? *swept_ : best_, now, aim(), counted_.gauss_seidel),
-            Method::gauss_seidel);
+      Iterate next = gauss_seidel(scaled_, std::move(from), now, aim(), counted_.gauss_seidel);
+      from = next;
+      judge(std::move(next), Method::gauss_seidel);
       sweeps -= now;
     }
+    return from;
   }
   void run_newton(Iterate from, int systems) {
     judge(newton(scaled_, std::move(from), systems, aim(), counted_.newton), Method::newton);
@@ -119,12 +140,19 @@ class Driver {
     InteriorPoint path(scaled_);
     double next_merit = first_handover;
     int next_step = steps_per_handover;
+    double progress = std::numeric_limits<double>::infinity();
+    int last_progress = 0;
     for (int k = 1; k <= interior_factors && !ended(); ++k) {
       const double step = path.advance();
       ++counted_.interior_point;
       if (step == 0.0) break;
       Iterate now(scaled_, path.reactions());
       if (!std::isfinite(now.merit)) break;
+      if (now.merit < 0.5 * progress) {
+        progress = now.merit;
+        last_progress = k;
+      }
+      if (k - last_progress > steps_without_progress) break;
       judge(now, Method::interior_point);
       if (options_.method == Method::automatic && (now.merit <= next_merit || k >= next_step)) {
         next_merit = handover_ratio * now.merit;
@@ -140,7 +168,6 @@ class Driver {
   void judge(Iterate iterate, Method method) {
     const Eigen::VectorXd r = iterate.r * scaled_.reaction_unit();
     const Merit merit{natural_map_merit(problem_, r, velocities(problem_, r)), iterate.merit};
-    if (method == Method::gauss_seidel) swept_ = iterate;
     if (!judged_ || merit.largest() < merit_.largest()) {
       merit_ = merit;
       best_ = std::move(iterate);
@@ -155,7 +182,6 @@ class Driver {
   const ScaledProblem scaled_;
   const Options& options_;
   Iterate best_;
-  std::optional<Iterate> swept_;  ///< Where Gauss-Seidel stands, though another was better.
   Merit merit_;
   Iterations counted_;
   Method method_ = Method::gauss_seidel;

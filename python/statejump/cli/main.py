@@ -33,6 +33,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "statics": ("statics:statics_command", "Where the joint of CASE can rest, and the largest jump it can make."),
     "bore": ("bore:bore_command", "What a measured bore is: roundness, lobes, clearance."),
     "truss": ("truss:truss_command", "Trusses: make, draw, and what a designer asks of them."),
+    "fclib": ("fclib:fclib_command", "Frictional contact problems of many contacts, in files of FCLIB."),
     "montecarlo": ("campaign:montecarlo_command", "Many samples of a case whose parameters are random."),
     "sweep": ("campaign:sweep_command", "A case on a grid of its parameters."),
     "figures": ("paper:figures_command", "The paper's Figs 13-16 in both models, and its claims in numbers."),

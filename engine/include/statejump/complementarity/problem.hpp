@@ -39,7 +39,7 @@ struct Problem {
 /// not finite, mu < 0
 void validate(const Problem& problem);
 
-/// u = W r + q.
+/// u = W r + q. @throws kernel::OutOfRange if `reactions` has another size than q
 Eigen::VectorXd velocities(const Problem& problem, const Eigen::VectorXd& reactions);
 
 /// How far reactions are from a solution; 0 for an exact one.

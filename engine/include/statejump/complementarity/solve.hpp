@@ -33,7 +33,7 @@ const char* to_string(Status status);
 struct Options {
   double tolerance = 1e-10;  ///< On Merit::largest(), > 0.
   Method method = Method::automatic;
-  int most_sweeps = 20000;  ///< Of Gauss-Seidel, >= 0.
+  int most_sweeps = 5000;  ///< Of Gauss-Seidel, >= 0.
   /// Reactions to begin with; zero without.
   std::optional<Eigen::VectorXd> guess = {};
   /// Called now and then with the best merit so far; returning false ends the solve.
@@ -61,7 +61,7 @@ struct Solution {
 ///
 /// Where W is rank-deficient the velocities are determined further than the reactions; of several
 /// solutions one is given. `automatic` sweeps by Gauss-Seidel, hands over to Newton, falls back to
-/// the interior point (in small planar problems to Lemke before), and sweeps on.
+/// the interior point (in planar problems to Lemke, before it or after by size), and sweeps on.
 /// @throws kernel::OutOfRange as validate(); for a tolerance <= 0, sweeps < 0, a guess of another
 /// size or that is not finite, Lemke in dimension 3
 Solution solve(const Problem& problem, const Options& options = {});

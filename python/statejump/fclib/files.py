@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files of FCLIB: the group ``fclib_local`` with its problem, ``solution`` and ``guesses`` with reactions.
+
+The layout is that of fclib.h. A matrix is a group of ``m``, ``n``, ``nz``, ``nzmax``, ``p``, ``i``, ``x``: ``nz`` = -1
+compressed columns, -2 compressed rows, else so many entries one by one. Of those ``i`` is the row and ``p`` the column,
+as CSparse has it and as the library itself computes and writes, though its header says the opposite.
+"""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from statejump.core.errors import StatejumpError, Unreadable
+from statejump.core.hdf5 import made
+from statejump.fclib.problem import Problem, Solution, Stored
+
+if TYPE_CHECKING:
+    import h5py
+    import scipy.sparse
+
+LOCAL = "fclib_local"
+# Which other problems FCLIB knows, and what they are.
+OTHERS = {"fclib_global": "global", "fclib_global_rolling": "rolling", "fclib_local_rolling": "rolling"}
+COLUMNS, ROWS = -1, -2
+
+
+def read(path: str | Path) -> Problem:
+    """Return the problem of a file, with the solutions and guesses that it holds.
+
+    Equations of the file (V, R, s) are eliminated where R is regular.
+
+    :raises Unreadable: no such file, not HDF5, another problem than a local one, a part is missing or damaged
+    """
+    import h5py
+
+    path = Path(path)
+    if not path.is_file():
+        raise Unreadable("no such file", file=path)
+    try:
+        if not h5py.is_hdf5(path):
+            raise Unreadable("cannot be read", cause="it is not HDF5", file=path)
+        with h5py.File(path, "r") as file:
+            return _problem(file)
+    except StatejumpError as error:
+        raise error.located(file=path) from None
+    except (OSError, RuntimeError, MemoryError) as error:
+        raise Unreadable("cannot be read", cause=" ".join(str(error).split()), file=path) from None
+
+
+def _problem(file: h5py.File) -> Problem:
+    if LOCAL not in file:
+        other = next((f"it holds a {what} problem ({name}), and only a local one is solved"
+                      for name, what in OTHERS.items() if name in file), "it is not a file of FCLIB")
+        raise Unreadable(f"/{LOCAL} is missing", cause=other)
+    group = _group(file, LOCAL)
+    dimension = _number(group, "spacedim")
+    if dimension not in (2, 3):
+        raise Unreadable(f"{group.name}/spacedim = {dimension}", cause="must be 2 or 3")
+    vectors = _group(group, "vectors")
+    q, mu = _vector(vectors, "q"), _vector(vectors, "mu")
+    if q.size != dimension * mu.size:
+        raise Unreadable(f"{vectors.name}/q has {q.size} entries",
+                         cause=f"{mu.size} contacts in dimension {dimension} need {dimension * mu.size}")
+    delassus: Any = _matrix(group, "W", (q.size, q.size))
+    if "V" in group or "R" in group:
+        delassus, q = _without_equations(group, delassus, q)
+    info = group["info"] if "info" in group else {}
+    return Problem(delassus, q, mu, dimension, _text(info, "title"), _text(info, "description"),
+                   tuple(_stored(file, q.size)))
+
+
+def _without_equations(
+    group: h5py.Group, delassus: scipy.sparse.spmatrix, q: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return W and q after the elimination of l from u = W r + V l + q, V^T r + R l + s = 0."""
+    s = _vector(_group(group, "vectors"), "s")
+    coupling = _matrix(group, "V", (q.size, s.size)).toarray()
+    matrix = _matrix(group, "R", (s.size, s.size)).toarray()
+    if np.linalg.matrix_rank(matrix) < s.size:
+        raise Unreadable(f"{group.name}/R is singular", cause="only equations that can be eliminated are taken")
+    inner = np.linalg.solve(matrix, np.column_stack([coupling.T, s]))
+    return delassus.toarray() - coupling @ inner[:, :-1], q - coupling @ inner[:, -1]
+
+
+def _stored(file: h5py.File, size: int) -> list[Stored]:
+    names = ["solution"] if "solution" in file else []
+    if "guesses" in file:
+        guesses = _group(file, "guesses")
+        names += [f"guesses/{name}" for name in sorted(guesses) if name != "number_of_guesses"]
+    found = []
+    for name in names:
+        reactions = _vector(_group(file, name), "r")
+        if reactions.size != size:
+            raise Unreadable(f"/{name}/r has {reactions.size} entries", cause=f"q has {size}")
+        found.append(Stored(name, reactions))
+    return found
+
+
+def _group(parent: h5py.Group, name: str) -> h5py.Group:
+    import h5py
+
+    found = parent.get(name)
+    if not isinstance(found, h5py.Group):
+        raise Unreadable(f"{parent.name.rstrip('/')}/{name} is " + ("missing" if found is None else "not a group"))
+    return found
+
+
+def _numbers(parent: h5py.Group, name: str, whole: bool) -> NDArray[Any]:
+    import h5py
+
+    place = f"{parent.name}/{name}"
+    found = parent.get(name)
+    if not isinstance(found, h5py.Dataset):
+        raise Unreadable(f"{place} is " + ("missing" if found is None else "not a data set"))
+    if found.shape is None or len(found.shape) > 1 or found.dtype.kind not in ("iu" if whole else "iuf"):
+        raise Unreadable(f"{place} is damaged", cause=f"must be a list of {'whole ' if whole else ''}numbers")
+    values: NDArray[Any] = np.atleast_1d(found[()]).astype(np.int64 if whole else float)
+    if not np.isfinite(values).all():
+        raise Unreadable(f"{place} is damaged", cause="it has numbers that are not finite")
+    return values
+
+
+def _vector(parent: h5py.Group, name: str) -> NDArray[np.float64]:
+    return _numbers(parent, name, whole=False)
+
+
+def _number(parent: h5py.Group, name: str) -> int:
+    values = _numbers(parent, name, whole=True)
+    if values.size != 1:
+        raise Unreadable(f"{parent.name}/{name} has {values.size} entries", cause="must be one number")
+    return int(values[0])
+
+
+def _matrix(parent: h5py.Group, name: str, shape: tuple[int, int]) -> scipy.sparse.spmatrix:
+    from scipy import sparse
+
+    group = _group(parent, name)
+    rows, columns, kind = (_number(group, key) for key in ("m", "n", "nz"))
+    if (rows, columns) != shape:
+        raise Unreadable(f"{group.name} is {rows} x {columns}", cause=f"must be {shape[0]} x {shape[1]}")
+    p, i = (_numbers(group, key, whole=True) for key in ("p", "i"))
+    x = _vector(group, "x")
+    if kind not in (COLUMNS, ROWS) and kind < 0:
+        raise Unreadable(f"{group.name}/nz = {kind}", cause="must be -2, -1 or a number of entries")
+    if kind >= 0:
+        if min(p.size, i.size, x.size) < kind:
+            raise Unreadable(f"{group.name} is damaged", cause=f"p, i and x have less than nz = {kind} entries")
+        p, i, x = p[:kind], i[:kind], x[:kind]
+        _check_indices(group, "i", i, rows)
+        _check_indices(group, "p", p, columns)
+        return sparse.coo_matrix((x, (i, p)), shape).tocsc()
+    lines, across = (columns, rows) if kind == COLUMNS else (rows, columns)
+    if p.size != lines + 1 or p[0] != 0 or (np.diff(p) < 0).any() or min(i.size, x.size) < p[-1]:
+        raise Unreadable(f"{group.name}/p is damaged",
+                         cause=f"must be {lines + 1} numbers that rise from 0 to at most the entries of i and x")
+    i, x = i[: p[-1]], x[: p[-1]]
+    _check_indices(group, "i", i, across)
+    form = sparse.csc_matrix if kind == COLUMNS else sparse.csr_matrix
+    return form((x, i, p), shape).tocsc()
+
+
+def _check_indices(group: h5py.Group, name: str, values: NDArray[Any], bound: int) -> None:
+    wrong = values[(values < 0) | (values >= bound)]
+    if wrong.size:
+        raise Unreadable(f"{group.name}/{name} holds {wrong[0]}", cause=f"must be between 0 and {bound - 1}")
+
+
+def _text(parent: Any, name: str) -> str:
+    found = parent.get(name)
+    if found is None or getattr(found, "shape", None) != ():
+        return ""
+    value = found[()]
+    return value.decode("utf-8", "replace").strip() if isinstance(value, bytes) else ""
+
+
+def write(path: str | Path, problem: Problem, solution: Solution | None = None) -> None:
+    """Write a problem, and with it a solution, as FCLIB reads them.
+
+    :raises NotWritten: the file cannot be written
+    """
+    from scipy import sparse
+
+    columns = sparse.csc_matrix(problem.delassus)
+    with made(Path(path)) as file:
+        group = file.create_group(LOCAL)
+        _write_numbers(group, {"spacedim": problem.dimension})
+        matrix = group.create_group("W")
+        _write_numbers(matrix, {"nzmax": columns.nnz, "m": columns.shape[0], "n": columns.shape[1], "nz": COLUMNS})
+        matrix["p"], matrix["i"] = columns.indptr.astype(np.int32), columns.indices.astype(np.int32)
+        matrix["x"] = columns.data.astype(float)
+        vectors = group.create_group("vectors")
+        vectors["q"], vectors["mu"] = problem.q, problem.mu
+        info = group.create_group("info")
+        for name in ("title", "description"):
+            info[name] = np.bytes_(getattr(problem, name) or " ")
+        info["math_info"] = np.bytes_(" ")
+        if solution is not None:
+            stored = file.create_group("solution")
+            stored["u"], stored["r"] = solution.velocities, solution.reactions
+
+
+def _write_numbers(group: h5py.Group, numbers: dict[str, int]) -> None:
+    for name, value in numbers.items():
+        group[name] = np.array([value], dtype=np.int32)

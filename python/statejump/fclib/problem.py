@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A local frictional contact problem, its merit and its solution."""
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from statejump import _engine
+from statejump.core.engine_failures import engine
+from statejump.core.errors import StatejumpError
+
+if TYPE_CHECKING:
+    import scipy.sparse
+
+Vector = NDArray[np.float64]
+
+METHODS: tuple[str, ...] = _engine.FRICTION_METHODS
+
+
+class NotSolved(StatejumpError):
+    """No method came to the tolerance; whether there is a solution is not known.
+
+    :param solution: the best that was found
+    """
+
+    exit_status = 1
+    kind = "not_solved"
+
+    def __init__(self, solution: Solution, tolerance: float, **more: Any) -> None:
+        super().__init__("not solved", cause=f"merit {solution.merit.largest:.3g} after {solution.effort}, "
+                         f"tolerance {tolerance:g}", **more)
+        self.solution = solution
+
+
+@dataclass(frozen=True)
+class Merit:
+    """How far reactions are from a solution; 0 for an exact one.
+
+    :param natural_map: norm of r - P_K(r - û) over the largest of |q|, |r| and |u|, in the problem's units
+    :param scaled: the same over |q|, with W divided by its mean diagonal and r multiplied by it
+    """
+
+    natural_map: float
+    scaled: float
+
+    @property
+    def largest(self) -> float:
+        """What a tolerance is compared with."""
+        return max(self.natural_map, self.scaled)
+
+
+@dataclass(frozen=True, eq=False)
+class Stored:
+    """Reactions that a file holds.
+
+    :param name: where in the file: ``solution``, ``guesses/1``
+    :param reactions: one number for each row of W
+    """
+
+    name: str
+    reactions: Vector
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Velocities u = W r + q with Coulomb's law at every contact, the normal component first in a contact's block.
+
+    Units are the caller's: r may be forces or impulses, u velocities, displacements or gap rates.
+
+    :param delassus: W, a square array or a sparse matrix of scipy, (contacts x dimension) rows
+    :param q: velocities without reactions
+    :param mu: friction coefficient of each contact [-]
+    :param dimension: numbers of a contact, 2 or 3
+    :param stored: solutions and guesses of the file that it was read from
+    :raises StatejumpError: sizes that do not fit, numbers that are not finite, mu < 0
+    """
+
+    delassus: NDArray[np.float64] | scipy.sparse.spmatrix
+    q: Vector
+    mu: Vector
+    dimension: int = 3
+    title: str = ""
+    description: str = ""
+    stored: tuple[Stored, ...] = ()
+    _problem: _engine.FrictionProblem = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        for name in ("q", "mu"):
+            values = np.asarray(getattr(self, name), dtype=float)
+            if values.ndim != 1:
+                raise StatejumpError(f"{name} has shape {values.shape}", cause="must be a list of numbers")
+            object.__setattr__(self, name, values)
+        with engine():
+            object.__setattr__(self, "_problem", self._made())
+
+    def _made(self) -> _engine.FrictionProblem:
+        if not hasattr(self.delassus, "tocsc"):
+            dense = np.asarray(self.delassus, dtype=float)
+            if dense.ndim != 2:
+                raise StatejumpError(f"W has shape {dense.shape}", cause="must be a square array")
+            return _engine.FrictionProblem(self.dimension, dense, self.q, self.mu)
+        columns = self.delassus.tocsc()
+        if columns.shape != (self.q.size, self.q.size):
+            raise StatejumpError(f"W has shape {columns.shape}", cause=f"q has {self.q.size} entries")
+        return _engine.FrictionProblem.of_columns(
+            self.dimension, columns.indptr, columns.indices, columns.data.astype(float), self.q, self.mu
+        )
+
+    @property
+    def contacts(self) -> int:
+        """Number of contacts."""
+        return int(self.mu.size)
+
+    def velocities(self, reactions: ArrayLike) -> Vector:
+        """Return u = W r + q."""
+        with engine():
+            return self._problem.velocities(reactions)
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What :func:`solve` found.
+
+    :param reactions: r, the best that was found
+    :param velocities: u = W r + q
+    :param solved: whether the merit is within the tolerance
+    :param method: what found the reactions
+    :param iterations: sweeps of Gauss-Seidel, linear systems of Newton and of the interior point, pivots of Lemke
+    :param seconds: wall time [s]
+    """
+
+    reactions: Vector
+    velocities: Vector
+    merit: Merit
+    solved: bool
+    method: str
+    iterations: Mapping[str, int]
+    seconds: float
+
+    @property
+    def effort(self) -> str:
+        """The iterations in words."""
+        words = {"gauss_seidel": "sweeps", "newton": "Newton systems", "interior_point": "interior-point systems",
+                 "pivots": "pivots"}
+        return ", ".join(f"{self.iterations[name]} {text}" for name, text in words.items() if self.iterations[name]) \
+            or "no iteration"
+
+
+def merit(problem: Problem, reactions: ArrayLike) -> Merit:
+    """Return how far reactions are from a solution.
+
+    :raises StatejumpError: their number is not that of W's rows
+    """
+    with engine():
+        return Merit(**problem._problem.merit(reactions))
+
+
+def solve(
+    problem: Problem, *, tolerance: float = 1e-10, method: str = "automatic", most_sweeps: int = 5000,
+    guess: ArrayLike | None = None, strict: bool = False, progress: Callable[[float], None] | None = None,
+) -> Solution:
+    """Solve a problem.
+
+    :param tolerance: on both merits
+    :param method: one of METHODS; ``automatic`` takes them in turn
+    :param most_sweeps: of Gauss-Seidel, after which it is given up
+    :param guess: reactions to begin with
+    :param strict: raise where it is not solved, instead of a solution that says so
+    :param progress: called with the best merit so far, now and then
+    :raises NotSolved: with ``strict``: no method came to the tolerance
+    :raises StatejumpError: an argument is out of its range
+    """
+    start = time.perf_counter()
+    with engine():
+        found = problem._problem.solve(tolerance=tolerance, method=method, most_sweeps=most_sweeps, guess=guess,
+                                       progress=progress)
+    solution = Solution(
+        reactions=found["reactions"], velocities=found["velocities"],
+        merit=Merit(natural_map=found["natural_map"], scaled=found["scaled"]), solved=found["status"] == "solved",
+        method=found["method"], iterations=found["iterations"], seconds=time.perf_counter() - start,
+    )
+    if strict and not solution.solved:
+        raise NotSolved(solution, tolerance)
+    return solution

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frictional contact problems: files of FCLIB, the command, and what is said of files that are not right."""
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import statejump as sj
+from statejump.core.errors import StatejumpError
+
+h5py = pytest.importorskip("h5py")
+
+
+def pressed(dimension: int = 3, contacts: int = 4) -> sj.fclib.Problem:
+    """One body that rests on more contacts than it needs, pushed sideways."""
+    random = np.random.default_rng(7)
+    h = random.normal(size=(dimension * contacts, 3 * (dimension - 1)))
+    return sj.fclib.Problem(h @ h.T, h @ random.normal(size=h.shape[1]), np.full(contacts, 0.4), dimension, "pressed")
+
+
+def as_stored(matrix: np.ndarray, form: int) -> dict[str, Any]:
+    """A matrix as FCLIB stores it: columns (-1), rows (-2), or entry by entry (0)."""
+    from scipy import sparse
+
+    if form == 0:
+        entries = sparse.coo_matrix(matrix)
+        parts = {"nz": entries.nnz, "p": entries.col, "i": entries.row, "x": entries.data}
+    else:
+        made = (sparse.csc_matrix if form == -1 else sparse.csr_matrix)(matrix)
+        parts = {"nz": form, "p": made.indptr, "i": made.indices, "x": made.data}
+    return {"m": matrix.shape[0], "n": matrix.shape[1], "nzmax": len(parts["x"]), **parts}
+
+
+def write_raw(path: Path, problem: sj.fclib.Problem, form: int = -2,
+              change: Callable[[Any], None] = lambda file: None) -> Path:
+    """Write the file with nothing but h5py, and change it."""
+    with h5py.File(path, "w") as file:
+        group = file.create_group("fclib_local")
+        group["spacedim"] = np.array([problem.dimension], dtype=np.int32)
+        for name, values in as_stored(problem.delassus, form).items():
+            whole = np.float64 if name == "x" else np.int32
+            group[f"W/{name}"] = np.atleast_1d(np.asarray(values, dtype=whole))
+        group["vectors/q"], group["vectors/mu"] = problem.q, problem.mu
+        change(file)
+    return path
+
+
+@pytest.mark.parametrize("form", [-1, -2, 0])
+def test_every_form_of_a_matrix_is_read(tmp_path: Path, form: int) -> None:
+    problem = pressed()
+    unsymmetric = problem.delassus + np.triu(np.ones_like(problem.delassus))  # rows are not columns
+    given = sj.fclib.Problem(unsymmetric, problem.q, problem.mu)
+    found = sj.fclib.read(write_raw(tmp_path / "raw.hdf5", given, form))
+    assert np.array_equal(found.delassus.toarray(), unsymmetric)
+    assert np.array_equal(found.q, problem.q) and np.array_equal(found.mu, problem.mu)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_what_is_written_is_read_again(tmp_path: Path, dimension: int) -> None:
+    problem = pressed(dimension)
+    solution = sj.fclib.solve(problem, strict=True)
+    sj.fclib.write(tmp_path / "solved.hdf5", problem, solution)
+    found = sj.fclib.read(tmp_path / "solved.hdf5")
+    assert found.title == "pressed" and found.dimension == dimension
+    assert np.array_equal(found.delassus.toarray(), problem.delassus)
+    (stored,) = found.stored
+    assert stored.name == "solution"
+    assert sj.fclib.merit(found, stored.reactions).largest <= 1e-10
+    # Of the same numbers in the same order: dense and sparse products round alike to 1e-12.
+    assert np.allclose(found.velocities(stored.reactions), solution.velocities, rtol=0, atol=1e-12)
+
+
+def test_equations_are_eliminated(tmp_path: Path) -> None:
+    problem = pressed()
+    coupling = np.random.default_rng(1).normal(size=(problem.q.size, 2))
+    matrix, right = np.diag([-2.0, -3.0]), np.array([0.5, -1.0])
+
+    def add(file: Any) -> None:
+        for name, values in (("V", coupling), ("R", matrix)):
+            for key, part in as_stored(values, -1).items():
+                file[f"fclib_local/{name}/{key}"] = np.atleast_1d(np.asarray(part, float if key == "x" else np.int32))
+        file["fclib_local/vectors/s"] = right
+
+    found = sj.fclib.read(write_raw(tmp_path / "mixed.hdf5", problem, change=add))
+    r = np.arange(problem.q.size, dtype=float)
+    multipliers = np.linalg.solve(matrix, -(coupling.T @ r + right))
+    expected = problem.delassus @ r + coupling @ multipliers + problem.q
+    assert np.allclose(found.velocities(r), expected, rtol=1e-12)
+
+
+def _set(name: str, value: Any) -> Callable[[Any], None]:
+    def change(file: Any) -> None:
+        del file[name]
+        file[name] = value
+    return change
+
+
+def _spoil(name: str, index: int, value: float) -> Callable[[Any], None]:
+    def change(file: Any) -> None:
+        file[name][index] = value
+    return change
+
+
+def _drop(name: str) -> Callable[[Any], None]:
+    def change(file: Any) -> None:
+        del file[name]
+    return change
+
+
+WRONG: dict[str, tuple[Callable[[Any], None], str]] = {
+    "no problem": (_drop("fclib_local"), "/fclib_local is missing: it is not a file of FCLIB"),
+    "global": (lambda file: file.move("fclib_local", "fclib_global"),
+               "/fclib_local is missing: it holds a global problem (fclib_global), and only a local one is solved"),
+    "no W": (_drop("fclib_local/W"), "/fclib_local/W is missing"),
+    "no vectors": (_drop("fclib_local/vectors"), "/fclib_local/vectors is missing"),
+    "no q": (_drop("fclib_local/vectors/q"), "/fclib_local/vectors/q is missing"),
+    "group for a list": (_set("fclib_local/vectors", np.zeros(3)), "/fclib_local/vectors is not a group"),
+    "dimension": (_spoil("fclib_local/spacedim", 0, 4), "/fclib_local/spacedim = 4: must be 2 or 3"),
+    "dimension as text": (_set("fclib_local/spacedim", "three"),
+                          "/fclib_local/spacedim is damaged: must be a list of whole numbers"),
+    "short q": (_set("fclib_local/vectors/q", np.zeros(5)), "/fclib_local/vectors/q has 5 entries: 4 contacts in "
+                "dimension 3 need 12"),
+    "q is not finite": (_spoil("fclib_local/vectors/q", 3, np.nan),
+                        "/fclib_local/vectors/q is damaged: it has numbers that are not finite"),
+    "W is not finite": (_spoil("fclib_local/W/x", 3, np.inf),
+                        "/fclib_local/W/x is damaged: it has numbers that are not finite"),
+    "negative friction": (_spoil("fclib_local/vectors/mu", 2, -0.1),
+                          "contact 2: mu = -0.1, allowed is finite and >= 0"),
+    "rows": (_spoil("fclib_local/W/m", 0, 9), "/fclib_local/W is 9 x 12: must be 12 x 12"),
+    "form": (_spoil("fclib_local/W/nz", 0, -7), "/fclib_local/W/nz = -7: must be -2, -1 or a number of entries"),
+    "index": (_spoil("fclib_local/W/i", 3, 12), "/fclib_local/W/i holds 12: must be between 0 and 11"),
+    "negative index": (_spoil("fclib_local/W/i", 3, -1), "/fclib_local/W/i holds -1: must be between 0 and 11"),
+    "starts": (_spoil("fclib_local/W/p", 3, 10_000), "/fclib_local/W/p is damaged: must be 13 numbers that rise"),
+    "short x": (_set("fclib_local/W/x", np.zeros(3)), "/fclib_local/W/p is damaged: must be 13 numbers that rise"),
+    "more entries than there are": (_spoil("fclib_local/W/nz", 0, 10_000),
+                                    "/fclib_local/W is damaged: p, i and x have less than nz = 10000 entries"),
+    "table for a list": (_set("fclib_local/vectors/q", np.zeros((3, 4))),
+                         "/fclib_local/vectors/q is damaged: must be a list of numbers"),
+    "solution of another size": (lambda file: file.__setitem__("solution/r", np.zeros(3)),
+                                 "/solution/r has 3 entries: q has 12"),
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_files_that_are_not_right(tmp_path: Path, wrong: str) -> None:
+    change, sentence = WRONG[wrong]
+    path = write_raw(tmp_path / "bad.hdf5", pressed(), change=change)
+    with pytest.raises(StatejumpError) as caught:
+        sj.fclib.read(path)
+    assert str(caught.value).startswith(f"{path}: {sentence}"), caught.value
+    assert caught.value.exit_status == 2
+
+
+def test_no_file_and_no_hdf5(tmp_path: Path) -> None:
+    with pytest.raises(StatejumpError, match="no such file"):
+        sj.fclib.read(tmp_path / "none.hdf5")
+    (tmp_path / "text.hdf5").write_text("text")
+    with pytest.raises(StatejumpError, match="it is not HDF5"):
+        sj.fclib.read(tmp_path / "text.hdf5")
+    whole = write_raw(tmp_path / "whole.hdf5", pressed()).read_bytes()
+    (tmp_path / "cut.hdf5").write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(StatejumpError, match="cut.hdf5: cannot be read"):
+        sj.fclib.read(tmp_path / "cut.hdf5")
+
+
+def test_arguments_out_of_range() -> None:
+    problem = pressed()
+    for mistake in ({"tolerance": 0.0}, {"method": "guessing"}, {"most_sweeps": -1}, {"guess": np.zeros(3)},
+                    {"method": "lemke"}):
+        with pytest.raises(StatejumpError):
+            sj.fclib.solve(problem, **mistake)
+    for made in ((np.zeros((3, 4)), np.zeros(3), [0.1]), (np.eye(3), np.zeros(3), [[0.1]]), (np.eye(4), np.zeros(3), [0.1])):
+        with pytest.raises(StatejumpError):
+            sj.fclib.Problem(*made)
+
+
+def test_merit_is_that_of_siconos() -> None:
+    """The formula of fc3d_compute_error, written apart: r - P_K(r - û) over the largest of |q|, |r| and |u|."""
+    problem = pressed()
+    r = np.random.default_rng(3).normal(size=problem.q.size)
+    u = problem.velocities(r)
+    total = 0.0
+    for k in range(problem.contacts):
+        mu, (rk, uk) = problem.mu[k], (v[3 * k: 3 * k + 3] for v in (r, u))
+        x = rk - uk - np.array([mu * np.hypot(*uk[1:]), 0.0, 0.0])
+        size = np.hypot(*x[1:])
+        if mu * size <= -x[0]:
+            x = np.zeros(3)
+        elif size > mu * x[0]:
+            normal = (mu * size + x[0]) / (mu * mu + 1.0)
+            x = np.array([normal, *(mu * normal * x[1:] / size)])
+        total += float(np.sum((rk - x) ** 2))
+    norms = [np.linalg.norm(v) for v in (problem.q, r, u)]
+    # Rounding of some fifty operations.
+    assert sj.fclib.merit(problem, r).natural_map == pytest.approx(np.sqrt(total) / max(norms), rel=1e-13)
+
+
+def test_command(statejump: Any, tmp_path: Path) -> None:
+    problem = pressed()
+
+    def claim(file: Any) -> None:
+        file["solution/r"] = file["solution/u"] = np.zeros(problem.q.size)
+
+    write_raw(tmp_path / "claimed.hdf5", problem, change=claim)
+    outcome = statejump("fclib", "solve", "claimed.hdf5", "-o", "solved.hdf5")
+    assert outcome.status == 0, outcome.errors
+    assert "stored solution: merit" in outcome.output and "found by" in outcome.output
+    assert sj.fclib.merit(problem, sj.fclib.read(tmp_path / "solved.hdf5").stored[0].reactions).largest <= 1e-10
+
+    outcome = statejump("fclib", "solve", "claimed.hdf5", "-o", "not.hdf5", "--method", "gauss_seidel",
+                        "--most-sweeps", "1")
+    assert outcome.status == 1
+    assert outcome.errors.startswith("error: claimed.hdf5: not solved: merit ")
+    assert not (tmp_path / "not.hdf5").exists()
+
+    outcome = statejump("fclib", "solve", "missing.hdf5")
+    assert outcome.status == 2
+    assert outcome.errors == "error: missing.hdf5: no such file\n"
