@@ -7,6 +7,7 @@ Variants, all with 2 n bodies, n contacts, the same collider and integrator:
 
 - ``joint``: revolute joints (journal in a fixed bearing) under thermal expansion, in every step
   another temperature
+- ``joint_stepper``: the same by the JointStepper, every ``SUBSTEPS`` steps one by YADE's loop
 - ``joint_isothermal``: the same without the ThermalExpansionEngine
 - ``sphere``: pairs of spheres, one fixed, with YADE's own Law2_ScGeom_MindlinPhys_Mindlin
 - ``table1``: yade_scripts/examples/table1.py as it stands, from its first line to its last (one contact)
@@ -15,7 +16,7 @@ The free body is pressed on the fixed one with a constant force inclined to the 
 friction limit, so that both laws carry a normal and a tangential force. Rotations are blocked, or
 a sphere would roll off. It starts at the depth at which the contact carries the load.
 
-Environment: STATEJUMP_BENCH_VARIANT, _SIZE (n), _STEPS, _WARM_UP (steps), _TIMING (1: share of each
+Environment: STATEJUMP_BENCH_VARIANT, _SIZE (n), _STEPS, _SUBSTEPS, _WARM_UP (steps), _TIMING (1: share of each
 engine by O.timingEnabled, which slows the run itself down), _ENERGY (1: O.trackEnergy).
 """
 import contextlib
@@ -195,8 +196,12 @@ def table1():
 
 if variant == "table1":
     report = table1()
-elif variant in ("joint", "joint_isothermal", "sphere"):
-    spheres() if variant == "sphere" else joints(variant == "joint")
+elif variant in ("joint", "joint_stepper", "joint_isothermal", "sphere"):
+    spheres() if variant == "sphere" else joints(variant != "joint_isothermal")
+    if variant == "joint_stepper":
+        from statejump_yade import JointStepper
+
+        O.engines = [O.engines[0], JointStepper(substeps=setting("SUBSTEPS", 10_000)), *O.engines[1:]]
     report = measure()
 else:
     raise SystemExit(f"STATEJUMP_BENCH_VARIANT = {variant} is unknown")

@@ -340,7 +340,8 @@ bool BoreContacts::find_or_throw(const Probe& probe, const MeshBore& bore,
     geometry.bearingRadius = wall_radius;
     geometry.axis = world_axis;
     geometry.clearanceRate = clearance_rate;
-    geometry.update(here, state1, state2, scene.dt);
+    stepper::update(here, motion1, motion2, scene.dt, geometry);
+    geometry.contactPoint = state1.se3.position + geometry.arm1;
     if (here.penetration_depth > deepest) {
       deepest = here.penetration_depth;
       pair.normal = here.normal;

@@ -31,6 +31,27 @@ Real inverse_mass_of(const yade::Scene& scene, int id) {
   return inverse_mass(*body_at(scene, static_cast<std::size_t>(id))->state);
 }
 
+template <class Shape>
+stepper::Part part_of(const Shape& shape, Real length) {
+  return {length, shape.expanded(1), shape.thermalStrainRate};
+}
+
+kernel::BodyMotion shifted(const yade::State& state, const Vector3r& shift) {
+  kernel::BodyMotion moved = motion(state);
+  moved.position += shift;
+  return moved;
+}
+
+// What YADE's recorders read of a contact beside ours.
+bool finish(const yade::State& state1, Real radius_1, Real radius_2,
+            const yade::Interaction& contact) {
+  auto& geometry = static_cast<JointGeom&>(*contact.geom);
+  geometry.contactPoint = state1.se3.position + geometry.arm1;
+  geometry.refR1 = radius_1;
+  geometry.refR2 = radius_2;
+  return true;
+}
+
 }  // namespace
 
 [[gnu::flatten]] bool Ig2_Journal_Bearing_JointGeom::go(
@@ -39,37 +60,28 @@ Real inverse_mass_of(const yade::Scene& scene, int id) {
     const yade::shared_ptr<yade::Interaction>& contact) {
   const auto& journal = static_cast<const Journal&>(*shape1);
   const auto& bearing = static_cast<const Bearing&>(*shape2);
-  const Real journal_radius = journal.expanded(journal.radius);
-  const Real bearing_radius = bearing.expanded(bearing.radius);
+  const stepper::Part part_1 = part_of(journal, journal.radius);
+  const stepper::Part part_2 = part_of(bearing, bearing.radius);
   const Vector3r axis = axis_of(state2.se3.orientation);
-  kernel::BodyMotion bearing_motion = motion(state2);
-  bearing_motion.position += shift2;
-  if (!(journal_radius > 0 && bearing_radius > journal_radius)) {
-    fail_closed("journal", journal_radius, "bearing", bearing_radius, *scene, *contact);
-    return false;
+  const auto tilted = [&] {
+    return axis_of(state1.se3.orientation).cross(axis).squaredNorm() > maxTilt * maxTilt;
+  };
+  switch (stepper::find_revolute(
+      part_1, part_2, motion(state1), shifted(state2, shift2), axis, force || contact->isReal(),
+      scene->dt, tilted,
+      [&](const Vector3r& normal) -> JointGeom& { return geometry_of(contact, normal); })) {
+    case stepper::Found::apart:
+      return false;
+    case stepper::Found::closed:
+      fail_closed("journal", part_1.expanded(), "bearing", part_2.expanded(), *scene, *contact);
+      return false;
+    case stepper::Found::tilted:
+      fail_tilted(*scene, *contact);
+      return false;
+    case stepper::Found::contact:
+      break;
   }
-  const bool keep = force || contact->isReal();
-  if (!keep && !kernel::revolute_touches(state1.se3.position, journal_radius,
-                                         bearing_motion.position, bearing_radius, axis)) {
-    return false;
-  }
-  const Vector3r journal_axis = axis_of(state1.se3.orientation);
-  if (journal_axis.cross(axis).squaredNorm() > maxTilt * maxTilt) {
-    fail_tilted(*scene, *contact);
-    return false;
-  }
-  const kernel::JointContact found = kernel::revolute_contact(motion(state1), journal_radius,
-                                                              bearing_motion, bearing_radius, axis);
-  JointGeom& geometry = geometry_of(contact, found.normal);
-  geometry.refR1 = journal_radius;
-  geometry.refR2 = bearing_radius;
-  geometry.journalRadius = journal_radius;
-  geometry.bearingRadius = bearing_radius;
-  geometry.axis = axis;
-  geometry.clearanceRate =
-      bearing.radius * bearing.thermalStrainRate - journal.radius * journal.thermalStrainRate;
-  geometry.update(found, state1, state2, scene->dt);
-  return true;
+  return finish(state1, part_1.expanded(), part_2.expanded(), *contact);
 }
 
 [[gnu::flatten]] bool Ig2_Ball_Socket_JointGeom::go(
@@ -78,31 +90,22 @@ Real inverse_mass_of(const yade::Scene& scene, int id) {
     const yade::shared_ptr<yade::Interaction>& contact) {
   const auto& ball = static_cast<const Ball&>(*shape1);
   const auto& socket = static_cast<const Socket&>(*shape2);
-  const Real ball_radius = ball.expanded(ball.radius);
-  const Real socket_radius = socket.expanded(socket.radius);
-  kernel::BodyMotion socket_motion = motion(state2);
-  socket_motion.position += shift2;
-  if (!(ball_radius > 0 && socket_radius > ball_radius)) {
-    fail_closed("ball", ball_radius, "socket", socket_radius, *scene, *contact);
-    return false;
+  const stepper::Part part_1 = part_of(ball, ball.radius);
+  const stepper::Part part_2 = part_of(socket, socket.radius);
+  switch (stepper::find_ball(
+      part_1, part_2, motion(state1), shifted(state2, shift2), force || contact->isReal(),
+      scene->dt,
+      [&](const Vector3r& normal) -> JointGeom& { return geometry_of(contact, normal); })) {
+    case stepper::Found::apart:
+    case stepper::Found::tilted:
+      return false;
+    case stepper::Found::closed:
+      fail_closed("ball", part_1.expanded(), "socket", part_2.expanded(), *scene, *contact);
+      return false;
+    case stepper::Found::contact:
+      break;
   }
-  const bool keep = force || contact->isReal();
-  if (!keep && !kernel::ball_touches(state1.se3.position, ball_radius, socket_motion.position,
-                                     socket_radius)) {
-    return false;
-  }
-  const kernel::JointContact found =
-      kernel::ball_contact(motion(state1), ball_radius, socket_motion, socket_radius);
-  JointGeom& geometry = geometry_of(contact, found.normal);
-  geometry.refR1 = ball_radius;
-  geometry.refR2 = socket_radius;
-  geometry.journalRadius = ball_radius;
-  geometry.bearingRadius = socket_radius;
-  geometry.axis = Vector3r::Zero();
-  geometry.clearanceRate =
-      socket.radius * socket.thermalStrainRate - ball.radius * ball.thermalStrainRate;
-  geometry.update(found, state1, state2, scene->dt);
-  return true;
+  return finish(state1, part_1.expanded(), part_2.expanded(), *contact);
 }
 
 [[gnu::flatten]] bool Ig2_Slider_SlotFace_JointGeom::go(
@@ -111,23 +114,14 @@ Real inverse_mass_of(const yade::Scene& scene, int id) {
     const yade::shared_ptr<yade::Interaction>& contact) {
   const auto& slider = static_cast<const Slider&>(*shape1);
   const auto& face = static_cast<const SlotFace&>(*shape2);
-  const Real radius = slider.expanded(slider.radius);
+  const stepper::Part pad = part_of(slider, slider.radius);
   const Vector3r normal = state2.se3.orientation * face.normal;
-  kernel::BodyMotion face_motion = motion(state2);
-  face_motion.position += shift2;
-  const kernel::JointContact found = kernel::plane_contact(motion(state1), radius, face_motion,
-                                                           normal, face.expanded(face.distance));
-  if (found.penetration_depth <= 0 && !force && !contact->isReal()) return false;
-  JointGeom& geometry = geometry_of(contact, found.normal);
-  geometry.refR1 = radius;
-  geometry.refR2 = radius;
-  geometry.journalRadius = radius;
-  geometry.bearingRadius = std::numeric_limits<Real>::infinity();
-  geometry.axis = Vector3r::Zero();
-  geometry.clearanceRate =
-      face.distance * face.thermalStrainRate - slider.radius * slider.thermalStrainRate;
-  geometry.update(found, state1, state2, scene->dt);
-  return true;
+  const stepper::Found found = stepper::find_plane(
+      pad, part_of(face, face.distance), motion(state1), shifted(state2, shift2), normal,
+      force || contact->isReal(), scene->dt,
+      [&](const Vector3r& first) -> JointGeom& { return geometry_of(contact, first); });
+  return found == stepper::Found::contact &&
+         finish(state1, pad.expanded(), pad.expanded(), *contact);
 }
 
 void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::check() const {
@@ -145,26 +139,10 @@ void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
   const bool many = dynamic_cast<const BoreGeom*>(contact->geom.get()) != nullptr;
   auto physics = many ? yade::shared_ptr<JointPhys>(boost::make_shared<BorePhys>())
                       : boost::make_shared<JointPhys>();
-  try {
-    const kernel::ElasticPair elastic =
-        kernel::elastic_pair(first.young, first.poisson, second.young, second.poisson);
-    physics->effectiveYoungModulus = elastic.effective_young_modulus;
-    physics->effectiveShearModulus = elastic.effective_shear_modulus;
-  } catch (const std::invalid_argument& error) {
-    record_failure(error.what(), *scene, *contact);
-  }
-  physics->tangensOfFrictionAngle = std::tan(std::min(first.frictionAngle, second.frictionAngle));
-  if (!(physics->tangensOfFrictionAngle >= 0)) {
-    std::ostringstream text;
-    text << "frictionAngle = " << std::min(first.frictionAngle, second.frictionAngle)
-         << ", allowed is [0, pi/2) rad";
-    record_failure(text.str(), *scene, *contact);
-  }
-  const Real inverse =
-      inverse_mass_of(*scene, contact->id1) + inverse_mass_of(*scene, contact->id2);
-  physics->effectiveMass = inverse > 0 ? 1 / inverse : 0;
-  physics->normalDampingRatio = normalDampingRatio;
-  physics->tangentialDampingRatio = tangentialDampingRatio;
+  fill_physics(*this, first, second,
+               inverse_mass_of(*scene, contact->id1) + inverse_mass_of(*scene, contact->id2),
+               *physics,
+               [&](const std::string& sentence) { record_failure(sentence, *scene, *contact); });
   contact->phys = physics;
 }
 
@@ -174,28 +152,8 @@ void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
   const auto& geometry = static_cast<const JointGeom&>(*geometry_pointer);
   auto& physics = static_cast<JointPhys&>(*physics_pointer);
 
-  kernel::ContactHistory history = contact_history(geometry, physics);
-  const kernel::ContactKinematics kinematics{geometry.normal, geometry.penetrationDepth,
-                                             geometry.effectiveRadius, geometry.relativeVelocity,
-                                             scene->dt};
-  const kernel::ContactResponse response =
-      kernel::hertz_mindlin(contact_parameters(physics), kinematics, history);
-  if (scene->trackEnergy) {
-    account(
-        response, 0, geometry.effectiveRadius,
-        [&](Real& work) {  // dV/dR = V / (2 R)
-          const Real energy =
-              0.5 * (response.normal_elastic_energy + physics.previousElasticEnergy);
-          const Real radius = 0.5 * (geometry.effectiveRadius + physics.previousRadius);
-          work += energy / (2 * radius) * (geometry.effectiveRadius - physics.previousRadius);
-        },
-        geometry, physics, *scene, energies_);
-  }
-  if (geometry.penetrationDepth <= 0) return false;
-
-  exert(response, kernel::contact_wrench(response.force_on_1, geometry.arm1, geometry.arm2),
-        history, geometry, physics, *scene, *contact);
-  return true;
+  return stepper::hertz_mindlin_step(geometry, physics,
+                                     ContactHost{*scene, *contact, physics, energies_});
 }
 
 bool Law2_JointGeom_JointPhys_JointLaw::go(yade::shared_ptr<yade::IGeom>& geometry,

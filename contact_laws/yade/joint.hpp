@@ -10,6 +10,7 @@
 #include "registered.hpp"
 #include "statejump/kernel/joint_kinematics.hpp"
 #include "statejump/kernel/laws/joint_response.hpp"
+#include "statejump/stepper/contact.hpp"
 
 namespace statejump::dem {
 
@@ -35,8 +36,6 @@ struct JointGeom : RegisteredIndexable<JointGeom, yade::GenericSpheresContact> {
   Real clearanceRate = 0;
 
   JointGeom() { createIndex(); }
-  void update(const kernel::JointContact& contact, const yade::State& state1,
-              const yade::State& state2, Real time_step);
   static auto attributes() {
     return std::make_tuple(
         read_only("penetrationDepth", &JointGeom::penetrationDepth,
@@ -126,21 +125,6 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
                   "Penetration depth of the last step [m], kept for the energy account"));
   }
 };
-
-inline void JointGeom::update(const kernel::JointContact& contact, const yade::State& state1,
-                              const yade::State& state2, Real time_step) {
-  previousNormal = normal;
-  normal = contact.normal;
-  penetrationDepth = contact.penetration_depth;
-  effectiveRadius = contact.effective_radius;
-  eccentricity = contact.eccentricity;
-  relativeVelocity = contact.relative_velocity;
-  arm1 = contact.arm_1;
-  arm2 = contact.arm_2;
-  contactPoint = state1.se3.position + arm1;
-  // The history turns with the mean spin of both bodies about the normal.
-  twistAngle = 0.5 * time_step * (state1.angVel + state2.angVel).dot(normal);
-}
 
 struct Ig2_Journal_Bearing_JointGeom
     : Registered<Ig2_Journal_Bearing_JointGeom, yade::IGeomFunctor> {
@@ -240,6 +224,7 @@ struct Law2_JointGeom_JointPhys_HertzMindlin
           yade::Interaction* contact) override;
   std::string get2DFunctorType1() const override { return "JointGeom"; }
   std::string get2DFunctorType2() const override { return "JointPhys"; }
+  void name_energies(const yade::Scene& of) { energies_.name(of); }
   static auto attributes() { return std::make_tuple(); }
 
  private:
@@ -267,6 +252,9 @@ class NamedJointLaw {
   Real v1 = kernel::laws::parameter::v1.standard;
   Real firstContactTime = std::numeric_limits<Real>::quiet_NaN();
   int contacts = 0;
+
+  const stepper::NamedLaw& named_law() const { return named_; }
+  void name_energies(const yade::Scene& of) { energies_.name(of); }
 
  protected:
   template <class Law>
@@ -304,16 +292,14 @@ class NamedJointLaw {
   // Makes the law of the attributes. Throws std::invalid_argument that names class and attribute.
   void build(const char* class_name);
   // As build() made it.
-  const kernel::laws::JointLaw& law() const { return law_; }
+  const kernel::laws::JointLaw& law() const { return named_.law; }
   // Forces of one contact on its two bodies and its entries in O.energy. False when it is open.
   bool step(const JointGeom& geometry, JointPhys& physics, const yade::Interaction& contact,
             yade::Scene& scene);
 
  private:
-  void begin(const JointGeom& geometry, JointPhys& physics, const yade::Scene& scene);
-  kernel::laws::JointLaw law_;  // made by build()
-  bool needs_axis_ = false;     // some of the laws have no meaning without a bearing's axis
-  std::mutex beginning_;        // of firstContactTime and contacts
+  stepper::NamedLaw named_;  // made by build()
+  std::mutex beginning_;     // of firstContactTime and contacts
   JointEnergies energies_;
 };
 

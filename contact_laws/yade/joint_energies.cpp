@@ -27,7 +27,7 @@ void JointEnergies::name(const yade::Scene& scene) {
   named_.store(true, std::memory_order_release);
 }
 
-void JointEnergies::add(const yade::Scene& scene, const Step& step) {
+void JointEnergies::add(const yade::Scene& scene, const stepper::ContactEnergy& step) {
   name(scene);
   scene.energy->add(step.elastic, joint_elastic, ids_[0], true);
   scene.energy->add(step.friction, joint_friction, ids_[1], false);

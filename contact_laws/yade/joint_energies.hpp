@@ -6,23 +6,18 @@
 #include <atomic>
 #include <mutex>
 
+#include "statejump/stepper/contact.hpp"
 #include "yade_api.hpp"
 
 namespace statejump::dem {
 
 class JointEnergies {
  public:
-  // Values of one contact and one step [J]; elastic is what is stored now.
-  struct Step {
-    yade::Real elastic;
-    yade::Real friction;
-    yade::Real damping;
-    yade::Real thermal_work;
-  };
-  void add(const yade::Scene& scene, const Step& step);
+  void add(const yade::Scene& scene, const stepper::ContactEnergy& step);
+  // Enters the names, without values.
+  void name(const yade::Scene& scene);
 
  private:
-  void name(const yade::Scene& scene);
   std::array<int, 4> ids_ = {-1, -1, -1, -1};
   std::atomic<bool> named_{false};
   std::mutex naming_;

@@ -14,6 +14,7 @@
 #include "statejump/kernel/hertz.hpp"
 #include "statejump/law_loader/load.hpp"
 #include "statejump/yade_abi/guard.hpp"
+#include "stepper.hpp"
 #include "thermal.hpp"
 #include "torsion.hpp"
 #include "view.hpp"
@@ -43,7 +44,7 @@ using OurClasses = ClassList<
     Ig2_Ball_Socket_JointGeom, Ig2_Slider_SlotFace_JointGeom,
     Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys, Law2_JointGeom_JointPhys_HertzMindlin,
     Law2_JointGeom_JointPhys_JointLaw, ThermalProgram, ThermalExpansionEngine, ThermalLink,
-    ThermalLinks, TorsionSpring, TorsionSprings, GuidePlanes
+    ThermalLinks, TorsionSpring, TorsionSprings, GuidePlanes, JointStepper
 #ifdef STATEJUMP_HAS_VIEW
     ,
     Gl1<Journal>, Gl1<Bearing>, Gl1<Ball>, Gl1<Socket>, Gl1<Slider>, Gl1<SlotFace>, Gl1<MeshBore>
@@ -136,6 +137,7 @@ STATEJUMP_EXPORT(ThermalLinks)
 STATEJUMP_EXPORT(TorsionSpring)
 STATEJUMP_EXPORT(TorsionSprings)
 STATEJUMP_EXPORT(GuidePlanes)
+STATEJUMP_EXPORT(JointStepper)
 #undef STATEJUMP_EXPORT
 
 BOOST_PYTHON_MODULE(_native) {

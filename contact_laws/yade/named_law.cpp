@@ -110,85 +110,45 @@ void NamedJointLaw::build(const char* class_name) {
   law.contact_length = contactLength;
   law.friction_parameters = {0, v0, v1};  // the friction coefficient is that of each contact
   laws::validate(law);
-  law_ = law;
-  needs_axis_ = laws::has(law.normal, laws::Trait::needs_axis) ||
-                laws::has(law.tangential_velocity, laws::Trait::needs_axis);
-}
-
-// The bodies have moved uniformly over the last step, at the velocity of the half step, and the
-// clearance has changed by clearanceRate dt: the touching is where that straight line crosses 0.
-void NamedJointLaw::begin(const JointGeom& geometry, JointPhys& physics, const yade::Scene& scene) {
-  physics.begun = true;
-  physics.impactSpeed = geometry.relativeVelocity.dot(geometry.normal);
-  const Real rate = physics.impactSpeed - geometry.clearanceRate;
-  const Real since =
-      rate * scene.dt > geometry.penetrationDepth ? geometry.penetrationDepth / rate : scene.dt;
-  const bool ever_apart = rate > 0 && scene.time >= scene.dt;
-  const Real touched = ever_apart ? scene.time - since : scene.time;
-  const std::lock_guard<std::mutex> lock(beginning_);
-  if (contacts == 0 || touched < firstContactTime) firstContactTime = touched;
-  ++contacts;
+  named_.law = law;
+  named_.needs_axis = laws::has(law.normal, laws::Trait::needs_axis) ||
+                      laws::has(law.tangential_velocity, laws::Trait::needs_axis);
 }
 
 bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
                          const yade::Interaction& contact, yade::Scene& scene) {
-  if (geometry.bearingRadius < 0 && !laws::has(law_.normal, laws::Trait::accepts_bulging_wall)) {
-    record_failure("a wall that bulges needs normalLaw " +
-                       laws::names_with<laws::NormalLaw>(laws::Trait::accepts_bulging_wall) +
-                       ", not '" + normalLaw + "'",
-                   scene, contact);
-    return true;
+  switch (stepper::misfit(named_, geometry)) {
+    case stepper::Misfit::bulging_wall:
+      record_failure("a wall that bulges needs normalLaw " +
+                         laws::names_with<laws::NormalLaw>(laws::Trait::accepts_bulging_wall) +
+                         ", not '" + normalLaw + "'",
+                     scene, contact);
+      return true;
+    case stepper::Misfit::no_axis:
+      record_failure(
+          pair_of(scene, contact, std::isinf(geometry.bearingRadius)) + " needs normalLaw " +
+              laws::names_with<laws::NormalLaw>(laws::Trait::needs_axis, false) +
+              " and tangentialVelocity " +
+              laws::names_with<laws::TangentialVelocityLaw>(laws::Trait::needs_axis, false) +
+              ", not '" + normalLaw + "' and '" + tangentialVelocity + "'",
+          scene, contact);
+      return true;
+    case stepper::Misfit::none:
+      break;
   }
-  if (needs_axis_ && geometry.axis.isZero()) {
-    record_failure(
-        pair_of(scene, contact, std::isinf(geometry.bearingRadius)) + " needs normalLaw " +
-            laws::names_with<laws::NormalLaw>(laws::Trait::needs_axis, false) +
-            " and tangentialVelocity " +
-            laws::names_with<laws::TangentialVelocityLaw>(laws::Trait::needs_axis, false) +
-            ", not '" + normalLaw + "' and '" + tangentialVelocity + "'",
-        scene, contact);
-    return true;
+  if (geometry.penetrationDepth > 0 && !physics.begun) {
+    const Real touched = stepper::begin(geometry, physics, scene.time, scene.dt);
+    const std::lock_guard<std::mutex> lock(beginning_);
+    stepper::Begun begun{firstContactTime, contacts};
+    begun.add(touched);
+    firstContactTime = begun.first;
+    contacts = begun.count;
   }
-  const bool touching = geometry.penetrationDepth > 0;
-  if (touching && !physics.begun) begin(geometry, physics, scene);
-
-  kernel::ContactHistory history = contact_history(geometry, physics);
   const auto& state1 = *body_at(scene, static_cast<std::size_t>(contact.id1))->state;
   const auto& state2 = *body_at(scene, static_cast<std::size_t>(contact.id2))->state;
-  const laws::JointKinematics kinematics{
-      {geometry.penetrationDepth, geometry.normal, geometry.arm1, geometry.arm2,
-       geometry.relativeVelocity, geometry.effectiveRadius, geometry.eccentricity},
-      {geometry.journalRadius, geometry.bearingRadius, law_.contact_length},
-      motion(state1),
-      motion(state2),
-      geometry.axis,
-      physics.impactSpeed,
-      geometry.clearanceRate,
-      scene.dt};
   try {
-    const laws::JointResponse response =
-        laws::joint_response(law_, contact_parameters(physics), kinematics, history);
-    if (scene.trackEnergy) {
-      account(
-          response.contact, response.dissipation_force, geometry.journalRadius,
-          [&](Real& work) {  // V(delta, R1, R2) of any law is known by value only
-            laws::NormalGeometry before = kinematics.geometry;
-            before.journal_radius = physics.previousRadius;
-            before.bearing_radius = physics.previousBearingRadius;
-            for (const Real depth : {geometry.penetrationDepth, physics.previousDepth}) {
-              work += 0.5 * laws::radius_energy_change(law_.normal, {physics.effectiveYoungModulus},
-                                                       depth, before, kinematics.geometry);
-            }
-          },
-          geometry, physics, scene, energies_);
-    }
-    if (!touching) return false;
-
-    exert(response.contact, response.wrench, history, geometry, physics, scene, contact);
-    // A law that remembers nothing gives force, not history.
-    if (!(physics.ks > 0)) physics.shearForce = -response.contact.tangential_force;
-    physics.dissipationSlope = response.dissipation_slope;
-    physics.frictionSlope = response.friction_slope;
+    return stepper::joint_law_step(named_.law, geometry, physics, motion(state1), motion(state2),
+                                   ContactHost{scene, contact, physics, energies_});
   } catch (const std::exception& error) {
     record_failure(error.what(), scene, contact);
   }

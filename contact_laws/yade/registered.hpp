@@ -197,13 +197,12 @@ class Registered : public Base {
         Derived::class_name, Derived::doc, py::no_init);
     entry.def("__init__", py::raw_function(&detail::keyword_constructor<Derived>, 1));
     for_each_attribute([&](const auto& a) {
-      using Member = std::decay_t<decltype(a.member)>;
-      const Member member = a.member;
+      using Type = std::decay_t<decltype(std::declval<Derived&>().*a.member)>;
+      Type Derived::*const member = a.member;  // also where a base that Python does not know has it
       const auto get = py::make_getter(member, py::return_value_policy<py::return_by_value>());
       if (a.read_only) {
         entry.add_property(a.name, get, a.doc);
       } else {
-        using Type = std::decay_t<decltype(std::declval<Derived&>().*member)>;
         // Checked as on construction; a refused value leaves the old one in place.
         const auto set = [member](Derived& self, const Type& value) {
           const Type old = self.*member;

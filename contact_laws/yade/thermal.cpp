@@ -27,14 +27,6 @@ const std::string link_damping = "linkDamping";
 const std::string link_thermal_work = "linkThermalWork";
 const std::string pin_damping = "pinDamping";
 
-// c = 2 zeta sqrt(k m) with the spring at the reference temperature.
-Real damping_coefficient(const ThermalLink& link, const yade::State& root, const yade::State& tip) {
-  const Real inverse = inverse_mass(root) + inverse_mass(tip);
-  if (!(link.dampingRatio > 0) || !(inverse > 0)) return 0;
-  const Real stiffness = link.youngModulus * link.crossSectionArea / link.stressFreeLength;
-  return 2 * link.dampingRatio * std::sqrt(stiffness / inverse);
-}
-
 [[gnu::cold, gnu::noinline]] void refuse_time_step(const yade::Scene& scene,
                                                    const ThermalLink& link, Real stable) {
   std::ostringstream before, after;
@@ -65,13 +57,15 @@ yade::Body& body_of(const yade::Scene& scene, int id, const char* who) {
 }
 
 LinkEnds ends_of(const yade::Scene& scene, const ThermalLink& link) {
-  LinkEnds ends{*body_of(scene, link.id1, "ThermalLink.id1").state,
-                *body_of(scene, link.id2, "ThermalLink.id2").state, Vector3r::Zero(), 0};
-  ends.direction = ends.tip.se3.position - ends.root.se3.position;
-  ends.length = ends.direction.norm();
-  if (!(ends.length > 0 && std::isfinite(ends.length))) fail_length(scene, link, ends.length);
-  ends.direction /= ends.length;
-  return ends;
+  yade::State& root = *body_of(scene, link.id1, "ThermalLink.id1").state;
+  yade::State& tip = *body_of(scene, link.id2, "ThermalLink.id2").state;
+  const stepper::Span span = stepper::span_of(root.se3.position, tip.se3.position);
+  if (!span.is_proper()) fail_length(scene, link, span.length);
+  return {root, tip, span};
+}
+
+Real LinkEnds::inverse_mass() const {
+  return dem::inverse_mass(root) + dem::inverse_mass(tip);
 }
 
 void ThermalProgram::check() {
@@ -127,12 +121,16 @@ bool ThermalExpansionEngine::collected() const {
   return true;
 }
 
+const std::vector<ThermalExpansionEngine::Target>& ThermalExpansionEngine::targets() {
+  if (!collected()) collect_targets();
+  return targets_;
+}
+
 void ThermalExpansionEngine::action() {
   throw_recorded_failure();
   if (!program) throw std::invalid_argument("ThermalExpansionEngine.program is missing");
-  if (!collected()) collect_targets();
   temperatureChange = program->temperature_change(scene->time);
-  for (const Target& target : targets_) {
+  for (const Target& target : targets()) {
     if (target.is_shared) continue;
     const Real strain = target.material->thermalExpansion * temperatureChange;
     target.shape->thermalStrainRate =
@@ -169,86 +167,41 @@ void ThermalLinks::action() {
   for (std::size_t i = 0; i < links.size(); ++i) act(*links[i], moments_[i]);
 }
 
-// With extension e = L - l_T the tension is N = k_T e + c (L' - l_T'), k_T = E A / l_T, and
-//   N L' = d(k_T e^2 / 2)/dt + c (L' - l_T')^2 + [N + k_T e^2 / (2 l_T)] l_T',
-// so the thermal work on the link is -integral of [N + k_T e^2 / (2 l_T)] dl_T.
 void ThermalLinks::act(ThermalLink& link, const Vector3r& moment) {
   if (!link.program) throw std::invalid_argument("ThermalLink.program is missing");
   require_positive("ThermalLink", "stressFreeLength", link.stressFreeLength, "[m]");
-  const auto& [root, tip, direction, length] = ends_of(*scene, link);
-  const Vector3r relative_velocity = tip.vel - root.vel;
-  const Real length_rate = relative_velocity.dot(direction);
-
-  link.temperatureChange = link.program->temperature_change(scene->time);
-  const Real stress_free_length =
-      link.stressFreeLength * (1 + link.thermalExpansion * link.temperatureChange);
-  // Of the last step, as the velocities are: at a corner of the program the rate of one instant
-  // would set the dashpot against a speed that the tip does not have yet.
-  const Real since = scene->time - link.previousTime;
-  const Real stress_free_rate = link.previousStressFreeLength > 0 && since > 0
-                                    ? (stress_free_length - link.previousStressFreeLength) / since
-                                    : link.stressFreeLength * link.thermalExpansion *
-                                          link.program->temperature_rate(scene->time);
-  const Real stiffness = link.youngModulus * link.crossSectionArea / stress_free_length;
-  const Real damping = damping_coefficient(link, root, tip);
-  const Real extension = length - stress_free_length;
-  const Real extension_rate = length_rate - stress_free_rate;
-  const Real tension = stiffness * extension + damping * extension_rate;
-  link.axialForce = -tension;
-
-  const Real inverse = inverse_mass(root) + inverse_mass(tip);
-  // A moment on the link as a force across its tip, and the opposite at its root.
-  const Real damping_across = link.pinDamping / (length * length);
+  const LinkEnds ends = ends_of(*scene, link);
+  const Real inverse = ends.inverse_mass();
+  const stepper::LinkStep step = stepper::link_step(
+      link, ends.span, ends.root.vel, ends.tip.vel, link.program->temperature_change(scene->time),
+      [&] { return link.program->temperature_rate(scene->time); },
+      stepper::damping_coefficient(link, inverse), scene->time);
   if (inverse > 0) {
-    const Real stable = std::min(kernel::critical_time_step(1 / inverse, stiffness, damping),
-                                 kernel::critical_time_step(1 / inverse, 0, damping_across));
+    const Real stable = stepper::stable_step(step, inverse);
     if (scene->dt > stable) refuse_time_step(*scene, link, stable);
   }
-
-  const Vector3r velocity_across = relative_velocity - length_rate * direction;
-  Vector3r force_on_tip = -tension * direction - damping_across * velocity_across;
+  Vector3r force_on_tip = stepper::force_on_tip(step);
   if (link.tipTurnsWithLink) {
+    yade::State& tip = ends.tip;
     if ((tip.blockedDOFs & all_rotations_blocked) != all_rotations_blocked) {
       throw std::invalid_argument("ThermalLink.tipTurnsWithLink: block the rotations of body " +
                                   std::to_string(link.id2) + " (blockedDOFs containing 'XYZ')");
     }
-    // A couple of forces +-(M x u) / L carries the moment M of the step's contacts, its part along
-    // the link excepted: u L x (M x u) / L = M - (M.u) u.
-    force_on_tip += moment.cross(direction) / length;
-    if (link.tipDirection.isZero()) {
-      link.tipDirection = tip.se3.orientation.conjugate() * direction;
-    }
-    const Vector3r pointing = tip.se3.orientation * link.tipDirection;
-    tip.se3.orientation =
-        (yade::Quaternionr::FromTwoVectors(pointing, direction) * tip.se3.orientation).normalized();
-    tip.angVel = direction.cross(relative_velocity) / length;
+    force_on_tip += stepper::turn_tip(link, step, moment, tip.se3.orientation, tip.angVel);
   }
   scene->forces.addForce(link.id2, force_on_tip);
   scene->forces.addForce(link.id1, -force_on_tip);
 
   if (scene->trackEnergy) {
-    const Real elastic = 0.5 * stiffness * extension * extension;
-    scene->energy->add(elastic, link_elastic, energy_ids_[0], true);
-    scene->energy->add(damping * extension_rate * extension_rate * scene->dt, link_damping,
-                       energy_ids_[1], false);
-    scene->energy->add(damping_across * velocity_across.squaredNorm() * scene->dt, pin_damping,
-                       energy_ids_[3], false);
-    if (link.previousStressFreeLength > 0) {
-      const Real previous_elastic = 0.5 * link.youngModulus * link.crossSectionArea /
-                                    link.previousStressFreeLength * link.previousExtension *
-                                    link.previousExtension;
-      const Real mean_tension = 0.5 * (tension + link.previousTension);
-      const Real mean_softening =
-          0.5 * (elastic / stress_free_length + previous_elastic / link.previousStressFreeLength);
-      scene->energy->add(
-          -(mean_tension + mean_softening) * (stress_free_length - link.previousStressFreeLength),
-          link_thermal_work, energy_ids_[2], false);
+    const stepper::LinkEnergy energy = stepper::energy(link, step, scene->dt);
+    scene->energy->add(energy.elastic, link_elastic, energy_ids_[0], true);
+    scene->energy->add(energy.damping, link_damping, energy_ids_[1], false);
+    scene->energy->add(energy.pin_damping, pin_damping, energy_ids_[3], false);
+    if (energy.works) {
+      scene->energy->add(energy.thermal_work, link_thermal_work, energy_ids_[2], false);
     }
   }
-  link.previousTension = tension;
-  link.previousExtension = extension;
-  link.previousStressFreeLength = stress_free_length;
-  link.previousTime = scene->time;
+  stepper::keep(link, step, scene->time);
 }
 
 namespace {
@@ -321,7 +274,8 @@ double stable_time_step(const yade::Scene& scene) {
         const yade::State& tip = *body_of(scene, link->id2, "ThermalLink.id2").state;
         const Real length = link->stressFreeLength;
         const Real k = link->youngModulus * link->crossSectionArea / length;
-        const Real c = damping_coefficient(*link, root, tip) + link->pinDamping / (length * length);
+        const Real c = stepper::damping_coefficient(*link, inverse_mass(root) + inverse_mass(tip)) +
+                       link->pinDamping / (length * length);
         touch(link->id1, inverse_mass(root), k, c);
         touch(link->id2, inverse_mass(tip), k, c);
       }
@@ -338,7 +292,8 @@ double stable_time_step(const yade::Scene& scene) {
         }
         for (int i = 0; i < 2; ++i) {
           const ThermalLink& link = i == 0 ? *spring->link1 : *spring->link2;
-          const Real k = 0.5 * moving * spring->stiffness / (links[i].length * links[i].length);
+          const Real k =
+              0.5 * moving * spring->stiffness / (links[i].span.length * links[i].span.length);
           touch(link.id1, inverse_mass(links[i].root), k, 0);
           touch(link.id2, inverse_mass(links[i].tip), k, 0);
         }

@@ -8,6 +8,7 @@
 #include "failure.hpp"
 #include "registered.hpp"
 #include "shapes.hpp"
+#include "statejump/stepper/link.hpp"
 #include "statejump/thermal/program.hpp"
 
 namespace statejump::dem {
@@ -27,6 +28,7 @@ struct ThermalProgram : Registered<ThermalProgram, yade::Serializable> {
   std::vector<Real> tableTemperatureChanges;
 
   void check();
+  const thermal::Program& program() const;
   Real temperature_change(Real time) const { return program().temperature_change(time); }
   Real temperature_rate(Real time) const { return program().temperature_rate(time); }
 
@@ -51,7 +53,6 @@ struct ThermalProgram : Registered<ThermalProgram, yade::Serializable> {
   }
 
  private:
-  const thermal::Program& program() const;
   std::optional<thermal::Program> program_;  // built by check()
 };
 
@@ -67,6 +68,18 @@ struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalE
   std::vector<int> ids;
   Real temperatureChange = 0;
 
+  // A body as it was when it was collected: compared before use, so that a body erased or given
+  // another shape by a script is noticed. Not owned: Python objects may only be released under the
+  // interpreter's lock, which a running simulation does not hold.
+  struct Target {
+    std::size_t id;
+    ThermalShape* shape;
+    const ThermalFrictMat* material;
+    bool is_shared;  // its shape is that of an earlier body, whose material counts
+  };
+  // Of this moment.
+  const std::vector<Target>& targets();
+
   void action() override;
   static auto attributes() {
     return std::make_tuple(
@@ -79,15 +92,6 @@ struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalE
   }
 
  private:
-  // A body as it was when it was collected: compared before use, so that a body erased or given
-  // another shape by a script is noticed. Not owned: Python objects may only be released under the
-  // interpreter's lock, which a running simulation does not hold.
-  struct Target {
-    std::size_t id;
-    ThermalShape* shape;
-    const ThermalFrictMat* material;
-    bool is_shared;  // its shape is that of an earlier body, whose material counts
-  };
   void collect_targets();
   bool collected() const;
   std::vector<Target> targets_;
@@ -95,7 +99,7 @@ struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalE
   std::size_t number_of_bodies_ = 0;
 };
 
-struct ThermalLink : Registered<ThermalLink, yade::Serializable> {
+struct ThermalLink : Registered<ThermalLink, yade::Serializable>, stepper::Link {
   static constexpr const char* class_name = "ThermalLink";
   static constexpr const char* base_name = "Serializable";
   static constexpr const char* doc =
@@ -103,23 +107,7 @@ struct ThermalLink : Registered<ThermalLink, yade::Serializable> {
       "stress-free length l_T = l0 (1 + alpha dT), rigid in bending. A uniform rod of mass m "
       "pinned "
       "at a fixed point is exactly this spring with m/3 at its tip.";
-  int id1 = -1;
-  int id2 = -1;
-  Real youngModulus = 0;
-  Real crossSectionArea = 0;
-  Real stressFreeLength = 0;
-  Real thermalExpansion = 0;
-  Real dampingRatio = 0;
-  Real pinDamping = 0;
-  bool tipTurnsWithLink = false;
   yade::shared_ptr<ThermalProgram> program;
-  Real axialForce = 0;
-  Real temperatureChange = 0;
-  Real previousTension = 0;
-  Real previousExtension = 0;
-  Real previousStressFreeLength = 0;
-  Real previousTime = 0;
-  Vector3r tipDirection = Vector3r::Zero();
 
   void check() const;
   static auto attributes() {
@@ -166,8 +154,8 @@ struct ThermalLink : Registered<ThermalLink, yade::Serializable> {
 struct LinkEnds {
   yade::State& root;
   yade::State& tip;
-  Vector3r direction;  // unit, from root to tip
-  Real length;         // [m]
+  stepper::Span span;
+  Real inverse_mass() const;  // 1/m1 + 1/m2 [1/kg]
 };
 LinkEnds ends_of(const yade::Scene& scene, const ThermalLink& link);
 yade::Body& body_of(const yade::Scene& scene, int id, const char* who);

@@ -15,27 +15,18 @@ namespace {
 
 const std::string torsion_elastic = "torsionElastic";
 constexpr Real pi = 3.14159265358979323846;
-// Largest component of a link's direction along the axis: rounding of a scene laid out in a turned
-// plane is far below it, and what it neglects is the square of it.
-constexpr Real largest_tilt = 1e-6;
 
-void require_planar(const yade::Scene& scene, const ThermalLink& link, const Vector3r& direction,
+void require_planar(const yade::Scene& scene, const ThermalLink& link, const stepper::Span& span,
                     const Vector3r& axis) {
-  const Real tilt = direction.dot(axis);
-  if (std::abs(tilt) <= largest_tilt) return;
+  if (stepper::is_planar(span, axis)) return;
   std::ostringstream after;
   after.precision(9);
   after << (axis == Vector3r::UnitZ() ? " leaves the x-y plane, z component of its direction "
                                       : " leaves the plane across the axis, component of its "
                                         "direction along it ")
-        << tilt << ", allowed is at most " << largest_tilt;
+        << span.direction.dot(axis) << ", allowed is at most " << stepper::largest_tilt;
   throw_failure({Failure::Part::link, link.id1, link.id2, "TorsionSpring: ", after.str(),
                  scene.time, std::numeric_limits<Real>::quiet_NaN(), when(scene)});
-}
-
-// 1/I of turning the link by a couple on its two ends [1/(kg m2)].
-Real inverse_inertia(const LinkEnds& ends) {
-  return (inverse_mass(ends.root) + inverse_mass(ends.tip)) / (ends.length * ends.length);
 }
 
 }  // namespace
@@ -61,15 +52,12 @@ void TorsionSprings::act(TorsionSpring& spring) {
   if (!spring.link2) throw std::invalid_argument("TorsionSpring.link2 is missing");
   const LinkEnds first = ends_of(*scene, *spring.link1);
   const LinkEnds second = ends_of(*scene, *spring.link2);
-  require_planar(*scene, *spring.link1, first.direction, spring.axis);
-  require_planar(*scene, *spring.link2, second.direction, spring.axis);
+  require_planar(*scene, *spring.link1, first.span, spring.axis);
+  require_planar(*scene, *spring.link2, second.span, spring.axis);
 
-  const Vector3r turn = first.direction.cross(second.direction);
-  spring.angle = std::atan2(turn.dot(spring.axis), first.direction.dot(second.direction));
-  const Real stretch = spring.angle - spring.freeAngle;
-  spring.moment = spring.stiffness * stretch;
-
-  const Real inverse = inverse_inertia(first) + inverse_inertia(second);
+  const Real stretch = stepper::torsion_step(spring, first.span, second.span);
+  const Real inverse = stepper::inverse_inertia(first.span, first.inverse_mass()) +
+                       stepper::inverse_inertia(second.span, second.inverse_mass());
   if (inverse > 0) {
     const Real stable = kernel::critical_time_step(1 / inverse, spring.stiffness);
     if (scene->dt > stable) {
@@ -84,8 +72,7 @@ void TorsionSprings::act(TorsionSpring& spring) {
   }
 
   const auto add_couple = [&](const ThermalLink& link, const LinkEnds& ends, Real moment) {
-    const Vector3r across = spring.axis.cross(ends.direction);
-    const Vector3r force = moment / ends.length * across;
+    const Vector3r force = stepper::couple(ends.span, spring.axis, moment);
     scene->forces.addForce(link.id2, force);
     scene->forces.addForce(link.id1, -force);
   };

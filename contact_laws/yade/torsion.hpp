@@ -10,7 +10,7 @@
 
 namespace statejump::dem {
 
-struct TorsionSpring : Registered<TorsionSpring, yade::Serializable> {
+struct TorsionSpring : Registered<TorsionSpring, yade::Serializable>, stepper::Torsion {
   static constexpr const char* class_name = "TorsionSpring";
   static constexpr const char* base_name = "Serializable";
   static constexpr const char* doc =
@@ -23,11 +23,6 @@ struct TorsionSpring : Registered<TorsionSpring, yade::Serializable> {
       "2021) acts on link1, its opposite on link2.";
   yade::shared_ptr<ThermalLink> link1;
   yade::shared_ptr<ThermalLink> link2;
-  Real stiffness = 0;
-  Real freeAngle = 0;
-  Vector3r axis = Vector3r::UnitZ();
-  Real angle = 0;
-  Real moment = 0;
 
   void check() const;
   static auto attributes() {

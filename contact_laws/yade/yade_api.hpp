@@ -45,6 +45,10 @@ inline const yade::Interaction& interaction_at(const yade::Scene& scene, std::si
   return *(*scene.interactions)[i];
 }
 
+inline yade::Interaction& interaction_to_change(const yade::Scene& scene, std::size_t i) {
+  return *(*scene.interactions)[i];
+}
+
 // Makes a 3-D view that was started before our classes were known draw them, too. Without it YADE
 // ends with a failed assertion when such a view meets a shape of ours.
 inline void refresh_view() {

@@ -49,6 +49,8 @@ bar = ThermalLink(
 
 O.engines = [
     ForceResetter(),
+    # The joint is stepped by itself. Without this line YADE's loop makes every step: the same numbers, slower.
+    JointStepper(substeps=1000),
     ThermalExpansionEngine(program=orbit),
     InsertionSortCollider([Bo1_Slider_Aabb(), Bo1_SlotFace_Aabb()], verletDist=0.1 * pad_radius),
     InteractionLoop(

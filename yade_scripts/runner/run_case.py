@@ -57,6 +57,8 @@ def run(case, output):
             command="record()", iterPeriod=every, initRun=True, label="recorder"
         )
         built = kind.build(case, [recorder])
+        if case["dem"].get("stepper") == "joint":
+            O.engines = [O.engines[0], sj.JointStepper(substeps=every), *O.engines[1:]]
         reported = [-1.0]
         refused = []  # what YADE hands on of an error in Python is a traceback
 

@@ -25,6 +25,7 @@ from statejump.core.progress import Tell
 from statejump.core.run import Run
 from statejump.core.scratch import scratch
 from statejump.core.tables import read_columns
+from statejump.schema.fields import choice
 
 MARK = "STATEJUMP "
 PR_SET_PDEATHSIG = 1  # prctl(2)
@@ -47,6 +48,12 @@ def common_values(case: Case, number_of_steps: int) -> dict[str, Any]:
     values["number_of_samples"] = case.samples_per_cycle * case.thermal.cycles
     values["dem"].update(number_of_steps=number_of_steps, time_step_s=case.duration_s / number_of_steps)
     return values
+
+
+def stepper() -> Any:
+    """Declare the key of what makes the steps of a DEM run: the plugin's JointStepper, or all engines of YADE's loop
+    in every step. Both give the same numbers, bit for bit on one thread."""
+    return choice("joint", ("joint", "yade"), "the same numbers as YADE's loop, in less time")
 
 
 def find_yade() -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from statejump.core import thermal as programs
+from statejump.core import yade_process
 from statejump.core.case import Case, no_length_left
 from statejump.core.errors import NotAllowed
 from statejump.kinds.spring_slider import stable_step
@@ -55,6 +56,7 @@ class Dem(Section):
     slider_mass_kg: float = parameter(0.0, "kg", 0, 1e6, "the paper's link is its own mass")
     samples_per_cycle: int = whole(2000, 10, 1_000_000, CHOICE)
     threads: int = whole(1, 1, 1024, CHOICE)
+    stepper: str = yade_process.stepper()
 
 
 @definition

@@ -12,6 +12,7 @@ from math import pi
 from typing import ClassVar
 
 from statejump.core import thermal as core_thermal
+from statejump.core import yade_process
 from statejump.core.case import Case
 from statejump.core.thermal import Thermal
 from statejump.kinds.truss import checks
@@ -182,6 +183,7 @@ class TrussDem(Section):
     contact_damping_ratio: float = parameter(0.1, "-", 0, 10, CHOICE)
     pin_damping_N_m_s_per_rad: float = parameter(0.0, "N m s/rad", 0, 1e9, CHOICE)
     threads: int = whole(1, 1, 1024, CHOICE)
+    stepper: str = yade_process.stepper()
 
 
 @definition

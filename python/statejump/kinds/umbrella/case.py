@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 
 from statejump import _engine, laws
 from statejump.core import thermal as programs
+from statejump.core import yade_process
 from statejump.core.case import Case, check_radii, no_length_left
 from statejump.core.errors import NotAllowed
 from statejump.core.physics import apex_m
@@ -126,6 +127,7 @@ class UmbrellaDem(Section):
 
     steps_per_cycle: int = whole(100_000, 10, 1_000_000_000, "as the reduced model")
     threads: int = whole(1, 1, 1024, CHOICE)
+    stepper: str = yade_process.stepper()
 
 
 @definition

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Straight links between two bodies, and torsion springs between two links: one step of each. The
+// plugin's engines and the stepper call the same functions.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "statejump/kernel/joint_kinematics.hpp"
+#include "statejump/kernel/stable_step.hpp"
+#include "statejump/kernel/vector.hpp"
+
+namespace statejump::stepper {
+
+using kernel::Vector3;
+using Quaternion = Eigen::Quaterniond;
+
+/// A link and what it keeps from step to step; the attributes of ThermalLink.
+struct Link {
+  int id1 = -1;
+  int id2 = -1;
+  double youngModulus = 0;      ///< E [Pa]
+  double crossSectionArea = 0;  ///< A [m2]
+  double stressFreeLength = 0;  ///< l0 [m]
+  double thermalExpansion = 0;  ///< [1/K]
+  double dampingRatio = 0;      ///< [-]
+  double pinDamping = 0;        ///< [N m s/rad]
+  bool tipTurnsWithLink = false;
+  double axialForce = 0;                ///< [N], compression positive
+  double temperatureChange = 0;         ///< [K]
+  double previousTension = 0;           ///< [N]
+  double previousExtension = 0;         ///< [m]
+  double previousStressFreeLength = 0;  ///< [m]
+  double previousTime = 0;              ///< [s]
+  Vector3 tipDirection = Vector3::Zero();
+};
+
+/// Where a link is.
+struct Span {
+  Vector3 direction;  ///< unit, from root to tip
+  double length;      ///< [m]
+  bool is_proper() const { return length > 0 && std::isfinite(length); }
+};
+
+inline Span span_of(const Vector3& root, const Vector3& tip) {
+  Span span{tip - root, 0};
+  span.length = span.direction.norm();
+  span.direction /= span.length;
+  return span;
+}
+
+/// c = 2 zeta sqrt(k m) [N s/m] with the spring at the reference temperature.
+/// @param inverse_mass 1/m1 + 1/m2 [1/kg]
+inline double damping_coefficient(const Link& link, double inverse_mass) {
+  if (!(link.dampingRatio > 0) || !(inverse_mass > 0)) return 0;
+  const double stiffness = link.youngModulus * link.crossSectionArea / link.stressFreeLength;
+  return 2 * link.dampingRatio * std::sqrt(stiffness / inverse_mass);
+}
+
+/// The forces of a link in one step. With extension e = L - l_T the tension is
+/// N = k_T e + c (L' - l_T'), k_T = E A / l_T, and
+///   N L' = d(k_T e^2 / 2)/dt + c (L' - l_T')^2 + [N + k_T e^2 / (2 l_T)] l_T',
+/// so the thermal work on the link is -integral of [N + k_T e^2 / (2 l_T)] dl_T.
+struct LinkStep {
+  Span span;
+  Vector3 relative_velocity;  ///< tip against root [m/s]
+  Vector3 velocity_across;    ///< [m/s]
+  double stress_free_length;  ///< l_T [m]
+  double stiffness;           ///< k_T [N/m]
+  double damping;             ///< c [N s/m]
+  double damping_across;      ///< [N s/m]
+  double extension;           ///< e [m]
+  double extension_rate;      ///< [m/s]
+  double tension;             ///< N [N]
+};
+
+/// @param temperature_rate gives dT' at this time [K/s]; asked in the first step only
+/// @param damping damping_coefficient() [N s/m]; @param time [s]
+template <class Rate>
+LinkStep link_step(Link& link, const Span& span, const Vector3& root_velocity,
+                   const Vector3& tip_velocity, double temperature_change, Rate&& temperature_rate,
+                   double damping, double time) {
+  LinkStep step;
+  step.span = span;
+  step.relative_velocity = tip_velocity - root_velocity;
+  const double length_rate = step.relative_velocity.dot(span.direction);
+  link.temperatureChange = temperature_change;
+  step.stress_free_length =
+      link.stressFreeLength * (1 + link.thermalExpansion * link.temperatureChange);
+  // Of the last step, as the velocities are: at a corner of the program the rate of one instant
+  // would set the dashpot against a speed that the tip does not have yet.
+  const double since = time - link.previousTime;
+  const double stress_free_rate =
+      link.previousStressFreeLength > 0 && since > 0
+          ? (step.stress_free_length - link.previousStressFreeLength) / since
+          : link.stressFreeLength * link.thermalExpansion * temperature_rate();
+  step.stiffness = link.youngModulus * link.crossSectionArea / step.stress_free_length;
+  step.damping = damping;
+  step.extension = span.length - step.stress_free_length;
+  step.extension_rate = length_rate - stress_free_rate;
+  step.tension = step.stiffness * step.extension + damping * step.extension_rate;
+  link.axialForce = -step.tension;
+  // A moment on the link as a force across its tip, and the opposite at its root.
+  step.damping_across = link.pinDamping / (span.length * span.length);
+  step.velocity_across = step.relative_velocity - length_rate * span.direction;
+  return step;
+}
+
+/// Largest stable time step of a link alone [s]. @param inverse_mass 1/m1 + 1/m2 [1/kg], > 0
+inline double stable_step(const LinkStep& step, double inverse_mass) {
+  return std::min(kernel::critical_time_step(1 / inverse_mass, step.stiffness, step.damping),
+                  kernel::critical_time_step(1 / inverse_mass, 0, step.damping_across));
+}
+
+/// Force on the tip [N] of the link alone; the root gets the opposite.
+inline Vector3 force_on_tip(const LinkStep& step) {
+  return -step.tension * step.span.direction - step.damping_across * step.velocity_across;
+}
+
+/// Turns the tip with its link, and returns the force on the tip [N] that carries a moment on it.
+///
+/// A couple of forces +-(M x u) / L carries the moment M of the step's contacts, its part along the
+/// link excepted: u L x (M x u) / L = M - (M.u) u.
+/// @param moment M [N m]; @param orientation, spin of the tip; out
+inline Vector3 turn_tip(Link& link, const LinkStep& step, const Vector3& moment,
+                        Quaternion& orientation, Vector3& spin) {
+  const Vector3& direction = step.span.direction;
+  const Vector3 carrying = moment.cross(direction) / step.span.length;
+  if (link.tipDirection.isZero()) link.tipDirection = orientation.conjugate() * direction;
+  const Vector3 pointing = orientation * link.tipDirection;
+  orientation = (Quaternion::FromTwoVectors(pointing, direction) * orientation).normalized();
+  spin = direction.cross(step.relative_velocity) / step.span.length;
+  return carrying;
+}
+
+/// Energies of one link and one step [J]; elastic is what is stored now.
+struct LinkEnergy {
+  double elastic;
+  double damping;
+  double pin_damping;
+  double thermal_work;
+  bool works;  ///< whether there is thermal work: not in the first step
+};
+
+inline LinkEnergy energy(const Link& link, const LinkStep& step, double time_step) {
+  LinkEnergy energy{0.5 * step.stiffness * step.extension * step.extension,
+                    step.damping * step.extension_rate * step.extension_rate * time_step,
+                    step.damping_across * step.velocity_across.squaredNorm() * time_step, 0, false};
+  if (link.previousStressFreeLength > 0) {
+    const double previous_elastic = 0.5 * link.youngModulus * link.crossSectionArea /
+                                    link.previousStressFreeLength * link.previousExtension *
+                                    link.previousExtension;
+    const double mean_tension = 0.5 * (step.tension + link.previousTension);
+    const double mean_softening = 0.5 * (energy.elastic / step.stress_free_length +
+                                         previous_elastic / link.previousStressFreeLength);
+    energy.thermal_work = -(mean_tension + mean_softening) *
+                          (step.stress_free_length - link.previousStressFreeLength);
+    energy.works = true;
+  }
+  return energy;
+}
+
+/// Keeps what the next step asks for. @param time [s]
+inline void keep(Link& link, const LinkStep& step, double time) {
+  link.previousTension = step.tension;
+  link.previousExtension = step.extension;
+  link.previousStressFreeLength = step.stress_free_length;
+  link.previousTime = time;
+}
+
+/// A torsion spring; the attributes of TorsionSpring.
+struct Torsion {
+  double stiffness = 0;  ///< K_M [N m/rad]
+  double freeAngle = 0;  ///< [rad]
+  Vector3 axis = Vector3::UnitZ();
+  double angle = 0;   ///< [rad]
+  double moment = 0;  ///< [N m]
+};
+
+/// Largest component of a link's direction along the axis: rounding of a scene laid out in a turned
+/// plane is far below it, and what it neglects is the square of it.
+constexpr double largest_tilt = 1e-6;
+
+inline bool is_planar(const Span& span, const Vector3& axis) {
+  return std::abs(span.direction.dot(axis)) <= largest_tilt;
+}
+
+/// Angle and moment of this step; returns the stretch [rad].
+inline double torsion_step(Torsion& spring, const Span& first, const Span& second) {
+  const Vector3 turn = first.direction.cross(second.direction);
+  spring.angle = std::atan2(turn.dot(spring.axis), first.direction.dot(second.direction));
+  const double stretch = spring.angle - spring.freeAngle;
+  spring.moment = spring.stiffness * stretch;
+  return stretch;
+}
+
+/// 1/I of turning a link by a couple on its two ends [1/(kg m2)].
+/// @param inverse_mass 1/m1 + 1/m2 [1/kg]
+inline double inverse_inertia(const Span& span, double inverse_mass) {
+  return inverse_mass / (span.length * span.length);
+}
+
+/// Force on the tip [N] of a link that a moment [N m] turns; the root gets the opposite.
+inline Vector3 couple(const Span& span, const Vector3& axis, double moment) {
+  const Vector3 across = axis.cross(span.direction);
+  return moment / span.length * across;
+}
+
+}  // namespace statejump::stepper

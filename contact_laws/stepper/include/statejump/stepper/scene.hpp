@@ -1,0 +1,407 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene of clearance joints, links and torsion springs as plain arrays, and its steps: what a
+// step of YADE's engines does, in the same order, without YADE.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "statejump/kernel/laws/joint_law.hpp"
+#include "statejump/stepper/contact.hpp"
+#include "statejump/stepper/link.hpp"
+#include "statejump/stepper/motion.hpp"
+#include "statejump/thermal/program.hpp"
+
+namespace statejump::stepper {
+
+/// Thermal strain that parts share: all that have it now and that the same engines set.
+struct Strain {
+  double strain = 0;  ///< [-]
+  double rate = 0;    ///< of the last step [1/s]
+};
+
+/// Sets strains to expansion times temperature change; a ThermalExpansionEngine.
+struct Heater {
+  struct Target {
+    std::size_t strain;  ///< place in Scene::strains
+    double expansion;    ///< [1/K]
+  };
+  std::size_t program;  ///< place in Scene::programs
+  std::vector<Target> targets;
+};
+
+enum class Joint : unsigned char { revolute, ball, plane };
+
+/// Two bodies that touch or may touch.
+struct Contact {
+  int body_1, body_2;
+  double length_1, length_2;       ///< radii, or pad and distance of the face [m]
+  std::size_t strain_1, strain_2;  ///< places in Scene::strains
+  Vector3 face_normal;             ///< in the axes of body 2; of a plane
+  Joint joint;
+  bool real = false;     ///< it has geometry and physics
+  bool renewed = false;  ///< since the arrays were filled
+  long made = -1;        ///< step in which it became real
+  ContactGeometry geometry;
+  ContactPhysics physics;
+};
+
+/// A link, with its program and whether it turns its tip.
+struct LinkPlace {
+  Link link;
+  std::size_t program;  ///< place in Scene::programs
+};
+
+struct TorsionPlace {
+  Torsion spring;
+  std::array<int, 2> first, second;  ///< root and tip of the two links
+};
+
+struct Guide {
+  int body;
+  Vector3 normal;
+};
+
+/// What adds forces after the contacts, in the order of the engines.
+using Stage = std::variant<std::vector<LinkPlace>, std::vector<TorsionPlace>, std::vector<Guide>>;
+
+/// Energies that grow from step to step [J]. What is stored now belongs to the last step alone.
+struct Energies {
+  double joint_friction = 0, joint_damping = 0, joint_thermal_work = 0;
+  double link_damping = 0, pin_damping = 0, link_thermal_work = 0;
+  double numerical_damping = 0, gravity_work = 0;
+};
+
+/// The law of contacts that is not made of laws by name.
+struct HertzMindlin {};
+
+class Scene {
+ public:
+  double time = 0;       ///< [s]
+  double time_step = 0;  ///< [s]
+  long iteration = 0;
+  bool tracks_energy = false;
+  double largest_tilt = 0;  ///< between the axes of journal and bearing [rad]
+  Newton newton;
+  std::vector<thermal::Program> programs;
+  std::vector<Strain> strains;
+  std::vector<Heater> heaters;
+  std::vector<Body> bodies;
+  std::vector<Contact> contacts;
+  std::vector<Stage> stages;
+  std::variant<HertzMindlin, NamedLaw> law;
+  Energies energies;
+  Begun begun;
+  bool any_contact = false;  ///< a contact has been computed since the arrays were filled
+
+  /// Physics of a contact that begins, by its place; none where the materials allow none.
+  using Make = std::function<std::optional<ContactPhysics>(std::size_t)>;
+
+  /// Says what rests and what moves; call it when the arrays are filled.
+  void prepare();
+
+  /// Makes steps until one cannot be made here: a failure, which is for the ordinary loop to tell,
+  /// or a body that leaves its bound, after which the collider has to look again. That step is left
+  /// half made: fill the arrays again and make the steps before it.
+  /// @return steps that were made whole
+  long run(long steps, const Make& make);
+
+ private:
+  // Where contacts put what they do.
+  struct Host {
+    Scene& scene;
+    const Contact& contact;
+    bool* failed;
+    double time_step() const { return scene.time_step; }
+    bool tracks_energy() const { return scene.tracks_energy; }
+    void add(const ContactEnergy& energy) {
+      scene.energies.joint_friction += energy.friction;
+      scene.energies.joint_damping += energy.damping;
+      scene.energies.joint_thermal_work += energy.thermal_work;
+    }
+    void exert(const kernel::Wrench& wrench) {
+      Body& one = scene.bodies[static_cast<std::size_t>(contact.body_1)];
+      Body& two = scene.bodies[static_cast<std::size_t>(contact.body_2)];
+      if (one.moves) {
+        one.added_force += wrench.force_1;
+        if (one.turns) one.added_torque += wrench.torque_1;
+      }
+      if (two.moves) {
+        two.added_force += wrench.force_2;
+        if (two.turns) two.added_torque += wrench.torque_2;
+      }
+    }
+    void step_is_too_long(double) { *failed = true; }
+  };
+
+  Body& body(int id) { return bodies[static_cast<std::size_t>(id)]; }
+  template <class Law>
+  bool step(const Law& law, const Make& make);
+  void heat();
+  template <class Law>
+  bool step_contact(const Law& law, std::size_t place, const Make& make);
+  Found find(Contact& contact);
+  bool act(std::vector<LinkPlace>& links);
+  bool act(std::vector<TorsionPlace>& springs);
+  bool act(std::vector<Guide>& guides);
+  void sum();
+  void account_motion(const Body& body);
+  bool move_all();
+
+  std::vector<std::size_t> moving_;
+  std::vector<double> changes_;  // temperature changes of the programs in this step [K]
+  std::vector<Vector3> kept_;    // moments on tips, forces across planes
+  bool summed_ = false;
+};
+
+inline Vector3 axis_of(const Quaternion& q) {
+  // Local z axis in the world: orientation * (0, 0, 1) without the products with zero.
+  return {2 * (q.x() * q.z() + q.w() * q.y()), 2 * (q.y() * q.z() - q.w() * q.x()),
+          1 - 2 * (q.x() * q.x() + q.y() * q.y())};
+}
+
+inline void Scene::prepare() {
+  for (Body& each : bodies) {
+    each.turns = can_turn(each);
+    each.moves = !rests(each);
+  }
+  for (const Stage& stage : stages) {
+    const auto* links = std::get_if<std::vector<LinkPlace>>(&stage);
+    if (!links) continue;
+    for (const LinkPlace& place : *links) {
+      if (!place.link.tipTurnsWithLink) continue;
+      Body& tip = body(place.link.id2);
+      tip.turns = tip.moves = true;
+    }
+  }
+  moving_.clear();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].moves) moving_.push_back(i);
+  }
+  changes_.assign(programs.size(), 0);
+}
+
+inline long Scene::run(long steps, const Make& make) {
+  return std::visit(
+      [&](const auto& one) {
+        long done = 0;
+        while (done < steps && step(one, make)) ++done;
+        return done;
+      },
+      law);
+}
+
+template <class Law>
+bool Scene::step(const Law& one, const Make& make) {
+  for (const std::size_t i : moving_) clear_forces(bodies[i]);
+  summed_ = false;
+  for (std::size_t i = 0; i < programs.size(); ++i) {
+    changes_[i] = programs[i].temperature_change(time);
+  }
+  heat();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (!step_contact(one, i, make)) return false;
+  }
+  for (Stage& stage : stages) {
+    if (!std::visit([&](auto& list) { return act(list); }, stage)) return false;
+  }
+  sum();
+  if (!move_all()) return false;
+  time += time_step;
+  ++iteration;
+  return true;
+}
+
+inline void Scene::heat() {
+  for (const Heater& heater : heaters) {
+    for (const Heater::Target& target : heater.targets) {
+      Strain& now = strains[target.strain];
+      const double strain = target.expansion * changes_[heater.program];
+      now.rate = time_step > 0 ? (strain - now.strain) / time_step : 0;
+      now.strain = strain;
+    }
+  }
+}
+
+inline Found Scene::find(Contact& contact) {
+  const Body& one = body(contact.body_1);
+  const Body& two = body(contact.body_2);
+  const Strain& strain_1 = strains[contact.strain_1];
+  const Strain& strain_2 = strains[contact.strain_2];
+  const Part part_1{contact.length_1, 1 + strain_1.strain, strain_1.rate};
+  const Part part_2{contact.length_2, 1 + strain_2.strain, strain_2.rate};
+  const auto geometry = [&](const Vector3& first_normal) -> ContactGeometry& {
+    if (!contact.real) {
+      contact.geometry = {};
+      contact.geometry.normal = first_normal;
+    }
+    return contact.geometry;
+  };
+  switch (contact.joint) {
+    case Joint::revolute: {
+      const Vector3 axis = axis_of(two.orientation);
+      const auto tilted = [&] {
+        return axis_of(one.orientation).cross(axis).squaredNorm() > largest_tilt * largest_tilt;
+      };
+      return find_revolute(part_1, part_2, one.motion, two.motion, axis, contact.real, time_step,
+                           tilted, geometry);
+    }
+    case Joint::ball:
+      return find_ball(part_1, part_2, one.motion, two.motion, contact.real, time_step, geometry);
+    case Joint::plane:
+      break;
+  }
+  const Vector3 normal = two.orientation * contact.face_normal;
+  return find_plane(part_1, part_2, one.motion, two.motion, normal, contact.real, time_step,
+                    geometry);
+}
+
+template <class Law>
+bool Scene::step_contact(const Law& one, std::size_t place, const Make& make) {
+  Contact& contact = contacts[place];
+  const Found found = find(contact);
+  if (found == Found::apart) return true;
+  if (found != Found::contact) return false;
+  if (!contact.real) {
+    const std::optional<ContactPhysics> physics = make(place);
+    if (!physics) return false;
+    contact.physics = *physics;
+    contact.real = contact.renewed = true;
+    contact.made = iteration;
+  }
+  any_contact = true;
+  bool failed = false;
+  Host host{*this, contact, &failed};
+  if constexpr (std::is_same_v<Law, HertzMindlin>) {
+    contact.real = hertz_mindlin_step(contact.geometry, contact.physics, host);
+  } else {
+    if (misfit(one, contact.geometry) != Misfit::none) return false;
+    if (contact.geometry.penetrationDepth > 0 && !contact.physics.begun) {
+      begun.add(begin(contact.geometry, contact.physics, time, time_step));
+    }
+    try {
+      contact.real = joint_law_step(one.law, contact.geometry, contact.physics,
+                                    body(contact.body_1).motion, body(contact.body_2).motion, host);
+    } catch (const std::exception&) {
+      return false;
+    }
+  }
+  return !failed;
+}
+
+inline bool Scene::act(std::vector<LinkPlace>& links) {
+  bool needs_moments = false;
+  for (const LinkPlace& place : links) needs_moments |= place.link.tipTurnsWithLink;
+  kept_.assign(links.size(), Vector3::Zero());
+  if (needs_moments) {
+    sum();
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      if (links[i].link.tipTurnsWithLink) kept_[i] = body(links[i].link.id2).torque;
+    }
+  }
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    auto& [link, program] = links[i];
+    Body& root = body(link.id1);
+    Body& tip = body(link.id2);
+    const Span span = span_of(root.motion.position, tip.motion.position);
+    if (!span.is_proper()) return false;
+    const double inverse = root.inverse_mass + tip.inverse_mass;
+    const LinkStep now = link_step(
+        link, span, root.motion.velocity, tip.motion.velocity, changes_[program],
+        [&, place = program] { return programs[place].temperature_rate(time); },
+        damping_coefficient(link, inverse), time);
+    if (inverse > 0 && time_step > stable_step(now, inverse)) return false;
+    Vector3 force = force_on_tip(now);
+    if (link.tipTurnsWithLink) {
+      if ((tip.blocked & all_rotations) != all_rotations) return false;
+      force += turn_tip(link, now, kept_[i], tip.orientation, tip.motion.angular_velocity);
+    }
+    if (tip.moves) tip.added_force += force;
+    if (root.moves) root.added_force += -force;
+    if (tracks_energy) {
+      const LinkEnergy step = energy(link, now, time_step);
+      energies.link_damping += step.damping;
+      energies.pin_damping += step.pin_damping;
+      if (step.works) energies.link_thermal_work += step.thermal_work;
+    }
+    keep(link, now, time);
+  }
+  return true;
+}
+
+inline bool Scene::act(std::vector<TorsionPlace>& springs) {
+  for (TorsionPlace& place : springs) {
+    const auto span = [&](const std::array<int, 2>& ends) {
+      return span_of(body(ends[0]).motion.position, body(ends[1]).motion.position);
+    };
+    const auto mobility = [&](const std::array<int, 2>& ends) {
+      return body(ends[0]).inverse_mass + body(ends[1]).inverse_mass;
+    };
+    const Span first = span(place.first);
+    const Span second = span(place.second);
+    Torsion& spring = place.spring;
+    if (!first.is_proper() || !second.is_proper() || !is_planar(first, spring.axis) ||
+        !is_planar(second, spring.axis)) {
+      return false;
+    }
+    torsion_step(spring, first, second);
+    const double inverse = inverse_inertia(first, mobility(place.first)) +
+                           inverse_inertia(second, mobility(place.second));
+    if (inverse > 0 && time_step > kernel::critical_time_step(1 / inverse, spring.stiffness)) {
+      return false;
+    }
+    const auto add = [&](const std::array<int, 2>& ends, const Vector3& force) {
+      if (body(ends[1]).moves) body(ends[1]).added_force += force;
+      if (body(ends[0]).moves) body(ends[0]).added_force += -force;
+    };
+    add(place.first, couple(first, spring.axis, spring.moment));
+    add(place.second, couple(second, spring.axis, -spring.moment));
+  }
+  return true;
+}
+
+inline bool Scene::act(std::vector<Guide>& guides) {
+  sum();
+  kept_.resize(guides.size());
+  for (std::size_t i = 0; i < guides.size(); ++i) {
+    Body& held = body(guides[i].body);
+    const Vector3& normal = guides[i].normal;
+    kept_[i] = held.force.dot(normal) * normal;
+    held.motion.velocity -= held.motion.velocity.dot(normal) * normal;
+  }
+  for (std::size_t i = 0; i < guides.size(); ++i) body(guides[i].body).added_force += -kept_[i];
+  return true;
+}
+
+inline void Scene::sum() {
+  for (const std::size_t i : moving_) sum_forces(bodies[i], !summed_);
+  summed_ = true;
+}
+
+inline void Scene::account_motion(const Body& each) {
+  const kernel::BodyMotion& motion = each.motion;
+  if (newton.damping != 0 && each.damped) {
+    energies.numerical_damping +=
+        motion.velocity.cwiseAbs().dot(each.force.cwiseAbs()) * newton.damping * time_step;
+    energies.numerical_damping +=
+        motion.angular_velocity.cwiseAbs().dot(each.torque.cwiseAbs()) * newton.damping * time_step;
+  }
+  energies.gravity_work += -newton.gravity.dot(motion.velocity) * each.mass * time_step;
+}
+
+inline bool Scene::move_all() {
+  for (const std::size_t i : moving_) {
+    Body& each = bodies[i];
+    if (tracks_energy) account_motion(each);
+    move(each, newton, time_step);
+    if (left_its_bound(each)) return false;
+  }
+  return true;
+}
+
+}  // namespace statejump::stepper

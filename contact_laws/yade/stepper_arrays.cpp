@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stepper_arrays.hpp"
+
+#include <array>
+#include <boost/make_shared.hpp>
+#include <boost/python.hpp>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "blocked_motion.hpp"
+#include "bore.hpp"
+#include "contact_parts.hpp"
+#include "guide.hpp"
+#include "joint_exchange.hpp"
+#include "shapes.hpp"
+#include "torsion.hpp"
+
+namespace statejump::dem {
+namespace {
+
+namespace py = boost::python;
+
+constexpr int aspherical = 2;  // bit of Body::flags
+
+struct EnergyEntry {
+  const char* name;
+  Real stepper::Energies::*value;
+};
+constexpr std::array<EnergyEntry, 8> energy_entries = {
+    {{"jointFriction", &stepper::Energies::joint_friction},
+     {"jointDamping", &stepper::Energies::joint_damping},
+     {"jointThermalWork", &stepper::Energies::joint_thermal_work},
+     {"linkDamping", &stepper::Energies::link_damping},
+     {"pinDamping", &stepper::Energies::pin_damping},
+     {"linkThermalWork", &stepper::Energies::link_thermal_work},
+     {"nonviscDamp", &stepper::Energies::numerical_damping},
+     {"gravWork", &stepper::Energies::gravity_work}}};
+
+// Calls act with the engine as what it is.
+template <class Act>
+void as_stage(yade::Engine& engine, Act&& act) {
+  if (auto* links = dynamic_cast<ThermalLinks*>(&engine)) {
+    act(*links);
+  } else if (auto* springs = dynamic_cast<TorsionSprings*>(&engine)) {
+    act(*springs);
+  } else if (auto* guides = dynamic_cast<GuidePlanes*>(&engine)) {
+    act(*guides);
+  }
+}
+
+void scatter_stage(const ThermalLinks& to, const stepper::Stage& from) {
+  const auto& places = std::get<std::vector<stepper::LinkPlace>>(from);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    static_cast<stepper::Link&>(*to.links[i]) = places[i].link;
+  }
+}
+
+void scatter_stage(const TorsionSprings& to, const stepper::Stage& from) {
+  const auto& places = std::get<std::vector<stepper::TorsionPlace>>(from);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    static_cast<stepper::Torsion&>(*to.springs[i]) = places[i].spring;
+  }
+}
+
+void scatter_stage(const GuidePlanes&, const stepper::Stage&) {}  // keeps nothing
+
+}  // namespace
+
+stepper::Energies read_energies(const yade::Scene& scene) {
+  const py::object tracker(scene.energy);
+  const py::object names(tracker.attr("keys")());
+  stepper::Energies energies;
+  for (const EnergyEntry& entry : energy_entries) {
+    if (names.contains(entry.name)) energies.*entry.value = py::extract<Real>(tracker[entry.name]);
+  }
+  return energies;
+}
+
+void write_energies(const stepper::Energies& energies, const stepper::Energies& before,
+                    const yade::Scene& scene) {
+  py::object tracker(scene.energy);
+  for (const EnergyEntry& entry : energy_entries) {
+    if (energies.*entry.value != before.*entry.value) tracker[entry.name] = energies.*entry.value;
+  }
+}
+
+bool JointArrays::gather(stepper::Scene& arrays) {
+  arrays = {};
+  interactions_.clear();
+  heated_.clear();
+  strains_.clear();
+  common_strains_.clear();
+  programs_.clear();
+  arrays.time = scene_.time;
+  arrays.time_step = scene_.dt;
+  arrays.iteration = scene_.iter;
+  arrays.tracks_energy = scene_.trackEnergy;
+  arrays.newton = engines_.newton;
+  if (engines_.revolute) arrays.largest_tilt = engines_.revolute->maxTilt;
+  if (engines_.joint_law) {
+    arrays.law = engines_.joint_law->named_law();
+    arrays.begun = {engines_.joint_law->firstContactTime, engines_.joint_law->contacts};
+  }
+  scene_.forces.sync();  // the permanent forces alone: the others have just been reset
+  arrays.bodies.reserve(number_of_bodies(scene_));
+  for (std::size_t id = 0; id < number_of_bodies(scene_); ++id) {
+    if (!gather_body(id, arrays)) return false;
+  }
+  gather_heaters(arrays);
+  arrays.contacts.reserve(number_of_interactions(scene_));
+  for (std::size_t i = 0; i < number_of_interactions(scene_); ++i) {
+    if (!gather_contact(i, arrays)) return false;
+  }
+  bool whole = true;
+  for (yade::Engine* engine : engines_.stages) {
+    as_stage(*engine, [&](const auto& stage) { whole = whole && gather_stage(stage, arrays); });
+  }
+  if (whole) arrays.prepare();
+  return whole;
+}
+
+bool JointArrays::gather_body(std::size_t id, stepper::Scene& arrays) {
+  stepper::Body& one = arrays.bodies.emplace_back();
+  const auto& pointer = body_at(scene_, id);
+  if (!pointer) return true;  // erased: it rests
+  const yade::Body& body = *pointer;
+  const yade::State& state = *body.state;
+  const std::string which = "body " + std::to_string(id);
+  if (body.clumpId >= 0) refuse_scene(which + " belongs to a clump");
+  if (body.shape && !dynamic_cast<const ThermalShape*>(body.shape.get())) {
+    refuse_scene("it does not know the shape of " + which + ", " + body.shape->getClassName());
+  }
+  if (dynamic_cast<const MeshBore*>(body.shape.get())) {
+    refuse_scene(which + " is a MeshBore, whose contacts the ordinary loop alone can follow");
+  }
+  if ((body.flags & aspherical) != 0 && engines_.exact_rotation &&
+      (state.blockedDOFs & stepper::all_rotations) == 0) {
+    refuse_scene(which + " is aspherical and free to turn about all axes");
+  }
+  one.motion = motion(state);
+  one.orientation = state.se3.orientation;
+  one.inertia = state.inertia;
+  one.mass = state.mass;
+  one.inverse_mass = inverse_mass(state);
+  one.blocked = state.blockedDOFs;
+  one.damped = state.isDamped;
+  one.permanent_force = scene_.forces.getForce(static_cast<int>(id));
+  one.permanent_torque = scene_.forces.getTorque(static_cast<int>(id));
+  one.bounded = engines_.has_collider && body.bound;
+  if (!one.bounded) return true;
+  one.bound_position = body.bound->refPos;
+  one.bound_reach = body.bound->sweepLength;
+  return !stepper::left_its_bound(one);  // else the collider is about to look again
+}
+
+std::size_t JointArrays::program_of(const ThermalProgram& program, stepper::Scene& arrays) {
+  const auto [found, is_new] = programs_.emplace(&program, arrays.programs.size());
+  if (is_new) arrays.programs.push_back(program.program());
+  return found->second;
+}
+
+void JointArrays::gather_heaters(stepper::Scene& arrays) {
+  for (std::size_t i = 0; i < engines_.heaters.size(); ++i) {
+    ThermalExpansionEngine& engine = *engines_.heaters[i];
+    stepper::Heater heater{program_of(*engine.program, arrays), {}};
+    for (const ThermalExpansionEngine::Target& target : engine.targets()) {
+      if (target.is_shared) continue;
+      ThermalShape& shape = *target.shape;
+      const Real expansion = target.material->thermalExpansion;
+      const auto [common, is_new] = common_strains_.emplace(
+          std::make_tuple(i, expansion, shape.thermalStrain, shape.thermalStrainRate),
+          arrays.strains.size());
+      if (is_new) {
+        arrays.strains.push_back({shape.thermalStrain, shape.thermalStrainRate});
+        heater.targets.push_back({common->second, expansion});
+      }
+      if (!strains_.emplace(&shape, common->second).second) {
+        refuse_scene("two ThermalExpansionEngines set the shape of body " +
+                     std::to_string(target.id));
+      }
+      heated_.emplace_back(&shape, common->second);
+    }
+    arrays.heaters.push_back(std::move(heater));
+  }
+}
+
+std::size_t JointArrays::strain_of(const yade::Body& body, stepper::Scene& arrays) {
+  const auto& shape = static_cast<const ThermalShape&>(*body.shape);
+  const auto found = strains_.find(&shape);
+  if (found != strains_.end()) return found->second;
+  constexpr std::size_t no_engine = std::numeric_limits<std::size_t>::max();
+  const auto [common, is_new] = common_strains_.emplace(
+      std::make_tuple(no_engine, Real(0), shape.thermalStrain, shape.thermalStrainRate),
+      arrays.strains.size());
+  if (is_new) arrays.strains.push_back({shape.thermalStrain, shape.thermalStrainRate});
+  return common->second;
+}
+
+// Whether some functor of the scene knows the pair.
+bool JointArrays::find_parts(const yade::Body& one, const yade::Body& two,
+                             stepper::Contact& contact) const {
+  const yade::Shape* const first = one.shape.get();
+  const yade::Shape* const second = two.shape.get();
+  if (engines_.revolute) {
+    const auto* journal = dynamic_cast<const Journal*>(first);
+    const auto* bearing = journal ? dynamic_cast<const Bearing*>(second) : nullptr;
+    if (bearing) {
+      contact.joint = stepper::Joint::revolute;
+      contact.length_1 = journal->radius;
+      contact.length_2 = bearing->radius;
+      return true;
+    }
+  }
+  if (engines_.ball) {
+    const auto* ball = dynamic_cast<const Ball*>(first);
+    const auto* socket = ball ? dynamic_cast<const Socket*>(second) : nullptr;
+    if (socket) {
+      contact.joint = stepper::Joint::ball;
+      contact.length_1 = ball->radius;
+      contact.length_2 = socket->radius;
+      return true;
+    }
+  }
+  if (engines_.plane) {
+    const auto* slider = dynamic_cast<const Slider*>(first);
+    const auto* face = slider ? dynamic_cast<const SlotFace*>(second) : nullptr;
+    if (face) {
+      contact.joint = stepper::Joint::plane;
+      contact.length_1 = slider->radius;
+      contact.length_2 = face->distance;
+      contact.face_normal = face->normal;
+      return true;
+    }
+  }
+  return false;
+}
+
+bool JointArrays::gather_contact(std::size_t place, stepper::Scene& arrays) {
+  const yade::Interaction& interaction = interaction_at(scene_, place);
+  if (!exists(interaction.id1) || !exists(interaction.id2)) return false;
+  const yade::Body& one = body(interaction.id1);
+  const yade::Body& two = body(interaction.id2);
+  stepper::Contact contact{};
+  if (!find_parts(one, two, contact)) return !interaction.isReal();
+  if (!interaction.isActive) return false;
+  contact.body_1 = interaction.id1;
+  contact.body_2 = interaction.id2;
+  contact.strain_1 = strain_of(one, arrays);
+  contact.strain_2 = strain_of(two, arrays);
+  contact.real = interaction.isReal();
+  if (contact.real) {
+    const auto* geometry = dynamic_cast<const JointGeom*>(interaction.geom.get());
+    const auto* kept = dynamic_cast<const JointPhys*>(interaction.phys.get());
+    if (!geometry || !kept) return false;
+    copy_geometry(*geometry, contact.geometry);
+    copy_physics(*kept, contact.physics);
+  } else if (interaction.geom || interaction.phys) {
+    return false;
+  }
+  interactions_.push_back(place);
+  arrays.contacts.push_back(contact);
+  return true;
+}
+
+bool JointArrays::gather_stage(const ThermalLinks& group, stepper::Scene& arrays) {
+  std::vector<stepper::LinkPlace> places;
+  places.reserve(group.links.size());
+  for (const auto& link : group.links) {
+    if (!link || !link->program || !exists(link->id1) || !exists(link->id2) ||
+        !(link->stressFreeLength > 0)) {
+      return false;
+    }
+    places.push_back({*link, program_of(*link->program, arrays)});
+  }
+  arrays.stages.emplace_back(std::move(places));
+  return true;
+}
+
+bool JointArrays::gather_stage(const TorsionSprings& group, stepper::Scene& arrays) {
+  std::vector<stepper::TorsionPlace> places;
+  places.reserve(group.springs.size());
+  for (const auto& spring : group.springs) {
+    if (!spring || !spring->link1 || !spring->link2) return false;
+    const ThermalLink& first = *spring->link1;
+    const ThermalLink& second = *spring->link2;
+    for (const int id : {first.id1, first.id2, second.id1, second.id2}) {
+      if (!exists(id)) return false;
+    }
+    places.push_back({*spring, {first.id1, first.id2}, {second.id1, second.id2}});
+  }
+  arrays.stages.emplace_back(std::move(places));
+  return true;
+}
+
+bool JointArrays::gather_stage(const GuidePlanes& group, stepper::Scene& arrays) {
+  if (group.ids.size() != group.normals.size()) return false;
+  std::vector<stepper::Guide> guides;
+  guides.reserve(group.ids.size());
+  for (std::size_t i = 0; i < group.ids.size(); ++i) {
+    if (!exists(group.ids[i])) return false;
+    guides.push_back({group.ids[i], group.normals[i]});
+  }
+  arrays.stages.emplace_back(std::move(guides));
+  return true;
+}
+
+std::optional<stepper::ContactPhysics> JointArrays::physics(std::size_t contact) const {
+  const yade::Interaction& interaction = interaction_at(scene_, interactions_[contact]);
+  const yade::Body& one = body(interaction.id1);
+  const yade::Body& two = body(interaction.id2);
+  const auto* first = dynamic_cast<const ThermalFrictMat*>(one.material.get());
+  const auto* second = dynamic_cast<const ThermalFrictMat*>(two.material.get());
+  if (!engines_.physics || !first || !second) return std::nullopt;
+  stepper::ContactPhysics made;
+  bool good = true;
+  fill_physics(*engines_.physics, *first, *second,
+               inverse_mass(*one.state) + inverse_mass(*two.state), made,
+               [&](const std::string&) { good = false; });
+  return good ? std::optional<stepper::ContactPhysics>(made) : std::nullopt;
+}
+
+void JointArrays::scatter_contact(const stepper::Contact& from, yade::Interaction& to) {
+  if (!from.real) {
+    if (!to.isReal()) return;
+    to.geom.reset();
+    to.phys.reset();
+    to.iterMadeReal = -1;
+    return;
+  }
+  if (from.renewed) {
+    to.geom = boost::make_shared<JointGeom>();
+    to.phys = boost::make_shared<JointPhys>();
+    to.iterMadeReal = from.made;
+  }
+  copy_geometry(from.geometry, static_cast<JointGeom&>(*to.geom));
+  copy_physics(from.physics, static_cast<JointPhys&>(*to.phys));
+}
+
+void JointArrays::scatter(const stepper::Scene& arrays) {
+  scene_.time = arrays.time;
+  scene_.iter = arrays.iteration;
+  scene_.forces.lastReset = arrays.iteration;
+  for (std::size_t id = 0; id < arrays.bodies.size(); ++id) {
+    const stepper::Body& from = arrays.bodies[id];
+    if (!from.moves) continue;
+    yade::State& state = *body_at(scene_, id)->state;
+    state.se3.position = from.motion.position;
+    state.se3.orientation = from.orientation;
+    state.vel = from.motion.velocity;
+    state.angVel = from.motion.angular_velocity;
+  }
+  for (const auto& [shape, place] : heated_) {
+    shape->thermalStrain = arrays.strains[place].strain;
+    shape->thermalStrainRate = arrays.strains[place].rate;
+  }
+  for (std::size_t i = 0; i < arrays.contacts.size(); ++i) {
+    scatter_contact(arrays.contacts[i], interaction_to_change(scene_, interactions_[i]));
+  }
+  for (std::size_t i = 0; i < engines_.stages.size(); ++i) {
+    as_stage(*engines_.stages[i],
+             [&](const auto& stage) { scatter_stage(stage, arrays.stages[i]); });
+  }
+  if (engines_.joint_law) {
+    engines_.joint_law->firstContactTime = arrays.begun.first;
+    engines_.joint_law->contacts = arrays.begun.count;
+  }
+  if (!arrays.tracks_energy || !arrays.any_contact) return;
+  if (engines_.joint_law) engines_.joint_law->name_energies(scene_);
+  if (engines_.hertz_mindlin) engines_.hertz_mindlin->name_energies(scene_);
+}
+
+}  // namespace statejump::dem

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene of YADE as the arrays of statejump/stepper, and back.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "statejump/stepper/scene.hpp"
+#include "stepper_engines.hpp"
+
+namespace statejump::dem {
+
+struct GuidePlanes;
+struct TorsionSprings;
+
+class JointArrays {
+ public:
+  JointArrays(yade::Scene& scene, const JointEngines& engines) : scene_(scene), engines_(engines) {}
+
+  // Fills the arrays. False where the ordinary loop has something to do or to say first. Throws
+  // std::invalid_argument where a body cannot be stepped.
+  bool gather(stepper::Scene& arrays);
+  // Writes back what has changed. The interpreter's lock is held.
+  void scatter(const stepper::Scene& arrays);
+  // Of a contact that begins; none where its materials allow none.
+  std::optional<stepper::ContactPhysics> physics(std::size_t contact) const;
+
+ private:
+  bool gather_body(std::size_t id, stepper::Scene& arrays);
+  void gather_heaters(stepper::Scene& arrays);
+  bool gather_contact(std::size_t place, stepper::Scene& arrays);
+  bool find_parts(const yade::Body& one, const yade::Body& two, stepper::Contact& contact) const;
+  bool gather_stage(const ThermalLinks& group, stepper::Scene& arrays);
+  bool gather_stage(const TorsionSprings& group, stepper::Scene& arrays);
+  bool gather_stage(const GuidePlanes& group, stepper::Scene& arrays);
+  void scatter_contact(const stepper::Contact& from, yade::Interaction& to);
+  std::size_t program_of(const ThermalProgram& program, stepper::Scene& arrays);
+  std::size_t strain_of(const yade::Body& body, stepper::Scene& arrays);
+  bool exists(int id) const { return scene_.bodies->exists(id); }
+  const yade::Body& body(int id) const { return *body_at(scene_, static_cast<std::size_t>(id)); }
+
+  yade::Scene& scene_;
+  const JointEngines& engines_;
+  std::vector<std::size_t> interactions_;  // of each contact, its place in YADE's container
+  std::vector<std::pair<ThermalShape*, std::size_t>> heated_;  // shapes that engines set
+  std::map<const ThermalShape*, std::size_t> strains_;         // of those, their strain
+  // Strains that are the same and stay so: by engine, expansion, strain and its rate.
+  std::map<std::tuple<std::size_t, Real, Real, Real>, std::size_t> common_strains_;
+  std::map<const ThermalProgram*, std::size_t> programs_;
+};
+
+// Energies that grow, as O.energy has them. The interpreter's lock is held.
+stepper::Energies read_energies(const yade::Scene& scene);
+void write_energies(const stepper::Energies& energies, const stepper::Energies& before,
+                    const yade::Scene& scene);
+
+}  // namespace statejump::dem

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stepper_engines.hpp"
+
+#include <boost/python.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "guide.hpp"
+#include "stepper.hpp"
+#include "torsion.hpp"
+
+namespace statejump::dem {
+namespace {
+
+namespace py = boost::python;
+
+std::string type_of(const py::object& object) {
+  return py::extract<std::string>(object.attr("__class__").attr("__name__"));
+}
+
+// Where an engine stands in a step.
+enum class Place { resetter, stepper, before, loop, behind, motion };
+
+class Reader {
+ public:
+  Reader(const yade::Scene& scene, const yade::Engine& self)
+      : scene_(scene), self_(self), wrapper_(py::import("yade.wrapper")) {}
+
+  JointEngines read() {
+    for (const auto& engine : scene_.engines) {
+      if (!engine->dead) read(engine);
+    }
+    if (!has_newton_) refuse_scene("there is no NewtonIntegrator");
+    return engines_;
+  }
+
+ private:
+  void read(const yade::shared_ptr<yade::Engine>& engine) {
+    if (engine.get() == &self_) return stand(Place::stepper, JointStepper::class_name);
+    if (dynamic_cast<const JointStepper*>(engine.get())) refuse_scene("there are two of them");
+    if (auto* heater = dynamic_cast<ThermalExpansionEngine*>(engine.get())) {
+      engines_.heaters.push_back(heater);
+      return stand(Place::before, heater->class_name);
+    }
+    if (dynamic_cast<const ThermalLinks*>(engine.get()) ||
+        dynamic_cast<const TorsionSprings*>(engine.get()) ||
+        dynamic_cast<const GuidePlanes*>(engine.get())) {
+      engines_.stages.push_back(engine.get());
+      return stand(Place::behind, engine->getClassName());
+    }
+    read_of_yade(py::object(engine), *engine);
+  }
+
+  void read_of_yade(const py::object& object, const yade::Engine& engine) {
+    if (is(object, "ForceResetter")) return stand(Place::resetter, "ForceResetter");
+    if (is(object, "InsertionSortCollider")) {
+      engines_.has_collider = true;
+      if (!(py::extract<Real>(object.attr("verletDist"))() > 0)) {
+        refuse_scene(
+            "InsertionSortCollider.verletDist must be above 0 [m]: without it the collider looks "
+            "for contacts in every step");
+      }
+      return stand(Place::before, "InsertionSortCollider");
+    }
+    if (is(object, "InteractionLoop")) {
+      if (has_loop_) refuse_scene("there are two InteractionLoops");
+      has_loop_ = true;
+      read_functors(object);
+      return stand(Place::loop, "InteractionLoop");
+    }
+    if (is(object, "NewtonIntegrator")) {
+      if (has_newton_) refuse_scene("there are two NewtonIntegrators");
+      has_newton_ = true;
+      read_newton(engine.pyDict());
+      return stand(Place::motion, "NewtonIntegrator");
+    }
+    // These look on, or choose the time step.
+    if (is(object, "PeriodicEngine")) return;
+    if (is(object, "TimeStepper")) {
+      if (PyObject_HasAttrString(object.ptr(), "densityScaling") &&
+          py::extract<bool>(object.attr("densityScaling"))()) {
+        refuse_scene(type_of(object) + ".densityScaling must be off");
+      }
+      return;
+    }
+    refuse_scene("it does not know the engine " + type_of(object));
+  }
+
+  bool is(const py::object& object, const char* class_name) const {
+    return PyObject_IsInstance(object.ptr(), py::object(wrapper_.attr(class_name)).ptr()) == 1;
+  }
+
+  void stand(Place place, const std::string& name) {
+    const bool right = any_ ? place >= last_ : place == Place::resetter;
+    // Nothing of a step of its own between the forces' reset and the stepper.
+    const bool behind_resetter = place != Place::stepper || last_ == Place::resetter;
+    const bool stepper_is_there = place <= Place::stepper || seen_stepper_;
+    if (!right || !behind_resetter || !stepper_is_there) {
+      refuse_scene(name +
+                   " stands in the wrong place, the order is ForceResetter, JointStepper, "
+                   "ThermalExpansionEngine and InsertionSortCollider, InteractionLoop, "
+                   "ThermalLinks, TorsionSprings and GuidePlanes, NewtonIntegrator");
+    }
+    last_ = place;
+    any_ = true;
+    seen_stepper_ = seen_stepper_ || place == Place::stepper;
+  }
+
+  template <class Functor>
+  static bool take(const py::object& functor, Functor*& place) {
+    const py::extract<Functor*> found(functor);
+    if (!found.check()) return false;
+    if (place) {
+      refuse_scene(std::string("the InteractionLoop holds two of ") + Functor::class_name);
+    }
+    place = found();
+    return true;
+  }
+
+  // Calls take for every functor of a dispatcher; one that nobody takes is unknown.
+  template <class Take>
+  static void read_functors(const py::object& loop, const char* dispatcher, Take&& take_one) {
+    const py::object functors(loop.attr(dispatcher).attr("functors"));
+    for (py::ssize_t i = 0; i < py::len(functors); ++i) {
+      const py::object functor(functors[i]);
+      if (take_one(functor)) continue;
+      refuse_scene("it does not know " + type_of(functor) + " of the InteractionLoop");
+    }
+  }
+
+  void read_functors(const py::object& loop) {
+    read_functors(loop, "geomDispatcher", [&](const py::object& one) {
+      return take(one, engines_.revolute) || take(one, engines_.ball) || take(one, engines_.plane);
+    });
+    read_functors(loop, "physDispatcher",
+                  [&](const py::object& one) { return take(one, engines_.physics); });
+    read_functors(loop, "lawDispatcher", [&](const py::object& one) {
+      return take(one, engines_.hertz_mindlin) || take(one, engines_.joint_law);
+    });
+    if (engines_.hertz_mindlin && engines_.joint_law) {
+      refuse_scene("the InteractionLoop holds two laws for the same contacts");
+    }
+    if (py::len(loop.attr("callbacks")) > 0) refuse_scene("the InteractionLoop has callbacks");
+    if (py::extract<bool>(loop.attr("loopOnSortedInteractions"))()) {
+      refuse_scene("InteractionLoop.loopOnSortedInteractions must be off");
+    }
+  }
+
+  void read_newton(const py::dict& values) {
+    const auto flag = [&](const char* name) { return py::extract<bool>(values[name])(); };
+    stepper::Newton& newton = engines_.newton;
+    newton.damping = py::extract<Real>(values["damping"])();
+    newton.gravity = py::extract<Vector3r>(values["gravity"])();
+    newton.dampGravity = flag("dampGravity");
+    engines_.exact_rotation = flag("exactAsphericalRot");
+    if (py::extract<int>(values["mask"])() > 0) {
+      refuse_scene("NewtonIntegrator.mask must be -1: every body moves");
+    }
+    // Versions of YADE differ in whether the work of gravity counts in what damping takes.
+    if (scene_.trackEnergy && newton.damping != 0 && !newton.gravity.isZero(0)) {
+      refuse_scene("with O.trackEnergy and gravity NewtonIntegrator.damping must be 0");
+    }
+  }
+
+  const yade::Scene& scene_;
+  const yade::Engine& self_;
+  py::object wrapper_;
+  JointEngines engines_;
+  bool has_loop_ = false, has_newton_ = false, seen_stepper_ = false;
+  bool any_ = false;
+  Place last_ = Place::resetter;
+};
+
+}  // namespace
+
+void refuse_scene(const std::string& what) {
+  throw std::invalid_argument("JointStepper: " + what);
+}
+
+JointEngines joint_engines(const yade::Scene& scene, const yade::Engine& stepper) {
+  try {
+    return Reader(scene, stepper).read();
+  } catch (const py::error_already_set&) {
+    PyErr_Clear();
+    throw std::runtime_error("JointStepper: the engines of this YADE have other attributes");
+  }
+}
+
+}  // namespace statejump::dem

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The engines of a scene as the JointStepper sees them.
+#pragma once
+
+#include <vector>
+
+#include "joint.hpp"
+#include "statejump/stepper/motion.hpp"
+#include "thermal.hpp"
+
+namespace statejump::dem {
+
+struct JointEngines {
+  std::vector<ThermalExpansionEngine*> heaters;
+  std::vector<yade::Engine*> stages;  // ThermalLinks, TorsionSprings, GuidePlanes, in their order
+  Ig2_Journal_Bearing_JointGeom* revolute = nullptr;
+  Ig2_Ball_Socket_JointGeom* ball = nullptr;
+  Ig2_Slider_SlotFace_JointGeom* plane = nullptr;
+  Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys* physics = nullptr;
+  Law2_JointGeom_JointPhys_HertzMindlin* hertz_mindlin = nullptr;
+  Law2_JointGeom_JointPhys_JointLaw* joint_law = nullptr;
+  stepper::Newton newton;
+  bool exact_rotation = true;  // of aspherical bodies
+  bool has_collider = false;
+};
+
+// The interpreter's lock, which a running simulation does not hold.
+class Interpreter {
+ public:
+  Interpreter() : state_(PyGILState_Ensure()) {}
+  ~Interpreter() { PyGILState_Release(state_); }
+  Interpreter(const Interpreter&) = delete;
+  Interpreter& operator=(const Interpreter&) = delete;
+
+ private:
+  PyGILState_STATE state_;
+};
+
+// Throws std::invalid_argument: "JointStepper: " and what it is that cannot be stepped.
+[[noreturn]] void refuse_scene(const std::string& what);
+
+// Reads the engines of a scene, those of YADE through Python. Throws std::invalid_argument where
+// the stepper does not know one, or where their order is not that of a step of its own.
+JointEngines joint_engines(const yade::Scene& scene, const yade::Engine& stepper);
+
+}  // namespace statejump::dem

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A scene with a bit of everything, and all of its state. Imported by scripts that run under ``yade``."""
+import statejump_yade as sj
+
+from parts import *  # noqa: F403
+
+
+def scene(by_name):
+    """Journal on a hot link in a bearing on another, and a slider with two contacts."""
+    reset()
+    program = sj.ThermalProgram(shape="half_sine", temperatureChangeMax=70, period=2e-3, cycles=2)
+    table = sj.ThermalProgram(
+        shape="table", period=1e-3, tableTimes=[0, 3e-4, 1e-3], tableTemperatureChanges=[0, 9, 4]
+    )
+    metal = material(expansion=2.3e-5, label="metal")
+    pin = body(
+        (1.05e-4, 0.2e-4, 0), sj.Journal(radius=R1), metal, mass=0.02, inertia=3e-7,
+        blocked="zXYZ", velocity=(0.05, -0.03, 0),
+    )
+    hole = body(
+        (0, 0, 0), sj.Bearing(radius=R2), metal, mass=0.03, inertia=9e-7, blocked=PLANAR,
+        velocity=(-0.02, 0.01, 0), spin=(0, 0, -10),
+    )
+    roots = [body((-0.05, 0.01, 0)), body((0.03, 0.04, 0))]
+    slider = body(
+        (1.0 + 0.9e-6, -1e-6, 0), sj.Slider(radius=0.02), metal, mass=0.01, blocked="zXYZ",
+        velocity=(0.01, 0, 0),
+    )
+    O.bodies.append(sj.slot((1, 0, 0), 0.02, 0.02, 0.02, metal))
+    # Another one that slides all the time, away from its stops.
+    gliding = body(
+        (2, -2e-6, 0), sj.Slider(radius=0.02), metal, mass=0.01, blocked="zXYZ", velocity=(0.5, 0, 0)
+    )
+    O.bodies.append(sj.slot((2, 0, 0), 0.03, 0.03, 0.02, metal))
+    O.bodies[gliding].state.blockedDOFs = "yzXYZ"
+    common = dict(youngModulus=70e9, crossSectionArea=1e-7, thermalExpansion=23.4e-6)
+    links = [
+        sj.ThermalLink(
+            id1=roots[0], id2=pin, stressFreeLength=0.05, program=program, tipTurnsWithLink=True,
+            dampingRatio=0.03, **common,
+        ),
+        sj.ThermalLink(id1=roots[1], id2=hole, stressFreeLength=0.05, program=table, **common),
+    ]
+    more = {}
+    if by_name:
+        links[0].pinDamping = 1e-4
+        more["law"] = sj.Law2_JointGeom_JointPhys_JointLaw(
+            normalLaw="hertz_paper", dissipationLaw="hunt_crossley", restitution=0.95,
+            smallestImpactSpeed=1e-4, label="law",
+        )
+        more["springs"] = [
+            sj.TorsionSpring(link1=links[1], link2=links[0], stiffness=0.05, freeAngle=-2.0)
+        ]
+    engines(
+        **more,
+        links=links, normal_damping=0.02, tangential_damping=0.02,
+        thermal=[
+            sj.ThermalExpansionEngine(program=program, ids=[pin, slider]),
+            sj.ThermalExpansionEngine(program=table, ids=[hole]),
+        ],
+    )
+    O.dt = 3e-7
+
+
+def state():
+    """Every number of the scene that could differ; floats print so that they read back the same."""
+    out = {"iter": O.iter, "time": O.time, "energy": energies(), "bodies": [], "contacts": []}
+    for b in O.bodies:
+        s = b.state
+        out["bodies"].append(
+            [list(s.pos), list(s.vel), list(s.ori), list(s.angVel), list(O.forces.f(b.id, True)),
+             list(O.forces.t(b.id, True)), getattr(b.shape, "thermalStrain", None)]
+        )
+    for i in sorted(O.interactions, key=lambda i: (i.id1, i.id2)):
+        if i.isReal:
+            # normal is kept as Hertz left it; the rest of the geometry follows.
+            out["contacts"].append(
+                [i.id1, i.id2, list(i.phys.normalForce), list(i.phys.shearForce), i.phys.kn,
+                 i.phys.ks, i.phys.slipping, i.geom.penetrationDepth, list(i.geom.normal)]
+            )
+    for engine in O.engines:
+        for spring in getattr(engine, "springs", []):
+            out["contacts"].append([spring.angle, spring.moment])
+            # One and the same object as in ThermalLinks, not a copy.
+            out["contacts"].append([spring.link2.axialForce, spring.link2.pinDamping])
+        for functor in getattr(getattr(engine, "lawDispatcher", None), "functors", []):
+            found = functor.dict()
+            out["law"] = [found[k] for k in sorted(found) if k not in ("label", "timingDeltas")]
+        for link in getattr(engine, "links", []):
+            out["contacts"].append(
+                [link.axialForce, link.previousTension, list(link.tipDirection), link.temperatureChange]
+            )
+    return out

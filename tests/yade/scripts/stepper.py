@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The same scenes with and without the JointStepper; `stepper.py PART` with the parts at the end."""
+import itertools
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+import mixed
+import statejump_yade as sj
+
+from parts import *  # noqa: F403
+
+MAIN = __import__("__main__")
+Law = sj.Law2_JointGeom_JointPhys_JointLaw
+
+
+def with_stepper(substeps):
+    """Put the stepper where it belongs: the two lines of a script."""
+    O.engines = [*O.engines[:1], sj.JointStepper(substeps=substeps), *O.engines[1:]]
+
+
+def counted():
+    """Count the steps that YADE's own loop makes."""
+    MAIN.ordinary_steps = 0
+    O.engines = [*O.engines, wrapper.PyRunner(command="ordinary_steps += 1", iterPeriod=1, initRun=True)]
+
+
+def bits(state):
+    """Return a state as text: floats print so that they read back the same, NaN equals NaN."""
+    return json.dumps(state, sort_keys=True)
+
+
+def differences(one, other):
+    """Return the keys in which two states differ."""
+    return sorted(key for key in {*one, *other} if bits(one.get(key)) != bits(other.get(key)))
+
+
+def in_one_go(steps):
+    O.run(steps, True)
+
+
+def run_both(build, steps, substeps, go=in_one_go):
+    """Run a scene both ways; how many steps the ordinary loop made of them, and what differs."""
+    found = {}
+    for way in ("ordinary", "stepper"):
+        build()
+        if way == "stepper":
+            with_stepper(substeps)
+        counted()
+        go(steps)
+        found[way] = mixed.state() | {
+            "geometry": [
+                [i.id1, i.id2, i.iterMadeReal, list(i.geom.contactPoint), i.geom.refR1, i.geom.refR2,
+                 i.phys.dict() | {"label": 0}] for i in O.interactions if i.isReal
+            ],
+            "interactions": [[i.id1, i.id2, i.isReal] for i in O.interactions],
+            "bounds": [[b.bound.lastUpdateIter, list(b.bound.min)] for b in O.bodies if b.bound],
+            "rate": O.dt,
+        }
+        for row in found[way]["geometry"]:
+            row[-1] = {key: list(v) if isinstance(v, Vector3) else v for key, v in row[-1].items()}
+    ordinary, stepper = found["ordinary"], found["stepper"]
+    return {
+        "differences": differences(ordinary, stepper), "steps": O.iter, "made_by_yade": MAIN.ordinary_steps,
+        "touching": len(ordinary["geometry"]), "energy": ordinary["energy"], "law": ordinary.get("law"),
+    }
+
+
+def joint(law=None, inertia=3e-7, blocked=PLANAR, newton=None, energy=True, load=(3.0, -20.0, 0), hot=60, **keywords):
+    """A journal that rattles in its bearing until friction and damping hold it, in a cycle of the temperature."""
+    reset()
+    O.trackEnergy = energy
+    program = sj.ThermalProgram(shape="sine", temperatureChangeMax=hot, period=1e-3, cycles=3)
+    pin = body(
+        (0.4e-4, 0.1e-4, 0), sj.Journal(radius=R1), material(expansion=23e-6), mass=0.02, inertia=inertia,
+        blocked=blocked, velocity=(0.2, -0.1, 0), spin=(0, 0, 40),
+    )
+    body((0, 0, 0), sj.Bearing(radius=R2), material(expansion=10e-6))
+    engines(program, law=law, **{"normal_damping": 0.02, "tangential_damping": 0.02, **keywords})
+    if newton:
+        O.engines = [*O.engines[:-1], wrapper.NewtonIntegrator(**newton)]
+    O.dt = 2.5e-7
+    O.forces.setPermF(pin, load)
+    O.forces.setPermT(pin, (0, 0, 1e-4))
+
+
+def ball():
+    """A ball that rolls in its socket, free to turn about all axes."""
+    reset()
+    metal = material(expansion=2e-5)
+    free = body(
+        (0.3e-4, 0.9e-4, 0.1e-4), sj.Ball(radius=R1), metal, mass=0.02, inertia=3e-7, blocked="",
+        velocity=(0.1, 0.05, -0.2), spin=(10, 20, -30),
+    )
+    body((0, 0, 0), sj.Socket(radius=R2), metal)
+    engines(sj.ThermalProgram(shape="triangle", temperatureChangeMax=40, period=1e-3), normal_damping=0.05)
+    O.dt = 2e-7
+    O.forces.setPermF(free, (0, -30.0, 5.0))
+
+
+def guided():
+    """Two sliders on a hot link, one of them in a plane that is not an axis' own."""
+    reset()
+    metal = material(friction=0.1, expansion=1e-5)
+    ids = []
+    for x in (0.0, 0.3):
+        ids.append(body((x, -1e-6, 0), sj.Slider(radius=0.02), metal, mass=0.01, blocked="XYZ"))
+        O.bodies.append(sj.slot((x, 0, 0), 0.0201, 0.0201, 0.02, metal, ceiling=True))
+        O.forces.setPermF(ids[-1], (0, -50.0, 0))
+    program = sj.ThermalProgram(shape="half_sine", temperatureChangeMax=80, period=4e-4, cycles=3)
+    link = sj.ThermalLink(
+        id1=ids[0], id2=ids[1], youngModulus=70e9, crossSectionArea=1e-6, stressFreeLength=0.3,
+        thermalExpansion=2.3e-5, dampingRatio=0.05, program=program,
+    )
+    engines(program, links=[link], normal_damping=0.05, tangential_damping=0.05)
+    guides = sj.GuidePlanes(ids=ids, normals=[(0, 0, 1), (0.6, 0, 0.8)])
+    O.engines = [*O.engines[:-1], guides, O.engines[-1]]
+    O.dt = 2e-7
+
+
+def approaching():
+    """Two sliders fly towards slots that they do not touch yet: the collider has to find the pairs."""
+    reset()
+    metal = material()
+    for x in (0.0, 1.0):
+        body((x, 0.05, 0), sj.Slider(radius=0.02), metal, mass=0.01, blocked="zXYZ", velocity=(0, -20 - x, 0))
+        O.bodies.append(sj.slot((x, 0, 0), 0.05, 0.05, 0.02, metal, halfSize=0.02))
+    engines(normal_damping=0.05)
+    O.dt = 1e-6
+
+
+def crowd(energy=False):
+    """Joints beside each other, each with its own load."""
+    reset()
+    O.trackEnergy = energy
+    metal, other = material(expansion=2.3e-5), material(expansion=2.2e-5)
+    for i in range(30):
+        angle = 0.21 * i
+        place = Vector3(0.03 * i, 0, 0)
+        body(place, sj.Bearing(radius=R2), other)
+        side = Vector3(1, 0.1 * i - 1.5, 0).normalized()
+        pin = body(place + (CLEARANCE * 1.003) * side, sj.Journal(radius=R1), metal, mass=0.01, blocked="zXYZ")
+        O.forces.setPermF(pin, 10 * side + 0.1 * angle * Vector3(-side[1], side[0], 0))
+    engines(sj.ThermalProgram(shape="triangle", temperatureChangeMax=30, period=2e-3))
+    O.engines = [*O.engines[:-1], wrapper.NewtonIntegrator(damping=0.2)]
+    O.dt = 1e-6
+
+
+def in_pieces(steps):
+    """Runs that end anywhere, a load that changes meanwhile."""
+    for piece in (1, 2, 30, 101, 7):
+        O.run(piece, True)
+    O.forces.setPermF(0, (1.0, 5.0, 0))
+    O.run(steps - O.iter, True)
+
+
+def saved(steps):
+    """Saved and loaded on the way."""
+    O.run(steps // 2, True)
+    with tempfile.TemporaryDirectory() as folder:
+        name = str(Path(folder) / "scene.yade.gz")
+        O.save(name, quiet=True)
+        O.load(name, quiet=True)
+    O.run(steps - O.iter, True)
+
+
+def erased(steps):
+    """A body more, and one less, on the way."""
+    O.run(steps // 3, True)
+    body((9, 0, 0))
+    O.run(steps // 3, True)
+    O.bodies.erase(2)
+    O.run(steps - O.iter, True)
+
+
+def scenes():
+    by_name = dict(normalLaw="hertz_paper", dissipationLaw="flores", restitution=0.8)
+    cases = {
+        "joint": (joint, 3000, 500),
+        "joint_without_energy": (lambda: joint(energy=False), 3000, 1000),
+        "joint_by_name": (lambda: joint(Law(**by_name)), 3000, 500),
+        "joint_damped": (lambda: joint(newton=dict(damping=0.3)), 3000, 250),
+        "joint_in_gravity": (lambda: joint(newton=dict(damping=0, gravity=(0, -9.81, 0))), 3000, 250),
+        "joint_in_undamped_gravity": (
+            lambda: joint(newton=dict(damping=0.2, gravity=(0, -900, 0), dampGravity=False), energy=False), 3000, 250),
+        "joint_in_damped_gravity": (
+            lambda: joint(newton=dict(damping=0.2, gravity=(0, -900, 0)), energy=False), 3000, 250),
+        "ball": (ball, 3000, 300),
+        "guided": (guided, 3000, 300),
+        "approaching": (approaching, 4000, 500),
+        "mixed": (lambda: mixed.scene(False), 2000, 100),
+        "mixed_by_name": (lambda: mixed.scene(True), 2000, 100),
+        "mixed_every_step": (lambda: mixed.scene(True), 300, 1),
+        "crowd": (crowd, 2000, 1000),
+        "crowd_with_energy": (lambda: crowd(True), 1000, 250),
+    }
+    found = {name: run_both(*case) for name, case in cases.items()}
+    found["in_pieces"] = run_both(joint, 2000, 130, in_pieces)
+    found["saved"] = run_both(lambda: mixed.scene(True), 1500, 130, saved)
+    found["erased"] = run_both(crowd, 1500, 250, erased)
+    return found
+
+
+def laws():
+    """Every law of the catalogue, each with the others at their defaults."""
+    from statejump import _engine
+
+    attributes = {"normal": "normalLaw", "dissipation": "dissipationLaw", "friction": "frictionLaw",
+                  "tangential_velocity": "tangentialVelocity"}
+    found = {}
+    for kind, attribute in attributes.items():
+        for name in _engine.law_names(kind):
+            law = {attribute: name, "restitution": 0.7}
+            found[f"{kind} {name}"] = run_both(lambda law=law: joint(Law(**law), hot=20), 2500, 250)
+    return found
+
+
+def error_of(build, steps=2000, substeps=100):
+    """Return class, text, step and time of what ends a run, both ways."""
+    found = []
+    for way in ("ordinary", "stepper"):
+        build()
+        if way == "stepper":
+            with_stepper(substeps)
+
+        def one_by_one():
+            while O.iter < steps:
+                O.step()
+
+        kind, text = sentence_of(one_by_one)
+        taken = sj.take_failure()
+        found.append([kind, text, O.iter, O.time, None if taken is None else taken["time"]])
+    return found
+
+
+def closing():
+    joint(hot=4000)
+
+
+def too_deep():
+    """Hit so hard that the step becomes too long for the contact."""
+    joint(energy=False, normal_damping=0.0)
+    O.dt = 3e-5
+
+
+def parting():
+    joint(Law(normalLaw="johnson", restitution=0.7), load=(3e7, 0, 0))
+
+
+def failures():
+    return {each.__name__: error_of(each) for each in (closing, too_deep, parting)}
+
+
+def refused(change):
+    crowd()
+    with_stepper(100)
+
+    def run():
+        change()
+        for _ in range(300):
+            O.step()
+
+    return sentence_of(run)[1]
+
+
+def engines_are(*engines):
+    O.engines = list(engines)
+
+
+def add_sphere():
+    sphere = wrapper.Body()
+    sphere.shape, sphere.material, sphere.bound = wrapper.Sphere(radius=0.01), O.materials[0], wrapper.Aabb()
+    O.bodies.append(sphere)
+
+
+def wrong():
+    """One sentence for each way to use it wrongly."""
+    found = {}
+    for name, value in (("zero", 0), ("negative", -3), ("fraction", 1.5), ("text", "many")):
+        found["substeps " + name] = sentence_of(lambda value=value: sj.JointStepper(substeps=value))
+    e = lambda: O.engines  # noqa: E731
+    changes = {
+        "sphere": add_sphere,
+        "two": lambda: with_stepper(10),
+        "before_resetter": lambda: engines_are(e()[1], e()[0], *e()[2:]),
+        "last": lambda: engines_are(e()[0], *e()[2:], e()[1]),
+        "loop_first": lambda: engines_are(e()[0], e()[1], e()[4], e()[2], e()[3], *e()[5:]),
+        "no_newton": lambda: engines_are(*e()[:-1]),
+        "unknown": lambda: engines_are(*e()[:-1], wrapper.ForceEngine(), e()[-1]),
+        "no_verlet": lambda: setattr(e()[3], "verletDist", 0),
+        "periodic": lambda: setattr(O, "periodic", True),
+        "mask": lambda: setattr(e()[-1], "mask", 2),
+        "attribute": lambda: setattr(e()[1], "substeps", 0),
+    }
+    for name, change in changes.items():
+        found[name] = refused(change)
+    return found
+
+
+finish({"scenes": scenes, "laws": laws, "failures": failures, "wrong": wrong}[sys.argv[1]]())
