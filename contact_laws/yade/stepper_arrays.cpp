@@ -50,7 +50,7 @@ void as_stage(yade::Engine& engine, Act&& act) {
 }
 
 void scatter_stage(const ThermalLinks& to, const stepper::Stage& from) {
-  const auto& places = std::get<std::vector<stepper::LinkPlace>>(from);
+  const auto& places = std::get<stepper::Links>(from).places;
   for (std::size_t i = 0; i < places.size(); ++i) {
     static_cast<stepper::Link&>(*to.links[i]) = places[i].link;
   }
@@ -264,16 +264,17 @@ bool JointArrays::gather_contact(std::size_t place, stepper::Scene& arrays) {
 }
 
 bool JointArrays::gather_stage(const ThermalLinks& group, stepper::Scene& arrays) {
-  std::vector<stepper::LinkPlace> places;
-  places.reserve(group.links.size());
+  stepper::Links links;
+  links.places.reserve(group.links.size());
   for (const auto& link : group.links) {
     if (!link || !link->program || !exists(link->id1) || !exists(link->id2) ||
         !(link->stressFreeLength > 0)) {
       return false;
     }
-    places.push_back({*link, program_of(*link->program, arrays)});
+    links.places.push_back({*link, program_of(*link->program, arrays)});
+    links.needs_moments = links.needs_moments || link->tipTurnsWithLink;
   }
-  arrays.stages.emplace_back(std::move(places));
+  arrays.stages.emplace_back(std::move(links));
   return true;
 }
 

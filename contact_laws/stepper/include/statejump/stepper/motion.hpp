@@ -47,18 +47,16 @@ struct Body {
   bool moves = false;  ///< anything of it changes, or may
 };
 
-inline void clear_forces(Body& body) {
-  body.added_force = body.added_torque = body.force = body.torque = Vector3::Zero();
-}
-
 /// Sums up what was added. @param first whether it is the first sum of the step
 inline void sum_forces(Body& body, bool first) {
-  body.force += body.added_force;
-  body.torque += body.added_torque;
+  if (first) {
+    body.force = body.added_force + body.permanent_force;
+    body.torque = body.added_torque + body.permanent_torque;
+  } else {
+    body.force += body.added_force;
+    body.torque += body.added_torque;
+  }
   body.added_force = body.added_torque = Vector3::Zero();
-  if (!first) return;
-  body.force += body.permanent_force;
-  body.torque += body.permanent_torque;
 }
 
 namespace detail {

@@ -47,6 +47,10 @@ struct Contact {
   bool real = false;     ///< it has geometry and physics
   bool renewed = false;  ///< since the arrays were filled
   long made = -1;        ///< step in which it became real
+  bool turns = true;     ///< one of the two bodies turns, or may
+  bool tilted =
+      false;  ///< where none does: whether the axes are further from parallel than allowed
+  Vector3 axis = Vector3::Zero();  ///< where none does: of body 2
   ContactGeometry geometry;
   ContactPhysics physics;
 };
@@ -67,8 +71,15 @@ struct Guide {
   Vector3 normal;
 };
 
+/// Links of one engine. Where any of them turns its tip, the engine sums up the forces of all
+/// bodies before it adds its own.
+struct Links {
+  std::vector<LinkPlace> places;
+  bool needs_moments = false;
+};
+
 /// What adds forces after the contacts, in the order of the engines.
-using Stage = std::variant<std::vector<LinkPlace>, std::vector<TorsionPlace>, std::vector<Guide>>;
+using Stage = std::variant<Links, std::vector<TorsionPlace>, std::vector<Guide>>;
 
 /// Energies that grow from step to step [J]. What is stored now belongs to the last step alone.
 struct Energies {
@@ -79,6 +90,12 @@ struct Energies {
 
 /// The law of contacts that is not made of laws by name.
 struct HertzMindlin {};
+
+inline Vector3 axis_of(const Quaternion& q) {
+  // Local z axis in the world: orientation * (0, 0, 1) without the products with zero.
+  return {2 * (q.x() * q.z() + q.w() * q.y()), 2 * (q.y() * q.z() - q.w() * q.x()),
+          1 - 2 * (q.x() * q.x() + q.y() * q.y())};
+}
 
 class Scene {
  public:
@@ -139,6 +156,10 @@ class Scene {
     void step_is_too_long(double) { *failed = true; }
   };
 
+  // Whether a journal's axis is further from parallel to the bearing's than is allowed.
+  bool tilt(const Body& journal, const Vector3& axis) const {
+    return axis_of(journal.orientation).cross(axis).squaredNorm() > largest_tilt * largest_tilt;
+  }
   Body& body(int id) { return bodies[static_cast<std::size_t>(id)]; }
   template <class Law>
   bool step(const Law& law, const Make& make);
@@ -146,7 +167,7 @@ class Scene {
   template <class Law>
   bool step_contact(const Law& law, std::size_t place, const Make& make);
   Found find(Contact& contact);
-  bool act(std::vector<LinkPlace>& links);
+  bool act(Links& group);
   bool act(std::vector<TorsionPlace>& springs);
   bool act(std::vector<Guide>& guides);
   void sum();
@@ -159,21 +180,16 @@ class Scene {
   bool summed_ = false;
 };
 
-inline Vector3 axis_of(const Quaternion& q) {
-  // Local z axis in the world: orientation * (0, 0, 1) without the products with zero.
-  return {2 * (q.x() * q.z() + q.w() * q.y()), 2 * (q.y() * q.z() - q.w() * q.x()),
-          1 - 2 * (q.x() * q.x() + q.y() * q.y())};
-}
-
 inline void Scene::prepare() {
   for (Body& each : bodies) {
+    each.added_force = each.added_torque = Vector3::Zero();
     each.turns = can_turn(each);
     each.moves = !rests(each);
   }
   for (const Stage& stage : stages) {
-    const auto* links = std::get_if<std::vector<LinkPlace>>(&stage);
+    const auto* links = std::get_if<Links>(&stage);
     if (!links) continue;
-    for (const LinkPlace& place : *links) {
+    for (const LinkPlace& place : links->places) {
       if (!place.link.tipTurnsWithLink) continue;
       Body& tip = body(place.link.id2);
       tip.turns = tip.moves = true;
@@ -184,6 +200,13 @@ inline void Scene::prepare() {
     if (bodies[i].moves) moving_.push_back(i);
   }
   changes_.assign(programs.size(), 0);
+  for (Contact& contact : contacts) {
+    const Body& one = body(contact.body_1);
+    const Body& two = body(contact.body_2);
+    contact.turns = one.turns || two.turns;
+    contact.axis = axis_of(two.orientation);
+    contact.tilted = tilt(one, contact.axis);
+  }
 }
 
 inline long Scene::run(long steps, const Make& make) {
@@ -198,7 +221,6 @@ inline long Scene::run(long steps, const Make& make) {
 
 template <class Law>
 bool Scene::step(const Law& one, const Make& make) {
-  for (const std::size_t i : moving_) clear_forces(bodies[i]);
   summed_ = false;
   for (std::size_t i = 0; i < programs.size(); ++i) {
     changes_[i] = programs[i].temperature_change(time);
@@ -210,7 +232,6 @@ bool Scene::step(const Law& one, const Make& make) {
   for (Stage& stage : stages) {
     if (!std::visit([&](auto& list) { return act(list); }, stage)) return false;
   }
-  sum();
   if (!move_all()) return false;
   time += time_step;
   ++iteration;
@@ -244,10 +265,8 @@ inline Found Scene::find(Contact& contact) {
   };
   switch (contact.joint) {
     case Joint::revolute: {
-      const Vector3 axis = axis_of(two.orientation);
-      const auto tilted = [&] {
-        return axis_of(one.orientation).cross(axis).squaredNorm() > largest_tilt * largest_tilt;
-      };
+      const Vector3 axis = contact.turns ? axis_of(two.orientation) : contact.axis;
+      const auto tilted = [&] { return contact.turns ? tilt(one, axis) : contact.tilted; };
       return find_revolute(part_1, part_2, one.motion, two.motion, axis, contact.real, time_step,
                            tilted, geometry);
     }
@@ -294,11 +313,10 @@ bool Scene::step_contact(const Law& one, std::size_t place, const Make& make) {
   return !failed;
 }
 
-inline bool Scene::act(std::vector<LinkPlace>& links) {
-  bool needs_moments = false;
-  for (const LinkPlace& place : links) needs_moments |= place.link.tipTurnsWithLink;
+inline bool Scene::act(Links& group) {
+  auto& links = group.places;
   kept_.assign(links.size(), Vector3::Zero());
-  if (needs_moments) {
+  if (group.needs_moments) {
     sum();
     for (std::size_t i = 0; i < links.size(); ++i) {
       if (links[i].link.tipTurnsWithLink) kept_[i] = body(links[i].link.id2).torque;
@@ -397,6 +415,7 @@ inline void Scene::account_motion(const Body& each) {
 inline bool Scene::move_all() {
   for (const std::size_t i : moving_) {
     Body& each = bodies[i];
+    sum_forces(each, !summed_);
     if (tracks_energy) account_motion(each);
     move(each, newton, time_step);
     if (left_its_bound(each)) return false;
