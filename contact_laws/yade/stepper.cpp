@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ranges.hpp"
+#include "statejump/stepper/parts.hpp"
 #include "stepper_arrays.hpp"
 #include "stepper_engines.hpp"
 
@@ -25,17 +26,27 @@ long steps_ahead(const yade::Scene& scene, long substeps) {
   return ahead;
 }
 
+long run(stepper::Scene& arrays, long steps, const stepper::Scene::Make& make) {
+  // Energies are sums over all contacts in their order, step by step.
+  if (arrays.tracks_energy) return arrays.run(steps, make);
+  stepper::Parts parts(arrays);
+  if (parts.size() == 1) return arrays.run(steps, make);
+  const long done = parts.run(steps, make);
+  if (done == steps) parts.collect(arrays);
+  return done;
+}
+
 void step_ahead(yade::Scene& scene, const JointEngines& engines, const stepper::Energies& before,
                 long ahead) {
   JointArrays exchange(scene, engines);
   stepper::Scene arrays;
-  const auto run = [&](long steps) {
+  const auto attempt = [&](long steps) {
     if (!exchange.gather(arrays)) return 0L;
     arrays.energies = before;
-    return arrays.run(steps, [&](std::size_t contact) { return exchange.physics(contact); });
+    return run(arrays, steps, [&](std::size_t contact) { return exchange.physics(contact); });
   };
-  long done = run(ahead);
-  if (done > 0 && done < ahead) done = run(done);
+  long done = attempt(ahead);
+  if (done > 0 && done < ahead) done = attempt(done);
   if (done == 0) return;
   const Interpreter lock;
   exchange.scatter(arrays);

@@ -52,7 +52,7 @@ def test_steps_before_the_collider_looks_again_are_yades(scenes):
 def test_scenes_have_what_is_compared(scenes):
     # Contacts that begin again and again, that stay, that slip; every energy.
     assert scenes["joint_by_name"]["law"][1] > 3
-    assert scenes["crowd"]["touching"] == 30 and scenes["mixed"]["touching"] == 4
+    assert scenes["crowd"]["touching"] == 45 and scenes["mixed"]["touching"] == 4
     energy = {**scenes["mixed_by_name"]["energy"], **scenes["joint_damped"]["energy"]}
     for name in ("jointFriction", "jointDamping", "jointThermalWork", "linkDamping", "linkThermalWork", "pinDamping",
                  "nonviscDamp"):
@@ -84,7 +84,7 @@ ORDER = ("stands in the wrong place, the order is ForceResetter, JointStepper, T
 
 
 @pytest.mark.parametrize("name, sentence", [
-    ("sphere", "JointStepper: it does not know the shape of body 60, Sphere"),
+    ("sphere", "JointStepper: it does not know the shape of body 90, Sphere"),
     ("two", "JointStepper: there are two of them"),
     ("before_resetter", "JointStepper: JointStepper " + ORDER),
     ("last", "JointStepper: ThermalExpansionEngine " + ORDER),

@@ -131,15 +131,15 @@ def approaching():
 
 
 def crowd(energy=False):
-    """Joints beside each other, each with its own load."""
+    """Joints beside each other, each with its own load; more than one part of the stepper holds."""
     reset()
     O.trackEnergy = energy
     metal, other = material(expansion=2.3e-5), material(expansion=2.2e-5)
-    for i in range(30):
+    for i in range(45):
         angle = 0.21 * i
         place = Vector3(0.03 * i, 0, 0)
         body(place, sj.Bearing(radius=R2), other)
-        side = Vector3(1, 0.1 * i - 1.5, 0).normalized()
+        side = Vector3(1, 0.1 * i - 2.2, 0).normalized()
         pin = body(place + (CLEARANCE * 1.003) * side, sj.Journal(radius=R1), metal, mass=0.01, blocked="zXYZ")
         O.forces.setPermF(pin, 10 * side + 0.1 * angle * Vector3(-side[1], side[0], 0))
     engines(sj.ThermalProgram(shape="triangle", temperatureChangeMax=30, period=2e-3))
