@@ -69,8 +69,8 @@ def quantity(name: str, unit: str, tolerance: float, **values: float | None) -> 
     if first is None or second is None:
         return Quantity(name, unit, values, None, tolerance, passed=first is None and second is None)
     difference = second - first
-    # Written so that NaN fails.
-    return Quantity(name, unit, values, difference, tolerance, passed=bool(abs(difference) <= tolerance))
+    passed = bool(math.isfinite(difference) and abs(difference) <= tolerance)
+    return Quantity(name, unit, values, difference, tolerance, passed=passed)
 
 
 def share(difference: float, scale: float) -> float:

@@ -1,0 +1,279 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Campaign of kills: whatever ends a command, its results are complete or absent, never half.
+
+    kills.py --command build/bin/statejump --python build/python --library build/.../failing_calls.so [--most N]
+
+Every command runs over results of an older run. It is killed at random instants; killed before each of its calls that
+write, sync, rename, make or remove something below the results; and each of these calls fails once with ENOSPC and once
+with EIO. Then the next run opens the folder, as it does by itself, and what is there must be the files of the old run
+or those of the new one, byte by byte, and nothing besides; the journal of a campaign must hold whole samples. The
+status must be one of those in docs/mistakes.md, without a traceback.
+"""
+from __future__ import annotations
+
+import argparse
+import errno
+import hashlib
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+# What of a command's files is of the day, not of the result.
+OF_THE_DAY = ("dem_run.json", "run.json", "samples.journal")
+STATUSES = (0, 2)
+
+
+@dataclass
+class Subject:
+    """A command, and the folder that gets its results. ``{case}`` in the words is the case file."""
+
+    name: str
+    words: list[str]
+    folder: str
+    case: str
+    old: tuple[str, str]  # what of the case is another in the older run
+    counts: dict[str, int] = field(default_factory=dict)
+    faults: list[str] = field(default_factory=list)
+
+
+FRICTION = ("friction_coefficient = 0.3", "friction_coefficient = 0.2")
+SUBJECTS = (
+    Subject("reduced", ["reduced", "case.toml", "--quiet"], "results/table1", "table1.toml", FRICTION),
+    Subject("compare", ["compare", "case.toml", "--quiet"], "results/table1", "table1.toml", FRICTION),
+    Subject("laws", ["laws", "--quiet"], "results/laws", "table1.toml", ("", "")),
+    Subject("statics", ["statics", "case.toml", "--quiet"], "results/statics_journal", "statics_journal.toml",
+            ("title = ", "title = 'old' #")),
+    Subject("control", ["control", "case.toml", "--quiet"], "results/table1", "table1.toml", FRICTION),
+    Subject("truss draw", ["truss", "draw", "case.toml", "--quiet"], "results/chain_10", "trusses/chain_10.toml",
+            ("title = ", "title = 'old' #")),
+    Subject("truss answers", ["truss", "answers", "case.toml", "--no-sensitivity", "--quiet"], "results/chain_10",
+            "trusses/chain_10.toml", ("title = ", "title = 'old' #")),
+    Subject("sweep", ["sweep", "campaign.toml", "--quiet"], "results/campaign_table1_friction", "table1.toml",
+            FRICTION),
+    Subject("export", ["export", "given.h5", "--to", "results/out", "--frames", "3", "--quiet"], "results/out",
+            "table1.toml", FRICTION),
+    Subject("report", ["report", "given.h5", "-o", "results/page/report.html", "--quiet"], "results/page",
+            "table1.toml", FRICTION),
+)
+
+
+class Campaign:
+    """Runs commands in folders of their own."""
+
+    def __init__(self, command: Path, python: Path, library: Path, root: Path) -> None:
+        self.command, self.library, self.root = command, library, root
+        sys.path.insert(0, str(python))
+        self.canned = root / "canned"
+        self.canned.mkdir()
+        self.environment = {**os.environ, "STATEJUMP_YADE": str(self._yade()), "PYTHONDONTWRITEBYTECODE": "1"}
+
+    def _yade(self) -> Path:
+        """Return a command that stands for YADE: it gives the histories of the reduced model for those of the DEM, for
+        what is tested are the files."""
+        script = self.canned / "yade"
+        script.write_text(f'#!/bin/sh\ncp {self.canned}/history.csv "$STATEJUMP_OUTPUT"\n'
+                          'echo "{}" > "$STATEJUMP_OUTPUT.json"\necho \'STATEJUMP {"progress": 1.0}\'\n')
+        script.chmod(0o755)
+        import numpy as np
+
+        from statejump import load
+        from statejump.core.tables import write_columns
+
+        run = load(REPOSITORY / "cases" / "table1.toml").reduced()
+        columns = run.flat()
+        stage = columns.pop("stage")
+        zero = np.zeros(len(run))
+        columns.update(slipping=np.isin(stage, ("S2", "S5")).astype(float),
+                       stop_contact=(np.abs(columns["displacement_m"]) > 1e-3 - 1e-12).astype(float))
+        write_columns({**dict.fromkeys(("contact_energy_J", "kinetic_energy_J", "damping_dissipation_J",
+                                        "external_work_J"), zero), **columns}, self.canned / "history.csv")
+        return script
+
+    def prepared(self, subject: Subject, old: bool) -> Path:
+        """Return a folder with the case, of the older run or of the new one."""
+        folder = Path(tempfile.mkdtemp(dir=self.root))
+        text = (REPOSITORY / "cases" / subject.case).read_text(encoding="utf-8")
+        campaign = (REPOSITORY / "cases/campaigns/table1_friction.toml").read_text(encoding="utf-8")
+        campaign = campaign.replace('"../table1.toml"', '"case.toml"')
+        if old:
+            assert subject.old[0] in text, subject.old
+            text = text.replace(*subject.old, 1)
+            campaign = campaign.replace("count = 21", "count = 20")
+        (folder / "case.toml").write_text(text, encoding="utf-8")
+        (folder / "campaign.toml").write_text(campaign, encoding="utf-8")
+        if "given.h5" in subject.words:
+            self.run(folder, ["reduced", "case.toml", "--quiet", "--results", "given"])
+            (folder / "given/table1/reduced.h5").rename(folder / "given.h5")
+            shutil.rmtree(folder / "given")
+        return folder
+
+    def run(self, folder: Path, words: list[str], **doom: object) -> subprocess.CompletedProcess[str]:
+        more = {name: str(value) for name, value in doom.items()}
+        if more:
+            more.update(LD_PRELOAD=str(self.library), DOOM_FOLDER=str(folder / "results"))
+        return subprocess.run([str(self.command), *words], cwd=folder, env={**self.environment, **more},
+                              capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=300)
+
+    def over(self, folder: Path, subject: Subject, old: Path) -> None:
+        """Put the results of the older run where the next run works."""
+        shutil.rmtree(folder / "results", ignore_errors=True)
+        shutil.copytree(old / "results", folder / "results")
+
+    def judged(self, subject: Subject, folder: Path, known: dict[str, dict[str, str]], how: str) -> None:
+        """Open the folder as the next run does, and hold what is there against the older and the new run."""
+        from statejump.core.errors import StatejumpError
+        from statejump.core.results_folder import Results
+
+        where = folder / subject.folder
+        if subject.name == "report":  # one file, which needs no folder that is held
+            for left in where.glob(".*.partial"):
+                left.unlink()
+        else:
+            with Results(where.parent).folder(where.name):
+                pass
+        found = contents(where)
+        if found not in known.values():
+            names = {name for which in known.values() for name in which} ^ set(found) or "other contents"
+            subject.faults.append(f"{how}: neither the older nor the new files: {names}")
+        journal = where / "samples.journal"
+        if journal.exists() and journal.stat().st_size:
+            try:
+                self.check_journal(folder)
+            except StatejumpError as refused:
+                subject.faults.append(f"{how}: {refused}")
+
+    def check_journal(self, folder: Path) -> None:
+        """Open a journal. :raises Unreadable: a line before its end is damaged"""
+        from statejump.campaign.campaign_file import load_campaign
+        from statejump.campaign.journal import Journal
+        from statejump.core.errors import Unreadable
+
+        plan = load_campaign(folder / "campaign.toml", "sweep")
+        try:
+            with Journal(folder / "results/campaign_table1_friction", plan, restart=False):
+                pass
+        except Unreadable:
+            raise
+        except Exception as other:  # of another campaign: the older one's
+            if "belongs to another campaign" not in str(other):
+                raise
+
+    def of(self, subject: Subject, most: int, generator: random.Random) -> None:
+        """Run the whole campaign of a command, at most so often of each sort."""
+        old, new = self.prepared(subject, True), self.prepared(subject, False)
+        known = {}
+        words = subject.words
+        for which, folder in (("old", old), ("new", new)):
+            (folder / "results").mkdir(exist_ok=True)
+            started = time.monotonic()
+            done = self.run(folder, words, DOOM_COUNT=folder / "count")
+            lasted = time.monotonic() - started
+            assert done.returncode in (0, 1), done.stderr
+            known[which] = contents(folder / subject.folder)
+        ordinary = done.returncode
+        if subject.name == "sweep":
+            words = [*words, "--restart"]
+        self.over(new, subject, old)
+        done = self.run(new, words, DOOM_COUNT=new / "count")
+        calls = int((new / "count").read_text())
+        for call in chosen(calls, most, generator):
+            self._killed_before(subject, old, new, words, known, call)
+        for error in (errno.ENOSPC, errno.EIO):
+            for call in chosen(calls, most, generator):
+                self._failing(subject, old, new, words, known, call, error, ordinary)
+        for _ in range(most):
+            self._killed_after(subject, old, new, words, known, generator.uniform(0, lasted))
+
+    def _killed_before(self, subject: Subject, old: Path, new: Path, words: list[str],
+                       known: dict[str, dict[str, str]], call: int) -> None:
+        self.over(new, subject, old)
+        self.run(new, words, DOOM_CALL=call, DOOM_ERROR=0)
+        count(subject, "killed before a call")
+        self.judged(subject, new, known, f"killed before call {call}")
+
+    def _failing(self, subject: Subject, old: Path, new: Path, words: list[str], known: dict[str, dict[str, str]],
+                 call: int, error: int, ordinary: int) -> None:
+        self.over(new, subject, old)
+        done = self.run(new, words, DOOM_CALL=call, DOOM_ERROR=error)
+        how = f"call {call} fails with {errno.errorcode[error]}"
+        count(subject, f"a call fails, {errno.errorcode[error]}")
+        if done.returncode not in (ordinary, 2) or "Traceback" in done.stderr:
+            subject.faults.append(f"{how}: status {done.returncode}: {done.stderr[-300:]}")
+        self.judged(subject, new, known, how)
+        if done.returncode == ordinary and contents(new / subject.folder) != known["new"]:
+            subject.faults.append(f"{how}: status {ordinary} without the new files")
+
+    def _killed_after(self, subject: Subject, old: Path, new: Path, words: list[str],
+                      known: dict[str, dict[str, str]], seconds: float) -> None:
+        self.over(new, subject, old)
+        with subprocess.Popen([str(self.command), *words], cwd=new, env=self.environment, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True) as process:
+            try:
+                process.wait(timeout=seconds)
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, signal.SIGKILL)
+        count(subject, "killed at an instant")
+        self.judged(subject, new, known, f"killed after {seconds:.3f} s")
+
+
+def contents(folder: Path) -> dict[str, str]:
+    """Return the digests of the files below a folder by their names; of what is of the day only that it is there."""
+    found = {}
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and path.name != "samples.journal":
+            content = b"" if path.name in OF_THE_DAY else path.read_bytes()
+            found[str(path.relative_to(folder))] = hashlib.sha256(content).hexdigest()
+    return found
+
+
+def chosen(calls: int, most: int, generator: random.Random) -> Iterator[int]:
+    """Yield which calls are made to fail: all, or so many of them; the last ones, which publish, among them."""
+    if calls <= most:
+        yield from range(1, calls + 1)
+        return
+    last = min(most // 2, calls)
+    yield from sorted(generator.sample(range(1, calls - last + 1), most - last))
+    yield from range(calls - last + 1, calls + 1)
+
+
+def count(subject: Subject, sort: str) -> None:
+    """Count one end of a command."""
+    subject.counts[sort] = subject.counts.get(sort, 0) + 1
+
+
+def main() -> int:
+    """Run the campaign and print what was found; 1 if anything was."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in ("command", "python", "library"):
+        parser.add_argument(f"--{name}", type=Path, required=True)
+    parser.add_argument("--most", type=int, default=1000, help="ends of each sort for each command")
+    parser.add_argument("--only", nargs="*", help="names of commands")
+    parser.add_argument("--seed", type=int, default=1)
+    given = parser.parse_args()
+    generator, faults = random.Random(given.seed), 0
+    with tempfile.TemporaryDirectory(prefix="kills-") as root:
+        campaign = Campaign(given.command.resolve(), given.python.resolve(), given.library.resolve(), Path(root))
+        for subject in SUBJECTS:
+            if given.only and subject.name not in given.only:
+                continue
+            campaign.of(subject, given.most, generator)
+            said = ", ".join(f"{sort} {number}" for sort, number in subject.counts.items())
+            print(f"{subject.name}: {said}; faults {len(subject.faults)}", flush=True)
+            for fault in subject.faults:
+                print(f"  {fault}", flush=True)
+            faults += len(subject.faults)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
