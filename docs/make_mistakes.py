@@ -113,8 +113,8 @@ temperature and, where it is known, what helps; its samples are dropped. This pa
 
 With `--json` before the command (`statejump --json compare CASE`) a failure is one line of JSON on standard
 error instead; standard output stays as it is. Fields, present where known: `kind` (`usage`, `bad_input`,
-`output`: a file cannot be written, `failed_run`, `tolerance_missed`, `not_solved`, `interrupted`, `internal`: a fault of the
-program), `message`, `file`, `case`, `item` (of a list of tables), `key`, `value` (as text where JSON has no such
+`output`: a file cannot be written, `failed_run`, `tolerance_missed`, `not_solved`, `interrupted`, `internal`: a fault
+of the program), `message`, `file`, `case`, `item` (of a list of tables), `key`, `value` (as text where JSON has no such
 number), `allowed` (a range with its unit, or the names),
 `time_s`, `temperature_change_K`, `joint`, `nodes`, `cause`, `remedy`, `exit_status`. In Python they are
 `StatejumpError.fields()`.
