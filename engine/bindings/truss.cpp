@@ -5,7 +5,9 @@
 #include <pybind11/stl.h>
 
 #include <string>
+#include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "bindings.hpp"
@@ -88,9 +90,33 @@ void set_free_directions(const bool* fixed, Vector3d normal, truss::Node& node) 
   }
 }
 
+/// Adds the joints of a type, whose table has the arrays that its parameters are named by.
+template <class Type>
+void add_joints(const Table& table, truss::Model& model) {
+  std::vector<Type> joints(table.size());
+  for (std::size_t i = 0; i < table.size(); ++i) joints[i].name = table.name(i);
+  for (const truss::Parameter<Type>& parameter : Type::parameters()) {
+    const auto fill = [&](auto member) {
+      using Value = std::decay_t<decltype(joints.front().*member)>;
+      if constexpr (std::is_same_v<Value, double>) {
+        const auto values = table.numbers(parameter.key);
+        for (std::size_t i = 0; i < table.size(); ++i) joints[i].*member = values.data()[i];
+      } else if constexpr (std::is_same_v<Value, int>) {
+        const auto values = table.indices(parameter.key);
+        for (std::size_t i = 0; i < table.size(); ++i) joints[i].*member = values.data()[i];
+      } else {
+        const auto values = table.numbers(parameter.key, 3);
+        for (std::size_t i = 0; i < table.size(); ++i) joints[i].*member = row(values, i);
+      }
+    };
+    std::visit(fill, parameter.member);
+  }
+  for (Type& joint : joints) model.joints.emplace_back(std::move(joint));
+}
+
 truss::Model make_model(const py::dict& nodes_, const py::dict& links_, const py::dict& springs_,
-                        const py::dict& torsion_springs_, const py::dict& sliders_,
-                        const py::dict& revolutes_, std::vector<thermal::Program> programs) {
+                        const py::dict& torsion_springs_, const py::dict& joints_,
+                        std::vector<thermal::Program> programs) {
   truss::Model model;
   model.programs = std::move(programs);
   {
@@ -144,45 +170,11 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& links_, const py
                                        stiffness.data()[i], bias.data()[i], row(axis, i)});
     }
   }
-  {
-    const Table table("sliders", sliders_);
-    const auto ends = table.indices("nodes", 2);
-    const auto axis = table.numbers("axis", 3);
-    const auto friction = table.numbers("friction_force_N");
-    const auto minus = table.numbers("clearance_minus_m");
-    const auto plus = table.numbers("clearance_plus_m");
-    const auto tangential = table.numbers("tangential_stiffness_N_per_m");
-    for (std::size_t i = 0; i < table.size(); ++i) {
-      model.sliders.push_back({table.name(i), ends.data()[2 * i], ends.data()[2 * i + 1],
-                               row(axis, i), friction.data()[i], minus.data()[i], plus.data()[i],
-                               tangential.data()[i]});
+  truss::for_each_joint_type([&]<class Type>(std::type_identity<Type>) {
+    if (joints_.contains(Type::kind)) {
+      add_joints<Type>(Table(Type::kind, joints_[Type::kind].template cast<py::dict>()), model);
     }
-  }
-  {
-    const Table table("revolutes", revolutes_);
-    const auto journal_node = table.indices("journal_node");
-    const auto bearing_node = table.indices("bearing_node");
-    const auto journal_link = table.indices("journal_link");
-    const auto bearing_link = table.indices("bearing_link");
-    const auto radius = table.numbers("journal_radius_m");
-    const auto clearance = table.numbers("radial_clearance_m");
-    const auto journal_expansion = table.numbers("journal_thermal_expansion_per_K");
-    const auto bearing_expansion = table.numbers("bearing_thermal_expansion_per_K");
-    const auto friction = table.numbers("friction_coefficient");
-    const auto hertz = table.numbers("hertz_stiffness_N_per_m15");
-    const auto mindlin = table.numbers("mindlin_stiffness_N_per_m15");
-    const auto axis = table.numbers("axis", 3);
-    const auto program = table.indices("program");
-    const auto fraction = table.numbers("temperature_fraction");
-    for (std::size_t i = 0; i < table.size(); ++i) {
-      model.revolutes.push_back({table.name(i), journal_node.data()[i], bearing_node.data()[i],
-                                 journal_link.data()[i], bearing_link.data()[i], radius.data()[i],
-                                 clearance.data()[i], journal_expansion.data()[i],
-                                 bearing_expansion.data()[i], friction.data()[i], hertz.data()[i],
-                                 mindlin.data()[i], row(axis, i), program.data()[i],
-                                 fraction.data()[i]});
-    }
-  }
+  });
   return model;
 }
 
@@ -210,53 +202,92 @@ py::array_t<double> scalars(const std::vector<truss::State>& states, Member memb
   return result;
 }
 
-template <class Member>
-py::array_t<unsigned char> statuses(const std::vector<truss::State>& states, Member member) {
-  const auto count = static_cast<py::ssize_t>(states.size());
-  const auto items = static_cast<py::ssize_t>(count == 0 ? 0 : (states.front().*member).size());
-  py::array_t<unsigned char> result({count, items});
-  unsigned char* to = result.mutable_data();
+/// Where the joints of one type stand among all, and their outputs among all outputs.
+struct OfType {
+  std::vector<py::ssize_t> joints;
+  std::vector<py::ssize_t> outputs;
+};
+
+template <class Type>
+OfType of_type(const truss::Model& model) {
+  OfType found;
+  py::ssize_t output = 0;
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    if (std::holds_alternative<Type>(model.joints[i])) {
+      found.joints.push_back(static_cast<py::ssize_t>(i));
+      found.outputs.push_back(output);
+    }
+    for (const truss::Output& one : truss::outputs_of(model.joints[i])) output += one.width;
+  }
+  return found;
+}
+
+/// Array (states, joints) or (states, joints, width) of what `value` gives for state and joint.
+template <class Number, class Value>
+py::array_t<Number> of_joints(const std::vector<truss::State>& states, std::size_t joints,
+                              py::ssize_t width, Value value) {
+  std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(states.size()),
+                                 static_cast<py::ssize_t>(joints)};
+  if (width > 1) shape.push_back(width);
+  py::array_t<Number> result(shape);
+  Number* to = result.mutable_data();
   for (const truss::State& state : states) {
-    for (const truss::JointStatus status : state.*member)
-      *to++ = static_cast<unsigned char>(status);
+    for (std::size_t i = 0; i < joints; ++i) {
+      for (py::ssize_t k = 0; k < width; ++k) *to++ = value(state, i, k);
+    }
   }
   return result;
 }
 
-py::dict states_dict(const std::vector<truss::State>& states) {
+/// Outputs of every type by their keys; statuses and heat by kind.
+py::dict states_dict(const truss::Model& model, const std::vector<truss::State>& states) {
+  using truss::State;
   py::dict d;
-  d["time_s"] = scalars(states, &truss::State::time);
-  d["temperature_change_K"] = scalars(states, &truss::State::temperature_change);
-  d["displacement_m"] = stacked(states, &truss::State::displacement, 3);
-  d["axial_force_N"] = stacked(states, &truss::State::axial_force, 1);
-  d["tension_N"] = stacked(states, &truss::State::tension, 1);
-  d["slide_m"] = stacked(states, &truss::State::slide, 1);
-  d["slider_force_N"] = stacked(states, &truss::State::slider_force, 1);
-  d["slider_status"] = statuses(states, &truss::State::slider_status);
-  d["slider_dissipation_J"] = stacked(states, &truss::State::slider_dissipation, 1);
-  d["eccentricity_m"] = stacked(states, &truss::State::eccentricity, 3);
-  d["normal_force_N"] = stacked(states, &truss::State::normal_force, 1);
-  d["friction_force_N"] = stacked(states, &truss::State::friction_force, 1);
-  d["revolute_status"] = statuses(states, &truss::State::revolute_status);
-  d["revolute_dissipation_J"] = stacked(states, &truss::State::revolute_dissipation, 1);
-  d["elastic_energy_J"] = scalars(states, &truss::State::elastic_energy);
-  d["load_potential_J"] = scalars(states, &truss::State::load_potential);
-  d["thermal_work_J"] = scalars(states, &truss::State::thermal_work);
+  d["time_s"] = scalars(states, &State::time);
+  d["temperature_change_K"] = scalars(states, &State::temperature_change);
+  d["displacement_m"] = stacked(states, &State::displacement, 3);
+  d["axial_force_N"] = stacked(states, &State::axial_force, 1);
+  d["tension_N"] = stacked(states, &State::tension, 1);
+  truss::for_each_joint_type([&]<class Type>(std::type_identity<Type>) {
+    const OfType these = of_type<Type>(model);
+    const std::string kind = Type::kind;
+    py::ssize_t offset = 0;
+    for (const truss::Output& output : Type::outputs()) {
+      d[output.key] = of_joints<double>(states, these.joints.size(), output.width,
+                                        [&](const State& state, std::size_t i, py::ssize_t k) {
+                                          return state.joint_output[these.outputs[i] + offset + k];
+                                        });
+      offset += output.width;
+    }
+    d[py::str(kind + "_status")] = of_joints<unsigned char>(
+        states, these.joints.size(), 1, [&](const State& state, std::size_t i, py::ssize_t) {
+          return static_cast<unsigned char>(
+              state.joint_status[static_cast<std::size_t>(these.joints[i])]);
+        });
+    d[py::str(kind + "_dissipation_J")] = of_joints<double>(
+        states, these.joints.size(), 1, [&](const State& state, std::size_t i, py::ssize_t) {
+          return state.joint_dissipation[these.joints[i]];
+        });
+  });
+  d["elastic_energy_J"] = scalars(states, &State::elastic_energy);
+  d["load_potential_J"] = scalars(states, &State::load_potential);
+  d["thermal_work_J"] = scalars(states, &State::thermal_work);
   return d;
 }
 
-py::dict path_dict(const truss::Path& path) {
+py::dict path_dict(const truss::Model& model, const truss::Path& path) {
   py::dict result;
-  result["states"] = states_dict(path.states);
-  result["cycle_ends"] = states_dict(path.cycle_ends);
+  result["states"] = states_dict(model, path.states);
+  result["cycle_ends"] = states_dict(model, path.cycle_ends);
   py::list events;
   for (const truss::Event& event : path.events) {
     py::dict one;
     one["time_s"] = event.time;
     one["interval_s"] = event.interval;
     one["temperature_change_K"] = event.temperature_change;
-    one["joint_kind"] = event.is_revolute ? "revolute" : "slider";
-    one["joint"] = event.joint;
+    const truss::Joint& joint = model.joints[static_cast<std::size_t>(event.joint)];
+    one["joint_kind"] = truss::kind_of(joint);
+    one["name"] = truss::name_of(joint);
     one["before"] = to_string(event.before);
     one["after"] = to_string(event.after);
     events.append(one);
@@ -275,13 +306,36 @@ py::dict path_dict(const truss::Path& path) {
 
 void bind_truss(py::module_& module) {
   module.def(
+      "truss_joints",
+      [] {
+        py::dict kinds;
+        truss::for_each_joint_type([&]<class Type>(std::type_identity<Type>) {
+          py::list parameters;
+          for (const truss::Parameter<Type>& parameter : Type::parameters()) {
+            py::dict one;
+            one["key"] = parameter.key;
+            one["unit"] = parameter.unit;
+            one["source"] = parameter.source;
+            parameters.append(one);
+          }
+          py::list outputs;
+          for (const truss::Output& output : Type::outputs()) outputs.append(output.key);
+          py::dict kind;
+          kind["parameters"] = parameters;
+          kind["outputs"] = outputs;
+          kinds[Type::kind] = kind;
+        });
+        return kinds;
+      },
+      "Types of joints of a truss: kind -> parameters (key, unit, source) and keys of outputs.");
+  module.def(
       "truss_path",
       [](const py::dict& nodes, const py::dict& links, const py::dict& springs,
-         const py::dict& torsion_springs, const py::dict& sliders, const py::dict& revolutes,
+         const py::dict& torsion_springs, const py::dict& joints,
          std::vector<thermal::Program> programs, int increments_per_branch, bool locate_events,
          double event_tolerance, bool cycle_ends_only, const py::object& progress) {
-        const truss::Model model = make_model(nodes, links, springs, torsion_springs, sliders,
-                                              revolutes, std::move(programs));
+        const truss::Model model =
+            make_model(nodes, links, springs, torsion_springs, joints, std::move(programs));
         truss::Options options;
         options.increments_per_branch = increments_per_branch;
         options.locate_events = locate_events;
@@ -297,13 +351,12 @@ void bind_truss(py::module_& module) {
           py::gil_scoped_release unlocked;
           path = truss::solve(model, options);
         }
-        return path_dict(path);
+        return path_dict(model, path);
       },
       py::arg("nodes"), py::arg("links"), py::arg("springs"), py::arg("torsion_springs"),
-      py::arg("sliders"), py::arg("revolutes"), py::arg("programs"), py::kw_only(),
-      py::arg("increments_per_branch") = 50, py::arg("locate_events") = true,
-      py::arg("event_tolerance") = 1e-9, py::arg("cycle_ends_only") = false,
-      py::arg("progress") = py::none(),
+      py::arg("joints"), py::arg("programs"), py::kw_only(), py::arg("increments_per_branch") = 50,
+      py::arg("locate_events") = true, py::arg("event_tolerance") = 1e-9,
+      py::arg("cycle_ends_only") = false, py::arg("progress") = py::none(),
       "Quasi-static path of a truss: exact Coulomb friction at every joint.\n\n"
       "Every kind of item is a dict of arrays, one entry per item, and 'names'. Index -1: ground.\n"
       "nodes: position_m (n, 3), fixed (n, 3), guide_normal (n, 3), force_N (n, 3)\n"
@@ -311,11 +364,7 @@ void bind_truss(py::module_& module) {
       "  program, temperature_fraction\n"
       "springs: nodes (k, 2), stiffness_N_per_m, free_length_m, cable\n"
       "torsion_springs: links (t, 2), stiffness_N_m_per_rad, bias_rad, axis (t, 3)\n"
-      "sliders: nodes (s, 2), axis (s, 3), friction_force_N, clearance_minus_m, clearance_plus_m\n"
-      "revolutes: journal_node, bearing_node, journal_link, bearing_link, journal_radius_m,\n"
-      "  radial_clearance_m, journal_thermal_expansion_per_K, bearing_thermal_expansion_per_K,\n"
-      "  friction_coefficient, hertz_stiffness_N_per_m15 (inf: rigid), axis (r, 3), program,\n"
-      "  temperature_fraction\n\n"
+      "joints: kind -> such a dict, with the arrays that truss_joints() lists for it\n\n"
       "Returns states and cycle_ends (dicts of arrays, first axis the state; axial force positive\n"
       "in compression), events, complete, solves, factorizations, unknowns, largest residuals.\n"
       "progress(share) may return False to end the path early: complete is then False. Raises "

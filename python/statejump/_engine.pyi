@@ -346,13 +346,13 @@ class FrictionProblem(metaclass=_pybind11_type):
 
 _Items = Mapping[str, Any]
 
+def truss_joints() -> dict[str, _Fields]: ...
 def truss_path(
     nodes: _Items,
     links: _Items,
     springs: _Items,
     torsion_springs: _Items,
-    sliders: _Items,
-    revolutes: _Items,
+    joints: Mapping[str, _Items],
     programs: Sequence[ThermalProgram],
     *,
     increments_per_branch: int = ...,

@@ -2,6 +2,7 @@
 """Quasi-static solver of trusses against closed forms and the other reduced models."""
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -174,13 +175,16 @@ def test_blocks_that_come_to_rest_smoothly_do_not_stall_the_path() -> None:
     assert jump_m(found)[-1, 0] == pytest.approx(jump_m(path(generate.chain(20)))[-1, 0], rel=CLOSED_FORM)
 
 
-def test_joints_that_flicker_are_named_and_pass_without_location() -> None:
-    """Of two joints at one level of a tall mast one slides back whenever the other one slides."""
-    with pytest.raises(StatejumpError) as failure:
-        path(generate.mast(20))
-    assert "does not settle at a temperature change of 37.1" in str(failure.value)
-    assert failure.value.fields()["remedy"].startswith("set reduced.locate_events to false")
-    assert path(generate.mast(20), locate_events=False).complete
+def test_tall_masts_pass_with_every_event_located() -> None:
+    """Both joints of a level slide at once near the top, one of them with a force that rounding could take for one
+    that sticks: whoever is let off by rounding starts the next step beyond its bound, and flickers."""
+    located, quick = (path(generate.mast(20), locate_events=locate) for locate in (True, False))
+    assert located.complete
+    # Increments of 1/50 of a branch: the rolling of elastic contacts is of second order in them.
+    assert jump_m(located)[-1] == pytest.approx(jump_m(quick)[-1], rel=0, abs=1e-6 * np.abs(jump_m(quick)).max())
+    # No joint changes more than a few times in each of the two branches.
+    most = max(Counter(event.name for event in located.events).values())
+    assert most <= 12, most
 
 
 def test_every_state_keeps_to_coulomb_and_the_play() -> None:

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <Eigen/Geometry>
-#include <array>
 #include <cmath>
 
-#include "parts.hpp"
 #include "system.hpp"
 
 namespace statejump::truss::detail {
@@ -25,20 +22,6 @@ double torsion_angle(const Model& model, const TorsionSpring& spring, const Matr
   return spring.second_link < 0 ? first : turned(spring.second_link) - first;
 }
 
-/// Heat of micro-slip at the rim of a contact that sticks [J]: work of friction less the energy
-/// that stays in the bend. Loading, where the force F at compliance C goes to F' at C' along
-/// ΔF (C + C')/2: (F² + F'²) (C − C')/4; unloading, along F' C' − F C: F F' (C' − C)/2.
-double rim_slip(double friction_before, double compliance_before, double friction,
-                double compliance) {
-  if (compliance_before == 0.0) return 0.0;
-  if (compliance == 0.0) return 0.5 * compliance_before * friction_before * friction_before;
-  if (compliance > compliance_before) {
-    return 0.5 * friction_before * friction * (compliance - compliance_before);
-  }
-  return 0.25 * (friction_before * friction_before + friction * friction) *
-         (compliance_before - compliance);
-}
-
 }  // namespace
 
 Axial System::axial(const Link& link, const VectorXd& z, double time) const {
@@ -55,13 +38,8 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
   state.displacement.resize(3, size(model.nodes));
   state.axial_force.resize(size(model.links));
   state.tension.resize(size(model.springs));
-  state.slide.resize(size(model.sliders));
-  state.slider_force.resize(size(model.sliders));
-  state.eccentricity.resize(3, size(model.revolutes));
-  state.normal_force.resize(size(model.revolutes));
-  state.friction_force.resize(size(model.revolutes));
-  state.slider_status = now.statuses.sliders;
-  state.revolute_status = now.statuses.revolutes;
+  state.joint_output.resize(outputs_);
+  state.joint_status = now.statuses;
   state.elastic_energy = 0.0;
   state.load_potential = 0.0;
   for (int i = 0; i < size(model.nodes); ++i) {
@@ -87,23 +65,15 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
         torsion_angle(model, spring, torsion_plane_[i], *this, z) - spring.free_angle;
     state.elastic_energy += 0.5 * spring.stiffness * wound * wound;
   }
-  for (int i = 0; i < size(model.sliders); ++i) {
-    state.slide[i] = slide(i, z);
-    state.slider_force[i] = slider_force(i, z);
-    const double stiffness = model.sliders[index(i)].tangential_stiffness;
-    if (std::isfinite(stiffness)) {
-      const double bend = state.slide[i] - now.slide[i];
-      state.elastic_energy += 0.5 * stiffness * bend * bend;
-    }
-  }
-  for (int i = 0; i < size(model.revolutes); ++i) {
-    const ClearanceRevolute& revolute = model.revolutes[index(i)];
-    state.eccentricity.col(i) = between(revolute.bearing_node, revolute.journal_node, z);
-    const Vector2d force = revolute_force(i, z);
-    state.normal_force[i] = force[0];
-    state.friction_force[i] = force[1];
-    state.elastic_energy += 0.4 * force[0] * depth_of(revolute, force[0]);  // 2/5 K δ^5/2
-    state.elastic_energy += 0.5 * now.compliance[i] * now.friction[i] * now.friction[i];
+  for (int i = 0; i < size(model.joints); ++i) {
+    const Trial at = trial(i, z, time, now, JointModel::friction, 1.0);
+    double* outputs = state.joint_output.data() + output_begin_[index(i)];
+    std::visit(
+        [&](const auto& one) {
+          one.describe(at, outputs);
+          state.elastic_energy += one.elastic_energy(at, history(i, now));
+        },
+        model.joints[index(i)]);
   }
 }
 
@@ -111,16 +81,11 @@ void System::account(const VectorXd& z_before, double time_before, const VectorX
                      const StepStart& start, const StepStart& after, const VectorXd& slips,
                      State& state) const {
   const Model& model = *model_;
-  const int sliders = static_cast<int>(model.sliders.size());
-  for (int i = 0; i < sliders; ++i) {
-    // Whenever it slides, friction is f; a stop takes no heat.
-    state.slider_dissipation[i] += model.sliders[index(i)].friction_force * std::abs(slips[i]);
-  }
-  for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
-    const double normal = 0.5 * (revolute_force(i, z_before)[0] + revolute_force(i, z)[0]);
-    state.revolute_dissipation[i] +=
-        model.revolutes[index(i)].friction_coefficient * normal * std::abs(slips[sliders + i]) +
-        rim_slip(start.friction[i], start.compliance[i], after.friction[i], after.compliance[i]);
+  for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
+    const Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
+    state.joint_dissipation[i] += std::visit(
+        [&](const auto& one) { return one.dissipation(at, history(i, after), slips[i]); },
+        model.joints[index(i)]);
   }
   for (const Link& link : model.links) {
     if (link.thermal_expansion == 0.0) continue;
@@ -142,12 +107,11 @@ Eigen::SparseMatrix<double> System::joined_stiffness(const VectorXd& z, double t
                                                      double held) const {
   // The forces of the joints are condensed: a direction that a joint holds becomes a stiff spring.
   // Rows that hold nothing drop out.
-  VectorXd residual(unknowns_);
-  Eigen::SparseMatrix<double> jacobian = pattern();
-  evaluate(z, time, step_start(z, statuses), statuses, joints, 1.0, residual, jacobian);
-  const Eigen::SparseMatrix<double> full = jacobian.block(0, 0, displacements_, displacements_);
+  Assembly at = assembly();
+  evaluate(z, time, begin(z, time, statuses, 1.0), statuses, joints, 1.0, at);
+  const Eigen::SparseMatrix<double> full = at.jacobian.block(0, 0, displacements_, displacements_);
   const int forces = unknowns_ - displacements_;
-  Eigen::SparseMatrix<double> rows = jacobian.block(displacements_, 0, forces, displacements_);
+  Eigen::SparseMatrix<double> rows = at.jacobian.block(displacements_, 0, forces, displacements_);
   // Rows in metres have gradients of order one, whatever lever arms they have.
   Eigen::SparseMatrix<double> stiffness =
       0.5 * (full + Eigen::SparseMatrix<double>(full.transpose()));

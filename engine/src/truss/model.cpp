@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <variant>
 
 #include "statejump/kernel/require.hpp"
 
@@ -24,6 +26,72 @@ std::string named(const char* kind, const std::string& name) {
   return std::string(kind) + " '" + name + "'";
 }
 
+void check_axis(const std::string& item, const Eigen::Vector3d& axis) {
+  check(std::abs(axis.norm() - 1.0) < 1e-9, item, "length of the axis", axis.norm(), "1");
+}
+
+/// "finite, > 0 N": what a number may be, in words.
+std::string range(Allowed allowed, const std::string& unit) {
+  const std::string with_unit = unit == "-" ? "" : " " + unit;
+  switch (allowed) {
+    case Allowed::positive:
+      return "finite, > 0" + with_unit;
+    case Allowed::not_negative:
+      return "finite, >= 0" + with_unit;
+    case Allowed::positive_or_infinite:
+      return "> 0" + with_unit;
+    case Allowed::distance_or_infinite:
+      return ">= 0" + with_unit;
+    default:
+      return unit == "-" ? "finite" : "finite [" + unit + "]";
+  }
+}
+
+bool allows(Allowed allowed, double value) {
+  switch (allowed) {
+    case Allowed::positive:
+      return std::isfinite(value) && value > 0.0;
+    case Allowed::not_negative:
+      return std::isfinite(value) && value >= 0.0;
+    case Allowed::positive_or_infinite:
+      return value > 0.0;
+    case Allowed::distance_or_infinite:
+      return value >= 0.0;
+    default:
+      return std::isfinite(value);
+  }
+}
+
+/// What the table of its parameters says, then what the type itself does.
+template <class Type>
+void check_joint(const Type& joint, const Model& model) {
+  const std::string item = named(Type::kind, joint.name);
+  for (const Parameter<Type>& parameter : Type::parameters()) {
+    const auto check_member = [&](auto member) {
+      const auto& value = joint.*member;
+      using Value = std::decay_t<decltype(value)>;
+      if constexpr (std::is_same_v<Value, double>) {
+        check(allows(parameter.allowed, value), item, parameter.words, value,
+              range(parameter.allowed, parameter.unit).c_str());
+      } else if constexpr (std::is_same_v<Value, int>) {
+        const bool may_be_none = parameter.allowed == Allowed::node_or_ground ||
+                                 parameter.allowed == Allowed::link_or_none;
+        if (may_be_none && value == -1) return;
+        const bool is_node =
+            parameter.allowed == Allowed::node || parameter.allowed == Allowed::node_or_ground;
+        const std::size_t count = is_node                                 ? model.nodes.size()
+                                  : parameter.allowed == Allowed::program ? model.programs.size()
+                                                                          : model.links.size();
+        check_index(value, count, item, parameter.words);
+      } else {
+        check_axis(item, value);
+      }
+    };
+    std::visit(check_member, parameter.member);
+  }
+  joint.validate(model);
+}
+
 /// Smallest and largest ΔT of a program [K].
 Eigen::Vector2d range_of(const thermal::Program& program) {
   Eigen::Vector2d range(0.0, 0.0);
@@ -32,11 +100,6 @@ Eigen::Vector2d range_of(const thermal::Program& program) {
     range[1] = std::max({range[1], branch.start, branch.end});
   }
   return range;
-}
-
-/// Largest value of `per_kelvin` · ΔT over a program, downwards.
-double lowest_strain(double per_kelvin, const Eigen::Vector2d& range) {
-  return std::min(per_kelvin * range[0], per_kelvin * range[1]);
 }
 
 }  // namespace
@@ -82,8 +145,9 @@ void Model::validate() const {
           "stress_free_length", link.stress_free_length, "finite, > 0 m");
     check(std::isfinite(link.temperature_fraction), item, "temperature_fraction",
           link.temperature_fraction, "finite");
-    const double strain = lowest_strain(link.thermal_expansion * link.temperature_fraction,
-                                        ranges[static_cast<std::size_t>(link.program)]);
+    const Eigen::Vector2d range = ranges[static_cast<std::size_t>(link.program)];
+    const double per_kelvin = link.thermal_expansion * link.temperature_fraction;
+    const double strain = std::min(per_kelvin * range[0], per_kelvin * range[1]);
     check(std::isfinite(strain) && strain > -1, item, "thermal_expansion", link.thermal_expansion,
           "finite and such that a length is left [1/K]");
   }
@@ -94,9 +158,6 @@ void Model::validate() const {
           spring.stiffness, "finite, >= 0 N/m");
     check(std::isfinite(spring.free_length), item, "free_length", spring.free_length, "finite [m]");
   }
-  const auto check_axis = [](const std::string& item, const Eigen::Vector3d& axis) {
-    check(std::abs(axis.norm() - 1.0) < 1e-9, item, "length of the axis", axis.norm(), "1");
-  };
   for (const TorsionSpring& spring : torsion_springs) {
     const std::string item = named("torsion spring", spring.name);
     check_index(spring.first_link, links.size(), item, "first link");
@@ -110,59 +171,14 @@ void Model::validate() const {
     check(std::isfinite(spring.free_angle), item, "free_angle", spring.free_angle, "finite [rad]");
     check_axis(item, spring.axis);
   }
-  for (const Slider& slider : sliders) {
-    const std::string item = named("slider", slider.name);
-    check_index(slider.first, nodes.size(), item, "first node");
-    if (slider.second != -1) {
-      check_index(slider.second, nodes.size(), item, "second node");
-      check(slider.second != slider.first, item, "second node", slider.second,
-            "another than the first");
-    }
-    check_axis(item, slider.axis);
-    check(std::isfinite(slider.friction_force) && slider.friction_force >= 0, item,
-          "friction_force", slider.friction_force, "finite, >= 0 N");
-    check(slider.clearance_minus >= 0, item, "clearance_minus", slider.clearance_minus, ">= 0 m");
-    check(slider.clearance_plus >= 0, item, "clearance_plus", slider.clearance_plus, ">= 0 m");
-    check(slider.tangential_stiffness > 0, item, "tangential_stiffness",
-          slider.tangential_stiffness, "> 0 N/m");
+  for (const Joint& joint : joints) {
+    std::visit([this](const auto& one) { check_joint(one, *this); }, joint);
   }
-  for (const ClearanceRevolute& revolute : revolutes) {
-    const std::string item = named("revolute", revolute.name);
-    check_index(revolute.journal_node, nodes.size(), item, "journal node");
-    check_index(revolute.bearing_node, nodes.size(), item, "bearing node");
-    check(revolute.journal_node != revolute.bearing_node, item, "bearing node",
-          revolute.bearing_node, "another than the journal's");
-    const auto check_link = [&](int link, int node, const char* field) {
-      if (link == -1) return;
-      check_index(link, links.size(), item, field);
-      const Link& part = links[static_cast<std::size_t>(link)];
-      check(part.first == node || part.second == node, item, field, link,
-            "a link that ends at the joint's node");
-    };
-    check_link(revolute.journal_link, revolute.journal_node, "journal link");
-    check_link(revolute.bearing_link, revolute.bearing_node, "bearing link");
-    check_index(revolute.program, programs.size(), item, "program");
-    check(std::isfinite(revolute.journal_radius) && revolute.journal_radius > 0, item,
-          "journal_radius", revolute.journal_radius, "finite, > 0 m");
-    check(std::isfinite(revolute.radial_clearance) && revolute.radial_clearance > 0, item,
-          "radial_clearance", revolute.radial_clearance, "finite, > 0 m");
-    check(std::isfinite(revolute.friction_coefficient) && revolute.friction_coefficient >= 0, item,
-          "friction_coefficient", revolute.friction_coefficient, "finite, >= 0");
-    check(revolute.hertz_stiffness > 0, item, "hertz_stiffness", revolute.hertz_stiffness,
-          "> 0 N/m^1.5");
-    check(revolute.mindlin_stiffness > 0, item, "mindlin_stiffness", revolute.mindlin_stiffness,
-          "> 0 N/m^1.5");
-    check(std::isinf(revolute.mindlin_stiffness) || std::isfinite(revolute.hertz_stiffness), item,
-          "mindlin_stiffness", revolute.mindlin_stiffness, "infinite, because hertz_stiffness is");
-    check_axis(item, revolute.axis);
-    const double growth =
-        revolute.bearing_thermal_expansion * (revolute.journal_radius + revolute.radial_clearance) -
-        revolute.journal_thermal_expansion * revolute.journal_radius;
-    const double least = revolute.radial_clearance +
-                         lowest_strain(growth * revolute.temperature_fraction,
-                                       ranges[static_cast<std::size_t>(revolute.program)]);
-    check(least > 0, item, "clearance at the program's worst temperature", least, "> 0 m");
-  }
+}
+
+double Model::lowest_strain(int program, double per_kelvin) const {
+  const Eigen::Vector2d range = range_of(programs[static_cast<std::size_t>(program)]);
+  return std::min(per_kelvin * range[0], per_kelvin * range[1]);
 }
 
 }  // namespace statejump::truss

@@ -2,11 +2,11 @@
 #include "newton.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <deque>
 #include <limits>
-#include <unordered_map>
-
-#include "parts.hpp"
+#include <unordered_set>
 
 namespace statejump::truss::detail {
 
@@ -15,100 +15,235 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Forces balance to this share of the largest one.
 constexpr double force_tolerance = 1e-12;
-
-/// How often a set of statuses may come back: once or twice while Newton's iteration is still far
-/// from its end, for ever in a cycle of the active set.
-constexpr int most_visits = 2;
-
-/// Joints that change in one iteration of a front.
-constexpr int a_few = 4;
-
-/// Newton has gone astray when a step is so many times as long as the first ones, and no small part
-/// of the truss.
-constexpr double divergence = 30.0;
-constexpr double smallest_astray = 1e-4;
+/// Closures close to this share of the largest displacement: some hundred roundings of it.
+constexpr double closure_tolerance = 1e-13;
+/// Steps that a step is compared with: M of Grippo, Lampariello and Lucidi.
+constexpr std::size_t remembered_steps = 10;
+/// Halvings of a step after which it is below a thousandth: Newton's direction leads nowhere.
+constexpr int most_halvings = 10;
+/// Halvings of the share of a step at which a joint changes: to rounding of the step.
+constexpr int share_halvings = 50;
+/// How often those who wait are told [s]: often enough for a bar of progress and for Ctrl-C.
+constexpr double told_every = 0.1;
 
 /// Hash (FNV-1a) of all statuses.
 std::size_t fingerprint(const Statuses& statuses) {
   std::size_t hash = 14695981039346656037ull;
-  for (const auto* list : {&statuses.sliders, &statuses.revolutes}) {
-    for (const JointStatus status : *list) {
-      hash = (hash ^ static_cast<std::size_t>(status)) * 1099511628211ull;
-    }
+  for (const JointStatus status : statuses) {
+    hash = (hash ^ static_cast<std::size_t>(status)) * 1099511628211ull;
   }
   return hash;
 }
 
+/// What is left of the equations, each kind in its own unit.
+struct Residuals {
+  double balance = 0.0;  ///< Of the nodes [N].
+  double closure = 0.0;  ///< Of joints that hold [m].
+  double force = 0.0;    ///< Of joints that slip or are open [N].
+};
+
+Residuals residuals(const Assembly& at) {
+  Residuals found;
+  for (Eigen::Index i = 0; i < at.residual.size(); ++i) {
+    const RowUnit unit = at.units[index(static_cast<int>(i))];
+    double& largest = unit == RowUnit::balance   ? found.balance
+                      : unit == RowUnit::closure ? found.closure
+                                                 : found.force;
+    // A residual that is not a number has to show.
+    const double value = std::abs(at.residual[i]);
+    if (!(value <= largest)) largest = value;
+  }
+  return found;
+}
+
+/// The joints that violate their inequalities, and where they belong.
+struct Violations {
+  std::vector<int> joints;
+  Statuses corrected;
+};
+
+/// How the set of branches is changed.
+enum class Pivoting : unsigned char { strict, rounded, single };
+
 }  // namespace
 
-SolveReport Newton::solve(double time, const StepStart& start, JointModel joints,
-                          double clearance_scale, int most_iterations, VectorXd& z,
-                          Statuses& statuses) {
+/// Smallest share of the way at which one of the joints violates its inequality: each violates it
+/// at the end.
+double Newton::first_violation(const std::vector<int>& joints, const VectorXd& from,
+                               const VectorXd& to, double from_time, double time,
+                               const StepStart& start, JointModel model,
+                               const Statuses& statuses) const {
+  double first = 1.0;
+  // Of one joint only: what it is asked about is linear between both states.
+  const auto violates = [&](int joint, double share) {
+    Trial at = system_->trial(joint, from, from_time, start, model, 1.0);
+    const Trial end = system_->trial(joint, to, time, start, model, 1.0);
+    for (std::size_t k = 0; k < most_joint_nodes; ++k) {
+      at.moved[k] += share * (end.moved[k] - at.moved[k]);
+    }
+    for (std::size_t k = 0; k < most_joint_forces; ++k) {
+      at.force[k] += share * (end.force[k] - at.force[k]);
+    }
+    at.temperature_change += share * (end.temperature_change - at.temperature_change);
+    const JointStatus status = statuses[index(joint)];
+    return std::visit([&](const auto& one) { return one.decide(at, status); },
+                      system_->model().joints[index(joint)]) != status;
+  };
+  for (const int joint : joints) {
+    // One that is later than the first so far need not be known.
+    if (first < 1.0 && !violates(joint, first)) continue;
+    double before = 0.0;
+    for (int halving = 0; halving < share_halvings; ++halving) {
+      const double middle = 0.5 * (before + first);
+      (violates(joint, middle) ? first : before) = middle;
+    }
+  }
+  return first;
+}
+
+SolveReport Newton::solve(double time, const StepStart& start, JointModel joints, double opening,
+                          int most_iterations, VectorXd& z, Statuses& statuses,
+                          const std::optional<Ahead>& ahead) {
   SolveReport report;
+  const VectorXd origin = ahead ? z : VectorXd();
+  bool looking = ahead.has_value();
   const int displacements = system_->displacements();
-  const double stiffness = system_->stiffness_scale();
-  double last_step = std::numeric_limits<double>::infinity();
-  // A front of slips may pass through the truss joint by joint, one an iteration: iterations do not
-  // count while few joints change or no more than before, unless a set of statuses comes back.
-  std::unordered_map<std::size_t, int> visits;
-  int since_change = 0;
-  int last_changes = std::numeric_limits<int>::max();
-  double early_step = 0.0;
-  for (int iteration = 0; since_change < most_iterations; ++iteration, ++since_change) {
-    const double largest =
-        system_->evaluate(z, time, start, statuses, joints, clearance_scale, residual_, jacobian_);
-    const double reach = displacements == 0 ? 0.0 : z.head(displacements).lpNorm<Eigen::Infinity>();
-    const double rounding = 64.0 * epsilon * stiffness * reach;
-    const double balance =
-        displacements == 0 ? 0.0 : residual_.head(displacements).lpNorm<Eigen::Infinity>();
-    const Eigen::Index rest = residual_.size() - displacements;
-    const double closure = rest == 0 ? 0.0 : residual_.tail(rest).lpNorm<Eigen::Infinity>();
-    if (!std::isfinite(balance) || !std::isfinite(closure)) return report;
-    // Lines of joints are metres while they hold and newtons while they slip; both are linear or
-    // nearly so, and end at rounding. Where rounding is larger than foreseen the iteration stands
-    // still: that is the end as well, if forces balance at all.
-    const bool balanced = balance <= force_tolerance * largest + rounding &&
-                          closure <= 1e-13 * reach + 16.0 * epsilon * largest;
-    const bool still = last_step <= 1e-13 * reach && balance <= 1e3 * force_tolerance * largest;
-    const bool small = iteration > 0 && (balanced || still);
-    if (small) {
-      int changed_joint = -1;
-      Statuses corrected = statuses;
-      const int changed = system_->correct_statuses(z, time, start, joints, clearance_scale,
-                                                    corrected, changed_joint);
-      if (changed == 0) {
-        report.end = SolveEnd::converged;
-        report.joint = -1;
-        report.force_residual = largest > 0.0 ? balance / largest : 0.0;
-        report.closure_residual = closure;
-        return report;
+  const auto length = [displacements](const VectorXd& of) {
+    return displacements == 0 ? 0.0 : of.head(displacements).lpNorm<Eigen::Infinity>();
+  };
+  auto told = std::chrono::steady_clock::now();
+
+  Pivoting pivoting = strict_ ? Pivoting::strict : Pivoting::rounded;
+  std::unordered_set<std::size_t> seen{fingerprint(statuses)};
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  const auto violations = [&] {
+    const Rounding slack = pivoting == Pivoting::strict ? Rounding{} : system_->rounding(z);
+    Violations found{{}, statuses};
+    for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
+      JointStatus& status = found.corrected[index(i)];
+      status = system_->decide(i, z, time, start, joints, opening, status, slack);
+      if (status != statuses[index(i)]) found.joints.push_back(i);
+    }
+    return found;
+  };
+  // Steps on this set of branches, the last of them from `from` by `step`.
+  std::deque<double> lengths;
+  VectorXd from;
+  VectorXd step;
+  int halvings = 0;
+  int iterations = 0;
+  /// False if the sets go round in a circle.
+  const auto pivot = [&](const Violations& found) {
+    if (found.joints.empty()) return true;
+    if (found.joints.size() < fewest) {
+      fewest = found.joints.size();
+      if (pivoting == Pivoting::single) {
+        pivoting = Pivoting::rounded;
+        seen.clear();
       }
     }
+    const auto take = [&] {
+      if (pivoting != Pivoting::single) return found.corrected;
+      Statuses one = statuses;
+      one[index(found.joints.front())] = found.corrected[index(found.joints.front())];
+      return one;
+    };
+    Statuses next = take();
+    while (!seen.insert(fingerprint(next)).second) {
+      if (pivoting == Pivoting::single) return false;
+      pivoting = pivoting == Pivoting::strict ? Pivoting::rounded : Pivoting::single;
+      seen = {fingerprint(statuses)};
+      if (pivoting == Pivoting::rounded) return true;  // decided anew, with rounding allowed for
+      next = take();
+    }
+    statuses = next;
+    report.joints = found.joints;
+    lengths.clear();
+    halvings = 0;
+    iterations = 0;
+    return true;
+  };
+
+  // Every joint once on each of the other branches that it has, at most five.
+  const long most_pivots = most_iterations + 5 * static_cast<long>(statuses.size());
+  for (long total = 0; iterations < most_iterations && total < most_pivots; ++total, ++iterations) {
+    system_->evaluate(z, time, start, statuses, joints, opening, at_);
+    const double reach = length(z);
+    const double rounding = 64.0 * epsilon * system_->stiffness_scale() * reach;
+    const Residuals left = residuals(at_);
+    const double largest = at_.largest_force;
+    if (!std::isfinite(left.balance + left.closure + left.force)) return report;
+    // Where rounding is larger than foreseen the iteration stands still: that is the end as well,
+    // if forces balance at all.
+    const bool closed = left.balance <= force_tolerance * largest + rounding &&
+                        left.closure <= closure_tolerance * reach &&
+                        left.force <= 16.0 * epsilon * largest;
+    const bool still = !lengths.empty() && lengths.back() <= closure_tolerance * reach &&
+                       left.balance <= 1e3 * force_tolerance * largest;
+    if (total > 0 && (closed || still)) {
+      Violations found = violations();
+      if (found.joints.empty()) {
+        report.end = SolveEnd::converged;
+        report.force_residual = largest > 0.0 ? left.balance / largest : 0.0;
+        report.closure_residual = left.closure;
+        return report;
+      }
+      const Pivoting before = pivoting;
+      if (!pivot(found)) return report;
+      if (before == Pivoting::strict && pivoting == Pivoting::rounded && !pivot(violations())) {
+        return report;
+      }
+      continue;
+    }
     ++factorizations_;
-    if (!factor_.factorize(jacobian_)) {
+    if (!factor_.factorize(at_.jacobian)) {
       report.end = SolveEnd::singular;
       return report;
     }
-    const VectorXd step = factor_.solve(-residual_);
-    if (!step.allFinite()) {
+    const VectorXd next = factor_.solve(-at_.residual);
+    if (!next.allFinite()) {
       report.end = SolveEnd::singular;
       return report;
     }
-    z += step;
-    last_step = displacements == 0 ? 0.0 : step.head(displacements).lpNorm<Eigen::Infinity>();
-    if (iteration < 5) early_step = std::max(early_step, last_step);
-    if (last_step > std::max(divergence * early_step, smallest_astray * system_->size())) {
-      return report;
+    const double next_length = length(next);
+    const bool too_long = !lengths.empty() && next_length > closure_tolerance * reach &&
+                          next_length > *std::max_element(lengths.begin(), lengths.end());
+    if (too_long) {
+      if (++halvings > most_halvings) return report;
+      z = from + std::ldexp(1.0, -halvings) * step;
+      continue;
     }
-    int joint = -1;
-    const int changes =
-        system_->correct_statuses(z, time, start, joints, clearance_scale, statuses, joint);
-    if (changes > 0) {
-      report.joint = joint;
-      const bool calms_down = changes <= a_few || changes <= last_changes;
-      last_changes = changes;
-      if (++visits[fingerprint(statuses)] <= most_visits && calms_down) since_change = 0;
-      last_step = std::numeric_limits<double>::infinity();
+    const bool damped = halvings > 0;
+    halvings = 0;
+    from = z;
+    step = next;
+    z += next;
+    lengths.push_back(next_length);
+    if (lengths.size() > remembered_steps) lengths.pop_front();
+    if (!damped && pivoting != Pivoting::single) {
+      const Violations found = violations();
+      if (looking && !found.joints.empty()) {
+        const double share = first_violation(found.joints, origin, z, ahead->from_time, time, start,
+                                             joints, statuses);
+        if (share > ahead->now) {
+          looking = false;
+          report.first_change = share;
+          report.joints = found.joints;
+          if (ahead->stop) {
+            report.end = SolveEnd::event_ahead;
+            return report;
+          }
+        }
+      }
+      if (!pivot(found)) return report;
+    }
+    const auto now = std::chrono::steady_clock::now();
+    if (std::chrono::duration<double>(now - told).count() > told_every) {
+      told = now;
+      if (!going_on_()) {
+        report.end = SolveEnd::stopped;
+        return report;
+      }
     }
   }
   return report;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "linear/sparse_factor.hpp"
@@ -10,31 +13,76 @@
 namespace statejump::truss::detail {
 
 /// How a Newton solve ended.
-enum class SolveEnd : unsigned char { converged, singular, not_converged };
+enum class SolveEnd : unsigned char { converged, singular, not_converged, stopped, event_ahead };
 
 struct SolveReport {
   SolveEnd end = SolveEnd::not_converged;
-  int joint = -1;  ///< Whose status changed last; sliders before revolutes. −1: none.
+  std::vector<int> joints;        ///< Whose branches changed last, the lowest first.
   double force_residual = 0.0;    ///< Over the largest force [-].
   double closure_residual = 0.0;  ///< [m]
+  /// Share of the step after which the first joint leaves its branch, as the tangents see it; 1:
+  /// none does.
+  double first_change = 1.0;
 };
 
-/// Newton's method with an active set on the equations of a truss; keeps the memory of the factors.
+/// From where to where a step goes, for the question when within it the first joint changes.
+struct Ahead {
+  double from_time;  ///< [s]
+  double now;        ///< Share of the step within which a change counts as one at its start.
+  bool stop;         ///< End the solve there instead of passing it.
+};
+
+/// Newton's method on the equations of a truss, in two layers; keeps the memory of the factors.
+///
+/// **On one set of branches** the equations are smooth. A step is taken in full as long as it is no
+/// longer than those before it on this set (the natural monotonicity test of Deuflhard [1], which
+/// compares lengths in metres and so asks for no scale between metres and newtons; non-monotone
+/// over ten steps as in [2]); a longer one means that the step before it went too far, and that is
+/// halved.
+///
+/// **The set of branches** changes by block principal pivoting [3]: every joint that violates its
+/// inequality changes its branch at once, after each full step. Inequalities are strict at first: a
+/// joint that is let off because rounding might be the reason would start the next step beyond its
+/// bound, and flicker. If a set comes back, rounding is allowed for; if one comes back again, one
+/// joint at a time is changed, the lowest first and only where the smooth equations hold (Murty),
+/// until fewer joints than ever violate theirs. For a P-matrix that ends after finitely many
+/// pivots; friction that follows a normal force can make another one, where a set comes back once
+/// more and the solve ends without a solution.
+///
+/// **Events ahead.** On one set of branches the state is nearly linear over a step, so the line
+/// from its start to the first full step tells when the first joint violates its inequality. Joints
+/// that do so at once change at the start of the step: that is the rate problem, solved by the same
+/// pivoting. Where none does so any more, the first one to follow is the next event.
+///
+/// [1] P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2004, ch. 3.3.
+/// [2] L. Grippo, F. Lampariello, S. Lucidi, SIAM J. Numer. Anal. 23 (1986) 707-716.
+/// [3] J. J. Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587-596.
 class Newton {
  public:
-  explicit Newton(const System& system)
-      : system_(&system), jacobian_(system.pattern()), residual_(system.unknowns()) {}
+  /// @param strict whether inequalities are strict at first; else rounding is allowed for at once,
+  /// which lets a joint off that slides by less than that in the short step after a corner
+  /// @param going_on asked now and then; false stops the solve
+  Newton(const System& system, bool strict, std::function<bool()> going_on)
+      : system_(&system), strict_(strict), going_on_(std::move(going_on)), at_(system.assembly()) {}
 
   /// Solves for z and statuses at `time`, from the guess in them. On failure they are unspecified.
-  SolveReport solve(double time, const StepStart& start, JointModel joints, double clearance_scale,
-                    int most_iterations, Eigen::VectorXd& z, Statuses& statuses);
+  /// @param most_iterations on one set of branches
+  /// @param ahead whether and from where changes are looked for; else they are not
+  SolveReport solve(double time, const StepStart& start, JointModel joints, double opening,
+                    int most_iterations, VectorXd& z, Statuses& statuses,
+                    const std::optional<Ahead>& ahead = {});
 
   long factorizations() const { return factorizations_; }
 
  private:
+  double first_violation(const std::vector<int>& joints, const VectorXd& from, const VectorXd& to,
+                         double from_time, double time, const StepStart& start, JointModel model,
+                         const Statuses& statuses) const;
+
   const System* system_;
-  Eigen::SparseMatrix<double> jacobian_;
-  Eigen::VectorXd residual_;
+  bool strict_;
+  std::function<bool()> going_on_;
+  Assembly at_;
   linear::SparseFactor factor_;
   long factorizations_ = 0;
 };
@@ -48,11 +96,11 @@ struct FoundModes {
 };
 
 /// Free modes of the truss at z, its joints held as their statuses say.
-FoundModes mechanism(const System& system, const Eigen::VectorXd& z, double time,
-                     const Statuses& statuses, JointModel joints);
+FoundModes mechanism(const System& system, const VectorXd& z, double time, const Statuses& statuses,
+                     JointModel joints);
 
 /// Modes in which the equilibrium at z is unstable though every joint is held (so friction cannot
 /// help). That a joint which slips or leaves its bearing makes the truss unstable is not seen.
-FoundModes buckling(const System& system, const Eigen::VectorXd& z, double time);
+FoundModes buckling(const System& system, const VectorXd& z, double time);
 
 }  // namespace statejump::truss::detail

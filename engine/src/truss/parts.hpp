@@ -2,7 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstddef>
 
@@ -14,6 +14,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using Matrix32 = Eigen::Matrix<double, 3, 2>;
 
 inline double cross(const Vector2d& a, const Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -67,28 +68,40 @@ inline Axial spring_axial(const AxialSpring& spring, const Lengths& length) {
   return {spring.stiffness * stretch, spring.stiffness};
 }
 
-/// Friction of a slider whose contact is bent by so much [N]; only if it is not rigid.
-inline double bent_friction(const Slider& slider, double bend) {
-  const double f = slider.friction_force;
-  return std::clamp(slider.tangential_stiffness * bend, -f, f);
+/// Gradient and Hessian of the angle of an in-plane vector.
+struct AngleDerivatives {
+  Vector3d gradient;
+  Matrix3d hessian;
+};
+
+inline AngleDerivatives angle_derivatives(const Vector2d& v, const Matrix32& plane) {
+  const double length = v.norm();
+  const Vector3d along = plane * (v / length);
+  const Vector3d left = plane * (turned_left(v) / length);
+  return {left / length,
+          -(along * left.transpose() + left * along.transpose()) / (length * length)};
 }
 
-/// Normal force below which the depth is a millionth of the clearance: Hertz's compliance and
-/// Mindlin's, infinite without force, are taken there [N].
-inline double least_force(const ClearanceRevolute& revolute) {
-  return revolute.hertz_stiffness * std::pow(1e-6 * revolute.radial_clearance, 1.5);
+/// Two directions that make a right-handed frame with the axis; x and y for the z axis.
+inline Matrix32 plane_of(const Vector3d& axis) {
+  Matrix32 plane;
+  const Vector3d a = axis.normalized();
+  if (a.isApprox(Vector3d::UnitZ())) {
+    plane << 1, 0, 0, 1, 0, 0;
+    return plane;
+  }
+  Eigen::Index smallest = 0;
+  a.cwiseAbs().minCoeff(&smallest);
+  const Vector3d first = Vector3d::Unit(smallest).cross(a).normalized();
+  plane << first, a.cross(first);
+  return plane;
 }
 
-inline double depth_of(const ClearanceRevolute& revolute, double normal_force) {
-  if (std::isinf(revolute.hertz_stiffness) || normal_force <= 0.0) return 0.0;
-  return std::pow(normal_force / revolute.hertz_stiffness, 2.0 / 3.0);
-}
-
-/// 1/k_t of a contact that sticks [m/N]; 0: rigid.
-inline double tangential_compliance(const ClearanceRevolute& revolute, double normal_force) {
-  if (std::isinf(revolute.mindlin_stiffness)) return 0.0;
-  const double loaded = std::max(normal_force, least_force(revolute));
-  return 1.0 / (revolute.mindlin_stiffness * std::sqrt(depth_of(revolute, loaded)));
+inline bool moves_along(const Node& node, const Vector3d& direction) {
+  for (int i = 0; i < node.freedoms; ++i) {
+    if (std::abs(node.free_directions.col(i).dot(direction)) > 1e-9) return true;
+  }
+  return false;
 }
 
 }  // namespace statejump::truss::detail

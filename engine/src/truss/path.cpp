@@ -4,24 +4,24 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "newton.hpp"
-#include "parts.hpp"
 #include "statejump/failure.hpp"
 
 namespace statejump::truss {
 
+using detail::Ahead;
 using detail::FoundModes;
 using detail::index;
-using detail::JointModel;
 using detail::Newton;
 using detail::SolveEnd;
 using detail::SolveReport;
 using detail::Statuses;
 using detail::StepStart;
 using detail::System;
-using Eigen::Vector2d;
 using Eigen::VectorXd;
 
 const char* to_string(JointStatus status) {
@@ -42,13 +42,22 @@ const char* to_string(JointStatus status) {
   return "unknown";
 }
 
+Eigen::VectorXd output(const Model& model, const State& state, int joint, std::string_view key) {
+  Eigen::Index at = 0;
+  for (int i = 0; i <= joint; ++i) {
+    for (const Output& one : outputs_of(model.joints[index(i)])) {
+      if (i == joint && key == one.key) return state.joint_output.segment(at, one.width);
+      at += one.width;
+    }
+  }
+  throw std::out_of_range("the joint has no output '" + std::string(key) + "'");
+}
+
 namespace {
 
-/// @param joint sliders before revolutes
 FailureJoint named(const Model& model, int joint) {
-  const int sliders = static_cast<int>(model.sliders.size());
-  if (joint < sliders) return {"slider", model.sliders[index(joint)].name};
-  return {"revolute", model.revolutes[index(joint - sliders)].name};
+  const Joint& one = model.joints[index(joint)];
+  return {kind_of(one), name_of(one)};
 }
 
 /// Fields of a failure at an instant.
@@ -71,12 +80,8 @@ FailureFields failure_at(FailureKind kind, const Model& model, double time) {
   throw Failure(std::move(fields));
 }
 
-/// Largest angle [rad] by which a contact may move around its bearing in one step; more within a
-/// located instant is a jump.
-constexpr double most_turned = 0.5;
-
 /// How a step ended: with the state moved on, or back at its start.
-enum class StepEnd : unsigned char { done, event_inside, not_converged };
+enum class StepEnd : unsigned char { done, event_inside, not_converged, stopped };
 
 /// Equilibrium being followed.
 struct Walker {
@@ -89,7 +94,9 @@ struct Walker {
   StepStart origin;  ///< The state as the start of the next step.
   State state;
   double time = 0.0;
-  /// How fast every joint slid in the last step, sliders before revolutes [m/s].
+  /// Share of the last step that was tried after which its first event comes; 1: unknown.
+  double event_share = 1.0;
+  /// How fast every joint slid in the last step [m/s].
   VectorXd slide_rate;
 
   [[noreturn]] void fail(const SolveReport& report, JointModel joints, double when,
@@ -102,7 +109,7 @@ struct Walker {
         report.end == SolveEnd::singular ? FailureKind::singular : FailureKind::not_converged;
     FailureFields fields = failure_at(kind, model, when);
     fields.sought = sought;
-    if (report.joint >= 0) fields.joints.push_back(named(model, report.joint));
+    for (const int joint : report.joints) fields.joints.push_back(named(model, joint));
     throw Failure(std::move(fields));
   }
 
@@ -117,8 +124,13 @@ struct Walker {
   void open_clearances();
   void refuse_buckled(double when) const;
   StepEnd step_to(double target, double tolerance);
-  bool state_depends_on(int joint, JointStatus before, JointStatus after) const;
-  bool slide_at_stake(int joint, JointStatus before, double target, double rounding) const;
+  bool slide_at_stake(int joint, JointStatus before, double target) const;
+
+  /// What the type of a joint says.
+  template <class Ask>
+  auto joint(int i, Ask&& ask) const {
+    return std::visit(ask, model.joints[index(i)]);
+  }
 };
 
 /// Relaxes the drawn shape at ΔT = 0; see solve().
@@ -128,15 +140,19 @@ void Walker::start() {
   if (FoundModes modes = detail::mechanism(system, z, 0.0, origin.statuses, JointModel::pins)) {
     fail_modes(failure_at(FailureKind::held_mechanism, model, 0.0), std::move(modes));
   }
-  const StepStart begin = system.step_start(z, origin.statuses);
+  const StepStart begin = system.begin(z, 0.0, origin.statuses, 1.0);
   const SolveReport report =
       newton.solve(0.0, begin, JointModel::pins, 1.0, options.most_iterations, z, origin.statuses);
   note(report);
+  if (report.end == SolveEnd::stopped) {
+    path.complete = false;
+    return;
+  }
   if (report.end != SolveEnd::converged) {
     fail(report, JointModel::pins, 0.0, "no equilibrium of the drawn shape");
   }
   refuse_buckled(0.0);
-  if (!model.revolutes.empty()) open_clearances();
+  open_clearances();
 }
 
 /// Throws if the state is unstable whatever the joints do.
@@ -147,37 +163,41 @@ void Walker::refuse_buckled(double when) const {
 }
 
 void Walker::open_clearances() {
+  std::vector<int> with_play;
+  for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
+    if (joint(i, [](const auto& one) { return one.has_play(); })) with_play.push_back(i);
+  }
+  if (with_play.empty()) return;
   // Below this a pin force is rounding of what the stiffest part would carry.
   const double rounding = 1e-14 * system.stiffness_scale() * system.size();
-  for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
-    if (!(system.revolute_force(i, z).norm() > rounding)) {
-      fail_joint(failure_at(FailureKind::unloaded_joint, model, 0.0),
-                 {"revolute", model.revolutes[index(i)].name});
+  const auto seat = [&](int i, const VectorXd& at, double opened, double next) {
+    const Trial trial = system.trial(i, at, 0.0, origin, JointModel::pins, opened);
+    return joint(i, [&](const auto& one) { return one.seat(trial, opened, next, rounding); });
+  };
+  origin = system.begin(z, 0.0, origin.statuses, 1.0);
+  for (const int i : with_play) {
+    if (!seat(i, z, 0.0, 1.0).touches) {
+      fail_joint(failure_at(FailureKind::unloaded_joint, model, 0.0), named(model, i));
     }
   }
   // The journal touches where its pin force pushes; the clearances open little by little, each time
   // from the last equilibrium, because the links turn as they open.
   double opened = 0.0;
   double share = 0.125;
-  origin.statuses.revolutes.assign(model.revolutes.size(), JointStatus::slip_plus);
+  for (const int i : with_play) origin.statuses[index(i)] = JointStatus::slip_plus;
   while (opened < 1.0) {
     const double next = std::min(1.0, opened + share);
     VectorXd trial = z;
     Statuses trial_statuses = origin.statuses;
-    const StepStart last = system.step_start(z, origin.statuses);
-    for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
-      const Vector2d force = system.revolute_force(i, z);
-      const Vector2d eccentricity = last.eccentricity.col(i);
-      const Vector2d normal = opened == 0.0 ? Vector2d(force / force.norm())
-                                            : Vector2d(eccentricity / eccentricity.norm());
-      system.move_journal(i, (next - opened) * model.revolutes[index(i)].radial_clearance * normal,
-                          trial);
-      if (opened == 0.0) system.set_revolute_force(i, {force.norm(), 0.0}, trial);
-    }
-    const StepStart begin = system.step_start(trial, trial_statuses);
+    for (const int i : with_play) system.apply(i, seat(i, z, opened, next), trial);
+    const StepStart begin = system.begin(trial, 0.0, trial_statuses, next);
     const SolveReport report = newton.solve(0.0, begin, JointModel::frictionless, next,
                                             options.most_iterations, trial, trial_statuses);
     note(report);
+    if (report.end == SolveEnd::stopped) {
+      path.complete = false;
+      return;
+    }
     if (report.end == SolveEnd::converged) {
       z = trial;
       origin.statuses = trial_statuses;
@@ -189,44 +209,25 @@ void Walker::open_clearances() {
       fail(report, JointModel::frictionless, 0.0, "no equilibrium in contact at the start");
     }
   }
-  for (std::size_t i = 0; i < model.revolutes.size(); ++i) {
-    if (origin.statuses.revolutes[i] == JointStatus::open) {
-      fail_joint(failure_at(FailureKind::no_contact, model, 0.0),
-                 {"revolute", model.revolutes[i].name});
+  for (const int i : with_play) {
+    JointStatus& status = origin.statuses[index(i)];
+    if (status == JointStatus::open) {
+      fail_joint(failure_at(FailureKind::no_contact, model, 0.0), named(model, i));
     }
-    if (model.revolutes[i].friction_coefficient > 0.0) {
-      origin.statuses.revolutes[i] = JointStatus::stick;
-    }
+    status = joint(i, [](const auto& one) { return one.rest(); });
   }
-}
-
-/// Whether the state after a change depends on where in the step it happened.
-bool Walker::state_depends_on(int joint, JointStatus before, JointStatus after) const {
-  const int sliders = static_cast<int>(model.sliders.size());
-  const auto is_slip = [](JointStatus s) {
-    return s == JointStatus::slip_plus || s == JointStatus::slip_minus;
-  };
-  if (joint < sliders) {
-    if (model.sliders[index(joint)].friction_force == 0.0) return false;
-    return is_slip(before) && (after == JointStatus::stick || is_slip(after));
-  }
-  if (model.revolutes[index(joint - sliders)].friction_coefficient == 0.0) return false;
-  if (before == JointStatus::open) return true;
-  return is_slip(before) && (after == JointStatus::stick || is_slip(after));
 }
 
 /// Whether a joint that stopped sliding before `target` may have slid by more than rounding until
 /// it did: slides of a step are lost when it ends in a stick. One that comes to rest smoothly
 /// slides so little at last that no shorter step would tell.
-/// @param rounding of a displacement [m]
-bool Walker::slide_at_stake(int joint, JointStatus before, double target, double rounding) const {
+bool Walker::slide_at_stake(int i, JointStatus before, double target) const {
   if (before == JointStatus::open) return true;
-  const int sliders = static_cast<int>(model.sliders.size());
-  double least = 1e3 * system.slide_rounding(joint, z, rounding);
-  if (joint >= sliders && !options.locate_events) {
-    least += options.event_tolerance * model.revolutes[index(joint - sliders)].radial_clearance;
+  double least = 1e3 * system.slide_rounding(i, z, time, origin);
+  if (!options.locate_events) {
+    least += options.event_tolerance * joint(i, [](const auto& one) { return one.least_slide(); });
   }
-  return slide_rate[joint] * (target - time) > least;
+  return slide_rate[i] * (target - time) > least;
 }
 
 /// One step, if it is converged and exact or no longer than `tolerance`; else nothing happens.
@@ -236,57 +237,50 @@ StepEnd Walker::step_to(double target, double tolerance) {
   VectorXd trial = z;
   Statuses trial_statuses = origin.statuses;
   const StepStart& begin = origin;
-  const SolveReport report = newton.solve(target, begin, JointModel::friction, 1.0,
-                                          options.most_iterations, trial, trial_statuses);
+  // The first change ahead: passed where it need not be located, or no location is asked.
+  const Ahead ahead{time, tolerance / (target - time), options.locate_events};
+  const SolveReport report =
+      newton.solve(target, begin, JointModel::friction, 1.0, options.most_iterations, trial,
+                   trial_statuses, is_short ? std::optional<Ahead>() : ahead);
+  event_share = report.first_change;
+  if (report.end == SolveEnd::event_ahead) {
+    ++path.solves;
+    return StepEnd::event_inside;
+  }
+  if (report.end == SolveEnd::stopped) return StepEnd::stopped;
   if (report.end != SolveEnd::converged) {
     ++path.solves;
     if (!is_short) return StepEnd::not_converged;
     origin.statuses = trial_statuses;
     fail(report, JointModel::friction, target, "no equilibrium");
   }
-  const int sliders = static_cast<int>(model.sliders.size());
   std::vector<Event> events;
-  const double rounding = system.length_rounding(z);
-  const auto compare = [&](int joint, JointStatus before, JointStatus after) {
-    if (before == after) return true;
-    const bool matters = state_depends_on(joint, before, after)
-                             ? slide_at_stake(joint, before, target, rounding)
-                             : options.locate_events;
-    if (!is_short && matters) return false;
-    const bool is_revolute = joint >= sliders;
-    events.push_back({target, target - time, model.temperature_change(0, 1.0, target), is_revolute,
-                      is_revolute ? joint - sliders : joint, before, after});
-    return true;
-  };
-  for (int i = 0; i < sliders; ++i) {
-    if (!compare(i, origin.statuses.sliders[index(i)], trial_statuses.sliders[index(i)])) {
-      ++path.solves;
-      return StepEnd::event_inside;
-    }
-  }
-  for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
-    if (!compare(sliders + i, origin.statuses.revolutes[index(i)],
-                 trial_statuses.revolutes[index(i)])) {
-      ++path.solves;
-      return StepEnd::event_inside;
-    }
-  }
   std::vector<FailureJoint> opened;
-  for (int i = 0; i < static_cast<int>(model.revolutes.size()); ++i) {
-    const JointStatus before = origin.statuses.revolutes[index(i)];
-    const JointStatus after = trial_statuses.revolutes[index(i)];
-    if (before != JointStatus::open && after == JointStatus::open) {
-      opened.push_back({"revolute", model.revolutes[index(i)].name});
+  const int joints = static_cast<int>(model.joints.size());
+  for (int i = 0; i < joints; ++i) {
+    const JointStatus before = origin.statuses[index(i)];
+    const JointStatus after = trial_statuses[index(i)];
+    if (before == after) continue;
+    const bool remembers =
+        joint(i, [&](const auto& one) { return one.remembers_when(before, after); });
+    const bool matters = remembers ? slide_at_stake(i, before, target) : options.locate_events;
+    if (!is_short && matters) {
+      ++path.solves;
+      return StepEnd::event_inside;
     }
-    if (before == JointStatus::open || after == JointStatus::open) continue;
-    const double turned = system.revolute_geometry(i, trial, target, begin, 1.0).turned;
-    if (std::abs(turned) <= most_turned) continue;
+    events.push_back(
+        {target, target - time, model.temperature_change(0, 1.0, target), i, before, after});
+    if (after == JointStatus::open) opened.push_back(named(model, i));
+  }
+  for (int i = 0; i < joints; ++i) {
+    const Trial at = system.trial(i, trial, target, begin, JointModel::friction, 1.0);
+    const JointStatus status = trial_statuses[index(i)];
+    if (!joint(i, [&](const auto& one) { return one.jumps(at, status); })) continue;
     if (!is_short) {
       ++path.solves;
       return StepEnd::event_inside;
     }
-    fail_joint(failure_at(FailureKind::jump_across_play, model, target),
-               {"revolute", model.revolutes[index(i)].name});
+    fail_joint(failure_at(FailureKind::jump_across_play, model, target), named(model, i));
   }
   if (!opened.empty()) {
     if (FoundModes modes =
@@ -297,7 +291,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
     }
   }
   note(report);
-  const StepStart after = system.step_start(trial, trial_statuses, &begin);
+  const StepStart after = system.commit(trial, target, trial_statuses, begin);
   const VectorXd slips = system.slips(trial, target, begin, after);
   system.account(z, time, trial, target, begin, after, slips, state);
   slide_rate = slips.cwiseAbs() / (target - time);
@@ -355,27 +349,27 @@ Path solve(const Model& model, const Options& options) {
                   "event_tolerance", options.event_tolerance, "above 0 and at most 1");
   kernel::require(options.most_iterations >= 2, "most_iterations", options.most_iterations, ">= 2");
   const System system(model);
-  Walker walker{model, system, options, Newton(system), {}, {}, {}, {}, 0.0, {}};
-  walker.slide_rate =
-      VectorXd::Zero(static_cast<Eigen::Index>(model.sliders.size() + model.revolutes.size()));
+  const double duration = model.programs.front().duration();
+  double now = 0.0;
+  const auto going_on = [&] { return !options.progress || options.progress(now / duration); };
+  Walker walker{model, system, options, Newton(system, options.locate_events, going_on),
+                {},    {},     {},      {},
+                0.0,   1.0,    {}};
+  const auto joints = static_cast<Eigen::Index>(model.joints.size());
+  walker.slide_rate = VectorXd::Zero(joints);
   walker.path.unknowns = system.unknowns();
-  walker.state.slider_dissipation = VectorXd::Zero(static_cast<Eigen::Index>(model.sliders.size()));
-  walker.state.revolute_dissipation =
-      VectorXd::Zero(static_cast<Eigen::Index>(model.revolutes.size()));
+  walker.state.joint_dissipation = VectorXd::Zero(joints);
   walker.start();
-  walker.origin = system.step_start(walker.z, walker.origin.statuses);
+  walker.origin = system.begin(walker.z, 0.0, walker.origin.statuses, 1.0);
   system.describe(walker.z, 0.0, walker.origin, walker.state);
   walker.path.states.push_back(walker.state);
   walker.path.cycle_ends.push_back(walker.state);
 
-  const int sliders = static_cast<int>(model.sliders.size());
   // In an increment a joint changes its status a few times, in a long chain as often as another one
   // starts to slide; many more are no path but a flicker.
-  const std::size_t joints = model.sliders.size() + model.revolutes.size();
   const int most_changes = 200 + 2 * static_cast<int>(joints);
-  std::vector<int> changes(joints);
+  std::vector<int> changes(model.joints.size());
   const std::vector<double> times = corners(model);
-  const double duration = model.programs.front().duration();
   int cycle = 1;
   for (std::size_t b = 0; b + 1 < times.size() && walker.path.complete; ++b) {
     const double length = times[b + 1] - times[b];
@@ -398,23 +392,32 @@ Path solve(const Model& model, const Options& options) {
         const StepEnd end = walker.step_to(goal, std::max(tolerance, shortest));
         if (end == StepEnd::done) {
           convergent = std::max(2.0 * convergent, tolerance);
-          // While a change is being located, the next one may be near.
-          stride = std::min(target - walker.time, locating ? 8.0 * stride : convergent);
+          // While a change is being located, the next one may be near, and to pass it costs a pivot
+          // for every joint that it moves.
+          const bool creeps = locating && !options.locate_events;
+          stride = std::min(target - walker.time, creeps ? 8.0 * stride : convergent);
           for (; counted < walker.path.events.size(); ++counted) {
             const Event& event = walker.path.events[counted];
-            const int joint = event.joint + (event.is_revolute ? sliders : 0);
-            if (++changes[index(joint)] <= most_changes) continue;
+            if (++changes[index(event.joint)] <= most_changes) continue;
             FailureFields fields = failure_at(FailureKind::unsettled_joint, model, walker.time);
             fields.before = to_string(event.before);
             fields.after = to_string(event.after);
-            fail_joint(std::move(fields), named(model, joint));
+            fail_joint(std::move(fields), named(model, event.joint));
           }
+        } else if (end == StepEnd::stopped) {
+          walker.path.complete = false;
         } else {
-          stride = std::max(0.125 * (goal - walker.time), tolerance);
+          // Up to where the change is foreseen, and half of what it is located to before it; where
+          // nothing is foreseen, to an eighth.
+          const bool foreseen = end == StepEnd::event_inside && walker.event_share < 1.0;
+          const double tried = goal - walker.time;
+          stride = std::max(foreseen ? walker.event_share * tried - 0.5 * tolerance : 0.125 * tried,
+                            tolerance);
           if (end == StepEnd::not_converged) convergent = stride;
           locating = end == StepEnd::event_inside;
         }
-        walker.path.complete = !options.progress || options.progress(walker.time / duration);
+        now = walker.time;
+        walker.path.complete = walker.path.complete && going_on();
       }
       if (!walker.path.complete) break;
       if (k > 0 && !options.cycle_ends_only) walker.path.states.push_back(walker.state);

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "statejump/thermal/program.hpp"
+#include "statejump/truss/joint.hpp"
 
 namespace statejump::truss {
 
@@ -53,52 +53,13 @@ struct TorsionSpring {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
 };
 
-/// Prismatic joint with dry friction and stops: the first node slides along a fixed axis relative
-/// to the second and is held across it; without a second node it slides relative to the ground, and
-/// its own free directions hold it across.
-struct Slider {
-  std::string name;
-  int first = 0;
-  int second = -1;  ///< −1: ground.
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
-  double friction_force = 0.0;                                       ///< f [N], >= 0.
-  double clearance_minus = std::numeric_limits<double>::infinity();  ///< [m], >= 0.
-  double clearance_plus = std::numeric_limits<double>::infinity();   ///< [m], >= 0.
-  /// k_t of the contact while it sticks [N/m], > 0; infinity: rigid.
-  double tangential_stiffness = std::numeric_limits<double>::infinity();
-};
-
-/// Revolute joint with clearance and dry friction about a fixed axis: a journal on the end of one
-/// link within a bearing on the end of another.
-struct ClearanceRevolute {
-  std::string name;
-  int journal_node = 0;
-  int bearing_node = 0;
-  int journal_link = -1;                 ///< Turns the journal; −1: it does not turn.
-  int bearing_link = -1;                 ///< Turns the bearing; −1: it does not turn.
-  double journal_radius = 0.0;           ///< R1 at ΔT = 0 [m], > 0.
-  double radial_clearance = 0.0;         ///< c = R2 − R1 at ΔT = 0 [m], > 0.
-  double journal_thermal_expansion = 0;  ///< [1/K].
-  double bearing_thermal_expansion = 0;  ///< [1/K].
-  double friction_coefficient = 0.0;     ///< μ, >= 0.
-  /// K of Hertz's F_N = K δ^1.5 [N/m^1.5]; infinity: rigid.
-  double hertz_stiffness = std::numeric_limits<double>::infinity();
-  /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ), by which the contact gives way while it sticks
-  /// [N/m^1.5]; infinity: rigid. Finite only if `hertz_stiffness` is.
-  double mindlin_stiffness = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
-  int program = 0;
-  double temperature_fraction = 1;
-};
-
 /// Truss of bars with springs, frictional joints and loads, for quasi-static paths.
 struct Model {
   std::vector<Node> nodes;
   std::vector<Link> links;
   std::vector<AxialSpring> springs;
   std::vector<TorsionSpring> torsion_springs;
-  std::vector<Slider> sliders;
-  std::vector<ClearanceRevolute> revolutes;
+  std::vector<Joint> joints;
   std::vector<thermal::Program> programs;  ///< At least one; all of one duration.
 
   /// Share of the duration below which two times are one [-]: programs of 3 x 0.1 s and 1 x 0.3 s
@@ -107,9 +68,11 @@ struct Model {
   static constexpr double same_time = 1e-9;
 
   /// Throws std::invalid_argument that names the item, its value and the range: indices, numbers
-  /// out of range, links without length somewhere in their program, a revolute whose link does not
-  /// end at its node.
+  /// out of range, links without length somewhere in their program, joints whose parts do not fit.
   void validate() const;
+
+  /// Largest value of `per_kelvin` · ΔT over a program, downwards.
+  double lowest_strain(int program, double per_kelvin) const;
 
   /// ΔT [K] of a part at time t [s].
   double temperature_change(int program, double fraction, double t) const {

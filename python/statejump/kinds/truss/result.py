@@ -40,11 +40,18 @@ NOTES = {
 
 
 def _joints(truss: ResolvedTruss) -> list[str]:
-    """Names of all contacts, sliders first; with their kind where a slider and a revolute share one."""
+    """Names of all contacts, sliders first."""
+    return list(_names_of_joints(truss).values())
+
+
+def _names_of_joints(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
+    """Name of every contact by kind and name of its joint; with the kind where a slider and a revolute share one."""
     sliders, revolutes = truss.sliders.names, truss.revolutes.names
-    if set(sliders) & set(revolutes):
-        return [f"slider {name}" for name in sliders] + [f"revolute {name}" for name in revolutes]
-    return [*sliders, *revolutes]
+    shared = bool(set(sliders) & set(revolutes))
+    return {
+        (kind, name): f"{kind} {name}" if shared else name
+        for kind, found in (("slider", sliders), ("revolute", revolutes)) for name in found
+    }
 
 
 def names(case: TrussCase) -> dict[str, list[str]]:
@@ -229,10 +236,9 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
 
 def _events(case: TrussCase, path: TrussPath) -> list[Event]:
     truss, at = path.truss, path.states["time_s"]
-    joints, slipped = _joints(truss), set()
-    first_revolute, events = len(truss.sliders.names), []
+    joints, slipped, events = _names_of_joints(truss), set(), []
     for event in path.events:
-        name = joints[event.joint + (first_revolute if event.joint_kind == "revolute" else 0)]
+        name = joints[event.joint_kind, event.name]
         before, after = STATE_OF[event.before], STATE_OF[event.after]
         # A path that does not locate all events has some of them somewhere within an increment.
         half = event.interval_s / 2 if event.interval_s > LOCATED * case.period_s else 0.0

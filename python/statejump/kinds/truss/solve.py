@@ -29,7 +29,6 @@ class TrussEvent:
     interval_s: float
     temperature_change_K: float
     joint_kind: str  # "slider" or "revolute"
-    joint: int
     name: str
     before: str
     after: str
@@ -97,24 +96,25 @@ def path(
                    axial_stiffness_N=truss.links.young_modulus_Pa * truss.links.cross_section_area_m2),
             _table(springs, "nodes", "stiffness_N_per_m", "free_length_m", "cable"),
             _table(torsion, "links", "stiffness_N_m_per_rad", "bias_rad", "axis"),
-            _table(sliders, "nodes", "axis", "clearance_minus_m", "clearance_plus_m",
-                   friction_force_N=sliders.friction_coefficient * sliders.normal_force_N,
-                   tangential_stiffness_N_per_m=tangential),
-            _table(truss.revolutes, "journal_node", "bearing_node", "journal_link", "bearing_link",
-                   "journal_radius_m", "radial_clearance_m", "journal_thermal_expansion_per_K",
-                   "bearing_thermal_expansion_per_K", "friction_coefficient", "axis", "program",
-                   "temperature_fraction", hertz_stiffness_N_per_m15=hertz,
-                   mindlin_stiffness_N_per_m15=mindlin),
+            {
+                "slider": _table(
+                    sliders, "axis", "clearance_minus_m", "clearance_plus_m",
+                    first_node=sliders.nodes[:, 0], second_node=sliders.nodes[:, 1],
+                    friction_force_N=sliders.friction_coefficient * sliders.normal_force_N,
+                    tangential_stiffness_N_per_m=tangential),
+                "revolute": _table(
+                    truss.revolutes, "journal_node", "bearing_node", "journal_link", "bearing_link",
+                    "journal_radius_m", "radial_clearance_m", "journal_thermal_expansion_per_K",
+                    "bearing_thermal_expansion_per_K", "friction_coefficient", "axis", "program",
+                    "temperature_fraction", hertz_stiffness_N_per_m15=hertz, mindlin_stiffness_N_per_m15=mindlin),
+            },
             [engine_program(program) for program in truss.programs],
             increments_per_branch=increments_per_branch, locate_events=locate_events,
             event_tolerance=event_tolerance, cycle_ends_only=cycle_ends_only, progress=progress,
         )
     except _engine.EngineFailure as failure:
         raise _failed(truss, failure, locate_events) from None
-    names = {"slider": sliders.names, "revolute": truss.revolutes.names}
-    events = tuple(
-        TrussEvent(name=names[event["joint_kind"]][event["joint"]], **event) for event in found.pop("events")
-    )
+    events = tuple(TrussEvent(**event) for event in found.pop("events"))
     return TrussPath(truss=truss, events=events, **found)
 
 

@@ -64,12 +64,12 @@ def changed(truss: ResolvedTruss, section: str, key: str, factor: np.ndarray) ->
     return replace(truss, **{field: part})
 
 
-def _histories(found: TrussPath) -> dict[tuple[str, int], list[str]]:
+def _histories(found: TrussPath) -> dict[tuple[str, str], list[str]]:
     """Return the statuses that every joint goes through. Those of different joints within one increment
     have no order of their own."""
-    histories: dict[tuple[str, int], list[str]] = {}
+    histories: dict[tuple[str, str], list[str]] = {}
     for event in found.events:
-        histories.setdefault((event.joint_kind, event.joint), [event.before]).append(event.after)
+        histories.setdefault((event.joint_kind, event.name), [event.before]).append(event.after)
     return histories
 
 

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "statejump/truss/joints/interface.hpp"
+#include "statejump/truss/joints/revolute.hpp"
+#include "statejump/truss/joints/slider.hpp"
+
+namespace statejump::truss {
+
+/// A joint of any type: what a type has to bring, joints/interface.hpp says.
+using Joint = std::variant<Slider, ClearanceRevolute>;
+
+inline const std::string& name_of(const Joint& joint) {
+  return std::visit([](const auto& one) -> const std::string& { return one.name; }, joint);
+}
+
+inline const char* kind_of(const Joint& joint) {
+  return std::visit([](const auto& one) { return std::decay_t<decltype(one)>::kind; }, joint);
+}
+
+inline std::span<const Output> outputs_of(const Joint& joint) {
+  return std::visit([](const auto& one) { return std::decay_t<decltype(one)>::outputs(); }, joint);
+}
+
+/// Calls `use` with every type of joint: use(std::type_identity<Slider>{}), …
+template <class Use>
+void for_each_joint_type(Use&& use) {
+  [&]<std::size_t... i>(std::index_sequence<i...>) {
+    (use(std::type_identity<std::variant_alternative_t<i, Joint>>{}), ...);
+  }
+  (std::make_index_sequence<std::variant_size_v<Joint>>{});
+}
+
+}  // namespace statejump::truss

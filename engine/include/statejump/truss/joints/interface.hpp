@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <string>
+#include <variant>
+
+namespace statejump::truss {
+
+struct Model;
+class JointWriter;
+
+/// Which branch of a joint's equations is active. It is found, never given. Senses are those of the
+/// slide: of a slider along its axis, of a revolute the journal's surface over the bearing's,
+/// anticlockwise about the axis.
+enum class JointStatus : unsigned char {
+  stick,
+  slip_plus,
+  slip_minus,
+  stop_plus,   ///< Rests against a stop.
+  stop_minus,  ///< Likewise, on the other side.
+  open         ///< No contact.
+};
+
+/// "stick", "slip_plus", …: the enumerator's name.
+const char* to_string(JointStatus status);
+
+constexpr bool is_slip(JointStatus status) {
+  return status == JointStatus::slip_plus || status == JointStatus::slip_minus;
+}
+
+/// What stands in for joints with play on the way to the first state: bilateral pins and
+/// frictionless contacts find the start, friction is the path.
+enum class JointModel : unsigned char { pins, frictionless, friction };
+
+/// What a parameter may be.
+enum class Allowed : unsigned char {
+  finite,
+  positive,              ///< Finite, > 0.
+  not_negative,          ///< Finite, >= 0.
+  positive_or_infinite,  ///< > 0; infinity: rigid.
+  distance_or_infinite,  ///< >= 0; infinity: none.
+  direction,             ///< Unit vector.
+  node,                  ///< Index of a node.
+  node_or_ground,        ///< Index of a node, −1: the ground.
+  link_or_none,          ///< Index of a link, −1: none.
+  link,                  ///< Index of a link.
+  program                ///< Index of a temperature program.
+};
+
+/// One parameter of a type of joint: what tables, checks, bindings and messages know of it.
+template <class Type>
+struct Parameter {
+  const char* key;    ///< In tables, with its unit.
+  const char* words;  ///< In messages.
+  const char* unit;
+  Allowed allowed;
+  const char* source;  ///< What gives it.
+  std::variant<double Type::*, int Type::*, Eigen::Vector3d Type::*> member;
+};
+
+/// A number, or a vector of three, that a joint has at every state.
+struct Output {
+  const char* key;  ///< With its unit.
+  int width;
+};
+
+constexpr int most_joint_nodes = 4;
+constexpr int most_joint_forces = 3;
+
+/// Where a joint sits in the truss: found once.
+struct JointFrame {
+  /// Nodes that it moves or is turned by; −1: the ground, or none.
+  std::array<int, most_joint_nodes> nodes{-1, -1, -1, -1};
+  int node_count = 0;
+  int forces = 0;    ///< Unknown forces, each with a row of its own.
+  int program = -1;  ///< Temperature program that it follows; −1: none.
+  double temperature_fraction = 1.0;
+  /// Right-handed frame of fixed directions.
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  /// Whether a force holds the first two nodes together along each of them.
+  std::array<bool, 3> holds{false, false, false};
+};
+
+/// State that a joint is asked about, and the one at the start of the step.
+struct Trial {
+  const JointFrame& frame;
+  std::array<Eigen::Vector3d, most_joint_nodes> drawn;  ///< Places of its nodes at ΔT = 0 [m].
+  std::array<Eigen::Vector3d, most_joint_nodes> moved;  ///< Their displacements [m].
+  std::array<double, most_joint_forces> force;          ///< Its unknowns [N].
+  const double* history;                                ///< Of the start of the step.
+  JointStatus before;                                   ///< Status at the start of the step.
+  double temperature_change;                            ///< [K]
+  JointModel model = JointModel::friction;
+  double opening = 1.0;  ///< Share of the clearances that is open (start).
+  /// What rounding may make of a length [m] and of a force [N]; 0 where inequalities are strict.
+  double length_rounding = 0.0;
+  double force_rounding = 0.0;
+
+  /// From one of its nodes to another, without the difference of two places [m].
+  Eigen::Vector3d between(std::size_t from, std::size_t to) const {
+    return (drawn[to] - drawn[from]) + (moved[to] - moved[from]);
+  }
+};
+
+/// A journal's way to where it touches, see Type::seat().
+struct Seat {
+  Eigen::Vector3d moved = Eigen::Vector3d::Zero();  ///< Step of the first node [m].
+  std::array<double, most_joint_forces> force{};    ///< New forces [N].
+  bool touches = true;                              ///< False: no force says where.
+};
+
+// A type of joint is a struct of parameters with a name and
+//
+//   kind                  its name in tables and messages
+//   parameters()          what it is described by: units, ranges, sources
+//   outputs()             what it has at every state
+//   history               how many numbers it remembers from state to state
+//   validate()            what its ranges do not say; the truss around it is valid
+//   frame()               nodes, directions, number of unknown forces
+//   evaluate()            forces on nodes and rows of the branch `status`, with all derivatives;
+//                         writes the same places whatever the status
+//   decide()              the branch that its inequalities ask for, from the branch whose rows hold
+//   commit()              what it remembers at the start of the next step
+//   begin()               the same at the very start, where nothing is remembered
+//   slip()                slide of the step that friction turned into heat [m]
+//   dissipation()         heat of the step [J]
+//   elastic_energy()      stored in it [J]
+//   describe()            outputs in their order
+//   slide_rounding()      of the slide less what friction bends [m]
+//   remembers_when()      whether the state depends on when in a step the status changed
+//   rest()                status with which the path begins
+//   seat(), jumps()       joints with play: how the start finds contact, and whether a step was a
+//                         jump
+//
+// A natural map of Alart and Curnier [1] is piecewise smooth: λ − proj(λ − r g; bounds) is r g on
+// one piece, λ less a bound on the others. After a Newton step one of the two vanishes on every
+// piece, so r > 0 drops out of what decides between them, and a row is written as g in metres or as
+// λ less its bound in newtons: the piece's own residual in its own unit.
+//
+// [1] P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353-375.
+
+}  // namespace statejump::truss

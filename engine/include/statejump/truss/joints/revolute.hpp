@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <limits>
+
+#include "statejump/truss/joints/interface.hpp"
+
+namespace statejump::truss {
+
+/// Revolute joint with clearance and dry friction about a fixed axis: a journal on the end of one
+/// link within a bearing on the end of another.
+///
+/// **Law.** With eccentricity d, normal n = d/|d| and the surface slide of the step
+/// Δσ = ∫ |d| dφ + r1 dθ_J − r2 dθ_B (φ, θ_J, θ_B the angles of d and of the links that turn
+/// journal and bearing; r1, r2 the radii less and plus half the depth, so that both surfaces meet
+/// in one point and the moments balance):
+///
+///     open    λ_n = λ_t = 0, |d| <= c    contact |d| = c + (λ_n/K)^(2/3), λ_n >= 0
+///     stick   Δσ = 0, |λ_t| <= μ λ_n     slip±   λ_t = ±μ λ_n, ±Δσ >= 0
+///
+/// A joint that sticks therefore rolls. The integral is taken by the trapezoidal rule, radii at
+/// start and end of the step: its error is of third order in a step, of second order in a path.
+/// With a finite tangential stiffness k_t a joint that sticks gives way elastically, as bodies of a
+/// DEM do: Δσ is then the slide less what friction bends, ∫ dλ_t/k_t. k_t follows the depth
+/// (Mindlin, k_t = 8 G* √(R δ)): what loads the contact keeps λ_t, what unloads it keeps λ_t/k_t;
+/// energy lost either way is heat at the contact's rim.
+struct ClearanceRevolute {
+  std::string name;
+  int journal_node = 0;
+  int bearing_node = 0;
+  int journal_link = -1;                 ///< Turns the journal; −1: it does not turn.
+  int bearing_link = -1;                 ///< Turns the bearing; −1: it does not turn.
+  double journal_radius = 0.0;           ///< R1 at ΔT = 0 [m], > 0.
+  double radial_clearance = 0.0;         ///< c = R2 − R1 at ΔT = 0 [m], > 0.
+  double journal_thermal_expansion = 0;  ///< [1/K].
+  double bearing_thermal_expansion = 0;  ///< [1/K].
+  double friction_coefficient = 0.0;     ///< μ, >= 0.
+  /// K of Hertz's F_N = K δ^1.5 [N/m^1.5]; infinity: rigid.
+  double hertz_stiffness = std::numeric_limits<double>::infinity();
+  /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ), by which the contact gives way while it sticks
+  /// [N/m^1.5]; infinity: rigid. Finite only if `hertz_stiffness` is.
+  double mindlin_stiffness = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  int program = 0;
+  double temperature_fraction = 1;
+
+  static constexpr const char* kind = "revolute";
+  static constexpr int history = 11;
+  static std::span<const Parameter<ClearanceRevolute>> parameters();
+  static std::span<const Output> outputs();
+  void validate(const Model& model) const;
+  JointFrame frame(const Model& model) const;
+  void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
+  JointStatus decide(const Trial& trial, JointStatus status) const;
+  void begin(const Trial& trial, JointStatus status, double* now) const;
+  void commit(const Trial& trial, JointStatus status, double* after) const;
+  double slip(const Trial& trial, const double* after) const;
+  double dissipation(const Trial& trial, const double* after, double slip) const;
+  double elastic_energy(const Trial& trial, const double* now) const;
+  void describe(const Trial& trial, double* outputs) const;
+  double slide_rounding(const Trial& trial, double length, double force) const;
+  bool remembers_when(JointStatus before, JointStatus after) const;
+  double least_slide() const { return radial_clearance; }
+  JointStatus rest() const {
+    return friction_coefficient > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
+  }
+  bool has_play() const { return true; }
+  Seat seat(const Trial& trial, double opened, double next, double rounding) const;
+  bool jumps(const Trial& trial, JointStatus status) const;
+};
+
+}  // namespace statejump::truss

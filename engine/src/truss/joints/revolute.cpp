@@ -1,0 +1,511 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/truss/joints/revolute.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "statejump/kernel/require.hpp"
+#include "statejump/truss/model.hpp"
+#include "truss/joints/writer.hpp"
+#include "truss/parts.hpp"
+
+namespace statejump::truss {
+
+using detail::angle_derivatives;
+using detail::AngleDerivatives;
+using detail::cross;
+using detail::index;
+using detail::Matrix32;
+using detail::turned_left;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+/// Largest angle [rad] by which a contact may move around its bearing in one step; more within a
+/// located instant is a jump.
+constexpr double most_turned = 0.5;
+
+// Local nodes: journal, bearing, far ends of the links that turn them.
+constexpr std::size_t journal = 0;
+constexpr std::size_t bearing = 1;
+constexpr std::size_t journal_far = 2;
+constexpr std::size_t bearing_far = 3;
+
+/// What a revolute remembers. In-plane vectors are components along its two plane directions.
+struct Memory {
+  Vector2d eccentricity;       ///< [m]
+  Vector2d journal_direction;  ///< Journal link, journal minus far node; zero without [m].
+  Vector2d bearing_direction;  ///< Bearing link, likewise [m].
+  double journal_radius;       ///< At the contact [m].
+  double bearing_radius;       ///< Likewise.
+  double normal;               ///< λ_n [N].
+  double friction;             ///< On the journal against the slide [N].
+  double compliance;           ///< 1/k_t [m/N]; 0: rigid or open.
+
+  static constexpr int size = ClearanceRevolute::history;
+  static Memory of(const double* numbers) {
+    return {{numbers[0], numbers[1]},
+            {numbers[2], numbers[3]},
+            {numbers[4], numbers[5]},
+            numbers[6],
+            numbers[7],
+            numbers[8],
+            numbers[9],
+            numbers[10]};
+  }
+  void to(double* numbers) const {
+    const double all[size] = {eccentricity.x(),
+                              eccentricity.y(),
+                              journal_direction.x(),
+                              journal_direction.y(),
+                              bearing_direction.x(),
+                              bearing_direction.y(),
+                              journal_radius,
+                              bearing_radius,
+                              normal,
+                              friction,
+                              compliance};
+    std::copy(all, all + size, numbers);
+  }
+};
+
+Matrix32 plane_of(const Trial& trial) {
+  return trial.frame.axes.leftCols<2>();
+}
+
+/// Normal force below which the depth is a millionth of the clearance: Hertz's compliance and
+/// Mindlin's, infinite without force, are taken there [N].
+double least_force(const ClearanceRevolute& joint) {
+  return joint.hertz_stiffness * std::pow(1e-6 * joint.radial_clearance, 1.5);
+}
+
+double depth_of(const ClearanceRevolute& joint, double normal_force) {
+  if (std::isinf(joint.hertz_stiffness) || normal_force <= 0.0) return 0.0;
+  return std::pow(normal_force / joint.hertz_stiffness, 2.0 / 3.0);
+}
+
+/// 1/k_t of a contact that sticks [m/N]; 0: rigid.
+double tangential_compliance(const ClearanceRevolute& joint, double normal_force) {
+  if (std::isinf(joint.mindlin_stiffness)) return 0.0;
+  const double loaded = std::max(normal_force, least_force(joint));
+  return 1.0 / (joint.mindlin_stiffness * std::sqrt(depth_of(joint, loaded)));
+}
+
+/// Angle from one direction to another [rad]; exact for small ones.
+double turn_from(const Vector2d& before, const Vector2d& now) {
+  return std::atan2(cross(before, now - before), before.dot(now));
+}
+
+/// A revolute at one state.
+struct Geometry {
+  Vector2d eccentricity;
+  Vector2d journal_direction;
+  Vector2d bearing_direction;
+  double clearance;
+  double depth;  ///< Of the journal in the bearing; not below 0 [m].
+  double journal_radius;
+  double bearing_radius;
+};
+
+Geometry geometry_of(const ClearanceRevolute& joint, const Trial& trial) {
+  const Matrix32 plane = plane_of(trial);
+  Geometry g{};
+  g.eccentricity = plane.transpose() * trial.between(bearing, journal);
+  if (joint.journal_link >= 0) {
+    g.journal_direction = plane.transpose() * trial.between(journal_far, journal);
+  }
+  if (joint.bearing_link >= 0) {
+    g.bearing_direction = plane.transpose() * trial.between(bearing_far, bearing);
+  }
+  const double change = trial.temperature_change;
+  const double bore = joint.journal_radius + joint.radial_clearance;
+  const double growth = change * (joint.bearing_thermal_expansion * bore -
+                                  joint.journal_thermal_expansion * joint.journal_radius);
+  g.clearance = trial.opening * (joint.radial_clearance + growth);
+  // Both surfaces meet half-way between them.
+  g.depth = std::max(0.0, g.eccentricity.norm() - g.clearance);
+  g.journal_radius =
+      joint.journal_radius * (1.0 + joint.journal_thermal_expansion * change) - 0.5 * g.depth;
+  g.bearing_radius = bore * (1.0 + joint.bearing_thermal_expansion * change) + 0.5 * g.depth;
+  return g;
+}
+
+/// How the surfaces slid and turned since the start of the step.
+struct Motion {
+  double contact_turned = 0.0;  ///< Δφ [rad].
+  double journal_turned = 0.0;  ///< [rad]
+  double bearing_turned = 0.0;  ///< [rad]
+  double slide = 0.0;           ///< Δσ [m].
+};
+
+Motion motion_of(const Geometry& g, const Memory& start) {
+  Motion motion;
+  if (start.eccentricity.squaredNorm() > 0.0 && g.eccentricity.squaredNorm() > 0.0) {
+    motion.contact_turned = turn_from(start.eccentricity, g.eccentricity);
+  }
+  motion.journal_turned = turn_from(start.journal_direction, g.journal_direction);
+  motion.bearing_turned = turn_from(start.bearing_direction, g.bearing_direction);
+  motion.slide = 0.5 * (start.eccentricity.norm() + g.eccentricity.norm()) * motion.contact_turned +
+                 0.5 * (start.journal_radius + g.journal_radius) * motion.journal_turned -
+                 0.5 * (start.bearing_radius + g.bearing_radius) * motion.bearing_turned;
+  return motion;
+}
+
+/// Elastic part of the surface slide in a step, and its derivatives.
+struct ElasticSlide {
+  double slide;        ///< [m]
+  double by_normal;    ///< By the normal force [m/N].
+  double by_friction;  ///< By friction [m/N].
+};
+
+/// Mindlin's contact: what loads it meanwhile keeps the force, what unloads it keeps the bend.
+ElasticSlide elastic_slide(const ClearanceRevolute& joint, const Trial& trial,
+                           const Memory& start) {
+  if (std::isinf(joint.mindlin_stiffness)) return {0.0, 0.0, 0.0};
+  const auto [normal, friction, axial] = trial.force;
+  const double compliance = tangential_compliance(joint, normal);
+  // k_t grows as the cube root of the force.
+  const double slope = normal > least_force(joint) ? -compliance / (3.0 * normal) : 0.0;
+  const double before = start.compliance;
+  if (before == 0.0) return {compliance * friction, slope * friction, compliance};
+  if (compliance > before) {
+    return {compliance * friction - before * start.friction, slope * friction, compliance};
+  }
+  // ∫ dF/k_t by the trapezoidal rule.
+  const double mean = 0.5 * (before + compliance);
+  const double more = friction - start.friction;
+  return {mean * more, 0.5 * slope * more, mean};
+}
+
+/// Heat of micro-slip at the rim of a contact that sticks [J]: work of friction less the energy
+/// that stays in the bend. Loading, where the force F at compliance C goes to F' at C' along
+/// ΔF (C + C')/2: (F² + F'²) (C − C')/4; unloading, along F' C' − F C: F F' (C' − C)/2.
+double rim_slip(double friction_before, double compliance_before, double friction,
+                double compliance) {
+  if (compliance_before == 0.0) return 0.0;
+  if (compliance == 0.0) return 0.5 * compliance_before * friction_before * friction_before;
+  if (compliance > compliance_before) {
+    return 0.5 * friction_before * friction * (compliance - compliance_before);
+  }
+  return 0.25 * (friction_before * friction_before + friction * friction) *
+         (compliance_before - compliance);
+}
+
+/// Gradients of the two forces' work, of the slide, and what bends them.
+struct Gradients {
+  std::array<Vector3d, 4> normal;
+  std::array<Vector3d, 4> friction;  ///< Virtual work of friction.
+  std::array<Vector3d, 4> slide;     ///< Derivative of Δσ.
+  std::array<std::array<Matrix3d, 4>, 4> hessian;
+  Gradients() {
+    normal.fill(Vector3d::Zero());
+    friction.fill(Vector3d::Zero());
+    slide.fill(Vector3d::Zero());
+    for (auto& line : hessian) line.fill(Matrix3d::Zero());
+  }
+};
+
+Gradients pinned(const Trial& trial) {
+  Gradients of;
+  for (const auto& [at, sign] : {std::pair{journal, 1.0}, std::pair{bearing, -1.0}}) {
+    of.normal[at] = sign * trial.frame.axes.col(0);
+    of.friction[at] = sign * trial.frame.axes.col(1);
+    of.slide[at] = of.friction[at];
+  }
+  return of;
+}
+
+Gradients in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geometry& g,
+                     const Memory& start, const Motion& motion) {
+  Gradients of;
+  const Matrix32 plane = plane_of(trial);
+  const double distance = g.eccentricity.norm();
+  const Vector2d n = g.eccentricity / distance;
+  const Vector3d along = plane * n;
+  const Vector3d left = plane * turned_left(n);
+  const auto [normal, friction, axial] = trial.force;
+  const Matrix3d bend = (normal * left - friction * along) * left.transpose() / distance;
+  const double lever = 0.5 * (start.eccentricity.norm() / distance + 1.0);
+  const double deeper = g.depth > 0.0 ? 0.5 : 0.0;  // −dr1/d|d| = dr2/d|d|
+  // By the distance of the centres, the radii change as well.
+  const double slide_by_distance =
+      0.5 * motion.contact_turned - 0.5 * deeper * (motion.journal_turned + motion.bearing_turned);
+  for (const auto& [at, sign] : {std::pair{journal, 1.0}, std::pair{bearing, -1.0}}) {
+    of.normal[at] = sign * along;
+    of.friction[at] = sign * left;
+    of.slide[at] = sign * (lever * left + slide_by_distance * along);
+    of.hessian[at][journal] += sign * bend;
+    of.hessian[at][bearing] -= sign * bend;
+  }
+  // A link that turns: its surface slides by the radius times its angle.
+  const auto turn = [&](std::size_t at, std::size_t far, const Vector2d& direction, double radius,
+                        double mean_radius) {
+    const AngleDerivatives angle = angle_derivatives(direction, plane);
+    const Matrix3d own = friction * radius * angle.hessian;
+    const Matrix3d by_distance = -friction * deeper * angle.gradient * along.transpose();
+    for (const auto& [node, sign] : {std::pair{at, 1.0}, std::pair{far, -1.0}}) {
+      of.friction[node] += sign * radius * angle.gradient;
+      of.slide[node] += sign * mean_radius * angle.gradient;
+      of.hessian[node][at] += sign * own;
+      of.hessian[node][far] -= sign * own;
+      of.hessian[node][journal] += sign * by_distance;
+      of.hessian[node][bearing] -= sign * by_distance;
+    }
+  };
+  if (joint.journal_link >= 0) {
+    turn(journal, journal_far, g.journal_direction, g.journal_radius,
+         0.5 * (start.journal_radius + g.journal_radius));
+  }
+  if (joint.bearing_link >= 0) {
+    turn(bearing, bearing_far, g.bearing_direction, -g.bearing_radius,
+         -0.5 * (start.bearing_radius + g.bearing_radius));
+  }
+  return of;
+}
+
+}  // namespace
+
+std::span<const Parameter<ClearanceRevolute>> ClearanceRevolute::parameters() {
+  using R = ClearanceRevolute;
+  static const Parameter<R> table[] = {
+      {"journal_node", "journal node", "-", Allowed::node, "the case's nodes", &R::journal_node},
+      {"bearing_node", "bearing node", "-", Allowed::node, "the case's nodes", &R::bearing_node},
+      {"journal_link", "journal link", "-", Allowed::link_or_none, "the case's links",
+       &R::journal_link},
+      {"bearing_link", "bearing link", "-", Allowed::link_or_none, "the case's links",
+       &R::bearing_link},
+      {"program", "program", "-", Allowed::program, "the case", &R::program},
+      {"temperature_fraction", "temperature_fraction", "-", Allowed::finite, "the case",
+       &R::temperature_fraction},
+      {"journal_radius_m", "journal_radius", "m", Allowed::positive, "the case",
+       &R::journal_radius},
+      {"radial_clearance_m", "radial_clearance", "m", Allowed::positive, "the case",
+       &R::radial_clearance},
+      {"journal_thermal_expansion_per_K", "journal_thermal_expansion", "1/K", Allowed::finite,
+       "the case", &R::journal_thermal_expansion},
+      {"bearing_thermal_expansion_per_K", "bearing_thermal_expansion", "1/K", Allowed::finite,
+       "the case", &R::bearing_thermal_expansion},
+      {"friction_coefficient", "friction_coefficient", "-", Allowed::not_negative, "the case",
+       &R::friction_coefficient},
+      {"hertz_stiffness_N_per_m15", "hertz_stiffness", "N/m^1.5", Allowed::positive_or_infinite,
+       "Hertz: 4/3 E* sqrt(R)", &R::hertz_stiffness},
+      {"mindlin_stiffness_N_per_m15", "mindlin_stiffness", "N/m^1.5", Allowed::positive_or_infinite,
+       "Mindlin: 8 G* sqrt(R)", &R::mindlin_stiffness},
+      {"axis", "axis", "-", Allowed::direction, "the case", &R::axis},
+  };
+  return table;
+}
+
+std::span<const Output> ClearanceRevolute::outputs() {
+  // Journal minus bearing centre; normal force; friction on the journal against the slide.
+  static const Output table[] = {
+      {"eccentricity_m", 3}, {"normal_force_N", 1}, {"friction_force_N", 1}};
+  return table;
+}
+
+void ClearanceRevolute::validate(const Model& model) const {
+  const auto check = [this](bool holds, const char* field, double value, const char* range) {
+    if (!holds) throw kernel::OutOfRange("revolute '" + name + "'", field, value, range);
+  };
+  check(journal_node != bearing_node, "bearing node", bearing_node, "another than the journal's");
+  const auto check_link = [&](int link, int node, const char* field) {
+    if (link == -1) return;
+    const Link& part = model.links[index(link)];
+    check(part.first == node || part.second == node, field, link,
+          "a link that ends at the joint's node");
+  };
+  check_link(journal_link, journal_node, "journal link");
+  check_link(bearing_link, bearing_node, "bearing link");
+  check(std::isinf(mindlin_stiffness) || std::isfinite(hertz_stiffness), "mindlin_stiffness",
+        mindlin_stiffness, "infinite, because hertz_stiffness is");
+  const double growth = bearing_thermal_expansion * (journal_radius + radial_clearance) -
+                        journal_thermal_expansion * journal_radius;
+  const double least =
+      radial_clearance + model.lowest_strain(program, growth * temperature_fraction);
+  check(least > 0, "clearance at the program's worst temperature", least, "> 0 m");
+}
+
+JointFrame ClearanceRevolute::frame(const Model& model) const {
+  JointFrame frame;
+  const auto far_end = [&](int link, int node) {
+    if (link < 0) return -1;
+    const Link& part = model.links[index(link)];
+    return part.first == node ? part.second : part.first;
+  };
+  frame.nodes = {journal_node, bearing_node, far_end(journal_link, journal_node),
+                 far_end(bearing_link, bearing_node)};
+  frame.node_count = 4;
+  frame.forces = 2;
+  frame.program = program;
+  frame.temperature_fraction = temperature_fraction;
+  frame.axes << detail::plane_of(axis), axis;
+  frame.holds[2] = detail::moves_along(model.nodes[index(journal_node)], axis) ||
+                   detail::moves_along(model.nodes[index(bearing_node)], axis);
+  if (frame.holds[2]) ++frame.forces;
+  return frame;
+}
+
+void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
+                                 JointWriter& writer) const {
+  const Geometry g = geometry_of(*this, trial);
+  const auto [normal, friction, axial] = trial.force;
+  writer.carries(normal);
+  writer.carries(friction);
+  double corner[2][2] = {{0.0, 0.0}, {0.0, 0.0}};  // by λ_n and λ_t
+  bool holds_normal = false;
+  bool holds_slide = false;
+  Gradients of;
+  if (trial.model == JointModel::pins) {
+    of = pinned(trial);
+    writer.closure(0, g.eccentricity.x());
+    writer.closure(1, g.eccentricity.y());
+    holds_normal = holds_slide = true;
+  } else {
+    const Memory start = Memory::of(trial.history);
+    const Motion motion = motion_of(g, start);
+    of = in_contact(*this, trial, g, start, motion);
+    if (status == JointStatus::open) {
+      writer.balance(0, normal);
+      writer.balance(1, friction);
+      corner[0][0] = corner[1][1] = 1.0;
+    } else {
+      holds_normal = true;
+      writer.closure(0, g.eccentricity.norm() - g.clearance - depth_of(*this, normal));
+      if (!std::isinf(hertz_stiffness)) {
+        const double loaded = std::max(normal, least_force(*this));
+        corner[0][0] = -2.0 / 3.0 * depth_of(*this, loaded) / loaded;
+      }
+      const double mu = trial.model == JointModel::friction ? friction_coefficient : 0.0;
+      if (status == JointStatus::stick && trial.model == JointModel::friction) {
+        holds_slide = true;
+        const ElasticSlide elastic = elastic_slide(*this, trial, start);
+        writer.closure(1, motion.slide - elastic.slide);
+        corner[1][0] = -elastic.by_normal;
+        corner[1][1] = -elastic.by_friction;
+      } else {
+        const double sense = status == JointStatus::slip_minus ? -1.0 : 1.0;
+        writer.balance(1, friction - sense * mu * normal);
+        corner[1][0] = -sense * mu;
+        corner[1][1] = 1.0;
+      }
+    }
+  }
+  for (std::size_t a = 0; a < 4; ++a) {
+    writer.force(a, normal * of.normal[a] + friction * of.friction[a]);
+    writer.column(a, 0, of.normal[a]);
+    writer.column(a, 1, of.friction[a]);
+    writer.row(0, a, (holds_normal ? 1.0 : 0.0) * of.normal[a]);
+    writer.row(1, a, (holds_slide ? 1.0 : 0.0) * of.slide[a]);
+    for (std::size_t b = 0; b < 4; ++b) writer.block(a, b, of.hessian[a][b]);
+  }
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) writer.corner(i, j, corner[i][j]);
+  }
+  if (trial.frame.holds[2]) writer.hold(2, axis, axial, axis.dot(trial.between(bearing, journal)));
+}
+
+JointStatus ClearanceRevolute::decide(const Trial& trial, JointStatus status) const {
+  if (trial.model == JointModel::pins) return status;
+  const Geometry g = geometry_of(*this, trial);
+  const double mu = trial.model == JointModel::friction ? friction_coefficient : 0.0;
+  const auto [normal, friction, axial] = trial.force;
+  if (status == JointStatus::open) {
+    if (g.eccentricity.norm() <= g.clearance + trial.length_rounding) return status;
+    return mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
+  }
+  if (normal < -trial.force_rounding) return JointStatus::open;
+  if (mu == 0.0) return status;  // slips freely either way
+  if (status == JointStatus::stick) {
+    const double bound = mu * normal + trial.force_rounding;
+    return friction > bound    ? JointStatus::slip_plus
+           : friction < -bound ? JointStatus::slip_minus
+                               : status;
+  }
+  const Memory start = Memory::of(trial.history);
+  const double sense = status == JointStatus::slip_plus ? 1.0 : -1.0;
+  const double slid = motion_of(g, start).slide - elastic_slide(*this, trial, start).slide;
+  const double rounding = slide_rounding(trial, trial.length_rounding, trial.force_rounding);
+  return sense * slid < -rounding ? JointStatus::stick : status;
+}
+
+void ClearanceRevolute::begin(const Trial& trial, JointStatus status, double* now) const {
+  const Geometry g = geometry_of(*this, trial);
+  const bool open = status == JointStatus::open;
+  const auto [normal, friction, axial] = trial.force;
+  Memory{g.eccentricity,        g.journal_direction,
+         g.bearing_direction,   g.journal_radius,
+         g.bearing_radius,      normal,
+         open ? 0.0 : friction, open ? 0.0 : tangential_compliance(*this, normal)}
+      .to(now);
+}
+
+void ClearanceRevolute::commit(const Trial& trial, JointStatus status, double* after) const {
+  begin(trial, status, after);
+}
+
+double ClearanceRevolute::slip(const Trial& trial, const double*) const {
+  const Memory start = Memory::of(trial.history);
+  return motion_of(geometry_of(*this, trial), start).slide -
+         elastic_slide(*this, trial, start).slide;
+}
+
+double ClearanceRevolute::dissipation(const Trial& trial, const double* after_, double slip) const {
+  const Memory start = Memory::of(trial.history);
+  const Memory after = Memory::of(after_);
+  return friction_coefficient * 0.5 * (start.normal + after.normal) * std::abs(slip) +
+         rim_slip(start.friction, start.compliance, after.friction, after.compliance);
+}
+
+double ClearanceRevolute::elastic_energy(const Trial& trial, const double* now_) const {
+  const Memory now = Memory::of(now_);
+  const double normal = trial.force[0];
+  return 0.4 * normal * depth_of(*this, normal)  // 2/5 K δ^5/2
+         + 0.5 * now.compliance * now.friction * now.friction;
+}
+
+void ClearanceRevolute::describe(const Trial& trial, double* outputs) const {
+  Eigen::Map<Vector3d>(outputs, 3) = trial.between(bearing, journal);
+  outputs[3] = trial.force[0];
+  outputs[4] = trial.force[1];
+}
+
+double ClearanceRevolute::slide_rounding(const Trial& trial, double length, double force) const {
+  return length + tangential_compliance(*this, trial.force[0]) * force;
+}
+
+bool ClearanceRevolute::remembers_when(JointStatus before, JointStatus after) const {
+  if (friction_coefficient == 0.0) return false;
+  return before == JointStatus::open ||
+         (is_slip(before) && (after == JointStatus::stick || is_slip(after)));
+}
+
+Seat ClearanceRevolute::seat(const Trial& trial, double opened, double next,
+                             double rounding) const {
+  Seat seat;
+  seat.force = trial.force;
+  const Vector2d pin(trial.force[0], trial.force[1]);
+  Vector2d normal;
+  if (opened == 0.0) {
+    // The journal touches where its pin force pushes.
+    seat.touches = pin.norm() > rounding;
+    if (!seat.touches) return seat;
+    normal = pin / pin.norm();
+    seat.force[0] = pin.norm();
+    seat.force[1] = 0.0;
+  } else {
+    const Vector2d eccentricity = plane_of(trial).transpose() * trial.between(bearing, journal);
+    normal = eccentricity / eccentricity.norm();
+  }
+  seat.moved = (next - opened) * radial_clearance * (plane_of(trial) * normal);
+  return seat;
+}
+
+bool ClearanceRevolute::jumps(const Trial& trial, JointStatus status) const {
+  if (trial.before == JointStatus::open || status == JointStatus::open) return false;
+  const Motion motion = motion_of(geometry_of(*this, trial), Memory::of(trial.history));
+  return std::abs(motion.contact_turned) > most_turned;
+}
+
+}  // namespace statejump::truss

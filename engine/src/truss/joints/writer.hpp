@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "statejump/truss/joints/interface.hpp"
+
+namespace statejump::truss {
+
+/// What a row of the equations is measured in.
+enum class RowUnit : unsigned char { balance, closure, force };
+
+/// Residual and Jacobian of all equations while they are added up. The k-th place that is written
+/// is the same at every evaluation: the first one records the places, later ones look nothing up.
+class Assembly {
+ public:
+  explicit Assembly(Eigen::Index unknowns)
+      : residual(unknowns), units(static_cast<std::size_t>(unknowns), RowUnit::balance) {}
+
+  /// Begins an evaluation.
+  void clear() {
+    residual.setZero();
+    if (recorded_) std::fill_n(jacobian.valuePtr(), jacobian.nonZeros(), 0.0);
+    next_ = 0;
+    largest_force = 0.0;
+  }
+  void add(int row, int column, double value) {
+    if (recorded_) {
+      jacobian.valuePtr()[slots_[next_++]] += value;
+    } else {
+      places_.emplace_back(row, column);
+    }
+  }
+  /// Makes the pattern of what was written.
+  void record();
+
+  Eigen::VectorXd residual;
+  Eigen::SparseMatrix<double> jacobian;
+  std::vector<RowUnit> units;  ///< Of every row.
+  double largest_force = 0.0;  ///< Of any part [N].
+
+ private:
+  bool recorded_ = false;
+  std::size_t next_ = 0;
+  std::vector<std::pair<int, int>> places_;
+  std::vector<int> slots_;
+};
+
+/// Takes what a joint adds, in the places of its own nodes and forces.
+class JointWriter {
+ public:
+  explicit JointWriter(Assembly& assembly) : to_(&assembly) {}
+
+  /// Place of one of the joint's nodes in the truss.
+  struct Place {
+    int row = 0;
+    int freedoms = 0;
+    const Eigen::Matrix3d* directions = nullptr;
+  };
+  std::array<Place, most_joint_nodes> places;
+  int first_force = 0;
+
+  /// Force [N] that a node has to carry.
+  void force(std::size_t node, const Eigen::Vector3d& value) {
+    const Place& at = places[node];
+    for (int i = 0; i < at.freedoms; ++i) {
+      to_->residual[at.row + i] += at.directions->col(i).dot(value);
+    }
+  }
+  /// Derivative of a node's force by another node's displacement [N/m].
+  void block(std::size_t by_node, std::size_t of_node, const Eigen::Matrix3d& value) {
+    const Place& rows = places[by_node];
+    const Place& columns = places[of_node];
+    for (int j = 0; j < columns.freedoms; ++j) {
+      const Eigen::Vector3d image = value * columns.directions->col(j);
+      for (int i = 0; i < rows.freedoms; ++i) {
+        to_->add(rows.row + i, columns.row + j, rows.directions->col(i).dot(image));
+      }
+    }
+  }
+  /// Derivative of a row by a node's displacement.
+  void row(int row, std::size_t node, const Eigen::Vector3d& gradient) {
+    const Place& at = places[node];
+    for (int i = 0; i < at.freedoms; ++i) {
+      to_->add(first_force + row, at.row + i, at.directions->col(i).dot(gradient));
+    }
+  }
+  /// Derivative of a node's force by one of the joint's.
+  void column(std::size_t node, int force, const Eigen::Vector3d& gradient) {
+    const Place& at = places[node];
+    for (int i = 0; i < at.freedoms; ++i) {
+      to_->add(at.row + i, first_force + force, at.directions->col(i).dot(gradient));
+    }
+  }
+  /// Derivative of a row by one of the joint's forces.
+  void corner(int row, int force, double value) {
+    to_->add(first_force + row, first_force + force, value);
+  }
+  /// Residual of a row: what a closure is away from closing [m] …
+  void closure(int row, double value) { set(row, value, RowUnit::closure); }
+  /// … or a force from what it must be [N].
+  void balance(int row, double value) { set(row, value, RowUnit::force); }
+  /// A force that rounding and balance are measured by [N].
+  void carries(double force) { to_->largest_force = std::max(to_->largest_force, std::abs(force)); }
+  /// Holds the first two nodes together along a direction by one of the joint's forces.
+  void hold(int row, const Eigen::Vector3d& along, double force, double apart) {
+    closure(row, apart);
+    this->row(row, 0, along);
+    this->row(row, 1, -along);
+    this->force(0, force * along);
+    this->force(1, -force * along);
+    column(0, row, along);
+    column(1, row, -along);
+    corner(row, row, 0.0);
+    carries(force);
+  }
+
+ private:
+  void set(int row, double value, RowUnit unit) {
+    to_->residual[first_force + row] += value;
+    to_->units[static_cast<std::size_t>(first_force + row)] = unit;
+  }
+  Assembly* to_;
+};
+
+}  // namespace statejump::truss

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "truss/system.hpp"
+
+namespace statejump::truss {
+
+/// Holds the Jacobian of a truss against central differences of its residual, at z after a step
+/// from `before`, on each of the branches and as pins.
+/// @param steps of the unknowns: displacements [m] and forces [N]; so small that the residual is
+/// nearly linear over them
+inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
+                            const Eigen::VectorXd& before, const std::vector<JointStatus>& branches,
+                            double displacement_step, double force_step) {
+  const detail::System system(model);
+  Assembly at = system.assembly();
+  Assembly moved_to = system.assembly();
+  for (const JointStatus status : branches) {
+    const detail::Statuses statuses(model.joints.size(), status);
+    const detail::StepStart start = system.begin(before, 0.0, statuses, 1.0);
+    for (const JointModel joints :
+         {JointModel::pins, JointModel::frictionless, JointModel::friction}) {
+      const auto residual = [&](const Eigen::VectorXd& where) {
+        system.evaluate(where, 0.3, start, statuses, joints, 1.0, moved_to);
+        return moved_to.residual;
+      };
+      system.evaluate(z, 0.3, start, statuses, joints, 1.0, at);
+      const Eigen::MatrixXd exact(at.jacobian);
+      for (int j = 0; j < system.unknowns(); ++j) {
+        const bool moves = j < system.displacements();
+        const double step = moves ? displacement_step : force_step;
+        Eigen::VectorXd moved = z;
+        moved[j] += step;
+        const Eigen::VectorXd plus = residual(moved);
+        moved[j] -= 2 * step;
+        const Eigen::VectorXd difference = (plus - residual(moved)) / (2 * step);
+        for (int i = 0; i < system.unknowns(); ++i) {
+          // Rounding over the step: of the stiffest part's force by a displacement of 1e-4 m, of
+          // lengths of 0.1 m, or of forces of 100 N.
+          const RowUnit unit = at.units[static_cast<std::size_t>(i)];
+          const double rounded =
+              (unit == RowUnit::balance   ? 2e-16 * (system.stiffness_scale() * 1e-4 + 100.0)
+               : unit == RowUnit::closure ? 2e-17
+                                          : 2e-14) /
+              step;
+          const double scale = std::max(std::abs(exact(i, j)), std::abs(difference[i]));
+          EXPECT_NEAR(exact(i, j), difference[i], 2e-5 * scale + 4 * rounded)
+              << to_string(status) << " model " << static_cast<int>(joints) << " row " << i
+              << " column " << j;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace statejump::truss

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gradients.hpp"
+#include "statejump/thermal/program.hpp"
+
+namespace statejump::truss {
+namespace {
+
+/// Two bars with a clearance joint whose contact gives way and whose radii expand.
+Model rib() {
+  Model model;
+  thermal::Program program;
+  program.temperature_change_max = 100.0;
+  program.period = 1.0;
+  model.programs = {program};
+  const auto node = [](const char* name, double x, double y, int freedoms) {
+    Node made;
+    made.name = name;
+    made.position = {x, y, 0.0};
+    made.freedoms = freedoms;
+    return made;
+  };
+  model.nodes = {node("A", 0, 0, 2), node("C", 0.12, 0, 2), node("B", 0.02875, 0.0409, 2),
+                 node("J", 0.02875, 0.0409, 2)};
+  // Soft links: their rounding does not hide what the joint adds.
+  model.links = {{"AB", 0, 2, 1e2, 0.05, 0.0, 0, 1.0}, {"CJ", 1, 3, 1e2, 0.1, 0.0, 0, 1.0}};
+  ClearanceRevolute joint;
+  joint.name = "joint";
+  joint.bearing_node = 2;
+  joint.journal_node = 3;
+  joint.bearing_link = 0;
+  joint.journal_link = 1;
+  joint.journal_radius = 5e-3;
+  joint.radial_clearance = 1e-4;
+  joint.journal_thermal_expansion = 2e-5;
+  joint.bearing_thermal_expansion = 1e-5;
+  joint.friction_coefficient = 0.15;
+  joint.hertz_stiffness = 2.6e10;
+  joint.mindlin_stiffness = 3.2e10;
+  model.joints = {joint};
+  return model;
+}
+
+TEST(Revolute, GradientsAreThoseOfItsForces) {
+  const Model model = rib();
+  const detail::System system(model);
+  Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(system.unknowns(), 1e-5, 6e-5);
+  z[6] += 9e-5;  // in contact
+  z[8] = 5.0;    // normal force, friction
+  z[9] = 0.4;
+  Eigen::VectorXd before = z;
+  before[0] -= 3e-6;
+  before[3] += 4e-6;
+  before[7] += 2e-6;
+  before[9] = 0.3;
+  // Loaded and unloaded: the elastic slide has a branch for each.
+  for (const double normal : {4.0, 7.0}) {
+    before[8] = normal;
+    check_gradients(
+        model, z, before,
+        {JointStatus::stick, JointStatus::slip_plus, JointStatus::slip_minus, JointStatus::open},
+        1e-8, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace statejump::truss

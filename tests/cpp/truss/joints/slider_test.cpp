@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gradients.hpp"
+#include "statejump/thermal/program.hpp"
+
+namespace statejump::truss {
+namespace {
+
+TEST(Slider, GradientsAreThoseOfItsForces) {
+  Model model;
+  thermal::Program program;
+  program.period = 1.0;
+  model.programs = {program};
+  Node carrier;
+  carrier.name = "carrier";
+  Node block;
+  block.name = "block";
+  block.position = {0.1, 0.0, 0.0};
+  model.nodes = {carrier, block};
+  // A link to measure rounding by.
+  model.links = {{"link", 0, 1, 1e2, 0.1, 0.0, 0, 1.0}};
+  Slider slider;
+  slider.name = "S";
+  slider.first = 1;
+  slider.second = 0;
+  slider.axis = Eigen::Vector3d(1.0, 2.0, 2.0) / 3.0;
+  slider.friction_force = 30.0;
+  slider.clearance_minus = 1e-4;
+  slider.clearance_plus = 2e-4;
+  for (const double stiffness : {1e7, std::numeric_limits<double>::infinity()}) {
+    slider.tangential_stiffness = stiffness;
+    model.joints = {slider};
+    const detail::System system(model);
+    Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(system.unknowns(), 1e-5, 6e-5);
+    z[6] = 12.0;
+    Eigen::VectorXd before = z;
+    before[1] += 1e-5;
+    check_gradients(model, z, before,
+                    {JointStatus::stick, JointStatus::slip_plus, JointStatus::slip_minus,
+                     JointStatus::stop_plus, JointStatus::stop_minus},
+                    1e-8, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace statejump::truss
