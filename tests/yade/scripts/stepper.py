@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The same scenes with and without the JointStepper; `stepper.py PART` with the parts at the end."""
-import itertools
 import json
 import sys
 import tempfile
