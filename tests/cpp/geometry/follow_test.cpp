@@ -161,6 +161,34 @@ TEST(FollowedContacts, BallInALobedBore) {
   EXPECT_GT(seen.how[1], 500);
 }
 
+TEST(FollowedContacts, AxialMotionInACrownedBoreFollowsTheSag) {
+  // r = R + b (2 z/L)^2: a journal on a patch that moves by s along the axis finds the wall sunk by
+  // 1/2 k s^2 besides the slope, k = 8 b/L^2; that of third order vanishes.
+  BoreShape shape = round_bore();
+  shape.crown = 1e-3;
+  const BoreMesh mesh(bore_triangles(shape, 200, 40));
+  const double k = 8 * shape.crown / (shape.length * shape.length);
+  const Vector3d axis(0, 0, 1);
+  constexpr double small = 4e-3;  // a play that leaves 50 um to move on a patch
+  for (const double z : {0.0, 1e-3}) {
+    std::vector<double> track;
+    std::vector<FollowedContact> found;
+    const double radius = bore_radius(shape, 0, z);
+    const Vector3d centre(radius - small + 1e-6, 0, z);
+    ASSERT_EQ(follow_contacts(mesh, {centre, axis, small}, 0.02, track, found), Followed::search);
+    ASSERT_EQ(found.size(), 1u);
+    set_label(track, 0, 1);
+    const double before = found[0].distance;
+    for (const double s : {-20e-6, 15e-6, 30e-6}) {
+      ASSERT_EQ(follow_contacts(mesh, {centre + s * axis, axis, small}, 0.02, track, found),
+                Followed::patches);
+      const double sunk = found[0].distance - before - k * z * s;
+      EXPECT_NEAR(sunk, 0.5 * k * s * s, 0.02 * 0.5 * k * s * s + mesh.prominence())
+          << z << ' ' << s;
+    }
+  }
+}
+
 TEST(FollowedContacts, AJumpIsSearched) {
   const BoreMesh mesh(bore_triangles(lobed({{3, 4e-5, 0}}), 240, 10));
   std::vector<double> track;

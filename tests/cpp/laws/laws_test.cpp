@@ -320,6 +320,25 @@ TEST_F(JointMotion, PaperVelocityIsTheDerivativeOfThePoints) {
   EXPECT_LT((v - difference).norm(), 1e-8);
 }
 
+// A tight joint whose parts happen to be concentric touches all around: the normal is any, there is
+// no way to slide along, and nothing is divided by the eccentricity.
+TEST_F(JointMotion, PaperVelocityOfConcentricPartsHasNoTangentialPart) {
+  JointContact c = contact();
+  c.eccentricity = 0.0;
+  for (const double depth : {-1e-4, 0.0, 1e-6}) {
+    c.penetration_depth = depth;
+    const Vector3 relative = journal.velocity - bearing.velocity;
+    EXPECT_LT(
+        (PaperVelocity{}.velocity(c, journal, bearing, axis) - relative.dot(c.normal) * c.normal)
+            .norm(),
+        1e-15);
+    const Vector3 force(120.0, -45.0, 0.0);
+    const Wrench wrench = PaperVelocity{}.wrench(c, force, axis);
+    EXPECT_LT((wrench.force_1 - force.dot(c.normal) * c.normal).norm(), 1e-13);
+    EXPECT_EQ(wrench.force_2, -wrench.force_1);
+  }
+}
+
 // Power of the contact force with the relative velocity = power of the wrench on the bodies.
 TEST_F(JointMotion, WrenchIsTheTransposeOfTheVelocity) {
   const Vector3 force(120.0, -45.0, 0.0);

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstdio>
 #include <stdexcept>
 
@@ -102,6 +104,43 @@ TEST(Run, AccountClosesWithEveryTerm) {
       EXPECT_LT(std::abs(run.energy_residue), 0.5 * previous);
     }
     previous = std::abs(run.energy_residue);
+  }
+}
+
+TEST(Run, FewestStepsAreThoseOfTheMethodsStability) {
+  // x'' + 2 ζ ω x' + ω² x = 0 of AB, the stiffer link on a third of its mass; one step of the
+  // classical Runge-Kutta method multiplies its modes by 1 + z + z²/2 + z³/6 + z⁴/24, z = λ h. None
+  // of them may grow with the fewest steps that are taken, one must with some 3 % fewer.
+  const double omega = std::sqrt(70e9 * 9e-6 / 0.05 / (0.5 / 3));
+  const auto growth = [&](double zeta, double h) {
+    const std::complex<double> root = std::sqrt(std::complex<double>(zeta * zeta - 1.0, 0.0));
+    double largest = 0.0;
+    for (const double sign : {-1.0, 1.0}) {
+      const std::complex<double> z = h * omega * (-zeta + sign * root);
+      largest = std::max(largest,
+                         std::abs(1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0)))));
+    }
+    return largest;
+  };
+  for (const double zeta : {0.0, 0.3, 1.0, 1.2, 3.0}) {
+    Linkage model = umbrella(0.3e-3);
+    model.axial_damping_ratio = zeta;
+    const thermal::Program program = heating(0.01, 1.0);
+    const State rest = initial_state(model, Start::rest, 0.0);
+    const auto is_taken = [&](int steps) {
+      try {
+        simulate(model, program, rest, {steps, 0});
+      } catch (const std::invalid_argument&) {
+        return false;
+      }
+      return true;
+    };
+    int few = 1, many = 10000;
+    ASSERT_TRUE(is_taken(many));
+    while (many - few > 1) (is_taken((few + many) / 2) ? many : few) = (few + many) / 2;
+    EXPECT_LE(growth(zeta, 0.01 / many), 1.0) << zeta;
+    // Between the axes, at ζ = 0.3, the bound has more to spare.
+    EXPECT_GT(growth(zeta, 0.01 / (0.85 * few)), 1.0) << zeta;
   }
 }
 

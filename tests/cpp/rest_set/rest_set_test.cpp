@@ -110,7 +110,17 @@ TEST(RestInBearing, ForcesAllAround) {
   ASSERT_EQ(study.any.parts.size(), 1u);
   EXPECT_NEAR(study.any.length, 2.0 * pi * c, 1e-15);
   EXPECT_NEAR(study.any.diameter, 2.0 * c, 1e-18);
+  // Its farthest points are half a turn apart, not the ends of an arc of a whole one.
+  EXPECT_NEAR(study.any.parts[0].diameter, 2.0 * c, 1e-18);
   EXPECT_TRUE(study.all.parts.empty());
+  // An arc of more than half a turn, by friction alone.
+  const double mu = std::tan(1.8 * pi / 4);
+  EXPECT_NEAR(rest_in_bearing(c, {at(0.3)}, mu).any.parts[0].diameter,
+              2.0 * c * std::sin(1.8 * pi / 4), 1e-18);
+  const RestSet wide = rest_in_bearing(c, {at(0.3), at(1.3)}, mu).any;
+  ASSERT_EQ(wide.parts.size(), 1u);
+  EXPECT_NEAR(wide.parts[0].angle, 0.9 * pi + 1.0, 1e-14);
+  EXPECT_NEAR(wide.parts[0].diameter, 2.0 * c, 1e-18);
 }
 
 TEST(RestInSocket, Cap) {
