@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <mutex>
+#include <vector>
 
 #include "joint_energies.hpp"
 #include "registered.hpp"
@@ -70,6 +71,10 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
   Real normalDampingRatio = 0;
   Real tangentialDampingRatio = 0;
   bool slipping = false;
+  Vector3r slipAxis = Vector3r::Zero();
+  std::vector<Vector3r> slipMemory;
+  Real slipSlope = 0;
+  Real slipMerged = 0;
   bool begun = false;
   Real impactSpeed = 0;
   Real dissipationSlope = 0;
@@ -97,6 +102,19 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
             "tangentialDampingRatio", &JointPhys::tangentialDampingRatio,
             "Ratio of the viscous tangential damping to the critical one, while sticking [-]"),
         read_only("slipping", &JointPhys::slipping, "Whether friction was at its limit [-]"),
+        read_only("slipAxis", &JointPhys::slipAxis,
+                  "First axis of slipMemory in the tangent plane, the second is across it and the "
+                  "normal; zero for a law without partial slip [-]"),
+        read_only("slipMemory", &JointPhys::slipMemory,
+                  "What friction with partial slip remembers: for rings from the centre to the rim "
+                  "8 G* r [N/m] and their elastic displacement along both axes [m], body 1 against "
+                  "2"),
+        read_only("slipSlope", &JointPhys::slipSlope,
+                  "Bound on that displacement at the last step, over the difference of squares of "
+                  "8 G* a and 8 G* r [m^3/N^2]"),
+        read_only("slipMerged", &JointPhys::slipMerged,
+                  "Bound on the error of the tangential force by points of slipMemory that were "
+                  "merged since the contact began [N]"),
         read_only("begun", &JointPhys::begun,
                   "Whether the bodies have touched: impactSpeed is that of this contact [-]. Kept "
                   "by Law2_JointGeom_JointPhys_JointLaw"),

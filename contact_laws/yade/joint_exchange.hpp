@@ -93,6 +93,10 @@ void copy_physics(const From& from, To& to) {
   to.normalDampingRatio = from.normalDampingRatio;
   to.tangentialDampingRatio = from.tangentialDampingRatio;
   to.slipping = from.slipping;
+  to.slipAxis = from.slipAxis;
+  to.slipMemory = from.slipMemory;
+  to.slipSlope = from.slipSlope;
+  to.slipMerged = from.slipMerged;
   to.begun = from.begun;
   to.impactSpeed = from.impactSpeed;
   to.dissipationSlope = from.dissipationSlope;

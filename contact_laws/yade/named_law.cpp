@@ -74,6 +74,9 @@ const char* law_docs() {
     text.append(" (").append(info.range);
     if (!info.has(laws::Trait::holds_static_load)) text += "; holds no static load";
     if (info.has(laws::Trait::needs_axis)) text += "; needs the axis of a Bearing";
+    if (info.has(laws::Trait::needs_point_contact)) {
+      text += "; needs normalLaw " + laws::names_with<laws::NormalLaw>(laws::Trait::point_contact);
+    }
     text += "). ";
   }
   return kept(text + "[-]");
@@ -99,7 +102,13 @@ void NamedJointLaw::build(const char* class_name) {
   law.friction = law_by_name(laws::friction_law, class_name, "frictionLaw", frictionLaw);
   law.tangential_velocity = law_by_name(laws::tangential_velocity_law, class_name,
                                         "tangentialVelocity", tangentialVelocity);
-  require_allowed(class_name, "restitution", restitution, laws::parameter::restitution);
+  if (laws::has(law.friction, laws::Trait::needs_point_contact) &&
+      !laws::has(law.normal, laws::Trait::point_contact)) {
+    dem::refuse(class_name, "normalLaw", normalLaw,
+                laws::names_with<laws::NormalLaw>(laws::Trait::point_contact) +
+                    " with frictionLaw '" + frictionLaw + "'");
+  }
+  require_allowed(class_name, "restitution", restitution, laws::restitution_of(law.dissipation));
   require_allowed(class_name, "smallestImpactSpeed", smallestImpactSpeed,
                   laws::parameter::smallest_impact_speed);
   require_allowed(class_name, "contactLength", contactLength, laws::parameter::contact_length);

@@ -70,6 +70,7 @@ py::dict to_dict(const laws::LawInfo& info) {
   result["needs_axis"] = info.has(Trait::needs_axis);
   result["accepts_bulging_wall"] = info.has(Trait::accepts_bulging_wall);
   result["point_contact"] = info.has(Trait::point_contact);
+  result["needs_point_contact"] = info.has(Trait::needs_point_contact);
   py::list parameters;
   for (const laws::LawParameter* parameter : info.parameters) {
     if (parameter) parameters.append(to_dict(*parameter));
@@ -142,7 +143,9 @@ std::string problem(const std::string& kind, const std::string& name) {
 double damping_ratio(const std::string& name, double restitution, double impact_speed) {
   const laws::ImpactParameters impact{restitution, impact_speed};
   laws::validate(impact);
-  return laws::damping_ratio(laws::dissipation_law(name), impact);
+  const laws::DissipationLaw law = laws::dissipation_law(name);
+  laws::check(laws::restitution_of(law), restitution);
+  return laws::damping_ratio(law, impact);
 }
 
 /// A contact with the law of that kind and name; the others are Hertz's contact without dissipation
@@ -222,6 +225,8 @@ py::dict drive_contact(const std::string& kind, const std::string& name,
   add("friction_dissipation_J", [](const State& s) { return s.friction_dissipation; });
   add("damping_dissipation_J", [](const State& s) { return s.damping_dissipation; });
   add("slipping", [](const State& s) { return s.history.slipping; });
+  add("memory_points", [](const State& s) { return s.history.memory.size(); });
+  add("merged_force_N", [](const State& s) { return s.history.memory.merged(); });
   return result;
 }
 
@@ -271,8 +276,9 @@ void bind_laws(py::module_& module) {
       py::arg("kind"),
       "What the laws of a kind say of themselves: a list of dicts name, formula, source, range,\n"
       "the traits holds_static_load, frictionless, has_memory, needs_axis (line contacts and the\n"
-      "velocity 'paper': neither in a socket nor on a flat face), accepts_bulging_wall and\n"
-      "point_contact, and parameters, those that the law reads: a list of dicts name, unit, low,\n"
+      "velocity 'paper': neither in a socket nor on a flat face), accepts_bulging_wall,\n"
+      "point_contact and needs_point_contact, and parameters, those that the law reads: a list of "
+      "dicts name, unit, low,\n"
       "high, low_excluded, default, meaning, source.");
   module.def("normal_force", &normal_force, py::arg("name"), py::arg("depth_m"),
              py::arg("journal_radius_m"), py::arg("bearing_radius_m"), py::arg("length_m"),

@@ -27,8 +27,8 @@ def test_names() -> None:
     names = {kind: _engine.law_names(kind) for kind in laws.KINDS}
     assert names == {
         "normal": ["hertz_paper", "hertz_internal", "johnson", "esdu_78035", "persson"],
-        "dissipation": ["none", "lankarani_nikravesh", "hunt_crossley", "flores"],
-        "friction": ["none", "ambrosio", "mindlin"],
+        "dissipation": ["none", "lankarani_nikravesh", "hunt_crossley", "flores", "exact_restitution"],
+        "friction": ["none", "ambrosio", "mindlin", "mindlin_deresiewicz"],
         "tangential_velocity": ["material", "paper"],
     }
     for kind, listed in names.items():
@@ -37,7 +37,8 @@ def test_names() -> None:
         _engine.law_names("rolling")
 
 
-TRAITS = ("holds_static_load", "frictionless", "has_memory", "needs_axis", "accepts_bulging_wall", "point_contact")
+TRAITS = ("holds_static_load", "frictionless", "has_memory", "needs_axis", "accepts_bulging_wall", "point_contact",
+          "needs_point_contact")
 
 
 @pytest.mark.parametrize("kind, name, traits, parameters", [
@@ -46,10 +47,12 @@ TRAITS = ("holds_static_load", "frictionless", "has_memory", "needs_axis", "acce
     *(("normal", name, {"holds_static_load", "needs_axis"}, ("contact_length",)) for name in LINE_CONTACTS),
     ("dissipation", "none", {"holds_static_load"}, ()),
     *(("dissipation", name, {"holds_static_load"}, ("restitution", "smallest_impact_speed"))
-      for name in ("lankarani_nikravesh", "hunt_crossley", "flores")),
+      for name in ("lankarani_nikravesh", "hunt_crossley", "flores", "exact_restitution")),
     ("friction", "none", {"frictionless"}, ()),
     ("friction", "ambrosio", set(), ("friction_coefficient", "v0", "v1")),
     ("friction", "mindlin", {"holds_static_load", "has_memory"}, ("friction_coefficient",)),
+    ("friction", "mindlin_deresiewicz", {"holds_static_load", "has_memory", "needs_point_contact"},
+     ("friction_coefficient",)),
     ("tangential_velocity", "material", {"holds_static_load"}, ()),
     ("tangential_velocity", "paper", {"holds_static_load", "needs_axis"}, ()),
 ])
@@ -70,7 +73,8 @@ def test_parameters_are_those_of_the_cases() -> None:
     assert {parameter.name for parameter in seen} == set(keys)
     for parameter in seen:
         told = joint[keys[parameter.name]]
-        low = told["exclusiveMinimum" if parameter.low_excluded else "minimum"]
+        # one of two ranges of the restitution is without its lower end
+        low = told.get("exclusiveMinimum", told.get("minimum"))
         assert (told["x-unit"], low) == (parameter.unit, parameter.low), parameter.name
         if parameter.name != "friction_coefficient":  # of the pair, so a case has to say it
             assert told["default"] == parameter.default, parameter.name

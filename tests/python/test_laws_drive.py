@@ -35,6 +35,18 @@ def test_forces_and_displacements_are_inverse() -> None:
         np.testing.assert_allclose(back[name], there[name], rtol=0, atol=1e-20)
 
 
+def test_partial_slip() -> None:
+    """First loading and Masing's rule; the spring of Mindlin is above."""
+    gross = 0.3 * 38.5e9 / (4 * 7.9e9) * 1e-6  # mu E*/(4 G*) depth
+    path = {"slide_m": [0, 0.6 * gross, -0.2 * gross, 0.6 * gross], "penetration_depth_m": [1e-6] * 4}
+    answer = laws.drive("mindlin_deresiewicz", path, **CONTACT, steps_per_row=20)
+    first = [1 - (1 - share) ** 1.5 for share in (0.6, 0.4)]
+    limit = 0.3 * answer["normal_force_N"][0]
+    np.testing.assert_allclose(answer["tangential_force_N"][[20, 40, 60]],
+                               limit * np.array([first[0], first[0] - 2 * first[1], first[0]]), rtol=0, atol=1e-12)
+    assert answer["memory_points"].max() == 5 and not answer["merged_force_N"].any() and not answer["slipping"].any()
+
+
 def test_in_the_plane() -> None:
     path = {"slide_x_m": [0, 3e-8], "slide_y_m": [0, 4e-8], "penetration_depth_m": [1e-6, 1e-6]}
     answer = laws.drive("mindlin", path, **CONTACT)
@@ -57,8 +69,8 @@ def test_every_law(kind: str) -> None:
 
 
 @pytest.mark.parametrize("law, change, sentence", [
-    ("mindlyn", {}, "law = 'mindlyn' is not allowed: must be one of none, ambrosio, mindlin, "),
-    ("material", {}, "law = 'material' is not allowed: must be one of none, ambrosio, mindlin, "),
+    ("mindlyn", {}, "law = 'mindlyn' is not allowed: must be one of none, ambrosio, mindlin, mindlin_deresiewicz, "),
+    ("material", {}, "law = 'material' is not allowed: must be one of none, ambrosio, mindlin, mindlin_deresiewicz, "),
     ("mindlin", {"slide_m": None}, "column slide_m is missing: the history needs slide_m, slide_x_m with slide_y_m, or "
                                    "tangential_force_N"),
     ("mindlin", {"penetration_depth_m": None}, "column penetration_depth_m is missing: the history needs "

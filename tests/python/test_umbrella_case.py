@@ -75,10 +75,11 @@ MISTAKES = {
     "dissipation law": (
         [('dissipation_law = "none"', 'dissipation_law = "hunt"')],
         "joint.dissipation_law = 'hunt' is not allowed: must be 'none' or 'lankarani_nikravesh' or 'hunt_crossley' "
-        "or 'flores'"),
+        "or 'flores' or 'exact_restitution'"),
     "friction law": (
         [friction("ambrosia")],
-        "joint.friction_law = 'ambrosia' is not allowed: must be 'none' or 'ambrosio' or 'mindlin'; "
+        "joint.friction_law = 'ambrosia' is not allowed: must be 'none' or 'ambrosio' or 'mindlin' or "
+        "'mindlin_deresiewicz'; "
         "did you mean 'ambrosio'?"),
     "tangential velocity": (
         [('"material"', '"materials"')],
@@ -132,9 +133,14 @@ MISTAKES = {
         [("friction_v0_m_per_s = 1e-5", "friction_v0_m_per_s = 1e-4")],
         "joint.friction_v1_m_per_s = 0.0001 is not allowed: must be above joint.friction_v0_m_per_s = 0.0001 [m/s]"),
     "no restitution": (
-        [joint("restitution = 0")], "joint.restitution = 0 is not allowed: must be above 0 and at most 1 [-]"),
+        [joint("restitution = 0")],
+        "joint.restitution = 0.0 is not allowed with joint.dissipation_law = 'none': must be above 0 [-]"),
+    "partial slip of a line contact": (
+        [friction("mindlin_deresiewicz"), ('normal_law = "hertz_internal"', 'normal_law = "johnson"')],
+        "joint.normal_law = 'johnson' is not allowed with joint.friction_law = 'mindlin_deresiewicz': must be one of "
+        "hertz_paper, hertz_internal"),
     "restitution above one": (
-        [joint("restitution = 1.1")], "joint.restitution = 1.1 is not allowed: must be above 0 and at most 1 [-]"),
+        [joint("restitution = 1.1")], "joint.restitution = 1.1 is not allowed: must be between 0 and 1 [-]"),
     "negative axial damping": (
         [("[thermal]", "[damping]\naxial_damping_ratio = -0.1\n[thermal]")],
         "damping.axial_damping_ratio = -0.1 is not allowed: must be between 0 and 10 [-]"),

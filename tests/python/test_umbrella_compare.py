@@ -92,6 +92,7 @@ LAWS = [
     ("johnson", "hunt_crossley", "ambrosio", "paper", 23.75e-6),
     ("esdu_78035", "flores", "none", "material", 0.0),
     ("persson", "none", "mindlin", "material", 23.75e-6),
+    ("hertz_internal", "exact_restitution", "mindlin_deresiewicz", "material", 23.75e-6),
 ]
 
 

@@ -37,7 +37,7 @@ def test_defaults_and_names(seen):
         "contactLength": 0.01, "v0": 0.0, "v1": 1e-3, "contacts": 0,
         "label": "",
     }
-    assert len(seen["accepted"]) == 14
+    assert len(seen["accepted"]) == 16
     for _, name, kept in seen["accepted"]:
         assert kept == name
     assert seen["both"] == [0.5, 2.0]
@@ -47,8 +47,8 @@ def test_defaults_and_names(seen):
     ("attribute", "value", "allowed"),
     [
         ("normalLaw", "'jonson'", "one of hertz_paper, hertz_internal, johnson, esdu_78035, persson"),
-        ("dissipationLaw", "'jonson'", "one of none, lankarani_nikravesh, hunt_crossley, flores"),
-        ("frictionLaw", "'jonson'", "one of none, ambrosio, mindlin"),
+        ("dissipationLaw", "'jonson'", "one of none, lankarani_nikravesh, hunt_crossley, flores, exact_restitution"),
+        ("frictionLaw", "'jonson'", "one of none, ambrosio, mindlin, mindlin_deresiewicz"),
         ("tangentialVelocity", "'jonson'", "one of material, paper"),
         ("restitution", "0", "in (0, 1] [-]"),
         ("restitution above 1", "1.0001", "in (0, 1] [-]"),
@@ -164,12 +164,14 @@ def test_ambrosio_creeps_and_mindlin_holds(seen):
 
 
 def ratio_of(name, restitution):
-    """a = chi v0 / K of the three laws."""
+    """a = chi v0 / K of the laws."""
     return {
         "none": 0.0,
         "lankarani_nikravesh": 0.75 * (1 - restitution**2),
         "hunt_crossley": 1.5 * (1 - restitution),
         "flores": 1.6 * (1 - restitution) / restitution,
+        # the root of true_restitution(a) = restitution
+        "exact_restitution": root_of(lambda a: restitution - true_restitution(a), 1e-6, 0.999999 / restitution),
     }[name]
 
 
@@ -182,7 +184,7 @@ def true_restitution(a):
 
 
 @pytest.mark.parametrize("restitution", [0.3, 0.9])
-@pytest.mark.parametrize("name", ["none", "lankarani_nikravesh", "hunt_crossley", "flores"])
+@pytest.mark.parametrize("name", ["none", "lankarani_nikravesh", "hunt_crossley", "flores", "exact_restitution"])
 def test_restitution_of_a_free_impact(seen, name, restitution):
     a = ratio_of(name, restitution)
     expected = true_restitution(a)

@@ -7,7 +7,7 @@ from conftest import EPS
 FILES = ["scene.yade", "scene.yade.gz", "scene.yade.bz2", "scene.xml", "scene.xml.gz"]
 
 
-LAWS = ["hertz_mindlin", "by_name"]
+LAWS = ["hertz_mindlin", "by_name", "partial_slip"]
 
 
 @pytest.fixture(scope="module")
@@ -32,6 +32,12 @@ def test_saved_state_is_worth_saving(written, law):
     assert straight["bodies"] != saved["bodies"]
     assert straight["energy"]["jointFriction"] > saved["energy"]["jointFriction"] > 0
     assert straight["energy"]["jointThermalWork"] != saved["energy"]["jointThermalWork"]
+
+
+def test_saved_memory_of_partial_slip(written):
+    saved = written["partial_slip"]["saved"]["memory"]
+    assert max(len(points) for points in saved) >= 3  # a ring that sticks, one that slips, the rim
+    assert written["partial_slip"]["straight"]["memory"] != saved
 
 
 def test_saved_state_of_the_new_classes(written):

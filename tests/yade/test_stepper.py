@@ -5,7 +5,7 @@ import pytest
 SCENES = [
     "joint", "joint_without_energy", "joint_by_name", "joint_damped", "joint_in_gravity",
     "joint_in_undamped_gravity", "joint_in_damped_gravity", "ball", "guided", "approaching", "mixed",
-    "mixed_by_name", "mixed_every_step", "crowd", "crowd_with_energy", "in_pieces", "saved", "erased",
+    "mixed_by_name", "mixed_partial_slip", "mixed_every_step", "crowd", "crowd_with_energy", "in_pieces", "saved", "erased",
 ]
 
 

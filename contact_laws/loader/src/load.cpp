@@ -60,8 +60,9 @@ std::string adopt_parameters(laws::LawInfo& info) {
     const laws::LawParameter* own = nullptr;
     for (const laws::LawParameter* each :
          {&known::friction_coefficient, &known::v0, &known::v1, &known::restitution,
-          &known::smallest_impact_speed, &known::contact_length}) {
-      if (std::string_view(parameter->name) == each->name) own = each;
+          &known::restitution_from_zero, &known::smallest_impact_speed, &known::contact_length}) {
+      const bool same_end = parameter->low_excluded == each->low_excluded || !own;
+      if (std::string_view(parameter->name) == each->name && same_end) own = each;
     }
     if (!own) return parameter->name;
     parameter = own;

@@ -358,8 +358,10 @@ linkage::State loaded_state(const linkage::Linkage& model, double contact_angle)
   state.bearing_centre = (at.p.l1.value + at.z[e1]) * direction(at.z[th2]);
   state.journal_centre =
       Vector2d(model.frame_length, 0.0) + (at.p.l2.value + at.z[e2]) * direction(at.z[th4]);
-  state.contact.tangential_force.x() = at.z[ft];
-  state.contact.tangential_stiffness = at.stiffness();
+  const kernel::Vector3 friction(at.z[ft], 0.0, 0.0);
+  state.contact = kernel::laws::loaded_history(
+      model.law.friction, model.law.friction_parameters, friction,
+      {at.normal(), at.stiffness(), kernel::Vector3::Zero(), 1.0, kernel::Vector3::UnitY()});
   state.impact_speed = model.law.smallest_impact_speed;
   return state;
 }
@@ -367,6 +369,12 @@ linkage::State loaded_state(const linkage::Linkage& model, double contact_angle)
 ElasticLoop elastic_loop(const linkage::Linkage& model, const thermal::Program& program,
                          const ElasticLoopOptions& options, double contact_angle) {
   model.validate();
+  if (has(model.law.friction, kernel::laws::Trait::needs_point_contact)) {
+    throw kernel::OutOfRange("friction", law_info(model.law.friction).name,
+                             kernel::laws::names_with<kernel::laws::FrictionLaw>(
+                                 kernel::laws::Trait::needs_point_contact, false) +
+                                 " in the elastic loop, where friction sticks as a spring");
+  }
   program.validate();
   require(options.samples >= 1, "samples", options.samples, ">= 1");
   const std::vector<thermal::Branch> branches = thermal::monotone_branches(program);

@@ -158,15 +158,12 @@ Energy energy(const Linkage& model, const State& state, double temperature_chang
   const Vector2d bc = state.journal_centre - Vector2d(model.frame_length, 0.0);
   const double bend =
       std::atan2(cross(state.bearing_centre, bc), state.bearing_centre.dot(bc)) - k.free_angle;
-  const kernel::ContactHistory& spring = state.contact;
   return {model.link_ab.mass / 6.0 * state.bearing_velocity.squaredNorm() +
               model.link_bc.mass / 6.0 * state.journal_velocity.squaredNorm(),
           axial_energy(model.link_ab, q.length_ab, temperature_change) +
               axial_energy(model.link_bc, q.length_bc, temperature_change),
           depth > 0.0 ? detail::normal_state(k, depth, radii).elastic_energy : 0.0,
-          spring.tangential_stiffness > 0.0
-              ? 0.5 * spring.tangential_force.squaredNorm() / spring.tangential_stiffness
-              : 0.0,
+          kernel::elastic_energy(state.contact),
           0.5 * model.torsion_stiffness * bend * bend};
 }
 

@@ -205,7 +205,7 @@ inline kernel::laws::FrictionResponse friction(const Constants& k, const NormalF
   return kernel::laws::evaluate(
       k.law.friction, k.law.friction_parameters,
       {normal.force, kernel::laws::tangential_stiffness(k.pair, normal.elastic.stiffness),
-       kernel::Vector3(motion, 0.0, 0.0), 1.0},
+       kernel::Vector3(motion, 0.0, 0.0), 1.0, kernel::Vector3::UnitY()},
       history);
 }
 

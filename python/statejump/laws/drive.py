@@ -68,7 +68,8 @@ def drive(
         fractions between), and where they are not there yet ``penetration_depth_m``, the slides,
         ``normal_force_N``, ``tangential_force_N`` (or ``tangential_force_x_N``, ``tangential_force_y_N``); energies
         ``normal_elastic_energy_J`` and ``tangential_elastic_energy_J``; ``friction_dissipation_J`` and
-        ``damping_dissipation_J`` since the first row; ``slipping``, 1 where friction is at its limit
+        ``damping_dissipation_J`` since the first row; ``slipping``, 1 where friction is at its limit;
+        ``memory_points`` and ``merged_force_N`` of a law with partial slip
     :raises StatejumpError: an unknown law, a column that is missing or has no meaning here, a value that is no number
         or out of range; :class:`~statejump.core.errors.FailedRun`, with the row: a depth that the normal law does not
         cover, a force that friction does not reach

@@ -43,6 +43,7 @@ class Law:
     needs_axis: bool  # neither in a socket nor on a flat face
     accepts_bulging_wall: bool
     point_contact: bool  # Hertz's
+    needs_point_contact: bool  # has a meaning only under a normal law that is one
     parameters: tuple[Parameter, ...]
 
 

@@ -149,7 +149,7 @@ TEST(UserLaws, EveryKindGoesThroughItsTable) {
   const FrictionParameters parameters{0.3, 0.0, 1e-3};
   ContactHistory one;
   ContactHistory two;
-  const FrictionKinematics kinematics{100.0, 1e7, Vector3(1e-3, 0.0, 0.0), 1e-4};
+  const FrictionKinematics kinematics{100.0, 1e7, Vector3(1e-3, 0.0, 0.0), 1e-4, Vector3::UnitZ()};
   const FrictionResponse own = MindlinFriction{}(parameters, kinematics, one);
   const FrictionResponse through = evaluate(friction, parameters, kinematics, two);
   EXPECT_EQ(through.force_on_1, own.force_on_1);

@@ -246,8 +246,8 @@ def steps_to_the_end():
 
 laws = {
     "normalLaw": ["hertz_paper", "hertz_internal", "johnson", "esdu_78035", "persson"],
-    "dissipationLaw": ["none", "lankarani_nikravesh", "hunt_crossley", "flores"],
-    "frictionLaw": ["none", "ambrosio", "mindlin"],
+    "dissipationLaw": ["none", "lankarani_nikravesh", "hunt_crossley", "flores", "exact_restitution"],
+    "frictionLaw": ["none", "ambrosio", "mindlin", "mindlin_deresiewicz"],
     "tangentialVelocity": ["material", "paper"],
 }
 fresh = Law()
@@ -284,7 +284,7 @@ finish(
         "same": [pressed(None), pressed(Law())],
         "force": {name: force_at_depth(name) for name in laws["normalLaw"]},
         "hot": {name: force_at_depth(name, 60.0) for name in laws["normalLaw"]},
-        "floor": {name: on_the_floor(name) for name in ("ambrosio", "mindlin")},
+        "floor": {name: on_the_floor(name) for name in ("ambrosio", "mindlin", "mindlin_deresiewicz")},
         "impact": {
             f"{name} {e}": [impact(name, e, dt) for dt in (4e-8, 2e-8)]
             for name in laws["dissipationLaw"] for e in (0.3, 0.9)

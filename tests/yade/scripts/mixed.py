@@ -5,7 +5,7 @@ import statejump_yade as sj
 from parts import *  # noqa: F403
 
 
-def scene(by_name):
+def scene(by_name, partial_slip=False):
     """Journal on a hot link in a bearing on another, and a slider with two contacts."""
     reset()
     program = sj.ThermalProgram(shape="half_sine", temperatureChangeMax=70, period=2e-3, cycles=2)
@@ -42,6 +42,8 @@ def scene(by_name):
         sj.ThermalLink(id1=roots[1], id2=hole, stressFreeLength=0.05, program=table, **common),
     ]
     more = {}
+    if partial_slip:
+        more["law"] = sj.Law2_JointGeom_JointPhys_JointLaw(frictionLaw="mindlin_deresiewicz")
     if by_name:
         links[0].pinDamping = 1e-4
         more["law"] = sj.Law2_JointGeom_JointPhys_JointLaw(
@@ -64,7 +66,7 @@ def scene(by_name):
 
 def state():
     """Every number of the scene that could differ; floats print so that they read back the same."""
-    out = {"iter": O.iter, "time": O.time, "energy": energies(), "bodies": [], "contacts": []}
+    out = {"iter": O.iter, "time": O.time, "energy": energies(), "bodies": [], "contacts": [], "memory": []}
     for b in O.bodies:
         s = b.state
         out["bodies"].append(
@@ -78,6 +80,7 @@ def state():
                 [i.id1, i.id2, list(i.phys.normalForce), list(i.phys.shearForce), i.phys.kn,
                  i.phys.ks, i.phys.slipping, i.geom.penetrationDepth, list(i.geom.normal)]
             )
+            out["memory"].append([list(point) for point in i.phys.slipMemory])
     for engine in O.engines:
         for spring in getattr(engine, "springs", []):
             out["contacts"].append([spring.angle, spring.moment])

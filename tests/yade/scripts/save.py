@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Resume: `save.py write DIR LAW` saves in mid-contact and goes on; `save.py read FILE` loads and goes
-on. LAW: hertz_mindlin, or by_name for laws by name, torsion spring and pin damping."""
+on. LAW: hertz_mindlin, by_name for laws by name, torsion spring and pin damping, or partial_slip for friction that
+remembers more than a force."""
 import sys
 from pathlib import Path
 
@@ -18,7 +19,7 @@ def steps(count):
 if sys.argv[1] == "write":
     folder = Path(sys.argv[2])
     files = ["scene.yade", "scene.yade.gz", "scene.yade.bz2", "scene.xml", "scene.xml.gz"]
-    scene(sys.argv[3] == "by_name")
+    scene(sys.argv[3] == "by_name", sys.argv[3] == "partial_slip")
     steps(STEPS)
     saved = state()
     for name in files:

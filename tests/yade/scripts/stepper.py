@@ -27,7 +27,7 @@ def counted():
 
 def bits(state):
     """Return a state as text: floats print so that they read back the same, NaN equals NaN."""
-    return json.dumps(state, sort_keys=True)
+    return json.dumps(state, sort_keys=True, default=list)  # vectors in a list
 
 
 def differences(one, other):
@@ -190,6 +190,7 @@ def scenes():
         "approaching": (approaching, 4000, 500),
         "mixed": (lambda: mixed.scene(False), 2000, 100),
         "mixed_by_name": (lambda: mixed.scene(True), 2000, 100),
+        "mixed_partial_slip": (lambda: mixed.scene(False, True), 2000, 100),
         "mixed_every_step": (lambda: mixed.scene(True), 300, 1),
         "crowd": (crowd, 2000, 1000),
         "crowd_with_energy": (lambda: crowd(True), 1000, 250),

@@ -61,7 +61,7 @@ class UmbrellaJoint(Section):
         "material", lambda: laws.names("tangential_velocity"), CHOICE + "; eqs 14-16 are paper"
     )
     friction_coefficient: float = parameter(..., "-", 0, 10, PAPER)
-    restitution: float = parameter(1.0, "-", 0, 1, CHOICE + "; dissipation laws only", above=True)
+    restitution: float = parameter(1.0, "-", 0, 1, CHOICE + "; dissipation laws only, 0 with exact_restitution")
     smallest_impact_speed_m_per_s: float = parameter(
         1e-6, "m/s", 0, 1e3, CHOICE + "; floor of the speed that scales dissipation", above=True
     )
@@ -279,6 +279,16 @@ class UmbrellaCase(Case):
             problem = _engine.law_problem(kind, name)
             if problem:  # a law of one's own that is known and cannot be used
                 raise NotAllowed(f"joint.{key}", name, problem)
+        dissipation = laws.law("dissipation", self.joint.dissipation_law)
+        if not any(p.name == "restitution" and p.allows(self.joint.restitution) for p in dissipation.parameters) and (
+                self.joint.restitution == 0):
+            raise NotAllowed("joint.restitution", self.joint.restitution, "must be above 0 [-]",
+                             beside=f"with joint.dissipation_law = {dissipation.name!r}")
+        friction = laws.law("friction", self.joint.friction_law)
+        if friction.needs_point_contact and not laws.law("normal", self.joint.normal_law).point_contact:
+            points = ", ".join(law.name for law in laws.catalogue("normal") if law.point_contact)
+            raise NotAllowed("joint.normal_law", self.joint.normal_law, f"must be one of {points}",
+                             beside=f"with joint.friction_law = {friction.name!r}")
 
     def _check_joint(self) -> None:
         joint = self.joint

@@ -4,17 +4,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "statejump/kernel/partial_slip.hpp"
 #include "statejump/kernel/vector.hpp"
 
 namespace statejump::kernel {
 
-/// What a contact remembers from one step to the next. The caller keeps it, rotates the force with
-/// the contact (transport() in frame.hpp) and starts a new contact with a default-made one.
+/// What a contact remembers from one step to the next. The caller keeps it, rotates force and axis
+/// with the contact (transport() in frame.hpp) and starts a new contact with a default-made one.
 struct ContactHistory {
   Vector3 tangential_force = Vector3::Zero();  ///< of the spring, on body 1 [N]; no viscous part
   double tangential_stiffness = 0.0;  ///< k_t at which that force was stored [N/m]; 0: new contact
   bool slipping = false;              ///< the last step ended at the Coulomb limit
+  Vector3 tangential_axis = Vector3::Zero();  ///< unit, first axis of the memory; zero: no memory
+  PartialSlipMemory memory{};                 ///< of a law with partial slip
 };
+
+/// Energy [J] that a contact's friction holds: of the spring, or of the memory where there is one.
+inline double elastic_energy(const ContactHistory& history) {
+  if (history.memory.size() > 0) return elastic_energy(history.memory);
+  const double stiffness = history.tangential_stiffness;
+  return stiffness > 0.0 ? 0.5 * history.tangential_force.squaredNorm() / stiffness : 0.0;
+}
 
 /// Mindlin's tangential stiffness k_t = 8 G* a [N/m] of a circular contact without slip (Mindlin
 /// 1949; Johnson 1985, eq. 7.44).

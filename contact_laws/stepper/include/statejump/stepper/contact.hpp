@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <vector>
 
 #include "statejump/kernel/contact_law.hpp"
 #include "statejump/kernel/frame.hpp"
@@ -47,6 +49,10 @@ struct ContactPhysics {
   double normalDampingRatio = 0.0;        ///< [-]
   double tangentialDampingRatio = 0.0;    ///< [-]
   bool slipping = false;
+  Vector3 slipAxis = Vector3::Zero();
+  std::vector<Vector3> slipMemory;  ///< 8 G* r [N/m], elastic displacement along both axes [m]
+  double slipSlope = 0.0;           ///< [m^3/N^2]
+  double slipMerged = 0.0;          ///< [N]
   bool begun = false;
   double impactSpeed = 0.0;            ///< [m/s]
   double dissipationSlope = 0.0;       ///< [N s/m]
@@ -189,6 +195,14 @@ kernel::ContactHistory contact_history(const Geometry& geometry, const Physics& 
                                                geometry.normal, geometry.twistAngle);
   history.tangential_stiffness = physics.ks;
   history.slipping = physics.slipping;
+  if (!physics.slipMemory.empty()) {
+    history.tangential_axis = kernel::transport(physics.slipAxis, geometry.previousNormal,
+                                                geometry.normal, geometry.twistAngle);
+    history.memory.begin(physics.slipSlope, physics.slipMerged);
+    for (const Vector3& point : physics.slipMemory) {
+      history.memory.push({point[0], {point[1], point[2]}});
+    }
+  }
   return history;
 }
 
@@ -201,6 +215,16 @@ void store(const kernel::ContactResponse& response, const kernel::ContactHistory
   physics.slipping = history.slipping;
   physics.normalForce = response.normal_force * normal;
   physics.shearForce = -history.tangential_force;
+  const kernel::PartialSlipMemory& memory = history.memory;
+  if (memory.size() == 0 && physics.slipMemory.empty()) return;
+  physics.slipAxis = history.tangential_axis;
+  physics.slipSlope = memory.slope();
+  physics.slipMerged = memory.merged();
+  physics.slipMemory.resize(static_cast<std::size_t>(memory.size()));
+  for (int i = 0; i < memory.size(); ++i) {
+    physics.slipMemory[static_cast<std::size_t>(i)] =
+        Vector3(memory[i].x, memory[i].u.a, memory[i].u.b);
+  }
 }
 
 /// Leapfrog is unstable beyond omega dt = 2 of the stiffest contact alone, whatever else acts.

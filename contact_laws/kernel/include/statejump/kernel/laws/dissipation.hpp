@@ -11,14 +11,14 @@ namespace statejump::kernel::laws {
 
 /// What an impact dissipation law needs.
 struct ImpactParameters {
-  double restitution = parameter::restitution.standard;  ///< e [-], in (0, 1]; 1: no loss
+  double restitution = parameter::restitution.standard;  ///< e [-], in [0, 1]; 1: no loss
   double impact_speed = 1.0;  ///< delta_dot_0 [m/s], > 0: approach speed when the contact begins
 };
 
-/// Checks an impact where it enters.
+/// Checks an impact where it enters; whether a law takes e = 0 is its own, see restitution_of().
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const ImpactParameters& impact) {
-  check(parameter::restitution, impact.restitution);
+  check(parameter::restitution_from_zero, impact.restitution);
   require(std::isfinite(impact.impact_speed) && impact.impact_speed > 0.0, "impact_speed",
           impact.impact_speed, "(0, inf) m/s");
 }
@@ -89,6 +89,43 @@ struct FloresDissipation {
                                 {&parameter::restitution, &parameter::smallest_impact_speed}};
   double operator()(const ImpactParameters& impact) const {
     return 1.6 * (1.0 - impact.restitution) / (impact.restitution * impact.impact_speed);
+  }
+};
+
+/// The coefficient that returns e exactly: a = lambda v0 of damped_force() for e' = e,
+///
+///     a - ln(1 + a) = -a e - ln(1 - a e),   chi/K = a/v0.
+///
+/// With q = -ln(1 - a e), a = (1 - exp(-q))/e, the root of a (1 + e) - ln(1 + a) - q that is not 0
+/// is found by Newton's method from above: the function is concave there, so that the steps do not
+/// pass it. Starts: a < 1/e, and a e < 3/2 (1 - e). No constant is fitted. e = 0 would need a
+/// damper without bound; e below 1e-6 is taken for 1e-6, the largest error of this law. a = 1/e for
+/// small e: the force rises 1/e times as fast, and an explicit integrator needs steps that resolve
+/// a depth smaller by e^0.4.
+struct ExactRestitution {
+  static constexpr LawInfo info{
+      "exact_restitution",
+      "chi = K a/v0, a - ln(1 + a) = -a e - ln(1 - a e)",
+      "energy balance of F = K delta^n + chi delta^n d(delta)/dt, as in "
+      "Hunt, Crossley, J. Appl. Mech. 42, 1975, without small losses",
+      "0 <= e <= 1, v0 > 0; restitution as asked, to 1e-6",
+      Trait::holds_static_load,
+      {&parameter::restitution_from_zero, &parameter::smallest_impact_speed}};
+  double operator()(const ImpactParameters& impact) const {
+    return coefficient(std::max(impact.restitution, 1e-6)) / impact.impact_speed;
+  }
+  /// a [-] for e in (0, 1].
+  static double coefficient(double e) {
+    if (e >= 1.0) return 0.0;
+    double q = e > 0.5 ? -std::log1p(-1.5 * (1.0 - e)) : 1.0 + 1.0 / e - std::log1p(1.0 / e);
+    for (int i = 0; i < 100; ++i) {
+      const double a = -std::expm1(-q) / e;
+      const double slope = std::exp(-q) / e * (1.0 + e - 1.0 / (1.0 + a)) - 1.0;
+      const double change = (a * (1.0 + e) - std::log1p(a) - q) / slope;
+      q -= change;
+      if (!(std::abs(change) > 1e-14 * q)) break;
+    }
+    return -std::expm1(-q) / e;
   }
 };
 

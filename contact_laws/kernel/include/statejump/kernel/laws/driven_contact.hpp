@@ -159,8 +159,10 @@ inline DrivenState drive(const DrivenContact& contact, const DrivenState& before
   const double share = one > 0.0 && other < 0.0 ? one / (one - other) : 1.0;
   const auto friction = [&](double slide_x, ContactHistory& history) {
     const Vector3 slide(slide_x - before.slide_x, target.slide_y - before.slide_y, 0.0);
-    return evaluate(contact.law.friction, contact.law.friction_parameters,
-                    {after.normal_force, stiffness, slide * (share / duration), duration}, history);
+    return evaluate(
+        contact.law.friction, contact.law.friction_parameters,
+        {after.normal_force, stiffness, slide * (share / duration), duration, Vector3::UnitZ()},
+        history);
   };
   after.slide_x = target.slide_x;
   after.slide_y = target.slide_y;

@@ -6,6 +6,7 @@
 
 #include "statejump/kernel/laws/parameters.hpp"
 #include "statejump/kernel/mindlin.hpp"
+#include "statejump/kernel/partial_slip.hpp"
 #include "statejump/kernel/require.hpp"
 #include "statejump/kernel/vector.hpp"
 
@@ -30,9 +31,10 @@ inline void validate(const FrictionParameters& parameters) {
 /// What a friction law sees of the contact at this step.
 struct FrictionKinematics {
   double normal_force;          ///< F_N [N], >= 0
-  double tangential_stiffness;  ///< k_t [N/m]; mindlin only
+  double tangential_stiffness;  ///< k_t [N/m]; read by laws with a memory
   Vector3 tangential_velocity;  ///< v_t of 1 against 2 [m/s], see tangential_velocity.hpp
   double time_step;             ///< dt [s], >= 0
+  Vector3 normal;               ///< unit, across the tangent plane
 };
 
 /// What a friction law answers.
@@ -107,6 +109,63 @@ struct MindlinFriction {
         kinematics.tangential_stiffness, parameters.friction_coefficient * kinematics.normal_force,
         kinematics.tangential_velocity * kinematics.time_step, history);
     return {history.tangential_force, energy.elastic, energy.dissipation};
+  }
+};
+
+/// Hertz's contact that slides at its rim before it slides as a whole: partial_slip_step() with
+/// k = k_t, limit mu F_N. The caller rotates axis and force of the history with the contact.
+struct MindlinDeresiewiczFriction {
+  static double largest_slope(const FrictionParameters&, double) { return 0.0; }
+  static constexpr LawInfo info{
+      "mindlin_deresiewicz",
+      "dF_T = -8 G* c ds, c(history) <= a the radius of stick; first loading s = 3 mu F_N/(16 G* "
+      "a) "
+      "(1 - (1 - F_T/(mu F_N))^(2/3))",
+      "Cattaneo 1938; Mindlin, Deresiewicz, J. Appl. Mech. 20, 1953; Jaeger, Arch. Appl. Mech. 65, "
+      "1995",
+      "point contacts, any load; exact in one direction, to 0.2 % of mu F_N where it turns in the "
+      "plane; a << R, quasi-static, similar materials",
+      Trait::holds_static_load | Trait::has_memory | Trait::needs_point_contact,
+      {&parameter::friction_coefficient}};
+  FrictionResponse operator()(const FrictionParameters& parameters,
+                              const FrictionKinematics& kinematics, ContactHistory& history) const {
+    Vector3& first = history.tangential_axis;
+    if (!(first.squaredNorm() > 0.0)) {
+      first = perpendicular(kinematics.normal);
+      history.memory.clear();
+    }
+    const Vector3 second = cross(kinematics.normal, first);
+    const Vector3& velocity = kinematics.tangential_velocity;
+    const PartialSlipResponse answer = partial_slip_step(
+        kinematics.tangential_stiffness, parameters.friction_coefficient * kinematics.normal_force,
+        kinematics.time_step * Tangent{velocity.dot(first), velocity.dot(second)}, history.memory);
+    history.tangential_force = -answer.force.a * first - answer.force.b * second;
+    history.tangential_stiffness = std::max(0.0, kinematics.tangential_stiffness);
+    history.slipping = answer.slipping;
+    if (history.memory.size() == 0) first = Vector3::Zero();
+    return {history.tangential_force, answer.elastic, answer.dissipation};
+  }
+  /// History of a contact that was loaded at a constant ratio of both forces: no ring has slipped,
+  /// slide = 3/2 F_T/k_t. @param force_on_1 [N], within the limit; @param under velocity is not
+  /// read
+  ContactHistory loaded(const FrictionParameters& parameters, const Vector3& force_on_1,
+                        FrictionKinematics under) const {
+    under.tangential_velocity = -1.5 / under.tangential_stiffness * force_on_1;
+    under.time_step = 1.0;
+    ContactHistory history;
+    (*this)(parameters, under, history);
+    return history;
+  }
+
+ private:
+  /// A unit vector across another: the axis that it leans to least, without its part along it.
+  static Vector3 perpendicular(const Vector3& normal) {
+    Eigen::Index least = 0;
+    normal.cwiseAbs().minCoeff(&least);
+    Vector3 axis = Vector3::Zero();
+    axis[least] = 1.0;
+    axis -= normal[least] * normal;
+    return axis / axis.norm();
   }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 
 #include "statejump/kernel/elastic_pair.hpp"
@@ -17,7 +18,7 @@ struct JointLaw {
   FrictionLaw friction = NoFriction{};
   TangentialVelocityLaw tangential_velocity = MaterialVelocity{};
   FrictionParameters friction_parameters;                ///< mu, v0, v1
-  double restitution = parameter::restitution.standard;  ///< e [-], in (0, 1]; dissipation laws
+  double restitution = parameter::restitution.standard;  ///< e [-], see restitution_of()
   /// Floor of the impact speed that scales dissipation [m/s], > 0. A contact that begins slower, as
   /// one that a slow expansion closes does, would otherwise be damped without bound.
   double smallest_impact_speed = parameter::smallest_impact_speed.standard;
@@ -44,11 +45,24 @@ inline JointLaw joint_law(const JointLawNames& names) {
   return law;
 }
 
-/// Checks the parameters where they enter.
+/// Why two laws of a joint do not go together; empty: they do.
+inline std::string contradiction(const JointLaw& law) {
+  if (!has(law.friction, Trait::needs_point_contact) || has(law.normal, Trait::point_contact)) {
+    return "";
+  }
+  return std::string("friction_law = '") + law_info(law.friction).name +
+         "' is that of a point contact and needs normal_law " +
+         names_with<NormalLaw>(Trait::point_contact) + ", not '" + law_info(law.normal).name + "'";
+}
+
+/// Checks the parameters where they enter, and that the laws go together.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const JointLaw& law) {
+  if (const std::string wrong = contradiction(law); !wrong.empty()) {
+    throw std::invalid_argument(wrong);
+  }
   validate(law.friction_parameters);
-  check(parameter::restitution, law.restitution);
+  check(restitution_of(law.dissipation), law.restitution);
   check(parameter::smallest_impact_speed, law.smallest_impact_speed);
   check(parameter::contact_length, law.contact_length);
 }

@@ -64,7 +64,7 @@ struct CatalogueLaws {
                          ContactHistory& history) {
     const FrictionResponse answer =
         evaluate(law.friction, friction_parameters,
-                 {normal_force, stiffness, velocity, at.time_step}, history);
+                 {normal_force, stiffness, velocity, at.time_step, at.contact.normal}, history);
     tangential_force = answer.force_on_1;
     return {answer.elastic_energy, answer.dissipation};
   }

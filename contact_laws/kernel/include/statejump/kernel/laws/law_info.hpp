@@ -27,6 +27,8 @@ enum class Trait : unsigned {
   /// Hertz's point contact F = 4/3 E* sqrt(R) delta^1.5, 1/R = 1/R1 - 1/R2 with
   /// accepts_bulging_wall and 1/R1 + 1/R2 without
   point_contact = 1U << 5,
+  /// has a meaning only under a normal law that is a point_contact
+  needs_point_contact = 1U << 6,
 };
 
 /// A set of traits.

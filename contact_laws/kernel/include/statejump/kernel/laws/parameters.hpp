@@ -30,6 +30,9 @@ inline constexpr LawParameter v1{
     "Chen, Li, Tang, Wang, Mech. Sci. 12, 2021, eq. 10; value: choice"};
 inline constexpr LawParameter restitution{
     "restitution", "-", 0.0, 1.0, true, 1.0, "e that the law is asked for", "choice: no loss"};
+/// As above, of a law that covers impacts without rebound, too.
+inline constexpr LawParameter restitution_from_zero{
+    "restitution", "-", 0.0, 1.0, false, 1.0, "e that the law is asked for", "choice: no loss"};
 inline constexpr LawParameter smallest_impact_speed{
     "smallest_impact_speed",
     "m/s",

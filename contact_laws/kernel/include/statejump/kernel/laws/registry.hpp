@@ -22,8 +22,9 @@ namespace statejump::kernel::laws {
 using NormalLaw =
     std::variant<HertzPaper, HertzInternal, Johnson, Esdu78035, Persson, UserNormalLaw>;
 using DissipationLaw = std::variant<NoDissipation, LankaraniNikravesh, HuntCrossley,
-                                    FloresDissipation, UserDissipationLaw>;
-using FrictionLaw = std::variant<NoFriction, AmbrosioFriction, MindlinFriction, UserFrictionLaw>;
+                                    FloresDissipation, ExactRestitution, UserDissipationLaw>;
+using FrictionLaw = std::variant<NoFriction, AmbrosioFriction, MindlinFriction,
+                                 MindlinDeresiewiczFriction, UserFrictionLaw>;
 using TangentialVelocityLaw = std::variant<MaterialVelocity, PaperVelocity, UserVelocityLaw>;
 
 namespace detail {
@@ -97,6 +98,11 @@ struct Catalogue<std::variant<Types...>> {
     throw std::invalid_argument(message);
   }
 };
+
+template <class Law, class = void>
+struct SaysLoaded : std::false_type {};
+template <class Law>
+struct SaysLoaded<Law, std::void_t<decltype(&Law::loaded)>> : std::true_type {};
 
 template <class Law>
 const LawInfo& info_of(const Law& law) {
@@ -175,6 +181,14 @@ std::string names_with(Trait trait, bool with = true) {
   return sentence;
 }
 
+/// Range of e of a dissipation law: its own, of one that does not read it the usual one.
+inline const LawParameter& restitution_of(const DissipationLaw& law) {
+  for (const LawParameter* each : law_info(law).parameters) {
+    if (each && std::string(each->name) == parameter::restitution.name) return *each;
+  }
+  return parameter::restitution;
+}
+
 /// Largest slope of friction against velocity [N s/m]; see friction.hpp.
 inline double largest_slope(const FrictionLaw& law, const FrictionParameters& parameters,
                             double normal_force) {
@@ -196,6 +210,25 @@ inline double largest_depth(const NormalLaw& law, const NormalGeometry& geometry
 /// chi/K [s/m] of any dissipation law, for damped_force().
 inline double damping_ratio(const DissipationLaw& law, const ImpactParameters& impact) {
   return std::visit([&](const auto& l) { return l(impact); }, law);
+}
+
+/// History of a contact that carries a load from the start: as the law itself says it, else of a
+/// spring. @param force_on_1 [N], within the limit; @param under of `under` the velocity is not
+/// read
+inline ContactHistory loaded_history(const FrictionLaw& law, const FrictionParameters& parameters,
+                                     const Vector3& force_on_1, const FrictionKinematics& under) {
+  return std::visit(
+      [&](const auto& l) -> ContactHistory {
+        if constexpr (detail::SaysLoaded<std::decay_t<decltype(l)>>::value) {
+          return l.loaded(parameters, force_on_1, under);
+        } else {
+          ContactHistory history;
+          history.tangential_force = force_on_1;
+          history.tangential_stiffness = under.tangential_stiffness;
+          return history;
+        }
+      },
+      law);
 }
 
 /// Friction by any law; updates the history.

@@ -1,0 +1,537 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace statejump::kernel {
+
+/// A vector in the tangent plane of a contact.
+struct Tangent {
+  double a, b;
+  friend Tangent operator+(const Tangent& l, const Tangent& r) { return {l.a + r.a, l.b + r.b}; }
+  friend Tangent operator-(const Tangent& l, const Tangent& r) { return {l.a - r.a, l.b - r.b}; }
+  friend Tangent operator*(double s, const Tangent& v) { return {s * v.a, s * v.b}; }
+  double dot(const Tangent& v) const { return a * v.a + b * v.b; }
+  double squared() const { return a * a + b * b; }
+  double norm() const { return std::sqrt(squared()); }
+};
+
+/// What a contact with partial slip remembers: the elastic displacement U of its rings, as a line
+/// of straight pieces over x^2; see partial_slip_step(). Copying it costs what it holds.
+class PartialSlipMemory {
+ public:
+  struct Point {
+    double x;   ///< 8 G* r [N/m], r the radius of the ring
+    Tangent u;  ///< elastic displacement of that ring [m]
+  };
+  /// Points at most. A path of straight parts under few nested reversals needs two for each; a
+  /// smooth curve under growing load is approximated by chords, see merged().
+  static constexpr int capacity = 48;
+
+  PartialSlipMemory() {}  // NOLINT(modernize-use-equals-default): the points stay as they are
+  PartialSlipMemory(const PartialSlipMemory& other) { *this = other; }
+  PartialSlipMemory& operator=(const PartialSlipMemory& other) {
+    size_ = other.size_;
+    slope_ = other.slope_;
+    merged_ = other.merged_;
+    std::copy_n(other.points_.begin(), size_, points_.begin());
+    return *this;
+  }
+
+  int size() const { return size_; }  ///< 0: no contact, or a new one
+  const Point& operator[](int i) const { return points_[static_cast<std::size_t>(i)]; }
+  /// Stiffness 8 G* a [N/m] of the contact that left this memory; 0: none.
+  double edge() const { return size_ > 0 ? (*this)[size_ - 1].x : 0.0; }
+  /// Of the bound on |U| over x^2 [m^3/N^2].
+  double slope() const { return slope_; }
+  /// Sum of the changes of force by points that were merged since the contact began, each with its
+  /// sign lost [N]: a bound on the error of the force.
+  double merged() const { return merged_; }
+
+  void clear() {
+    size_ = 0;
+    slope_ = 0.0;
+    merged_ = 0.0;
+  }
+  /// Starts over with values that memory() of another contact gave.
+  void begin(double slope, double merged) {
+    size_ = 0;
+    slope_ = slope;
+    merged_ = merged;
+  }
+  void push(const Point& point) { points_[static_cast<std::size_t>(size_++)] = point; }
+  void add_merged(double force) { merged_ += force; }
+
+ private:
+  int size_ = 0;
+  double slope_ = 0.0;
+  double merged_ = 0.0;
+  std::array<Point, static_cast<std::size_t>(capacity)> points_;
+};
+
+/// What one step of the contact with partial slip answers.
+struct PartialSlipResponse {
+  Tangent force;       ///< of the contact, positive along the slide that causes it [N]
+  double elastic;      ///< energy of the tangential traction [J], >= 0
+  double dissipation;  ///< friction loss of this step [J], >= 0
+  bool slipping;       ///< no ring sticks
+};
+
+namespace detail {
+
+/// Integrals over dx of products of two functions that are straight over x^2, from xa to xb.
+struct Piece {
+  double both_at_a, one_each, both_at_b;  ///< weights of f_a g_a, f_a g_b and f_b g_a, f_b g_b
+  Piece(double xa, double xb) {
+    const double d = xb - xa;
+    const double q = d / (xb + xa);
+    const double p = 1.0 - q;
+    both_at_b = d * (p * p / 3.0 + 0.5 * p * q + 0.2 * q * q);
+    one_each = d * (0.5 * p + q / 3.0) - both_at_b;
+    both_at_a = d * q / 3.0 + both_at_b;
+  }
+};
+
+/// Change of the force when the point b between a and c is left out [N].
+inline double left_out(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b,
+                       const PartialSlipMemory::Point& c) {
+  const double share = (b.x - a.x) * (b.x + a.x) / ((c.x - a.x) * (c.x + a.x));
+  const Tangent off = b.u - (a.u + share * (c.u - a.u));
+  // the triangle's height times the mean of its base over x: weights of the two pieces at b
+  const double base = (b.x - a.x) * (2.0 * b.x + a.x) / (3.0 * (b.x + a.x)) +
+                      (c.x - b.x) * (2.0 * c.x + b.x) / (3.0 * (c.x + b.x));
+  return off.norm() * std::abs(base);
+}
+
+/// A ring in a step, along the direction in which it slips.
+struct Ring {
+  double start;          ///< U before the step [m]
+  double slide;          ///< of the two bodies while the ring touches [m]
+  double before, after;  ///< bounds on U when it begins to touch and when it ends [m]
+
+  double change() const { return after - before; }
+  double stick() const { return std::max(0.0, before - start); }  ///< until the bound is met
+  double speed() const { return slide - change(); }               ///< towards the bound
+  double slip() const { return std::max(0.0, start + slide - after); }
+  /// Loss per unit of x: the mean bound while the ring slips, times its slip.
+  double loss() const {
+    const double sticks = stick();
+    const double met = sticks > 0.0 ? before + change() * std::min(1.0, sticks / speed()) : before;
+    return 0.5 * (met + after) * slip();
+  }
+};
+
+/// Force and energy that a memory holds, with what the step adds.
+inline PartialSlipResponse answer(const PartialSlipMemory& memory, double loss, bool slipping) {
+  Tangent force{};
+  double energy = 0.0;
+  for (int i = 1; i < memory.size(); ++i) {
+    const PartialSlipMemory::Point& a = memory[i - 1];
+    const PartialSlipMemory::Point& b = memory[i];
+    const Piece w(a.x, b.x);
+    force = force + (w.both_at_a + w.one_each) * a.u + (w.both_at_b + w.one_each) * b.u;
+    energy += 0.5 * (w.both_at_a * a.u.squared() + 2.0 * w.one_each * a.u.dot(b.u) +
+                     w.both_at_b * b.u.squared());
+  }
+  return {force, energy, loss, slipping};
+}
+
+/// Gauss' three points on [0, 1]: exact to the fifth power.
+inline constexpr std::array<double, 3> gauss_point{0.1127016653792583, 0.5, 0.8872983346207417};
+inline constexpr std::array<double, 3> gauss_weight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+
+/// Loss of a piece that slips in one direction. What Ring holds is straight over x^2 between its
+/// ends; the loss is a polynomial unless rings that stick first meet a bound that moves.
+inline double loss(double xa, const Ring& a, double xb, const Ring& b) {
+  const bool moves = a.change() != 0.0 || b.change() != 0.0;
+  if (!moves || (a.stick() == 0.0 && b.stick() == 0.0)) {
+    const Piece w(xa, xb);
+    const double mean_a = 0.5 * (a.before + a.after);
+    const double mean_b = 0.5 * (b.before + b.after);
+    return w.both_at_a * mean_a * a.slip() + w.both_at_b * mean_b * b.slip() +
+           w.one_each * (mean_a * b.slip() + mean_b * a.slip());
+  }
+  const double scale = 1.0 / (xb + xa);
+  double sum = 0.0;
+  for (std::size_t g = 0; g < 3; ++g) {
+    const double step = gauss_point[g] * (xb - xa);
+    const double s = gauss_point[g] * (2.0 * xa + step) * scale;
+    const Ring ring{a.start + s * (b.start - a.start), a.slide + s * (b.slide - a.slide),
+                    a.before + s * (b.before - a.before), a.after + s * (b.after - a.after)};
+    sum += gauss_weight[g] * ring.loss();
+  }
+  return sum * (xb - xa);
+}
+
+/// One step, from the trial state to the new memory.
+class PartialSlipStep {
+ public:
+  PartialSlipStep(double stiffness, double limit, const Tangent& slide,
+                  const PartialSlipMemory& before)
+      : edge_(stiffness),
+        square_(stiffness * stiffness),
+        slope_(1.5 * limit / (stiffness * square_)),
+        slide_(slide),
+        old_(before),
+        old_edge_(before.edge()),
+        smallest_(1e-15 * slope_ * square_) {}
+
+  /// Loss of rings that lose what presses them together evenly over a step [J].
+  static double released(const Tangent& slide, const PartialSlipMemory& memory) {
+    const PartialSlipStep step(memory.edge() * 1e-9, 0.0, slide, memory);
+    double sum = 0.0;
+    for (int i = 1; i < memory.size(); ++i) {
+      sum += step.left(memory[i - 1], memory[i], memory.edge() * memory.edge());
+    }
+    return sum;
+  }
+
+  PartialSlipResponse run(PartialSlipMemory& memory) {
+    trial();
+    slipping_ = true;  // all rings but the rim's, which carries nothing
+    for (int i = 0; i + 1 < knots_; ++i) slipping_ = slipping_ && at(i).outside;
+    add(at(0).x, at(0).outside ? bent(at(0)) : at(0).trial, false);
+    for (int i = 1; i < knots_; ++i) piece(at(i - 1), at(i));
+    store(memory);
+    return answer(memory, loss_, slipping_);
+  }
+
+ private:
+  /// A point of the trial state: the old profile and what the step does to it.
+  struct Knot {
+    double x;
+    Tangent old;
+    double share;   ///< of the slide that this ring takes part in
+    Tangent trial;  ///< old + share slide
+    double bound;   ///< on |U| now
+    bool outside;
+  };
+
+  const Knot& at(int i) const { return knot_[static_cast<std::size_t>(i)]; }
+
+  double bound(double x) const { return slope_ * (edge_ - x) * (edge_ + x); }
+  double old_bound(double x) const {
+    return std::max(0.0, old_.slope() * (old_edge_ - x) * (old_edge_ + x));
+  }
+
+  Knot knot(double x, const Tangent& old, double share) const {
+    const Tangent trial = old + share * slide_;
+    const double most = bound(x);
+    const double outer = most + smallest_;
+    return {x, old, share, trial, most, trial.squared() > outer * outer};
+  }
+
+  static Tangent bent(const Knot& k) {
+    const double size = k.trial.norm();
+    return size > 0.0 ? (k.bound / size) * k.trial : Tangent{};
+  }
+
+  /// The knots between which everything is straight over x^2; what leaves the contact is lost.
+  void trial() {
+    if (old_.size() == 0) push(knot(0.0, {}, 1.0));
+    for (int i = 0; i < old_.size() && old_[i].x < edge_; ++i)
+      push(knot(old_[i].x, old_[i].u, 1.0));
+    if (edge_ > old_edge_) {
+      push(knot(edge_, {}, 0.0));
+      return;
+    }
+    int i = 0;
+    while (old_[i].x < edge_) ++i;
+    PartialSlipMemory::Point cut = old_[i];
+    if (i > 0 && cut.x > edge_) cut = {edge_, between(old_[i - 1], cut, edge_)};
+    push(knot(edge_, cut.u, 1.0));
+    for (; i < old_.size(); ++i) {
+      leave(cut, old_[i]);
+      cut = old_[i];
+    }
+  }
+
+  void push(const Knot& k) { knot_[static_cast<std::size_t>(knots_++)] = k; }
+
+  static Tangent between(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b,
+                         double x) {
+    return a.u + ((x - a.x) * (x + a.x) / ((b.x - a.x) * (b.x + a.x))) * (b.u - a.u);
+  }
+
+  /// Rings that leave the contact on the way, x^2 falling evenly.
+  void leave(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b) {
+    const double fall = (old_edge_ - edge_) * (old_edge_ + edge_);
+    if (b.x > a.x && fall > 0.0) loss_ += left(a, b, fall);
+  }
+  double left(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b,
+              double fall) const {
+    const auto ring = [&](double x, const Tangent& u) {
+      return std::pair{u, ((old_edge_ - x) * (old_edge_ + x) / fall) * slide_};
+    };
+    const auto [start_a, slide_a] = ring(a.x, a.u);
+    const auto [start_b, slide_b] = ring(b.x, b.u);
+    const Tangent end_a = start_a + slide_a;
+    const Tangent end_b = start_b + slide_b;
+    if (end_a.dot(end_b) < 0.0) {  // they leave to opposite sides: each by itself
+      const double size_a = end_a.norm();
+      const double s = size_a / (size_a + end_b.norm());
+      const double x = std::sqrt(a.x * a.x + s * (b.x - a.x) * (b.x + a.x));
+      if (x > a.x && x < b.x) {
+        const PartialSlipMemory::Point middle{x, between(a, b, x)};
+        return left(a, middle, fall) + left(middle, b, fall);
+      }
+    }
+    const Tangent way = direction(end_a + end_b);
+    return loss(a.x, {start_a.dot(way), slide_a.dot(way), old_bound(a.x), 0.0}, b.x,
+                {start_b.dot(way), slide_b.dot(way), old_bound(b.x), 0.0});
+  }
+
+  static Tangent direction(const Tangent& v) {
+    const double size = v.norm();
+    return size > 0.0 ? (1.0 / size) * v : Tangent{1.0, 0.0};
+  }
+
+  /// Between two knots: parts inside the bound stay, the others are bent back to it.
+  void piece(const Knot& a, const Knot& b) {
+    if (!a.outside && !b.outside) {
+      add(b.x, b.trial, false);
+      return;
+    }
+    if (a.outside && b.outside) {
+      const double first = crossing(a, b);
+      const double second = 1.0 - crossing(b, a);
+      if (first < second) {
+        const Knot in = on(a, b, first);
+        const Knot out = on(a, b, second);
+        slip(a, in);
+        add(out.x, out.trial, false);
+        slip(out, b);
+      } else {
+        slip(a, b);
+      }
+    } else if (b.outside) {
+      const Knot edge = on(a, b, 1.0 - std::min(1.0, crossing(b, a)));
+      add(edge.x, edge.trial, false);
+      slip(edge, b);
+    } else {
+      slip(a, on(a, b, std::min(1.0, crossing(a, b))));
+      add(b.x, b.trial, false);
+    }
+  }
+
+  /// Share of the way over x^2 from a knot outside the bound towards another at which the bound is
+  /// met; 2: nowhere. |U| - bound is convex along it, so that Newton's steps do not go too far; in
+  /// one direction the first one is exact.
+  double crossing(const Knot& out, const Knot& other) const {
+    const Tangent way = other.trial - out.trial;
+    const double fall = other.bound - out.bound;
+    double s = 0.0;
+    for (int i = 0; i < 30; ++i) {
+      const Tangent u = out.trial + s * way;
+      const double size = u.norm();
+      const double beyond = size - (out.bound + s * fall);
+      if (i > 0 && beyond <= smallest_) return s;
+      const double change = u.dot(way) - size * fall;
+      if (!(change < 0.0)) return 2.0;
+      s -= beyond * size / change;
+      if (s > 1.0) return 2.0;
+    }
+    return s;
+  }
+
+  /// The knot at a share of the way over x^2.
+  Knot on(const Knot& a, const Knot& b, double s) const {
+    const double x = std::sqrt(a.x * a.x + s * (b.x - a.x) * (b.x + a.x));
+    Knot k{std::clamp(x, a.x, b.x),
+           a.old + s * (b.old - a.old),
+           a.share + s * (b.share - a.share),
+           a.trial + s * (b.trial - a.trial),
+           0.0,
+           false};
+    k.bound = bound(k.x);
+    return k;
+  }
+
+  /// A piece that slips as a whole. Its direction turns along it where the old one differs from
+  /// that of the slide: chords of at most `chord` each.
+  void slip(const Knot& a, const Knot& b, int depth = 0) {
+    constexpr int deepest = 8;
+    if (!(b.x > a.x)) return;
+    const double cross = a.trial.a * b.trial.b - a.trial.b * b.trial.a;
+    const double along = a.trial.dot(b.trial);
+    if ((std::abs(cross) > straight * std::abs(along) || along < 0.0) && depth < deepest &&
+        knots_left()) {
+      const Knot middle = on(a, b, 0.5);
+      const Tangent off = bent(middle) - 0.5 * (bent(a) + bent(b));
+      if (off.norm() * (b.x - a.x) > chord * slope_ * square_ * edge_) {
+        slip(a, middle, depth + 1);
+        slip(middle, b, depth + 1);
+        return;
+      }
+    }
+    const Tangent way = direction(a.trial + b.trial);
+    const auto ring = [&](const Knot& k) {
+      return Ring{k.old.dot(way), k.share * slide_.dot(way), old_bound(k.x), k.bound};
+    };
+    loss_ += loss(a.x, ring(a), b.x, ring(b));
+    add(b.x, bent(b), true);
+  }
+
+  bool knots_left() const { return size_ + 8 < largest; }
+
+  /// Adds a point of the new profile. @param on_bound the piece that ends here follows the bound
+  void add(double x, const Tangent& u, bool on_bound) {
+    if (size_ > 0 && !(x > last().x)) {
+      if (on_bound) last().u = u;
+      follows_ = follows_ && on_bound;
+      return;
+    }
+    if (on_bound && follows_ && size_ > 1) {
+      // two pieces of the bound in one direction are one
+      const Tangent& p = last().u;
+      const Tangent& q = point_[static_cast<std::size_t>(size_ - 2)].u;
+      const double cross = p.a * q.b - p.b * q.a;
+      const bool end = !(u.squared() > 0.0);
+      const double next = end ? 0.0 : p.a * u.b - p.b * u.a;
+      if (std::abs(cross) <= straight * std::sqrt(p.squared() * q.squared()) && p.dot(q) > 0.0 &&
+          std::abs(next) <= straight * std::sqrt(p.squared() * u.squared()) && p.dot(u) >= 0.0) {
+        last() = {x, u};
+        return;
+      }
+    }
+    follows_ = on_bound;
+    point_[static_cast<std::size_t>(size_++)] = {x, u};
+  }
+
+  PartialSlipMemory::Point& last() { return point_[static_cast<std::size_t>(size_ - 1)]; }
+
+  /// Points that say nothing go; if there are still too many, those that say least.
+  void store(PartialSlipMemory& memory) {
+    double merged = old_.merged();
+    // where the contact grows its old edge lies on a straight line if the path is straight
+    for (int i = size_ - 2; i > 0 && i >= size_ - 3; --i) {
+      const auto j = static_cast<std::size_t>(i);
+      const PartialSlipMemory::Point& a = point_[j - 1];
+      const PartialSlipMemory::Point& b = point_[j];
+      const PartialSlipMemory::Point& c = point_[j + 1];
+      const double share = (b.x - a.x) * (b.x + a.x) / ((c.x - a.x) * (c.x + a.x));
+      const Tangent off = b.u - (a.u + share * (c.u - a.u));
+      if (off.squared() <= 100.0 * smallest_ * smallest_) drop(i);
+    }
+    if (size_ > PartialSlipMemory::capacity) {
+      constexpr int kept = 3 * PartialSlipMemory::capacity / 4;
+      double least = 1e-9 * slope_ * square_ * edge_ / 1.5;  // of the force limit
+      while (size_ > kept) {
+        for (int i = size_ - 2; i > 0 && size_ > kept; i -= 2) {
+          const auto j = static_cast<std::size_t>(i);
+          const double change = left_out(point_[j - 1], point_[j], point_[j + 1]);
+          if (change > least) continue;
+          merged += change;
+          drop(i);
+        }
+        least *= 4.0;
+      }
+    }
+    memory.begin(slope_, merged);
+    for (int i = 0; i < size_; ++i) memory.push(point_[static_cast<std::size_t>(i)]);
+  }
+
+  void drop(int i) {
+    std::copy(point_.begin() + i + 1, point_.begin() + size_, point_.begin() + i);
+    --size_;
+  }
+
+  static constexpr double straight = 1e-8;  // rad: a chord is 1e-17 short
+  static constexpr double chord = 1e-4;
+  static constexpr int largest = 4 * PartialSlipMemory::capacity;
+
+  double edge_;    // 8 G* a now
+  double square_;  // its square
+  double slope_;   // bound on |U| = slope_ (edge_^2 - x^2)
+  Tangent slide_;
+  const PartialSlipMemory& old_;
+  double old_edge_;
+  double smallest_;  // rounding of the largest bound
+  double loss_ = 0.0;
+  bool slipping_ = false;
+  bool follows_ = false;  // the last piece follows the bound
+  int knots_ = 0;
+  int size_ = 0;
+  std::array<Knot, static_cast<std::size_t>(PartialSlipMemory::capacity) + 2> knot_;
+  std::array<PartialSlipMemory::Point, static_cast<std::size_t>(largest)> point_;
+};
+
+}  // namespace detail
+
+/// Energy [J] of the tangential traction that a memory holds.
+inline double elastic_energy(const PartialSlipMemory& memory) {
+  return detail::answer(memory, 0.0, false).elastic;
+}
+
+/// One step of Hertz's contact with partial slip, along a straight path: the contact that slides at
+/// its rim before it slides (Cattaneo 1938; Mindlin 1949; Mindlin and Deresiewicz 1953).
+///
+/// Derivation. A normal contact that grows is a sequence of flat punches: where the radius grows
+/// from r by dr the approach grows by d(delta) and the pressure by that of a rigid punch of radius
+/// r. With x = 8 G* r, Mindlin's stiffness of that punch, and w = E*/(4 G*) delta (so that
+/// dF_N = x dw), Hertz's sphere is w = 3/2 C x^2 and F_N = C x^3, C = F_N/k^3, k = 8 G* a. The same
+/// punches, moved sideways by s(x) dw, carry the tractions s(x) times the pressure increments:
+/// Cattaneo's and every later partial-slip solution is one s(x) with |s| <= mu (Jaeger, Arch.
+/// Appl. Mech. 65, 1995; Ciavarella, J. Appl. Mech. 65, 1998). All rings inside x move together
+/// with what the punches around them do, U(x) = integral of s dw from x to k. Then
+///
+///     force       T = integral of s dF_N = integral of U dx
+///     energy      E = 1/2 integral of U^2 dx
+///     friction    |U(x)| <= mu (w(k) - w(x)) = 3/2 mu F_N/k^3 (k^2 - x^2)
+///     stick       dU = slide of the bodies
+///
+/// so the contact is a row of springs dx side by side, each with Coulomb's law of its own (the same
+/// row as in the method of dimensionality reduction: Popov and Hess, 2015). U(x) is what has to be
+/// remembered; s is its slope, the memory diagram of Aleshin, Bou Matar and Van Den Abeele (Int. J.
+/// Solids Struct. 68, 2015). Under Cattaneo's load U = slide inside the stick radius c and follows
+/// the bound outside, whence
+///
+///     slide = 3 mu F_N/(16 G* a) [1 - (1 - T/(mu F_N))^(2/3)].
+///
+/// Along a straight path of slide and approach the bound moves evenly, and each ring ends at
+/// U + slide or, if that is beyond, on the bound: the step is exact whatever its length, in any
+/// state, loss of rings included. U stays straight between points over x^2; reversals leave a point
+/// each, a closing loop wipes them out. A path that bends while the load grows leaves a point per
+/// step. Beyond PartialSlipMemory::capacity those that say least are replaced by chords:
+/// merged() adds up what that changes. Curved paths are approximated by their chords, which is of
+/// second order in the step.
+///
+/// Energy. The loss of a ring that slips is its bound times its slip, integrated over the step (in
+/// t and, by Gauss' three points, in x: exact under constant load); no term is negative. Work of T
+/// along the path, minus the change of E, is the loss. An integrator that takes the mean of T at
+/// both ends differs from that work at second order, as it does for the normal force.
+///
+/// In the plane U and slide are vectors; a ring goes back to its bound along its own radius. Then
+/// the row of springs is an approximation of the half-space, whose rings act on each other across
+/// the slide, and U(x) of a piece that slips in a turning direction is approximated by chords of at
+/// most 0.1 rad, 0.13 % short.
+///
+/// @param stiffness k = 8 G* a [N/m] at the end of the step, of the radius of contact; <= 0: the
+///        contact is lost
+/// @param limit mu F_N [N]; <= 0: no friction. Where F_N is not Hertz's alone (damping) all
+///        pressures are scaled.
+/// @param slide of body 1 against body 2 in this step [m]
+/// @param memory of this contact; updated
+/// Limits: identical materials (or both incompressible), else normal and tangential tractions are
+/// coupled; half-space, a << R; quasi-static; mu constant over the area; the small slip across the
+/// slide that Poisson's ratio causes is left out, as in all these sources.
+inline PartialSlipResponse partial_slip_step(double stiffness, double limit, const Tangent& slide,
+                                             PartialSlipMemory& memory) {
+  if (stiffness > 0.0 && limit > 0.0) {
+    return detail::PartialSlipStep(stiffness, limit, slide, memory).run(memory);
+  }
+  const double lost = memory.size() > 0 ? detail::PartialSlipStep::released(slide, memory) : 0.0;
+  memory.clear();
+  const bool touching = stiffness > 0.0;
+  if (touching) {
+    memory.push({0.0, {}});
+    memory.push({stiffness, {}});
+  }
+  return {{}, 0.0, lost, touching};
+}
+
+}  // namespace statejump::kernel
