@@ -93,8 +93,8 @@ class Case:
         from statejump.core.limits import check_memory
         from statejump.core.progress import shown
 
-        check_memory(self.definition, ability)
         model = self.definition.behaviour.ability(ability, self.definition)
+        check_memory(self.definition, ability)
         with shown(progress, label) as tell:
             run: Run = model(self.definition, tell)
         return run

@@ -33,8 +33,9 @@ def main() -> int:
     command = [options.compiler, "-std=c++17", "-O0", "-fPIC", "-w", "-DEIGEN_DONT_ALIGN", "-DEIGEN_DONT_VECTORIZE",
                "-DEIGEN_DISABLE_UNALIGNED_ARRAY_ASSERT", f"-DSTATEJUMP_YADE_VARIANT={options.variant}",
                f"-I{options.generated}", f"-I{laws / 'yade_abi' / 'include'}", f"-I{laws / 'yade'}",
-               f"-I{laws / 'kernel' / 'include'}", f"-I{options.repository / 'geometry' / 'include'}",
-               f"-I{options.repository / 'thermal' / 'include'}", *(f"-isystem{path}" for path in options.include)]
+               f"-I{laws / 'kernel' / 'include'}", f"-I{laws / 'stepper' / 'include'}",
+               f"-I{options.repository / 'geometry' / 'include'}", f"-I{options.repository / 'thermal' / 'include'}",
+               *(f"-isystem{path}" for path in options.include)]
     for name in INHERITING:
         subprocess.run([*command, "-fsyntax-only", str(laws / "yade" / name)], check=True)
     with tempfile.TemporaryDirectory(prefix="statejump-variant-") as folder:

@@ -93,7 +93,8 @@ def test_signal_while_it_starts(cases: Path, tmp_path: Path, number: int, status
     _, said = run.communicate(timeout=60)
     assert run.returncode in (status, -number) and "Traceback" not in said
     assert run.returncode == status or number != signal.SIGINT
-    assert said == ("interrupted\n" if number == signal.SIGINT else "")
+    # click begins a line after the ^C of a terminal, if it is there already when the signal comes.
+    assert said.removeprefix("\n") == ("interrupted\n" if number == signal.SIGINT else "")
 
 
 @pytest.mark.parametrize("number, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])

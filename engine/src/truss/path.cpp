@@ -393,8 +393,10 @@ Path solve(const Model& model, const Options& options) {
         if (end == StepEnd::done) {
           convergent = std::max(2.0 * convergent, tolerance);
           // While a change is being located, the next one may be near, and to pass it costs a pivot
-          // for every joint that it moves.
-          const bool creeps = locating && !options.locate_events;
+          // for every joint that it moves. Where the one that was foreseen did not come, the
+          // tangent of a long step does not tell what is near: steps grow little by little.
+          const bool unchanged = counted == walker.path.events.size();
+          const bool creeps = locating && (!options.locate_events || unchanged);
           stride = std::min(target - walker.time, creeps ? 8.0 * stride : convergent);
           for (; counted < walker.path.events.size(); ++counted) {
             const Event& event = walker.path.events[counted];
