@@ -225,7 +225,9 @@ Gradients in_contact(const ClearanceRevolute& joint, const Trial& trial, const G
   const Vector2d n = g.eccentricity / distance;
   const Vector3d along = plane * n;
   const Vector3d left = plane * turned_left(n);
-  const auto [normal, friction, axial] = trial.force;
+  // Names, not a structured binding: a lambda below takes one of them.
+  const double normal = trial.force[0];
+  const double friction = trial.force[1];
   const Matrix3d bend = (normal * left - friction * along) * left.transpose() / distance;
   const double lever = 0.5 * (start.eccentricity.norm() / distance + 1.0);
   const double deeper = g.depth > 0.0 ? 0.5 : 0.0;  // −dr1/d|d| = dr2/d|d|
