@@ -175,17 +175,17 @@ def test_blocks_that_come_to_rest_smoothly_do_not_stall_the_path() -> None:
     assert jump_m(found)[-1, 0] == pytest.approx(jump_m(path(generate.chain(20)))[-1, 0], rel=CLOSED_FORM)
 
 
-@pytest.mark.parametrize("bays", [20, 40])
-def test_tall_masts_pass_with_every_event_located(bays: int) -> None:
+@pytest.mark.parametrize("bays, most_changes", [(20, 12), (40, 16)])
+def test_tall_masts_pass_with_every_event_located(bays: int, most_changes: int) -> None:
     """Both joints of a level slide at once near the top, one of them with a force that rounding could take for one
     that sticks: whoever is let off by rounding starts the next step beyond its bound, and flickers."""
     located, quick = (path(generate.mast(bays), locate_events=locate) for locate in (True, False))
     assert located.complete
     # Increments of 1/50 of a branch: the rolling of elastic contacts is of second order in them.
     assert jump_m(located)[-1] == pytest.approx(jump_m(quick)[-1], rel=0, abs=1e-6 * np.abs(jump_m(quick)).max())
-    # No joint changes more than a few times in each of the two branches.
+    # No joint changes more than a few times in each of the two branches; one that flickers does so hundreds of times.
     most = max(Counter(event.name for event in located.events).values())
-    assert most <= 12, most
+    assert most <= most_changes, most
 
 
 def test_every_state_keeps_to_coulomb_and_the_play() -> None:

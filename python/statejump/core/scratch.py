@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-PREFIX = "statejump-"
+PREFIX = "statejump-run-"  # of nothing else: what bears it and is not locked is removed
 YOUNG_S = 60.0  # a folder this young may be one that is not locked yet
 
 
