@@ -64,7 +64,9 @@ std::string setup(const boost::python::object& wrapper) {
   register_list_converter<JointPhys>();
   register_triangles_converter();
   OurClasses::register_all();
+#ifdef STATEJUMP_HAS_VIEW
   refresh_view();
+#endif
   return "";
 }
 

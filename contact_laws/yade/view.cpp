@@ -14,6 +14,16 @@
 namespace statejump::dem {
 namespace {
 
+// The flag is private in YADE's own headers, public in the declared ones. Access is not checked in
+// an explicit instantiation, so this names it in both.
+bool& view_has_functors();
+
+template <bool* flag>
+struct PrivateFlag {
+  friend bool& view_has_functors() { return *flag; }
+};
+template struct PrivateFlag<&yade::OpenGLRenderer::initDone>;
+
 constexpr int sides = 96;
 constexpr Real pi = 3.14159265358979323846;
 
@@ -168,6 +178,10 @@ Real half_length_of(Real half_length, Real radius) {
 }
 
 }  // namespace
+
+void refresh_view() {
+  view_has_functors() = false;
+}
 
 Real ViewSettings::clearance_scale_ = 1;
 

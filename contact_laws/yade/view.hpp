@@ -9,6 +9,10 @@
 #ifdef STATEJUMP_HAS_VIEW
 namespace statejump::dem {
 
+// Makes a 3-D view that was started before our classes were known draw them, too. Without it YADE
+// ends with a failed assertion when such a view meets a shape of ours.
+void refresh_view();
+
 // How many times larger than it is the play of a journal in its bearing is drawn. YADE makes its
 // own functors for the view, so that a script can only reach what is common to all of them.
 struct ViewSettings {

@@ -17,6 +17,7 @@
 #include <pkg/dem/ScGeom.hpp>
 #ifdef YADE_OPENGL
 #include <pkg/common/GLDrawFunctors.hpp>
+#include <pkg/common/OpenGLRenderer.hpp>
 #define STATEJUMP_HAS_VIEW
 #endif
 #else
@@ -47,15 +48,6 @@ inline const yade::Interaction& interaction_at(const yade::Scene& scene, std::si
 
 inline yade::Interaction& interaction_to_change(const yade::Scene& scene, std::size_t i) {
   return *(*scene.interactions)[i];
-}
-
-// Makes a 3-D view that was started before our classes were known draw them, too. Without it YADE
-// ends with a failed assertion when such a view meets a shape of ours.
-inline void refresh_view() {
-#ifndef STATEJUMP_REAL_YADE_HEADERS
-  // Private in YADE's own headers; there, import the plugin before yade.qt.
-  yade::OpenGLRenderer::initDone = false;
-#endif
 }
 
 // Makes the Python classes of factory classes, base classes first.
