@@ -25,8 +25,6 @@ from statejump.core.tables import markdown
 from statejump.results.record import FILES, save
 from statejump.results.layout import SUFFIX
 
-# What the kind of a case must be able to do for a run of the model.
-ABILITIES = {"reduced": "reduced", "dem": "dem_run"}
 HEADER = ("case", "numbers", "that differ", "largest difference / largest value")
 
 
@@ -42,7 +40,7 @@ def run(folder: Path, models: list[str], names: list[str]) -> None:
         case = sj.load(path)
         for model in models:
             target = folder / model / path.stem
-            unable = getattr(case.definition.behaviour, ABILITIES[model], None) is None
+            unable = not case.definition.behaviour.has_model(model)
             if unable or (names and path.stem not in names) or (target / f"{FILES[model]}{SUFFIX}").exists():
                 continue
             start = time.monotonic()

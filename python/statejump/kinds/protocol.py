@@ -91,10 +91,13 @@ class Kind(Generic[CaseType]):
         """Return what the script in YADE reads."""
         return {"scene": self.scene_module(), **self.ability("dem_input", case)(case)}
 
+    def has_model(self, model: str) -> bool:
+        """Return whether cases of this kind can be run in a model: ``reduced`` or ``dem``."""
+        return self.can({"reduced": "reduced", "dem": "dem_run"}[model])
+
     def campaign_models(self) -> tuple[str, ...]:
         """Return the models that campaigns run."""
-        needed = {"reduced": "reduced", "dem": "dem_run"}
-        return tuple(model for model in self.OUTCOMES_OF if self.can(needed[model]))
+        return tuple(model for model in self.OUTCOMES_OF if self.has_model(model))
 
     def samples(self, case: CaseType, model: str) -> int:
         """Return how many samples a run of a model has."""
