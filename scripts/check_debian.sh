@@ -6,7 +6,8 @@
 #
 # Prints how long each step takes; what they say is in FOLDER/demo.log and FOLDER/test.log. Needs root,
 # debootstrap and about 8 GB in FOLDER (default: a folder in /var/tmp). The folder stays: a second call goes
-# on with its Debian and makes the clone anew. JOBS is the number of processes that build and test.
+# on with its Debian and makes the clone anew. JOBS is the number of processes that build and test. With CCACHE_DIR set,
+# compilers take from that cache what they can: the times are then not those of a bare machine.
 #
 # --quick: `make quick` instead, on standard output. Exit status 75 with a last line that says why if that Debian
 # cannot be had here (no root, no debootstrap, no network).
@@ -49,7 +50,7 @@ needed() {
 trap 'leave_debian "$root"' EXIT
 needed "Debian $release" make_debian "$release" "$root"
 needed "git and make" in_debian "$root" "apt-get update -qq -o APT::Update::Error-Mode=any && apt-get install -y -qq \
-  --no-install-recommends git make ca-certificates >/dev/null"
+  --no-install-recommends git make ca-certificates ${CCACHE_DIR:+ccache} >/dev/null"
 rm -rf "$root/root/statejump"
 timed "clone" git clone -q --no-local "$here/.." "$root/root/statejump"
 if [[ -n $quick ]]; then

@@ -7,7 +7,8 @@
 #     leave_debian FOLDER                 ends what make_debian mounted
 #
 # Certificates of this machine's own (/usr/local/share/ca-certificates) hold in it too: behind a proxy that opens
-# TLS, npm reaches no registry without them. The mirror is MIRROR, else that of the apt of this machine.
+# TLS, npm reaches no registry without them. The mirror is MIRROR, else that of the apt of this machine. With CCACHE_DIR
+# set, that cache serves the compilers inside, too.
 
 make_debian() {
   local release=$1 root=$2 codename said mirror=${MIRROR:-}
@@ -38,14 +39,26 @@ make_debian() {
   mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
   mkdir -p "$root/dev/shm"
   mountpoint -q "$root/dev/shm" || mount -t tmpfs tmpfs "$root/dev/shm"
+  mkdir -p "$root/dev/pts"
+  mountpoint -q "$root/dev/pts" || mount -t devpts devpts "$root/dev/pts"
+  if [[ -n ${CCACHE_DIR:-} ]]; then
+    mkdir -p "$root/var/cache/ccache"
+    mountpoint -q "$root/var/cache/ccache" || mount --bind "$CCACHE_DIR" "$root/var/cache/ccache"
+  fi
 }
 
 in_debian() {
+  local cache=()
+  if mountpoint -q "$1/var/cache/ccache"; then
+    cache=(CCACHE_DIR=/var/cache/ccache CCACHE_BASEDIR=/root/statejump CCACHE_NOHASHDIR=1
+           CMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  fi
   chroot "$1" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
-    NODE_EXTRA_CA_CERTS=/etc/ssl/certs/ca-certificates.crt \
+    NODE_EXTRA_CA_CERTS=/etc/ssl/certs/ca-certificates.crt "${cache[@]}" \
     bash -euo pipefail -c "$2"
 }
 
 leave_debian() {
-  umount "$1/dev/shm" "$1/proc" 2>/dev/null || true
+  umount "$1/var/cache/ccache" 2>/dev/null || true
+  umount "$1/dev/pts" "$1/dev/shm" "$1/proc" 2>/dev/null || true
 }
