@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/multiprecision/mpfr.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -20,7 +20,7 @@
 namespace statejump::kernel::laws {
 namespace {
 
-using Big = boost::multiprecision::cpp_bin_float_50;
+using Big = boost::multiprecision::static_mpfr_float_50;
 using BigVector = std::array<Big, 3>;
 
 Big dot(const BigVector& a, const BigVector& b) {
