@@ -202,8 +202,8 @@ def main() -> None:
     publish(options.output, "peers", COLUMNS, rows, f"""# Cost of a contact and step beside other programs
 
 n contacts with Hertz's normal force and Mindlin's spring under Coulomb's limit, the same material, load, step and
-search for neighbours in each program; {options.repetitions} repetitions in turn, one thread, medians. LAMMPS and LIGGGHTS are
-Debian's. In a bore LAMMPS knows one wall for all spheres, and one contact of a sphere with it.
+search for neighbours in each program; {options.repetitions} repetitions in turn, one thread, medians. LAMMPS and
+LIGGGHTS are Debian's. In a bore LAMMPS knows one wall for all spheres, and one contact of a sphere with it.
 
 {table(rows, scenes)}
 {left_out}
