@@ -145,7 +145,7 @@ void Model::validate() const {
           "stress_free_length", link.stress_free_length, "finite, > 0 m");
     check(std::isfinite(link.temperature_fraction), item, "temperature_fraction",
           link.temperature_fraction, "finite");
-    const Eigen::Vector2d range = ranges[static_cast<std::size_t>(link.program)];
+    const Eigen::Vector2d& range = ranges[static_cast<std::size_t>(link.program)];
     const double per_kelvin = link.thermal_expansion * link.temperature_fraction;
     const double strain = std::min(per_kelvin * range[0], per_kelvin * range[1]);
     check(std::isfinite(strain) && strain > -1, item, "thermal_expansion", link.thermal_expansion,
