@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Preloaded by the campaign of kills: the system calls that bring something to a folder, counted, and one of them made
-// to fail or to be the last thing that the process does.
+// Preloaded by the campaign of kills: the system calls that bring something to a folder, counted,
+// and one of them made to fail or to be the last thing that the process does.
 //
 //   DOOM_FOLDER  calls on files and names below it count
 //   DOOM_CALL    which of them fails, from 1; 0: none
@@ -12,6 +12,7 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <signal.h>
+#include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,12 +29,25 @@ static long number(const char* name) {
   return given == NULL ? 0 : strtol(given, NULL, 10);
 }
 
-static int below(const char* path) {
+// Writes the path of an open file; whether there is one.
+static int path_of(int descriptor, char* path, size_t size) {
+  char name[64];
+  snprintf(name, sizeof name, "/proc/self/fd/%d", descriptor);
+  const ssize_t length = readlink(name, path, size - 1);
+  if (length < 0) return 0;
+  path[length] = 0;
+  return 1;
+}
+
+// A relative path begins at this folder, or at the working directory.
+static int below_at(int at, const char* path) {
   const char* folder = getenv("DOOM_FOLDER");
   char whole[PATH_MAX];
   if (folder == NULL || path == NULL) return 0;
   if (path[0] != '/') {
-    if (getcwd(whole, sizeof whole) == NULL || strlen(whole) + strlen(path) + 2 > sizeof whole) return 0;
+    const int known =
+        at == AT_FDCWD ? getcwd(whole, sizeof whole) != NULL : path_of(at, whole, sizeof whole);
+    if (!known || strlen(whole) + strlen(path) + 2 > sizeof whole) return 0;
     strcat(whole, "/");
     strcat(whole, path);
     path = whole;
@@ -41,14 +55,13 @@ static int below(const char* path) {
   return strncmp(path, folder, strlen(folder)) == 0;
 }
 
+static int below(const char* path) {
+  return below_at(AT_FDCWD, path);
+}
+
 static int below_of(int descriptor) {
-  char name[64];
   char path[PATH_MAX];
-  snprintf(name, sizeof name, "/proc/self/fd/%d", descriptor);
-  const ssize_t length = readlink(name, path, sizeof path - 1);
-  if (length < 0) return 0;
-  path[length] = 0;
-  return below(path);
+  return path_of(descriptor, path, sizeof path) && below(path);
 }
 
 // Whether this call fails; errno is set.
@@ -70,6 +83,16 @@ __attribute__((destructor)) static void told(void) {
     fclose(file);
   }
 }
+
+// Opening counts where it may make the file.
+#define MODE(flags, mode)                                      \
+  mode_t mode = 0;                                             \
+  if (((flags)&O_CREAT) || ((flags)&O_TMPFILE) == O_TMPFILE) { \
+    va_list more;                                              \
+    va_start(more, flags);                                     \
+    mode = (mode_t)va_arg(more, unsigned);                     \
+    va_end(more);                                              \
+  }
 
 #define NEXT(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
 
@@ -111,4 +134,21 @@ int rmdir(const char* path) {
 int unlink(const char* path) {
   if (doomed(below(path))) return -1;
   return NEXT(unlink)(path);
+}
+
+int unlinkat(int at, const char* path, int flags) {
+  if (doomed(below_at(at, path))) return -1;
+  return NEXT(unlinkat)(at, path, flags);
+}
+
+int open64(const char* path, int flags, ...) {
+  MODE(flags, mode)
+  if (doomed((flags & O_CREAT) && below(path))) return -1;
+  return NEXT(open64)(path, flags, mode);
+}
+
+int openat64(int at, const char* path, int flags, ...) {
+  MODE(flags, mode)
+  if (doomed((flags & O_CREAT) && below_at(at, path))) return -1;
+  return NEXT(openat64)(at, path, flags, mode);
 }

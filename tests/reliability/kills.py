@@ -2,13 +2,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Campaign of kills: whatever ends a command, its results are complete or absent, never half.
 
-    kills.py --command build/bin/statejump --python build/python --library build/.../failing_calls.so [--most N]
+    kills.py --command build/bin/statejump --python build/python --library build/.../failing_calls.so
+        [--most N] [--instants N] [--only NAME ...] [--seed N]
 
 Every command runs over results of an older run. It is killed at random instants; killed before each of its calls that
 write, sync, rename, make or remove something below the results; and each of these calls fails once with ENOSPC and once
 with EIO. Then the next run opens the folder, as it does by itself, and what is there must be the files of the old run
 or those of the new one, byte by byte, and nothing besides; the journal of a campaign must hold whole samples. The
 status must be one of those in docs/mistakes.md, without a traceback.
+
+Starting Python takes most of a short run: nine of ten are forks of a server that has loaded what the command loads
+(forkserver.py), every tenth starts the command itself.
 """
 from __future__ import annotations
 
@@ -27,10 +31,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from forkserver import Ended, Forkserver
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 # What of a command's files is of the day, not of the result.
 OF_THE_DAY = ("dem_run.json", "run.json", "samples.journal")
-STATUSES = (0, 2)
+SORTS = ("killed before a call", "a call fails, ENOSPC", "a call fails, EIO", "killed at an instant")
+STARTED = 10  # every so many runs the command itself is started
 
 
 @dataclass
@@ -42,6 +49,7 @@ class Subject:
     folder: str
     case: str
     old: tuple[str, str]  # what of the case is another in the older run
+    calls: int = 0
     counts: dict[str, int] = field(default_factory=dict)
     faults: list[str] = field(default_factory=list)
 
@@ -68,7 +76,7 @@ SUBJECTS = (
 
 
 class Campaign:
-    """Runs commands in folders of their own."""
+    """Runs commands in folders of their own. A context manager."""
 
     def __init__(self, command: Path, python: Path, library: Path, root: Path) -> None:
         self.command, self.library, self.root = command, library, root
@@ -76,6 +84,14 @@ class Campaign:
         self.canned = root / "canned"
         self.canned.mkdir()
         self.environment = {**os.environ, "STATEJUMP_YADE": str(self._yade()), "PYTHONDONTWRITEBYTECODE": "1"}
+        self.runs = 0
+        self.server = Forkserver(command, {**self.environment, "LD_PRELOAD": str(library)}, root)
+
+    def __enter__(self) -> Campaign:
+        return self
+
+    def __exit__(self, *ignored: object) -> None:
+        self.server.__exit__()
 
     def _yade(self) -> Path:
         """Return a command that stands for YADE: it gives the histories of the reduced model for those of the DEM, for
@@ -117,12 +133,24 @@ class Campaign:
             shutil.rmtree(folder / "given")
         return folder
 
-    def run(self, folder: Path, words: list[str], **doom: object) -> subprocess.CompletedProcess[str]:
+    def run(self, folder: Path, words: list[str], kill_after_s: float | None = None, **doom: object) -> Ended:
+        """Run the command: by the server, every tenth time by itself. Its group is killed after so many seconds."""
         more = {name: str(value) for name, value in doom.items()}
         if more:
-            more.update(LD_PRELOAD=str(self.library), DOOM_FOLDER=str(folder / "results"))
-        return subprocess.run([str(self.command), *words], cwd=folder, env={**self.environment, **more},
-                              capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=300)
+            more["DOOM_FOLDER"] = str(folder / "results")
+        self.runs += 1
+        if self.runs % STARTED:
+            return self.server.run(folder, words, more, kill_after_s)
+        said = self.root / "said by itself"
+        with said.open("wb") as stream, subprocess.Popen(
+            [str(self.command), *words], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=stream,
+            env={**self.environment, "LD_PRELOAD": str(self.library), **more}, start_new_session=True,
+        ) as process:
+            try:
+                process.wait(timeout=kill_after_s)
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, signal.SIGKILL)
+        return Ended(process.returncode, said.read_text(encoding="utf-8", errors="replace"))
 
     def over(self, folder: Path, subject: Subject, old: Path) -> None:
         """Put the results of the older run where the next run works."""
@@ -168,31 +196,38 @@ class Campaign:
             if "belongs to another campaign" not in str(other):
                 raise
 
-    def of(self, subject: Subject, most: int, generator: random.Random) -> None:
+    def of(self, subject: Subject, most: int, instants: int, generator: random.Random) -> None:
         """Run the whole campaign of a command, at most so often of each sort."""
         old, new = self.prepared(subject, True), self.prepared(subject, False)
         known = {}
         words = subject.words
         for which, folder in (("old", old), ("new", new)):
             (folder / "results").mkdir(exist_ok=True)
-            started = time.monotonic()
-            done = self.run(folder, words, DOOM_COUNT=folder / "count")
-            lasted = time.monotonic() - started
+            if which == "new":
+                self.server.load(folder, words)
+                shutil.rmtree(folder / "results")
+                (folder / "results").mkdir()
+            done = self.run(folder, words)
             assert done.returncode in (0, 1), done.stderr
             known[which] = contents(folder / subject.folder)
         ordinary = done.returncode
         if subject.name == "sweep":
             words = [*words, "--restart"]
         self.over(new, subject, old)
-        done = self.run(new, words, DOOM_COUNT=new / "count")
-        calls = int((new / "count").read_text())
-        for call in chosen(calls, most, generator):
+        started = time.monotonic()
+        done = self.server.run(new, words, {"DOOM_FOLDER": str(new / "results"), "DOOM_COUNT": str(new / "count")})
+        lasted = time.monotonic() - started
+        assert done.returncode == ordinary, done.stderr
+        subject.calls = int((new / "count").read_text())
+        for call in chosen(subject.calls, most, generator):
             self._killed_before(subject, old, new, words, known, call)
         for error in (errno.ENOSPC, errno.EIO):
-            for call in chosen(calls, most, generator):
+            for call in chosen(subject.calls, most, generator):
                 self._failing(subject, old, new, words, known, call, error, ordinary)
-        for _ in range(most):
+        for _ in range(instants):
             self._killed_after(subject, old, new, words, known, generator.uniform(0, lasted))
+        shutil.rmtree(old)
+        shutil.rmtree(new)
 
     def _killed_before(self, subject: Subject, old: Path, new: Path, words: list[str],
                        known: dict[str, dict[str, str]], call: int) -> None:
@@ -216,12 +251,7 @@ class Campaign:
     def _killed_after(self, subject: Subject, old: Path, new: Path, words: list[str],
                       known: dict[str, dict[str, str]], seconds: float) -> None:
         self.over(new, subject, old)
-        with subprocess.Popen([str(self.command), *words], cwd=new, env=self.environment, stdin=subprocess.DEVNULL,
-                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True) as process:
-            try:
-                process.wait(timeout=seconds)
-            except subprocess.TimeoutExpired:
-                os.killpg(process.pid, signal.SIGKILL)
+        self.run(new, words, kill_after_s=seconds)
         count(subject, "killed at an instant")
         self.judged(subject, new, known, f"killed after {seconds:.3f} s")
 
@@ -246,6 +276,12 @@ def chosen(calls: int, most: int, generator: random.Random) -> Iterator[int]:
     yield from range(calls - last + 1, calls + 1)
 
 
+def told(name: str, counts: dict[str, int], faults: int) -> None:
+    """Print what was tried and found."""
+    tried = ", ".join(f"{sort} {number}" for sort, number in counts.items())
+    print(f"{name}: {tried}; ends {sum(counts.values())}; faults {faults}", flush=True)
+
+
 def count(subject: Subject, sort: str) -> None:
     """Count one end of a command."""
     subject.counts[sort] = subject.counts.get(sort, 0) + 1
@@ -256,22 +292,26 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("command", "python", "library"):
         parser.add_argument(f"--{name}", type=Path, required=True)
-    parser.add_argument("--most", type=int, default=1000, help="ends of each sort for each command")
+    parser.add_argument("--most", type=int, default=1000, help="ends of each sort at a call, for each command")
+    parser.add_argument("--instants", type=int, help="kills at random instants for each command; as many by default")
     parser.add_argument("--only", nargs="*", help="names of commands")
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
-    generator, faults = random.Random(given.seed), 0
-    with tempfile.TemporaryDirectory(prefix="kills-") as root:
-        campaign = Campaign(given.command.resolve(), given.python.resolve(), given.library.resolve(), Path(root))
+    generator, faults, total = random.Random(given.seed), 0, dict.fromkeys(SORTS, 0)
+    with tempfile.TemporaryDirectory(prefix="kills-") as root, Campaign(
+        given.command.resolve(), given.python.resolve(), given.library.resolve(), Path(root)
+    ) as campaign:
         for subject in SUBJECTS:
             if given.only and subject.name not in given.only:
                 continue
-            campaign.of(subject, given.most, generator)
-            said = ", ".join(f"{sort} {number}" for sort, number in subject.counts.items())
-            print(f"{subject.name}: {said}; faults {len(subject.faults)}", flush=True)
+            campaign.of(subject, given.most, given.most if given.instants is None else given.instants, generator)
+            told(f"{subject.name}, {subject.calls} calls", subject.counts, len(subject.faults))
             for fault in subject.faults:
                 print(f"  {fault}", flush=True)
             faults += len(subject.faults)
+            for sort, number in subject.counts.items():
+                total[sort] += number
+    told("all", total, faults)
     return 1 if faults else 0
 
 
