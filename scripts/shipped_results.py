@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Results of the shipped cases on two machines, releases or builds, value by value.
 
-    PYTHONPATH=build/python scripts/shipped_results.py run FOLDER [--model dem] [--case NAME ...]
+    PYTHONPATH=build/python scripts/shipped_results.py run FOLDER [--model dem] [--case NAME ...] [--yade-loop]
     PYTHONPATH=build/python scripts/shipped_results.py compare FIRST SECOND
 
 ``run`` leaves a result file of every shipped case that the model can run in FOLDER/MODEL/CASE. A case whose result is
-there is left out, so an interrupted call goes on. ``compare`` prints a Markdown table: a row for each case and model,
+there is left out, so an interrupted call goes on. With ``--yade-loop`` YADE's own loop steps the DEM, else what the
+case asks for. ``compare`` prints a Markdown table: a row for each case and model,
 how many numbers there are, how many differ in a bit, and of those the column with the largest difference beside the
 largest value of that column. Exit status 1: a number differs, or a file stands on one side alone.
 """
@@ -34,10 +35,12 @@ def shipped() -> list[Path]:
     return sorted([*folder.glob("*.toml"), *folder.glob("trusses/*.toml")])
 
 
-def run(folder: Path, models: list[str], names: list[str]) -> None:
+def run(folder: Path, models: list[str], names: list[str], changes: dict[str, str]) -> None:
     """Run the shipped cases that a model can run, one after the other."""
     for path in shipped():
         case = sj.load(path)
+        if changes and "dem" in models and case.definition.behaviour.has_model("dem"):
+            case = case.changed(changes)
         for model in models:
             target = folder / model / path.stem
             unable = not case.definition.behaviour.has_model(model)
@@ -109,10 +112,11 @@ if __name__ == "__main__":
     runs.add_argument("folder", type=Path)
     runs.add_argument("--model", action="append", choices=("reduced", "dem"))
     runs.add_argument("--case", action="append", default=[])
+    runs.add_argument("--yade-loop", action="store_true")
     comparison = commands.add_parser("compare")
     comparison.add_argument("first", type=Path)
     comparison.add_argument("second", type=Path)
     given = parser.parse_args()
     if given.command == "compare":
         sys.exit(compare(given.first, given.second))
-    run(given.folder, given.model or ["reduced", "dem"], given.case)
+    run(given.folder, given.model or ["reduced", "dem"], given.case, {"dem.stepper": "yade"} if given.yade_loop else {})
