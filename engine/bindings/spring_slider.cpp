@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "bindings.hpp"
@@ -145,9 +146,12 @@ void bind_path(py::module_& module) {
                                   "Exact quasi-static path, the result of solve().")
       .def_readonly("model", &spring_slider::Path::model)
       .def_readonly("program", &spring_slider::Path::program)
-      .def_readonly("events", &spring_slider::Path::events, "List of Event, in order of time.")
+      .def_readonly("events", &spring_slider::Path::events,
+                    "List of Event of the cycles that are kept, in order of time.")
       .def_readonly("segments", &spring_slider::Path::segments,
-                    "List of Segment, without gaps in time.")
+                    "List of Segment of the cycles that are kept, without gaps in a cycle.")
+      .def_readonly("largest_axial_force_N", &spring_slider::Path::largest_axial_force,
+                    "Largest |F| over all cycles, kept or not.")
       .def_property_readonly("state_jump_m", &spring_slider::Path::state_jump,
                              "Displacement at the end minus that at the start [m].")
       .def("jump_after_cycle", &spring_slider::Path::jump_after_cycle, py::arg("cycle"),
@@ -160,7 +164,8 @@ void bind_path(py::module_& module) {
             return to_dict(sample(self, time_s));
           },
           py::arg("time_s"),
-          "The path at the times [s], in any order, >= 0: a dict of arrays time_s,\n"
+          "The path at the times [s], in any order, >= 0 and in cycles that are kept: a dict of "
+          "arrays time_s,\n"
           "temperature_change_K, displacement_m, axial_force_N (positive in compression),\n"
           "friction_force_N and stop_force_N (on the block, positive towards +x),\n"
           "elastic_energy_J (of the link), preload_energy_J, friction_dissipation_J,\n"
@@ -168,11 +173,13 @@ void bind_path(py::module_& module) {
           "depend on the other times.");
   module.def(
       "solve_spring_slider",
-      [](const spring_slider::SpringSlider& model, const thermal::Program& program) {
-        return solve(model, program);
+      [](const spring_slider::SpringSlider& model, const thermal::Program& program,
+         const std::optional<Eigen::VectorXd>& time_s) {
+        return time_s ? solve(model, program, *time_s) : solve(model, program);
       },
-      py::arg("model"), py::arg("program"),
+      py::arg("model"), py::arg("program"), py::arg("time_s") = py::none(),
       "Exact path of a SpringSlider under a ThermalProgram, from rest at x = 0 and dT = 0.\n"
+      "With times only the cycles are kept that sample() needs there, the first two and the last.\n"
       "Raises ValueError if the program takes the link to a length <= 0.");
 }
 

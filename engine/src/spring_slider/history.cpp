@@ -10,8 +10,9 @@ namespace statejump::spring_slider {
 
 namespace {
 
-/// Segment that holds `time`: the one with start_time <= time < end_time, else the last. Tried
-/// first is `hint`, the answer for the time before, because times usually ascend.
+/// Segment that holds `time`: the one with start_time <= time < end_time, after the end of all the
+/// last. Tried first is `hint`, the answer for the time before, because times usually ascend.
+/// Throws std::invalid_argument for a time in a cycle that the path has left out.
 const Segment& segment_at(const std::vector<Segment>& segments, double time, std::size_t& hint) {
   const auto holds = [&](std::size_t i) {
     return segments[i].start_time <= time && time < segments[i].end_time;
@@ -20,6 +21,8 @@ const Segment& segment_at(const std::vector<Segment>& segments, double time, std
     const auto later = [](double t, const Segment& segment) { return t < segment.start_time; };
     const auto after = std::upper_bound(segments.begin() + 1, segments.end(), time, later);
     hint = static_cast<std::size_t>(after - segments.begin()) - 1;
+    kernel::require(holds(hint) || hint + 1 == segments.size(), "time", time,
+                    "one in a cycle that the path keeps [s]");
   }
   return segments[hint];
 }
@@ -42,17 +45,8 @@ History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times)
     const double time = times[i];
     kernel::require(std::isfinite(time) && time >= 0.0, "time", time, "finite, >= 0 s");
     const Segment& segment = segment_at(path.segments, time, hint);
-    // The time of an event is rounded, so ΔT may lie an ulp outside; kept inside, x stays within
-    // the stops and |F| within the friction limit.
-    const auto [lowest, highest] =
-        std::minmax(segment.start_temperature_change, segment.end_temperature_change);
-    const double change = std::clamp(path.program.temperature_change(time), lowest, highest);
-    const double x = displacement(model, segment, change);
+    const auto [change, x, force] = place_at(model, path.program, segment, time);
     const double preload_force = -model.preload_stiffness * x;
-    // Sliding, the block carries exactly the friction limit; a difference of x and x_T would not.
-    const double force = segment.motion == Motion::slide
-                             ? segment.direction * model.friction_force - preload_force
-                             : axial_force(model, change, x);
     const double load = force + preload_force;
     const double friction =
         segment.motion == Motion::stick ? -load : -segment.direction * model.friction_force;

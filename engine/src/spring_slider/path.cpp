@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numeric>
 
 #include "statejump/kernel/require.hpp"
 
@@ -23,7 +24,9 @@ int sign(double value) {
 /// open segment, the last event and the sense of the last slide.
 class Follower {
  public:
-  explicit Follower(Path& path) : path_(path), model_(path.model) {}
+  /// `kept`: the cycles to keep, ascending.
+  Follower(Path& path, const std::vector<int>& kept)
+      : path_(path), model_(path.model), kept_(kept) {}
 
   void follow(const thermal::Branch& branch) {
     const int heating = sign(branch.end - branch.start);
@@ -44,7 +47,14 @@ class Follower {
     close();
     add_event(EventKind::cycle_end, open_.stage, open_.stage);
     path_.cycle_end_displacements.push_back(open_.end_displacement);
+    if (keeps()) ++next_kept_;
     ++open_.cycle;
+  }
+
+  /// The last segment ends where nothing starts.
+  void end() {
+    const Segment& last = path_.segments.back();
+    note_force(last, last.end_time);
   }
 
  private:
@@ -60,7 +70,11 @@ class Follower {
     const double end = open_.end_temperature_change;
     const double work = thermal_work(model_, open_, end);
     const double slid = std::abs(open_.end_displacement - open_.start_displacement);
-    if (open_.end_time > open_.start_time) path_.segments.push_back(open_);
+    if (open_.end_time > open_.start_time) {
+      note_force(open_, open_.start_time);
+      note_compression();
+      if (keeps()) path_.segments.push_back(open_);
+    }
     open_.thermal_work += work;
     open_.friction_dissipation += model_.friction_force * slid;
     open_.start_time = open_.end_time;
@@ -68,7 +82,24 @@ class Follower {
     open_.start_displacement = open_.end_displacement;
   }
 
+  /// Is the present cycle kept?
+  bool keeps() const { return next_kept_ < kept_.size() && kept_[next_kept_] == open_.cycle; }
+
+  void note_force(const Segment& segment, double time) {
+    const double force = place_at(model_, path_.program, segment, time).axial_force;
+    path_.largest_axial_force = std::max(path_.largest_axial_force, std::abs(force));
+  }
+
+  void note_compression() {
+    const double force = axial_force(model_, open_.end_temperature_change, open_.end_displacement);
+    if (force > path_.largest_compression) {
+      path_.largest_compression = force;
+      path_.largest_compression_temperature_change = open_.end_temperature_change;
+    }
+  }
+
   void add_event(EventKind kind, Stage before, Stage after) {
+    if (!keeps()) return;
     path_.events.push_back({kind, before, after, open_.start_time, open_.start_temperature_change,
                             open_.start_displacement,
                             spring_slider::axial_force(model_, open_.start_temperature_change,
@@ -174,6 +205,8 @@ class Follower {
 
   Path& path_;
   const SpringSlider& model_;
+  const std::vector<int>& kept_;
+  std::size_t next_kept_ = 0;
   const thermal::Branch* branch_ = nullptr;
   Segment open_{Stage::S1, Motion::stick, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   int heating_ = 0;
@@ -214,32 +247,89 @@ double Path::jump_after_cycle(int cycle) const {
   return cycle_end_displacements[static_cast<std::size_t>(cycle) - 1];
 }
 
-void solve(const SpringSlider& model, const thermal::Program& program, Path& path) {
-  model.validate();
-  program.validate();
+namespace {
+
+/// Follows the program and keeps these cycles. Model and program are in range.
+void follow(const SpringSlider& model, const thermal::Program& program,
+            const std::vector<int>& kept, Path& path) {
   require_positive_length(model, program);
   path.model = model;
   path.program = program;
   path.segments.clear();
   path.events.clear();
   path.cycle_end_displacements.clear();
+  path.largest_compression = path.largest_compression_temperature_change = 0.0;
+  path.largest_axial_force = 0.0;
   // A cycle that touches both stops has 12 events; more only in a table with many turns.
-  const auto cycles = static_cast<std::size_t>(program.cycles);
-  path.segments.reserve(12 * cycles);
-  path.events.reserve(12 * cycles);
-  path.cycle_end_displacements.reserve(cycles);
-  Follower follower(path);
+  path.segments.reserve(12 * kept.size());
+  path.events.reserve(12 * kept.size());
+  path.cycle_end_displacements.reserve(static_cast<std::size_t>(program.cycles));
+  Follower follower(path, kept);
   for (int cycle = 0; cycle < program.cycles; ++cycle) {
     thermal::for_each_branch(
         program, cycle, [&follower](const thermal::Branch& branch) { follower.follow(branch); });
     follower.end_cycle();
   }
+  follower.end();
+}
+
+/// Cycles that hold `times`, with their neighbours, because t/P is rounded; the first two, the
+/// last.
+std::vector<int> cycles_of(const thermal::Program& program,
+                           const Eigen::Ref<const Eigen::VectorXd>& times) {
+  const int last = program.cycles - 1;
+  std::vector<int> cycles{0, std::min(1, last), last};
+  int before = -1;
+  for (const double time : times) {
+    kernel::require(std::isfinite(time) && time >= 0.0, "time", time, "finite, >= 0 s");
+    const int cycle = static_cast<int>(std::min<double>(std::floor(time / program.period), last));
+    if (cycle == before) continue;
+    before = cycle;
+    for (int near = std::max(cycle - 1, 0); near <= std::min(cycle + 1, last); ++near) {
+      cycles.push_back(near);
+    }
+  }
+  std::sort(cycles.begin(), cycles.end());
+  cycles.erase(std::unique(cycles.begin(), cycles.end()), cycles.end());
+  return cycles;
+}
+
+}  // namespace
+
+void solve(const SpringSlider& model, const thermal::Program& program, Path& path) {
+  model.validate();
+  program.validate();
+  std::vector<int> all(static_cast<std::size_t>(program.cycles));
+  std::iota(all.begin(), all.end(), 0);
+  follow(model, program, all, path);
 }
 
 Path solve(const SpringSlider& model, const thermal::Program& program) {
   Path path;
   solve(model, program, path);
   return path;
+}
+
+Path solve(const SpringSlider& model, const thermal::Program& program,
+           const Eigen::Ref<const Eigen::VectorXd>& times) {
+  model.validate();
+  program.validate();
+  Path path;
+  follow(model, program, cycles_of(program, times), path);
+  return path;
+}
+
+Place place_at(const SpringSlider& model, const thermal::Program& program, const Segment& segment,
+               double time) {
+  const auto [lowest, highest] =
+      std::minmax(segment.start_temperature_change, segment.end_temperature_change);
+  const double change = std::clamp(program.temperature_change(time), lowest, highest);
+  const double x = displacement(model, segment, change);
+  // Sliding, the block carries exactly the friction limit; a difference of x and x_T would not.
+  if (segment.motion == Motion::slide) {
+    return {change, x, segment.direction * model.friction_force + model.preload_stiffness * x};
+  }
+  return {change, x, axial_force(model, change, x)};
 }
 
 double displacement(const SpringSlider& model, const Segment& segment, double temperature_change) {
@@ -277,16 +367,7 @@ double thermal_work(const SpringSlider& model, const Segment& segment, double te
 }
 
 std::vector<std::string> warnings(const Path& path) {
-  double largest = 0.0;
-  double at = 0.0;
-  for (const Segment& segment : path.segments) {
-    const double force =
-        axial_force(path.model, segment.end_temperature_change, segment.end_displacement);
-    if (force > largest) {
-      largest = force;
-      at = segment.end_temperature_change;
-    }
-  }
+  const double largest = path.largest_compression;
   const double clamped = euler_load(path.model, EndCondition::clamped_clamped);
   const double pinned = euler_load(path.model, EndCondition::pinned_pinned);
   if (largest <= pinned) return {};
@@ -295,8 +376,8 @@ std::vector<std::string> warnings(const Path& path) {
                 "axial force %.4g N at a temperature change of %.4g K exceeds the %s Euler load of "
                 "an unguided link of square section (%.4g N clamped-clamped, %.4g N "
                 "pinned-pinned): the model assumes a guided link",
-                largest, at, largest > clamped ? "clamped-clamped" : "pinned-pinned", clamped,
-                pinned);
+                largest, path.largest_compression_temperature_change,
+                largest > clamped ? "clamped-clamped" : "pinned-pinned", clamped, pinned);
   return {text};
 }
 

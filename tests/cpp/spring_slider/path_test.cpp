@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 
+#include "statejump/spring_slider/history.hpp"
 #include "table1.hpp"
 
 namespace statejump::spring_slider {
@@ -222,6 +224,68 @@ TEST(SpringSliderPath, ReusedPathEqualsAFreshOne) {
   EXPECT_EQ(path.segments.size(), fresh.segments.size());
   EXPECT_EQ(path.events.size(), fresh.events.size());
   EXPECT_EQ(path.cycle_end_displacements, fresh.cycle_end_displacements);
+}
+
+TEST(SpringSliderPath, CyclesThatAreLeftOutAreComputed) {
+  SpringSlider preloaded = table1(2e-3);
+  preloaded.preload_stiffness = 3e5;
+  for (const SpringSlider& model : {table1(), preloaded}) {
+    const thermal::Program program = cycle(thermal::Shape::sine, 300, 0.7);
+    const Path whole = solve(model, program);
+    const Eigen::Vector4d times(0.3, 100.05, 100.0, 300.0 * 0.7);
+    const Path path = solve(model, program, times);
+    EXPECT_EQ(path.cycle_end_displacements, whole.cycle_end_displacements);
+    EXPECT_EQ(path.largest_axial_force, whole.largest_axial_force);
+    EXPECT_EQ(warnings(path), warnings(whole));
+    const History some = sample(path, times);
+    const History all = sample(whole, times);
+    EXPECT_EQ(some.displacement, all.displacement);
+    EXPECT_EQ(some.thermal_work, all.thermal_work);
+    EXPECT_EQ(some.stage, all.stage);
+    // Cycle 142 and its neighbours, the first two, the last two: seven of 300, each as in the
+    // whole.
+    std::vector<int> kept;
+    std::size_t at = 0;
+    for (const Segment& segment : path.segments) {
+      if (kept.empty() || kept.back() != segment.cycle) kept.push_back(segment.cycle);
+      while (whole.segments[at].start_time != segment.start_time) ++at;
+      EXPECT_EQ(segment.end_displacement, whole.segments[at].end_displacement);
+      EXPECT_EQ(segment.thermal_work, whole.segments[at].thermal_work);
+    }
+    EXPECT_EQ(kept, (std::vector<int>{0, 1, 141, 142, 143, 298, 299}));
+    EXPECT_NE(refusal([&path] { sample(path, Eigen::VectorXd::Constant(1, 50.0)); }), "");
+    EXPECT_NE(refusal([&] { solve(model, program, Eigen::VectorXd::Constant(1, -1.0)); }), "");
+  }
+}
+
+TEST(SpringSliderPath, MemoryOfALongProgramIsThatOfTheTimes) {
+  // Of any number of cycles the same are kept; one double a cycle is left, its end.
+  const auto kept = [](int cycles) {
+    const thermal::Program program = cycle(thermal::Shape::sine, cycles);
+    const Eigen::Vector2d ends(0.0, program.duration());
+    const Path path = solve(table1(), program, ends);
+    EXPECT_EQ(path.cycle_end_displacements.size(), static_cast<std::size_t>(cycles));
+    return std::array{path.segments.capacity(), path.events.capacity(), path.segments.size(),
+                      path.events.size()};
+  };
+  EXPECT_EQ(kept(100), kept(2000));
+}
+
+TEST(SpringSliderPath, LargestForceIsThatOfAFineHistory) {
+  SpringSlider preloaded = table1();
+  preloaded.preload_stiffness = 3e5;
+  for (const SpringSlider& model : {table1(), table1(2e-3), preloaded}) {
+    for (const thermal::Shape shape : {thermal::Shape::triangle, thermal::Shape::sine}) {
+      const Path path = solve(model, cycle(shape, 2));
+      // 4000 samples a cycle hold the crests of both shapes, where a stick or a stop has its
+      // largest force; a slide has it at an event, between two samples: 0.1 K and 2 k c α away.
+      const History h = sample(path, Eigen::VectorXd::LinSpaced(8001, 0.0, 2.0));
+      const double sampled = h.axial_force.cwiseAbs().maxCoeff();
+      EXPECT_LE(sampled, path.largest_axial_force + close(sampled));
+      const double step = EA / l0 * alpha * l0 * 100.0 * 2.0 * 3.15 / 4000.0;
+      EXPECT_GE(sampled, path.largest_axial_force - step);
+    }
+  }
 }
 
 /// Steps ΔT and corrects the trial state, as a finite-element code would: an answer that shares no

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -79,11 +80,19 @@ struct Segment {
 struct Path {
   SpringSlider model;
   thermal::Program program;
-  /// Consecutive; the first starts at t = 0, the last ends at program.duration(). Never empty.
+  /// Of the cycles that are kept, in order of time and consecutive within a cycle. The last segment
+  /// of all ends at program.duration(). Never empty.
   std::vector<Segment> segments;
+  /// Of the cycles that are kept.
   std::vector<Event> events;
-  /// Displacement at the end of every cycle [m].
+  /// Displacement at the end of every cycle [m], kept or not.
   std::vector<double> cycle_end_displacements;
+  /// Largest compression at the end of a segment of any cycle [N], 0 if there is none, and its ΔT.
+  double largest_compression = 0.0;
+  double largest_compression_temperature_change = 0.0;  ///< [K]
+  /// Largest |F| [N] over all cycles: F is monotonic within a segment, so it stands where one
+  /// starts, or at the end. See place_at().
+  double largest_axial_force = 0.0;
 
   /// Displacement at the end minus that at the start, x = 0 [m].
   double state_jump() const { return cycle_end_displacements.back(); }
@@ -104,9 +113,29 @@ Path solve(const SpringSlider& model, const thermal::Program& program);
 /// The same into an existing path, whose memory is used again. On error `path` is unspecified.
 void solve(const SpringSlider& model, const thermal::Program& program, Path& path);
 
+/// The same path, of which only the cycles are kept that sample() needs at `times` [s], the first
+/// two and the last: the memory of a long program is that of the times that are asked for, and the
+/// displacement at the end of every cycle. All cycles are computed.
+/// Throws std::invalid_argument if a time is negative or not finite.
+Path solve(const SpringSlider& model, const thermal::Program& program,
+           const Eigen::Ref<const Eigen::VectorXd>& times);
+
 /// x [m] on the segment at ΔT [K] within the segment: constant in a stick and at a stop, else
 /// sliding_displacement().
 double displacement(const SpringSlider& model, const Segment& segment, double temperature_change);
+
+/// Where a path is at one time.
+struct Place {
+  double temperature_change;  ///< ΔT [K]
+  double displacement;        ///< x [m]
+  double axial_force;         ///< F [N], positive in compression
+};
+
+/// Place on the segment at `time` [s] within it. The time of an event is rounded, so the program's
+/// ΔT may lie an ulp outside the segment; it is kept inside, so that x stays within the stops and
+/// |F| within the friction limit.
+Place place_at(const SpringSlider& model, const thermal::Program& program, const Segment& segment,
+               double time);
 
 /// Work of the temperature [J] from the segment's start to ΔT [K].
 ///

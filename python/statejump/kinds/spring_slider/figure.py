@@ -28,11 +28,11 @@ ABSCISSAE = (("temperature_change_K", "Temperature change [K]"), ("time_s", "Tim
 
 def sheet(case: SpringSliderCase, runs: Sequence[Run]) -> Sheet:
     """Return displacement and axial force over temperature and over time."""
-    path = reduced.solve(case)
+    path = reduced.solve(case, reduced.sample_times(case))
     shown: list[tuple[Run | dict[str, np.ndarray], dict[str, Any]]] = []
     for run in runs:
         if run.model == "reduced":
-            shown.append((_dense(path, run), REDUCED))
+            shown.append((_dense(path, run) if reduced.is_whole(case) else run, REDUCED))
         else:
             shown.append((run, DEM))
     exact = any(run.model == "reduced" for run in runs)

@@ -43,16 +43,26 @@ def warnings(case: SpringSliderCase) -> list[str]:
     ]
 
 
-def solve(case: SpringSliderCase) -> _engine.SpringSliderPath:
-    """Return the exact path of a case: segments, events, state jump."""
-    return _engine.solve_spring_slider(spring_slider(case), case.thermal_program())
+def solve(case: SpringSliderCase, times_s: np.ndarray | None = None) -> _engine.SpringSliderPath:
+    """Return the exact path of a case: segments, events, state jump.
+
+    :param times_s: of a path that nobody reads as a whole only the cycles are kept that these times need, the first
+        two and the last; None: it is kept as a whole
+    """
+    wanted = None if is_whole(case) else times_s
+    return _engine.solve_spring_slider(spring_slider(case), case.thermal_program(), wanted)
+
+
+def is_whole(case: SpringSliderCase) -> bool:
+    """Return whether a history has all cycles."""
+    return case.dem.samples_per_cycle * case.thermal.cycles <= WHOLE_HISTORY
 
 
 def sample_times(case: SpringSliderCase) -> np.ndarray:
     """Return as many evenly spaced times as the DEM run has samples [s]; of a history that nobody reads as a whole
     those of the first and the last cycles."""
     samples, cycles = case.dem.samples_per_cycle, case.thermal.cycles
-    if samples * cycles <= WHOLE_HISTORY:
+    if is_whole(case):
         return np.linspace(0, case.duration_s, samples * cycles + 1)
     shown = cycles_shown(case)
     cycle = np.arange(shown * samples + 1) / samples
@@ -69,7 +79,7 @@ def run(case: SpringSliderCase, tell: Tell) -> Run:
     """Return the exact path as a run; at other times it is as exact."""
     times = sample_times(case)
     found = _run_at(case, times)
-    if len(times) <= case.dem.samples_per_cycle * case.thermal.cycles:
+    if not is_whole(case):
         found = _without_what_is_between(case, found)
     tell(1.0)
     return found
@@ -82,7 +92,7 @@ def _without_what_is_between(case: SpringSliderCase, run: Run) -> Run:
     events = Events([event for event in run.events if event.time_s <= first or event.time_s > last])
     said = (f"history and events are those of the first and the last {shown:,} of {cycles:,} cycles; all others were "
             "computed and left out")
-    return replace(run, events=events, warnings=(*run.warnings, said), native=None)
+    return replace(run, events=events, warnings=(*run.warnings, said))
 
 
 def quick(case: SpringSliderCase) -> Run:
@@ -91,11 +101,7 @@ def quick(case: SpringSliderCase) -> Run:
 
 
 def _run_at(case: SpringSliderCase, times_s: np.ndarray) -> Run:
-    path = solve(case)
-    said = (*path.warnings, *warnings(case))
-
-    def sampled(times_s: np.ndarray) -> Run:
-        columns = path.sample(np.asarray(times_s, dtype=float))
-        return result.reduced_run(case, path, columns, said, sampled)
-
-    return sampled(times_s)
+    path = solve(case, times_s)
+    columns = path.sample(np.asarray(times_s, dtype=float))
+    return result.reduced_run(case, path, columns, (*path.warnings, *warnings(case)),
+                              lambda times: _run_at(case, times))
