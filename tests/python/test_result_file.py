@@ -31,6 +31,7 @@ from statejump.results.export_vtk import write_all as write_vtk
 from statejump.results.paraview_script import NAME, write_script
 from statejump.results.read import read
 from statejump.results.record import save
+from statejump.results.scene_check import problems
 from statejump.results.vtk_data import frames_of
 from statejump.results.write import write
 
@@ -105,10 +106,9 @@ def check_layout(path: Path) -> None:
         for place, value in found.items():
             entry = layout.entry_of(place)
             assert entry is not None, f"{place} is not in the layout"
-            assert type_of(value) in entry.form, f"{place} is {type_of(value)}, the layout says {entry.form}"
+            assert type_of(value) in entry.form.types, f"{place} is {type_of(value)}, the layout says {entry.form}"
             if isinstance(value, h5py.Dataset):
-                axes = entry.form.count(",") + 1 if "[" in entry.form else 0
-                assert entry.form == layout.COLUMN or value.ndim == axes, f"{place} has {value.ndim} axes"
+                assert value.ndim in map(len, entry.form.shapes), f"{place} has {value.ndim} axes"
                 assert set(value.attrs) <= set(layout.ATTRIBUTES), place
                 numeric = type_of(value) != "text" and not place.startswith("/comparison")
                 assert ("unit" in value.attrs) == numeric, f"{place}: unit"
@@ -318,6 +318,13 @@ def damage(path: Path, change: Callable[[h5py.File], None]) -> None:
     sealed(path)
 
 
+def instead(file: h5py.File, place: str, **dataset: Any) -> None:
+    """Put another data set into a place; the attributes stay."""
+    kept = dict(file[place].attrs)
+    del file[place]
+    file.create_dataset(place, **dataset).attrs.update(kept)
+
+
 def not_hdf5(path: Path) -> None:
     path.write_text("time_s,displacement_m\n0,0\n")
 
@@ -365,11 +372,47 @@ MISTAKES = {
                           "/case@kind is missing"),
     "group for a data set": (
         lambda path: damage(path, lambda file: (file.__delitem__("scene"), file.create_group("scene"))),
-        "damaged: 'Group' object has no attribute 'asstr'"),
+        "damaged: /scene is group, must be text"),
     "column too short": (
         lambda path: damage(path, lambda file: (file.__delitem__("models/dem/energy/elastic_energy_J"),
                                                 file.create_dataset("models/dem/energy/elastic_energy_J", data=[1.0]))),
         "damaged: /models/dem/energy/elastic_energy_J has 1 samples, time_s has 2001"),
+    "numbers that are not in the file": (
+        lambda path: damage(path, lambda file: instead(
+            file, "models/dem/energy/elastic_energy_J", shape=(10**12,), dtype="f8", chunks=(1000,))),
+        "damaged: /models/dem/energy/elastic_energy_J claims to hold more than the file does"),
+    "numbers of another file": (
+        lambda path: damage(path, lambda file: instead(
+            file, "models/dem/energy/elastic_energy_J", shape=(64,), dtype="u1", external=[("/dev/zero", 0, 64)])),
+        "damaged: /models/dem/energy/elastic_energy_J has its numbers in another file"),
+    "link": (
+        lambda path: damage(path, lambda file: (
+            file.__delitem__("provenance"), file.__setitem__("provenance", h5py.ExternalLink("other.h5", "/x")))),
+        "damaged: /provenance is a link out of its place"),
+    "circle": (
+        lambda path: damage(path, lambda file: (file.__delitem__("models/dem/links"),
+                                                file["models/dem"].__setitem__("links", file["models"]))),
+        "damaged: /models/dem/links is neither a group nor a data set of its own"),
+    "texts for numbers": (
+        lambda path: damage(path, lambda file: instead(file, "models/dem/summary/state_jump_m", data=b"x")),
+        "damaged: /models/dem/summary/state_jump_m is text, must be float64"),
+    "list for a text": (
+        lambda path: damage(path, lambda file: file["case"].attrs.__setitem__("title", ["a", "b"])),
+        "damaged: /case@title has shape (2,), must be text"),
+    "items without names": (
+        lambda path: damage(path, lambda file: file["models/dem/contacts/gap_m"].attrs.__setitem__("items", "x")),
+        "damaged: /models/dem/contacts/gap_m has 3 items, which /names does not name"),
+    "no label": (
+        lambda path: damage(path, lambda file: file["models/dem/contacts/state"].__setitem__((0, 0), 9)),
+        "damaged: /models/dem/contacts/state has values without a label"),
+    "scene of something else": (
+        lambda path: damage(path, lambda file: instead(
+            file, "scene", data=file["scene"].asstr()[()].replace("links/axial_force_N", "links/force"))),
+        "damaged: /scene: part bar, values: axial_force_N: reduced: {'data': 'links/force', 'item': 'bar'} refers to nothing "
+        "in the file"),
+    "case that is no object": (
+        lambda path: damage(path, lambda file: instead(file, "case/resolved", data="[]")),
+        "damaged: /case/resolved is no object of JSON"),
 }
 
 
@@ -567,17 +610,17 @@ def truss_like() -> Result:
 @KINDS
 def test_scene_refers_to_what_is_there(compared, name: str) -> None:
     result = read(compared(name) / "comparison.h5")
-    assert scene.problems(result) == []
+    assert problems(result) == []
     kinds = {part["type"] for part in result.scene["parts"]}
     assert kinds == ({"frame", "slot", "block", "link"} if name == "table1" else
                      {"frame", "link", "bearing", "journal"})
     broken = replace(result, scene=json.loads(json.dumps(result.scene).replace("links/axial_force_N", "links/force")))
-    assert scene.problems(broken) and "links/force" in scene.problems(broken)[0]
+    assert problems(broken) and "links/force" in problems(broken)[0]
 
 
 def test_columns_of_many_items(tmp_path: Path) -> None:
     result = truss_like()
-    assert scene.problems(result) == []
+    assert problems(result) == []
     for key in ("statejump_version", "git_commit", "python_version", "numpy_version", "h5py_version", "hdf5_version"):
         result.provenance[key] = "1"
     write(result, tmp_path / "truss.h5")

@@ -77,7 +77,7 @@ class Journal(Kept):
         for place, entry in enumerate(entries[1:], start=2):
             try:
                 super().add(_batch(entry, self._columns))
-            except (ValueError, TypeError, KeyError, AttributeError):
+            except (ValueError, TypeError, KeyError, AttributeError, OverflowError):
                 raise self._damaged(place) from None
 
     def _entries(self) -> list[Any]:

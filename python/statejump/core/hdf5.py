@@ -9,6 +9,7 @@ the file. The checksum finds damage, not malice: whoever makes a file can make i
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 HEAD_BYTES = 512
 FORMAT = "statejump HDF5"
 VERSION = 1
+MOST_PACKED = 1100  # bytes that come of one: deflate makes 258 of two bits (RFC 1951), 1032 of a byte
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 AGAIN = "run what made it again"
 
@@ -76,7 +78,7 @@ def opened(path: Path) -> Iterator[h5py.File]:
 
             with h5py.File(stream, "r") as file:
                 yield file
-    except (OSError, RuntimeError) as error:
+    except (OSError, RuntimeError, MemoryError) as error:
         raise Unreadable("cannot be read", cause=" ".join(str(error).split()), file=path) from None
 
 
@@ -97,3 +99,48 @@ def _check(stream: IO[bytes], path: Path) -> None:
     if block != head(digest.hexdigest()):
         raise Unreadable("damaged", cause="its checksum is that of other contents: it was cut off or altered",
                          remedy=AGAIN, file=path)
+
+
+def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]:
+    """Return the groups and data sets of a file by their places, ``/`` left out, once it is sure that reading them
+    stays in the file and takes memory in proportion to it.
+
+    :raises Unreadable: an object of another kind, or one that stands at two places; a link that is not to an object of
+        this file; numbers in another file; a data set that claims to hold more than its bytes can
+    """
+    import h5py
+
+    found: dict[str, h5py.Group | h5py.Dataset] = {}
+    seen = {h5py.h5o.get_info(file.id).addr}
+    size = path.stat().st_size
+    groups = [("", file)]
+    while groups:
+        parent, group = groups.pop()
+        for name in group:
+            place = f"{parent}/{name}"
+            if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+                raise Unreadable("damaged", cause=f"{place} is a link out of its place", file=path)
+            item = group[name]
+            address = h5py.h5o.get_info(item.id).addr
+            if address in seen or not isinstance(item, (h5py.Group, h5py.Dataset)):
+                raise Unreadable("damaged", cause=f"{place} is neither a group nor a data set of its own", file=path)
+            seen.add(address)
+            if isinstance(item, h5py.Group):
+                groups.append((place, item))
+            else:
+                _check_stored(item, place, size, path)
+            found[place] = item
+    return found
+
+
+def _check_stored(item: h5py.Dataset, place: str, size: int, path: Path) -> None:
+    """Raise Unreadable where the numbers are not in the file, or not as many as are declared."""
+    import h5py
+
+    made = item.id.get_create_plist()
+    if made.get_external_count() or made.get_layout() == h5py.h5d.VIRTUAL:
+        raise Unreadable("damaged", cause=f"{place} has its numbers in another file", file=path)
+    values = 0 if item.shape is None else math.prod(item.shape)
+    declared = item.dtype.itemsize * max(values, math.prod(item.chunks) if item.chunks else 0)
+    if declared > MOST_PACKED * min(size, item.id.get_storage_size()):
+        raise Unreadable("damaged", cause=f"{place} claims to hold more than the file does", file=path)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from statejump.core.errors import StatejumpError, Unreadable
-from statejump.core.hdf5 import made
+from statejump.core.hdf5 import made, objects
 from statejump.fclib.problem import Problem, Solution, Stored
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ def read(path: str | Path) -> Problem:
         if not h5py.is_hdf5(path):
             raise Unreadable("cannot be read", cause="it is not HDF5", file=path)
         with h5py.File(path, "r") as file:
+            objects(file, path)
             return _problem(file)
     except StatejumpError as error:
         raise error.located(file=path) from None
@@ -67,7 +68,7 @@ def _problem(file: h5py.File) -> Problem:
     delassus: Any = _matrix(group, "W", (q.size, q.size))
     if "V" in group or "R" in group:
         delassus, q = _without_equations(group, delassus, q)
-    info = group["info"] if "info" in group else {}
+    info = _group(group, "info") if "info" in group else {}
     return Problem(delassus, q, mu, dimension, _text(info, "title"), _text(info, "description"),
                    tuple(_stored(file, q.size)))
 

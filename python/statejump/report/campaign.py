@@ -13,13 +13,20 @@ import h5py
 import numpy as np
 
 from statejump.core.errors import Unreadable
-from statejump.core.hdf5 import is_ours, opened
+from statejump.core.hdf5 import is_ours, objects, opened
 from statejump.core.units import scale_of, text
 from statejump.report import words
 
 BARS = 60  # of a histogram, as in the figures of the commands
 QUANTILES = ("quantile_5", "median", "quantile_95")
 FEWEST_MANY_POINTS = 2000  # points of a sweep beyond which a page shows every n-th
+
+
+def _one(place: str, value: Any) -> Any:
+    """Return the value of an attribute: one text or number. :raises ValueError: it is something else"""
+    if not isinstance(value, (str, int, float, np.integer, np.floating)):
+        raise ValueError(f"{place} is not one text or number")
+    return value
 
 
 @dataclass(frozen=True)
@@ -62,26 +69,34 @@ class CampaignDocument:
 
     def __init__(self, path: Path, identifier: str) -> None:
         # What computes campaigns takes a while to load: a page of runs does without.
+        from statejump.campaign.plan import MONTECARLO, SWEEP
         from statejump.campaign.summary import statistics
 
         self.source, self.identifier = path.name, identifier
         try:
             with opened(path) as file:
-                attributes = dict(file.attrs)
+                objects(file, path)
+                attributes = {key: _one(key, value) for key, value in file.attrs.items()}
                 header = json.loads(attributes["case"])["case"]
                 self._words = words.of_kind(str(header["kind"]))
                 self.case = str(header["name"])
+                self.samples = len(file["sample"])
                 self.parameters = self._variables(file["parameters"])
                 self.outcomes = self._variables(file["outcomes"])
                 self.failed = [
                     (int(sample), bytes(error).decode("utf-8"))
-                    for sample, error in zip(file["failed/sample"][()], file["failed/error"][()])
+                    for sample, error in zip(file["failed/sample"][()], file["failed/error"][()], strict=True)
                 ]
-                self.samples = len(file["sample"])
+            if not self.parameters or not self.outcomes:
+                raise ValueError("/parameters and /outcomes need a column each")
+            if not all(np.isfinite(parameter.values).all() for parameter in self.parameters):
+                raise ValueError("/parameters has numbers that are not finite")
             self.text = str(attributes["campaign"])
             campaign = tomllib.loads(self.text)["campaign"]
             self.command, self.model = str(attributes["command"]), str(attributes["model"])
-        except (KeyError, ValueError, TypeError) as error:
+            if self.command not in (MONTECARLO, SWEEP) or self.model not in words.MODELS:
+                raise ValueError(f"no campaign is {self.command!r} of model {self.model!r}")
+        except (KeyError, ValueError, TypeError, AttributeError) as error:
             raise Unreadable("damaged", cause=" ".join(str(error).split()), file=path) from None
         self.seed: Any | None = attributes.get("seed")
         self.title = str(campaign.get("title") or campaign.get("name"))
@@ -91,10 +106,13 @@ class CampaignDocument:
         self.statistics = {outcome.name: statistics(outcome.values) for outcome in self.outcomes}
 
     def _variables(self, group: h5py.Group) -> list[Variable]:
-        return [
-            Variable(name, str(dataset.attrs["unit"]), dataset[()].astype(float), self._words.parameter(name))
-            for name, dataset in group.items()
-        ]
+        found = []
+        for name, dataset in group.items():
+            if dataset.dtype.kind not in "iuf" or dataset.shape != (self.samples,):
+                raise ValueError(f"{dataset.name} is not a number for each of {self.samples} samples")
+            found.append(Variable(name, _one(f"{dataset.name}@unit", dataset.attrs["unit"]), dataset[()].astype(float),
+                                  self._words.parameter(name)))
+        return found
 
     @property
     def kind(self) -> str:

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from statejump.core.errors import Unreadable
 from statejump.core.run import Run
 from statejump.report.words import STATES, Words
 from statejump.results.contents import Result
@@ -269,6 +270,9 @@ class Drawing:
             # Whether anything but relative places moves: else there is no deformation to magnify.
             deforms=way > 0,
         )
+        if not np.isfinite([size, way, self.scene["largest_force_N"], magnification]).all():
+            raise Unreadable("cannot be drawn", cause="places or forces are not finite, or too large",
+                             case=self.result.name)
 
     def _largest_way(self) -> float:
         """Return how far [m] a point goes from its start at most; those that are relative to others left out."""

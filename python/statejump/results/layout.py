@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cached_property
 
 FORMAT = "statejump result"
 VERSION = 1  # raised when a reader of the old layout would go wrong
@@ -13,39 +14,65 @@ MODELS = ("reduced", "dem")
 
 
 @dataclass(frozen=True)
+class Form:
+    """What may stand at a place.
+
+    :param types: ``group``, ``text``, ``bool``, ``int64``, ``uint8`` (with labels) or ``float64``
+    :param shapes: names of the axes, for each shape that is allowed; an axis of a certain length is called by it
+    :param words: how the documentation calls the types
+    """
+
+    types: tuple[str, ...]
+    shapes: tuple[tuple[str, ...], ...] = ((),)
+    words: str = ""
+
+    def __str__(self) -> str:
+        shapes = [f"[{', '.join(axes)}]" for axes in self.shapes if axes]
+        several = [", ".join(shapes[:-1]), shapes[-1]] if len(shapes) > 1 else shapes
+        return " ".join(filter(None, [self.words or " or ".join(self.types), " or ".join(several)]))
+
+
+def _array(types: str, *axes: str) -> Form:
+    return Form(tuple(types.split()), (axes,))
+
+
+@dataclass(frozen=True)
 class Entry:
-    """One place in the file. In ``path`` ``{model}`` is a model, ``{name}`` any name; an attribute
-    follows ``@``. ``form`` is the type and, in brackets, the shape."""
+    """One place in the file. In ``path`` ``{model}`` is a model, ``{name}`` any name; an attribute follows ``@``."""
 
     path: str
-    form: str
+    form: Form
     meaning: str
     required: bool = True
 
+    @cached_property
+    def _pattern(self) -> re.Pattern[str]:
+        return re.compile(re.escape(self.path).replace(r"\{model\}", "(?:" + "|".join(MODELS) + ")")
+                          .replace(r"\{name\}", "[^/@]+"))
+
     def matches(self, path: str) -> bool:
         """Whether a place in a file is this entry."""
-        return re.fullmatch(
-            re.escape(self.path).replace(r"\{model\}", "(?:" + "|".join(MODELS) + ")").replace(r"\{name\}", "[^/@]+"),
-            path,
-        ) is not None
+        return self._pattern.fullmatch(path) is not None
 
 
-TEXT = "text"
-COLUMN = "float64, or uint8 with labels [samples], [samples, items] or [samples, items, 3]"
+GROUP, TEXT, BOOL = Form(("group",)), Form(("text",)), Form(("bool",))
+WHOLE, NUMBER = Form(("int64",)), Form(("float64",))
+COLUMN = Form(("float64", "uint8"), (("samples",), ("samples", "items"), ("samples", "items", "3")),
+              "float64, or uint8 with labels")
 
 ENTRIES = (
     Entry("/@format", TEXT, f'"{FORMAT}"'),
-    Entry("/@layout_version", "int64", f"{VERSION}; a reader refuses a newer one"),
-    Entry("/@complete", "bool", "false: the run was interrupted, the file holds what there was"),
+    Entry("/@layout_version", WHOLE, f"{VERSION}; a reader refuses a newer one"),
+    Entry("/@complete", BOOL, "false: the run was interrupted, the file holds what there was"),
     Entry("/@command", TEXT, "which command wrote the file: reduced, dem, compare or truss answers"),
-    Entry("/case", "group", "what was asked"),
+    Entry("/case", GROUP, "what was asked"),
     Entry("/case@name", TEXT, "name of the case"),
     Entry("/case@kind", TEXT, "kind of the case"),
     Entry("/case@title", TEXT, "one line for figures and tables"),
     Entry("/case@source", TEXT, "where its numbers come from"),
     Entry("/case/text", TEXT, "the case file as given, TOML; empty if there was none"),
     Entry("/case/resolved", TEXT, "the case with all defaults, JSON; sections and keys as in the case file"),
-    Entry("/provenance", "group", "what computed it: nothing of the machine, nothing of the day"),
+    Entry("/provenance", GROUP, "what computed it: nothing of the machine, nothing of the day"),
     Entry("/provenance@statejump_version", TEXT, "version of this project"),
     Entry("/provenance@git_commit", TEXT, "commit it was built from, -dirty if changed; empty if not known"),
     Entry("/provenance@python_version", TEXT, "version of Python"),
@@ -53,76 +80,84 @@ ENTRIES = (
     Entry("/provenance@h5py_version", TEXT, "version of h5py"),
     Entry("/provenance@hdf5_version", TEXT, "version of the HDF5 library"),
     Entry("/provenance@yade_version", TEXT, "version of YADE; only with a DEM run", required=False),
-    Entry("/provenance@threads", "int64", "OpenMP threads of the DEM run; only with one", required=False),
-    Entry("/provenance@seed", "int64", "seed of the case's random numbers; only for kinds that draw some",
+    Entry("/provenance@threads", WHOLE, "OpenMP threads of the DEM run; only with one", required=False),
+    Entry("/provenance@seed", WHOLE, "seed of the case's random numbers; only for kinds that draw some",
           required=False),
-    Entry("/names", "group", "names of the items along the second axis of columns"),
-    Entry("/names/{name}", "text [items]", "a list of names; columns refer to it with their attribute items",
+    Entry("/names", GROUP, "names of the items along the second axis of columns"),
+    Entry("/names/{name}", _array("text", "items"), "a list of names; columns refer to it with their attribute items",
           required=False),
     Entry("/scene", TEXT, "parts, forces and how columns move them, JSON; see below"),
-    Entry("/meshes", "group", "surfaces that parts of type mesh refer to", required=False),
-    Entry("/meshes/{name}", "group", "one surface", required=False),
-    Entry("/meshes/{name}/vertices_m", "float64 [vertices, 3]", "in the part's own frame", required=False),
-    Entry("/meshes/{name}/triangles", "int64 [triangles, 3]", "places in vertices_m", required=False),
-    Entry("/warnings", "text [sentences]", "limits of the models that the run met"),
-    Entry("/models", "group", "one group per model that was run"),
-    Entry("/models/{model}", "group", "a run", required=False),
-    Entry("/models/{model}/history", "group", "what the model gives over time"),
-    Entry("/models/{model}/history/time_s", "float64 [samples]", "times of all columns of this model"),
-    Entry("/models/{model}/history/temperature_change_K", "float64 [samples]", "program of the temperature change",
+    Entry("/meshes", GROUP, "surfaces that parts of type mesh refer to", required=False),
+    Entry("/meshes/{name}", GROUP, "one surface", required=False),
+    Entry("/meshes/{name}/vertices_m", _array("float64", "vertices", "3"), "in the part's own frame", required=False),
+    Entry("/meshes/{name}/triangles", _array("int64", "triangles", "3"), "places in vertices_m", required=False),
+    Entry("/warnings", _array("text", "sentences"), "limits of the models that the run met"),
+    Entry("/models", GROUP, "one group per model that was run"),
+    Entry("/models/{model}", GROUP, "a run", required=False),
+    Entry("/models/{model}/history", GROUP, "what the model gives over time"),
+    Entry("/models/{model}/history/time_s", _array("float64", "samples"), "times of all columns of this model"),
+    Entry("/models/{model}/history/temperature_change_K", _array("float64", "samples"),
+          "program of the temperature change",
           required=False),
     Entry("/models/{model}/history/{name}", COLUMN, "a column; the same names as in the CSV files", required=False),
-    Entry("/models/{model}/energy", "group", "energies, dissipated and supplied energies"),
+    Entry("/models/{model}/energy", GROUP, "energies, dissipated and supplied energies"),
     Entry("/models/{model}/energy/{name}", COLUMN, "a column [J]", required=False),
-    Entry("/models/{model}/links", "group", "what is known of every link"),
-    Entry("/models/{model}/links/axial_force_N", "float64 [samples, links]", "compression positive", required=False),
-    Entry("/models/{model}/links/thermal_strain", "float64 [samples, links]", "alpha times temperature change",
+    Entry("/models/{model}/links", GROUP, "what is known of every link"),
+    Entry("/models/{model}/links/axial_force_N", _array("float64", "samples", "links"),
+          "compression positive", required=False),
+    Entry("/models/{model}/links/thermal_strain", _array("float64", "samples", "links"),
+          "alpha times temperature change",
           required=False),
     Entry("/models/{model}/links/{name}", COLUMN, "a further column", required=False),
-    Entry("/models/{model}/contacts", "group", "what is known of every contact"),
-    Entry("/models/{model}/contacts/state", "uint8 [samples, contacts]",
+    Entry("/models/{model}/contacts", GROUP, "what is known of every contact"),
+    Entry("/models/{model}/contacts/state", _array("uint8", "samples", "contacts"),
           "0 separated, 1 stick, 2 slip, 3 at_stop, as its attribute labels says", required=False),
-    Entry("/models/{model}/contacts/gap_m", "float64 [samples, contacts]", "negative: penetration", required=False),
-    Entry("/models/{model}/contacts/point_m", "float64 [samples, contacts, 3]", "where the force acts",
+    Entry("/models/{model}/contacts/gap_m", _array("float64", "samples", "contacts"),
+          "negative: penetration", required=False),
+    Entry("/models/{model}/contacts/point_m", _array("float64", "samples", "contacts", "3"), "where the force acts",
           required=False),
-    Entry("/models/{model}/contacts/normal_force_N", "float64 [samples, contacts, 3]",
+    Entry("/models/{model}/contacts/normal_force_N", _array("float64", "samples", "contacts", "3"),
           "on the part that the scene's contact names in `on`", required=False),
-    Entry("/models/{model}/contacts/tangential_force_N", "float64 [samples, contacts, 3]", "on the same part",
+    Entry("/models/{model}/contacts/tangential_force_N", _array("float64", "samples", "contacts", "3"),
+          "on the same part",
           required=False),
     Entry("/models/{model}/contacts/{name}", COLUMN, "a further column", required=False),
-    Entry("/models/{model}/events", "group", "what happened, in order of time; five data sets of one length"),
-    Entry("/models/{model}/events/kind", "text [events]", "first_contact, first_slip, stop_reached, ..."),
-    Entry("/models/{model}/events/time_s", "float64 [events]", "when"),
-    Entry("/models/{model}/events/temperature_change_K", "float64 [events]", "at which temperature change"),
-    Entry("/models/{model}/events/joint", "text [events]", "name of the contact or joint; empty: none"),
-    Entry("/models/{model}/events/time_uncertainty_s", "float64 [events]",
+    Entry("/models/{model}/events", GROUP, "what happened, in order of time; five data sets of one length"),
+    Entry("/models/{model}/events/kind", _array("text", "events"), "first_contact, first_slip, stop_reached, ..."),
+    Entry("/models/{model}/events/time_s", _array("float64", "events"), "when"),
+    Entry("/models/{model}/events/temperature_change_K", _array("float64", "events"), "at which temperature change"),
+    Entry("/models/{model}/events/joint", _array("text", "events"), "name of the contact or joint; empty: none"),
+    Entry("/models/{model}/events/time_uncertainty_s", _array("float64", "events"),
           "0: located by the model; else half the distance of the samples between which it lies"),
-    Entry("/models/{model}/summary", "group", "numbers that sum up the run"),
-    Entry("/models/{model}/summary/{name}", "float64", "one number; NaN: it did not happen", required=False),
-    Entry("/comparison", "group", "the two models beside each other; only in files of compare", required=False),
-    Entry("/comparison@passed", "bool", "whether all rows passed", required=False),
-    Entry("/comparison/quantity", "text [rows]", "what was compared", required=False),
-    Entry("/comparison/unit", "text [rows]", "unit of the row", required=False),
-    Entry("/comparison/closed_form", "float64 [rows]", "value of a closed form; NaN: the row has none", required=False),
-    Entry("/comparison/compared", "text [rows]",
+    Entry("/models/{model}/summary", GROUP, "numbers that sum up the run"),
+    Entry("/models/{model}/summary/{name}", NUMBER, "one number; NaN: it did not happen", required=False),
+    Entry("/comparison", GROUP, "the two models beside each other; only in files of compare", required=False),
+    Entry("/comparison@passed", BOOL, "whether all rows passed", required=False),
+    Entry("/comparison/quantity", _array("text", "rows"), "what was compared", required=False),
+    Entry("/comparison/unit", _array("text", "rows"), "unit of the row", required=False),
+    Entry("/comparison/closed_form", _array("float64", "rows"),
+          "value of a closed form; NaN: the row has none", required=False),
+    Entry("/comparison/compared", _array("text", "rows"),
           "whose values a row compares, two of closed_form, reduced, dem; missing: reduced dem in all", required=False),
-    Entry("/comparison/reduced", "float64 [rows]", "value of the reduced model; NaN: it has none", required=False),
-    Entry("/comparison/dem", "float64 [rows]", "value of the DEM; NaN: it has none", required=False),
-    Entry("/comparison/difference", "float64 [rows]", "DEM less reduced; NaN: one is missing", required=False),
-    Entry("/comparison/tolerance", "float64 [rows]", "allowed size of the difference", required=False),
-    Entry("/comparison/passed", "bool [rows]", "whether it is kept", required=False),
-    Entry("/answers", "group", "what a designer asks of a truss; only in files of truss answers", required=False),
+    Entry("/comparison/reduced", _array("float64", "rows"),
+          "value of the reduced model; NaN: it has none", required=False),
+    Entry("/comparison/dem", _array("float64", "rows"), "value of the DEM; NaN: it has none", required=False),
+    Entry("/comparison/difference", _array("float64", "rows"), "DEM less reduced; NaN: one is missing", required=False),
+    Entry("/comparison/tolerance", _array("float64", "rows"), "allowed size of the difference", required=False),
+    Entry("/comparison/passed", _array("bool", "rows"), "whether it is kept", required=False),
+    Entry("/answers", GROUP, "what a designer asks of a truss; only in files of truss answers", required=False),
     Entry("/answers@output", TEXT, "what is traced to the joints: node:NAME, rms or tilt", required=False),
     Entry("/answers@text", TEXT, "the same in words", required=False),
     Entry("/answers@unit", TEXT, "its unit", required=False),
     Entry("/answers@verdict", TEXT, "no jump, one cycle, shakedown, ratcheting or not settled", required=False),
     Entry("/answers@verdict_text", TEXT, "the same in words", required=False),
-    Entry("/answers/notes", "text [sentences]", "what was not found, or only so", required=False),
-    Entry("/answers/summary", "group", "numbers that sum up the answers: jump, sum_of_contributions, ...",
+    Entry("/answers/notes", _array("text", "sentences"), "what was not found, or only so", required=False),
+    Entry("/answers/summary", GROUP, "numbers that sum up the answers: jump, sum_of_contributions, ...",
           required=False),
-    Entry("/answers/summary/{name}", "float64", "one number", required=False),
-    Entry("/answers/{name}", "group", "a table, see below", required=False),
-    Entry("/answers/{name}/{name}", "text or int64 or float64 [rows]", "a column of it; NaN: there is no such number",
+    Entry("/answers/summary/{name}", NUMBER, "one number", required=False),
+    Entry("/answers/{name}", GROUP, "a table, see below", required=False),
+    Entry("/answers/{name}/{name}", _array("text int64 float64", "rows"),
+          "a column of it; NaN: there is no such number",
           required=False),
 )
 

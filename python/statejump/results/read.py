@@ -15,8 +15,10 @@ from statejump.core.comparison import SIDES, Quantity
 from statejump.core.errors import Unreadable
 from statejump.core.hdf5 import is_ours, opened
 from statejump.core.run import Column, Event, Events, Run
+from statejump.results.check import check
 from statejump.results.contents import Answers, Mesh, Result, Scalar
-from statejump.results.layout import ENTRIES, FORMAT, MODELS, SUFFIX, TABLES, VERSION
+from statejump.results.layout import MODELS, SUFFIX, TABLES
+from statejump.results.scene_check import problems
 
 
 def is_result_file(path: Path) -> bool:
@@ -32,35 +34,21 @@ def read(path: str | Path) -> Result:
     path = Path(path)
     try:
         with opened(path) as file:
-            _check(file, path)
-            return _result(file)
+            check(file, path)
+            result = _result(file)
+    except RecursionError:
+        raise Unreadable("damaged", cause="objects stand too deeply in each other", file=path) from None
     except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
         raise Unreadable("damaged", cause=" ".join(str(error).split()), file=path) from None
-
-
-def _check(file: h5py.File, path: Path) -> None:
-    """Raise Unreadable unless the file is ours, of a layout we know, and nothing is missing."""
-    if file.attrs.get("format") != FORMAT:
-        raise Unreadable("not a result file", cause=f"HDF5, but its attribute format is not {FORMAT!r}", file=path)
-    version = int(file.attrs.get("layout_version", 0))
-    if version > VERSION:
-        raise Unreadable(f"layout version {version} is newer than {VERSION}, the newest that this statejump reads",
-                         file=path)
-    models = [model for model in file.get("models", ())]
-    for entry in ENTRIES:
-        if not entry.required:
-            continue
-        for model in models if "{model}" in entry.path else [""]:
-            place, _, attribute = entry.path.replace("{model}", model).partition("@")
-            if place not in file or (attribute and attribute not in file[place].attrs):
-                raise Unreadable(f"{place}{'@' if attribute else ''}{attribute} is missing", file=path)
-    for model in models:
-        if model not in MODELS:
-            raise Unreadable(f"/models/{model} is not a model", cause=f"must be {' or '.join(MODELS)}", file=path)
+    for problem in problems(result):
+        raise Unreadable("damaged", cause=f"/scene: {' '.join(problem.split())}", file=path)
+    return result
 
 
 def _result(file: h5py.File) -> Result:
     case = file["case"]
+    case_json = _text(case["resolved"])
+    _parsed("/case/resolved", case_json)
     names = {key: _texts(values) for key, values in file["names"].items()}
     complete = bool(file.attrs["complete"])
     made: list[Result] = []  # a run of the file reads its case only when it is asked for
@@ -77,25 +65,39 @@ def _result(file: h5py.File) -> Result:
         title=case.attrs["title"],
         source=case.attrs["source"],
         case_text=_text(case["text"]),
-        case_json=_text(case["resolved"]),
+        case_json=case_json,
         provenance={key: _plain(value) for key, value in file["provenance"].attrs.items()},
         names=names,
-        scene=json.loads(_text(file["scene"])),
+        scene=_parsed("/scene", _text(file["scene"])),
         models=runs,
         rows=_comparison(file["comparison"]) if "comparison" in file else None,
         warnings=_texts(file["warnings"]),
         meshes={
-            name: Mesh(mesh["vertices_m"][()], mesh["triangles"][()]) for name, mesh in file.get("meshes", {}).items()
+            name: _mesh(mesh) for name, mesh in file.get("meshes", {}).items()
         },
         answers=_answers(file["answers"]) if "answers" in file else None,
     ))
     return made[0]
 
 
+def _parsed(place: str, text: str) -> dict[str, Any]:
+    """Return the object of a JSON text. :raises ValueError: it is none"""
+    found = json.loads(text)
+    if not isinstance(found, dict):
+        raise ValueError(f"{place} is no object of JSON")
+    return found
+
+
+def _mesh(group: h5py.Group) -> Mesh:
+    mesh = Mesh(group["vertices_m"][()], group["triangles"][()])
+    if mesh.triangles.size and not 0 <= mesh.triangles.min() <= mesh.triangles.max() < len(mesh.vertices_m):
+        raise ValueError(f"{group.name} has triangles without a vertex")
+    return mesh
+
+
 def _model(model: str, group: h5py.Group) -> Run:
-    samples = group["history/time_s"].shape[0]
     columns = {
-        part: {name: _column(values, samples) for name, values in group[part].items()}
+        part: {name: _column(values) for name, values in group[part].items()}
         for part in ("history", "energy", "links", "contacts")
     }
     events = group["events"]
@@ -117,15 +119,15 @@ def _scalars(group: h5py.Group) -> dict[str, Scalar]:
     return {name: Scalar(float(value[()]), value.attrs["unit"]) for name, value in group.items()}
 
 
-def _column(dataset: h5py.Dataset, samples: int) -> Column:
-    if dataset.shape[:1] != (samples,):
-        found = dataset.shape[0] if dataset.shape else "no"
-        raise ValueError(f"{dataset.name} has {found} samples, time_s has {samples}")
+def _column(dataset: h5py.Dataset) -> Column:
     attributes = dataset.attrs
-    return Column(
+    column = Column(
         dataset[()], attributes["unit"], attributes.get("items", ""),
         tuple(attributes.get("labels", ())), attributes.get("note", ""),
     )
+    if column.labels and int(column.values.max()) >= len(column.labels):
+        raise ValueError(f"{dataset.name} has values without a label")
+    return column
 
 
 def _comparison(group: h5py.Group) -> tuple[Quantity, ...]:
@@ -157,7 +159,10 @@ def _answers(group: h5py.Group) -> Answers:
 def _rows(name: str, group: h5py.Group) -> list[dict[str, Any]]:
     """Return the rows of a table, its columns in the order of the CSV file."""
     order = TABLES[name][1] if name in TABLES else ()
-    keys = [key for key in order if key in group] + [key for key in group if key not in order]
+    missing = [key for key in order if key not in group] if len(group) else []
+    if missing:
+        raise ValueError(f"{group.name}/{missing[0]} is missing")
+    keys = [*order, *(key for key in group if key not in order)] if len(group) else []
     columns = [_cells(group[key]) for key in keys]
     return [dict(zip(keys, values)) for values in zip(*columns, strict=True)]
 

@@ -143,34 +143,3 @@ def growth(part: dict[str, Any], result: Result, model: str) -> np.ndarray:
     run = result.models[model]
     change = resolve(part.get("temperature_change_K", result.scene["temperature_change_K"]), run, result.names)
     return 1 + part.get("thermal_expansion_per_K", 0.0) * change
-
-
-def problems(result: Result) -> list[str]:
-    """Return what is wrong with a result's description, one sentence each."""
-    found: list[str] = []
-    names = [part["name"] for part in result.scene["parts"]]
-    for part in result.scene["parts"]:
-        missing = set(PART_TYPES.get(part["type"], ("a known type",))) - set(part)
-        if missing:
-            found.append(f"part {part['name']} of type {part['type']} lacks {', '.join(sorted(missing))}")
-    for force in result.scene["forces"]:
-        for body in (force["on"], force.get("from", force["on"])):
-            if body not in names:
-                found.append(f"{force['name']}: {body} is not a part")
-        if force["kind"] not in FORCE_KINDS:
-            found.append(f"{force['name']}: {force['kind']} is not a kind of force")
-    for model, run in result.models.items():
-        for reference in _references(result.scene):
-            try:
-                resolve(reference, run, result.names)
-            except StatejumpError as error:
-                found.append(f"{model}: {error}")
-    return found
-
-
-def _references(tree: Any) -> list[dict[str, Any]]:
-    if isinstance(tree, dict):
-        return [tree] if "data" in tree else [found for value in tree.values() for found in _references(value)]
-    if isinstance(tree, list):
-        return [found for value in tree for found in _references(value)]
-    return []

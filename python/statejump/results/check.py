@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Holds an HDF5 file against the layout before anything of it is read: types, axes, attributes."""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from statejump.core.errors import Unreadable
+from statejump.core.hdf5 import objects
+from statejump.results.layout import ENTRIES, FORMAT, MODELS, VERSION, Form, entry_of
+
+# Of columns: which list of names their second axis has says their attribute.
+OF_ITEMS = ("items", "links", "contacts")
+
+
+def check(file: h5py.File, path: Path) -> None:
+    """Raise Unreadable unless the file is ours, of a layout we know, and everything in it is what the layout says."""
+    form = file.attrs.get("format")
+    if not isinstance(form, str) or form != FORMAT:
+        raise Unreadable("not a result file", cause=f"HDF5, but its attribute format is not {FORMAT!r}", file=path)
+    version = file.attrs.get("layout_version", 0)
+    if isinstance(version, np.integer) and version > VERSION:
+        raise Unreadable(f"layout version {version} is newer than {VERSION}, the newest that this statejump reads",
+                         file=path)
+    found = {"/": file, **objects(file, path)}
+    models = [model for model in file["models"]] if isinstance(found.get("/models"), h5py.Group) else []
+    _check_missing(found, models, path)
+    for model in models:
+        if model not in MODELS:
+            raise Unreadable(f"/models/{model} is not a model", cause=f"must be {' or '.join(MODELS)}", file=path)
+    if not models:
+        raise Unreadable("/models has no model", file=path)
+    axes: dict[tuple[str, str], list[tuple[str, int]]] = {}
+    for place, item in found.items():
+        _check_attributes(place, item, path)
+        entry = entry_of(place)
+        if entry is not None:
+            axis_lengths = _check_form(place, item, entry.form, path)
+            if entry.form.types != ("group",):
+                _check_column(place, item, file["names"], path)
+            for axis, length in axis_lengths:
+                if not axis.isdecimal() and axis not in OF_ITEMS:
+                    axes.setdefault((_scope(place, axis), axis), []).append((place, length))
+    for (_, axis), lengths in axes.items():
+        lengths.sort(key=lambda one: not one[0].endswith("/history/time_s"))
+        first, wanted = lengths[0]
+        for place, length in lengths[1:]:
+            if length != wanted:
+                raise _damaged(path, f"{place} has {length} {axis}, {first.rpartition('/')[2]} has {wanted}")
+        if axis == "samples" and not wanted:
+            raise _damaged(path, f"{first} has no samples")
+
+
+def _damaged(path: Path, cause: str) -> Unreadable:
+    return Unreadable("damaged", cause=cause, file=path)
+
+
+def _check_missing(found: dict[str, Any], models: list[str], path: Path) -> None:
+    for entry in ENTRIES:
+        if not entry.required:
+            continue
+        for model in models if "{model}" in entry.path else [""]:
+            place, _, attribute = entry.path.replace("{model}", model).partition("@")
+            if place not in found or (attribute and attribute not in found[place].attrs):
+                raise Unreadable(f"{place}{'@' if attribute else ''}{attribute} is missing", file=path)
+
+
+def _type(item: Any) -> str:
+    """Return what the layout calls the type of an object or of an attribute's value."""
+    if isinstance(item, h5py.Group):
+        return "group"
+    if isinstance(item, str):
+        return "text"
+    kind = getattr(item, "dtype", None)
+    if kind is None:
+        return type(item).__name__
+    if h5py.check_string_dtype(kind) is not None:
+        return "text"
+    return str(kind)
+
+
+def _check_form(place: str, item: Any, form: Form, path: Path) -> list[tuple[str, int]]:
+    """Raise Unreadable for another type or shape than those of the layout; return the lengths of the axes by name."""
+    found = _type(item)
+    if found not in form.types:
+        raise _damaged(path, f"{place} is {found}, must be {' or '.join(form.types)}")
+    if found == "group":
+        return []
+    shape = getattr(item, "shape", ())
+    for axes in form.shapes:
+        if shape is not None and len(shape) == len(axes):
+            pairs = list(zip(axes, shape))
+            if all(length == int(axis) for axis, length in pairs if axis.isdecimal()):
+                return pairs
+    raise _damaged(path, f"{place} has shape {shape}, must be {form}")
+
+
+def _check_column(place: str, item: h5py.Dataset, names: h5py.Group, path: Path) -> None:
+    """Raise Unreadable where the second axis of a column is not that of the names that it refers to."""
+    items = item.attrs.get("items")
+    if not place.startswith("/models/"):
+        return
+    if len(item.shape) < 2:
+        if items is not None:
+            raise _damaged(path, f"{place}@items = {items!r}, but it has no second axis")
+        return
+    if items not in names or names[items].shape != item.shape[1:2]:
+        raise _damaged(path, f"{place} has {item.shape[1]} items, which /names does not name")
+
+
+def _scope(place: str, axis: str) -> str:
+    """Return within what an axis has one length."""
+    if axis in ("samples", "events"):
+        return "/".join(place.split("/")[:3])  # of a model
+    return place if axis in ("sentences", "vertices", "triangles") else place.rpartition("/")[0]
+
+
+def _check_attributes(place: str, item: Any, path: Path) -> None:
+    """Raise Unreadable for attributes of other types than the layout says."""
+    for key, value in item.attrs.items():
+        entry = entry_of(f"{place}@{key}")
+        if entry is not None:
+            _check_form(f"{place}@{key}", value, entry.form, path)
+        elif isinstance(item, h5py.Group):
+            if _type(value) not in ("text", "int64", "float64", "bool") or np.ndim(value):
+                raise _damaged(path, f"{place}@{key} is {_type(value)}, must be one text or number")
+        elif key in ("unit", "items", "note"):
+            if not isinstance(value, str):
+                raise _damaged(path, f"{place}@{key} is {_type(value)}, must be text")
+        elif key == "labels" and (_type(value) != "text" or np.ndim(value) != 1):
+            raise _damaged(path, f"{place}@labels is {_type(value)}, must be a list of texts")
