@@ -14,6 +14,7 @@ import pytest
 
 from conftest import COMMAND, damaged
 from statejump import load
+from statejump.campaign.campaign_file import load_campaign
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import load_case, parse_case
 from statejump.kinds.spring_slider import compare, reduced, result
@@ -65,6 +66,35 @@ def test_odd_value_is_one_sentence(edited, name: str) -> None:
     with pytest.raises(StatejumpError) as raised:
         load_case(path)
     assert str(raised.value) == f"{path}: {sentence}"
+
+
+@pytest.mark.parametrize("place", [(), ("joint",), ("case",)])
+def test_key_of_a_dict_that_is_no_text(cases: Path, place: tuple[str, ...]) -> None:
+    document = tomllib.loads((cases / "table1.toml").read_text())
+    (document[place[0]] if place else document)[1] = 2
+    with pytest.raises(StatejumpError, match=r"1\]? is unknown: known are "):
+        load_case(document)
+
+
+def test_name_that_no_file_can_have(cases: Path, tmp_path: Path) -> None:
+    """Of a case, and of the case of a campaign."""
+    for name in ("x" * 5000, f"{cases}/{'x' * 300}.toml", f"{cases}/table1.toml/x"):
+        with pytest.raises(StatejumpError, match="File name too long|Not a directory|no such case file"):
+            load_case(name)
+    campaign = tmp_path / "campaign.toml"
+    campaign.write_text(f"[campaign]\nname = 'a'\ncase = '{'x' * 5000}'\n[[vary]]\nkey = 'joint.friction_coefficient'\n"
+                        "values = [0.1]\n")
+    with pytest.raises(StatejumpError, match="File name too long"):
+        load_campaign(campaign, "sweep")
+
+
+@pytest.mark.parametrize("key", ["low", "high", "standard_deviation", "relative"])
+def test_whole_number_beyond_floating_point_in_a_campaign(cases: Path, tmp_path: Path, key: str) -> None:
+    campaign = tmp_path / "campaign.toml"
+    campaign.write_text(f"[campaign]\nname = 'a'\ncase = '{cases}/table1.toml'\nsamples = 2\nseed = 1\n[[vary]]\n"
+                        f"key = 'joint.friction_coefficient'\ndistribution = 'normal'\n{key} = {HUGE}\n")
+    with pytest.raises(StatejumpError, match=f"{key} = {HUGE} is not allowed: must be a finite number"):
+        load_campaign(campaign, "montecarlo")
 
 
 def test_damaged_files_never_end_in_another_error(cases: Path) -> None:

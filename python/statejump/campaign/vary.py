@@ -8,6 +8,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
+import sys
 from collections.abc import Mapping
 from typing import Any
 
@@ -172,7 +173,7 @@ def _number(table: Mapping[str, Any], name: str, *, above: float | None = None) 
         return None
     value = table[name]
     needs = "must be a finite number" + ("" if above is None else f" above {above:g}")
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= sys.float_info.max:
         raise NotAllowed(name, value, needs)
     if above is not None and not value > above:
         raise NotAllowed(name, value, needs)

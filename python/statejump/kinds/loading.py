@@ -29,7 +29,7 @@ def _kind_name(data: Mapping[str, Any]) -> str:
     wanted = header.get("kind") if isinstance(header, Mapping) else None
     if not isinstance(wanted, str):
         # Without a kind only the header can be judged: [caes] and knid are named as such.
-        structure(_HeaderOnly, {key: data[key] for key in data if difflib.get_close_matches(key, ["case"])})
+        structure(_HeaderOnly, {key: data[key] for key in data if difflib.get_close_matches(str(key), ["case"])})
     return check_name("case.kind", wanted, names())
 
 
@@ -52,7 +52,10 @@ def found_case(path: str | Path) -> Path:
     """Return the case file that is meant: as given, or, where there is none, that of the cases that come with the
     program. ``table1``, ``table1.toml`` and ``cases/table1.toml`` find it from every folder."""
     path = Path(path)
-    if path.exists() or path.is_absolute():
+    try:
+        if path.exists() or path.is_absolute():
+            return path
+    except OSError:  # a name too long, a folder that may not be searched: whoever reads it says so
         return path
     named = path if path.suffix else path.with_suffix(".toml")
     for place in (_paths.SHARE / named, _paths.SHARE / SHIPPED / named, _paths.SHARE / SHIPPED / "trusses" / named):

@@ -121,11 +121,11 @@ def _scope(place: str, axis: str) -> str:
 def _check_attributes(place: str, item: Any, path: Path) -> None:
     """Raise Unreadable for attributes of other types than the layout says."""
     for key, value in item.attrs.items():
-        entry = entry_of(f"{place}@{key}")
-        if entry is not None:
-            _check_form(f"{place}@{key}", value, entry.form, path)
-        elif isinstance(item, h5py.Group):
-            if _type(value) not in ("text", "int64", "float64", "bool") or np.ndim(value):
+        if isinstance(item, h5py.Group):
+            entry = entry_of(f"{place}@{key}")
+            if entry is not None:
+                _check_form(f"{place}@{key}", value, entry.form, path)
+            elif _type(value) not in ("text", "int64", "float64", "bool") or np.ndim(value):
                 raise _damaged(path, f"{place}@{key} is {_type(value)}, must be one text or number")
         elif key in ("unit", "items", "note"):
             if not isinstance(value, str):

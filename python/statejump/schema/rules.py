@@ -144,7 +144,7 @@ def check_name(key: str, value: Any, names: Sequence[str], **more: Any) -> str:
 
 def suggestion(word: str, known: Sequence[str], before: str = "", after: str = "") -> dict[str, str]:
     """Return the fields of an UnknownKey: the nearest known word as remedy, else all of them as cause."""
-    match = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
+    match = difflib.get_close_matches(str(word), known, n=1, cutoff=0.5)  # a dict may have keys that are no texts
     if match:
         return {"remedy": f"did you mean {before}{match[0]}{after}?"}
     return {"cause": "known are " + ", ".join(known)}
