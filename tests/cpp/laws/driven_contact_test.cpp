@@ -59,6 +59,11 @@ TEST(DrivenContact, ForcesAreTurnedIntoDepthAndSlide) {
   target.normal_force = hertz_force(depth);
   const DrivenState begun = drive(contact, {}, target);
   EXPECT_NEAR(begun.depth, depth, 1e-14 * depth);
+  for (const double force : {1e-9, 0.5, 1.0, 1e3}) {
+    target.normal_force = force;
+    EXPECT_NEAR(drive(contact, {}, target).normal_force, force, 1e-13 * force);
+  }
+  target.normal_force = hertz_force(depth);
   const double stiffness = 8.0 * shear * std::sqrt(radius * depth);
   const double limit = friction * hertz_force(depth);
   for (const double share : {0.3, -0.9, 1.0, -1.0}) {  // the limit itself can be reached

@@ -194,6 +194,27 @@ TEST(RadiusEnergyChange, HertzInClosedForm) {
   EXPECT_EQ(radius_energy_change(law, material, -depth, wall, grown), 0.0);
 }
 
+// There and back: the change is taken in the middle of both radii, so that it only turns its sign.
+TEST(RadiusEnergyChange, TurnsItsSignWithTheChange) {
+  const NormalMaterial material{38e9};
+  const double infinity = std::numeric_limits<double>::infinity();
+  const NormalGeometry one{5e-3, 5.1e-3, 0.01};
+  for (const NormalGeometry& other :
+       {NormalGeometry{5.001e-3, 5.1e-3, 0.01}, NormalGeometry{5e-3, 5.101e-3, 0.01},
+        NormalGeometry{5.001e-3, 5.103e-3, 0.01}}) {
+    const double there = radius_energy_change(HertzInternal{}, material, 2e-6, one, other);
+    const double back = radius_energy_change(HertzInternal{}, material, 2e-6, other, one);
+    // Both differences are the same but for rounding of V over the step, 1e-5.
+    EXPECT_NEAR(there, -back, 1e-10 * std::abs(there));
+    EXPECT_NE(there, 0.0);
+  }
+  const NormalGeometry wall{0.05, infinity, 0.01};
+  const NormalGeometry grown{0.051, infinity, 0.01};
+  const double there = radius_energy_change(HertzInternal{}, material, 2e-6, wall, grown);
+  EXPECT_NEAR(there, -radius_energy_change(HertzInternal{}, material, 2e-6, grown, wall),
+              1e-10 * there);
+}
+
 // Any law: with the part -F dc it is the whole change of V at fixed eccentricity.
 TEST(RadiusEnergyChange, ClosesAFiniteChangeForEveryLaw) {
   const NormalMaterial material{38e9};

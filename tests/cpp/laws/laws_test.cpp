@@ -323,6 +323,40 @@ TEST(Friction, StaticLoad) {
   }
 }
 
+// A contact that opens keeps nothing, neither spring nor axis: it is as if it had never touched.
+TEST(Friction, OpenContactForgets) {
+  const FrictionParameters parameters{0.3, 0.0, 1e-3};
+  for (const char* name : {"mindlin", "mindlin_deresiewicz"}) {
+    ContactHistory history;
+    const FrictionKinematics touching{100.0, 1e6, Vector3(0.01, -0.02, 0.0), 1e-3,
+                                      Vector3::UnitZ()};
+    evaluate(friction_law(name), parameters, touching, history);
+    EXPECT_GT(history.tangential_force.norm(), 0.0) << name;
+    evaluate(friction_law(name), parameters,
+             {0.0, 0.0, Vector3(0.01, 0.0, 0.0), 1e-3, Vector3::UnitZ()}, history);
+    EXPECT_EQ(history.tangential_force, Vector3(Vector3::Zero())) << name;
+    EXPECT_EQ(history.tangential_axis, Vector3(Vector3::Zero())) << name;
+    EXPECT_EQ(history.memory.size(), 0) << name;
+  }
+}
+
+// Loaded at a constant ratio of both forces no ring slips: the force as given, and it stays.
+TEST(Friction, PartialSlipBeginsWithoutSlipWhereLoadedObliquely) {
+  const FrictionParameters parameters{0.3, 0.0, 1e-3};
+  const double stiffness = 1e6;
+  const double limit = 30.0;
+  const Vector3 force(6.0, -8.0, 0.0);
+  const FrictionKinematics held{100.0, stiffness, Vector3(7.0, 7.0, 0.0), 0.5, Vector3::UnitZ()};
+  ContactHistory history = MindlinDeresiewiczFriction{}.loaded(parameters, force, held);
+  EXPECT_LT((history.tangential_force - force).norm(), 1e-12 * limit);
+  EXPECT_FALSE(history.slipping);
+  FrictionKinematics still = held;
+  still.tangential_velocity = Vector3::Zero();
+  const FrictionResponse at_rest =
+      evaluate(friction_law("mindlin_deresiewicz"), parameters, still, history);
+  EXPECT_LT((at_rest.force_on_1 - force).norm(), 1e-12 * limit);
+}
+
 TEST(Friction, BadInput) {
   EXPECT_NO_THROW(validate(FrictionParameters{0.3, 0.0, 1e-3}));
   EXPECT_THROW(validate(FrictionParameters{-0.1, 0.0, 1e-3}), std::invalid_argument);

@@ -166,5 +166,156 @@ TEST(UserLaws, EveryKindGoesThroughItsTable) {
             Vector3(-1.0, 0.0, 0.0));
 }
 
+// ---- laws that answer with one number that is none; which one is told through an input
+
+/// NaN in place of the entry `at` of what a law answers, if it is the wanted one.
+void spoil(double wanted, int at, double& entry, double wrong = nan) {
+  if (wanted == at) entry = wrong;
+}
+
+struct WrongNormal {
+  static constexpr LawInfo info{"wrong_normal",           "F", "the tests", "any",
+                                Trait::holds_static_load, {}};
+  static double largest_depth(const NormalGeometry&) { return 1.0; }
+  NormalState operator()(double, const NormalGeometry& geometry, const NormalMaterial&) const {
+    NormalState answer{1.0, 1.0, 1.0, 1.0};
+    const double wanted = geometry.length;
+    double* const entries[] = {&answer.force, &answer.stiffness, &answer.contact_width,
+                               &answer.elastic_energy};
+    for (int i = 0; i < 4; ++i) {
+      spoil(wanted, i, *entries[i]);
+      spoil(wanted, 4 + i, *entries[i], -1.0);
+    }
+    return answer;
+  }
+};
+
+struct WrongDissipation {
+  static constexpr LawInfo info{"wrong_chi", "chi", "the tests", "any", Trait::holds_static_load,
+                                {}};
+  double operator()(const ImpactParameters& impact) const { return impact.restitution; }
+};
+
+struct WrongFriction {
+  static constexpr LawInfo info{"wrong_friction", "F", "the tests", "any", Trait::has_memory, {}};
+  static double largest_slope(const FrictionParameters&, double normal_force) {
+    return normal_force;
+  }
+  FrictionResponse operator()(const FrictionParameters&, const FrictionKinematics& kinematics,
+                              ContactHistory& history) const {
+    FrictionResponse answer{Vector3::Ones(), 1.0, -1.0};
+    const double wanted = kinematics.time_step;
+    for (int i = 0; i < 3; ++i) {
+      spoil(wanted, i, answer.force_on_1[i]);
+      spoil(wanted, 3 + i, history.tangential_force[i]);
+    }
+    spoil(wanted, 6, answer.elastic_energy);
+    spoil(wanted, 7, answer.dissipation);
+    spoil(wanted, 8, history.tangential_stiffness);
+    spoil(wanted, 9, history.tangential_stiffness, -1.0);
+    return answer;
+  }
+};
+
+struct WrongVelocity {
+  static constexpr LawInfo info{"wrong_velocity",         "v", "the tests", "any",
+                                Trait::holds_static_load, {}};
+  Vector3 velocity(const JointContact& contact, const BodyMotion&, const BodyMotion&,
+                   const Vector3&) const {
+    Vector3 answer = Vector3::Zero();
+    for (int i = 0; i < 3; ++i) spoil(contact.eccentricity, i, answer[i]);
+    return answer;
+  }
+  Wrench wrench(const JointContact& contact, const Vector3&, const Vector3&) const {
+    Wrench answer{Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+    for (int i = 0; i < 3; ++i) {
+      spoil(contact.eccentricity, i, answer.force_1[i]);
+      spoil(contact.eccentricity, 3 + i, answer.torque_1[i]);
+      spoil(contact.eccentricity, 6 + i, answer.force_2[i]);
+      spoil(contact.eccentricity, 9 + i, answer.torque_2[i]);
+    }
+    return answer;
+  }
+};
+
+template <class Ask>
+std::string refused(Ask&& ask) {
+  try {
+    ask();
+  } catch (const std::domain_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(UserLaws, EveryNumberOfAnAnswerIsLookedAt) {
+  const LoadedLaw normal = loaded<WrongNormal>();
+  const char* const of_normal[] = {"force", "stiffness", "contact_width", "elastic_energy"};
+  for (int i = 0; i < 9; ++i) {
+    const std::string said = refused([&] {
+      UserNormalLaw{normal}(1e-6, {5e-3, 5.1e-3, static_cast<double>(i)}, aluminium);
+    });
+    if (i == 8) {
+      EXPECT_EQ(said, "");
+    } else {
+      EXPECT_NE(
+          said.find(std::string("answered ") + of_normal[i % 4] + (i < 4 ? " = nan" : " = -1")),
+          std::string::npos)
+          << i << said;
+    }
+  }
+
+  const LoadedLaw chi = loaded<WrongDissipation>();
+  for (const double wrong : {nan, -1e-9, std::numeric_limits<double>::infinity()}) {
+    EXPECT_NE(refused([&] { UserDissipationLaw{chi}({wrong, 0.1}); }), "") << wrong;
+  }
+  EXPECT_EQ(UserDissipationLaw{chi}({0.0, 0.1}), 0.0);
+
+  const LoadedLaw friction = loaded<WrongFriction>();
+  for (int i = 0; i < 11; ++i) {
+    ContactHistory history;
+    const FrictionKinematics kinematics{100.0, 1e7, Vector3::Zero(), static_cast<double>(i),
+                                        Vector3::UnitZ()};
+    const std::string said = refused([&] { UserFrictionLaw{friction}({}, kinematics, history); });
+    EXPECT_EQ(said.empty(), i == 10) << i << said;  // a negative dissipation may be a law's own
+  }
+  EXPECT_NE(refused([&] { UserFrictionLaw{friction}.largest_slope({}, -1.0); }), "");
+
+  const LoadedLaw velocity = loaded<WrongVelocity>();
+  for (int i = 0; i < 13; ++i) {
+    JointContact contact{};
+    contact.eccentricity = i;
+    const std::string of_velocity =
+        refused([&] { UserVelocityLaw{velocity}.velocity(contact, {}, {}, Vector3::Zero()); });
+    EXPECT_EQ(of_velocity.empty(), i >= 3) << i;
+    const std::string of_wrench = refused(
+        [&] { UserVelocityLaw{velocity}.wrench(contact, Vector3::Zero(), Vector3::Zero()); });
+    EXPECT_EQ(of_wrench.empty(), i == 12) << i;
+  }
+}
+
+// What a loader looks at before it trusts a table.
+TEST(UserLaws, TableSaysWhatItIs) {
+  const UserLawTable& table = *user_law_table<Doubling>("a hash");
+  EXPECT_EQ(table.version, user_law_version);
+  EXPECT_EQ(table.kind, LawKind::dissipation);
+  EXPECT_STREQ(table.name, "doubling");
+  EXPECT_STREQ(table.kernel, "a hash");
+  EXPECT_EQ(table.info, &Doubling::info);
+  // Its digits to the base of 31, modulo 2^32, are the sizes; here from the last one on.
+  std::uint32_t expected = 0;
+  std::uint32_t weight = 1;
+  for (const std::size_t size :
+       {sizeof(Wrench), sizeof(Vector3), sizeof(BodyMotion), sizeof(JointContact),
+        sizeof(ContactHistory), sizeof(FrictionResponse), sizeof(FrictionKinematics),
+        sizeof(FrictionParameters), sizeof(ImpactParameters), sizeof(NormalState),
+        sizeof(NormalMaterial), sizeof(NormalGeometry), sizeof(LawParameter), sizeof(LawInfo),
+        sizeof(UserLawTable)}) {
+    expected += weight * static_cast<std::uint32_t>(size);
+    weight *= 31U;
+  }
+  EXPECT_EQ(table.sizes, expected);
+}
+
 }  // namespace
 }  // namespace statejump::kernel::laws

@@ -310,6 +310,28 @@ TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
   }
 }
 
+TEST(Truss, SlipEndsAtTheCornerHoweverLongTheIncrement) {
+  // Between two increments of a whole branch the slide turns round: the short step after the corner
+  // holds the block first, so that both slides and the stick between them are told.
+  Options options;
+  options.locate_events = false;
+  for (const int increments : {1, 3}) {
+    options.increments_per_branch = increments;
+    const Path path = solve(bar(), options);
+    const double length = 0.5;
+    const auto held = std::find_if(path.events.begin(), path.events.end(), [](const Event& event) {
+      return event.after == JointStatus::stick;
+    });
+    ASSERT_NE(held, path.events.end()) << increments;
+    EXPECT_EQ(held->before, JointStatus::slip_plus);
+    EXPECT_GT(held->time, 0.5);
+    EXPECT_LE(held->time, 0.5 + 1.5 * options.event_tolerance * length);
+    ASSERT_NE(held + 1, path.events.end());
+    EXPECT_EQ((held + 1)->before, JointStatus::stick);
+    EXPECT_EQ((held + 1)->after, JointStatus::slip_minus);
+  }
+}
+
 TEST(Truss, RibFollowsItsPathAndClosesItsBalance) {
   const Model model = rib();
   const Path path = solve(model);

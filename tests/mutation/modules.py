@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a campaign of mutants breaks, and which tests have to notice."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+KERNEL = "contact_laws/kernel/include/statejump/kernel"
+
+
+@dataclass(frozen=True)
+class Module:
+    """Files that are broken one at a time, and the tests that guard them, those that cost least first.
+
+    :param sources: patterns of the files, from the repository
+    :param guards: test files of headers (each is compiled with the mutant) and of Python; names of the built test
+        programs of a library, into which the mutant is linked
+    :param wanted: least share of mutants that has to be noticed
+    """
+
+    name: str
+    sources: tuple[str, ...]
+    guards: tuple[str, ...]
+    wanted: float = 0.85
+
+    def files(self, root: Path) -> list[Path]:
+        """Return the files, in order."""
+        return sorted(path for pattern in self.sources for path in root.glob(pattern))
+
+
+_KERNEL_TESTS = tuple(f"tests/cpp/kernel/{name}_test.cpp" for name in (
+    "hertz", "mindlin", "contact_law", "joint", "ball", "elliptic_hertz", "partial_slip"))
+_LAW_TESTS = tuple(f"tests/cpp/laws/{name}_test.cpp" for name in (
+    "laws", "user_law", "joint_response", "driven_contact", "oblique_impact"))
+
+
+def _engine(name: str, *more: str) -> Module:
+    return Module(name, (f"engine/src/{name}/**/*.cpp", *more), (f"{name}_tests",))
+
+
+def _python(name: str, sources: tuple[str, ...], *tests: str) -> Module:
+    return Module(name, tuple(f"python/statejump/{source}" for source in sources),
+                  tuple(f"tests/python/test_{test}.py" for test in tests))
+
+
+MODULES = [
+    Module("kernel", (f"{KERNEL}/*.hpp",), (*_KERNEL_TESTS, *_LAW_TESTS), 0.95),
+    Module("laws", (f"{KERNEL}/laws/*.hpp",), (*_LAW_TESTS, *_KERNEL_TESTS), 0.95),
+    Module("thermal", ("thermal/include/statejump/thermal/*.hpp",), ("tests/cpp/thermal/program_test.cpp",)),
+    _engine("spring_slider"),
+    _engine("linkage", "engine/src/linkage/rates.hpp"),
+    _engine("rest_set", "engine/src/rest_set/arcs.hpp"),
+    _engine("complementarity"),
+    _engine("truss"),
+    Module("geometry", ("geometry/src/*.cpp",), ("geometry_tests",)),
+    _python("schema", ("schema/*.py",), "schema", "bad_input", "properties", "case_as_dict"),
+    _python("validation", ("kinds/*/case.py", "kinds/truss/checks.py", "kinds/fclib/case.py"), "bad_input", "schema",
+            "truss_case", "umbrella_case", "thermal_tables", "fclib", "statics"),
+    _python("verdicts", ("kinds/*/compare.py", "core/comparison.py", "results/difference.py"), "not_finite",
+            "truss_compare", "umbrella_compare", "result_file", "end_to_end"),
+]
