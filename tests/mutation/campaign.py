@@ -209,16 +209,19 @@ class Compiled(Guards):
             text, lines[file] = switched(
                 originals[file], {number: one for number, one in self.ready.items() if one.file == file})
             (self.folder / file).write_text(text, encoding="utf-8")
-        held = {number for found in lines.values() for number in found}
-        self.ready = {number: one for number, one in self.ready.items() if number in held}
+        kept = {number for found in lines.values() for number in found}
+        self.ready = {number: one for number, one in self.ready.items() if number in kept}
         said = self.build_programs(files)
         if said is None:
             return True
         bad: set[int] = set()
         for name, line in re.findall(r"^(\S+?):(\d+):\d+: error:", said, re.M):
             file = str(Path(name).resolve()).removeprefix(f"{self.folder.resolve()}/")
-            near = [number for number, (first, last) in lines.get(file, {}).items() if first <= int(line) <= last]
-            bad.update(near or lines.get(file, {}))
+            held = lines.get(file, {})
+            near = [number for number, (first, last) in held.items() if first <= int(line) <= last]
+            # Of a declaration that went wrong the compiler tells where it is used: the last one before is taken out.
+            before = [number for number in held if held[number][0] <= int(line)]
+            bad.update(near or sorted(before, key=lambda number: held[number][0])[-1:] or held)
         if not bad:
             raise SetUp(f"{self.module.name} does not compile with its mutants:\n{said[:3000]}")
         self.ready = {number: one for number, one in self.ready.items() if number not in bad}
@@ -440,6 +443,7 @@ def explained(mutant: Mutant, text: str) -> str | None:
     line = text[start: text.find("\n", mutant.end)]
     for entry in tomllib.loads(EQUIVALENT.read_text(encoding="utf-8")).get("mutant", []):
         if (entry["file"] == mutant.file and entry["line"].strip() in line
+                and entry.get("place", 1) == text[start: mutant.start].count(entry["was"]) + 1
                 and entry["was"] == text[mutant.start: mutant.end] and entry["is"] == mutant.replacement):
             return str(entry["why"])
     return None

@@ -132,6 +132,11 @@ TEST(ContactLaw, TangentialDamping) {
   EXPECT_FALSE(history.slipping);
   EXPECT_NEAR(response.tangential_force.norm(), 0.3 * response.normal_force, 1e-13);
   EXPECT_GT(response.damping_dissipation, 0.0);
+  // A contact that carries hardly anything is damped as well.
+  ContactHistory light;
+  response = hertz_mindlin(parameters, kinematics(1e-8, Vector3(0, speed, 0)), light);
+  EXPECT_LT(0.3 * response.normal_force, 0.01);
+  EXPECT_GT(response.damping_dissipation, 0.0);
   // Slipping: spring at the limit, no viscous part.
   response = hertz_mindlin(parameters, kinematics(1e-6, Vector3(0, 20, 10)), history);
   EXPECT_TRUE(history.slipping);

@@ -69,6 +69,17 @@ double cattaneo(double share) {
   return 1.0 - std::pow(1.0 - std::min(share, 1.0), 1.5);
 }
 
+TEST(PartialSlip, OneDirectionNeedsNoMorePointsThanItHasPieces) {
+  // What slips follows one bound, what sticks another: of many steps the pieces in line are one.
+  for (const int steps : {1, 50}) {
+    Contact contact = pressed();
+    contact.in_steps(usual_depth, {0.6 * Contact::gross(usual_depth), 0.0}, steps);
+    EXPECT_EQ(contact.memory.size(), 3) << steps;
+    contact.in_steps(usual_depth, {3.0 * Contact::gross(usual_depth), 0.0}, steps);
+    EXPECT_EQ(contact.memory.size(), 2) << steps;
+  }
+}
+
 TEST(PartialSlip, LoadingUnloadingReloadingAtConstantLoad) {
   const double limit = mu * Contact::normal(usual_depth);
   const double gross = Contact::gross(usual_depth);

@@ -169,6 +169,16 @@ TEST(SpringSliderPath, TenCyclesRepeatBitForBit) {
   }
 }
 
+TEST(SpringSliderPath, DirectionsAreThoseOfSlideAndStop) {
+  for (const Segment& segment : solve(table1(), cycle(thermal::Shape::sine, 2)).segments) {
+    const double moved = segment.end_displacement - segment.start_displacement;
+    int expected = 0;
+    if (segment.motion == Motion::slide) expected = moved > 0.0 ? 1 : -1;
+    if (segment.motion == Motion::stop) expected = segment.start_displacement > 0.0 ? 1 : -1;
+    EXPECT_EQ(segment.direction, expected) << to_string(segment.stage);
+  }
+}
+
 TEST(SpringSliderPath, SineVisitsBothStops) {
   const Path path = solve(table1(), cycle(thermal::Shape::sine));
   const double zero = c / (alpha * l0);
@@ -255,6 +265,12 @@ TEST(SpringSliderPath, CyclesThatAreLeftOutAreComputed) {
     EXPECT_EQ(kept, (std::vector<int>{0, 1, 141, 142, 143, 298, 299}));
     EXPECT_NE(refusal([&path] { sample(path, Eigen::VectorXd::Constant(1, 50.0)); }), "");
     EXPECT_NE(refusal([&] { solve(model, program, Eigen::VectorXd::Constant(1, -1.0)); }), "");
+    SpringSlider none = model;
+    none.young_modulus = -1.0;
+    EXPECT_NE(refusal([&] { solve(none, program, times); }), "");
+    thermal::Program endless = program;
+    endless.cycles = 0;
+    EXPECT_NE(refusal([&] { solve(model, endless, times); }), "");
   }
 }
 

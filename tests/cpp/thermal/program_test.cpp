@@ -60,6 +60,7 @@ TEST(Program, TellsTheCyclesApartOnEitherSideOfTheirEnd) {
       ASSERT_GT(triangle.temperature_change(before), 0.0) << period << " " << k;
       ASSERT_LT(triangle.temperature_rate(before), 0.0) << period << " " << k;
       ASSERT_GT(triangle.temperature_rate(end), 0.0) << period << " " << k;
+      ASSERT_EQ(triangle.temperature_change(end), 0.0) << period << " " << k;
     }
   }
 }
@@ -153,7 +154,7 @@ TEST(Program, RefusesWhatIsOutOfRange) {
   EXPECT_NE(refused(table({0.0}, {0.0})), "");
   Program open = table({0.0, 1.0}, {0.0, 5.0});
   open.cycles = 2;
-  EXPECT_NE(refused(open), "");
+  EXPECT_EQ(refused(open).substr(0, 32), "table_temperature_changes[1] = 5");
   Program late = table({0.0, 1.0}, {0.0, 5.0});
   late.period = 2.0;
   EXPECT_NE(refused(late), "");
