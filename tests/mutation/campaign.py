@@ -304,19 +304,32 @@ class LibraryGuards(Compiled):
         super().__init__(module, root, folder, build)
         self.prefix = folder / "prefix.hpp"
         self.prefix.write_text(SWITCH)
+        # What was compiled last, so that a mutant that has to go does not cost all other files again.
+        self.compiled: dict[str, str] = {}
 
     def build_programs(self, files: list[str]) -> str | None:
-        made, wrong = [], []
-        for source in sorted({source for file in files for source in self._sources(file)}):
-            made.append(self.folder / f"switched{len(made)}.o")
-            said = self.compile(source, made[-1], "-O1", "-include", str(self.prefix))
-            wrong += [said] if said is not None else []
+        sources = sorted({source for file in files for source in self._sources(file)})
+        headers = "".join((self.folder / file).read_text() for file in files if not file.endswith(".cpp"))
+        wrong = []
+        for source in sources:
+            text = headers + (self.folder / source).read_text()
+            if self.compiled.get(source) == text:
+                continue
+            said = self.compile(source, self._object(source), "-O1", "-include", str(self.prefix))
+            if said is None:
+                self.compiled[source] = text
+            else:
+                wrong.append(said)
         if wrong:
             return "\n".join(wrong)
+        made = [self._object(source) for source in sources]
         for place, guard in enumerate(self.module.guards):
             self.programs[guard] = self.folder / f"guard{place}"
             self._link(guard, made, self.programs[guard])
         return None
+
+    def _object(self, source: str) -> Path:
+        return self.folder / (source.replace("/", "_") + ".o")
 
     def _link(self, guard: str, made: list[Path], program: Path) -> None:
         """Link a test program of the build with other objects of its library."""

@@ -329,6 +329,8 @@ TEST(Truss, SlipEndsAtTheCornerHoweverLongTheIncrement) {
     ASSERT_NE(held + 1, path.events.end());
     EXPECT_EQ((held + 1)->before, JointStatus::stick);
     EXPECT_EQ((held + 1)->after, JointStatus::slip_minus);
+    // The start, and in both branches the short step and the increments: nothing is searched for.
+    EXPECT_EQ(path.solves, 1 + 2 * (1 + increments));
   }
 }
 
