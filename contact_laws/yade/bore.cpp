@@ -219,6 +219,11 @@ void BoreContacts::check_patch_angle(const char* class_name) const {
   }
 }
 
+void Ig2_Journal_MeshBore_BoreGeom::check() const {
+  require_not_negative(class_name, "maxTilt", maxTilt, "[rad]");
+  check_patch_angle(class_name);
+}
+
 bool BoreContacts::find(const Probe& probe, const MeshBore& bore, const yade::State& state1,
                         const yade::State& state2, const Vector3r& shift2, bool force,
                         const yade::shared_ptr<yade::Interaction>& contact,
@@ -249,6 +254,10 @@ bool BoreContacts::find_or_throw(const Probe& probe, const MeshBore& bore,
   const Vector3r centre = mesh.centre() + (turn.transpose() * centres - mesh.centre()) / grown;
   const Vector3r axis = turn.transpose() * probe.axis;
   const Real radius = probe.radius / grown;
+  if (!stepper::is_plain(centre) || !(radius > 0)) {
+    record_failure("no place of the parts against each other", scene, *contact);
+    return false;
+  }
 
   // Even without contact the pair keeps what is known of the wall; it is real only with physics.
   if (!contact->geom) contact->geom = boost::make_shared<BoreGeom>();
@@ -361,8 +370,9 @@ bool Ig2_Journal_MeshBore_BoreGeom::go(const yade::shared_ptr<yade::Shape>& shap
   const auto& bore = static_cast<const MeshBore&>(*shape2);
   const Probe probe{false, journal.expanded(journal.radius),
                     journal.radius * journal.thermalStrainRate, axis_of(state1.se3.orientation)};
-  if (bore.mesh() && probe.axis.cross(state2.se3.orientation * bore.mesh()->axis()).squaredNorm() >
-                         maxTilt * maxTilt) {
+  if (bore.mesh() &&
+      !(probe.axis.cross(state2.se3.orientation * bore.mesh()->axis()).squaredNorm() <=
+        maxTilt * maxTilt)) {
     fail_tilted(*scene, *contact);
     return false;
   }

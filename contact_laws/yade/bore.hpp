@@ -187,7 +187,7 @@ struct Ig2_Journal_MeshBore_BoreGeom
   std::string checkOrder() const override { return "Journal MeshBore"; }
   std::string get2DFunctorType1() const override { return "Journal"; }
   std::string get2DFunctorType2() const override { return "MeshBore"; }
-  void check() const { check_patch_angle(class_name); }
+  void check() const;
   static auto attributes() {
     using Self = Ig2_Journal_MeshBore_BoreGeom;
     return std::make_tuple(

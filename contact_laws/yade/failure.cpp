@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "contact_parts.hpp"
+#include "faults.hpp"
 #include "yade_api.hpp"
 
 namespace statejump::dem {
@@ -22,6 +23,8 @@ Failure first_failure;
 std::optional<Failure> thrown_failure;
 const yade::Scene* failed_scene = nullptr;
 long failed_iteration = 0;
+// YADE makes a run, and a single step, in a thread of its own.
+thread_local const yade::Scene* looked_at = nullptr;
 
 bool raised_by_an_engine(const yade::Scene& scene) {
   return std::any_of(scene.engines.begin(), scene.engines.end(), [](const auto& engine) {
@@ -36,6 +39,10 @@ std::string Failure::sentence() const {
   switch (part) {
     case Part::contact:
       return before + after + " (contact of bodies " + bodies + ", " + when + ")";
+    case Part::scene:
+      return before + after + " (" + when + ")";
+    case Part::body:
+      return before + "body " + std::to_string(id1) + after + " (" + when + ")";
     case Part::link:
       return before + "the link between bodies " + bodies + after + " (" + when + ")";
     case Part::torsion_spring:
@@ -47,6 +54,7 @@ std::string Failure::sentence() const {
 
 void record_failure(const std::string& sentence, const yade::Scene& scene,
                     const yade::Interaction& contact) {
+  if (auto fault = fault_of_contact(scene, contact)) return record_failure(*std::move(fault));
   record_failure({Failure::Part::contact, contact.id1, contact.id2, sentence, "", scene.time,
                   std::numeric_limits<yade::Real>::quiet_NaN(), when(scene)});
 }
@@ -65,8 +73,9 @@ void record_failure(Failure failure) {
   scene->stopAtIter = scene->iter + 1;
 }
 
+namespace {
+
 void throw_recorded_failure() {
-  if (!failed.load(std::memory_order_relaxed)) return;
   const std::lock_guard<std::mutex> lock(message_mutex);
   failed = false;
   // One of an earlier scene or run is no longer true.
@@ -75,6 +84,16 @@ void throw_recorded_failure() {
   if (scene != failed_scene || since < 0 || since > 1) return;
   thrown_failure = first_failure;
   throw std::runtime_error(first_failure.sentence());
+}
+
+}  // namespace
+
+void RaisesFailures::begin(const yade::Scene& scene) {
+  if (failed.load(std::memory_order_relaxed)) throw_recorded_failure();
+  const bool is_step = scene.dt > 0 && scene.dt <= std::numeric_limits<yade::Real>::max();
+  if (is_step && looked_at == &scene) return;
+  if (auto fault = fault_of_scene(scene)) throw_failure(*std::move(fault));
+  looked_at = &scene;
 }
 
 void throw_failure(Failure failure) {
@@ -89,10 +108,14 @@ boost::python::object take_failure() {
   const std::lock_guard<std::mutex> lock(message_mutex);
   if (!thrown_failure) return py::object();
   const Failure failure = *std::exchange(thrown_failure, std::nullopt);
-  const char* const parts[] = {"contact", "link", "torsion_spring"};
+  const char* const parts[] = {"contact", "link", "torsion_spring", "body", "scene"};
   py::dict result;
   result["part"] = parts[static_cast<std::size_t>(failure.part)];
-  result["bodies"] = py::make_tuple(failure.id1, failure.id2);
+  py::list bodies;
+  for (const int id : {failure.id1, failure.id2}) {
+    if (id >= 0) bodies.append(id);
+  }
+  result["bodies"] = py::tuple(bodies);
   result["before"] = failure.before;
   result["after"] = failure.after;
   result["time"] = failure.time;

@@ -5,7 +5,9 @@
 #include <string>
 
 #include "failure.hpp"
+#include "faults.hpp"
 #include "ranges.hpp"
+#include "statejump/stepper/numbers.hpp"
 #include "thermal.hpp"
 
 namespace statejump::dem {
@@ -15,7 +17,7 @@ void GuidePlanes::check() const {
 }
 
 void GuidePlanes::action() {
-  throw_recorded_failure();
+  begin(*scene);
   if (ids.size() != normals.size()) {
     throw std::invalid_argument("GuidePlanes: " + std::to_string(ids.size()) + " ids, but " +
                                 std::to_string(normals.size()) + " normals");
@@ -25,7 +27,9 @@ void GuidePlanes::action() {
   std::vector<Vector3r> held(ids.size());
   for (std::size_t i = 0; i < ids.size(); ++i) {
     yade::State& state = *body_of(*scene, ids[i], "GuidePlanes.ids").state;
-    held[i] = scene->forces.getForce(ids[i]).dot(normals[i]) * normals[i];
+    const Vector3r& force = scene->forces.getForce(ids[i]);
+    held[i] = force.dot(normals[i]) * normals[i];
+    if (!stepper::is_plain(held[i])) fail_force(*scene, ids[i], force);
     state.vel -= state.vel.dot(normals[i]) * normals[i];
   }
   for (std::size_t i = 0; i < ids.size(); ++i) scene->forces.addForce(ids[i], -held[i]);

@@ -64,7 +64,7 @@ bool finish(const yade::State& state1, Real radius_1, Real radius_2,
   const stepper::Part part_2 = part_of(bearing, bearing.radius);
   const Vector3r axis = axis_of(state2.se3.orientation);
   const auto tilted = [&] {
-    return axis_of(state1.se3.orientation).cross(axis).squaredNorm() > maxTilt * maxTilt;
+    return !(axis_of(state1.se3.orientation).cross(axis).squaredNorm() <= maxTilt * maxTilt);
   };
   switch (stepper::find_revolute(
       part_1, part_2, motion(state1), shifted(state2, shift2), axis, force || contact->isReal(),
@@ -124,6 +124,14 @@ bool finish(const yade::State& state1, Real radius_1, Real radius_2,
          finish(state1, pad.expanded(), pad.expanded(), *contact);
 }
 
+void JointPhys::check() const {
+  require_settable(class_name, stepper::contact_quantities<JointPhys>, *this);
+}
+
+void Ig2_Journal_Bearing_JointGeom::check() const {
+  require_not_negative(class_name, "maxTilt", maxTilt, "[rad]");
+}
+
 void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::check() const {
   require_not_negative(class_name, "normalDampingRatio", normalDampingRatio, "[-]");
   require_not_negative(class_name, "tangentialDampingRatio", tangentialDampingRatio, "[-]");
@@ -152,8 +160,7 @@ void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
   const auto& geometry = static_cast<const JointGeom&>(*geometry_pointer);
   auto& physics = static_cast<JointPhys&>(*physics_pointer);
 
-  return stepper::hertz_mindlin_step(geometry, physics,
-                                     ContactHost{*scene, *contact, physics, energies_});
+  return stepper::hertz_mindlin_step(geometry, physics, ContactHost{*scene, *contact, energies_});
 }
 
 bool Law2_JointGeom_JointPhys_JointLaw::go(yade::shared_ptr<yade::IGeom>& geometry,

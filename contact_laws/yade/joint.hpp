@@ -89,6 +89,7 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
   Real previousDepth = 0;
 
   JointPhys() { createIndex(); }
+  void check() const;
   static auto attributes() {
     return std::make_tuple(
         attribute("effectiveYoungModulus", &JointPhys::effectiveYoungModulus, "E* [Pa]"),
@@ -160,6 +161,7 @@ struct Ig2_Journal_Bearing_JointGeom
   std::string checkOrder() const override { return "Journal Bearing"; }
   std::string get2DFunctorType1() const override { return "Journal"; }
   std::string get2DFunctorType2() const override { return "Bearing"; }
+  void check() const;
   static auto attributes() {
     return std::make_tuple(attribute("maxTilt", &Ig2_Journal_Bearing_JointGeom::maxTilt,
                                      "Largest angle between the axes [rad]"));

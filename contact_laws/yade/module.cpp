@@ -169,9 +169,10 @@ BOOST_PYTHON_MODULE(_native) {
           "R1 R2 / (R2 - R1) in a bearing [m].");
   py::def(
       "take_failure", &statejump::dem::take_failure,
-      "What ended the last run, as fields, and forget it: a dict with part ('contact', 'link' or "
-      "'torsion_spring'), bodies (two ids), before and after (the sentence around the name of "
-      "a link or spring), time [s], stable_time_step [s] (None unless the step was too long) "
+      "What ended the last run, as fields, and forget it: a dict with part ('contact', 'link', "
+      "'torsion_spring', 'body' or 'scene'), bodies (two ids, one or none), before and after (the "
+      "sentence around the name of a link, spring or body), time [s], stable_time_step [s] (None "
+      "unless the step was too long) "
       "and sentence. None: nothing of this plugin failed.");
   py::def("stable_time_step", &statejump::dem::stable_time_step_of_scene,
           "Stable time step of the current scene [s], on the safe side: smallest of "

@@ -157,7 +157,7 @@ bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
   const auto& state2 = *body_at(scene, static_cast<std::size_t>(contact.id2))->state;
   try {
     return stepper::joint_law_step(named_.law, geometry, physics, motion(state1), motion(state2),
-                                   ContactHost{scene, contact, physics, energies_});
+                                   ContactHost{scene, contact, energies_});
   } catch (const std::exception& error) {
     record_failure(error.what(), scene, contact);
   }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "statejump/kernel/laws/law_info.hpp"
+#include "statejump/stepper/numbers.hpp"
 
 namespace statejump::dem {
 
@@ -38,6 +39,20 @@ inline void require_not_negative(const char* class_name, const char* attribute, 
                                  const char* unit) {
   if (!(value >= 0 && std::isfinite(value))) {
     refuse(class_name, attribute, value, (std::string("0 or above ") + unit).c_str());
+  }
+}
+
+// Numbers that a script may set: those that may be used, and 0 for what is not set yet.
+template <class Object, std::size_t size>
+void require_settable(const char* class_name, const stepper::Quantities<Object, size>& quantities,
+                      const Object& object) {
+  for (const stepper::Quantity<Object>& each : quantities) {
+    const double value = object.*each.value;
+    const bool positive = each.allowed == stepper::Allowed::positive;
+    const stepper::Allowed allowed = positive ? stepper::Allowed::not_negative : each.allowed;
+    if (stepper::allows(allowed, value)) continue;
+    const std::string range = std::string(words(allowed)) + " [" + each.unit + "]";
+    refuse(class_name, each.name, value, range.c_str());
   }
 }
 

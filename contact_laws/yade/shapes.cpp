@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ranges.hpp"
+#include "statejump/stepper/numbers.hpp"
 
 namespace statejump::dem {
 namespace {
@@ -23,6 +24,18 @@ Vector3r cylinder_half_extents(const yade::Quaternionr& orientation, Real radius
 }
 
 }  // namespace
+
+void ThermalFrictMat::check() const {
+  if (!std::isfinite(thermalExpansion)) {
+    refuse(class_name, "thermalExpansion", thermalExpansion, "finite [1/K]");
+  }
+}
+
+void ThermalShape::check() const {
+  if (!stepper::is_strain(thermalStrain)) {
+    refuse(class_name, "thermalStrain", thermalStrain, "above -1 [-]");
+  }
+}
 
 void Journal::check() const {
   require_not_negative(class_name, "radius", radius, "[m]");

@@ -16,6 +16,7 @@ struct ThermalFrictMat : RegisteredIndexable<ThermalFrictMat, yade::FrictMat> {
       "poisson, density and frictionAngle apply.";
   Real thermalExpansion = 0;
   ThermalFrictMat() { createIndex(); }
+  void check() const;
   static auto attributes() {
     return std::make_tuple(attribute("thermalExpansion", &ThermalFrictMat::thermalExpansion,
                                      "Coefficient of linear thermal expansion [1/K]"));
@@ -36,6 +37,7 @@ struct ThermalShape : RegisteredIndexable<ThermalShape, yade::Shape> {
   // step an expanding joint closed.
   Real thermalStrainRate = 0;
   ThermalShape() { createIndex(); }
+  void check() const;
   Real expanded(Real length) const { return length * (1 + thermalStrain); }
   static auto attributes() {
     return std::make_tuple(attribute("thermalStrain", &ThermalShape::thermalStrain,

@@ -11,6 +11,7 @@
 #include "blocked_motion.hpp"
 #include "bore.hpp"
 #include "contact_parts.hpp"
+#include "faults.hpp"
 #include "guide.hpp"
 #include "joint_exchange.hpp"
 #include "shapes.hpp"
@@ -87,6 +88,7 @@ void write_energies(const stepper::Energies& energies, const stepper::Energies& 
 
 bool JointArrays::gather(stepper::Scene& arrays) {
   arrays = {};
+  if (fault_of_scene(scene_)) return false;  // the ordinary loop tells it where it matters
   interactions_.clear();
   heated_.clear();
   strains_.clear();
@@ -267,10 +269,7 @@ bool JointArrays::gather_stage(const ThermalLinks& group, stepper::Scene& arrays
   stepper::Links links;
   links.places.reserve(group.links.size());
   for (const auto& link : group.links) {
-    if (!link || !link->program || !exists(link->id1) || !exists(link->id2) ||
-        !(link->stressFreeLength > 0)) {
-      return false;
-    }
+    if (!link || !link->program || !exists(link->id1) || !exists(link->id2)) return false;
     links.places.push_back({*link, program_of(*link->program, arrays)});
     links.needs_moments = links.needs_moments || link->tipTurnsWithLink;
   }

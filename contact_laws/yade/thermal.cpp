@@ -7,15 +7,18 @@
 #include <limits>
 #include <sstream>
 #include <unordered_set>
+#include <utility>
 
 #include "blocked_motion.hpp"
 #include "bore.hpp"
 #include "contact_parts.hpp"
 #include "failure.hpp"
+#include "faults.hpp"
 #include "joint.hpp"
 #include "ranges.hpp"
 #include "shapes.hpp"
 #include "statejump/kernel/stable_step.hpp"
+#include "statejump/stepper/numbers.hpp"
 #include "torsion.hpp"
 
 namespace statejump::dem {
@@ -27,8 +30,14 @@ const std::string link_damping = "linkDamping";
 const std::string link_thermal_work = "linkThermalWork";
 const std::string pin_damping = "pinDamping";
 
+// Throws where it is a number of the link or of its bodies that is none.
+void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
+  if (auto fault = fault_of_link(scene, link)) throw_failure(*std::move(fault));
+}
+
 [[gnu::cold, gnu::noinline]] void refuse_time_step(const yade::Scene& scene,
                                                    const ThermalLink& link, Real stable) {
+  throw_fault(scene, link);
   std::ostringstream before, after;
   before.precision(6);
   after.precision(6);
@@ -38,12 +47,30 @@ const std::string pin_damping = "pinDamping";
                  stable, when(scene)});
 }
 
-// Coinciding ends, or positions that are no numbers any more.
+// Coinciding ends, or ends further apart than a number says.
 [[gnu::cold, gnu::noinline]] void fail_length(const yade::Scene& scene, const ThermalLink& link,
                                               Real length) {
+  throw_fault(scene, link);
   const char* const what =
       length == 0 ? "the two ends coincide of " : "the positions have no finite distance of ";
   throw_failure({Failure::Part::link, link.id1, link.id2, what, "", scene.time,
+                 std::numeric_limits<Real>::quiet_NaN(), when(scene)});
+}
+
+// The temperature leaves the link no length, or its force is no number.
+[[gnu::cold, gnu::noinline]] void fail_force(const yade::Scene& scene, const ThermalLink& link,
+                                             const stepper::LinkStep& step) {
+  throw_fault(scene, link);
+  std::ostringstream before;
+  before.precision(9);
+  if (step.stress_free_length > 0) {
+    before << "the tension is " << step.tension << " N, allowed is finite, of ";
+  } else {
+    before << "the stress-free length is " << step.stress_free_length
+           << " m, allowed is above 0, with thermalExpansion " << link.thermalExpansion
+           << " 1/K of ";
+  }
+  throw_failure({Failure::Part::link, link.id1, link.id2, before.str(), "", scene.time,
                  std::numeric_limits<Real>::quiet_NaN(), when(scene)});
 }
 
@@ -127,28 +154,26 @@ const std::vector<ThermalExpansionEngine::Target>& ThermalExpansionEngine::targe
 }
 
 void ThermalExpansionEngine::action() {
-  throw_recorded_failure();
+  begin(*scene);
   if (!program) throw std::invalid_argument("ThermalExpansionEngine.program is missing");
   temperatureChange = program->temperature_change(scene->time);
   for (const Target& target : targets()) {
     if (target.is_shared) continue;
     const Real strain = target.material->thermalExpansion * temperatureChange;
-    target.shape->thermalStrainRate =
-        scene->dt > 0 ? (strain - target.shape->thermalStrain) / scene->dt : 0;
+    if (!stepper::is_plain_strain(strain) && !stepper::is_strain(strain)) {
+      fail_strain(*scene, static_cast<int>(target.id), strain, target.material->thermalExpansion);
+    }
+    target.shape->thermalStrainRate = (strain - target.shape->thermalStrain) / scene->dt;
     target.shape->thermalStrain = strain;
   }
 }
 
 void ThermalLink::check() const {
-  require_not_negative(class_name, "youngModulus", youngModulus, "[Pa]");
-  require_not_negative(class_name, "crossSectionArea", crossSectionArea, "[m2]");
-  require_not_negative(class_name, "stressFreeLength", stressFreeLength, "[m]");
-  require_not_negative(class_name, "dampingRatio", dampingRatio, "[-]");
-  require_not_negative(class_name, "pinDamping", pinDamping, "[N m s/rad]");
+  require_settable<stepper::Link>(class_name, stepper::link_quantities, *this);
 }
 
 void ThermalLinks::action() {
-  throw_recorded_failure();
+  begin(*scene);
   // Only a tip that turns with its link asks for the moments of the step; summing the threads'
   // parts for nothing would cost as much as all the rest of this engine.
   bool needs_moments = false;
@@ -169,7 +194,6 @@ void ThermalLinks::action() {
 
 void ThermalLinks::act(ThermalLink& link, const Vector3r& moment) {
   if (!link.program) throw std::invalid_argument("ThermalLink.program is missing");
-  require_positive("ThermalLink", "stressFreeLength", link.stressFreeLength, "[m]");
   const LinkEnds ends = ends_of(*scene, link);
   const Real inverse = ends.inverse_mass();
   const stepper::LinkStep step = stepper::link_step(
@@ -178,9 +202,10 @@ void ThermalLinks::act(ThermalLink& link, const Vector3r& moment) {
       stepper::damping_coefficient(link, inverse), scene->time);
   if (inverse > 0) {
     const Real stable = stepper::stable_step(step, inverse);
-    if (scene->dt > stable) refuse_time_step(*scene, link, stable);
+    if (!(scene->dt <= stable)) refuse_time_step(*scene, link, stable);
   }
   Vector3r force_on_tip = stepper::force_on_tip(step);
+  if (!stepper::is_plain(step, force_on_tip)) fail_force(*scene, link, step);
   if (link.tipTurnsWithLink) {
     yade::State& tip = ends.tip;
     if ((tip.blockedDOFs & all_rotations_blocked) != all_rotations_blocked) {

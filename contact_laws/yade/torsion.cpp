@@ -2,11 +2,14 @@
 #include "torsion.hpp"
 
 #include <cmath>
+#include <limits>
 #include <sstream>
+#include <utility>
 
 #include "blocked_motion.hpp"
 #include "contact_parts.hpp"
 #include "failure.hpp"
+#include "faults.hpp"
 #include "ranges.hpp"
 #include "statejump/kernel/stable_step.hpp"
 
@@ -15,6 +18,11 @@ namespace {
 
 const std::string torsion_elastic = "torsionElastic";
 constexpr Real pi = 3.14159265358979323846;
+
+// Throws where it is a number of the spring that is none.
+void throw_fault(const yade::Scene& scene, const TorsionSpring& spring) {
+  if (auto fault = fault_of_spring(scene, spring)) throw_failure(*std::move(fault));
+}
 
 void require_planar(const yade::Scene& scene, const ThermalLink& link, const stepper::Span& span,
                     const Vector3r& axis) {
@@ -40,7 +48,7 @@ void TorsionSpring::check() const {
 }
 
 void TorsionSprings::action() {
-  throw_recorded_failure();
+  begin(*scene);
   for (const auto& spring : springs) {
     if (!spring) throw std::invalid_argument("TorsionSprings.springs holds None");
     act(*spring);
@@ -60,7 +68,8 @@ void TorsionSprings::act(TorsionSpring& spring) {
                        stepper::inverse_inertia(second.span, second.inverse_mass());
   if (inverse > 0) {
     const Real stable = kernel::critical_time_step(1 / inverse, spring.stiffness);
-    if (scene->dt > stable) {
+    if (!(scene->dt <= stable)) {
+      throw_fault(*scene, spring);
       std::ostringstream before, after;
       before.precision(6);
       after.precision(6);
@@ -71,6 +80,12 @@ void TorsionSprings::act(TorsionSpring& spring) {
     }
   }
 
+  if (!std::isfinite(spring.moment)) {
+    throw_fault(*scene, spring);
+    throw_failure({Failure::Part::torsion_spring, spring.link1->id2, spring.link2->id2,
+                   "the moment is not finite of ", "", scene->time,
+                   std::numeric_limits<Real>::quiet_NaN(), when(*scene)});
+  }
   const auto add_couple = [&](const ThermalLink& link, const LinkEnds& ends, Real moment) {
     const Vector3r force = stepper::couple(ends.span, spring.axis, moment);
     scene->forces.addForce(link.id2, force);

@@ -125,6 +125,25 @@ def test_remedy_of_a_step_helps(values: Callable[[str], Values]) -> None:
     assert len(dem.execute(found, lambda fraction: None).columns["time_s"]) == found["number_of_samples"] + 1
 
 
+def test_number_that_is_none(values: Callable[[str], Values]) -> None:
+    # Checks of case files keep these out; whatever lets one through ends here.
+    nan = float("nan")
+    for name, section, key, cause, joint in (
+        ("table1", "joint", "friction_coefficient", "ThermalFrictMat.frictionAngle of the slider is nan, ", None),
+        ("table1", "dem", "tip_mass_kg", "the mass of the slider is nan kg, allowed is above 0", None),
+        ("umbrella_damped", "joint", "friction_coefficient",
+         "ThermalFrictMat.frictionAngle of the bearing of joint_b is nan, ", "joint_b"),
+    ):
+        found = values(name)
+        found[section][key] = nan
+        with pytest.raises(FailedRun) as caught:
+            dem.execute(found, lambda fraction: None)
+        failure = caught.value.fields()
+        assert failure["cause"].startswith(cause) and failure.get("joint") == joint, failure
+        assert (failure["time_s"], failure["temperature_change_K"], failure["exit_status"]) == (0, 0, 2)
+        assert "\n" not in failure["message"] and "Traceback" not in failure["message"]
+
+
 TAKEN = {"part": "contact", "bodies": (7, 4), "before": "too deep", "after": "", "time": 1.5, "stable_time_step": None}
 
 
@@ -147,6 +166,14 @@ def test_failure_of_a_link_names_it_in_its_sentence() -> None:
     taken = {**TAKEN, "part": "link", "bodies": (2, 1), "before": "", "after": " leaves the x-y plane"}
     assert described(taken) == {
         "time_s": 1.5, "temperature_change_K": 15.0, "cause": "link 'AB' leaves the x-y plane"}
+
+
+def test_failure_of_a_body_or_of_the_scene() -> None:
+    taken = {**TAKEN, "part": "body", "bodies": (4,), "before": "the mass of ", "after": " is nan kg"}
+    assert described(taken) == {
+        "time_s": 1.5, "temperature_change_K": 15.0, "joint": "J", "cause": "the mass of body 4 is nan kg"}
+    taken = {**TAKEN, "part": "scene", "bodies": (), "before": "the time step O.dt is 0 s"}
+    assert described(taken) == {"time_s": 1.5, "temperature_change_K": 15.0, "cause": "the time step O.dt is 0 s"}
 
 
 def test_what_is_not_the_plugins_gets_the_time_of_the_scene() -> None:

@@ -84,11 +84,11 @@ SENTENCES = {
     "closed_by_expansion": "the clearance is closed: journal radius 0.0051035 m",
     "closed_from_start": "the clearance is closed: journal radius 0.006 m",
     "rotations_free": "block the rotations of body 1",
-    "no_length": "ThermalLink.stressFreeLength = 0 is not allowed",
+    "no_length": "ThermalLink.stressFreeLength of the link between bodies 0 and 1 is 0 m, allowed is above 0",
     "same_body": "the two ends coincide of the link between bodies 1 and 1 (time 0 s, temperature change 0 K)",
     "poisson": "0.7, allowed is (-1, 0.5]",
     "young": "-1, allowed is (0, inf] Pa",
-    "friction_angle": "frictionAngle = -0.1, allowed is [0, pi/2) rad",
+    "friction_angle": "ThermalFrictMat.frictionAngle of body 1 is -0.1, allowed is [0, pi/2) rad",
 }
 
 

@@ -27,16 +27,22 @@ class SceneFailure(RuntimeError):
 
 @dataclass
 class Names:
-    """What the case calls what the plugin knows by the numbers of two bodies."""
+    """What the case calls what the plugin knows by the numbers of two bodies, or of one."""
 
     joints: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)  # joint, words for the sentence
     links: dict[frozenset[int], str] = field(default_factory=dict)
     torsion_springs: dict[frozenset[int], str] = field(default_factory=dict)  # by the tips of their links
+    bodies: dict[int, str] = field(default_factory=dict)
 
     def add_link(self, link: Any, words: str) -> None:
         """Add a link or spring; several of them may be between the same bodies."""
         bodies = pair(link.id1, link.id2)
         self.links[bodies] = f"{self.links[bodies]} or {words}" if bodies in self.links else words
+
+    def joint_of(self, body: int) -> str:
+        """Return the joint that a body belongs to, "" where there is none or more than one."""
+        found = {joint for bodies, (joint, _) in self.joints.items() if body in bodies}
+        return found.pop() if len(found) == 1 else ""
 
     def add_torsion_spring(self, spring: Any, words: str) -> None:
         """Add a torsion spring."""
@@ -68,11 +74,18 @@ def described(
     if taken is None:
         cause = " ".join(str(error).split())
     else:
-        bodies, time_s = pair(*taken["bodies"]), taken["time"]
-        if taken["part"] == "contact":
+        time_s = taken["time"]
+        if taken["part"] == "scene":
             cause = taken["before"] + taken["after"]
-            joint, words = names.joints.get(bodies, ("", "bodies {} and {}".format(*taken["bodies"])))
+        elif taken["part"] == "body":
+            body, = taken["bodies"]
+            cause = taken["before"] + names.bodies.get(body, f"body {body}") + taken["after"]
+            joint = names.joint_of(body)
+        elif taken["part"] == "contact":
+            cause = taken["before"] + taken["after"]
+            joint, words = names.joints.get(pair(*taken["bodies"]), ("", "bodies {} and {}".format(*taken["bodies"])))
         else:
+            bodies = pair(*taken["bodies"])
             known = names.links if taken["part"] == "link" else names.torsion_springs
             unknown = f"the {taken['part'].replace('_', ' ')} of bodies {' and '.join(map(str, taken['bodies']))}"
             cause = taken["before"] + known.get(bodies, unknown) + taken["after"]

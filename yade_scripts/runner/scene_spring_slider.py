@@ -164,6 +164,8 @@ def names(case: dict[str, Any], built: SpringSliderScene) -> Names:
     found = Names()
     for contact in ("floor", "stop_minus", "stop_plus"):
         found.joints[pair(built.slider, getattr(built, contact))] = (contact, contact)
+        found.bodies[getattr(built, contact)] = contact
+    found.bodies[built.slider] = "the slider"
     found.add_link(built.link, "the bar")
     if built.preload_link is not None:
         found.add_link(built.preload_link, "the preload spring")

@@ -367,8 +367,9 @@ def _strangers(case: dict[str, Any], built: TrussScene) -> tuple[str, str]:
 
 
 def names(case: dict[str, Any], built: TrussScene) -> Names:
-    """Return what the case calls joints, links and springs."""
-    words, found = _bodies(case, built), Names()
+    """Return what the case calls joints, links, springs and bodies."""
+    words = _bodies(case, built)
+    found = Names(bodies=words)
     for slider, (floor, stops) in zip(_rows(case["slider"]), built.faces):
         for face in (floor, *stops):
             found.joints[pair(built.nodes[slider["nodes"][0]], face)] = (slider["names"], words[face])

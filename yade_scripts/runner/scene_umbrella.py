@@ -174,6 +174,7 @@ def sample(case: dict[str, Any], built: UmbrellaScene) -> tuple:
 def names(case: dict[str, Any], built: UmbrellaScene) -> Names:
     """Return what the case calls joint, links and spring; the joint as in result files."""
     found = Names({pair(built.bearing, built.journal): ("joint_b", "joint_b")})
+    found.bodies.update({built.bearing: "the bearing of joint_b", built.journal: "the journal of joint_b"})
     found.add_link(built.link_ab, "link_ab")
     found.add_link(built.link_bc, "link_bc")
     for spring in built.springs:

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "statejump/kernel/joint_kinematics.hpp"
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "statejump/kernel/frame.hpp"
+#include "statejump/kernel/stable_step.hpp"
 #include "support.hpp"
 
 namespace statejump::kernel {
@@ -138,6 +140,26 @@ TEST(Revolute, TouchesAgreesWithDepth) {
   }
   EXPECT_GT(touching, 200);
   EXPECT_LT(touching, 1800);
+}
+
+// A number that is none must reach the force, where it is seen: neither apart, nor concentric, nor
+// without friction, nor stable.
+TEST(Kinematics, KeepsWhatIsNoNumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const BodyMotion body = at(Vector3::Zero());
+  for (int i = 0; i < 2; ++i) {
+    Vector3 position = Vector3::Zero();
+    position[i] = nan;
+    const BodyMotion lost = at(position);
+    EXPECT_TRUE(revolute_touches(position, 5e-3, body.position, 5.1e-3, Vector3::UnitZ()));
+    EXPECT_TRUE(ball_touches(position, 5e-3, body.position, 5.1e-3));
+    EXPECT_TRUE(
+        std::isnan(revolute_contact(lost, 5e-3, body, 5.1e-3, Vector3::UnitZ()).penetration_depth));
+    EXPECT_TRUE(std::isnan(ball_contact(lost, 5e-3, body, 5.1e-3).penetration_depth));
+    EXPECT_TRUE(std::isnan(transport(position, Vector3::UnitZ(), Vector3::UnitZ()).squaredNorm()));
+  }
+  EXPECT_TRUE(std::isnan(critical_time_step(1.0, nan)));
+  EXPECT_TRUE(std::isnan(critical_time_step(1.0, 1.0, nan)));
 }
 
 TEST(Revolute, RefusesABearingThatDoesNotHoldTheJournal) {

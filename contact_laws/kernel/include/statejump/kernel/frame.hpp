@@ -25,12 +25,12 @@ namespace statejump::kernel {
 /// @param twist_angle [rad], right-handed about n_new: how far the two bodies have turned together
 ///        about their common normal, mean of omega_1 . n and omega_2 . n times dt. Zero costs no
 ///        trigonometry.
-/// @return zero for a zero vector or one along the normal. For n_new = -n_old the smallest rotation
+/// @return zero for a zero vector or one along the normal, NaN for what is none. For n_new = -n_old the smallest rotation
 ///         is not unique; the one that leaves v in place is taken.
 inline Vector3 transport(const Vector3& tangential, const Vector3& n_old, const Vector3& n_new,
                          double twist_angle = 0.0) {
   const double magnitude_squared = tangential.squaredNorm();
-  if (!(magnitude_squared > 0.0)) return Vector3::Zero();
+  if (magnitude_squared <= 0.0) return Vector3::Zero();
   const Vector3 half = n_old + n_new;
   const double half_squared = half.squaredNorm();
   const double smallest = 1e-16;  // |h| below 1e-8: the direction of h is rounding
@@ -39,7 +39,7 @@ inline Vector3 transport(const Vector3& tangential, const Vector3& n_old, const 
   turned -= turned.dot(n_new) * n_new;
 
   const double ratio = turned.squaredNorm() / magnitude_squared;
-  if (!(ratio > 1e-30)) return Vector3::Zero();
+  if (ratio <= 1e-30) return Vector3::Zero();
   // 1/sqrt(ratio) = 1 + (1 - ratio)/2 + 3/8 (1 - ratio)^2: below 1e-8 two terms are exact to
   // rounding
   const double excess = 1.0 - ratio;

@@ -62,14 +62,15 @@ inline double revolute_penetration(const Vector3& journal_centre, double journal
 
 /// Whether journal and bearing touch: revolute_penetration() > 0 decided on squares, without a
 /// square root. It may differ from that by rounding, at |delta| of some 1e-16 of the clearance. A
-/// bearing not larger than the journal counts as touching, so that revolute_contact() reports it.
+/// bearing not larger than the journal counts as touching, so that revolute_contact() reports it,
+/// and so do positions that are no numbers, of which it makes a depth that is none.
 inline bool revolute_touches(const Vector3& journal_centre, double journal_radius,
                              const Vector3& bearing_centre, double bearing_radius,
                              const Vector3& axis) {
   const double clearance = bearing_radius - journal_radius;
   return !(clearance > 0.0) ||
-         perpendicular_part(journal_centre - bearing_centre, axis).squaredNorm() >
-             clearance * clearance;
+         !(perpendicular_part(journal_centre - bearing_centre, axis).squaredNorm() <=
+           clearance * clearance);
 }
 
 namespace detail {
@@ -84,12 +85,12 @@ JointContact round_contact(const BodyMotion& inner, double inner_radius, const B
                            const Normal& concentric_normal) {
   JointContact contact;
   const double offset_squared = offset.squaredNorm();
-  if (offset_squared > std::numeric_limits<double>::min()) {
-    contact.eccentricity = std::sqrt(offset_squared);
-    contact.normal = offset * (1.0 / contact.eccentricity);
-  } else {
+  if (offset_squared <= std::numeric_limits<double>::min()) {
     contact.eccentricity = 0.0;
     contact.normal = concentric_normal();
+  } else {  // NaN, too: concentric it is not
+    contact.eccentricity = std::sqrt(offset_squared);
+    contact.normal = offset * (1.0 / contact.eccentricity);
   }
   contact.effective_radius = internal_effective_radius(inner_radius, outer_radius);
   contact.penetration_depth = contact.eccentricity - (outer_radius - inner_radius);
@@ -144,7 +145,8 @@ inline double ball_penetration(const Vector3& ball_centre, double ball_radius,
 inline bool ball_touches(const Vector3& ball_centre, double ball_radius,
                          const Vector3& socket_centre, double socket_radius) {
   const double clearance = socket_radius - ball_radius;
-  return !(clearance > 0.0) || (ball_centre - socket_centre).squaredNorm() > clearance * clearance;
+  return !(clearance > 0.0) ||
+         !((ball_centre - socket_centre).squaredNorm() <= clearance * clearance);
 }
 
 /// Ball of radius R1 in a spherical socket of radius R2: the joint of revolute_contact() with the

@@ -19,11 +19,11 @@ namespace statejump::kernel {
 ///        can turn, the tangential motion has the smaller mass 1/(1/m + arm_1^2/I1 + arm_2^2/I2).
 /// @param stiffness_sum k [N/m], >= 0, of every spring that acts on this motion
 /// @param damping_sum c [N s/m], >= 0, of every dashpot that acts on it
-/// @return +infinity when nothing acts
+/// @return +infinity when nothing acts, NaN when an argument is none
 inline double critical_time_step(double mass, double stiffness_sum, double damping_sum = 0.0) {
   const double rate =
       damping_sum + std::sqrt(damping_sum * damping_sum + 4.0 * mass * stiffness_sum);
-  return rate > 0.0 ? 4.0 * mass / rate : std::numeric_limits<double>::infinity();
+  return rate <= 0.0 ? std::numeric_limits<double>::infinity() : 4.0 * mass / rate;
 }
 
 }  // namespace statejump::kernel

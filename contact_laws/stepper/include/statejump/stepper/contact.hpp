@@ -8,12 +8,14 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "statejump/kernel/contact_law.hpp"
 #include "statejump/kernel/frame.hpp"
 #include "statejump/kernel/joint_kinematics.hpp"
 #include "statejump/kernel/laws/joint_response.hpp"
+#include "statejump/stepper/numbers.hpp"
 
 namespace statejump::stepper {
 
@@ -227,13 +229,6 @@ void store(const kernel::ContactResponse& response, const kernel::ContactHistory
   }
 }
 
-/// Leapfrog is unstable beyond omega dt = 2 of the stiffest contact alone, whatever else acts.
-/// @param stiffness [N/m]; @param time_step [s]
-template <class Physics>
-bool step_is_too_long(double stiffness, const Physics& physics, double time_step) {
-  return time_step * time_step * stiffness > 4 * physics.effectiveMass && physics.effectiveMass > 0;
-}
-
 /// The energies of one contact. Expansion works on it through the clearance c and the radii: with
 /// V(delta, radii) and delta = eccentricity - c, the part of dV that no motion of the bodies
 /// explains is -F dc plus what the radii change of V at fixed depth. Trapezoidal, as the motion is.
@@ -264,9 +259,21 @@ ContactEnergy account(const kernel::ContactResponse& response, double dissipatio
 /// What the laws ask of whoever steps them:
 ///   time_step() [s], tracks_energy(), add(ContactEnergy)
 ///   exert(wrench)              forces on the two bodies
-///   step_is_too_long(k)        the time step is above the stable one of the normal stiffness k
+///   looks_at_forces            whether a force that is no number is to be seen in its own step
+///   accepts(k, force, physics) whether an answer that is not plain is good: normal stiffness k
+///                              [N/m], force on body 1 [N]; else it fails
 ///
-/// Hertz and Mindlin. @return false when the contact is open
+/// Whether the answer of a contact can be used.
+template <class Physics, class Host>
+bool is_usable(const kernel::ContactResponse& response, const Physics& physics, Host&& host) {
+  bool plain = is_plain_stiffness(response.normal_stiffness, physics, host.time_step());
+  if constexpr (std::decay_t<Host>::looks_at_forces) {
+    plain = plain && physics.tangensOfFrictionAngle >= 0 && is_plain(response.force_on_1);
+  }
+  return plain || host.accepts(response.normal_stiffness, response.force_on_1, physics);
+}
+
+/// Hertz and Mindlin. @return false when the contact is open; true, without forces, when it failed
 template <class Geometry, class Physics, class Host>
 bool hertz_mindlin_step(const Geometry& geometry, Physics& physics, Host&& host) {
   kernel::ContactHistory history = contact_history(geometry, physics);
@@ -275,6 +282,8 @@ bool hertz_mindlin_step(const Geometry& geometry, Physics& physics, Host&& host)
                                              host.time_step()};
   const kernel::ContactResponse response =
       kernel::hertz_mindlin(contact_parameters(physics), kinematics, history);
+  const bool touches = !(geometry.penetrationDepth <= 0);
+  if (touches && !is_usable(response, physics, host)) return true;
   if (host.tracks_energy()) {
     host.add(account(
         response, 0, geometry.effectiveRadius,
@@ -286,10 +295,7 @@ bool hertz_mindlin_step(const Geometry& geometry, Physics& physics, Host&& host)
         },
         host.time_step(), geometry, physics));
   }
-  if (geometry.penetrationDepth <= 0) return false;
-  if (step_is_too_long(response.normal_stiffness, physics, host.time_step())) {
-    host.step_is_too_long(response.normal_stiffness);
-  }
+  if (!touches) return false;
   store(response, history, geometry.normal, physics);
   host.exert(kernel::contact_wrench(response.force_on_1, geometry.arm1, geometry.arm2));
   return true;
@@ -338,7 +344,7 @@ struct Begun {
 };
 
 /// Laws by name, for a contact without a Misfit that has begun if it touches.
-/// @return false when the contact is open
+/// @return false when the contact is open; true, without forces, when it failed
 /// @throws std::domain_error outside the range of a law
 template <class Geometry, class Physics, class Host>
 bool joint_law_step(const kernel::laws::JointLaw& law, const Geometry& geometry, Physics& physics,
@@ -358,9 +364,12 @@ bool joint_law_step(const kernel::laws::JointLaw& law, const Geometry& geometry,
       host.time_step()};
   const laws::JointResponse response =
       laws::joint_response(law, contact_parameters(physics), kinematics, history);
+  const kernel::ContactResponse& contact = response.contact;
+  const bool touches = !(geometry.penetrationDepth <= 0);
+  if (touches && !is_usable(contact, physics, host)) return true;
   if (host.tracks_energy()) {
     host.add(account(
-        response.contact, response.dissipation_force, geometry.journalRadius,
+        contact, response.dissipation_force, geometry.journalRadius,
         [&](double& work) {  // V(delta, R1, R2) of any law is known by value only
           laws::NormalGeometry before = kinematics.geometry;
           before.journal_radius = physics.previousRadius;
@@ -372,11 +381,7 @@ bool joint_law_step(const kernel::laws::JointLaw& law, const Geometry& geometry,
         },
         host.time_step(), geometry, physics));
   }
-  if (geometry.penetrationDepth <= 0) return false;
-  const kernel::ContactResponse& contact = response.contact;
-  if (step_is_too_long(contact.normal_stiffness, physics, host.time_step())) {
-    host.step_is_too_long(contact.normal_stiffness);
-  }
+  if (!touches) return false;
   store(contact, history, geometry.normal, physics);
   host.exert(response.wrench);
   // A law that remembers nothing gives force, not history.

@@ -3,10 +3,13 @@
 // step of YADE's engines does, in the same order, without YADE.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -15,6 +18,7 @@
 #include "statejump/stepper/contact.hpp"
 #include "statejump/stepper/link.hpp"
 #include "statejump/stepper/motion.hpp"
+#include "statejump/stepper/numbers.hpp"
 #include "statejump/thermal/program.hpp"
 
 namespace statejump::stepper {
@@ -128,6 +132,9 @@ class Scene {
   /// @return steps that were made whole
   long run(long steps, const Make& make);
 
+  /// Whether all that a step leaves behind are numbers.
+  bool is_sound() const;
+
  private:
   // Where contacts put what they do.
   struct Host {
@@ -153,17 +160,22 @@ class Scene {
         if (two.turns) two.added_torque += wrench.torque_2;
       }
     }
-    void step_is_too_long(double) { *failed = true; }
+    // What is no number stays none: is_sound() sees it when the steps are made.
+    static constexpr bool looks_at_forces = false;
+    bool accepts(double stiffness, const Vector3& force, const ContactPhysics& physics) {
+      *failed = judge(stiffness, force, physics, scene.time_step) != Answer::good;
+      return !*failed;
+    }
   };
 
   // Whether a journal's axis is further from parallel to the bearing's than is allowed.
   bool tilt(const Body& journal, const Vector3& axis) const {
-    return axis_of(journal.orientation).cross(axis).squaredNorm() > largest_tilt * largest_tilt;
+    return !(axis_of(journal.orientation).cross(axis).squaredNorm() <= largest_tilt * largest_tilt);
   }
   Body& body(int id) { return bodies[static_cast<std::size_t>(id)]; }
   template <class Law>
   bool step(const Law& law, const Make& make);
-  void heat();
+  bool heat();
   template <class Law>
   bool step_contact(const Law& law, std::size_t place, const Make& make);
   Found find(Contact& contact);
@@ -225,7 +237,7 @@ bool Scene::step(const Law& one, const Make& make) {
   for (std::size_t i = 0; i < programs.size(); ++i) {
     changes_[i] = programs[i].temperature_change(time);
   }
-  heat();
+  if (!heat()) return false;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (!step_contact(one, i, make)) return false;
   }
@@ -238,15 +250,39 @@ bool Scene::step(const Law& one, const Make& make) {
   return true;
 }
 
-inline void Scene::heat() {
+inline bool Scene::is_sound() const {
+  const auto of_links = [](const auto& stage) {
+    using Kind = std::decay_t<decltype(stage)>;
+    if constexpr (std::is_same_v<Kind, Links>) {
+      return std::all_of(stage.places.begin(), stage.places.end(), [](const LinkPlace& place) {
+        return std::isfinite(place.link.axialForce);
+      });
+    } else {
+      return true;
+    }
+  };
+  return std::all_of(bodies.begin(), bodies.end(),
+                     [](const Body& each) { return is_finite(each.motion); }) &&
+         std::all_of(contacts.begin(), contacts.end(),
+                     [](const Contact& each) {
+                       return is_finite(each.physics.normalForce) &&
+                              is_finite(each.physics.shearForce);
+                     }) &&
+         std::all_of(stages.begin(), stages.end(),
+                     [&](const Stage& stage) { return std::visit(of_links, stage); });
+}
+
+inline bool Scene::heat() {
   for (const Heater& heater : heaters) {
     for (const Heater::Target& target : heater.targets) {
       Strain& now = strains[target.strain];
       const double strain = target.expansion * changes_[heater.program];
-      now.rate = time_step > 0 ? (strain - now.strain) / time_step : 0;
+      if (!is_plain_strain(strain) && !is_strain(strain)) return false;
+      now.rate = (strain - now.strain) / time_step;
       now.strain = strain;
     }
   }
+  return true;
 }
 
 inline Found Scene::find(Contact& contact) {
@@ -333,8 +369,9 @@ inline bool Scene::act(Links& group) {
         link, span, root.motion.velocity, tip.motion.velocity, changes_[program],
         [&, place = program] { return programs[place].temperature_rate(time); },
         damping_coefficient(link, inverse), time);
-    if (inverse > 0 && time_step > stable_step(now, inverse)) return false;
+    if (inverse > 0 && !(time_step <= stable_step(now, inverse))) return false;
     Vector3 force = force_on_tip(now);
+    if (!is_plain(now, force)) return false;
     if (link.tipTurnsWithLink) {
       if ((tip.blocked & all_rotations) != all_rotations) return false;
       force += turn_tip(link, now, kept_[i], tip.orientation, tip.motion.angular_velocity);
@@ -370,9 +407,10 @@ inline bool Scene::act(std::vector<TorsionPlace>& springs) {
     torsion_step(spring, first, second);
     const double inverse = inverse_inertia(first, mobility(place.first)) +
                            inverse_inertia(second, mobility(place.second));
-    if (inverse > 0 && time_step > kernel::critical_time_step(1 / inverse, spring.stiffness)) {
+    if (inverse > 0 && !(time_step <= kernel::critical_time_step(1 / inverse, spring.stiffness))) {
       return false;
     }
+    if (!std::isfinite(spring.moment)) return false;
     const auto add = [&](const std::array<int, 2>& ends, const Vector3& force) {
       if (body(ends[1]).moves) body(ends[1]).added_force += force;
       if (body(ends[0]).moves) body(ends[0]).added_force += -force;
@@ -390,6 +428,7 @@ inline bool Scene::act(std::vector<Guide>& guides) {
     Body& held = body(guides[i].body);
     const Vector3& normal = guides[i].normal;
     kept_[i] = held.force.dot(normal) * normal;
+    if (!is_plain(kept_[i])) return false;
     held.motion.velocity -= held.motion.velocity.dot(normal) * normal;
   }
   for (std::size_t i = 0; i < guides.size(); ++i) body(guides[i].body).added_force += -kept_[i];

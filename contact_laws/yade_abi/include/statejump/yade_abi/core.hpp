@@ -308,6 +308,9 @@ class ForceContainer {
   void addTorque(int id, const Vector3r& torque);
   const Vector3r& getForce(int id);
   const Vector3r& getTorque(int id);
+  const Vector3r& getPermForce(int id);
+  const Vector3r& getPermTorque(int id);
+  bool getPermForceUsed() const;
   void sync();
   ForceContainer(const ForceContainer&) = delete;
 

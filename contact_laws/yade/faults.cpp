@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "faults.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "bore.hpp"
+#include "contact_parts.hpp"
+#include "guide.hpp"
+#include "joint.hpp"
+#include "statejump/stepper/numbers.hpp"
+#include "torsion.hpp"
+
+namespace statejump::dem {
+namespace {
+
+using stepper::Allowed;
+using Part = Failure::Part;
+using Fault = std::optional<Failure>;
+
+constexpr Real no_step = std::numeric_limits<Real>::quiet_NaN();
+
+std::string text_of(Real value) {
+  std::ostringstream text;
+  text.precision(9);
+  text << value;
+  return text.str();
+}
+
+std::string text_of(const Vector3r& value) {
+  return "(" + text_of(value[0]) + ", " + text_of(value[1]) + ", " + text_of(value[2]) + ")";
+}
+
+// " is nan kg, allowed is above 0"
+template <class Value>
+std::string wrong(const Value& value, const std::string& unit, const std::string& allowed) {
+  return " is " + text_of(value) + unit + ", allowed is " + allowed;
+}
+
+Failure failure(const yade::Scene& scene, Part part, int id1, int id2, std::string before,
+                std::string after) {
+  return {part, id1, id2, std::move(before), std::move(after), scene.time, no_step, when(scene)};
+}
+
+// "the mass of body 3 is nan kg, allowed is above 0"
+template <class Value>
+Failure of_body(const yade::Scene& scene, int id, const std::string& name, const Value& value,
+                const std::string& unit, const std::string& allowed) {
+  return failure(scene, Part::body, id, -1, name + " of ", wrong(value, unit, allowed));
+}
+
+Fault fault_of_motion(const yade::Scene& scene, int id, const yade::State& state) {
+  const std::array<std::pair<const char*, const Vector3r*>, 3> vectors = {
+      {{"the position", &state.se3.position},
+       {"the velocity", &state.vel},
+       {"the angular velocity", &state.angVel}}};
+  const std::array<const char*, 3> units = {" m", " m/s", " rad/s"};
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    const auto& [name, value] = vectors[i];
+    if (!stepper::is_finite(*value)) {
+      return of_body(scene, id, name, *value, units[i], words(Allowed::finite));
+    }
+  }
+  const Real norm = state.se3.orientation.norm();
+  if (!(norm > 0) || !std::isfinite(norm)) {
+    return of_body(scene, id, "the norm of the orientation", norm, "", "above 0");
+  }
+  return std::nullopt;
+}
+
+// Zero where nothing moves, or turns, the body, above it where something may.
+Fault fault_of_inertia(const yade::Scene& scene, int id, const yade::State& state) {
+  constexpr unsigned translations = 7;
+  const bool moves = (state.blockedDOFs & translations) != translations;
+  const Allowed mass = moves ? Allowed::positive : Allowed::not_negative;
+  if (!allows(mass, state.mass)) {
+    return of_body(scene, id, "the mass", state.mass, " kg", words(mass));
+  }
+  for (int i = 0; i < 3; ++i) {
+    const bool turns = (state.blockedDOFs & (8u << i)) == 0;
+    const Allowed inertia = turns ? Allowed::positive : Allowed::not_negative;
+    if (!allows(inertia, state.inertia[i])) {
+      return of_body(scene, id, "the moment of inertia", state.inertia, " kg m2", words(inertia));
+    }
+  }
+  return std::nullopt;
+}
+
+// Permanent forces are known once the ForceResetter has run in this step.
+Fault fault_of_forces(const yade::Scene& scene, int id) {
+  auto& forces = const_cast<yade::ForceContainer&>(scene.forces);  // its readers are not const
+  if (forces.lastReset != scene.iter || !forces.getPermForceUsed()) return std::nullopt;
+  const Vector3r& force = forces.getPermForce(id);
+  if (!stepper::is_finite(force)) {
+    return of_body(scene, id, "the permanent force", force, " N", words(Allowed::finite));
+  }
+  const Vector3r& torque = forces.getPermTorque(id);
+  if (!stepper::is_finite(torque)) {
+    return of_body(scene, id, "the permanent torque", torque, " N m", words(Allowed::finite));
+  }
+  return std::nullopt;
+}
+
+Fault fault_of_body(const yade::Scene& scene, int id) {
+  if (!scene.bodies->exists(id)) return std::nullopt;
+  const yade::Body& body = *body_at(scene, static_cast<std::size_t>(id));
+  const yade::State& state = *body.state;
+  // Causes before what they lead to.
+  if (Fault fault = fault_of_inertia(scene, id, state)) return fault;
+  if (Fault fault = fault_of_forces(scene, id)) return fault;
+  if (Fault fault = fault_of_motion(scene, id, state)) return fault;
+  if (const auto* material = dynamic_cast<const ThermalFrictMat*>(body.material.get())) {
+    if (const auto fault = fault_of(*material)) {
+      return of_body(scene, id, std::string(ThermalFrictMat::class_name) + "." + fault->attribute,
+                     fault->value, "", fault->allowed);
+    }
+  }
+  if (const auto* shape = dynamic_cast<const ThermalShape*>(body.shape.get())) {
+    if (!stepper::is_strain(shape->thermalStrain)) {
+      return of_body(scene, id, "the thermal strain", shape->thermalStrain, "", "above -1");
+    }
+  }
+  return std::nullopt;
+}
+
+Fault fault_of_physics(const yade::Scene& scene, const yade::Interaction& contact,
+                       const JointPhys& physics) {
+  const auto* quantity = stepper::first_wrong(stepper::contact_quantities<JointPhys>, physics);
+  if (!quantity) return std::nullopt;
+  return failure(scene, Part::contact, contact.id1, contact.id2,
+                 std::string(JointPhys::class_name) + "." + quantity->name +
+                     wrong(physics.*quantity->value, std::string(" ") + quantity->unit,
+                           words(quantity->allowed)),
+                 "");
+}
+
+Fault fault_of_physics(const yade::Scene& scene, const yade::Interaction& contact) {
+  if (const auto* many = dynamic_cast<const BorePhys*>(contact.phys.get())) {
+    for (const auto& one : many->contacts) {
+      if (Fault fault = one ? fault_of_physics(scene, contact, *one) : std::nullopt) return fault;
+    }
+  }
+  const auto* physics = dynamic_cast<const JointPhys*>(contact.phys.get());
+  return physics ? fault_of_physics(scene, contact, *physics) : std::nullopt;
+}
+
+Fault fault_of_values(const yade::Scene& scene, const ThermalLink& link) {
+  const auto* quantity = stepper::first_wrong<stepper::Link>(stepper::link_quantities, link);
+  if (!quantity) return std::nullopt;
+  const stepper::Link& values = link;
+  return failure(
+      scene, Part::link, link.id1, link.id2,
+      std::string(ThermalLink::class_name) + "." + quantity->name + " of ",
+      wrong(values.*quantity->value, std::string(" ") + quantity->unit, words(quantity->allowed)));
+}
+
+template <class List, class FaultOf>
+Fault first_of(const List& list, FaultOf&& fault_of_one) {
+  for (const auto& one : list) {
+    if (Fault fault = fault_of_one(one)) return fault;
+  }
+  return std::nullopt;
+}
+
+Fault fault_of_engine(const yade::Scene& scene, const yade::Engine& engine) {
+  if (const auto* group = dynamic_cast<const ThermalLinks*>(&engine)) {
+    return first_of(group->links, [&](const auto& link) {
+      return link ? fault_of_link(scene, *link) : std::nullopt;
+    });
+  }
+  if (const auto* group = dynamic_cast<const TorsionSprings*>(&engine)) {
+    return first_of(group->springs, [&](const auto& spring) {
+      const bool whole = spring && spring->link1 && spring->link2;
+      return whole ? fault_of_spring(scene, *spring) : std::nullopt;
+    });
+  }
+  if (const auto* guides = dynamic_cast<const GuidePlanes*>(&engine)) {
+    return first_of(guides->ids, [&](int id) { return fault_of_body(scene, id); });
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<MaterialFault> fault_of(const ThermalFrictMat& material) {
+  constexpr Real right_angle = 1.57079632679489661923;
+  if (!(material.young > 0)) return MaterialFault{"young", material.young, "(0, inf] Pa"};
+  if (!(material.poisson > -1 && material.poisson <= 0.5)) {
+    return MaterialFault{"poisson", material.poisson, "(-1, 0.5]"};
+  }
+  if (!(material.frictionAngle >= 0 && material.frictionAngle < right_angle)) {
+    return MaterialFault{"frictionAngle", material.frictionAngle, "[0, pi/2) rad"};
+  }
+  if (!std::isfinite(material.thermalExpansion)) {
+    return MaterialFault{"thermalExpansion", material.thermalExpansion, "finite [1/K]"};
+  }
+  return std::nullopt;
+}
+
+Fault fault_of_spring(const yade::Scene& scene, const TorsionSpring& spring) {
+  const auto fault = [&](const char* name, Real value, const char* unit, const char* allowed) {
+    return failure(scene, Part::torsion_spring, spring.link1->id2, spring.link2->id2,
+                   std::string(TorsionSpring::class_name) + "." + name + " of ",
+                   wrong(value, unit, allowed));
+  };
+  if (!allows(Allowed::not_negative, spring.stiffness)) {
+    return fault("stiffness", spring.stiffness, " N m/rad", words(Allowed::not_negative));
+  }
+  if (!allows(Allowed::finite, spring.freeAngle)) {
+    return fault("freeAngle", spring.freeAngle, " rad", words(Allowed::finite));
+  }
+  if (!stepper::is_finite(spring.axis)) {
+    return fault("axis (its length)", spring.axis.norm(), "", "1");
+  }
+  return std::nullopt;
+}
+
+Fault fault_of_scene(const yade::Scene& scene) {
+  if (!allows(Allowed::positive, scene.dt)) {
+    return failure(scene, Part::scene, -1, -1,
+                   "the time step O.dt" + wrong(scene.dt, " s", words(Allowed::positive)), "");
+  }
+  for (std::size_t i = 0; i < number_of_bodies(scene); ++i) {
+    const auto& body = body_at(scene, i);
+    if (!body || !dynamic_cast<const ThermalShape*>(body->shape.get())) continue;
+    if (Fault fault = fault_of_body(scene, static_cast<int>(i))) return fault;
+  }
+  for (std::size_t i = 0; i < number_of_interactions(scene); ++i) {
+    if (Fault fault = fault_of_physics(scene, interaction_at(scene, i))) return fault;
+  }
+  return first_of(scene.engines,
+                  [&](const auto& engine) { return fault_of_engine(scene, *engine); });
+}
+
+Fault fault_of_contact(const yade::Scene& scene, const yade::Interaction& contact) {
+  if (!allows(Allowed::positive, scene.dt)) return fault_of_scene(scene);
+  for (const int id : {contact.id1, contact.id2}) {
+    if (Fault fault = fault_of_body(scene, id)) return fault;
+  }
+  return fault_of_physics(scene, contact);
+}
+
+Fault fault_of_link(const yade::Scene& scene, const ThermalLink& link) {
+  if (!allows(Allowed::positive, scene.dt)) return fault_of_scene(scene);
+  for (const int id : {link.id1, link.id2}) {
+    if (Fault fault = fault_of_body(scene, id)) return fault;
+  }
+  return fault_of_values(scene, link);
+}
+
+void fail_strain(const yade::Scene& scene, int id, Real strain, Real expansion) {
+  if (Fault fault = fault_of_body(scene, id)) throw_failure(*std::move(fault));
+  throw_failure(failure(
+      scene, Part::body, id, -1, "the thermal strain of ",
+      wrong(strain, "", "above -1") + ", with thermalExpansion " + text_of(expansion) + " 1/K"));
+}
+
+void fail_force(const yade::Scene& scene, int id, const Vector3r& force) {
+  if (Fault fault = fault_of_body(scene, id)) throw_failure(*std::move(fault));
+  throw_failure(of_body(scene, id, "the force", force, " N", words(Allowed::finite)));
+}
+
+}  // namespace statejump::dem
