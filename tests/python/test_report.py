@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 import pytest
 
-from conftest import BUILT, COMMAND, REPOSITORY, Outcome
+from conftest import BUILT, COMMAND, REPOSITORY, Outcome, sealed
 
 from statejump.core import units
 from statejump.core.comparison import models
@@ -245,6 +245,17 @@ def test_other_hdf5(statejump: Callable[..., Outcome], tmp_path: Path) -> None:
         file["x"] = 1
     done = statejump("report", "other.h5")
     assert done.status == 2 and done.errors.startswith("error: other.h5: not a result file")
+
+
+def test_case_that_this_version_does_not_know(statejump: Callable[..., Outcome], results: Path, tmp_path: Path) -> None:
+    """The page shows what there is of it."""
+    path = tmp_path / "other.h5"
+    path.write_bytes((results / "table1" / "comparison.h5").read_bytes())
+    with h5py.File(path, "r+") as file:
+        del file["case/resolved"]
+        file["case/resolved"] = '{"node": [{"x": 1}, [2]], "case": {"kind": "unheard"}, "more": 3}'
+    done = statejump("report", sealed(path), "-o", "page.html")
+    assert (done.status, done.errors) == (0, "") and "2 entries" in (tmp_path / "page.html").read_text()
 
 
 def test_page_that_cannot_be_written(statejump: Callable[..., Outcome], results: Path, tmp_path: Path) -> None:

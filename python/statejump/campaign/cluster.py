@@ -138,6 +138,7 @@ def _existing(address: str) -> Iterator[Client]:
     found = re.fullmatch(r"(?:(?:tcp|tls)://)?(\[[0-9a-fA-F:]+\]|[^\s:/\[\]]+):(\d{1,5})", address)
     if found is None or int(found[2]) > 65535:
         raise NotAllowed(OPTION, address, ADDRESS)
+    _check_security(address)
     try:
         # Whether anybody listens, before Dask begins to try again and again.
         socket.create_connection((found[1].strip("[]"), int(found[2])), timeout=CONNECT_S).close()
@@ -163,6 +164,25 @@ def _existing(address: str) -> Iterator[Client]:
         yield client
     finally:
         client.close(timeout=CONNECT_S)
+
+
+def _check_security(address: str) -> None:
+    """Raise SchedulerUnusable where Dask's configuration asks for encryption that the address has not, or has no
+    certificates for TLS that can be read."""
+    from distributed.security import Security
+
+    security = Security()
+    if not address.startswith("tls://"):
+        if security.require_encryption:
+            raise SchedulerUnusable("is not encrypted", address, cause="Dask's configuration has require-encryption")
+        return
+    cause = "Dask's configuration has no distributed.comm.tls"
+    try:
+        if security.get_connection_args("client").get("ssl_context") is not None:
+            return
+    except OSError as problem:  # of ssl as well
+        cause = str(problem)
+    raise SchedulerUnusable("needs certificates", address, cause=cause, remedy="docs/security.md shows how")
 
 
 def _version() -> str:

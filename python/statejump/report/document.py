@@ -140,7 +140,7 @@ class Document:
         """Sections of the case file with all defaults: key, value."""
         sections = []
         for section, keys in self._values.items():
-            if isinstance(keys, list) and keys and isinstance(keys[0], dict):
+            if isinstance(keys, list) and keys and all(isinstance(item, dict) for item in keys):
                 sections.append((f"[{section}]", _summed_up(keys)))
                 continue
             if not isinstance(keys, dict):

@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Soak: hours of use in one process leave nothing behind.
+
+    soak.py --python build/python [--minutes M]
+
+A round takes every kind of case through the public interface: reduced models, statics, comparison of result files,
+the report, export, answers, a campaign; refused input as well. After each round memory, open files, threads and what
+is in the folder for temporary files are counted. Memory may grow while caches fill, in the first half; what the second
+half adds must be below what it would be if a round left SLACK_BYTES behind, and below LARGEST_BYTES in all. The others
+must be those after the first round.
+"""
+from __future__ import annotations
+
+import argparse
+import gc
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+# A history of one of the cases has some 2 000 samples of 20 values: a round that keeps one grows by ten times this.
+SLACK_BYTES = 32_000
+# What the allocator may hold back without anything being lost: pieces of its arenas.
+LARGEST_BYTES = 8 << 20
+FEWEST_ROUNDS = 4
+
+
+def rounds(folder: Path) -> Callable[[], None]:
+    """Return what a round does; files go to the folder, over those of the round before."""
+    import statejump as sj
+    from statejump.cli import main
+
+    reduced = [sj.load(REPOSITORY / "cases" / name) for name in (
+        "table1.toml", "umbrella.toml", "trusses/chain_10.toml", "trusses/ring_12.toml", "trusses/umbrella_rib.toml")]
+    statics = [sj.load(REPOSITORY / "cases" / name) for name in ("statics_journal.toml", "statics_slot.toml")]
+
+    def command(wanted: int, *words: Any) -> None:
+        status = main.run([*map(str, words), "--quiet"] if words[0] != "info" else list(map(str, words)))
+        assert status == wanted, (status, words)
+
+    def once() -> None:
+        for case in reduced:
+            run = case.reduced()
+            run.frame()
+            case.changed({"case.title": "another"}).to_dict()
+        for case in statics:
+            sj.statics(case)
+        for name in ("table1", "umbrella"):
+            command(0, "reduced", name, "--results", folder)
+        file = folder / "table1" / "reduced.h5"
+        sj.read(file).case.reduced()
+        command(0, "compare", file, file)
+        command(0, "info", file)
+        command(0, "report", file, "-o", folder / "page.html")
+        command(0, "export", file, "--to", folder / "out", "--frames", "2")
+        command(0, "truss", "answers", "trusses/chain_10", "--no-sensitivity", "--results", folder)
+        command(0, "sweep", REPOSITORY / "cases/campaigns/table1_friction.toml", "--restart", "--results", folder)
+        command(2, "reduced", "nowhere", "--results", folder)
+        command(2, "info", REPOSITORY / "README.md")
+
+    return once
+
+
+def counted(temporary: Path) -> dict[str, int]:
+    """Return what this process holds."""
+    gc.collect()
+    status = dict(line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines())
+    return {
+        "memory_bytes": 1024 * int(status["VmRSS"].split()[0]), "threads": int(status["Threads"]),
+        "files": len(os.listdir("/proc/self/fd")), "temporary": len(list(temporary.iterdir())),
+    }
+
+
+def _line(found: list[dict[str, int]]) -> str:
+    return f"round {len(found)}: " + ", ".join(f"{name} {value:,}" for name, value in found[-1].items())
+
+
+def main() -> int:
+    """Use the package for so long and print what was counted; 1 if anything is left behind."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--python", type=Path, required=True, help="the built package")
+    parser.add_argument("--minutes", type=float, default=30.0)
+    given = parser.parse_args()
+    sys.path.insert(0, str(given.python.resolve()))
+    os.environ["MPLBACKEND"] = "agg"
+    with tempfile.TemporaryDirectory(prefix="soak-") as root:
+        temporary = Path(root) / "temporary"
+        temporary.mkdir()
+        tempfile.tempdir, os.environ["TMPDIR"] = str(temporary), str(temporary)
+        sys.stdout.flush()
+        told, quiet = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+        os.dup2(quiet, 1)  # what the commands print
+        os.dup2(quiet, 2)
+        os.close(quiet)
+        once, found, end = rounds(Path(root) / "results"), [], time.monotonic() + 60 * given.minutes
+        while time.monotonic() < end or len(found) < FEWEST_ROUNDS:
+            once()
+            found.append(counted(temporary))
+            if len(found).bit_count() == 1:
+                os.write(told, f"{_line(found)}\n".encode())
+        sys.stdout.flush()
+        os.dup2(told, 1)
+    half, last = found[len(found) // 2], found[-1]
+    grown = last["memory_bytes"] - half["memory_bytes"]
+    allowed = min(SLACK_BYTES * (len(found) - len(found) // 2) + (LARGEST_BYTES >> 1), LARGEST_BYTES)
+    faults = [f"allowed are {allowed:,} bytes"] if grown > allowed else []
+    faults += [f"{name}: {found[0][name]} after the first round, {last[name]} after the last"
+               for name in ("threads", "files", "temporary") if last[name] != found[0][name]]
+    print(_line(found))
+    print(f"{len(found)} rounds, {time.process_time():.0f} s of a core; memory grew by {grown:,} bytes over the second "
+          f"half; faults {len(faults)}")
+    for fault in faults:
+        print(f"  {fault}")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
