@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import shutil
 import subprocess
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -181,12 +183,54 @@ def test_space_is_asked_for(tmp_path: Path) -> None:
             folder.check_space(1e14)
 
 
-def test_read_only_folder(statejump, cases: Path, tmp_path: Path) -> None:
+@pytest.fixture
+def bound(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run the command as somebody whom permissions bind: the superuser gives up what sets him above them."""
+    before: list[str] = []
     if os.geteuid() == 0:
-        pytest.skip("the superuser writes everywhere")
-    (tmp_path / "results").mkdir(mode=0o555)
-    outcome = statejump("reduced", cases / "table1.toml")
-    assert outcome.status == 2 and "Permission denied; choose another with --results" in outcome.errors
+        before = ["setpriv", "--bounding-set=-dac_override,-dac_read_search", "--inh-caps=-all"]
+        if shutil.which("setpriv") is None or subprocess.run([*before, "true"], capture_output=True).returncode != 0:
+            pytest.skip("the superuser writes everywhere")
+    return lambda *words: subprocess.run([*before, COMMAND, *map(str, words)], cwd=tmp_path, text=True, timeout=200,
+                                         capture_output=True, stdin=subprocess.DEVNULL)
+
+
+def test_read_only_folder(bound, statejump, cases: Path, tmp_path: Path) -> None:
+    assert statejump("reduced", cases / "table1.toml", "--results", "there").status == 0
+    file, locked = tmp_path / "there/table1/reduced.h5", tmp_path / "locked"
+    (tmp_path / "history.csv").write_text("slide_m,penetration_depth_m\n0,1e-6\n5e-8,1e-6\n")
+    drive = ("--effective-young-modulus", 38.5e9, "--effective-shear-modulus", 7.9e9, "--effective-radius", 0.01,
+             "--friction-coefficient", 0.3)
+    locked.mkdir(mode=0o555)
+    for said, *words in (
+        ("results folder locked/table1: cannot be written: Permission denied; choose another with --results",
+         "reduced", cases / "table1.toml", "--results", "locked"),
+        ("results folder locked/out: cannot be written: Permission denied; choose another with --results",
+         "export", file, "--to", "locked/out"),
+        ("locked/page.html: cannot be written: Permission denied", "report", file, "-o", "locked/page.html"),
+        ("locked/new/page.html: cannot be written: Permission denied", "report", file, "-o", "locked/new/page.html"),
+        ("locked/out.csv: cannot be written: Permission denied",
+         "laws", "--drive", "history.csv", "--law", "mindlin", *drive, "-o", "locked/out.csv"),
+        ("locked/ring.toml: cannot be written: Permission denied", "truss", "ring", 12, "-o", "locked/ring.toml"),
+    ):
+        done = bound(*words)
+        assert (done.returncode, done.stderr) == (2, f"error: {said}\n"), words
+    assert names(locked) == []
+
+
+def test_what_may_not_be_read(bound, cases: Path, tmp_path: Path) -> None:
+    """A file, and one in a folder that may not be searched."""
+    (tmp_path / "case.toml").write_text((cases / "table1.toml").read_text())
+    (tmp_path / "case.toml").chmod(0)
+    (tmp_path / "locked").mkdir(mode=0)
+    for words in ("reduced case.toml", "reduced locked/x.toml", "sweep case.toml", "sweep locked/x.toml", "info case.toml",
+                  "info locked/x.h5", "export locked/x.h5", "report locked/x.h5", "compare locked/x.h5 y.h5",
+                  "bore locked/x.stl", "fclib solve locked/x.hdf5", "laws build locked/x.hpp",
+                  f"reduced {cases}/table1.toml --results locked/x", f"info {'x' * 300}.h5",
+                  "truss ring 12 -o locked/x.toml", f"truss ring 12 -o {'x' * 300}.toml"):
+        done = bound(*words.split())
+        assert done.returncode == 2 and done.stderr.startswith("error: ") and done.stderr.count("\n") == 1, done.stderr
+        assert any(name in done.stderr for name in ("case.toml", "locked/x", "x" * 300)), done.stderr
 
 
 def test_scratch_of_killed_runs_goes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

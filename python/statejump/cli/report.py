@@ -2,6 +2,7 @@
 """The command ``report``."""
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import click
@@ -21,7 +22,7 @@ def result_files(run: Path) -> list[Path]:
 
     :raises Unreadable: there is nothing
     """
-    if not run.is_dir():
+    if not os.path.isdir(run):
         return [run]
     for pattern in (f"*{SUFFIX}", f"*/*{SUFFIX}"):
         found = sorted(run.glob(pattern))
@@ -34,8 +35,8 @@ def result_files(run: Path) -> list[Path]:
 
 def _target(output: Path | None, runs: tuple[Path, ...], files: list[Path]) -> Path:
     if output is not None:
-        return output / PAGE if output.is_dir() else output
-    if len(runs) == 1 and runs[0].is_dir():
+        return output / PAGE if os.path.isdir(output) else output
+    if len(runs) == 1 and os.path.isdir(runs[0]):
         return runs[0] / PAGE
     return files[0].parent / PAGE if len(files) == 1 else Path(PAGE)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import os
 import re
 import shlex
 from collections.abc import Callable
@@ -68,9 +69,9 @@ def _generator_command(kind: str, function: Callable[..., Case]) -> click.Comman
 
     def make(n: int, output: Path, force: bool, quiet: bool, **values: Any) -> None:
         console = make_console(quiet)
-        if output.exists() and not force:
+        if os.path.exists(output) and not force:
             raise StatejumpError(cause="exists already", file=output, remedy="--force overwrites it")
-        if not output.parent.is_dir():
+        if not os.path.isdir(output.parent):
             raise NotWritten("cannot be written", file=output, cause=f"there is no folder {output.parent}")
         try:
             case = function(n, name=output.stem, **values)

@@ -17,6 +17,7 @@ from typing import IO, TYPE_CHECKING
 
 from statejump.core.errors import Unreadable
 from statejump.core.output import write_bytes
+from statejump.core.reading import is_file
 
 if TYPE_CHECKING:
     import h5py
@@ -56,7 +57,7 @@ def made(path: Path) -> Iterator[h5py.File]:
 
 def is_ours(path: Path) -> bool:
     """Whether a file begins like one that :func:`made` wrote, of whatever version."""
-    if not path.is_file():
+    if not is_file(path):
         return False
     with path.open("rb") as stream:
         return stream.read(len(FORMAT)) == FORMAT.encode()
@@ -69,7 +70,7 @@ def opened(path: Path) -> Iterator[h5py.File]:
     :raises Unreadable: there is none, it is not ours, of a newer version, cut off or altered; or what is asked of it
         inside of this cannot be read
     """
-    if not path.is_file():
+    if not is_file(path):
         raise Unreadable("no such result file", file=path)
     try:
         with path.open("rb") as stream:

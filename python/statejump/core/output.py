@@ -45,9 +45,13 @@ def synced(path: Path) -> None:
 
 def check_target(path: Path) -> None:
     """Raise NotWritten where no file can take the place: a folder, a device or a pipe is there."""
-    with suppress(FileNotFoundError):
+    try:
         if not stat.S_ISREG(os.stat(path).st_mode):
             raise NotWritten("cannot be written", file=path, cause="there is something else than a file")
+    except FileNotFoundError:
+        pass
+    except OSError as error:
+        raise not_written(path, error) from None
 
 
 def _sweep(path: Path) -> None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from statejump.core.errors import StatejumpError, Unreadable
 from statejump.core.hdf5 import made, objects
+from statejump.core.reading import is_file
 from statejump.fclib.problem import Problem, Solution, Stored
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def read(path: str | Path) -> Problem:
     import h5py
 
     path = Path(path)
-    if not path.is_file():
+    if not is_file(path):
         raise Unreadable("no such file", file=path)
     try:
         if not h5py.is_hdf5(path):

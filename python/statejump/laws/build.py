@@ -13,6 +13,7 @@ from statejump import _engine
 from statejump._paths import EIGEN_INCLUDE, KERNEL_INCLUDE
 from statejump.core.errors import NotWritten, StatejumpError, Unreadable
 from statejump.core.output import write_bytes
+from statejump.core.reading import is_file
 
 COMPILERS = ("c++", "g++", "clang++")
 # As the project is compiled: results repeat bit for bit. Hidden, so that no function of this object stands in
@@ -49,7 +50,7 @@ def build(header: Path, folder: Path | None = None) -> Path:
         that does not compile (with the compiler's first error), or a law that cannot be used
     """
     header = Path(header)
-    if not header.is_file():
+    if not is_file(header):
         raise Unreadable("there is no such file", file=header)
     compiler = find_compiler()
     kernel = kernel_hash(KERNEL_INCLUDE)
