@@ -76,7 +76,10 @@ TEST(DrivenContact, ForcesAreTurnedIntoDepthAndSlide) {
   EXPECT_THROW(drive(contact, begun, target), std::domain_error);
   target.normal_force = 0.0;
   target.tangential_force = 0.0;
-  EXPECT_EQ(drive(contact, begun, target).tangential_force_x, 0.0);
+  const DrivenState let_go = drive(contact, begun, target);
+  EXPECT_EQ(let_go.tangential_force_x, 0.0);
+  EXPECT_EQ(let_go.normal_force, 0.0);
+  EXPECT_EQ(let_go.depth, 0.0);
 }
 
 /// Where the depth is 0 the contact closes: the slide until then does not count. Half of the path
