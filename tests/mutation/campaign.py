@@ -374,15 +374,12 @@ class PythonGuards(Guards):
                      *(build / "python/statejump/report").glob("notices.txt")]:
             if not (package / path.relative_to(build / "python/statejump")).exists():
                 (package / path.relative_to(build / "python/statejump")).symlink_to(path)
+        if not (folder / "python/statejump_yade").exists():
+            (folder / "python/statejump_yade").symlink_to(build / "python/statejump_yade")
         command = (build / "bin/statejump").read_text().replace(str(build / "python"), str(folder / "python"))
         self.command = folder / "statejump"
         self.command.write_text(command)
         self.command.chmod(0o755)
-
-    def order(self, file: str) -> list[str]:
-        """Return the test files of the kind of a file first."""
-        kind = Path(file).parent.name
-        return sorted(self.module.guards, key=lambda guard: f"test_{kind}" not in guard)
 
     def fails(self, guard: str, file: str | None) -> bool | None:
         child = os.fork()
