@@ -265,7 +265,8 @@ ContactEnergy account(const kernel::ContactResponse& response, double dissipatio
 ///
 /// Whether the answer of a contact can be used.
 template <class Physics, class Host>
-bool is_usable(const kernel::ContactResponse& response, const Physics& physics, Host&& host) {
+[[gnu::always_inline]] inline bool is_usable(const kernel::ContactResponse& response,
+                                             const Physics& physics, Host&& host) {
   bool plain = is_plain_stiffness(response.normal_stiffness, physics, host.time_step());
   if constexpr (std::decay_t<Host>::looks_at_forces) {
     plain = plain && physics.tangensOfFrictionAngle >= 0 && is_plain(response.force_on_1);

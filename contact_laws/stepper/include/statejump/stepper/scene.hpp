@@ -162,7 +162,8 @@ class Scene {
     }
     // What is no number stays none: is_sound() sees it when the steps are made.
     static constexpr bool looks_at_forces = false;
-    bool accepts(double stiffness, const Vector3& force, const ContactPhysics& physics) {
+    [[gnu::cold, gnu::noinline]] bool accepts(double stiffness, const Vector3& force,
+                                              const ContactPhysics& physics) {
       *failed = judge(stiffness, force, physics, scene.time_step) != Answer::good;
       return !*failed;
     }
