@@ -93,7 +93,7 @@ for one in plan["saves"]:
         load(one["case"])
         O.run(one["first"], True)
         while not touching():
-            O.run(1, True)
+            O.run(50, True)  # a run takes as long as it takes YADE to notice its end, whatever its length
             if O.iter > one["first"] + TOUCHING_WITHIN:
                 raise SystemExit(f"{one} does not touch")
         O.save(one["file"], quiet=True)
