@@ -30,7 +30,8 @@ inline Block natural_map(const Block& r, const Block& u, double mu) {
   modified[0] += mu * u.tail<2>().norm();
   const Block x = r - modified;
   const double size = x.tail<2>().norm();
-  if (size <= mu * x[0]) return modified;
+  // Without friction the cone is a ray: what lies behind its tip has no tangential part either.
+  if (x[0] >= 0.0 && size <= mu * x[0]) return modified;
   if (mu * size <= -x[0]) return r;
   // Onto the edge: with size = 0 one of the two above has returned.
   Block edge(1.0, mu * x[1] / size, mu * x[2] / size);

@@ -52,6 +52,34 @@ TEST(OneContact, without_friction_has_no_tangential_reaction) {
   EXPECT_EQ(solution.reactions.tail(2).norm(), 0.0);
 }
 
+TEST(Problem, without_friction_has_its_one_solution) {
+  // Of two coupled contacts one opens: reactions of both would have to pull at the other.
+  for (const int d : {2, 3}) {
+    Problem problem{d, Eigen::MatrixXd::Identity(2 * d, 2 * d), Eigen::VectorXd::Zero(2 * d),
+                    Eigen::VectorXd::Zero(2)};
+    auto& w = std::get<Eigen::MatrixXd>(problem.delassus);
+    w(0, d) = w(d, 0) = 0.8;
+    problem.q[0] = -1.0;
+    problem.q[d] = -0.5;
+    Eigen::VectorXd exact = Eigen::VectorXd::Zero(2 * d);
+    exact[0] = 1.0;
+    EXPECT_EQ(merit(problem, exact).largest(), 0.0);
+    // A reaction that pulls is none.
+    Eigen::VectorXd pulls = Eigen::VectorXd::Zero(2 * d);
+    pulls[0] = 0.6 / 0.36;
+    pulls[d] = -0.3 / 0.36;
+    EXPECT_GT(merit(problem, pulls).largest(), 0.1);
+    for (const Method method : {Method::automatic, Method::gauss_seidel, Method::interior_point}) {
+      Options options;
+      options.method = method;
+      const Solution solution = solve(problem, options);
+      EXPECT_EQ(solution.status, Status::solved) << to_string(method);
+      EXPECT_NEAR(solution.reactions[0], 1.0, 1e-9);
+      EXPECT_NEAR(solution.velocities[d], 0.3, 1e-9);
+    }
+  }
+}
+
 TEST(Problem, without_contacts_is_solved) {
   const Solution solution =
       solve({3, Eigen::MatrixXd(0, 0), Eigen::VectorXd(0), Eigen::VectorXd(0)});
