@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import csv
+import gc
 import json
 import math
 import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -687,3 +689,18 @@ def test_umbrella_in_either_model(tmp_path: Path, cases: Path, write: Callable[.
         assert values["first_contact_temperature_change_K"] == pytest.approx(exact, abs=0.01)
     for name in ("theta2_range_rad", "theta4_range_rad"):
         assert found["dem"][name] == pytest.approx(found["reduced"][name], rel=0.01)
+
+
+def test_a_cluster_of_ones_own_leaves_no_thread_and_no_open_file() -> None:
+    """The first one leaves what the package loads once."""
+    case = sj.load("table1")
+
+    def left() -> tuple[int, int]:
+        gc.collect()
+        return threading.active_count(), len(os.listdir("/proc/self/fd"))
+
+    counts = []
+    for friction in (0.1, 0.2):
+        sj.sweep(case, {"joint.friction_coefficient": [friction, 0.3]}, workers=2)
+        counts.append(left())
+    assert counts[1] == counts[0]

@@ -109,6 +109,7 @@ def kill_workers(cluster: LocalCluster) -> None:
 def _close(cluster: LocalCluster) -> None:
     kill_workers(cluster)
     cluster.close(timeout=10)
+    cluster.__exit__(None, None, None)  # only this ends the thread of its event loop, and the one that watches it
 
 
 @contextmanager
