@@ -10,7 +10,6 @@ import traceback
 from collections.abc import Sequence
 from importlib import import_module
 from itertools import takewhile
-from pathlib import Path
 from typing import Any
 
 import click
@@ -110,7 +109,7 @@ def run(arguments: Sequence[str]) -> int:
     as_json = _wants_json(arguments)
     try:
         try:
-            Path.cwd()
+            os.getcwd()
         except FileNotFoundError:
             raise StatejumpError("the folder where the command was started does not exist any more") from None
         # Figures go to files: a backend of windows that the environment names is none of ours, nor of YADE's.
