@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 import tempfile
 import time
 from dataclasses import replace
 from pathlib import Path
 from statistics import median
 
-from run import BUSY_LOAD, REPOSITORY, BenchError, parse, publish
+from run import BUSY_LOAD, REPOSITORY, parse, publish, start
 from statejump.campaign import execute, work
 from statejump.campaign.campaign_file import load_campaign
 from statejump.campaign.journal import Journal
@@ -129,8 +128,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (BenchError, StatejumpError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        sys.exit(2)
+    start(main, StatejumpError)

@@ -16,15 +16,18 @@ import argparse
 import os
 import shutil
 import subprocess
-import sys
 import tempfile
 from dataclasses import dataclass
-from math import ceil, pi, sqrt
+from math import pi
 from pathlib import Path
 from statistics import median
 from typing import Any
 
-from run import REPOSITORY, BenchError, parse, publish, run_yade
+from pairs import (
+    BEARING_RADIUS, CLEARANCE, EFFECTIVE_MODULUS, EXPANSION_BEARING, EXPANSION_JOURNAL, FRICTION, INCLINATION,
+    JOINT_RADIUS, LOAD, MASS, POISSON, RADIUS, SEARCHED, SPACING, TIME_STEP, YOUNG, depth, places,
+)
+from run import REPOSITORY, BenchError, parse, publish, run_yade, start
 
 STEPS = {1: 1_000_000, 100: 50_000, 10_000: 300}  # of one run, by number of contacts
 WARM_UP = 300
@@ -40,16 +43,7 @@ PAIRS = (("joint_stepper", "joint"), ("joint_stepper", "lammps_bore"), ("joint",
          ("sphere", "lammps_sphere"))
 COLUMNS = ("scene", "contacts", "repetition", "steps", "cpu_time_per_contact_and_step_ns")
 
-# As in yade_joints.py.
-YOUNG, POISSON, FRICTION, RADIUS, CLEARANCE, MASS, LOAD = 70e9, 0.3, 0.3, 5e-3, 1e-4, 0.01, 10.0
-SPACING, SKIN, STEP = 0.03, 0.5e-3, 1e-6
 DENSITY = MASS / (4 / 3 * pi * RADIUS**3)
-MODULUS = YOUNG / (2 * (1 - POISSON**2))  # E*
-
-
-def depth(effective_radius: float) -> float:
-    """Depth at which Hertz's contact carries the load [m]."""
-    return (LOAD / (4 / 3 * MODULUS * sqrt(effective_radius))) ** (2 / 3)
 
 
 @dataclass
@@ -70,27 +64,23 @@ class Deck:
                          for i, (kind, x, y, z) in enumerate(self.atoms, 1))
         (folder / "bodies").write_text(f"spheres\n\n{len(self.atoms)} atoms\n2 atom types\n\n{box}\nAtoms\n\n{bodies}")
         file = folder / "commands"
-        file.write_text("\n".join([*self.lines, "thermo 100000000", f"timestep {STEP}", f"run {WARM_UP}",
+        file.write_text("\n".join([*self.lines, "thermo 100000000", f"timestep {TIME_STEP}", f"run {WARM_UP}",
                                    *([f"run {steps}"] if steps else []), ""]))
         return file
 
 
-HEAD = ("newton off", f"neighbor {SKIN} bin", "neigh_modify delay 0 every 1 check yes")
+HEAD = ("newton off", f"neighbor {SEARCHED} bin", "neigh_modify delay 0 every 1 check yes")
 
 
 def pairs(size: int) -> list[tuple[int, float, float, float]]:
     """A fixed and a free sphere at each place of a cubic grid."""
-    edge, offset = ceil(size ** (1 / 3)), 2 * RADIUS - depth(RADIUS / 2)
-    found = []
-    for i in range(size):
-        x, y, z = (SPACING * k for k in (i % edge, i // edge % edge, i // edge**2))
-        found += [(1, x, y, z), (2, x + offset, y, z)]
-    return found
+    offset = 2 * RADIUS - depth(RADIUS / 2)
+    return [atom for x, y, z in places(size) for atom in ((1, x, y, z), (2, x + offset, y, z))]
 
 
 def lammps(style: str, atoms: list[tuple[int, float, float, float]], more: list[str]) -> Deck:
     """Deck of Hertz' law, K_n in F = K_n sqrt(R d) d, with Mindlin's spring, K_t = 8 G*."""
-    normal, tangential = 4 / 3 * MODULUS, 8 * YOUNG / (4 * (1 + POISSON) * (2 - POISSON))
+    normal, tangential = 4 / 3 * EFFECTIVE_MODULUS, 8 * YOUNG / (4 * (1 + POISSON) * (2 - POISSON))
     law = f"{normal} {tangential} 0.0 0.0 {FRICTION} 0"
     return Deck("lmp", [
         "units si", f"atom_style {style}", "boundary f f f", "comm_modify vel yes", HEAD[0], "read_data bodies",
@@ -100,22 +90,21 @@ def lammps(style: str, atoms: list[tuple[int, float, float, float]], more: list[
 
 
 def lammps_sphere(size: int) -> Deck:
-    push = f"fix push free addforce {-LOAD} {0.5 * FRICTION * LOAD} 0.0"
+    push = f"fix push free addforce {-LOAD} {INCLINATION * LOAD} 0.0"
     return lammps("sphere", pairs(size), ["group free type 2", "fix move free nve", push, "fix rub free viscous 5.0"])
 
 
 def lammps_bore(size: int) -> Deck:
-    bearing = RADIUS + CLEARANCE
-    x = CLEARANCE + depth(RADIUS * bearing / CLEARANCE)
+    x = CLEARANCE + depth(JOINT_RADIUS)
     return lammps("sphere 1", [(1, x, 0.0, i * SPACING) for i in range(size)], [
         "variable heat equal 1e-10*step",
-        f"variable diameter equal {2 * RADIUS}*(1+23.75e-6*v_heat)",
-        f"variable bore equal {bearing}*(1+22e-6*v_heat)",
+        f"variable diameter equal {2 * RADIUS}*(1+{EXPANSION_JOURNAL}*v_heat)",
+        f"variable bore equal {BEARING_RADIUS}*(1+{EXPANSION_BEARING}*v_heat)",
         f"region bore cylinder z 0 0 v_bore -1 {size * SPACING + 1} side in",
         "fix move all nve",
         "fix wall all wall/gran/region hertz/history LAW region bore",
         "fix grow all adapt 1 atom diameter v_diameter",
-        f"fix push all addforce {LOAD} {0.5 * FRICTION * LOAD} 0.0",
+        f"fix push all addforce {LOAD} {INCLINATION * LOAD} 0.0",
         "fix rub all viscous 5.0",
     ])
 
@@ -131,7 +120,7 @@ def liggghts_sphere(size: int) -> Deck:
         f"fix m3 all property/global coefficientRestitution peratomtypepair {four(0.9)}",
         f"fix m4 all property/global coefficientFriction peratomtypepair {four(FRICTION)}",
         "pair_style gran model hertz tangential history", "pair_coeff * *", "group free type 2", "fix move free nve",
-        f"fix push free addforce {-LOAD} {0.5 * FRICTION * LOAD} 0.0",
+        f"fix push free addforce {-LOAD} {INCLINATION * LOAD} 0.0",
     ], pairs(size))
 
 
@@ -212,8 +201,4 @@ Again: `PYTHONPATH=build/python /usr/bin/python3 bench/peers.py --build build` (
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (BenchError, OSError) as error:
-        print(f"bench: {error}", file=sys.stderr)
-        sys.exit(2)
+    start(main)

@@ -20,7 +20,7 @@ import subprocess
 import sys
 from pathlib import Path
 from statistics import median
-from typing import Any, Sequence
+from typing import Any, Callable, Sequence
 
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parent
@@ -216,7 +216,17 @@ def as_csv(rows: list[dict[str, Any]], columns: Sequence[str] = COLUMNS) -> str:
     return stream.getvalue()
 
 
-# The frame of the benchmarks beside this one: umbrella.py, campaign.py, truss_dem.py.
+# The frame of the benchmarks beside this one: umbrella.py, campaign.py, truss_dem.py, peers.py, yade_import.py.
+
+
+def start(main: Callable[[], None], *failures: type[Exception]) -> None:
+    """Run a benchmark; a BenchError, an OSError or one of these ends it with status 2 and one sentence."""
+    told: tuple[type[Exception], ...] = (BenchError, OSError, *failures)
+    try:
+        main()
+    except told as error:
+        print(f"bench: {error}", file=sys.stderr)
+        sys.exit(2)
 
 
 def parse(parser: argparse.ArgumentParser, repetitions: int) -> argparse.Namespace:
@@ -360,8 +370,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (BenchError, OSError) as error:
-        print(f"bench: {error}", file=sys.stderr)
-        sys.exit(2)
+    start(main)

@@ -10,11 +10,10 @@ length each: their difference has neither start nor samples.
 from __future__ import annotations
 
 import argparse
-import sys
 from statistics import median
 from typing import Any
 
-from run import BenchError, parse, publish
+from run import parse, publish, start
 from statejump.core.errors import StatejumpError
 from statejump.core.yade_process import execute
 from statejump.kinds.loading import parse_case
@@ -101,8 +100,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (BenchError, StatejumpError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        sys.exit(2)
+    start(main, StatejumpError)

@@ -9,11 +9,10 @@ from __future__ import annotations
 import argparse
 import json
 import subprocess
-import sys
 from pathlib import Path
 from statistics import median
 
-from run import REPOSITORY, TIMEOUT_S, BenchError, parse, publish
+from run import REPOSITORY, TIMEOUT_S, BenchError, parse, publish, start
 import statejump
 from statejump.core.errors import StatejumpError
 
@@ -121,8 +120,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (BenchError, StatejumpError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        sys.exit(2)
+    start(main, StatejumpError)

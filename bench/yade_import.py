@@ -5,17 +5,19 @@
     /usr/bin/python3 bench/yade_import.py --build build [--build OTHER] [--repetitions 20]
 
 Of several builds, one YADE of each in turn. Setting up is what follows the loading of the library: the guard, which
-compares the declared interface with that YADE, and the registration of classes. Medians, lowest and highest.
+compares the declared interface with that YADE, and the registration of classes. Medians, lowest and highest. Exit
+status 2 with one sentence when something is missing.
 """
 from __future__ import annotations
 
 import argparse
 import os
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 from statistics import median
+
+from run import BenchError, start
 
 # What YADE runs. The library is loaded by itself first, to tell what the loader takes from what the plugin takes.
 SCRIPT = """
@@ -44,7 +46,8 @@ def spent(build: Path, script: Path) -> tuple[float, float]:
         if word == "spent":
             whole, setting_up = map(float, numbers)
             return whole, setting_up
-    sys.exit(f"{build}: no time: {(done.stderr.strip() or done.stdout.strip()).splitlines()[-1:]}")
+    last = (done.stderr.strip() or done.stdout.strip() or "no output").splitlines()[-1]
+    raise BenchError(f"{build}: the import failed in YADE: {last}")
 
 
 def main() -> None:
@@ -67,4 +70,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    start(main)

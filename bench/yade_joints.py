@@ -26,8 +26,14 @@ import os
 import runpy
 import sys
 import time
-from math import atan, ceil, sqrt
+from math import atan
 from pathlib import Path
+
+sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
+from pairs import (
+    BEARING_RADIUS, CLEARANCE, EXPANSION_BEARING, EXPANSION_JOURNAL, FRICTION, INCLINATION, JOINT_RADIUS, LOAD, MASS,
+    POISSON, RADIUS, SEARCHED, TIME_STEP, YOUNG, depth, places,
+)
 
 
 def setting(name, default):
@@ -41,36 +47,13 @@ warm_up = setting("WARM_UP", 300)
 timing = bool(setting("TIMING", 0))
 bystanders = setting("BYSTANDERS", 0)  # 0 to 3 for each pair of spheres
 
-# Table 2 of Chen et al. (2021): radius and clearance of the joint, material.
-young, poisson, friction = 70e9, 0.3, 0.3  # Pa, -, -
-expansion_journal, expansion_bearing = 23.75e-6, 22e-6  # 1/K; different, so the clearance changes
-radius, clearance, mass = 5e-3, 1e-4, 0.01  # m, m, kg
-load, inclination = 10.0, 0.5 * friction  # normal force [N], tangential over normal force [-]
-spacing, verlet_distance = 0.03, 0.5e-3  # m
-time_step = 1e-6  # s
-
-effective_modulus = young / (2 * (1 - poisson**2))
-
-
-def depth(effective_radius):
-    """Return the depth at which a Hertz contact carries the load [m]."""
-    return (load / (4 / 3 * effective_modulus * sqrt(effective_radius))) ** (2 / 3)
-
-
-def positions():
-    """Yield the centres of the fixed bodies: a cubic grid."""
-    edge = ceil(size ** (1 / 3))
-    for i in range(size):
-        x, rest = i % edge, i // edge
-        yield Vector3(x, rest % edge, rest // edge) * spacing
-
 
 def body(shape, material, position, is_fixed):
     result = Body()
     result.shape, result.material, result.bound = shape, material, Aabb()
     result.state.pos = result.state.refPos = position
-    result.state.mass = mass
-    result.state.inertia = Vector3.Ones * 0.4 * mass * radius**2
+    result.state.mass = MASS
+    result.state.inertia = Vector3.Ones * 0.4 * MASS * RADIUS**2
     result.state.blockedDOFs = "xyzXYZ" if is_fixed else "zXYZ"
     return O.bodies.append(result)
 
@@ -79,7 +62,7 @@ def engines(bounds, geometry, physics, law, thermal=()):
     return [
         ForceResetter(),
         *thermal,
-        InsertionSortCollider(bounds, verletDist=verlet_distance),
+        InsertionSortCollider(bounds, verletDist=SEARCHED),
         InteractionLoop([geometry], [physics], [law]),
         NewtonIntegrator(damping=0.2),
     ]
@@ -90,23 +73,22 @@ def joints(is_thermal):
 
     materials = [
         sj.ThermalFrictMat(
-            young=young, poisson=poisson, frictionAngle=atan(friction), thermalExpansion=expansion
+            young=YOUNG, poisson=POISSON, frictionAngle=atan(FRICTION), thermalExpansion=expansion
         )
-        for expansion in (expansion_journal, expansion_bearing)
+        for expansion in (EXPANSION_JOURNAL, EXPANSION_BEARING)
     ]
     for material in materials:
         O.materials.append(material)
-    bearing_radius = radius + clearance
-    offset = clearance + depth(radius * bearing_radius / clearance)
-    for centre in positions():
-        body(sj.Bearing(radius=bearing_radius), materials[1], centre, True)
-        free = body(sj.Journal(radius=radius), materials[0], centre + Vector3(offset, 0, 0), False)
-        O.forces.setPermF(free, Vector3(1, inclination, 0) * load)
+    offset = CLEARANCE + depth(JOINT_RADIUS)
+    for centre in map(Vector3, places(size)):
+        body(sj.Bearing(radius=BEARING_RADIUS), materials[1], centre, True)
+        free = body(sj.Journal(radius=RADIUS), materials[0], centre + Vector3(offset, 0, 0), False)
+        O.forces.setPermF(free, Vector3(1, INCLINATION, 0) * LOAD)
     thermal = []
     if is_thermal:
         # Slow enough to stay close to equilibrium, rising during the whole measurement.
         program = sj.ThermalProgram(
-            shape="triangle", temperatureChangeMax=10, period=4 * (steps + warm_up) * time_step + 1
+            shape="triangle", temperatureChangeMax=10, period=4 * (steps + warm_up) * TIME_STEP + 1
         )
         thermal = [sj.ThermalExpansionEngine(program=program)]
     O.engines = engines(
@@ -119,17 +101,17 @@ def joints(is_thermal):
 
 
 def spheres():
-    material = FrictMat(young=young, poisson=poisson, frictionAngle=atan(friction))
+    material = FrictMat(young=YOUNG, poisson=POISSON, frictionAngle=atan(FRICTION))
     O.materials.append(material)
-    offset = 2 * radius - depth(radius / 2)
-    for centre in positions():
-        body(Sphere(radius=radius), material, centre, True)
-        free = body(Sphere(radius=radius), material, centre + Vector3(offset, 0, 0), False)
-        O.forces.setPermF(free, Vector3(-1, inclination, 0) * load)
+    offset = 2 * RADIUS - depth(RADIUS / 2)
+    for centre in map(Vector3, places(size)):
+        body(Sphere(radius=RADIUS), material, centre, True)
+        free = body(Sphere(radius=RADIUS), material, centre + Vector3(offset, 0, 0), False)
+        O.forces.setPermF(free, Vector3(-1, INCLINATION, 0) * LOAD)
         # Fixed bodies that the free one could touch next, as a slider its stops: boxes overlap.
-        near = 2 * radius + 0.4 * verlet_distance
+        near = 2 * RADIUS + 0.4 * SEARCHED
         for direction in (Vector3(0, -1, 0), Vector3(0, 1, 0), Vector3(1, 0, 0))[:bystanders]:
-            body(Sphere(radius=radius), material, centre + Vector3(offset, 0, 0) + near * direction, True)
+            body(Sphere(radius=RADIUS), material, centre + Vector3(offset, 0, 0) + near * direction, True)
     O.engines = engines(
         [Bo1_Sphere_Aabb()],
         Ig2_Sphere_Sphere_ScGeom(),
@@ -142,10 +124,10 @@ def check(when):
     """Every pair touches, carries both forces without slip, and nothing else touches."""
     contacts = [contact for contact in O.interactions if contact.isReal]
     carrying = sum(
-        contact.phys.normalForce.norm() > 0.5 * load
-        and 0.1 * inclination * load
+        contact.phys.normalForce.norm() > 0.5 * LOAD
+        and 0.1 * INCLINATION * LOAD
         < contact.phys.shearForce.norm()
-        < 0.99 * friction * contact.phys.normalForce.norm()
+        < 0.99 * FRICTION * contact.phys.normalForce.norm()
         for contact in contacts
     )
     if len(contacts) != size or carrying != size or O.interactions.countReal() != size:
@@ -157,7 +139,7 @@ def check(when):
 
 def measure():
     O.trackEnergy = bool(setting("ENERGY", 0))
-    O.dt = time_step
+    O.dt = TIME_STEP
     O.run(max(2, warm_up), True)
     check("before")
     O.timingEnabled = timing
