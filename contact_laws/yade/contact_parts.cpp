@@ -45,15 +45,6 @@ void fail_closed(const char* inner, Real inner_radius, const char* outer, Real o
   record_failure(text.str(), scene, contact);
 }
 
-void fail_answer(Real stiffness, const yade::Vector3r& force, const yade::Scene& scene,
-                 const yade::Interaction& contact) {
-  std::ostringstream text;
-  text.precision(9);
-  text << "the law answers with a normal stiffness of " << stiffness << " N/m and a force of ("
-       << force[0] << ", " << force[1] << ", " << force[2] << ") N, allowed is finite";
-  record_failure(text.str(), scene, contact);
-}
-
 void fail_tilted(const yade::Scene& scene, const yade::Interaction& contact) {
   record_failure(
       "the axes of journal and bearing are tilted by more than maxTilt, and contact "

@@ -23,9 +23,6 @@ inline yade::Vector3r axis_of(const yade::Quaternionr& q) {
 [[gnu::cold]] void fail_closed(const char* inner, yade::Real inner_radius, const char* outer,
                                yade::Real outer_radius, const yade::Scene& scene,
                                const yade::Interaction& contact);
-// A law answered with what is no number.
-[[gnu::cold]] void fail_answer(yade::Real stiffness, const yade::Vector3r& force,
-                               const yade::Scene& scene, const yade::Interaction& contact);
 [[gnu::cold]] void fail_tilted(const yade::Scene& scene, const yade::Interaction& contact);
 [[gnu::cold]] void fail_unstable(yade::Real effective_mass, yade::Real stiffness,
                                  const yade::Scene& scene, const yade::Interaction& contact);

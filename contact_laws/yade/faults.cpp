@@ -259,6 +259,13 @@ void fail_strain(const yade::Scene& scene, int id, Real strain, Real expansion) 
       wrong(strain, "", "above -1") + ", with thermalExpansion " + text_of(expansion) + " 1/K"));
 }
 
+void fail_answer(Real stiffness, const Vector3r& force, const yade::Scene& scene,
+                 const yade::Interaction& contact) {
+  record_failure("the law answers with a normal stiffness of " + text_of(stiffness) +
+                     " N/m and a force of " + text_of(force) + " N, allowed is finite",
+                 scene, contact);
+}
+
 void fail_force(const yade::Scene& scene, int id, const Vector3r& force) {
   if (Fault fault = fault_of_body(scene, id)) throw_failure(*std::move(fault));
   throw_failure(of_body(scene, id, "the force", force, " N", words(Allowed::finite)));

@@ -40,6 +40,9 @@ struct MaterialFault {
 // Throws: the temperature leaves a body no length.
 [[noreturn, gnu::cold]] void fail_strain(const yade::Scene& scene, int id, Real strain,
                                          Real expansion);
+// For functors: a law answered with what is no number.
+[[gnu::cold]] void fail_answer(Real stiffness, const Vector3r& force, const yade::Scene& scene,
+                               const yade::Interaction& contact);
 // Throws: a force on a body is no number.
 [[noreturn, gnu::cold]] void fail_force(const yade::Scene& scene, int id, const Vector3r& force);
 

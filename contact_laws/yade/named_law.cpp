@@ -102,8 +102,7 @@ void NamedJointLaw::build(const char* class_name) {
   law.friction = law_by_name(laws::friction_law, class_name, "frictionLaw", frictionLaw);
   law.tangential_velocity = law_by_name(laws::tangential_velocity_law, class_name,
                                         "tangentialVelocity", tangentialVelocity);
-  if (laws::has(law.friction, laws::Trait::needs_point_contact) &&
-      !laws::has(law.normal, laws::Trait::point_contact)) {
+  if (!laws::go_together(law.normal, law.friction)) {
     dem::refuse(class_name, "normalLaw", normalLaw,
                 laws::names_with<laws::NormalLaw>(laws::Trait::point_contact) +
                     " with frictionLaw '" + frictionLaw + "'");
@@ -119,6 +118,7 @@ void NamedJointLaw::build(const char* class_name) {
   law.contact_length = contactLength;
   law.friction_parameters = {0, v0, v1};  // the friction coefficient is that of each contact
   laws::validate(law);
+  prepare(law.dissipation, law.restitution);
   named_.law = law;
   named_.needs_axis = laws::has(law.normal, laws::Trait::needs_axis) ||
                       laws::has(law.tangential_velocity, laws::Trait::needs_axis);

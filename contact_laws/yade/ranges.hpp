@@ -27,19 +27,21 @@ namespace statejump::dem {
                               "' is not allowed: must be " + allowed);
 }
 
-// Written so that NaN fails, too.
+// @param unit in brackets
+inline void require(stepper::Allowed allowed, const char* class_name, const char* attribute,
+                    double value, const std::string& unit) {
+  if (stepper::allows(allowed, value)) return;
+  refuse(class_name, attribute, value, (std::string(words(allowed)) + " " + unit).c_str());
+}
+
 inline void require_positive(const char* class_name, const char* attribute, double value,
                              const char* unit) {
-  if (!(value > 0 && std::isfinite(value))) {
-    refuse(class_name, attribute, value, (std::string("above 0 ") + unit).c_str());
-  }
+  require(stepper::Allowed::positive, class_name, attribute, value, unit);
 }
 
 inline void require_not_negative(const char* class_name, const char* attribute, double value,
                                  const char* unit) {
-  if (!(value >= 0 && std::isfinite(value))) {
-    refuse(class_name, attribute, value, (std::string("0 or above ") + unit).c_str());
-  }
+  require(stepper::Allowed::not_negative, class_name, attribute, value, unit);
 }
 
 // Numbers that a script may set: those that may be used, and 0 for what is not set yet.
@@ -47,12 +49,9 @@ template <class Object, std::size_t size>
 void require_settable(const char* class_name, const stepper::Quantities<Object, size>& quantities,
                       const Object& object) {
   for (const stepper::Quantity<Object>& each : quantities) {
-    const double value = object.*each.value;
     const bool positive = each.allowed == stepper::Allowed::positive;
-    const stepper::Allowed allowed = positive ? stepper::Allowed::not_negative : each.allowed;
-    if (stepper::allows(allowed, value)) continue;
-    const std::string range = std::string(words(allowed)) + " [" + each.unit + "]";
-    refuse(class_name, each.name, value, range.c_str());
+    require(positive ? stepper::Allowed::not_negative : each.allowed, class_name, each.name,
+            object.*each.value, std::string("[") + each.unit + "]");
   }
 }
 

@@ -26,9 +26,7 @@ Vector3r cylinder_half_extents(const yade::Quaternionr& orientation, Real radius
 }  // namespace
 
 void ThermalFrictMat::check() const {
-  if (!std::isfinite(thermalExpansion)) {
-    refuse(class_name, "thermalExpansion", thermalExpansion, "finite [1/K]");
-  }
+  require(stepper::Allowed::finite, class_name, "thermalExpansion", thermalExpansion, "[1/K]");
 }
 
 void ThermalShape::check() const {

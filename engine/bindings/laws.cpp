@@ -184,6 +184,7 @@ py::dict drive_contact(const std::string& kind, const std::string& name,
   contact.law.smallest_impact_speed = smallest_impact_speed;
   contact.law.contact_length = contact_length;
   laws::validate(contact);
+  prepare(contact.law.dissipation, restitution);
 
   const Eigen::Index count = normal.size();
   laws::DrivenState state;

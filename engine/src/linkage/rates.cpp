@@ -30,6 +30,7 @@ Constants constants(const Linkage& m) {
   k.r1_rate = k.r1 * m.journal_thermal_expansion;
   k.r2_rate = k.r2 * m.bearing_thermal_expansion;
   k.law = m.law;
+  prepare(k.law.dissipation, k.law.restitution);
   k.pin_damping = m.pin_damping;
   k.torsion = m.torsion_stiffness;
   k.free_angle = m.free_angle();

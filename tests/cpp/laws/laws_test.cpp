@@ -246,6 +246,22 @@ TEST(Dissipation, PointValuesClipAndBadInput) {
 /// A free impact in depth: v dv/(1 + lambda v) = -(F/m) d(delta) integrated from touch to parting,
 /// v as a function of the elastic energy w = V(delta)/(m v0^2), dv/dw = -(1 + a v)/v, v0 = 1. From
 /// the deepest point back the speed is found by the same equation.
+// Of the coefficient that was asked for, of another one, of the one that stands for none; and of laws
+// that have nothing to prepare.
+TEST(Dissipation, WhatIsPreparedAnswersTheSame) {
+  for (const std::string& name : law_names<DissipationLaw>()) {
+    DissipationLaw prepared = dissipation_law(name);
+    prepare(prepared, 0.6);
+    for (const double e : {0.6, 0.3, 1.0}) {
+      EXPECT_EQ(damping_ratio(prepared, {e, 0.5}), damping_ratio(dissipation_law(name), {e, 0.5}))
+          << name << ", " << e;
+    }
+  }
+  ExactRestitution none;
+  none.prepare(0.0);
+  EXPECT_EQ(none({0.0, 1.0}), ExactRestitution{}({0.0, 1.0}));
+}
+
 TEST(Dissipation, ExactRestitutionReturnsWhatIsAsked) {
   for (const double e : {1.0, 0.999, 0.9, 0.8, 0.6, 0.4, 0.2, 0.1}) {
     const double a = damping_ratio(dissipation_law("exact_restitution"), {e, 1.0});

@@ -26,8 +26,7 @@ namespace statejump::kernel {
 ///        about their common normal, mean of omega_1 . n and omega_2 . n times dt. Zero costs no
 ///        trigonometry.
 /// @return zero for a zero vector or one along the normal, NaN for what is none. For n_new = -n_old
-/// the smallest rotation
-///         is not unique; the one that leaves v in place is taken.
+///         the smallest rotation is not unique; the one that leaves v in place is taken.
 inline Vector3 transport(const Vector3& tangential, const Vector3& n_old, const Vector3& n_new,
                          double twist_angle = 0.0) {
   const double magnitude_squared = tangential.squaredNorm();

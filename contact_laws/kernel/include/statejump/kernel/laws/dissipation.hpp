@@ -101,7 +101,7 @@ struct FloresDissipation {
 /// pass it. Starts: a < 1/e, and a e < 3/2 (1 - e). No constant is fitted. e = 0 would need a
 /// damper without bound; e below 1e-6 is taken for 1e-6, the largest error of this law. a = 1/e for
 /// small e: the force rises 1/e times as fast, and an explicit integrator needs steps that resolve
-/// a depth smaller by e^0.4.
+/// a depth smaller by e^0.4. It takes as long as many steps: prepare() solves for it once.
 struct ExactRestitution {
   static constexpr LawInfo info{
       "exact_restitution",
@@ -112,7 +112,13 @@ struct ExactRestitution {
       Trait::holds_static_load,
       {&parameter::restitution_from_zero, &parameter::smallest_impact_speed}};
   double operator()(const ImpactParameters& impact) const {
-    return coefficient(std::max(impact.restitution, 1e-6)) / impact.impact_speed;
+    const double e = std::max(impact.restitution, smallest);
+    return (e == known_for_ ? known_ : coefficient(e)) / impact.impact_speed;
+  }
+  /// Solves for the coefficient of the impacts to come; what is answered stays the same.
+  void prepare(double restitution) {
+    known_for_ = std::max(restitution, smallest);
+    known_ = coefficient(known_for_);
   }
   /// a [-] for e in (0, 1].
   static double coefficient(double e) {
@@ -127,6 +133,11 @@ struct ExactRestitution {
     }
     return -std::expm1(-q) / e;
   }
+
+ private:
+  static constexpr double smallest = 1e-6;
+  double known_for_ = 1.0;  // e for which the coefficient is known
+  double known_ = 0.0;
 };
 
 }  // namespace statejump::kernel::laws

@@ -47,9 +47,7 @@ inline JointLaw joint_law(const JointLawNames& names) {
 
 /// Why two laws of a joint do not go together; empty: they do.
 inline std::string contradiction(const JointLaw& law) {
-  if (!has(law.friction, Trait::needs_point_contact) || has(law.normal, Trait::point_contact)) {
-    return "";
-  }
+  if (go_together(law.normal, law.friction)) return "";
   return std::string("friction_law = '") + law_info(law.friction).name +
          "' is that of a point contact and needs normal_law " +
          names_with<NormalLaw>(Trait::point_contact) + ", not '" + law_info(law.normal).name + "'";

@@ -104,6 +104,11 @@ struct SaysLoaded : std::false_type {};
 template <class Law>
 struct SaysLoaded<Law, std::void_t<decltype(&Law::loaded)>> : std::true_type {};
 
+template <class Law, class = void>
+struct Prepares : std::false_type {};
+template <class Law>
+struct Prepares<Law, std::void_t<decltype(&Law::prepare)>> : std::true_type {};
+
 template <class Law>
 const LawInfo& info_of(const Law& law) {
   if constexpr (std::is_base_of_v<UserLawValue, Law>) {
@@ -189,6 +194,11 @@ inline const LawParameter& restitution_of(const DissipationLaw& law) {
   return parameter::restitution;
 }
 
+/// Whether two laws of a joint go together: one of a point contact needs such a normal law.
+inline bool go_together(const NormalLaw& normal, const FrictionLaw& friction) {
+  return !has(friction, Trait::needs_point_contact) || has(normal, Trait::point_contact);
+}
+
 /// Largest slope of friction against velocity [N s/m]; see friction.hpp.
 inline double largest_slope(const FrictionLaw& law, const FrictionParameters& parameters,
                             double normal_force) {
@@ -210,6 +220,16 @@ inline double largest_depth(const NormalLaw& law, const NormalGeometry& geometry
 /// chi/K [s/m] of any dissipation law, for damped_force().
 inline double damping_ratio(const DissipationLaw& law, const ImpactParameters& impact) {
   return std::visit([&](const auto& l) { return l(impact); }, law);
+}
+
+/// Lets a law solve once for what depends on e alone, where its answers are asked for in every
+/// step.
+inline void prepare(DissipationLaw& law, double restitution) {
+  std::visit(
+      [&](auto& l) {
+        if constexpr (detail::Prepares<std::decay_t<decltype(l)>>::value) l.prepare(restitution);
+      },
+      law);
 }
 
 /// History of a contact that carries a load from the start: as the law itself says it, else of a
