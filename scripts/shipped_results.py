@@ -39,7 +39,7 @@ def run(folder: Path, models: list[str], names: list[str], changes: dict[str, st
     """Run the shipped cases that a model can run, one after the other."""
     for path in shipped():
         case = sj.load(path)
-        if changes and "dem" in models and case.definition.behaviour.has_model("dem"):
+        if changes and case.definition.behaviour.has_model("dem"):
             case = case.changed(changes)
         for model in models:
             target = folder / model / path.stem

@@ -226,6 +226,7 @@ def changed_hdf5(image: bytes, chance: random.Random) -> Any:
 def fclib_files(folder: Path) -> Reader:
     """Files of FCLIB, which have no checksum: objects."""
     from statejump import fclib
+    from statejump.core.hdf5 import HEAD_BYTES
 
     numbers = np.random.default_rng(7)
     images = []
@@ -233,7 +234,7 @@ def fclib_files(folder: Path) -> Reader:
         h = numbers.normal(size=(dimension * 4, 3 * (dimension - 1)))
         problem = fclib.Problem(h @ h.T, h @ numbers.normal(size=h.shape[1]), np.full(4, 0.4), dimension, "pressed")
         fclib.write(folder / "made.hdf5", problem, fclib.solve(problem))
-        images.append((folder / "made.hdf5").read_bytes()[512:])
+        images.append((folder / "made.hdf5").read_bytes()[HEAD_BYTES:])
 
     def spoiled(place: Path, chance: random.Random) -> Any:
         path = place / "given.hdf5"

@@ -11,7 +11,7 @@ from pathlib import Path
 import mixed
 import statejump_yade as sj
 
-from parts import PLANAR, R1, R2, O, body, engines, finish, material, reset
+from parts import PLANAR, R1, R2, O, body, engines, finish, material, reset, with_stepper
 
 TOUCHING_WITHIN = 3000  # steps
 
@@ -54,7 +54,7 @@ def mixed_scene(*kind):
 
 def put(stepper):
     if stepper:
-        O.engines = [O.engines[0], sj.JointStepper(substeps=250), *O.engines[1:]]
+        with_stepper(250)
 
 
 SCENES = {

@@ -8,7 +8,6 @@ from __future__ import annotations
 import difflib
 import math
 import re
-import sys
 from collections.abc import Mapping
 from typing import Any
 
@@ -23,7 +22,7 @@ from statejump.schema.fields import (
     CHOICE, Section, choice, definition, fields_of, numbers, parameter, rule_of, text, texts, whole,
 )
 from statejump.schema.paths import EVERY, attribute_of, keys_of, pattern_of, split_path
-from statejump.schema.rules import NUMBER, WHOLE, check_name, suggestion
+from statejump.schema.rules import NUMBER, WHOLE, check_name, is_finite_number, suggestion
 
 SPACINGS = ("linear", "log")
 OWN = "section.key as in the case file, of a list section.item.key, * for all items"
@@ -173,7 +172,7 @@ def _number(table: Mapping[str, Any], name: str, *, above: float | None = None) 
         return None
     value = table[name]
     needs = "must be a finite number" + ("" if above is None else f" above {above:g}")
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= sys.float_info.max:
+    if not is_finite_number(value):
         raise NotAllowed(name, value, needs)
     if above is not None and not value > above:
         raise NotAllowed(name, value, needs)

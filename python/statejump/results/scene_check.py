@@ -2,7 +2,6 @@
 """Whether what a file says of what to draw is a description as :mod:`.scene` has it. Whoever draws relies on it."""
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from reprlib import repr
@@ -11,6 +10,7 @@ from typing import Any
 from statejump.core.run import Run
 from statejump.results.contents import Result
 from statejump.results.scene import FORCE_KINDS, PART_TYPES
+from statejump.schema.rules import is_finite_number
 
 Problems = Iterator[str]
 
@@ -18,10 +18,6 @@ Problems = Iterator[str]
 def problems(result: Result) -> list[str]:
     """Return what is wrong with a result's description, one sentence each."""
     return list(_Check(result.models, result.names, [*result.meshes]).scene(result.scene))
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 @dataclass(frozen=True)
@@ -100,7 +96,7 @@ class _Check:
                 yield f"{where}, {key}: {problem}"
 
     def number(self, value: Any) -> Problems:
-        if not _is_number(value):
+        if not is_finite_number(value):
             yield f"{repr(value)} is not a finite number"
 
     def value(self, value: Any) -> Problems:
@@ -123,7 +119,7 @@ class _Check:
             yield from self.point(one)
 
     def _axis(self, value: Any) -> Problems:
-        if not isinstance(value, list) or len(value) != 3 or not all(map(_is_number, value)) or not any(value):
+        if not isinstance(value, list) or len(value) != 3 or not all(map(is_finite_number, value)) or not any(value):
             yield f"{repr(value)} is not a direction"
 
     def _values(self, value: Any) -> Problems:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
+import sys
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -71,6 +72,11 @@ class Rule:
         if value is None and self.optional:
             return
         _CHECKS[self.form](self, key, value)
+
+
+def is_finite_number(value: Any) -> bool:
+    """Whether a value of a document is a number that is finite; a whole one may have more digits than any."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 def _number(rule: Rule, key: str, value: Any) -> None:

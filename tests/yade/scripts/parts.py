@@ -169,3 +169,8 @@ def contact(first: int, second: int):
         return None
     found = O.interactions[first, second]
     return found if found.isReal else None
+
+
+def with_stepper(substeps: int) -> None:
+    """Put the stepper where it belongs, before what steps the scene."""
+    O.engines = [*O.engines[:1], sj.JointStepper(substeps=substeps), *O.engines[1:]]

@@ -45,10 +45,6 @@ def physics():
     return O.interactions[1, 2].phys
 
 
-def with_stepper():
-    O.engines = [O.engines[0], sj.JointStepper(substeps=SUBSTEPS), *O.engines[1:]]
-
-
 def go(steps):
     """Return class and text of what ends a run; YADE may end one that fails at once without a word."""
     last = O.iter + steps
@@ -62,7 +58,7 @@ def both(change, when="start", build=joint):
     for stepper in (False, True):
         build()
         if stepper:
-            with_stepper()
+            with_stepper(SUBSTEPS)
         MAIN.change = change
         if when == "start":
             change()

@@ -14,11 +14,6 @@ MAIN = __import__("__main__")
 Law = sj.Law2_JointGeom_JointPhys_JointLaw
 
 
-def with_stepper(substeps):
-    """Put the stepper where it belongs: the two lines of a script."""
-    O.engines = [*O.engines[:1], sj.JointStepper(substeps=substeps), *O.engines[1:]]
-
-
 def counted():
     """Count the steps that YADE's own loop makes."""
     MAIN.ordinary_steps = 0

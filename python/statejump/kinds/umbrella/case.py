@@ -280,8 +280,8 @@ class UmbrellaCase(Case):
             if problem:  # a law of one's own that is known and cannot be used
                 raise NotAllowed(f"joint.{key}", name, problem)
         dissipation = laws.law("dissipation", self.joint.dissipation_law)
-        if not any(p.name == "restitution" and p.allows(self.joint.restitution) for p in dissipation.parameters) and (
-                self.joint.restitution == 0):
+        may_be_zero = any(p.name == "restitution" and p.allows(0) for p in dissipation.parameters)
+        if self.joint.restitution == 0 and not may_be_zero:
             raise NotAllowed("joint.restitution", self.joint.restitution, "must be above 0 [-]",
                              beside=f"with joint.dissipation_law = {dissipation.name!r}")
         friction = laws.law("friction", self.joint.friction_law)
