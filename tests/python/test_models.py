@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import gc
 import json
 from pathlib import Path
 
@@ -208,6 +209,17 @@ def test_figure_shows_both_models_and_repeats_bit_for_bit(table1: Case, tmp_path
     before = text
     save(found.plot(), tmp_path, "table1")
     assert svg.read_text() == before
+
+
+def test_figure_that_has_gone_leaves_nothing(table1: Case, tmp_path: Path) -> None:
+    """matplotlib's constrained layout by itself leaves two grids of each drawing."""
+    def grids() -> int:
+        gc.collect()
+        return sum(type(one).__name__ == "LayoutGrid" for one in gc.get_objects())
+
+    found, before = compared(table1, synthetic(table1)), grids()
+    save(found.plot(), tmp_path, "table1")
+    assert grids() == before
 
 
 def test_units_are_shown_on_screen(statejump, cases: Path) -> None:

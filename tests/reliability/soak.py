@@ -93,18 +93,21 @@ def main() -> int:
         temporary.mkdir()
         tempfile.tempdir, os.environ["TMPDIR"] = str(temporary), str(temporary)
         sys.stdout.flush()
-        told, quiet = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+        told, told_errors, quiet = os.dup(1), os.dup(2), os.open(os.devnull, os.O_WRONLY)
         os.dup2(quiet, 1)  # what the commands print
         os.dup2(quiet, 2)
         os.close(quiet)
         once, found, end = rounds(Path(root) / "results"), [], time.monotonic() + 60 * given.minutes
-        while time.monotonic() < end or len(found) < FEWEST_ROUNDS:
-            once()
-            found.append(counted(temporary))
-            if len(found).bit_count() == 1:
-                os.write(told, f"{_line(found)}\n".encode())
-        sys.stdout.flush()
-        os.dup2(told, 1)
+        try:
+            while time.monotonic() < end or len(found) < FEWEST_ROUNDS:
+                once()
+                found.append(counted(temporary))
+                if len(found).bit_count() == 1:
+                    os.write(told, f"{_line(found)}\n".encode())
+        finally:
+            sys.stdout.flush()
+            os.dup2(told, 1)
+            os.dup2(told_errors, 2)
     half, last = found[len(found) // 2], found[-1]
     grown = last["memory_bytes"] - half["memory_bytes"]
     allowed = min(SLACK_BYTES * (len(found) - len(found) // 2) + (LARGEST_BYTES >> 1), LARGEST_BYTES)

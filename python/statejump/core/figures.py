@@ -17,6 +17,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from statejump.core.output import write_bytes
 
@@ -33,6 +34,20 @@ STYLE: dict[str, Any] = {
 }
 # Draws one panel.
 Panel = Callable[[Axes], None]
+
+
+class Constrained(ConstrainedLayoutEngine):
+    """matplotlib's constrained layout, of which nothing is left in memory.
+
+    Its grids refer to their children through arrays of objects, into which the garbage collector does not look, and the
+    children refer back: two grids of each drawing would stay for ever.
+    """
+
+    def execute(self, fig: Figure) -> None:
+        """Place the axes of a figure; the grids are taken apart."""
+        for grid in (super().execute(fig) or {}).values():
+            if hasattr(grid, "children"):
+                grid.children.fill(None)
 
 
 class Drawing(Figure):
@@ -74,7 +89,7 @@ def style() -> Iterator[None]:
 
 def panels(rows: int, columns: int, size: tuple[float, float], **settings: Any) -> tuple[Figure, Any]:
     """Return a new figure and its axes; as ``pyplot.subplots``, without pyplot."""
-    figure = Drawing(figsize=size, layout="constrained")
+    figure = Drawing(figsize=size, layout=Constrained())
     return figure, figure.subplots(rows, columns, **settings)
 
 

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Wedge
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from statejump.core.figures import Drawing, style
+from statejump.core.figures import Constrained, Drawing, style
 from statejump.kinds.statics.case import StaticsCase
 from statejump.kinds.statics.solve import Statics
 
@@ -43,12 +43,12 @@ def planar(solutions: Sequence[Statics]) -> Figure:
     slot = case.joint.type == "slot"
     with style():
         if slot:
-            drawing = Drawing(figsize=(7.0, 1.2 + 2.6 * count), layout="constrained")
+            drawing = Drawing(figsize=(7.0, 1.2 + 2.6 * count), layout=Constrained())
             grid = drawing.add_gridspec(count + 1, 1, height_ratios=[1.0] * count + [0.16])
             panels = [drawing.add_subplot(grid[row, 0]) for row in range(count)]
             below = drawing.add_subplot(grid[count, 0])
         else:
-            drawing = Drawing(figsize=(max(5.0, 3.7 * count), 4.6), layout="constrained")
+            drawing = Drawing(figsize=(max(5.0, 3.7 * count), 4.6), layout=Constrained())
             grid = drawing.add_gridspec(2, count, height_ratios=[1.0, 0.1])
             panels = [drawing.add_subplot(grid[0, column]) for column in range(count)]
             below = drawing.add_subplot(grid[1, :])

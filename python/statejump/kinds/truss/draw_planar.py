@@ -13,7 +13,7 @@ from matplotlib.markers import MarkerStyle
 from matplotlib.path import Path as Outline
 from matplotlib.transforms import Affine2D
 
-from statejump.core.figures import Drawing
+from statejump.core.figures import Constrained, Drawing
 from statejump.kinds.truss.draw_symbols import (
     BLOCK, CABLE, FRACTION, JOINT, LOAD, MOST_NAMED, PIN, ROLLER, SPIRAL, SPRING, STOPS, SURFACE, TORSION, gap_m,
     guided, legend, link_colours, names, symbol_size, torsion_places,
@@ -83,7 +83,7 @@ def planar(truss: ResolvedTruss) -> Figure:
     drawing = Drawing(
         figsize=(max(sum(columns_in) + 0.9 * len(columns_in) + (0.9 if colour_scale else 0), 2.9 * columns),
                  sum(rows_in) + 0.9 * len(rows_in) + below_in),
-        layout="constrained")
+        layout=Constrained())
     grid = drawing.add_gridspec(len(rows_in) + 1, len(columns_in), height_ratios=[*rows_in, below_in],
                                 width_ratios=columns_in)
     panels = [drawing.add_subplot(grid[0, 0])]

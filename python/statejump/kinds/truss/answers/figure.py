@@ -15,7 +15,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
-from statejump.core.figures import Drawing, panels, style
+from statejump.core.figures import Constrained, Drawing, panels, style
 from statejump.kinds.truss.answers.contributions import Contributions
 from statejump.kinds.truss.answers.jumps import node_jumps
 from statejump.kinds.truss.answers.outputs import Output
@@ -68,7 +68,7 @@ def jumps_figure(found: TrussPath, shares: Contributions | None, title: str) -> 
         if flat:
             shape = np.maximum(extent, 0.25 * extent.max())
             wide, tall = shape * min(7.0 / shape[0], 6.0 / shape[1])
-            drawing = Drawing(figsize=(wide + 3.0, tall + 1.7), layout="constrained")
+            drawing = Drawing(figsize=(wide + 3.0, tall + 1.7), layout=Constrained())
             panel = drawing.add_subplot()
             collection: Any = LineCollection
         else:
