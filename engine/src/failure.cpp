@@ -98,10 +98,11 @@ std::string cause(const FailureFields& fields) {
     case FailureKind::opened_mechanism:
       return free_modes(fields);
     case FailureKind::buckled:
-      return "with every joint held its equilibrium is unstable, " + unstable_modes(fields);
+      return "with every closed joint held its equilibrium is unstable, " + unstable_modes(fields);
     case FailureKind::unloaded_joint:
     case FailureKind::no_contact:
-      return "statics does not determine its position in the play";
+      return "statics does not determine its position in the play" +
+             (fields.modes.empty() ? std::string() : ", " + free_modes(fields));
     case FailureKind::jump_across_play:
       return "its contact force vanishes there and statics does not determine the way to the next "
              "equilibrium";

@@ -307,10 +307,94 @@ def test_generated_rings_start_in_contact_at_the_drawn_shape(bays: int, change_K
     assert np.linalg.norm(start[inner], axis=1).max() < bays * 6e-6 / (2 * np.pi)
 
 
-def test_unloaded_joint_is_named() -> None:
-    document = generate.umbrella(1)
-    document["torsion_spring"][0]["bias_rad"] = 0.0
-    assert "revolute 'joint' carries no force at the start" in failure(document)
+def test_joint_that_nothing_holds_at_the_start_is_refused_with_its_free_motion() -> None:
+    """The flare spring holds both links together, but not against the ground."""
+    made = generate.umbrella(1, bias_rad=0.0)
+    message = failure(made)
+    assert "revolute 'joint' carries no force at the start" in message
+    assert "1 free mode: node 'B' mostly along" in message or "1 free mode: node 'J' mostly along" in message
+    # Without that spring either link turns.
+    del made["torsion_spring"]
+    assert "2 free modes: node '" in failure(made)
+
+
+def opened(found: solve.TrussPath) -> np.ndarray:
+    """At which states the joint is open."""
+    return found.states["revolute_status"][:, 0] == OPEN
+
+
+@pytest.mark.parametrize("contact", ["rigid", "hertz"])
+def test_rib_held_by_springs_starts_open_in_the_middle(contact: str) -> None:
+    """Both springs are free at the drawn shape: the links grow without turning, and journal and bearing part along
+    the frame by eps AC, the play by eps c: they touch where eps (AC - c) = c."""
+    made = generate.umbrella(1, bias_rad=0.0, contact=contact)
+    made["torsion_spring"].append({"name": "ground", "links": ["AB"], "stiffness_N_m_per_rad": 2.0})
+    frame, clearance, expansion = 0.12, 1e-4, 23.75e-6
+    made["revolute"][0].update(journal_thermal_expansion_per_K=expansion, bearing_thermal_expansion_per_K=expansion)
+    found = path(made)
+    states, first = found.states, found.events[0]
+    growth = clearance / (frame - clearance)
+    assert first.before == "open" and found.events[-1].after == "open"
+    # Located within 1e-9 of a branch of 100 K.
+    assert first.temperature_change_K == pytest.approx(growth / expansion, abs=2e-7)
+    apart = states["eccentricity_m"][:, 0]
+    before = opened(found) & (states["time_s"] < first.time_s)
+    exact = expansion * states["temperature_change_K"][before, None] * [frame, 0.0, 0.0]
+    assert np.count_nonzero(before) > 10
+    assert np.abs(apart[before]) == pytest.approx(exact, rel=0, abs=CLOSED_FORM * clearance)
+    assert not states["normal_force_N"][before].any() and not states["elastic_energy_J"][0]
+    after = ~opened(found)
+    assert np.all(states["normal_force_N"][after] >= 0) and states["normal_force_N"].max() > 0.1
+    assert jump_m(found)[-1] == pytest.approx(0, abs=1e-12)
+
+
+def two_bars(share_of_clearance: float) -> dict[str, Any]:
+    """Two bars under 90 degrees that a load pulls along their middle; the journal at their end plays in a fixed
+    bearing of 100 um. The load is that which leaves the journal at a share of the clearance."""
+    made = document("two_bars", "", "closed form", 2, 100.0, "triangle", 1, 1.0)
+    made["node"] += [node("A", (-0.5, 0), "xy"), node("B", (0.5, 0), "xy"), node("O", (0, -0.5), "xy"),
+                     node("J", (0, -0.5), force_N=[0.0, -load_N(share_of_clearance * CLEARANCE_M)])]
+    made["link"] += [{"name": name + "J", "nodes": [name, "J"], "young_modulus_Pa": 70e9,
+                      "cross_section_area_m2": AREA_M2, "thermal_expansion_per_K": EXPANSION,
+                      "density_kg_per_m3": 2700.0} for name in "AB"]
+    made["revolute"].append({"name": "play", "bearing_node": "O", "journal_node": "J", "journal_link": "AJ",
+                             "journal_radius_m": 0.01, "radial_clearance_m": CLEARANCE_M,
+                             "friction_coefficient": 0.2})
+    return finished(made)
+
+
+CLEARANCE_M, AREA_M2, EXPANSION = 1e-4, 1e-5, 2e-5
+OPEN = 5  # of the engine's statuses
+
+
+def load_N(sag_m: float, change_K: float = 0.0) -> float:
+    """Pull of the two bars on their end, this far below where it was drawn [N]."""
+    drawn, now, height = np.hypot(0.5, 0.5), np.hypot(0.5, 0.5 + sag_m), 0.5 + sag_m
+    free = drawn * (1 + EXPANSION * change_K)
+    return float(2 * 70e9 * AREA_M2 * (now / free - 1) * height / now)
+
+
+@pytest.mark.parametrize("share", [0.79, 0.2])
+def test_journal_that_bars_hold_in_its_play_starts_open(share: float) -> None:
+    found = path(two_bars(share))
+    states = found.states
+    assert states["revolute_status"][0] == OPEN and states["normal_force_N"][0] == 0
+    # Forces balance to 1e-12, on bars of 0.7 m strained by 1e-4.
+    assert states["eccentricity_m"][0, 0] == pytest.approx([0, -share * CLEARANCE_M, 0], rel=0, abs=1e-8 * CLEARANCE_M)
+    # Hot bars are longer: it touches where their pull at a sag of c is the load.
+    touches = found.events[0]
+    assert (touches.before, touches.after) == ("open", "stick")
+    load = load_N(share * CLEARANCE_M)
+    assert load_N(CLEARANCE_M, touches.temperature_change_K) == pytest.approx(load, rel=1e-6)
+    assert found.events[-1].after == "open" and jump_m(found)[-1] == pytest.approx(0, abs=1e-12)
+
+
+def test_load_that_brings_the_journal_to_its_bearing_starts_in_contact() -> None:
+    found = path(two_bars(1.1))
+    start = {key: values[0] for key, values in found.states.items()}
+    depth = np.linalg.norm(start["eccentricity_m"][0]) - CLEARANCE_M
+    assert start["normal_force_N"] == pytest.approx(load_N(1.1 * CLEARANCE_M) - load_N(CLEARANCE_M + depth), rel=1e-9)
+    assert depth > 0 and start["revolute_status"][0] != OPEN
 
 
 @pytest.mark.parametrize("bias_rad, change_K", [(0.01, -200.0), (-0.02, 400.0)])

@@ -18,7 +18,7 @@ enum class FailureKind : unsigned char {
   opened_mechanism,  ///< Truss: free modes from where a revolute loses its contact.
   buckled,           ///< Truss: unstable whatever the joints do.
   unloaded_joint,    ///< Joint without force at the start: its place in the play is undetermined.
-  no_contact,        ///< Revolute without contact at the start.
+  no_contact,        ///< Truss: likewise, where its contact force vanishes on the way to the start.
   jump_across_play,  ///< Revolute whose contact force vanishes on the way.
   singular,          ///< No equilibrium found: the equations are singular to rounding.
   not_converged,     ///< No equilibrium found: the iteration does not end.

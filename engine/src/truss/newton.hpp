@@ -99,8 +99,8 @@ struct FoundModes {
 FoundModes mechanism(const System& system, const VectorXd& z, double time, const Statuses& statuses,
                      JointModel joints);
 
-/// Modes in which the equilibrium at z is unstable though every joint is held (so friction cannot
-/// help). That a joint which slips or leaves its bearing makes the truss unstable is not seen.
-FoundModes buckling(const System& system, const VectorXd& z, double time);
+/// Modes in which the equilibrium at z is unstable though every joint that is not open is held (so
+/// friction cannot help). That a joint which slips makes the truss unstable is not seen.
+FoundModes buckling(const System& system, const VectorXd& z, double time, const Statuses& statuses);
 
 }  // namespace statejump::truss::detail

@@ -122,6 +122,7 @@ struct Walker {
 
   void start();
   void open_clearances();
+  [[noreturn]] void refuse_undetermined(FailureKind kind, FoundModes found) const;
   void refuse_buckled(double when) const;
   StepEnd step_to(double target, double tolerance);
   bool slide_at_stake(int joint, JointStatus before, double target) const;
@@ -157,9 +158,36 @@ void Walker::start() {
 
 /// Throws if the state is unstable whatever the joints do.
 void Walker::refuse_buckled(double when) const {
-  if (FoundModes modes = detail::buckling(system, z, when)) {
+  if (FoundModes modes = detail::buckling(system, z, when, origin.statuses)) {
     fail_modes(failure_at(FailureKind::buckled, model, when), std::move(modes));
   }
+}
+
+/// Refuses a start at which joints that do not touch leave a motion free, named by the first of
+/// them that it moves.
+void Walker::refuse_undetermined(FailureKind kind, FoundModes found) const {
+  FailureFields fields = failure_at(kind, model, 0.0);
+  const auto moves = [&](int i) {
+    const Trial at = system.trial(i, z, 0.0, origin, JointModel::pins, 1.0);
+    for (const FailureMode& mode : found.modes) {
+      for (const ModeNode& moved : mode) {
+        for (const int node : {at.frame.nodes[0], at.frame.nodes[1]}) {
+          if (node >= 0 && model.nodes[index(node)].name == moved.node) return true;
+        }
+      }
+    }
+    return false;
+  };
+  int named_one = -1;
+  for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
+    if (origin.statuses[index(i)] != JointStatus::open) continue;
+    if (named_one < 0) named_one = i;
+    if (!moves(i)) continue;
+    named_one = i;
+    break;
+  }
+  fields.joints.push_back(named(model, named_one));
+  fail_modes(std::move(fields), std::move(found));
 }
 
 void Walker::open_clearances() {
@@ -174,22 +202,29 @@ void Walker::open_clearances() {
     const Trial trial = system.trial(i, at, 0.0, origin, JointModel::pins, opened);
     return joint(i, [&](const auto& one) { return one.seat(trial, opened, next, rounding); });
   };
+  const auto opens = [&](int i) { return origin.statuses[index(i)] == JointStatus::open; };
   origin = system.begin(z, 0.0, origin.statuses, 1.0);
+  // The journal touches where its pin force pushes. One that nothing pushes stays in the middle, if
+  // something else than its contact holds it there.
   for (const int i : with_play) {
-    if (!seat(i, z, 0.0, 1.0).touches) {
-      fail_joint(failure_at(FailureKind::unloaded_joint, model, 0.0), named(model, i));
-    }
+    const bool touches = seat(i, z, 0.0, 1.0).touches;
+    origin.statuses[index(i)] = touches ? JointStatus::slip_plus : JointStatus::open;
   }
-  // The journal touches where its pin force pushes; the clearances open little by little, each time
-  // from the last equilibrium, because the links turn as they open.
+  if (std::any_of(with_play.begin(), with_play.end(), opens)) {
+    FoundModes modes = detail::mechanism(system, z, 0.0, origin.statuses, JointModel::pins);
+    if (modes) refuse_undetermined(FailureKind::unloaded_joint, std::move(modes));
+  }
+  // The clearances open little by little, each time from the last equilibrium, because the links
+  // turn as they open.
   double opened = 0.0;
   double share = 0.125;
-  for (const int i : with_play) origin.statuses[index(i)] = JointStatus::slip_plus;
   while (opened < 1.0) {
     const double next = std::min(1.0, opened + share);
     VectorXd trial = z;
     Statuses trial_statuses = origin.statuses;
-    for (const int i : with_play) system.apply(i, seat(i, z, opened, next), trial);
+    for (const int i : with_play) {
+      if (!opens(i)) system.apply(i, seat(i, z, opened, next), trial);
+    }
     const StepStart begin = system.begin(trial, 0.0, trial_statuses, next);
     const SolveReport report = newton.solve(0.0, begin, JointModel::frictionless, next,
                                             options.most_iterations, trial, trial_statuses);
@@ -206,16 +241,23 @@ void Walker::open_clearances() {
     }
     share *= 0.5;
     if (share < 1e-4) {
+      // Contacts that the last try took away may be what it fails for.
+      origin.statuses = trial_statuses;
+      if (std::any_of(with_play.begin(), with_play.end(), opens)) {
+        FoundModes modes =
+            detail::mechanism(system, z, 0.0, origin.statuses, JointModel::frictionless);
+        if (modes) refuse_undetermined(FailureKind::no_contact, std::move(modes));
+      }
       fail(report, JointModel::frictionless, 0.0, "no equilibrium in contact at the start");
     }
   }
   for (const int i : with_play) {
-    JointStatus& status = origin.statuses[index(i)];
-    if (status == JointStatus::open) {
-      fail_joint(failure_at(FailureKind::no_contact, model, 0.0), named(model, i));
-    }
-    status = joint(i, [](const auto& one) { return one.rest(); });
+    if (!opens(i)) origin.statuses[index(i)] = joint(i, [](const auto& one) { return one.rest(); });
   }
+  if (std::none_of(with_play.begin(), with_play.end(), opens)) return;
+  FoundModes modes = detail::mechanism(system, z, 0.0, origin.statuses, JointModel::friction);
+  if (modes) refuse_undetermined(FailureKind::no_contact, std::move(modes));
+  refuse_buckled(0.0);
 }
 
 /// Whether a joint that stopped sliding before `target` may have slid by more than rounding until

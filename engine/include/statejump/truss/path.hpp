@@ -94,14 +94,16 @@ struct Path {
 ///
 /// **Start.** The drawn shape need not be in equilibrium: it is first relaxed at ΔT = 0 with
 /// bilateral pins in place of clearance revolutes; their pin forces say where each journal touches;
-/// then the clearances open with frictionless contacts. There friction begins, without force.
+/// then the clearances open with frictionless contacts. There friction begins, without force. A
+/// journal that no pin force pushes, or whose contact force vanishes on the way, starts open, if
+/// the tangent stiffness without it is regular: springs, loads and bars then determine its place.
 ///
 /// Throws std::invalid_argument for a model or option out of range. Throws std::runtime_error that
 /// names joint or nodes and the temperature: for a mechanism (with its free modes), also one that a
-/// joint makes that opens; for an equilibrium of the start or at a corner of the programs that is
-/// unstable though every joint is held (buckled, with the modes); for a revolute that carries no
-/// force at the start (statics does not determine its position in the play) or jumps across its
-/// play; where equilibrium is not found; and for a joint whose status changes without end.
+/// joint makes that opens, or that is open at the start; for an equilibrium of the start or at a
+/// corner of the programs that is unstable though every closed joint is held (buckled, with the
+/// modes); for a revolute that jumps across its play; where equilibrium is not found; and for a
+/// joint whose status changes without end.
 Path solve(const Model& model, const Options& options = {});
 
 }  // namespace statejump::truss

@@ -75,22 +75,32 @@ Matrix32 plane_of(const Trial& trial) {
   return trial.frame.axes.leftCols<2>();
 }
 
-/// Normal force below which the depth is a millionth of the clearance: Hertz's compliance and
-/// Mindlin's, infinite without force, are taken there [N].
+/// Normal force at which the depth is a millionth of the clearance [N]. Below it the depth is
+/// linear: a contact that just closes would else have an infinite compliance, from which Newton's
+/// method does not find away.
 double least_force(const ClearanceRevolute& joint) {
   return joint.hertz_stiffness * std::pow(1e-6 * joint.radial_clearance, 1.5);
 }
 
-double depth_of(const ClearanceRevolute& joint, double normal_force) {
-  if (std::isinf(joint.hertz_stiffness) || normal_force <= 0.0) return 0.0;
-  return std::pow(normal_force / joint.hertz_stiffness, 2.0 / 3.0);
+/// Depth under a normal force, and what it grows by per force.
+struct Depth {
+  double value;  ///< [m]
+  double slope;  ///< [m/N]
+};
+
+Depth depth_of(const ClearanceRevolute& joint, double normal_force) {
+  if (std::isinf(joint.hertz_stiffness)) return {0.0, 0.0};
+  const double least = least_force(joint);
+  const double depth = std::pow(std::max(normal_force, least) / joint.hertz_stiffness, 2.0 / 3.0);
+  if (normal_force < least) return {depth * (normal_force / least), depth / least};
+  return {depth, 2.0 / 3.0 * depth / normal_force};
 }
 
 /// 1/k_t of a contact that sticks [m/N]; 0: rigid.
 double tangential_compliance(const ClearanceRevolute& joint, double normal_force) {
   if (std::isinf(joint.mindlin_stiffness)) return 0.0;
   const double loaded = std::max(normal_force, least_force(joint));
-  return 1.0 / (joint.mindlin_stiffness * std::sqrt(depth_of(joint, loaded)));
+  return 1.0 / (joint.mindlin_stiffness * std::sqrt(depth_of(joint, loaded).value));
 }
 
 /// Angle from one direction to another [rad]; exact for small ones.
@@ -359,7 +369,12 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
   bool holds_normal = false;
   bool holds_slide = false;
   Gradients of;
-  if (trial.model == JointModel::pins) {
+  if (status == JointStatus::open) {
+    // Without forces; the journal may be in the middle, where no normal is defined.
+    writer.balance(0, normal);
+    writer.balance(1, friction);
+    corner[0][0] = corner[1][1] = 1.0;
+  } else if (trial.model == JointModel::pins) {
     of = pinned(trial);
     writer.closure(0, g.eccentricity.x());
     writer.closure(1, g.eccentricity.y());
@@ -368,30 +383,22 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     const Memory start = Memory::of(trial.history);
     const Motion motion = motion_of(g, start);
     of = in_contact(*this, trial, g, start, motion);
-    if (status == JointStatus::open) {
-      writer.balance(0, normal);
-      writer.balance(1, friction);
-      corner[0][0] = corner[1][1] = 1.0;
+    holds_normal = true;
+    const Depth depth = depth_of(*this, normal);
+    writer.closure(0, g.eccentricity.norm() - g.clearance - depth.value);
+    corner[0][0] = -depth.slope;
+    const double mu = trial.model == JointModel::friction ? friction_coefficient : 0.0;
+    if (status == JointStatus::stick && trial.model == JointModel::friction) {
+      holds_slide = true;
+      const ElasticSlide elastic = elastic_slide(*this, trial, start);
+      writer.closure(1, motion.slide - elastic.slide);
+      corner[1][0] = -elastic.by_normal;
+      corner[1][1] = -elastic.by_friction;
     } else {
-      holds_normal = true;
-      writer.closure(0, g.eccentricity.norm() - g.clearance - depth_of(*this, normal));
-      if (!std::isinf(hertz_stiffness)) {
-        const double loaded = std::max(normal, least_force(*this));
-        corner[0][0] = -2.0 / 3.0 * depth_of(*this, loaded) / loaded;
-      }
-      const double mu = trial.model == JointModel::friction ? friction_coefficient : 0.0;
-      if (status == JointStatus::stick && trial.model == JointModel::friction) {
-        holds_slide = true;
-        const ElasticSlide elastic = elastic_slide(*this, trial, start);
-        writer.closure(1, motion.slide - elastic.slide);
-        corner[1][0] = -elastic.by_normal;
-        corner[1][1] = -elastic.by_friction;
-      } else {
-        const double sense = status == JointStatus::slip_minus ? -1.0 : 1.0;
-        writer.balance(1, friction - sense * mu * normal);
-        corner[1][0] = -sense * mu;
-        corner[1][1] = 1.0;
-      }
+      const double sense = status == JointStatus::slip_minus ? -1.0 : 1.0;
+      writer.balance(1, friction - sense * mu * normal);
+      corner[1][0] = -sense * mu;
+      corner[1][1] = 1.0;
     }
   }
   for (std::size_t a = 0; a < 4; ++a) {
@@ -463,8 +470,12 @@ double ClearanceRevolute::dissipation(const Trial& trial, const double* after_, 
 double ClearanceRevolute::elastic_energy(const Trial& trial, const double* now_) const {
   const Memory now = Memory::of(now_);
   const double normal = trial.force[0];
-  return 0.4 * normal * depth_of(*this, normal)  // 2/5 K δ^5/2
-         + 0.5 * now.compliance * now.friction * now.friction;
+  const double bent = 0.5 * now.compliance * now.friction * now.friction;
+  if (std::isinf(hertz_stiffness)) return bent;
+  const double least = least_force(*this);
+  const double linear = std::min(normal, least);
+  return 0.4 * normal * depth_of(*this, normal).value  // 2/5 K δ^5/2
+         + 0.1 * linear * depth_of(*this, linear).value + bent;
 }
 
 void ClearanceRevolute::describe(const Trial& trial, double* outputs) const {
