@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from statejump.api import (
         bore as bore,
         compare as compare,
+        identify as identify,
         load as load,
         montecarlo as montecarlo,
         read as read,
@@ -37,7 +38,8 @@ __version__ = "0.1.0"
 
 # Where each name of the public interface is.
 _PLACES = {
-    **dict.fromkeys(("bore", "compare", "load", "montecarlo", "read", "statics", "sweep"), "statejump.api"),
+    **dict.fromkeys(("bore", "compare", "identify", "load", "montecarlo", "read", "statics", "sweep"),
+                    "statejump.api"),
     "Case": "statejump.case",
     **dict.fromkeys(("Comparison", "Quantity"), "statejump.core.comparison"),
     "StatejumpError": "statejump.core.errors",

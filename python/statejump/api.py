@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from statejump.bores import Bore
     from statejump.core.tables import Shown
+    from statejump.identification import Identification
     from statejump.campaign import Campaign
     from statejump.results.contents import Result
 
@@ -107,6 +108,32 @@ def bore(
     from statejump.bores import measured
 
     return measured(Path(path), unit_m=unit_m, journal_radius_m=journal_radius_m, flip=flip)
+
+
+def identify(
+    source: str | Path | Mapping[str, Any], *, model: str | Sequence[str] = "auto", start: str = "unknown",
+    confidence: float = 0.95, target: str | None = None, normal_force_N: float | None = None,
+    journal_radius_m: float | None = None,
+) -> Identification:
+    """Return what a measured loop says of a joint: parameters by maximum likelihood under Gaussian noise of the force,
+    intervals by profile likelihood, the choice among joints by BIC, and what the loop does not say.
+
+    :param source: CSV file, or columns: ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``,
+        row by row as measured; a force is positive where it resists a positive displacement
+    :param model: a joint, several, or ``auto``: all of :data:`statejump.identification.models.MODELS`
+    :param start: friction before the first row: ``fresh``, it carries nothing; ``cycled``, the path was gone before;
+        ``unknown``: rows are left out until it is forgotten
+    :param confidence: of the intervals, 0.5 to 0.999
+    :param target: where the joint goes: ``spring_slider`` (default), ``slider``, ``revolute``, ``umbrella`` (default of
+        rotations), ``torsion_spring``
+    :param normal_force_N: in the test [N]: friction becomes a coefficient
+    :param journal_radius_m: of a moment of friction [m], likewise
+    :raises StatejumpError: the file is no loop, or there is no such joint
+    """
+    from statejump.identification import identified
+
+    return identified(source, model=model, start=start, confidence=confidence, target=target,
+                      normal_force_N=normal_force_N, journal_radius_m=journal_radius_m)
 
 
 def sweep(

@@ -30,6 +30,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "laws": ("laws:laws_command", "Catalogue of contact laws, and their curves for the joint of CASE."),
     "control": ("control:control_command", "What makes the state jump of CASE smaller, and by how much."),
     "statics": ("statics:statics_command", "Where the joint of CASE can rest, and the largest jump it can make."),
+    "identify": ("identify:identify_command", "Clearance, stiffness, friction of a joint from a measured loop."),
     "bore": ("bore:bore_command", "What a measured bore is: roundness, lobes, clearance."),
     "truss": ("truss:truss_command", "Trusses: make, draw, and what a designer asks of them."),
     "fclib": ("fclib:fclib_command", "Frictional contact problems of many contacts, in files of FCLIB."),

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``statejump identify``: what a measured loop says of a joint."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from statejump.cli.terminal import QUIET, RESULTS, make_console, print_shown
+from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.results_folder import Results
+
+# The arguments of the library as options of the command.
+OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence", "target": "--for",
+           "normal_force_N": "--normal-force", "journal_radius_m": "--journal-radius"}
+
+
+@click.command("identify")
+@click.argument("loop_file", metavar="LOOP.csv", type=click.Path(path_type=Path))
+@click.option("--model", default="auto", show_default=True, metavar="NAME",
+              help="Joint that is fitted: linear, clearance, coulomb, coulomb_spring, coulomb_clearance, "
+                   "coulomb_clearance_spring, mindlin, mindlin_spring, iwan, iwan_spring; auto: all, the best by BIC.")
+@click.option("--start", default="unknown", show_default=True, metavar="HOW",
+              help="Friction before the first row: fresh (carries nothing), cycled (the path was gone before), unknown "
+                   "(rows are left out until it is forgotten).")
+@click.option("--confidence", type=float, default=0.95, show_default=True, metavar="P", help="Of the intervals.")
+@click.option("--for", "target", default=None, metavar="WHAT",
+              help="Section that is written: spring_slider, slider, revolute, umbrella, torsion_spring.  "
+                   "[default: spring_slider, of rotations umbrella]")
+@click.option("--normal-force", type=float, default=None, metavar="N",
+              help="Normal force in the test [N]: friction becomes a coefficient.")
+@click.option("--journal-radius", type=float, default=None, metavar="M",
+              help="Radius of the journal [m], of a moment of friction likewise.")
+@RESULTS
+@QUIET
+def identify_command(
+    loop_file: Path, model: str, start: str, confidence: float, target: str | None, normal_force: float | None,
+    journal_radius: float | None, results: Results, quiet: bool,
+) -> None:
+    """Clearance, stiffness, friction and preload of a joint from the measured loop in LOOP.csv, with intervals.
+
+    LOOP.csv has the columns displacement_m and force_N, or rotation_rad and moment_N_m, row by row as measured.
+
+    \b
+    Example:
+      statejump identify hinge.csv --normal-force 100
+    """
+    from statejump.identification import identified
+
+    console = make_console(quiet)
+    with results.folder(f"identify_{loop_file.stem}") as folder:
+        try:
+            found = identified(loop_file, model=model, start=start, confidence=confidence, target=target,
+                               normal_force_N=normal_force, journal_radius_m=journal_radius)
+        except StatejumpError as refused:
+            if isinstance(refused, NotAllowed) and refused.key in OPTIONS:
+                refused.key = OPTIONS[refused.key]
+            raise
+        written = folder.publish(found.write(folder.staged))
+    print_shown(found.told(), console)
+    console.print(found.joint(), markup=False, highlight=False)
+    console.print(f"results: {', '.join(str(path) for path in written)}")

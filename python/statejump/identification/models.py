@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Joints that a loop can be of: their parameters, the force they answer, where a search for them begins.
+
+Force and displacement stand for moment and rotation as well. All answer to the displacement alone, however fast.
+"""
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from statejump.identification.hysteresis import Memory
+
+LINEAR, POSITIVE = "linear", "positive"
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a joint.
+
+    :param name: without unit
+    :param dimension: ``force``, ``displacement``, ``stiffness``, or ``-``
+    :param scale: ``positive`` is sought by its logarithm
+    :param low: bound of the search, in units of the loop's size: half of its force, half of its displacement; those
+        with a sign are counted from its middle
+    :param high: likewise
+    :param starts: where the search begins, likewise
+    :param meaning: in words
+    """
+
+    name: str
+    dimension: str
+    scale: str
+    low: float
+    high: float
+    starts: tuple[float, ...]
+    meaning: str
+
+
+# A loop cannot tell a joint a million times stiffer than itself from a rigid one.
+FAR = 1e6
+PARAMETERS = {each.name: each for each in (
+    Parameter("stiffness", "stiffness", POSITIVE, 1 / FAR, FAR, (1.0, 2.0, 5.0, 20.0),
+              "between the place of measurement and the slide; of partial slip that of sticking"),
+    Parameter("friction", "force", POSITIVE, 1 / FAR, FAR, (0.1, 0.3, 0.6, 0.9), "limit of friction"),
+    Parameter("clearance_minus", "displacement", LINEAR, -1.0, 1.0, (0.1, 0.4, 0.7), "play below displacement 0"),
+    Parameter("clearance_plus", "displacement", LINEAR, -1.0, 1.0, (0.1, 0.4, 0.7), "play above displacement 0"),
+    Parameter("preload", "force", LINEAR, -FAR, FAR, (0.0,), "force at displacement 0, without friction"),
+    Parameter("preload_stiffness", "stiffness", POSITIVE, 1 / FAR, FAR, (0.03, 0.3), "spring beside the slide"),
+    Parameter("iwan_exponent", "-", LINEAR, -0.999, 0.0, (-0.7, -0.3), "χ of the distribution of sliders"),
+    Parameter("iwan_ratio", "-", POSITIVE, 1e-4, 1e4, (0.3, 3.0), "β, stiffness of the last sliders over the others"),
+)}
+Values = Mapping[str, float]
+Answer = Callable[[Values, np.ndarray, Memory], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Model:
+    """A joint.
+
+    :param name: as it is asked for
+    :param parameters: names in PARAMETERS
+    :param answer: force of parameters, displacements and what friction remembers
+    :param formula: for tables
+    """
+
+    name: str
+    parameters: tuple[str, ...]
+    answer: Answer
+    formula: str
+
+    def starts(self) -> list[dict[str, float]]:
+        """Return where a search begins, in units of the loop's size."""
+        lists = [PARAMETERS[name].starts for name in self.parameters]
+        return [dict(zip(self.parameters, values)) for values in product(*lists)]
+
+
+def _coulomb(values: Values, displacement: np.ndarray, memory: Memory) -> np.ndarray:
+    """A slide with friction f, preload P and spring k_p behind a spring k, between stops.
+
+    Its block rests at x while |k (u - x) - k_p x - P| <= f; it is a play of half width f/(k + k_p) in
+    (k u - P)/(k + k_p), cut off by the stops.
+    """
+    stiffness, friction = values["stiffness"], values.get("friction", 0.0)
+    preload, spring = values.get("preload", 0.0), values.get("preload_stiffness", 0.0)
+    share = stiffness / (stiffness + spring)
+    width = friction / stiffness  # of the play, as a displacement
+    block = share * displacement - preload / (stiffness + spring)
+    if friction > 0:
+        block = block - share * memory.force(lambda half: np.minimum(half, width))
+    if "clearance_plus" in values:
+        block = np.minimum(np.maximum(block, -values["clearance_minus"]), values["clearance_plus"])
+    force: np.ndarray = stiffness * (displacement - block)
+    return force
+
+
+def _spring(values: Values, displacement: np.ndarray, memory: Memory) -> np.ndarray:
+    return values["preload"] + values["stiffness"] * displacement
+
+
+def _beside(values: Values, displacement: np.ndarray) -> np.ndarray:
+    found: np.ndarray = values["preload"] + values.get("preload_stiffness", 0.0) * displacement
+    return found
+
+
+def mindlin_backbone(friction: float, stiffness: float) -> Callable[[np.ndarray], np.ndarray]:
+    """Return the force of a first loading under a constant normal force (Cattaneo 1938, Mindlin 1949).
+
+    T = f (1 - (1 - u/u_s)^{3/2}), u_s = 3 f/(2 k).
+    """
+    gross = 1.5 * friction / stiffness
+
+    def force(displacement: np.ndarray) -> np.ndarray:
+        left = np.maximum(1 - displacement / gross, 0.0)
+        found: np.ndarray = friction * (1 - left * np.sqrt(left))
+        return found
+    return force
+
+
+def _mindlin(values: Values, displacement: np.ndarray, memory: Memory) -> np.ndarray:
+    return _beside(values, displacement) + memory.force(mindlin_backbone(values["friction"], values["stiffness"]))
+
+
+def iwan_backbone(friction: float, stiffness: float, exponent: float, ratio: float) -> Callable[
+    [np.ndarray], np.ndarray
+]:
+    """Return the force of a first loading of the four-parameter Iwan joint (Segalman, J. Appl. Mech. 72, 2005).
+
+    F = K φ (s - s^{χ+2}/((1 + β)(χ + 2))), s = u/φ, up to φ = F_S (1 + β)/(K (β + (χ + 1)/(χ + 2))), F_S beyond.
+    """
+    last = friction * (1 + ratio) / (stiffness * (ratio + (exponent + 1) / (exponent + 2)))
+
+    def force(displacement: np.ndarray) -> np.ndarray:
+        share = np.minimum(displacement / last, 1.0)
+        found: np.ndarray = stiffness * last * (share - share ** (exponent + 2) / ((1 + ratio) * (exponent + 2)))
+        return found
+    return force
+
+
+def _iwan(values: Values, displacement: np.ndarray, memory: Memory) -> np.ndarray:
+    return _beside(values, displacement) + memory.force(iwan_backbone(
+        values["friction"], values["stiffness"], values["iwan_exponent"], values["iwan_ratio"]))
+
+
+_SLIDE = ("stiffness", "friction", "preload")
+_STOPS = ("clearance_minus", "clearance_plus")
+_IWAN = ("stiffness", "friction", "iwan_exponent", "iwan_ratio", "preload")
+_SPRING = ("preload_stiffness",)
+MODELS = {model.name: model for model in (
+    Model("linear", ("stiffness", "preload"), _spring, "F = P + k u"),
+    Model("clearance", ("stiffness", *_STOPS), _coulomb, "F = k (u − x), x within the clearances"),
+    Model("coulomb", _SLIDE, _coulomb, "F = k (u − x), x slides while |F − P| = f"),
+    Model("coulomb_spring", _SLIDE + _SPRING, _coulomb, "F = k (u − x), x slides while |F − P − kp x| = f"),
+    Model("coulomb_clearance", _SLIDE + _STOPS, _coulomb, "as coulomb, x within the clearances"),
+    Model("coulomb_clearance_spring", _SLIDE + _STOPS + _SPRING, _coulomb,
+          "as coulomb_spring, x within the clearances"),
+    Model("mindlin", _SLIDE, _mindlin, "F = P + f (1 − (1 − 2 k u/(3 f))^1.5) and Masing's rule"),
+    Model("mindlin_spring", _SLIDE + _SPRING, _mindlin, "as mindlin, with kp u"),
+    Model("iwan", _IWAN, _iwan, "four-parameter Iwan joint"),
+    Model("iwan_spring", _IWAN + _SPRING, _iwan, "as iwan, with kp u"),
+)}

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a case file takes of an identified joint: keys, values, distributions."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import hypot
+
+from scipy.special import ndtri
+
+from statejump.core.errors import NotAllowed
+from statejump.identification.fit import Interval
+
+# Where a joint goes, and what a loop of it is.
+TARGETS = {
+    "spring_slider": ("[joint]", "joint", False),
+    "slider": ("[[slider]]", "slider.*", False),
+    "revolute": ("[[revolute]]", "revolute.*", None),
+    "umbrella": ("[joint]", "joint", None),
+    "torsion_spring": ("[[torsion_spring]]", "torsion_spring.*", True),
+}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A key of a case.
+
+    :param key: as in its section
+    :param value: None: the loop does not give it
+    :param deviation: standard deviation of the estimate; None: the loop does not bound it
+    :param why: why there is no value
+    """
+
+    key: str
+    value: float | None
+    deviation: float | None = None
+    why: str = ""
+
+
+def check(target: str, angular: bool) -> None:
+    """Raise NotAllowed where a loop says nothing of such a joint."""
+    if target not in TARGETS:
+        raise NotAllowed("target", target, f"must be one of {', '.join(TARGETS)}", allowed=tuple(TARGETS))
+    if TARGETS[target][2] not in (None, angular):
+        raise NotAllowed("target", target, "it takes a loop of moment over rotation" if not angular else
+                         "it takes a loop of force over displacement")
+
+
+def deviation(interval: Interval, confidence: float) -> float | None:
+    """Return the standard deviation whose normal interval is as wide; None: the loop does not bound it."""
+    if not interval.bounded:
+        return None
+    return (interval.high - interval.low) / (2 * float(ndtri(0.5 + confidence / 2)))
+
+
+def entries(
+    target: str, values: Mapping[str, float], intervals: Mapping[str, Interval], confidence: float,
+    normal_force_N: float | None, journal_radius_m: float | None, angular: bool,
+) -> list[Entry]:
+    """Return the keys of a section.
+
+    :param values: the parameters of the joint, by name
+    """
+    spread = {name: deviation(interval, confidence) for name, interval in intervals.items()}
+
+    def known(key: str, name: str, missing: str, scale: float = 1.0) -> Entry:
+        if name not in values:
+            return Entry(key, None, why=missing)
+        wide = spread[name]
+        if wide is None:
+            return Entry(key, None, why="not identifiable from this loop")
+        return Entry(key, values[name] * scale, wide * scale)
+
+    def friction() -> list[Entry]:
+        arm = journal_radius_m if angular else 1.0
+        given = Entry("normal_force_N", normal_force_N, why="--normal-force gives it")
+        if normal_force_N is None or arm is None:
+            needs = "--normal-force" if arm is not None else "--normal-force and --journal-radius"
+            what = "μ N" if not angular else "μ N R"
+            return [given, Entry("friction_coefficient", None, why=f"the loop gives {what} alone: say {needs}")]
+        return [given, known("friction_coefficient", "friction", "the loop shows no friction",
+                             1 / (normal_force_N * arm))]
+
+    def play() -> Entry:
+        if angular or "clearance_plus" not in values:
+            return Entry("radial_clearance_m", None, why="the loop shows no clearance")
+        minus, plus = spread["clearance_minus"], spread["clearance_plus"]
+        if minus is None or plus is None:
+            return Entry("radial_clearance_m", None, why="not identifiable from this loop")
+        return Entry("radial_clearance_m", (values["clearance_minus"] + values["clearance_plus"]) / 2,
+                     hypot(minus, plus) / 2)
+
+    if target in ("spring_slider", "slider"):
+        stops = [known(f"{name}_m", name, "the loop meets no stop") for name in ("clearance_minus", "clearance_plus")]
+        spring = [known("preload_stiffness_N_per_m", "preload_stiffness", "the loop shows no spring beside the slide")]
+        return friction() + stops + (spring if target == "spring_slider" else [])
+    if target == "torsion_spring":
+        name = "preload_stiffness" if "friction" in values or "clearance_plus" in values else "stiffness"
+        stiffness = known("stiffness_N_m_per_rad", name, "the loop shows no spring beside the slide")
+        wide = spread.get("preload")
+        if stiffness.value is None or wide is None:
+            return [stiffness, Entry("bias_rad", None, why="not identifiable from this loop")]
+        # M = K (angle - bias) is P at the angle 0.
+        return [stiffness, Entry("bias_rad", -values["preload"] / stiffness.value, wide / stiffness.value)]
+    return [*friction()[1:], play()]
+
+
+def section(target: str, found: list[Entry], source: str) -> list[str]:
+    """Return the lines of a section of a case file; what the loop does not give is a comment."""
+    lines = [f"# identified from {source}", TARGETS[target][0]]
+    for entry in found:
+        if entry.value is None:
+            lines.append(f"# {entry.key} = ?  # {entry.why}")
+        else:
+            spread = "" if entry.deviation is None else f"  # ± {entry.deviation:.2g}"
+            lines.append(f"{entry.key} = {entry.value:.6g}{spread}")
+    return lines
+
+
+def distributions(target: str, found: list[Entry]) -> dict[str, dict[str, float | str]]:
+    """Return what a campaign varies: key to what a ``[[vary]]`` table says. Positive parameters are lognormal."""
+    return {
+        f"{TARGETS[target][1]}.{entry.key}": {
+            "distribution": "lognormal" if entry.value > 0 and entry.key != "bias_rad" else "normal",
+            "mean": entry.value, "standard_deviation": entry.deviation,
+        }
+        for entry in found if entry.value is not None and entry.deviation
+    }
+
+
+def vary(found: Mapping[str, Mapping[str, float | str]]) -> list[str]:
+    """Return the lines of ``[[vary]]`` tables."""
+    lines = []
+    for key, table in found.items():
+        lines += ["[[vary]]", f'key = "{key}"']
+        lines += [f'{name} = "{value}"' if isinstance(value, str) else f"{name} = {value:.6g}"
+                  for name, value in table.items()]
+        lines.append("")
+    return lines[:-1]

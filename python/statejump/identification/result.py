@@ -1,0 +1,285 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a loop says of a joint: parameters with intervals, which joint it is, and what it does not say."""
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from statejump.core.errors import NotAllowed, Range, StatejumpError
+from statejump.core.tables import Shown, write_columns, write_csv, write_text
+from statejump.core.units import plain
+from statejump.identification import paste
+from statejump.identification.fit import Fit, Interval, fits, intervals
+from statejump.identification.loop import Loop, read_loop
+from statejump.identification.models import MODELS, PARAMETERS
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+AUTO = "auto"
+CONFIDENCE = Range(0.5, 0.999)
+# A difference of BIC below this is "not worth more than a bare mention" (Kass and Raftery, JASA 90, 1995).
+BARE_MENTION = 2.0
+# Standard deviations of the correlation of independent residuals, 1/sqrt(n), that pass for chance.
+CHANCE = 3.0
+PARAMETER_COLUMNS = ("parameter", "unit", "estimate", "low", "high")
+MODEL_COLUMNS = ("model", "parameters", "noise", "log_likelihood", "bic", "bic_difference")
+
+
+@dataclass(frozen=True)
+class Identification:
+    """A joint that was identified from a loop.
+
+    :param loop: as it was measured
+    :param candidates: the joints that were tried, the best by BIC first
+    :param fit: the joint that was chosen or asked for
+    :param intervals: of its parameters
+    :param limits: of parameters that it does not have: the larger joint that was asked, and the interval there
+    :param confidence: of the intervals
+    :param target: where the joint goes, one of paste.TARGETS
+    :param normal_force_N: in the test; None: not known
+    :param journal_radius_m: of a joint that turns; None: not known
+    """
+
+    loop: Loop
+    candidates: tuple[Fit, ...]
+    fit: Fit
+    intervals: dict[str, Interval]
+    limits: dict[str, tuple[str, Interval]]
+    confidence: float
+    target: str
+    normal_force_N: float | None
+    journal_radius_m: float | None
+
+    @property
+    def model(self) -> str:
+        """Name of the joint."""
+        return self.fit.model.name
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Parameters by name, SI units."""
+        return dict(self.fit.values)
+
+    def answer(self) -> np.ndarray:
+        """Return the force of the fit in the rows that were fitted."""
+        return self.fit.model.answer(self.fit.values, self.loop.fitted[0], self.loop.memory)
+
+    @property
+    def entries(self) -> list[paste.Entry]:
+        """Keys of the case file."""
+        return paste.entries(self.target, self.fit.values, self.intervals, self.confidence, self.normal_force_N,
+                             self.journal_radius_m, self.loop.angular)
+
+    def joint(self) -> str:
+        """Return the section of a case file; what the loop does not give is a comment."""
+        return "\n".join(paste.section(self.target, self.entries, self.loop.name))
+
+    def changes(self) -> dict[str, float]:
+        """Return what ``case.changed`` takes: values by key, of what the loop gives."""
+        before = paste.TARGETS[self.target][1]
+        return {f"{before}.{entry.key}": entry.value for entry in self.entries if entry.value is not None}
+
+    def distributions(self) -> dict[str, dict[str, float | str]]:
+        """Return what ``sj.montecarlo`` takes: how well this loop knows the parameters of this one joint; parameters
+        are drawn apart from each other, and how joints differ among themselves another joint's loop would say."""
+        return paste.distributions(self.target, self.entries)
+
+    @cached_property
+    def notes(self) -> list[str]:
+        """What the loop does not say, and what is doubtful."""
+        return [*self._choice(), *self._unbounded(), *self._absent(), *self._extrapolated(),
+                *self._residuals(), *self._rows()]
+
+    def _choice(self) -> list[str]:
+        best = self.candidates[0]
+        if self.fit.model.name != best.model.name:
+            if best.bic < self.fit.bic - BARE_MENTION:
+                return [f"{best.model.name} fits better: its BIC is {self.fit.bic - best.bic:.1f} less"]
+            return []
+        near = [each for each in self.candidates[1:] if each.bic - best.bic < BARE_MENTION]
+        return [f"the loop does not tell {best.model.name} from {each.model.name}: BIC differs by "
+                f"{each.bic - best.bic:.1f}" for each in near]
+
+    def _unbounded(self) -> list[str]:
+        return [f"{name} is not identifiable from this loop: {self._words(name, interval)}"
+                for name, interval in self.intervals.items() if not interval.bounded]
+
+    def _absent(self) -> list[str]:
+        told = []
+        for name, (model, interval) in self.limits.items():
+            why = f"the path meets no stop there (joint {model})"
+            if name == "friction":
+                why = f"the loop {'never slides' if self.model == 'linear' else 'needs none'} (joint {model})"
+            told.append(f"{name} is not identifiable from this loop, {why}: {self._words(name, interval)}")
+        if self.model == "linear":
+            told.append("clearance is not identifiable from this loop: no gap is crossed")
+        return told
+
+    def _extrapolated(self) -> list[str]:
+        """Partial slip says where gross slip will be before it is reached."""
+        if self.fit.model.answer is MODELS["coulomb"].answer or "friction" not in self.fit.values:
+            return []
+        alone = {**self.fit.values, "preload": 0.0, "preload_stiffness": 0.0}
+        reached = float(np.max(np.abs(self.fit.model.answer(alone, self.loop.fitted[0], self.loop.memory))))
+        share = reached / self.fit.values["friction"]
+        return [] if share > 1 - 1e-9 else [
+            f"friction is extrapolated by the law of partial slip: the loop goes to {100 * share:.0f} % of it"]
+
+    def _words(self, name: str, interval: Interval) -> str:
+        unit = self.loop.unit(PARAMETERS[name].dimension)
+        low, high = plain(interval.low, unit, 4), plain(interval.high, unit, 4)
+        level = f"at {100 * self.confidence:g} %"
+        if interval.low > -np.inf:
+            return f"at least {low} {level}"
+        return f"at most {high} {level}" if interval.high < np.inf else "nothing bounds it"
+
+    @property
+    def correlation(self) -> float:
+        """Correlation of the residual of a row with that of the next."""
+        left = self.loop.fitted[1] - self.answer()
+        total = float(left @ left)
+        return float(left[1:] @ left[:-1]) / total if total else 0.0
+
+    def _residuals(self) -> list[str]:
+        if self.correlation * np.sqrt(self.fit.rows) <= CHANCE:
+            return []
+        return [f"residuals of neighbouring rows are correlated ({self.correlation:.2f}): the noise is not independent "
+                "or the joint is another one, and the intervals are too narrow"]
+
+    def _rows(self) -> list[str]:
+        if not self.loop.first:
+            return []
+        return [f"the first {self.loop.first} of {len(self.loop.force)} rows are not fitted: what friction carried "
+                "before them is not known (--start fresh or cycled says it)"]
+
+    def _rows_of_parameters(self) -> list[tuple[str, str, float, float, float]]:
+        return [(name, self.loop.unit(PARAMETERS[name].dimension), self.fit.values[name], interval.low, interval.high)
+                for name, interval in self.intervals.items()]
+
+    def _rows_of_models(self) -> list[tuple[str, int, float, float, float, float]]:
+        return [(each.model.name, len(each.values) + 1, each.noise, each.log_likelihood, each.bic,
+                 each.bic - self.candidates[0].bic) for each in self.candidates]
+
+    def frame(self, table: str = "parameters") -> pandas.DataFrame:
+        """Return a table: ``parameters``, ``models``, or ``rows`` of the fit."""
+        import pandas
+
+        if table == "parameters":
+            return pandas.DataFrame(self._rows_of_parameters(), columns=PARAMETER_COLUMNS)
+        if table == "models":
+            return pandas.DataFrame(self._rows_of_models(), columns=MODEL_COLUMNS)
+        if table == "rows":
+            return pandas.DataFrame(self._columns())
+        raise NotAllowed("table", table, "must be 'parameters', 'models' or 'rows'")
+
+    def _columns(self) -> dict[str, np.ndarray]:
+        displacement, force = self.loop.fitted
+        names = ("rotation_rad", "moment_N_m", "fitted_moment_N_m", "residual_N_m") if self.loop.angular else (
+            "displacement_m", "force_N", "fitted_force_N", "residual_N")
+        fitted = self.answer()
+        return dict(zip(names, (displacement, force, fitted, force - fitted)))
+
+    def plot(self, axes: tuple[Axes, Axes] | None = None) -> Figure:
+        """Draw loop, fit and residual; into two given axes, or into a new figure."""
+        from statejump.identification.picture import drawn
+
+        return drawn(self, axes)
+
+    def told(self) -> list[Shown | str]:
+        """Return what the command prints."""
+        force = self.loop.unit("force")
+        models = Shown("joints, the best by BIC first", ("joint", "parameters", f"noise [{force}]", "BIC difference"),
+                       [(name, f"{count}", f"{noise:.4g}", f"{more:.1f}")
+                        for name, count, noise, _, _, more in self._rows_of_models()], left=("joint",))
+        level = f"{100 * self.confidence:g} %"
+        parameters = Shown(
+            f"{self.model}: {self.fit.model.formula}", ("parameter", "unit", "estimate", f"{level} from", "to", "what"),
+            [(name, unit, f"{value:.6g}", _end(low), _end(high), PARAMETERS[name].meaning)
+             for name, unit, value, low, high in self._rows_of_parameters()], left=("parameter", "unit", "what"))
+        return [models, parameters, *(f"note: {note}" for note in self.notes)]
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write tables, section, distributions and picture into a folder; return the paths."""
+        from statejump.core.figures import save
+
+        rows = folder / "fit.csv"
+        write_columns(self._columns(), rows)
+        note = [f"# {note}" for note in self.notes]
+        return [
+            write_csv(folder / "parameters.csv", PARAMETER_COLUMNS, self._rows_of_parameters()),
+            write_csv(folder / "models.csv", MODEL_COLUMNS, self._rows_of_models()), rows,
+            write_text(folder / "joint.toml", [*self.joint().splitlines(), *note]),
+            write_text(folder / "vary.toml", [f"# identified from {self.loop.name}: how well its loop knows this joint",
+                                              *paste.vary(self.distributions())]),
+            *save(self.plot(), folder, "loop"),
+        ]
+
+    def __repr__(self) -> str:
+        return f"Identification({self.loop.name!r}, {self.model}, {self.fit.rows:,} rows)"
+
+    def _repr_html_(self) -> str:
+        from statejump.core.html import table
+
+        head, *parts = (part for part in self.told() if isinstance(part, Shown))
+        return "".join(f"<h4>{part.title}</h4>{table(part.header, part.rows)}" for part in (*parts, head)) + "".join(
+            f"<p>{note}</p>" for note in self.notes)
+
+
+def _end(value: float) -> str:
+    return f"{value:.6g}" if np.isfinite(value) else "none"
+
+
+def identified(
+    source: str | Path | Mapping[str, Any], *, model: str | Sequence[str] = AUTO, start: str = "unknown",
+    confidence: float = 0.95, target: str | None = None, normal_force_N: float | None = None,
+    journal_radius_m: float | None = None,
+) -> Identification:
+    """Identify a joint; see :func:`statejump.identify`."""
+    for key, given in (("normal_force_N", normal_force_N), ("journal_radius_m", journal_radius_m)):
+        if given is not None and not 0 < given < float("inf"):
+            raise NotAllowed(key, given, "must be a number above 0")
+    if not (isinstance(confidence, (int, float)) and confidence in CONFIDENCE):
+        raise NotAllowed("confidence", confidence, allowed=CONFIDENCE)
+    names = list(MODELS) if model == AUTO else [model] if isinstance(model, str) else list(model)
+    for name in names:
+        if name not in MODELS:
+            raise NotAllowed("model", name, f"must be {AUTO} or of {', '.join(MODELS)}", allowed=(AUTO, *MODELS))
+    if not names:
+        raise NotAllowed("model", model, "names no joint")
+    loop = read_loop(source, start)
+    chosen_target = target or ("umbrella" if loop.angular else "spring_slider")
+    paste.check(chosen_target, loop.angular)
+    try:
+        candidates = fits(loop, names)
+        best, found = intervals(candidates[0], loop, confidence)
+        limits = {}
+        for name in ("friction", "clearance_minus", "clearance_plus"):
+            larger = _larger(best, name)
+            if larger is not None:
+                asked = next((each for each in candidates if each.model.name == larger), None) or fits(
+                    loop, [larger])[0]
+                limits[name] = (larger, intervals(asked, loop, confidence, [name])[1][name])
+    except StatejumpError as failure:
+        raise failure.located(file=source if isinstance(source, (str, Path)) else None) from None
+    return Identification(loop, (best, *candidates[1:]), best, found, limits, confidence, chosen_target,
+                          normal_force_N, journal_radius_m)
+
+
+def _larger(best: Fit, name: str) -> str | None:
+    """Return the smallest joint that has the parameters of a fit and another one; None: none says more of it."""
+    have = set(best.values)
+    if name in have or best.model.name == "linear" and name != "friction":
+        return None
+    slides = MODELS["coulomb"].answer
+    if best.model.answer is not slides and best.model.name != "linear":
+        return None
+    larger = [each for each in MODELS.values() if have | {name} <= set(each.parameters) and each.answer is slides]
+    return min(larger, key=lambda each: len(each.parameters)).name if larger else None
