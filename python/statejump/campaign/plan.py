@@ -14,7 +14,7 @@ from statejump.campaign.sampling import Random, Values, Varied, montecarlo_draws
 from statejump.core.case import Case
 from statejump.core.units import unit_of
 from statejump.kinds import registered
-from statejump.schema.fields import rule_of
+from statejump.schema.fields import attached_to_json, rule_of
 from statejump.schema.paths import attribute_of, filled
 
 MONTECARLO, SWEEP = "montecarlo", "sweep"
@@ -106,7 +106,7 @@ class Plan(Recipe):
             "version": __version__, "command": self.command, "model": self.model, "seed": self.seed,
             "case": self.case.to_dict(), "vary": [asdict(parameter) for parameter in self.vary],
         }
-        return hashlib.sha256(json.dumps(resolved, sort_keys=True).encode()).hexdigest()
+        return hashlib.sha256(json.dumps(resolved, sort_keys=True, default=attached_to_json).encode()).hexdigest()
 
 
 def plan_of(

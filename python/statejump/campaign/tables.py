@@ -15,6 +15,7 @@ from statejump.campaign.plan import Plan
 from statejump.campaign.work import Batch
 from statejump.core import tables
 from statejump.core.hdf5 import made
+from statejump.schema.fields import attached_to_json
 
 if TYPE_CHECKING:
     import h5py
@@ -90,7 +91,7 @@ def write_hdf5(campaign: Plan, table: Table, path: Path) -> None:
         file.attrs["campaign"] = campaign.text
         file.attrs["command"] = campaign.command
         file.attrs["model"] = campaign.model
-        file.attrs["case"] = json.dumps(campaign.case.to_dict())
+        file.attrs["case"] = json.dumps(campaign.case.to_dict(), default=attached_to_json)
         file.attrs["key_sha256"] = campaign.key
         if campaign.seed is not None:
             file.attrs["seed"] = campaign.seed

@@ -144,11 +144,10 @@ class Case(Section):
         """
         from statejump.kinds.loading import parse_case
 
-        data = deepcopy(dict(self.origin.data))
+        origin, data = self.origin, deepcopy(dict(self.origin.data))
         for path, value in changes.items():
             set_value(type(self), data, path, value)
-        origin = self.origin
-        return parse_case(data, file=origin.file, text="")
+        return parse_case(data, file=origin.file, text="", files_from=origin.folder)
 
     def __getitem__(self, path: str) -> Any:
         """Return the value of ``section.key``, or of ``section.item.key`` of an item of a list."""

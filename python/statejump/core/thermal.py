@@ -9,31 +9,47 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
-from statejump.schema.fields import CHOICE, Section, choice, definition, fields_of, numbers, parameter, rule_of, whole
+from statejump.schema.fields import (
+    CHOICE, Section, choice, definition, fields_of, numbers, parameter, rule_of, text, whole,
+)
 
 if TYPE_CHECKING:
     from statejump import _engine
+    from statejump.core.temperature_files import MemberProgram
 
 SHAPES = ("triangle", "half_sine", "sine", "table")
 PERIOD_s = 1.0  # where nothing says how long a cycle lasts
 SAME_TIME = 1e-9  # two durations that differ by less, relatively, are the same but for rounding
+LONGEST_TABLE_S, LARGEST_CHANGE_K = 1e12, 1e4
+MOST_SHOWN = 20  # values of a list in a sentence
+# Keys that name a file of temperatures or say what is in it; see :mod:`statejump.core.temperature_files`.
+KEYS_OF_FILES = ("table_file", "table_column", "members_file", "reference_temperature_K", "lead_in_s")
 
 
 @definition
 class Thermal(Section):
     """The temperature program, one cycle repeated."""
 
-    GOES_WITH = {"shape": {
-        "temperature_change_max_K": ("triangle", "half_sine", "sine"),
-        "table_time_s": ("table",),
-        "table_temperature_change_K": ("table",),
-    }}
+    GOES_WITH = {"shape": {"temperature_change_max_K": ("triangle", "half_sine", "sine")}}
+    ONE_OF = {"shape": {"table": (("table_time_s", "table_temperature_change_K"), ("table_file",))}}
 
     shape: str = choice(..., SHAPES, CHOICE)
-    temperature_change_max_K: float | None = parameter(None, "K", -1e4, 1e4, "Chen et al. (2021), sections 3.3 and 4.3")
+    temperature_change_max_K: float | None = parameter(
+        None, "K", -LARGEST_CHANGE_K, LARGEST_CHANGE_K, "Chen et al. (2021), sections 3.3 and 4.3"
+    )
     cycles: int = whole(1, 1, 100_000, "the paper runs one")
-    table_time_s: list[float] | None = numbers(None, "s", 0, 1e12, "measured data")
-    table_temperature_change_K: list[float] | None = numbers(None, "K", -1e4, 1e4, "measured data")
+    table_time_s: list[float] | None = numbers(None, "s", 0, LONGEST_TABLE_S, "measured data")
+    table_temperature_change_K: list[float] | None = numbers(
+        None, "K", -LARGEST_CHANGE_K, LARGEST_CHANGE_K, "measured data"
+    )
+    table_file: str | None = text(None, "CSV or HDF5 file with the table, beside the case file")
+    table_column: str | None = text(None, "its column without unit; the program's name, or the only column")
+    reference_temperature_K: float | None = parameter(
+        None, "K", 0, LARGEST_CHANGE_K, "where the parts are free of stress; none: the file has changes", above=True
+    )
+    lead_in_s: float | None = parameter(
+        None, "s", 0, LONGEST_TABLE_S, "straight way from the reference temperature to the file's first row", above=True
+    )
 
 
 def period() -> Any:
@@ -46,6 +62,12 @@ def check(thermal: Thermal, section: str = "thermal.") -> None:
 
     :param section: how its keys begin, "" in a table of its own
     """
+    for key in KEYS_OF_FILES:
+        if getattr(thermal, key, None) is not None:
+            # Files are read with the case file, and their names are gone then.
+            raise NotAllowed(f"{section}{key}", getattr(thermal, key),
+                             "only where a case file names a table_file or members_file, or the name of one is given "
+                             "to load() or changed()")
     if thermal.shape != "table":
         if thermal.temperature_change_max_K is None:
             rule = rule_of(fields_of(Thermal)["temperature_change_max_K"])
@@ -62,13 +84,19 @@ def check(thermal: Thermal, section: str = "thermal.") -> None:
     if changes is None:
         raise MissingKey(f"{section}table_temperature_change_K", "one value [K] per time is needed")
     if len(times) < 2 or times[0] != 0 or any(b <= a for a, b in zip(times, times[1:])):
-        raise NotAllowed(f"{section}table_time_s", times, "must be at least two times [s] that start at 0 and rise")
+        raise NotAllowed(f"{section}table_time_s", _short(times),
+                         "must be at least two times [s] that start at 0 and rise")
     if len(changes) != len(times):
         raise NotAllowed(f"{section}table_temperature_change_K", ABSENT, f"must be {len(times)} values, one per time, "
                          f"not {len(changes)}")
     if changes[0] != 0 or (thermal.cycles > 1 and changes[-1] != 0):
-        raise NotAllowed(f"{section}table_temperature_change_K", changes,
+        raise NotAllowed(f"{section}table_temperature_change_K", _short(changes),
                          "must start at 0 [K] and, with several cycles, end at 0 [K]")
+
+
+def _short(values: list[float]) -> Any:
+    """Return a list as a sentence can hold it."""
+    return values if len(values) <= MOST_SHOWN else ABSENT
 
 
 def period_of(thermal: Thermal, given_s: float | None, key: str, default_s: float = PERIOD_s) -> float:
@@ -88,8 +116,10 @@ def period_of(thermal: Thermal, given_s: float | None, key: str, default_s: floa
     return lasts
 
 
-def range_K(thermal: Thermal) -> tuple[float, float]:
+def range_K(thermal: Thermal | MemberProgram) -> tuple[float, float]:
     """Return the smallest and the largest ΔT [K] of a program."""
+    if not isinstance(thermal, Thermal):
+        return float(thermal.table_temperature_change_K.min()), float(thermal.table_temperature_change_K.max())
     if thermal.shape == "table":
         changes = thermal.table_temperature_change_K or [0.0]
         return min(changes), max(changes)
@@ -99,11 +129,14 @@ def range_K(thermal: Thermal) -> tuple[float, float]:
     return min(0.0, peak), max(0.0, peak)
 
 
-def parameters(thermal: Thermal, period_s: float) -> dict[str, Any]:
+def parameters(thermal: Thermal | MemberProgram, period_s: float) -> dict[str, Any]:
     """Return a program as plain values: those that the engine's program and the YADE script take.
 
     :param period_s: how long a cycle lasts [s], see :func:`period_of`
     """
+    if not isinstance(thermal, Thermal):
+        return {"shape": "table", "cycles": thermal.cycles, "table_time_s": thermal.table_time_s.tolist(),
+                "table_temperature_change_K": thermal.table_temperature_change_K.tolist()}
     if thermal.shape == "table":
         return {"shape": "table", "cycles": thermal.cycles, "table_time_s": thermal.table_time_s,
                 "table_temperature_change_K": thermal.table_temperature_change_K}
@@ -111,7 +144,7 @@ def parameters(thermal: Thermal, period_s: float) -> dict[str, Any]:
             "temperature_change_max_K": thermal.temperature_change_max_K}
 
 
-def program(thermal: Thermal, period_s: float) -> _engine.ThermalProgram:
+def program(thermal: Thermal | MemberProgram, period_s: float) -> _engine.ThermalProgram:
     """Return a temperature program as the engine's."""
     from statejump import _engine
 

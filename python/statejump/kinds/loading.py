@@ -10,8 +10,9 @@ from typing import Any
 from statejump import _paths
 from statejump.core.case import Case, CaseHeader, Origin
 from statejump.core.errors import StatejumpError
+from statejump.core.temperature_files import with_files
 from statejump.kinds import kind, names
-from statejump.schema.fields import Section, definition, section, structure
+from statejump.schema.fields import Section, definition, fields_of, section, section_of, structure
 from statejump.schema.rules import check_name
 from statejump.schema.toml import read_toml
 
@@ -33,16 +34,22 @@ def _kind_name(data: Mapping[str, Any]) -> str:
     return check_name("case.kind", wanted, names())
 
 
-def parse_case(data: Mapping[str, Any], file: Path | None = None, text: str = "") -> Case:
+def parse_case(
+    data: Mapping[str, Any], file: Path | None = None, text: str = "", files_from: Path | None = None
+) -> Case:
     """Return the case in a parsed document.
 
     :param data: sections and keys, as tomllib returns them
     :param file: where it comes from, for messages and for files that it names
     :param text: the file as read
+    :param files_from: folder in which the files of temperatures are that it names; None: it may name none
     :raises StatejumpError: one failure; of several the first
     """
     try:
-        made = kind(_kind_name(data)).case_from(data)
+        of_kind = kind(_kind_name(data))
+        if files_from is not None:
+            data = with_files(data, files_from, section_of(fields_of(of_kind.Case)["thermal"]))
+        made = of_kind.case_from(data)
     except StatejumpError as failure:
         raise failure.located(file=file) from None
     return made.with_origin(Origin(data, file, text))
@@ -72,7 +79,7 @@ def load_case(source: str | Path | Mapping[str, Any]) -> Case:
     :raises StatejumpError: there is no such file, or the case is not allowed: file, key, value, range
     """
     if isinstance(source, Mapping):
-        return parse_case(source)
+        return parse_case(source, files_from=Path())
     path = found_case(source)
     text, data = read_toml(path, "case")
-    return parse_case(data, path, text)
+    return parse_case(data, path, text, path.parent)

@@ -14,6 +14,7 @@ from statejump.core.case import Case as Definition
 from statejump.core.comparison import Comparison, Quantity
 from statejump.core.errors import StatejumpError
 from statejump.core.run import Run
+from statejump.core.temperature_files import Histories
 from statejump.core.units import unit_of
 
 
@@ -80,14 +81,18 @@ class Result:
     warnings: list[str] = field(default_factory=list)
     meshes: dict[str, Mesh] = field(default_factory=dict)
     answers: Answers | None = None
+    members: Histories | None = None  # of a truss whose members have temperatures of their own
 
     @cached_property
     def definition(self) -> Definition:
         """What the case says. :raises StatejumpError: this version does not understand it any more"""
         from statejump.kinds.loading import parse_case
 
+        data = _given(json.loads(self.case_json))
+        if self.members is not None:
+            data["thermal"]["members"] = self.members
         try:
-            return parse_case(_given(json.loads(self.case_json)))
+            return parse_case(data)
         except StatejumpError as failure:
             raise failure.located(case=self.name) from None
 

@@ -14,6 +14,7 @@ import numpy as np
 from statejump.core.comparison import SIDES, Quantity
 from statejump.core.errors import Unreadable
 from statejump.core.hdf5 import is_ours, opened
+from statejump.core.temperature_files import Histories
 from statejump.core.run import Column, Event, Events, Run
 from statejump.results.check import check
 from statejump.results.contents import Answers, Mesh, Result, Scalar
@@ -76,8 +77,13 @@ def _result(file: h5py.File) -> Result:
             name: _mesh(mesh) for name, mesh in file.get("meshes", {}).items()
         },
         answers=_answers(file["answers"]) if "answers" in file else None,
+        members=_members(case["members"]) if "members" in case else None,
     ))
     return made[0]
+
+
+def _members(group: h5py.Group) -> Histories:
+    return Histories(tuple(_texts(group["names"])), group["time_s"][()], group["temperature_change_K"][()])
 
 
 def _parsed(place: str, text: str) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from statejump.results.contents import Answers, Result
 from statejump.results.layout import SUFFIX
 from statejump.results.provenance import provenance
 from statejump.results.write import write
+from statejump.schema.fields import attached_to_json
 
 # Name of the file that each command writes.
 FILES = {"reduced": "reduced", "dem": "dem", "compare": "comparison", "truss answers": "answers"}
@@ -39,7 +40,7 @@ def result_of(
         title=case.title,
         source=case.case.source,
         case_text=case.origin.text,
-        case_json=json.dumps(case.to_dict(), indent=1),
+        case_json=json.dumps(case.to_dict(), indent=1, default=attached_to_json),
         provenance=provenance(case, runs.get("dem")),
         names=kind.ability("names", case)(case),
         scene=kind.ability("scene", case)(case),
@@ -47,6 +48,7 @@ def result_of(
         rows=None if comparison is None else comparison.rows,
         warnings=list(dict.fromkeys(warnings)),
         answers=answers,
+        members=getattr(case.thermal, "members", None),
     )
 
 

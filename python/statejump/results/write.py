@@ -32,6 +32,10 @@ def write(result: Result, path: Path) -> None:
             case.attrs[key] = getattr(result, key)
         _text(case, "text", result.case_text)
         _text(case, "resolved", result.case_json)
+        if result.members is not None:
+            _texts(case, "members/names", result.members.names)
+            for key in ("time_s", "temperature_change_K"):
+                _numbers(case, f"members/{key}", getattr(result.members, key), unit_of(key))
         file.create_group("provenance").attrs.update(dict(sorted(result.provenance.items())))
         names = file.create_group("names")
         for key, values in sorted(result.names.items()):

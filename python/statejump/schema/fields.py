@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
 import attrs
 
 from statejump.core.errors import MissingKey, NotAllowed, Range, UnknownKey
-from statejump.schema.rules import NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, suggestion
+from statejump.schema.rules import ATTACHED, NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, suggestion
 
 CHOICE = "choice, the paper is silent"
 RULE, SECTION, TABLES, READ = "rule", "section", "tables", "read"
@@ -112,6 +112,27 @@ def numbers(default: Any, unit: str, low: float, high: float, source: str, *, le
     return _key(default, rule, _as_floats)
 
 
+class Attached:
+    """What a key holds that a file cannot say: arrays that were read from another file. Immutable and hashable; a copy
+    of a case has the same."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Return what tells it from others, as JSON takes it: the arrays are no part of a text."""
+        raise NotImplementedError
+
+
+def attached_to_json(value: Any) -> dict[str, Any]:
+    """Return what json.dumps writes for a value of a case that it does not know."""
+    if isinstance(value, Attached):
+        return value.to_json()
+    raise TypeError(f"{type(value).__name__} is no value of a case")
+
+
+def attached(source: str) -> Any:
+    """Declare a key for an :class:`Attached`; files and schemas do not have it."""
+    return _key(None, Rule(ATTACHED, source, optional=True))
+
+
 def texts(
     default: Any, source: str, names: Names | None = None, *, pattern: str | Callable[[], str] | None = None
 ) -> Any:
@@ -155,6 +176,8 @@ class Section:
 
     # Choice of the section: keys that some of its names need and the others refuse.
     GOES_WITH: ClassVar[dict[str, dict[str, tuple[str, ...]]]] = {}
+    # Choice of the section: groups of keys, one of which a name needs as a whole; the other names refuse all of them.
+    ONE_OF: ClassVar[dict[str, dict[str, tuple[tuple[str, ...], ...]]]] = {}
 
     if TYPE_CHECKING:
         # Made by attrs, one for each class; what may be given are the keys, and their checks are those of the rules.

@@ -22,7 +22,7 @@ from statejump.schema.fields import (
     Section, default_of, fields_of, is_required, rule_of, section_of, tables_of,
 )
 from statejump.schema.items import Item
-from statejump.schema.rules import NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, check_name
+from statejump.schema.rules import ATTACHED, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, check_name
 
 if TYPE_CHECKING:
     from statejump.kinds.protocol import Kind
@@ -93,7 +93,8 @@ def key_schema(attribute: Any) -> Schema:
 
 
 def _conditions(model: type[Section]) -> list[Schema]:
-    """Keys that one choice of a section needs and the others refuse, see ``Section.GOES_WITH``."""
+    """Keys that one choice of a section needs and the others refuse, see ``Section.GOES_WITH`` and
+    ``Section.ONE_OF``."""
     found = []
     for choice, keys in model.GOES_WITH.items():
         for name in rule_of(fields_of(model)[choice]).names:
@@ -106,12 +107,19 @@ def _conditions(model: type[Section]) -> list[Schema]:
                 then["properties"] = {key: False for key in refused}
             selected = {"properties": {choice: {"const": name}}, "required": [choice]}
             found.append({"if": selected, "then": then})
+    for choice, groups_of in model.ONE_OF.items():
+        for name in rule_of(fields_of(model)[choice]).names:
+            selected = {"properties": {choice: {"const": name}}, "required": [choice]}
+            every = {key: False for groups in groups_of.values() for group in groups for key in group}
+            groups = groups_of.get(name, ())
+            then = {"anyOf": [{"required": list(group)} for group in groups]} if groups else {"properties": every}
+            found.append({"if": selected, "then": then})
     return found
 
 
 def section_schema(model: type[Section]) -> Schema:
     """Return the schema of a section: its keys and no others."""
-    keys = fields_of(model)
+    keys = {key: attribute for key, attribute in fields_of(model).items() if rule_of(attribute).form != ATTACHED}
     properties = {key: key_schema(attribute) for key, attribute in keys.items()}
     if issubclass(model, Item):
         properties["name"]["minLength"] = 1

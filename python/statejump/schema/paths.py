@@ -9,8 +9,8 @@ from typing import Any
 import attrs
 
 from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey
-from statejump.schema.fields import Section, SectionType, evolved, fields_of, section_of, tables_of
-from statejump.schema.rules import suggestion
+from statejump.schema.fields import Section, SectionType, evolved, fields_of, rule_of, section_of, tables_of
+from statejump.schema.rules import ATTACHED, suggestion
 
 EVERY = "*"
 
@@ -29,6 +29,8 @@ def keys_of(model: type[Section]) -> dict[str, attrs.Attribute[Any]]:
         item = tables_of(attribute)
         keys = item or section_of(attribute)
         for key, inner in fields_of(keys).items() if keys else ():
+            if rule_of(inner).form == ATTACHED:
+                continue
             found[f"{name}.{EVERY}.{key}" if item else f"{name}.{key}"] = inner
     return found
 

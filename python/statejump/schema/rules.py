@@ -16,13 +16,14 @@ from statejump.core.errors import ABSENT, NotAllowed, Range, printable
 FOLDER_NAME = "[A-Za-z0-9][A-Za-z0-9_-]*"
 # Types of values.
 NUMBER, WHOLE, SWITCH, TEXT, NUMBERS, TEXTS = "number", "whole", "switch", "text", "numbers", "texts"
+ATTACHED = "attached"  # what no file can say
 
 
 @attrs.frozen
 class Rule:
     """What a key takes.
 
-    :param form: NUMBER, WHOLE, SWITCH, TEXT, NUMBERS or TEXTS
+    :param form: NUMBER, WHOLE, SWITCH, TEXT, NUMBERS, TEXTS or ATTACHED
     :param source: where the default comes from, what the key is for
     :param allowed: range of a number, of every number of a list
     :param known: names that a text, or every text of a list, must be one of; called when it is needed, for the
@@ -134,7 +135,15 @@ def _texts(rule: Rule, key: str, value: Any) -> None:
                 raise NotAllowed(key, value, refused.cause, allowed=rule.names) from None
 
 
-_CHECKS = {NUMBER: _number, WHOLE: _number, SWITCH: _switch, TEXT: _text, NUMBERS: _numbers, TEXTS: _texts}
+def _attached(rule: Rule, key: str, value: Any) -> None:
+    from statejump.schema.fields import Attached
+
+    if not isinstance(value, Attached):
+        raise NotAllowed(key, value, rule.source)
+
+
+_CHECKS = {NUMBER: _number, WHOLE: _number, SWITCH: _switch, TEXT: _text, NUMBERS: _numbers, TEXTS: _texts,
+           ATTACHED: _attached}
 
 
 def check_name(key: str, value: Any, names: Sequence[str], **more: Any) -> str:

@@ -14,12 +14,13 @@ from typing import ClassVar
 from statejump.core import thermal as core_thermal
 from statejump.core import yade_process
 from statejump.core.case import Case
+from statejump.core.temperature_files import Histories, MemberProgram
 from statejump.core.thermal import Thermal
 from statejump.kinds.truss import checks
 from statejump.kinds.truss.resolved import ResolvedTruss, resolve
 from statejump.schema.fields import (
-    CHOICE, Section, choice, definition, numbers, optional_section, parameter, section, switch, tables, text, texts,
-    whole,
+    CHOICE, Section, attached, choice, definition, evolved, numbers, optional_section, parameter, section, switch,
+    tables, text, texts, whole,
 )
 from statejump.schema.items import Item
 
@@ -130,13 +131,17 @@ class TrussTorsionSpring(Item):
 
 @definition
 class TrussThermal(Thermal):
-    """A temperature program that says how long its cycle lasts."""
+    """A temperature program that says how long its cycle lasts, or the temperatures of all members."""
+
+    ONE_OF = {"shape": {"table": (*Thermal.ONE_OF["shape"]["table"], ("members_file",))}}
 
     period_s: float = core_thermal.period()
+    members_file: str | None = text(None, "CSV or HDF5 file with a column for every link, beside the case file")
+    members: Histories | None = attached("it is read from thermal.members_file")
 
     def repeated(self, cycles: int) -> TrussThermal:
         """Return the program with another number of cycles."""
-        return TrussThermal(**{**self.to_dict(), "cycles": cycles})
+        return evolved(self, cycles=cycles)
 
 
 @definition
@@ -232,9 +237,11 @@ class TrussCase(Case):
         return self.output.samples_per_cycle
 
     @property
-    def programs(self) -> list[TrussThermal]:
-        """The temperature programs, the common one first, cycles and period filled in."""
-        return [self.thermal, *(program.completed(self.thermal) for program in self.program)]
+    def programs(self) -> list[TrussThermal | MemberProgram]:
+        """The temperature programs, the common one first, cycles and period filled in; then those of members."""
+        members = self.thermal.members
+        of_members = [] if members is None else members.programs(self.thermal.cycles)
+        return [self.thermal, *(program.completed(self.thermal) for program in self.program), *of_members]
 
     @property
     def temperature_ranges_K(self) -> list[tuple[float, float]]:

@@ -22,6 +22,7 @@ def check_references(case: TrussCase) -> None:
     links = {link.name: link for link in case.link}
     _nodes(case, nodes)
     _programs(case)
+    _members(case)
     _alternatives(case)
     for revolute in case.revolute:
         _revolute(revolute, nodes, links)
@@ -74,6 +75,34 @@ def _programs(case: TrussCase) -> None:
             if item.program is not None and item.program not in programs:
                 known_name("program", item.program, item.program, programs, "program", item=f"{section} {item.name!r}",
                            joint=item.name if section == "revolute" else None)
+
+
+def _members(case: TrussCase) -> None:
+    """Every link has a column of the histories of members or names a program; every column is of a member."""
+    members = case.thermal.members
+    if members is None:
+        return
+    file, columns = members.source or ABSENT, set(members.names)
+    for section in ("link", "revolute"):
+        for item in getattr(case, section):
+            where = {"item": f"{section} {item.name!r}"}
+            if item.name not in columns:
+                expands = section == "link" or item.journal_thermal_expansion_per_K or (
+                    item.bearing_thermal_expansion_per_K)
+                if item.program is None and expands:
+                    near = difflib.get_close_matches(item.name, members.names, n=1, cutoff=0.8)
+                    raise NotAllowed("thermal.members_file", file, f"it has no column of {section} {item.name!r}",
+                                     remedy=f"is {near[0]!r} meant?" if near else "or name a program for it")
+                continue
+            if item.program is not None:
+                raise NotAllowed("program", item.program, "thermal.members_file has its temperature", **where)
+            if item.temperature_fraction != 1:
+                raise NotAllowed("temperature_fraction", item.temperature_fraction,
+                                 "thermal.members_file has its temperature", **where)
+    known = {item.name for item in (*case.link, *case.revolute)}
+    for name in members.names:
+        if name not in known:
+            raise NotAllowed("thermal.members_file", file, f"its column {name!r} is of no link and no revolute")
 
 
 def _alternatives(case: TrussCase) -> None:

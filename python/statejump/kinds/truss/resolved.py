@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
+    from statejump.core.temperature_files import MemberProgram
     from statejump.schema.items import Item
     from statejump.kinds.truss.case import TrussCase, TrussThermal
 
@@ -133,7 +134,8 @@ class ReflectorSurface:
 
 @dataclass(frozen=True)
 class ResolvedTruss:
-    """A whole truss. ``programs[0]`` is the common [thermal]; all of them last equally long."""
+    """A whole truss. ``programs[0]`` is the common [thermal], then those that have names, then the histories of
+    members; all of them last equally long."""
 
     name: str
     dimension: int
@@ -143,8 +145,8 @@ class ResolvedTruss:
     revolutes: Revolutes
     springs: Springs
     torsion_springs: TorsionSprings
-    programs: tuple[TrussThermal, ...]
-    program_names: tuple[str, ...]  # "thermal" and those of the file
+    programs: tuple[TrussThermal | MemberProgram, ...]
+    program_names: tuple[str, ...]  # "thermal", those of the file, those of members
     reflector: ReflectorSurface | None
     sticking: str  # "rigid" or "elastic": contacts of the reduced model
 
@@ -203,8 +205,17 @@ def resolve(case: TrussCase) -> ResolvedTruss:
     program_number = {name: index + 1 for name, index in numbering(case.program).items()}
     positions = vectors([node.position_m for node in case.node], dimension)
 
+    members = case.thermal.members
+    member_number = {} if members is None else {
+        name: index for index, name in enumerate(members.names, start=1 + len(case.program))
+    }
+
     def indices(items: Sequence[Any], key: str, number: dict[str | None, int]) -> np.ndarray:
         return np.array([number[getattr(item, key)] for item in items], dtype=int)
+
+    def programs_of(items: Sequence[Any]) -> np.ndarray:
+        return np.array([member_number.get(item.name, 0) if item.program is None else program_number[item.program]
+                         for item in items], dtype=int)
 
     fixed = np.array([[axis in node.fixed for axis in "xyz"] for node in case.node], dtype=bool)
     fixed[:, dimension:] = True
@@ -230,7 +241,7 @@ def resolve(case: TrussCase) -> ResolvedTruss:
     weighed = column(case.link, "density_kg_per_m3") * link["cross_section_area_m2"] * length
     links = Links(
         names=names(case.link), nodes=link_nodes, stress_free_length_m=length,
-        mass_kg=np.where(np.isnan(mass), weighed, mass), program=indices(case.link, "program", program_number), **link,
+        mass_kg=np.where(np.isnan(mass), weighed, mass), program=programs_of(case.link), **link,
     )
 
     stops = columns(case.slider, "clearance_minus_m", "clearance_plus_m")
@@ -246,7 +257,7 @@ def resolve(case: TrussCase) -> ResolvedTruss:
         **{key: indices(case.revolute, key, node_number) for key in ("bearing_node", "journal_node")},
         **{key: indices(case.revolute, key, link_number) for key in ("bearing_link", "journal_link")},
         axis=_axes(case.revolute, dimension),
-        program=indices(case.revolute, "program", program_number),
+        program=programs_of(case.revolute),
         rigid=np.array([revolute.contact == "rigid" for revolute in case.revolute], dtype=bool),
         **columns(
             case.revolute, "journal_radius_m", "radial_clearance_m", "friction_coefficient",
@@ -280,6 +291,7 @@ def resolve(case: TrussCase) -> ResolvedTruss:
     return ResolvedTruss(
         name=case.name, dimension=dimension, nodes=nodes, links=links, sliders=sliders, revolutes=revolutes,
         springs=springs, torsion_springs=torsion_springs, programs=tuple(case.programs),
-        program_names=("thermal", *names(case.program)), reflector=reflector,
+        program_names=("thermal", *names(case.program), *(() if members is None else members.names)),
+        reflector=reflector,
         sticking=case.reduced.sticking,
     )

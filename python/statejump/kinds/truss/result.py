@@ -126,7 +126,7 @@ def _changes(truss: ResolvedTruss, time_s: np.ndarray, part: Any) -> np.ndarray:
     """Temperature change [K] of every item (samples, items)."""
     programs = [engine_program(program) for program in truss.programs]
     used = [int(number) for number in np.unique(part.program)]
-    found = {number: np.array([programs[number].temperature_change(time) for time in time_s]) for number in used}
+    found = {number: programs[number].temperature_change(time_s) for number in used}
     if not len(part.names):
         return np.zeros((len(time_s), 0))
     return np.stack([found[number] for number in part.program], axis=1) * part.temperature_fraction

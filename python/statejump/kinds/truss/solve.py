@@ -13,6 +13,7 @@ from statejump.core import thermal
 from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import Interrupted
 from statejump.core.progress import Tell
+from statejump.core.temperature_files import MemberProgram
 from statejump.kinds.truss.case import TrussCase, TrussThermal
 from statejump.kinds.truss.contacts import solver_stiffness
 from statejump.kinds.truss.resolved import ResolvedTruss
@@ -59,7 +60,7 @@ class TrussPath:
         return float((states["thermal_work_J"] - (stored - stored[0]) - heat)[-1])
 
 
-def engine_program(program: TrussThermal) -> _engine.ThermalProgram:
+def engine_program(program: TrussThermal | MemberProgram) -> _engine.ThermalProgram:
     """Return a temperature program of a truss as the engine's."""
     return thermal.program(program, program.period_s)
 
@@ -159,7 +160,8 @@ def solve(case: TrussCase, tell: Tell = lambda share: None) -> TrussPath:
 def _solved(case: TrussCase, tell: Tell) -> TrussPath:
     truss = case.resolve()
     items = 3 * len(truss.nodes.names) + len(truss.links.names) + 8 * len(truss.revolutes.names)
-    states = 2 * case.thermal.cycles * case.reduced.increments_per_branch
+    branches = max(2, *(len(program.table_time_s or ()) for program in (case.thermal, *case.program)))
+    states = branches * case.thermal.cycles * case.reduced.increments_per_branch
     return whole_path(
         truss, tell, increments_per_branch=case.reduced.increments_per_branch,
         locate_events=case.reduced.locate_events, event_tolerance=case.reduced.event_tolerance,

@@ -50,6 +50,9 @@ def describe(case: TrussCase) -> list[str]:
     shares = [link.temperature_fraction for link in case.link]
     if set(shares) != {1.0}:
         sentences.append(f"Links are shaded: they take {spread(shares, digits=3)} of the temperature change.")
+    if case.thermal.members is not None:
+        sentences.append(f"{len(case.thermal.members.names)} members have temperature histories of their own, of "
+                         f"{len(case.thermal.members.time_s)} times.")
     if case.program:
         sentences.append(f"{_count(case.program, 'further temperature program')} for members that name one.")
     return sentences

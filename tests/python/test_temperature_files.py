@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Temperatures from files: what they say is followed exactly, what is wrong with them is one sentence."""
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any, Callable
+
+import h5py
+import numpy as np
+import pytest
+from conftest import REPOSITORY, Outcome
+
+import statejump as sj
+from statejump.kinds.truss.generate.document import to_toml
+from statejump.results.record import save
+
+TIMES = np.array([0.0, 1.0, 2.5, 7.0, 10.0])
+REFERENCE_K = 293.15
+PERIODS = {"table1": ("dem", "period_s"), "umbrella_damped": ("thermal", "period_s"),
+           "trusses/umbrella_rib": ("thermal", "period_s")}
+
+
+def document(name: str, **thermal: Any) -> dict[str, Any]:
+    """Return a shipped case with another temperature program, a table."""
+    data = tomllib.loads((REPOSITORY / "cases" / f"{name}.toml").read_text(encoding="utf-8"))
+    section, key = PERIODS.get(name, ("thermal", "period_s"))
+    data.get(section, {}).pop(key, None)
+    data["thermal"] = {"shape": "table", **thermal}
+    return data
+
+
+def write(path: Path, header: str, rows: np.ndarray) -> Path:
+    """Write a CSV file."""
+    lines = [",".join(repr(float(value)) for value in row) for row in rows]
+    path.write_text("\n".join([header, *lines]) + "\n", encoding="utf-8")
+    return path
+
+
+def histories(count: int) -> np.ndarray:
+    """Return temperatures [K] of members at TIMES (5, count), different for each."""
+    shape = np.array([0.0, 40.0, 110.0, 25.0, 0.0])
+    return REFERENCE_K + shape[:, None] * (1 + 0.1 * np.arange(count))
+
+
+@pytest.fixture
+def chain(tmp_path: Path) -> tuple[Path, list[str], np.ndarray]:
+    """A chain whose links have temperatures of their own, its file, their names, their temperatures [K]."""
+    data = document("trusses/chain_10", members_file="members.csv", reference_temperature_K=REFERENCE_K)
+    names = [link["name"] for link in data["link"]]
+    given = histories(len(names))
+    write(tmp_path / "members.csv", ",".join(["time_s", *(f"{name}_K" for name in names)]), np.c_[TIMES, given])
+    (tmp_path / "chain.toml").write_text(to_toml(data), encoding="utf-8")
+    return tmp_path / "chain.toml", names, given
+
+
+@pytest.mark.parametrize("name", PERIODS)
+def test_a_column_of_a_file_is_the_table_of_every_kind_of_case(name: str, tmp_path: Path) -> None:
+    write(tmp_path / "orbit.csv", "time_s,sun_degC,shade_K", np.array(
+        [[100.0, 20.0, 293.15], [105.0, 120.0, 300.0], [110.0, 20.0, 293.15]]))
+    (tmp_path / "mine.toml").write_text(to_toml(document(
+        name, table_file="orbit.csv", table_column="sun", reference_temperature_K=REFERENCE_K)), encoding="utf-8")
+    found = sj.load(tmp_path / "mine.toml")
+    typed = sj.load(document(name, table_time_s=[0.0, 5.0, 10.0], table_temperature_change_K=[0.0, 100.0, 0.0]))
+    assert found == typed and found.period_s == 10.0
+    # Read once: changed cases, result files and campaigns need the file no more.
+    (tmp_path / "orbit.csv").unlink()
+    assert found.changed({"thermal.cycles": 2}).duration_s == 20.0
+
+
+def test_a_program_finds_its_column_by_its_name(tmp_path: Path) -> None:
+    write(tmp_path / "orbit.csv", "time_s,shade_K,sun_K", np.array([[0.0, 0.0, 0.0], [1.0, 10.0, 50.0], [3.0, 0.0, 0.0]]))
+    data = document("trusses/chain_10", table_file="orbit.csv", table_column="sun")
+    data["program"] = [{"name": "shade", "shape": "table", "table_file": "orbit.csv"}]
+    (tmp_path / "mine.toml").write_text(to_toml(data), encoding="utf-8")
+    common, shade = sj.load(tmp_path / "mine.toml").definition.programs
+    assert common.table_temperature_change_K == [0.0, 50.0, 0.0]
+    assert shade.table_temperature_change_K == [0.0, 10.0, 0.0] and shade.table_time_s == [0.0, 1.0, 3.0]
+
+
+def test_histories_of_members_are_followed_as_a_program_for_each(chain: tuple[Path, list[str], np.ndarray]) -> None:
+    path, names, given = chain
+    case = sj.load(path)
+    data = document("trusses/chain_10", table_time_s=TIMES.tolist(),
+                    table_temperature_change_K=case.thermal.table_temperature_change_K)
+    data["program"] = [{"name": name, "shape": "table", "table_time_s": TIMES.tolist(),
+                        "table_temperature_change_K": (given[:, place] - REFERENCE_K).tolist()}
+                       for place, name in enumerate(names)]
+    for link in data["link"]:
+        link["program"] = link["name"]
+    ours, typed = case.reduced(), sj.load(data).reduced()
+    for key in ("displacement_m", "slide_m"):
+        assert np.array_equal(ours.history[key].values, typed.history[key].values)
+    # Straight lines between the rows, at times that are no rows too.
+    strain = ours.at([0.5, 4.0]).links["thermal_strain"].values
+    expansion = np.array([link.thermal_expansion_per_K for link in case.link])
+    wanted = [[np.interp(time, TIMES, column - REFERENCE_K) for column in given.T] for time in (0.5, 4.0)]
+    assert strain == pytest.approx(expansion * wanted, rel=1e-12)
+
+
+def test_dem_has_the_same_programs(chain: tuple[Path, list[str], np.ndarray]) -> None:
+    path, names, given = chain
+    case = sj.load(path).definition
+    values = case.behaviour.dem_input(case)
+    for place, number in enumerate(values["link"]["program"]):
+        program = values["programs"][number]
+        assert program["table_time_s"] == TIMES.tolist()
+        assert program["table_temperature_change_K"] == (given[:, place] - REFERENCE_K).tolist()
+
+
+def test_hdf5_says_the_same_as_csv(chain: tuple[Path, list[str], np.ndarray]) -> None:
+    path, names, given = chain
+    with h5py.File(path.parent / "members.h5", "w") as file:
+        file["time_s"], file["temperature_degC"], file["members"] = TIMES, given - 273.15, names
+    other = path.with_name("other.toml")
+    other.write_text(path.read_text().replace("members.csv", "members.h5"))
+    ours, theirs = (sj.load(one).thermal.members for one in (path, other))
+    assert ours.names == theirs.names
+    # The rounding of °C into kelvin: some ulps of 300 K.
+    assert np.abs(ours.temperature_change_K - theirs.temperature_change_K).max() < 1e-12 * 300
+
+
+def test_a_result_file_keeps_the_histories(chain: tuple[Path, list[str], np.ndarray], tmp_path: Path) -> None:
+    path, _, _ = chain
+    case = sj.load(path)
+    run = case.reduced()
+    written = save("reduced", case.definition, {"reduced": run}, tmp_path)
+    (tmp_path / "members.csv").unlink()
+    again = sj.read(written)
+    assert again.definition == case.definition
+    assert again.case.reduced().summary == run.summary
+
+
+def test_a_revolute_has_a_column_of_its_own_where_its_radii_expand(tmp_path: Path) -> None:
+    data = document("trusses/umbrella_rib", members_file="members.csv", reference_temperature_K=REFERENCE_K)
+    names = [link["name"] for link in data["link"]]
+    data["revolute"][0].update(journal_thermal_expansion_per_K=2e-5)
+    joint = data["revolute"][0]["name"]
+    rows = np.c_[TIMES, histories(len(names) + 1)]
+    write(tmp_path / "members.csv", ",".join(["time_s", *(f"{name}_K" for name in [*names, joint])]), rows)
+    (tmp_path / "mine.toml").write_text(to_toml(data), encoding="utf-8")
+    truss = sj.load(tmp_path / "mine.toml").definition.resolve()
+    assert truss.program_names[truss.revolutes.program[0]] == joint
+    write(tmp_path / "members.csv", ",".join(["time_s", *(f"{name}_K" for name in names)]), rows[:, :-1])
+    with pytest.raises(sj.StatejumpError, match=f"has no column of revolute '{joint}'"):
+        sj.load(tmp_path / "mine.toml")
+
+
+def test_the_way_from_the_stress_free_temperature_is_said(chain: tuple[Path, list[str], np.ndarray]) -> None:
+    path, _, given = chain
+    text = path.read_text()
+    path.write_text(text.replace("293.15", "283.15"))
+    with pytest.raises(sj.StatejumpError, match="thermal.lead_in_s is missing: members.csv begins 10 K away"):
+        sj.load(path)
+    path.write_text(text.replace("293.15", "283.15\nlead_in_s = 5.0"))
+    members = sj.load(path).thermal.members
+    assert members.time_s.tolist() == [0.0, *(TIMES + 5.0)]
+    assert not members.temperature_change_K[0].any()
+    assert members.temperature_change_K[1:] == pytest.approx(given - 283.15, abs=1e-12 * 300)
+
+
+# What is wrong, how the file is changed, and what is said.
+WRONG: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
+    "missing member": (lambda rows: [row.rpartition(",")[0] for row in rows],
+                       "thermal.members_file = 'members.csv' is not allowed: it has no column of link 'L10'"),
+    "unknown member": (lambda rows: [rows[0].replace("L3_K", "M3_K").replace("L4_K", "L3_K").replace("M3_K", "L4_K")
+                                     .replace("time_s", "time_s,strange_K"),
+                                     *(row.replace(",", ",293.15,", 1) for row in rows[1:])],
+                       "its column 'strange' is of no link and no revolute"),
+    "NaN": (lambda rows: [*rows[:2], rows[2].rpartition(",")[0] + ",nan", *rows[3:]],
+            "members.csv: line 3, column 'L10_K': 'nan' is not a finite number"),
+    "empty cell": (lambda rows: [*rows[:2], rows[2].rpartition(",")[0] + ",", *rows[3:]],
+                   "members.csv: line 3, column 'L10_K': the cell is empty"),
+    "times go back": (lambda rows: [*rows[:2], rows[3], rows[2], *rows[4:]],
+                      "members.csv: line 4: time_s = 1: times must rise, and 2.5 is before it"),
+    "wrong unit": (lambda rows: [rows[0].replace("L2_K", "L2_degF"), *rows[1:]],
+                   "members.csv: line 1: column 'L2_degF': it must be NAME_K or NAME_degC"),
+    "unit of time": (lambda rows: [rows[0].replace("time_s", "time_h"), *rows[1:]],
+                     "members.csv: line 1: the first column is 'time_h': it must be time_s"),
+    "two columns of one name": (lambda rows: [rows[0].replace("L2_K", "L3_degC"), *rows[1:]],
+                                "members.csv: two columns are called 'L3'"),
+    "short row": (lambda rows: [*rows[:3], "2.5,300"], "members.csv: line 4 has 2 cells: the header has 11"),
+    "no rows": (lambda rows: rows[:2], "members.csv: has fewer than two times"),
+    "below absolute zero": (lambda rows: [*rows[:2], rows[2].rpartition(",")[0] + ",-3", *rows[3:]],
+                            "members.csv: column 'L10' at 1 s: -3 is below absolute zero"),
+    "control characters": (lambda rows: [rows[0].replace("L2_K", "L\x1b2_K"), *rows[1:]], "it must be NAME_K or NAME_degC"),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_what_is_wrong_with_a_file_is_one_sentence(
+    what: str, chain: tuple[Path, list[str], np.ndarray], statejump: Callable[..., Outcome]
+) -> None:
+    path, _, _ = chain
+    file = path.with_name("members.csv")
+    change, sentence = WRONG[what]
+    file.write_text("\n".join(change(file.read_text().splitlines())) + "\n")
+    told = statejump("reduced", path)
+    assert told.status == 2 and told.errors.count("\n") == 1 and "\x1b" not in told.errors
+    assert sentence in told.errors
+
+
+KEYS = {
+    "no such file": ('members_file = "none.csv"', "none.csv: no such file of temperatures"),
+    "not a table": ('members_file = "/etc/passwd"', "is not allowed: must end with .csv, .h5, .hdf5"),
+    "both": ('members_file = "members.csv"\ntable_time_s = [0.0, 1.0]',
+             "thermal.table_time_s is not allowed with thermal.members_file"),
+    "reference alone": ("table_time_s = [0.0, 1.0]\ntable_temperature_change_K = [0.0, 1.0]",
+                        "thermal.reference_temperature_K = 293.15 is not allowed: only where"),
+    "column": ('table_file = "members.csv"', "thermal.table_column is missing: members.csv has the columns 'L1', 'L2'"),
+    "no such column": ('table_file = "members.csv"\ntable_column = "LX1"', "did you mean 'L1'?"),
+    "reference is no temperature": ('members_file = "members.csv"\nlead_in_s = -1.0',
+                                    "thermal.lead_in_s = -1.0 is not allowed: must be above 0"),
+}
+
+
+@pytest.mark.parametrize("what", KEYS)
+def test_what_is_wrong_with_the_keys_is_one_sentence(
+    what: str, chain: tuple[Path, list[str], np.ndarray], statejump: Callable[..., Outcome]
+) -> None:
+    path, _, _ = chain
+    keys, sentence = KEYS[what]
+    path.write_text(path.read_text().replace('members_file = "members.csv"', keys))
+    told = statejump("reduced", path)
+    assert told.status == 2 and told.errors.count("\n") == 1 and sentence in told.errors
+
+
+def test_what_is_repeated_ends_where_it_begins(chain: tuple[Path, list[str], np.ndarray]) -> None:
+    path, names, given = chain
+    path.write_text(path.read_text().replace("[thermal]", "[thermal]\ncycles = 2"))
+    assert sj.load(path).duration_s == 20.0
+    given[-1, 3] += 0.5
+    write(path.with_name("members.csv"), ",".join(["time_s", *(f"{name}_K" for name in names)]), np.c_[TIMES, given])
+    with pytest.raises(sj.StatejumpError, match=f"members.csv ends 0.5 K away .*column '{names[3]}'"):
+        sj.load(path)
+
+
+def test_temperatures_in_degrees_need_a_reference(tmp_path: Path) -> None:
+    write(tmp_path / "orbit.csv", "time_s,sun_degC", np.array([[0.0, 0.0], [1.0, 20.0]]))
+    with pytest.raises(sj.StatejumpError, match="thermal.reference_temperature_K is missing: orbit.csv has temper"):
+        sj.load(document("table1", table_file=str(tmp_path / "orbit.csv")))
+
+
+def test_other_kinds_have_no_members() -> None:
+    with pytest.raises(sj.StatejumpError, match="thermal.members_file is unknown"):
+        sj.load(document("table1", members_file="x.csv"))
+
+
+def test_a_result_file_cannot_name_a_file(chain: tuple[Path, list[str], np.ndarray]) -> None:
+    from statejump.kinds.loading import parse_case
+
+    path, _, _ = chain
+    data = tomllib.loads(path.read_text())
+    data["thermal"]["members_file"] = str(path.with_name("members.csv"))
+    with pytest.raises(sj.StatejumpError, match="thermal.members_file"):
+        parse_case(data)
