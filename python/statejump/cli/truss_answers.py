@@ -2,6 +2,7 @@
 """``statejump truss answers``: jumps, verdict, ranking of joints, surface, energy, sensitivities."""
 from __future__ import annotations
 
+import re
 from contextlib import AbstractContextManager
 from pathlib import Path
 
@@ -19,10 +20,17 @@ FRAMES = Rule(WHOLE, allowed=Range(0, 1_000_000))
 OPTIONS = {name: f"--{name}" for name in ("output", "cycles", "step", "frames")}
 
 
+def folder_of(case: str, output: str) -> str:
+    """Return the folder below that of the results which gets the answers: of an output that was chosen its own, so that
+    the answers of another stay."""
+    return case if output == "node" else f"{case}/answers_{re.sub(r'[^A-Za-z0-9_.-]', '_', output)}"
+
+
 @click.command("answers")
 @CASE
 @click.option("--output", default="node", show_default=True, metavar="NAME",
-              help="What is traced to the joints: node (the most moved one), node:NAME, rms or tilt of the reflector.")
+              help="What is judged and traced to the joints: node (the most moved one), node:NAME, rms or tilt of the "
+                   "reflector. The answers about another than the default get a folder of their own.")
 @click.option("--cycles", type=int, metavar="N", help="Cycles instead of the case's.")
 @click.option("--each", is_flag=True, help="Sensitivities to every single item, not only to all of a kind together.")
 @click.option("--step", type=float, default=0.01, show_default=True, help="Of the sensitivities, relative.")
@@ -48,7 +56,7 @@ def answers_command(
         return progress(console, f"{case.name}, {label}")
 
     try:
-        with results.folder(case.name) as folder:
+        with results.folder(folder_of(case.name, output)) as folder:
             FRAMES.check("frames", frames)
             found = case.behaviour.ability("answers", case)(
                 case, output=output, cycles=cycles, each=each, step=step, sensitivity=not skip_sensitivity, phase=phase,

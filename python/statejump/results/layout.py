@@ -155,7 +155,7 @@ ENTRIES = (
     Entry("/answers@output", TEXT, "what is traced to the joints: node:NAME, rms or tilt", required=False),
     Entry("/answers@text", TEXT, "the same in words", required=False),
     Entry("/answers@unit", TEXT, "its unit", required=False),
-    Entry("/answers@verdict", TEXT, "no jump, one cycle, shakedown, ratcheting or not settled", required=False),
+    Entry("/answers@verdict", TEXT, "no jump, one cycle, shakedown, ratcheting, not settled or not resolved", required=False),
     Entry("/answers@verdict_text", TEXT, "the same in words", required=False),
     Entry("/answers/notes", _array("text", "sentences"), "what was not found, or only so", required=False),
     Entry("/answers/summary", GROUP, "numbers that sum up the answers: jump, sum_of_contributions, ...",

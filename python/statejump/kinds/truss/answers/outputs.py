@@ -16,17 +16,39 @@ from statejump.kinds.truss.solve import TrussPath
 
 @dataclass(frozen=True)
 class Output:
-    """One number of the truss' shape whose jump is traced to the joints."""
+    """One number of the truss' shape whose jump is traced to the joints.
+
+    :param short: the output in a few words
+    :param value: of displacements (nodes, 3); along the jump
+    :param vector: of displacements; all of what ``value`` is taken from, so that motion across the jump is seen
+    """
 
     name: str
     text: str
+    short: str
     unit: str
-    value: Callable[[np.ndarray], float]  # of displacements (nodes, 3)
+    value: Callable[[np.ndarray], float]
+    vector: Callable[[np.ndarray], np.ndarray]
 
     def jump(self, found: TrussPath) -> float:
         """Return its jump over all cycles."""
         ends = found.cycle_ends["displacement_m"]
         return self.value(ends[-1]) - self.value(ends[0])
+
+    def over_cycles(self, found: TrussPath) -> np.ndarray:
+        """Return how the vector changes over each cycle (cycles, components)."""
+        return np.diff([self.vector(moved) for moved in found.cycle_ends["displacement_m"]], axis=0)
+
+    @staticmethod
+    def sizes(motion: np.ndarray) -> np.ndarray:
+        """Return the lengths of changes of the vector, see :meth:`over_cycles`."""
+        return np.linalg.norm(motion, axis=1)
+
+    def scale(self, found: TrussPath) -> float:
+        """Return the largest displacement, of a tilt over the size of the truss: what rounding is a share of."""
+        largest = float(np.abs(found.states["displacement_m"]).max(initial=1e-300))
+        size = float(np.ptp(found.truss.nodes.position_m, axis=0).max())
+        return largest / size if self.unit == "rad" else largest
 
 
 def node_output(found: TrussPath, name: str | None = None) -> Output:
@@ -42,8 +64,8 @@ def node_output(found: TrussPath, name: str | None = None) -> Output:
     size = float(np.linalg.norm(jump))
     way = jump / size if size > 0 else np.array([1.0, 0.0, 0.0])
     which = "most moved node" if name is None else "node"
-    return Output(f"node:{names[index]}", f"displacement of the {which} {names[index]} along its jump", "m",
-                  lambda moved: float(moved[index] @ way))
+    return Output(f"node:{names[index]}", f"displacement of the {which} {names[index]} along its jump",
+                  f"node {names[index]}", "m", lambda moved: float(moved[index] @ way), lambda moved: moved[index])
 
 
 def rms_output(found: TrussPath, surface: reflector.Surface) -> Output:
@@ -52,9 +74,11 @@ def rms_output(found: TrussPath, surface: reflector.Surface) -> Output:
     start = surface.fit(ends[0]).residual_m
     change = surface.fit(ends[-1]).residual_m - start
     size = float(np.linalg.norm(change))
-    way = change / (size * np.sqrt(len(change))) if size > 0 else 0 * change
-    return Output("rms", "RMS of the surface's change against its best fit", "m",
-                  lambda moved: float((surface.fit(moved).residual_m - start) @ way))
+    nodes = np.sqrt(len(change))
+    way = change / (size * nodes) if size > 0 else 0 * change
+    return Output("rms", "RMS of the surface's change against its best fit", "the surface", "m",
+                  lambda moved: float((surface.fit(moved).residual_m - start) @ way),
+                  lambda moved: surface.fit(moved).residual_m / nodes)
 
 
 def tilt_output(found: TrussPath, surface: reflector.Surface) -> Output:
@@ -63,8 +87,8 @@ def tilt_output(found: TrussPath, surface: reflector.Surface) -> Output:
     change = surface.fit(ends[-1]).tilt_rad - surface.fit(ends[0]).tilt_rad
     size = float(np.linalg.norm(change))
     way = change / size if size > 0 else 0 * change
-    return Output("tilt", "tilt of the surface along its jump", "rad",
-                  lambda moved: float(surface.fit(moved).tilt_rad @ way))
+    return Output("tilt", "tilt of the surface along its jump", "the surface", "rad",
+                  lambda moved: float(surface.fit(moved).tilt_rad @ way), lambda moved: surface.fit(moved).tilt_rad)
 
 
 def chosen_output(found: TrussPath, name: str) -> Output:

@@ -10,18 +10,21 @@ import numpy as np
 
 from statejump.kinds.truss.answers import reflector
 from statejump.kinds.truss.answers.contributions import Contributions
-from statejump.kinds.truss.answers.jumps import Verdict, node_jumps
+from statejump.kinds.truss.answers.jumps import node_jumps
 from statejump.kinds.truss.answers.sensitivity import Sensitivity
 from statejump.kinds.truss.solve import TrussPath
 
 Row = dict[str, Any]
 
 
-def cycle_rows(checked: Verdict) -> list[Row]:
+def cycle_rows(found: TrussPath) -> list[Row]:
     """Return what happens over each cycle."""
+    ends = found.cycle_ends
+    largest = np.linalg.norm(np.diff(ends["displacement_m"], axis=0), axis=2).max(axis=1)
+    heat = np.diff(ends["slider_dissipation_J"].sum(axis=1) + ends["revolute_dissipation_J"].sum(axis=1))
     return [
-        {"cycle": cycle, "largest_jump_m": float(jump), "dissipation_J": float(heat)}
-        for cycle, (jump, heat) in enumerate(zip(checked.cycle_jump_m, checked.dissipation_J), start=1)
+        {"cycle": cycle, "largest_jump_m": float(jump), "dissipation_J": float(warmth)}
+        for cycle, (jump, warmth) in enumerate(zip(largest, heat), start=1)
     ]
 
 

@@ -17,9 +17,10 @@ from statejump.core.run import Run
 from statejump.core.units import plain
 from statejump.kinds.truss.answers import reflector, rows
 from statejump.kinds.truss.answers.contributions import Contributions, contributions
-from statejump.kinds.truss.answers.jumps import Verdict, node_jumps, quick_path, resolution_m, verdict
+from statejump.kinds.truss.answers.jumps import node_jumps, quick_path
 from statejump.kinds.truss.answers.outputs import Output, chosen_output
 from statejump.kinds.truss.answers.sensitivity import STEP, sensitivities
+from statejump.kinds.truss.answers.verdict import RESOLVED, Verdict, judged, others
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.result import reduced_run
 from statejump.kinds.truss.solve import TrussPath
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 NO_JUMP = 1e-9  # of the largest jump of a node: what is smaller is rounding
-RESOLVED = 0.01  # of the jump: what twice the increments may change
 MOST_SAMPLES = 1000  # of the path in the result file; every cycle has at least its ends
 CYCLES = Rule(WHOLE, allowed=Range(1, 100_000), optional=True)
 STEPS = Rule(NUMBER, allowed=Range(1e-6, 0.2))
@@ -78,7 +78,7 @@ class TrussAnswers:
 
     @property
     def verdict(self) -> str:
-        """``no jump``, ``one cycle``, ``shakedown``, ``ratcheting`` or ``not settled``."""
+        """``no jump``, ``one cycle``, ``shakedown``, ``ratcheting``, ``not settled`` or ``not resolved``."""
         return self.record.verdict
 
     @property
@@ -149,13 +149,12 @@ def study(
     with phase("path") as tell:
         found = quick_path(truss, increments, tell)
     asked = chosen_output(found, output)
-    finer = quick_path(truss, 2 * increments, cycle_ends_only=True)
-    checked = verdict(found, resolution_m(found, finer))
+    checked, finer = judged(found, increments, lambda more: quick_path(truss, more, cycle_ends_only=True), asked)
     jump = asked.jump(found)
     tables: dict[str, list[rows.Row]] = {
-        "cycles": rows.cycle_rows(checked), "node_jumps": rows.node_rows(found), "joint_jumps": rows.joint_rows(found),
+        "cycles": rows.cycle_rows(found), "node_jumps": rows.node_rows(found), "joint_jumps": rows.joint_rows(found),
     }
-    notes = _surface(found, tables)
+    notes = [*others(found, finer, checked, asked), *_surface(found, tables)]
     change = abs(asked.jump(finer) - jump)
     if change > RESOLVED * abs(jump):
         notes.append(f"the jump is not resolved: with twice the increments it changes by {change:.2g} {asked.unit}; "
@@ -174,7 +173,7 @@ def study(
                 notes.append("the jump has a kink here in some parameters, its slopes on both sides differ: see the "
                              "verdicts of the sensitivities")
     record = Answers(asked.name, asked.text, asked.unit, checked.word, checked.text, notes,
-                     _numbers(found, asked, jump, shares), tables)
+                     _numbers(found, checked, asked, jump, shares), tables)
     return TrussAnswers(case, record, reduced_run(case, found, _sample_times(case)), asked, checked, shares)
 
 
@@ -220,8 +219,13 @@ def _shares(found: TrussPath, output: Output, tell: Tell, tables: dict[str, list
     return shares
 
 
-def _numbers(found: TrussPath, output: Output, jump: float, shares: Contributions | None) -> dict[str, Scalar]:
-    numbers = {"jump": Scalar(jump, output.unit), "energy_residue_J": Scalar(found.energy_residue_J, "J")}
+def _numbers(found: TrussPath, checked: Verdict, output: Output, jump: float,
+             shares: Contributions | None) -> dict[str, Scalar]:
+    numbers = {
+        "jump": Scalar(jump, output.unit), "energy_residue_J": Scalar(found.energy_residue_J, "J"),
+        "motion_of_last_cycle": Scalar(float(checked.cycle_jump[-1]), output.unit),
+        "uncertainty_of_last_cycle": Scalar(float(checked.uncertainty[-1]), output.unit),
+    }
     if shares is not None:
         numbers["sum_of_contributions"] = Scalar(float(shares.contribution.sum()), output.unit)
         numbers["sum_error_relative"] = Scalar(shares.sum_error)

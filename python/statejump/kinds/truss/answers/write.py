@@ -39,9 +39,10 @@ def write(found: TrussAnswers, folder: Path, frames: int, phase: Phase) -> list[
 def _document(found: TrussAnswers) -> dict[str, Any]:
     said, checked = found.record, found.checked
     return {
-        "case": found.case.name, "cycles": len(checked.cycle_jump_m), "output": said.output, "output_text": said.text,
+        "case": found.case.name, "cycles": len(checked.cycle_jump), "output": said.output, "output_text": said.text,
         "unit": said.unit, "verdict": said.verdict, "verdict_text": said.verdict_text,
-        "largest_jump_of_cycle_m": checked.cycle_jump_m.tolist(),
+        "increments_per_branch": checked.increments, "output_motion_of_cycle": checked.cycle_jump.tolist(),
+        "largest_jump_of_cycle_m": [row["largest_jump_m"] for row in found.tables["cycles"]],
         "dissipation_of_cycle_J": checked.dissipation_J.tolist(), "notes": said.notes,
         **{name: scalar.value for name, scalar in said.summary.items()},
         **{name: rows for name, rows in found.tables.items() if name not in NOT_IN_JSON},
@@ -65,7 +66,7 @@ def _table(rows: list[Row], most: int = MOST_ROWS, file: str = "") -> list[str]:
 
 def _markdown(found: TrussAnswers) -> list[str]:
     checked, tables, shares = found.checked, found.tables, found.shares
-    cycles = len(checked.cycle_jump_m)
+    cycles = len(checked.cycle_jump)
     last = sorted((row for row in tables["node_jumps"] if row["cycle"] == cycles), key=lambda row: -row["jump_m"])
     joints = sorted((row for row in tables["joint_jumps"] if row["cycle"] == cycles),
                     key=lambda row: -row["dissipation_J"])

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether the jump of an output settles over the cycles: said only where it survives smaller increments.
+
+Between located changes a path of rigid contacts does not depend on its increments. Rolling at a radius that follows
+Hertz's depth, and elastic sticking, are integrated by the trapezoidal rule: there what a cycle adds has an error of
+second order, a quarter with twice as many increments. So two paths are compared, of n and 2 n increments a branch.
+Their difference is at least the error of the finer one for every order from the first on (three times the error for the
+second), and nothing is told of a motion that does not exceed it.
+"""
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from statejump.core.units import plain
+from statejump.kinds.truss.answers.outputs import Output
+from statejump.kinds.truss.solve import TrussPath
+
+# A jump of a cycle below this share of the largest has settled: events are located to 1e-9 of a branch.
+SETTLED = 1e-6
+STEADY = 0.01  # two jumps that differ by less are the same growth
+RESOLVED = 0.01  # of the largest jump: what the increments may leave of a growth that is called none
+DOUBLINGS = 3  # of the increments, where two paths do not tell
+ROUNDING = 1e-12  # of the largest displacement
+
+# Path of so many increments a branch.
+Solve = Callable[[int], TrussPath]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether jumps settle over the cycles."""
+
+    word: str  # "no jump", "one cycle", "shakedown", "ratcheting", "not settled", "not resolved"
+    text: str
+    cycle_jump: np.ndarray  # (cycles,) how far the output moved over each cycle, in its unit
+    uncertainty: np.ndarray  # (cycles,) by how much that differs between the two paths
+    increments: int  # per branch, of the finer path
+    dissipation_J: np.ndarray  # (cycles,)
+
+
+def judged(found: TrussPath, increments: int, solve: Solve, output: Output) -> tuple[Verdict, TrussPath]:
+    """Return whether an output settles over the cycles, and the path of twice the increments.
+
+    :param found: path of so many increments a branch
+    :param solve: paths of more; more than one is asked for only where two do not tell
+    """
+    first = finer = solve(2 * increments)
+    coarse = found
+    for doubling in range(DOUBLINGS + 1):
+        checked = verdict(coarse, finer, increments * 2 ** (doubling + 1), output)
+        if checked.word != "not resolved" or doubling == DOUBLINGS:
+            break
+        coarse, finer = finer, solve(increments * 2 ** (doubling + 2))
+    return checked, first
+
+
+def verdict(coarse: TrussPath, finer: TrussPath, increments: int, output: Output) -> Verdict:
+    """Return what two paths, the finer one of so many increments a branch and twice those of the other, tell."""
+    motion = output.over_cycles(finer)
+    each = output.sizes(motion)
+    left = output.sizes(motion - output.over_cycles(coarse))
+    ends = finer.cycle_ends
+    heat = np.diff(ends["slider_dissipation_J"].sum(axis=1) + ends["revolute_dissipation_J"].sum(axis=1))
+    floor = ROUNDING * output.scale(finer)
+    last, most = float(each[-1]), float(each.max())
+
+    def shown(value: float) -> str:
+        return plain(value, output.unit, 4)
+
+    def made(word: str, text: str) -> Verdict:
+        return Verdict(word, text, each, left, increments, heat)
+
+    if most <= floor:
+        return made("no jump", f"{output.short} does not jump: it returns after every cycle")
+    if np.all(each <= left):
+        return made("no jump", f"{output.short} returns after every cycle, to what {increments} increments a branch "
+                    f"resolve ({shown(float(left.max()))})")
+    if len(each) == 1:
+        return made("one cycle", "one cycle: whether the jump settles needs more, see --cycles")
+    least = max(SETTLED * most, floor)
+    numerical = last <= left[-1] <= RESOLVED * most
+    if last <= least or numerical:
+        least = max(least, float(left[-1]) if numerical else 0.0)
+        settled = int(np.flatnonzero(each > min(least, 0.5 * most))[-1]) + 1
+        slips = heat[-1] > SETTLED * heat.max() if heat.max() > 0 else False
+        return made("shakedown", f"the jump settles after cycle {settled}; " + (
+            f"joints still slip there and back, {plain(heat[-1], 'J', 4)} per cycle" if slips
+            else "then no joint slips"))
+    if last <= 2 * left[-1]:
+        return made("not resolved", f"cycle {len(each)} adds {shown(last)} with {increments} increments a branch, and "
+                    f"with half of them a motion that differs by {shown(float(left[-1]))}: whether the jump settles is "
+                    "not told, more reduced.increments_per_branch are needed")
+    if len(each) > 2 and abs(last - each[-2]) <= STEADY * last:
+        return made("ratcheting", f"the jump grows by {shown(last)} per cycle (cycle {len(each)}; first "
+                    f"cycle {shown(float(each[0]))})")
+    return made("not settled", f"the jump of cycle {len(each)} is {100 * last / each[0]:.3g} % of the first cycle's: "
+                "neither settled nor steady, more cycles are needed")
+
+
+def others(coarse: TrussPath, finer: TrussPath, checked: Verdict, output: Output) -> list[str]:
+    """Return the note that another node goes on moving where the output does not, or nothing."""
+    if checked.word not in ("no jump", "shakedown") or len(checked.cycle_jump) < 2:
+        return []
+    moved, before = (np.diff(path.cycle_ends["displacement_m"], axis=0) for path in (finer, coarse))
+    each, left = np.linalg.norm(moved, axis=2), np.linalg.norm(moved - before, axis=2)[-1]
+    largest = float(np.abs(finer.states["displacement_m"]).max(initial=0.0))
+    least = max(SETTLED * float(each.max()), ROUNDING * largest)
+    going = np.where(each[-1] > np.maximum(least, 2 * left), each[-1], 0.0)
+    if not going.any():
+        return []
+    node = int(np.argmax(going))
+    return [f"{output.short} settles, other nodes still move: node {finer.truss.nodes.names[node]} by "
+            f"{plain(float(going[node]), 'm', 4)} in cycle {len(each)}"]
