@@ -47,7 +47,7 @@ _PLACES = {
     "Kind": "statejump.kinds.protocol",
 }
 _MODULES = {"errors": "statejump.core.errors", "fclib": "statejump.fclib", "kinds": "statejump.kinds",
-            "laws": "statejump.laws", "truss": "statejump.truss"}
+            "laws": "statejump.laws", "surface": "statejump.surface", "truss": "statejump.truss"}
 __all__ = ["__version__", *_PLACES, *_MODULES]
 
 

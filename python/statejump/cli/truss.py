@@ -15,6 +15,7 @@ import click
 from statejump.case import Case
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console
 from statejump.cli.truss_answers import answers_command
+from statejump.cli.truss_surface import surface_command
 from statejump.core.errors import NotWritten, StatejumpError
 from statejump.core.results_folder import Results
 from statejump.core.thermal import SHAPES
@@ -133,3 +134,4 @@ def draw_command(case_file: Path, results: Results, quiet: bool) -> None:
 
 
 truss_command.add_command(answers_command)
+truss_command.add_command(surface_command)

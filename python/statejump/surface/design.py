@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A paraboloid through the drawn nodes of a surface, and the error of the surface when the nodes have moved.
+
+To first order in the displacements, which are a millionth of the surface. Nodes in one plane with the axis have a
+profile: paraboloid reads parabola, and rigid motion is that in the plane.
+"""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.surface.zernike import fitted
+
+# The error of a node is its displacement along the normal of the drawn paraboloid, of what is left after
+DEFINITIONS = {
+    "design": "nothing is taken off: deviation from the design",
+    "rigid": "the best rigid motion",
+    "rigid_focal": "the best rigid motion and change of focal length: best-fit paraboloid",
+}
+# What is squared and averaged: the distance along the normal times a power of the normal's part along the axis.
+MEASURES = {"normal": 0, "half_path": 1, "axial": -1}
+# Singular value, columns of length 1, below which nodes do not determine a parameter.
+LEAST_SINGULAR_VALUE = 1e-6
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Errors of a surface whose nodes have moved.
+
+    :param rms_m: by definition, over the nodes [m]
+    :param residual_m: (nodes,) by definition [m]
+    :param tilt_rad: of the axis, towards the lateral axes of the frame; of the best-fit paraboloid
+    :param vertex_shift_m: of its vertex, towards the lateral axes, then along the axis [m]; a lateral shift that the
+        nodes do not tell from tilt is 0
+    :param focal_change_m: of its focal length [m]; None: the nodes do not determine it
+    """
+
+    rms_m: dict[str, float]
+    residual_m: dict[str, np.ndarray]
+    tilt_rad: np.ndarray
+    vertex_shift_m: np.ndarray
+    focal_change_m: float | None
+
+
+@dataclass(frozen=True)
+class Design:
+    """Drawn nodes and the paraboloid through them.
+
+    :param position_m: (nodes, 3) [m]
+    :param frame: (2 or 3, 3) lateral axes, the axis last; one lateral axis: a profile
+    :param local_m: (nodes, 2 or 3) from the vertex, in the frame [m]
+    :param vertex_m: in space [m]
+    :param curvature_per_m: 1/(4 F) [1/m]; 0: a plane
+    :param design_rms_m: of the drawn nodes against the paraboloid along the axis [m]
+    """
+
+    position_m: np.ndarray
+    frame: np.ndarray
+    local_m: np.ndarray
+    vertex_m: np.ndarray
+    curvature_per_m: float
+    design_rms_m: float
+
+    @classmethod
+    def of(cls, position_m: Any, axis: Sequence[float] = (0, 0, 1), focal_length_m: float | None = None) -> Design:
+        """Return the paraboloid of least squares along the axis; a plane, where the nodes determine no focal length.
+
+        :param position_m: (nodes, 3) [m]
+        :param axis: direction of the paraboloid's axis, of any length
+        :param focal_length_m: [m]; None: the best
+        :raises StatejumpError: no such nodes or axis, or too few nodes to determine the paraboloid
+        """
+        position, way = _points("position_m", position_m), np.asarray(axis, dtype=float)
+        if way.shape != (3,) or not np.isfinite(way).all() or not np.linalg.norm(way) > 0:
+            raise NotAllowed("axis", axis, "must be three numbers that are not all 0")
+        if focal_length_m is not None and not 0 < focal_length_m < np.inf:
+            raise NotAllowed("focal_length_m", focal_length_m, "must be a number above 0 [m]")
+        frame = _frame(position, way / np.linalg.norm(way))
+        middle = position.mean(axis=0)
+        local = (position - middle) @ frame.T
+        lateral, along = local[:, :-1], local[:, -1]
+        squared = np.sum(lateral**2, axis=1)
+        plane = np.column_stack((np.ones(len(local)), lateral))
+        if not _determined(plane):
+            raise StatejumpError(f"{len(position)} nodes do not determine a surface", remedy="more of them")
+        curvature = 0.0 if focal_length_m is None else 1 / (4 * focal_length_m)
+        curved = np.column_stack((plane, squared))
+        if focal_length_m is None and _determined(curved):
+            curvature = float(np.linalg.lstsq(curved, along, rcond=None)[0][-1])
+            if abs(curvature) * float(np.ptp(lateral)) <= LEAST_SINGULAR_VALUE:
+                curvature = 0.0
+        found = np.linalg.lstsq(plane, along - curvature * squared, rcond=None)[0]
+        # A plane has no vertex: below the nodes' mean.
+        shift = -found[1:] / (2 * curvature) if curvature else 0 * found[1:]
+        depth = found[0] - curvature * float(shift @ shift)
+        vertex = np.append(shift, depth)
+        local = local - vertex
+        left = local[:, -1] - curvature * np.sum(local[:, :-1]**2, axis=1)
+        return cls(position, frame, local, middle + vertex @ frame, curvature, float(np.sqrt(np.mean(left**2))))
+
+    @property
+    def focal_length_m(self) -> float | None:
+        """Focal length [m]; None: a plane."""
+        return 1 / (4 * self.curvature_per_m) if self.curvature_per_m else None
+
+    @property
+    def profile(self) -> bool:
+        """Whether the nodes lie in one plane with the axis."""
+        return len(self.frame) == 2
+
+    @property
+    def aperture_m(self) -> tuple[np.ndarray, float]:
+        """Middle of the aperture, from the vertex across the axis, and its radius: of the circle about the nodes' mean
+        that holds them all [m]."""
+        lateral = self.local_m[:, :-1]
+        middle = lateral.mean(axis=0)
+        return middle, float(np.max(np.linalg.norm(lateral - middle, axis=1)))
+
+    @property
+    def normals(self) -> np.ndarray:
+        """Unit normals of the paraboloid at the nodes, in the frame, towards the axis' direction (nodes, 2 or 3)."""
+        slopes = 2 * self.curvature_per_m * self.local_m[:, :-1]
+        found = np.column_stack((-slopes, np.ones(len(slopes))))
+        unit: np.ndarray = found / np.linalg.norm(found, axis=1)[:, None]
+        return unit
+
+    def _moves(self) -> dict[str, np.ndarray]:
+        """What moves of the paraboloid do along the normals: of 1 m, 1 rad, 1/m of curvature."""
+        normals, size = self.normals, len(self.frame)
+        moves = {"depth": normals[:, -1]}
+        for place in range(size - 1):
+            # The axis turns towards a lateral axis: what is up there goes with it, what is out there goes down.
+            moves[f"tilt{place}"] = normals[:, place] * self.local_m[:, -1] - normals[:, -1] * self.local_m[:, place]
+        moves["curvature"] = normals[:, -1] * np.sum(self.local_m[:, :-1]**2, axis=1)
+        return moves | {f"shift{place}": normals[:, place] for place in range(size - 1)}
+
+    def errors(self, displacement_m: Any, measure: str = "normal") -> Errors:
+        """Return the errors when the nodes have moved.
+
+        :param displacement_m: (nodes, 3) [m]
+        :param measure: what is squared and averaged: ``normal``, the distance along the normal; ``half_path``, half of
+            the change of the ray's path, which the formula of Ruze takes; ``axial``, the distance along the axis
+        :raises StatejumpError: there is no such measure, or displacements are not of these nodes
+        """
+        if measure not in MEASURES:
+            raise NotAllowed("measure", measure, f"must be one of {', '.join(MEASURES)}", allowed=tuple(MEASURES))
+        displacement = _points("displacement_m", displacement_m, len(self.position_m))
+        weight = self.normals[:, -1] ** MEASURES[measure]
+        error = np.sum(self.normals * (displacement @ self.frame.T), axis=1)
+        moves = self._moves()
+        residual, values = {"design": weight * error}, {}
+        for definition in ("rigid", "rigid_focal"):
+            names = [name for name in moves if name != "curvature" or definition == "rigid_focal"]
+            for kept in (names, [name for name in names if not name.startswith("shift")],
+                         [name for name in names if not name.startswith("shift") and name != "curvature"]):
+                matrix = np.stack([weight * moves[name] for name in kept], axis=1)
+                if _determined(matrix):
+                    break
+            else:
+                raise StatejumpError(f"{len(self.position_m)} nodes do not determine a best fit", remedy="more of them")
+            lengths = np.linalg.norm(matrix, axis=0)
+            found = np.linalg.lstsq(matrix / lengths, weight * error, rcond=None)[0] / lengths
+            residual[definition] = weight * error - matrix @ found
+            values = dict(zip(kept, found.tolist()))
+        lateral = range(len(self.frame) - 1)
+        return Errors(
+            {name: float(np.sqrt(np.mean(left**2))) for name, left in residual.items()}, residual,
+            np.array([values[f"tilt{place}"] for place in lateral]),
+            np.array([*(values.get(f"shift{place}", 0.0) for place in lateral), values["depth"]]),
+            # F = 1/(4 c)
+            -values["curvature"] / (4 * self.curvature_per_m**2)
+            if self.curvature_per_m and "curvature" in values else None,
+        )
+
+    def zernike_m(self, displacement_m: Any, terms: int | None = None) -> np.ndarray:
+        """Return the coefficients [m] of Noll's Zernike terms 1 to ``terms`` in the error along the axis, by least
+        squares over the nodes, in the aperture. Their root of squares is the RMS over the full circle, not over the
+        nodes.
+
+        :param terms: 1 to 36; None: the most of 1, 3, 6, ... 36 (whole orders) that the nodes determine
+        :raises StatejumpError: the nodes are a profile, or do not determine so many terms
+        """
+        if self.profile:
+            raise StatejumpError("the nodes lie in one plane with the axis: a profile has no Zernike terms")
+        displacement = _points("displacement_m", displacement_m, len(self.position_m))
+        normals = self.normals
+        sag = np.sum(normals * (displacement @ self.frame.T), axis=1) / normals[:, -1]
+        middle, radius = self.aperture_m
+        return fitted((self.local_m[:, :-1] - middle) / radius, sag, terms)
+
+
+def _points(key: str, given: Any, rows: int | None = None) -> np.ndarray:
+    points = np.asarray(given, dtype=float)
+    if points.ndim != 2 or points.shape[1] != 3 or (rows is not None and len(points) != rows):
+        raise NotAllowed(key, beside="as an array", cause=f"must have a row of x, y, z for each of "
+                         f"{'the' if rows is None else rows} nodes")
+    if not np.isfinite(points).all():
+        row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+        raise NotAllowed(key, beside="as an array", cause="must hold finite numbers", item=f"row {row + 1}")
+    return points
+
+
+def _frame(position: np.ndarray, axis: np.ndarray) -> np.ndarray:
+    """Return lateral axes and the axis: the lateral ones are those of space as far as they can be; of nodes in one
+    plane with the axis there is one."""
+    across = position - position.mean(axis=0)
+    across = across - np.outer(across @ axis, axis)
+    spread, directions = np.linalg.svd(across, full_matrices=False)[1:]
+    if not spread[0] > 0:
+        raise StatejumpError("the nodes lie on a line along the axis")
+    if spread[1] <= LEAST_SINGULAR_VALUE * spread[0]:
+        way = directions[0] * (1 if directions[0][np.argmax(np.abs(directions[0]))] > 0 else -1)
+        return np.stack((way, axis))
+    start = np.eye(3)[0 if abs(axis[0]) < 0.9 else 1]
+    first = start - (start @ axis) * axis
+    first /= np.linalg.norm(first)
+    return np.stack((first, np.cross(axis, first), axis))
+
+
+def _determined(matrix: np.ndarray) -> bool:
+    lengths = np.linalg.norm(matrix, axis=0)
+    if matrix.shape[0] < matrix.shape[1] or not (lengths > 0).all():
+        return False
+    return float(np.linalg.svd(matrix / lengths, compute_uv=False)[-1]) > LEAST_SINGULAR_VALUE

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How well a structure comes back, as hardware is measured: µm per metre at a share of all samples."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.stats import binom
+
+from statejump.core.errors import NotAllowed, StatejumpError
+
+
+@dataclass(frozen=True)
+class Repeatability:
+    """A quantile of sampled changes over a length.
+
+    :param um_per_m: the quantile, µm per metre
+    :param low: lower end of its interval at 95 %, by order statistics: no distribution is assumed
+    :param high: upper end; infinite: there are too few samples for one
+    :param share: of the samples that stay below
+    :param samples: how many
+    """
+
+    um_per_m: float
+    low: float
+    high: float
+    share: float
+    samples: int
+
+
+def repeatability(change_m: Any, length_m: float, share: float = 0.99, confidence: float = 0.95) -> Repeatability:
+    """Return how well a structure comes back over its cycles.
+
+    :param change_m: change of a length in each sample of a campaign [m]; signs are left out, failed samples (NaN) too
+    :param length_m: over which it is told, as the diameter of the aperture [m]
+    :raises StatejumpError: no sample, no such length or share
+    """
+    if not 0 < length_m < np.inf:
+        raise NotAllowed("length_m", length_m, "must be a number above 0 [m]")
+    for key, value in (("share", share), ("confidence", confidence)):
+        if not 0 < value < 1:
+            raise NotAllowed(key, value, "must be above 0 and below 1")
+    found = np.abs(np.asarray(change_m, dtype=float))
+    found = np.sort(found[np.isfinite(found)]) / length_m * 1e6
+    if not len(found):
+        raise StatejumpError("no sample has a value")
+    count, tail = len(found), (1 - confidence) / 2
+    first, last = int(binom.ppf(tail, count, share)), int(binom.ppf(1 - tail, count, share))
+    return Repeatability(float(np.quantile(found, share)), float(found[max(first - 1, 0)]),
+                         float(found[last]) if last < count else np.inf, share, count)

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The reflecting surface of a truss over the time of a run, of either model."""
+from __future__ import annotations
+
+import numpy as np
+
+from statejump.core.case import Case
+from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.run import Run
+from statejump.surface.design import DEFINITIONS, Design
+from statejump.surface.motion import pointing_rad
+
+
+def reflector_of(case: Case) -> tuple[Design, np.ndarray]:
+    """Return the drawn surface of a truss and the places of its nodes.
+
+    :raises StatejumpError: the case is no truss, or has no [reflector]
+    """
+    if case.kind != "truss":
+        raise NotAllowed("case.kind", case.kind, "only a truss has a surface", file=case.origin.file)
+    truss = case.resolve()  # type: ignore[attr-defined]
+    if truss.reflector is None:
+        raise StatejumpError("section [reflector] is missing", file=case.origin.file,
+                             remedy="it names the nodes of the surface")
+    try:
+        nodes = np.asarray(truss.reflector.nodes)
+        return Design.of(truss.nodes.position_m[nodes], truss.reflector.axis, truss.reflector.focal_length_m), nodes
+    except StatejumpError as failure:
+        raise failure.located(file=case.origin.file) from None
+
+
+def history(run: Run, measure: str = "normal") -> dict[str, np.ndarray]:
+    """Return the surface at every sample of a run of a truss, against its drawn shape.
+
+    :param measure: as of :meth:`~statejump.surface.Design.errors`
+    :return: arrays by column: ``time_s``, ``temperature_change_K``, RMS by definition, tilt, focal change (NaN: not
+        determined), pointing error of the axis with the rigid motion of the nodes (NaN: they lie on one line)
+    :raises StatejumpError: the run is of no truss with a [reflector]
+    """
+    design, nodes = reflector_of(run.definition)
+    moved = np.asarray(run.history["position_m"].values)[:, nodes] - design.position_m
+    found = [design.errors(each, measure) for each in moved]
+    axis = design.frame[-1]
+    columns = {name: np.asarray(run.history[name].values) for name in ("time_s", "temperature_change_K")}
+    for name in DEFINITIONS:
+        columns[f"rms_{name}_m"] = np.array([each.rms_m[name] for each in found])
+    for place in range(len(design.frame) - 1):
+        columns[f"tilt_{place + 1}_rad"] = np.array([each.tilt_rad[place] for each in found])
+    columns["focal_change_m"] = np.array([np.nan if each.focal_change_m is None else each.focal_change_m
+                                          for each in found])
+    try:
+        columns["pointing_error_rad"] = np.array([pointing_rad(design.position_m, each, axis) for each in moved])
+    except StatejumpError:
+        columns["pointing_error_rad"] = np.full(len(moved), np.nan)
+    return columns
