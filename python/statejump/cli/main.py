@@ -32,6 +32,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "statics": ("statics:statics_command", "Where the joint of CASE can rest, and the largest jump it can make."),
     "identify": ("identify:identify_command", "Clearance, stiffness, friction of a joint from a measured loop."),
     "bore": ("bore:bore_command", "What a measured bore is: roundness, lobes, clearance."),
+    "orbit": ("orbit:orbit_command", "Temperatures of members over an orbit with shadow, as a file that cases take."),
     "truss": ("truss:truss_command", "Trusses: make, draw, and what a designer asks of them."),
     "fclib": ("fclib:fclib_command", "Frictional contact problems of many contacts, in files of FCLIB."),
     "montecarlo": ("campaign:montecarlo_command", "Many samples of a case whose parameters are random."),

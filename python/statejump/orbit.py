@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Temperatures of members over an orbit with shadow: every member one temperature, for examples and first looks; a
+thermal code knows what members do to each other.
+
+Of a member with radiating area A, in sunlight (s = 1) or shadow (s = 0)::
+
+    c dT/dt = s absorptivity sun_view S - emissivity sigma (T^4 - T_sink^4)
+
+c is the heat capacity by radiating area [J/(m2 K)], ``sun_view`` the area that the Sun sees over A (1/pi of a round
+bar across the rays), S the solar constant. The orbit is repeated until it ends as it begins; what is returned is that
+state.
+"""
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from statejump.core.errors import NotAllowed, Range, StatejumpError, Unreadable
+from statejump.core.reading import is_file
+from statejump.core.tables import write_columns
+from statejump.schema.rules import NUMBER, Rule
+
+Numbers = NDArray[np.float64]
+
+STEFAN_BOLTZMANN_W_PER_M2_K4 = 5.670374419e-8  # CODATA 2018, exact
+SOLAR_CONSTANT_W_PER_M2 = 1361.0  # Kopp and Lean, Geophys. Res. Lett. 38, L01706, 2011
+MOST_MEMBERS, MOST_ORBITS = 10_000, 1000
+MOST_HALVINGS = 100  # of an interval of temperatures; 53 bring it down to rounding
+ROUNDING = 1e-14  # relative, of temperatures
+PERIODIC_K = 1e-6  # an orbit that ends so near to where it begins is the repeated one
+SECTION = {
+    "absorptivity": Range(0, 1), "emissivity": Range(0, 1, above=True), "sun_view": Range(0, 1),
+    "heat_capacity_J_per_m2_K": Range(0, 1e9, "J/(m2 K)", above=True),
+}
+
+
+@dataclass(frozen=True)
+class Member:
+    """A member with one temperature.
+
+    :param absorptivity: share of sunlight that it takes, 0 to 1
+    :param emissivity: over that of a black body, above 0 to 1
+    :param sun_view: area that the Sun sees over radiating area, 0 to 1
+    :param heat_capacity_J_per_m2_K: by radiating area, above 0
+    """
+
+    name: str
+    absorptivity: float
+    emissivity: float
+    sun_view: float
+    heat_capacity_J_per_m2_K: float
+
+    def __post_init__(self) -> None:
+        for key, allowed in SECTION.items():
+            try:
+                Rule(NUMBER, allowed=allowed).check(key, getattr(self, key))
+            except NotAllowed as refused:
+                refused.item = f"member {self.name!r}"
+                raise
+
+
+@dataclass(frozen=True)
+class Temperatures:
+    """What :func:`temperatures` returns.
+
+    :param time_s: from 0 (n)
+    :param temperature_K: of every member (n, members)
+    """
+
+    names: tuple[str, ...]
+    time_s: Numbers
+    temperature_K: Numbers
+
+    def write(self, path: str | Path) -> None:
+        """Write a file that ``table_file`` and ``members_file`` take."""
+        columns = {f"{name}_K": self.temperature_K[:, place] for place, name in enumerate(self.names)}
+        write_columns({"time_s": self.time_s, **columns}, Path(path))
+
+
+def temperatures(
+    members: Sequence[Member], *, period_s: float, shadow_s: Sequence[tuple[float, float]] = (), orbits: int = 1,
+    samples_per_orbit: int = 100, sink_K: float = 2.7, solar_constant_W_per_m2: float = SOLAR_CONSTANT_W_PER_M2,
+) -> Temperatures:
+    """Return the temperatures of members over an orbit that repeats itself.
+
+    :param period_s: length of the orbit [s]
+    :param shadow_s: from when to when the members are in shadow [s], within the orbit, in order
+    :param orbits: how many are returned
+    :param samples_per_orbit: equal steps of an orbit; begin and end of every shadow are times as well
+    :param sink_K: temperature of what the members see but the Sun [K]
+    :param solar_constant_W_per_m2: sunlight across the rays [W/m2]
+    :raises StatejumpError: a number is out of its range, shadows overlap, no repeated orbit is reached
+    """
+    for key, value, allowed in (
+        ("period_s", period_s, Range(0, 1e9, "s", above=True)), ("sink_K", sink_K, Range(0, 1e4, "K")),
+        ("solar_constant_W_per_m2", solar_constant_W_per_m2, Range(0, 1e6, "W/m2")),
+        ("orbits", orbits, Range(1, MOST_ORBITS)), ("samples_per_orbit", samples_per_orbit, Range(2, 1_000_000)),
+    ):
+        Rule(NUMBER, allowed=allowed).check(key, value)
+    names = [member.name for member in members]
+    if not 0 < len(names) <= MOST_MEMBERS or len(set(names)) < len(names):
+        raise NotAllowed("members", cause=f"must be 1 to {MOST_MEMBERS} members, each with a name of its own")
+    ends = [0.0, *(time for pair in shadow_s for time in pair), period_s]
+    if not all(len(pair) == 2 and pair[0] < pair[1] for pair in shadow_s) or sorted(ends) != ends:
+        raise NotAllowed("shadow_s", list(shadow_s), f"must be pairs of times that rise, from 0 to {period_s:g} [s]")
+    times = np.unique([*np.linspace(0, period_s, samples_per_orbit + 1).tolist(), *ends])
+    orbit = _Orbit(members, times, shadow_s, sink_K, solar_constant_W_per_m2)
+    start = orbit.mean_K()
+    for _ in range(MOST_ORBITS):
+        found = orbit.run(start)
+        if np.abs(found[-1] - start).max() <= PERIODIC_K:
+            break
+        # What an orbit leaves of a distance to the repeated one is nearly constant: Aitken's step takes all of it.
+        first, second = found[-1] - start, orbit.run(found[-1])[-1] - found[-1]
+        left = np.divide(second, first, out=np.zeros_like(first), where=first != 0)
+        start = found[-1] + np.where(np.abs(left) < 1, second / (1 - np.minimum(left, 1 - 1e-9)), second)
+    else:
+        raise StatejumpError(f"no orbit repeats itself within {MOST_ORBITS}",
+                             cause="members are heavy against the length of the orbit")
+    found[-1] = found[0]
+    whole = np.concatenate([times[:-1] + number * period_s for number in range(orbits)] + [[orbits * period_s]])
+    return Temperatures(tuple(names), whole, np.concatenate([found[:-1]] * orbits + [found[-1:]]))
+
+
+class _Orbit:
+    """One orbit of all members, from given temperatures."""
+
+    def __init__(
+        self, members: Sequence[Member], times: Numbers, shadow_s: Sequence[tuple[float, float]], sink_K: float,
+        solar: float,
+    ) -> None:
+        def of(key: str) -> Numbers:
+            return np.array([getattr(member, key) for member in members])
+
+        self._times, self._sink = times, sink_K
+        capacity = of("heat_capacity_J_per_m2_K")
+        self._loss = of("emissivity") * STEFAN_BOLTZMANN_W_PER_M2_K4 / capacity  # 1/(K3 s)
+        self._gain = of("absorptivity") * of("sun_view") * solar / capacity  # K/s
+        middle = (times[:-1] + times[1:]) / 2
+        self._lit = np.array([not any(begin <= time <= end for begin, end in shadow_s) for time in middle])
+
+    def mean_K(self) -> Numbers:
+        """Return the temperatures at which the mean sunlight and what is radiated are equal."""
+        share = float(np.diff(self._times) @ self._lit / self._times[-1])
+        return np.asarray((self._sink**4 + share * self._gain / self._loss) ** 0.25)
+
+    def run(self, start_K: Numbers) -> Numbers:
+        """Return the temperatures (times, members) from those at the start."""
+        found = [start_K]
+        for length, lit in zip(np.diff(self._times), self._lit):
+            balance = (self._sink**4 + float(lit) * self._gain / self._loss) ** 0.25
+            found.append(_stepped(found[-1], balance, self._loss * length))
+        return np.array(found)
+
+
+def _stepped(start_K: Numbers, balance_K: Numbers, loss_times_step: Numbers) -> Numbers:
+    """Return T after a step of dT/dt = k (B^4 - T^4) from its closed form, which gives the time by T.
+
+    With u = T/B the time since the start is [artanh(u)/2 + arctan(u)/2]/(k B^3), arcoth above the balance; without
+    balance (B = 0) 1/(3 k T^3). T moves towards B and never passes it; Newton's steps that would are halved into what
+    is left.
+    """
+    low, high = np.minimum(start_K, balance_K), np.maximum(start_K, balance_K)
+    settled = high - low <= 1e-13 * high
+    warms, rising = balance_K > 0, balance_K >= start_K
+    wanted = loss_times_step * np.where(warms, balance_K, 1.0) ** 3
+    at = np.array((low + high) / 2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(MOST_HALVINGS):
+            u, u0 = at / balance_K, start_K / balance_K
+            turned = (np.log(np.abs((1 + u) / (1 - u))) - np.log(np.abs((1 + u0) / (1 - u0)))) / 4
+            passed = np.where(warms, turned + (np.arctan(u) - np.arctan(u0)) / 2, (at**-3.0 - start_K**-3.0) / 3)
+            # A place that is reached after the step has the answer on the side of the start.
+            below = (passed > wanted) == rising
+            high, low = np.where(below, at, high), np.where(below, low, at)
+            newton = at + (wanted - passed) * np.where(warms, balance_K * (1 - u**4), -at**4)
+            near = settled | (np.abs(newton - at) <= ROUNDING * at) | (high - low <= ROUNDING * high)
+            if near.all():
+                break
+            inside = near | ((newton > low) & (newton < high))
+            at = np.where(inside, np.where(near, at, newton), (low + high) / 2)
+    return np.where(settled, balance_K, at)
+
+
+COLUMNS = ("name", *SECTION)
+
+
+def read_members(path: str | Path) -> list[Member]:
+    """Return the members of a CSV file with the columns ``name``, ``absorptivity``, ``emissivity``, ``sun_view``,
+    ``heat_capacity_J_per_m2_K``.
+
+    :raises StatejumpError: one sentence with file and line
+    """
+    path = Path(path)
+    if not is_file(path):
+        raise Unreadable("no such file of members", file=path)
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as stream:
+            rows = csv.DictReader(stream, restkey="", restval=None)
+            missing = [name for name in COLUMNS if name not in (rows.fieldnames or ())]
+            if missing:
+                raise Unreadable(f"line 1: column {missing[0]} is missing", cause="needed are " + ", ".join(COLUMNS),
+                                 file=path)
+            found: list[Member] = []
+            for row in rows:
+                if "" in row or None in row.values():
+                    raise Unreadable(f"line {rows.line_num} has not as many cells as the header", file=path)
+                if len(found) == MOST_MEMBERS:
+                    raise Unreadable(f"has more than {MOST_MEMBERS} members", file=path)
+                found.append(_member(path, rows.line_num, row))
+    except UnicodeDecodeError:
+        raise Unreadable("not CSV", cause="the file is not UTF-8 text", file=path) from None
+    except csv.Error as failure:
+        raise Unreadable("not CSV", cause=str(failure), file=path) from None
+    except OSError as failure:
+        raise Unreadable("cannot be read", cause=failure.strerror, file=path) from None
+    return found
+
+
+def _member(path: Path, line: int, row: dict[str, str]) -> Member:
+    name = row["name"].strip()
+    if not name or not name.isprintable():
+        raise Unreadable(f"line {line}: name", cause="must be a text that is not empty", file=path)
+    values = {}
+    for key in SECTION:
+        try:
+            values[key] = float(row[key])
+        except ValueError:
+            raise NotAllowed(key, row[key], "must be a number", file=path, item=f"line {line}") from None
+    try:
+        return Member(name, **values)
+    except NotAllowed as refused:
+        raise refused.located(file=path) from None
