@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "statejump/truss/motion.hpp"
 #include "statejump/truss/path.hpp"
 
 namespace py = pybind11;
@@ -179,24 +180,23 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& links_, const py
 }
 
 /// One array (states, items) or (states, items, 3) of a member of every state.
-template <class Member>
-py::array_t<double> stacked(const std::vector<truss::State>& states, Member member,
-                            py::ssize_t width) {
+template <class State, class Member>
+py::array_t<double> stacked(const std::vector<State>& states, Member member, py::ssize_t width) {
   const auto count = static_cast<py::ssize_t>(states.size());
   const py::ssize_t items = count == 0 ? 0 : (states.front().*member).size() / width;
   std::vector<py::ssize_t> shape{count, items};
   if (width > 1) shape.push_back(width);
   py::array_t<double> result(shape);
   double* to = result.mutable_data();
-  for (const truss::State& state : states) {
+  for (const State& state : states) {
     const auto& values = state.*member;
     to = std::copy(values.data(), values.data() + values.size(), to);
   }
   return result;
 }
 
-template <class Member>
-py::array_t<double> scalars(const std::vector<truss::State>& states, Member member) {
+template <class State, class Member>
+py::array_t<double> scalars(const std::vector<State>& states, Member member) {
   py::array_t<double> result(static_cast<py::ssize_t>(states.size()));
   for (std::size_t i = 0; i < states.size(); ++i) result.mutable_data()[i] = states[i].*member;
   return result;
@@ -275,12 +275,9 @@ py::dict states_dict(const truss::Model& model, const std::vector<truss::State>&
   return d;
 }
 
-py::dict path_dict(const truss::Model& model, const truss::Path& path) {
-  py::dict result;
-  result["states"] = states_dict(model, path.states);
-  result["cycle_ends"] = states_dict(model, path.cycle_ends);
+py::list event_list(const truss::Model& model, const std::vector<truss::Event>& found) {
   py::list events;
-  for (const truss::Event& event : path.events) {
+  for (const truss::Event& event : found) {
     py::dict one;
     one["time_s"] = event.time;
     one["interval_s"] = event.interval;
@@ -292,7 +289,46 @@ py::dict path_dict(const truss::Model& model, const truss::Path& path) {
     one["after"] = to_string(event.after);
     events.append(one);
   }
-  result["events"] = events;
+  return events;
+}
+
+/// What a caller's function says, asked with the share that is done: whether to go on.
+std::function<bool(double)> going_on(const py::object& progress) {
+  return [&progress](double done) {
+    py::gil_scoped_acquire lock;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();  // Ctrl-C
+    return progress.is_none() || !progress(done).is(py::bool_(false));
+  };
+}
+
+py::dict motion_dict(const truss::Model& model, const truss::Motion& motion) {
+  using truss::MovingState;
+  py::dict result;
+  py::dict states = states_dict(model, motion.states);
+  states["velocity_m_per_s"] = stacked(motion.moving, &MovingState::velocity, 3);
+  states["kinetic_energy_J"] = scalars(motion.moving, &MovingState::kinetic_energy);
+  states["damping_dissipation_J"] = scalars(motion.moving, &MovingState::damping_dissipation);
+  states["impact_dissipation_J"] = scalars(motion.moving, &MovingState::impact_dissipation);
+  result["states"] = states;
+  result["events"] = event_list(model, motion.events);
+  result["event_heat_J"] = py::array_t<double>(static_cast<py::ssize_t>(motion.event_heat.size()),
+                                               motion.event_heat.data());
+  result["watched_velocity_m_per_s"] = Eigen::MatrixX3d(motion.watched_velocity.transpose());
+  result["complete"] = motion.complete;
+  result["time_step_s"] = motion.time_step;
+  result["iterations"] = motion.iterations;
+  result["factorizations"] = motion.factorizations;
+  result["unknowns"] = motion.unknowns;
+  result["largest_contact_merit"] = motion.largest_contact_merit;
+  result["negative_dissipation_J"] = motion.negative_dissipation;
+  return result;
+}
+
+py::dict path_dict(const truss::Model& model, const truss::Path& path) {
+  py::dict result;
+  result["states"] = states_dict(model, path.states);
+  result["cycle_ends"] = states_dict(model, path.cycle_ends);
+  result["events"] = event_list(model, path.events);
   result["complete"] = path.complete;
   result["solves"] = path.solves;
   result["factorizations"] = path.factorizations;
@@ -341,11 +377,7 @@ void bind_truss(py::module_& module) {
         options.locate_events = locate_events;
         options.event_tolerance = event_tolerance;
         options.cycle_ends_only = cycle_ends_only;
-        options.progress = [&progress](double done) {
-          py::gil_scoped_acquire lock;
-          if (PyErr_CheckSignals() != 0) throw py::error_already_set();  // Ctrl-C
-          return progress.is_none() || !progress(done).is(py::bool_(false));
-        };
+        options.progress = going_on(progress);
         truss::Path path;
         {
           py::gil_scoped_release unlocked;
@@ -371,6 +403,44 @@ void bind_truss(py::module_& module) {
       "ValueError for items out of range, RuntimeError that names joint or nodes "
       "and\n"
       "temperature for mechanisms, unloaded joints and failed equilibrium.");
+  module.def(
+      "truss_motion",
+      [](const py::dict& nodes, const py::dict& links, const py::dict& springs,
+         const py::dict& torsion_springs, const py::dict& joints,
+         std::vector<thermal::Program> programs, const py::dict& inertia, long steps,
+         long sample_every, double theta, double restitution, int watched_node,
+         const py::object& progress) {
+        const truss::Model model =
+            make_model(nodes, links, springs, torsion_springs, joints, std::move(programs));
+        const auto numbers = [&](const char* key) { return inertia[key].cast<Eigen::VectorXd>(); };
+        const truss::Inertia masses{
+            numbers("link_mass_kg"), numbers("node_mass_kg"), numbers("link_damping_N_s_per_m"),
+            numbers("pin_damping_N_m_s_per_rad"), numbers("spring_damping_N_s_per_m")};
+        truss::MotionOptions options;
+        options.steps = steps;
+        options.sample_every = sample_every;
+        options.theta = theta;
+        options.restitution = restitution;
+        options.watched_node = watched_node;
+        options.progress = going_on(progress);
+        truss::Motion motion;
+        {
+          py::gil_scoped_release unlocked;
+          motion = truss::simulate(model, masses, options);
+        }
+        return motion_dict(model, motion);
+      },
+      py::arg("nodes"), py::arg("links"), py::arg("springs"), py::arg("torsion_springs"),
+      py::arg("joints"), py::arg("programs"), py::arg("inertia"), py::kw_only(), py::arg("steps"),
+      py::arg("sample_every"), py::arg("theta") = 0.5, py::arg("restitution") = 0.0,
+      py::arg("watched_node") = -1, py::arg("progress") = py::none(),
+      "Motion of a truss from the equilibrium in which its quasi-static path begins.\n\n"
+      "Items as of truss_path(). inertia: link_mass_kg, link_damping_N_s_per_m,\n"
+      "pin_damping_N_m_s_per_rad (a number for each link), node_mass_kg,\n"
+      "spring_damping_N_s_per_m. steps: of the whole program.\n\n"
+      "Returns states as truss_path() with velocities and energies, events with the heat of their\n"
+      "step, the watched node's velocity at every step. Raises ValueError for items out of range,\n"
+      "RuntimeError that names joint and temperature for a step without solution.");
 }
 
 }  // namespace statejump::bindings

@@ -365,6 +365,22 @@ def truss_path(
     cycle_ends_only: bool = ...,
     progress: Callable[[float], bool | None] | None = ...,
 ) -> _Fields: ...
+def truss_motion(
+    nodes: _Items,
+    links: _Items,
+    springs: _Items,
+    torsion_springs: _Items,
+    joints: Mapping[str, _Items],
+    programs: Sequence[ThermalProgram],
+    inertia: _Items,
+    *,
+    steps: int,
+    sample_every: int,
+    theta: float = ...,
+    restitution: float = ...,
+    watched_node: int = ...,
+    progress: Callable[[float], bool | None] | None = ...,
+) -> _Fields: ...
 
 class BoreMesh(metaclass=_pybind11_type):
     def __init__(

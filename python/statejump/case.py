@@ -71,13 +71,14 @@ class Case:
         """
         return Case(self.definition.changed(changes))
 
-    def reduced(self, progress: Progress = False) -> Run:
+    def reduced(self, progress: Progress = False, *, dynamic: bool = False) -> Run:
         """Run the reduced model.
 
         :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
-        :raises StatejumpError: the kind has no reduced model, or the run could not be finished
+        :param dynamic: with inertia, where the reduced model has none without being asked: the motion of a truss
+        :raises StatejumpError: the kind has no such reduced model, or the run could not be finished
         """
-        return self._run("reduced", "reduced model", progress)
+        return self._run("dynamic" if dynamic else "reduced", "reduced model", progress)
 
     def dem(self, progress: Progress = False) -> Run:
         """Run the case in YADE, in a process of its own.
@@ -94,7 +95,7 @@ class Case:
         from statejump.core.progress import shown
 
         model = self.definition.behaviour.ability(ability, self.definition)
-        check_memory(self.definition, ability)
+        check_memory(self.definition, "dem" if ability == "dem" else "reduced")
         with shown(progress, label) as tell:
             run: Run = model(self.definition, tell)
         return run

@@ -46,23 +46,33 @@ def _finish(model: str, case: Case, run: Run, folder: ResultsFolder, console: Co
     console.print(f"results: {written[0]}, history: {folder.path / f'{model}_history.csv'}")
 
 
+DYNAMIC = click.option(
+    "--dynamic", is_flag=True, help="With inertia: a truss in motion. Results go to the folder CASE_dynamic.")
+
+
+def _folder_name(case: Case, dynamic: bool) -> str:
+    return f"{case.name}_dynamic" if dynamic else case.name
+
+
 @click.command("reduced")
 @CASE
+@DYNAMIC
 @RESULTS
 @QUIET
-def reduced_command(case_file: Path, results: Results, quiet: bool) -> None:
+def reduced_command(case_file: Path, dynamic: bool, results: Results, quiet: bool) -> None:
     """Reduced model of CASE: events, state jump, history.
 
     \b
-    Example:
+    Examples:
       statejump reduced cases/table1.toml
+      statejump reduced --dynamic cases/trusses/chain_10.toml
     """
     console = make_console(quiet)
-    case = Case(loaded(case_file, "reduced"))
-    with results.folder(case.name) as folder:
+    case = Case(loaded(case_file, "dynamic" if dynamic else "reduced"))
+    with results.folder(_folder_name(case, dynamic)) as folder:
         _check(case, folder, "reduced")
         with progress(console, "reduced model") as tell:
-            run = case.reduced(tell)
+            run = case.reduced(tell, dynamic=dynamic)
         _finish("reduced", case, run, folder, console)
 
 
@@ -100,15 +110,17 @@ def dem_command(case_file: Path, results: Results, quiet: bool) -> None:
 
 @click.command("compare")
 @click.argument("files", metavar="CASE|FILE FILE", nargs=-1, required=True, type=CaseFile())
+@DYNAMIC
 @RESULTS
 @QUIET
-def compare_command(files: tuple[Path, ...], results: Results, quiet: bool) -> None:
+def compare_command(files: tuple[Path, ...], dynamic: bool, results: Results, quiet: bool) -> None:
     """Both models of CASE side by side, or two result files of the same case. The exit status is 1 when a
     tolerance is missed, 2 when the files are of different cases.
 
     \b
     Examples:
       statejump compare cases/table1.toml
+      statejump compare --dynamic cases/trusses/chain_10.toml
       statejump compare results/table1/reduced.h5 results/table1/dem.h5
     """
     from statejump.results.read import is_result_file
@@ -117,20 +129,22 @@ def compare_command(files: tuple[Path, ...], results: Results, quiet: bool) -> N
     if len(files) > 1 or is_result_file(files[0]):
         from statejump.cli.results import compare_files
 
+        if dynamic:
+            raise click.UsageError("'--dynamic' is for a case, result files say themselves what ran.")
         compare_files(files, console)
     else:
-        _compare_case(files[0], results, console)
+        _compare_case(files[0], dynamic, results, console)
 
 
-def _compare_case(case_file: Path, results: Results, console: Console) -> None:
+def _compare_case(case_file: Path, dynamic: bool, results: Results, console: Console) -> None:
     from statejump.core.figures import save as save_figure
     from statejump.results.record import save
 
-    case = Case(loaded(case_file, "compare", "dem_input"))
-    with results.folder(case.name) as folder:
+    case = Case(loaded(case_file, "compare", "dem_input", *(["dynamic"] if dynamic else [])))
+    with results.folder(_folder_name(case, dynamic)) as folder:
         _check(case, folder, "reduced", "dem")
         with progress(console, "reduced model") as tell:
-            reduced = case.reduced(tell)
+            reduced = case.reduced(tell, dynamic=dynamic)
         dem = _dem("compare", case, {"reduced": reduced}, folder, console)
         comparison = api.compare(reduced, dem)
         runs = dict(comparison.models)

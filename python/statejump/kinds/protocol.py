@@ -6,6 +6,7 @@ ability that it lacks is not there, and what needs it refuses the case with one 
 
 ==================  =====================================================================================
 ``reduced``         ``(case, tell) -> Run``: the reduced model; ``tell`` takes the finished share
+``dynamic``         ``(case, tell) -> Run``: the reduced model with inertia, of a kind whose ``reduced`` has none
 ``dem_input``       ``(case) -> dict``: what the scene in YADE needs, as plain values
 ``dem_run``         ``(case, columns, about) -> Run``: a finished or interrupted DEM run
 ``compare``         ``(case, reduced, dem) -> Comparison``
@@ -122,5 +123,5 @@ class Kind(Generic[CaseType]):
 
 
 # Commands whose name is not that of the ability.
-COMMANDS = {"dem_input": "dem", "answers": "truss answers", "draw": "truss draw", "outcomes": "sweep", "sheet": "plot"}
+COMMANDS = {"dem_input": "dem", "dynamic": "reduced --dynamic", "answers": "truss answers", "draw": "truss draw", "outcomes": "sweep", "sheet": "plot"}
 Columns = Mapping[str, np.ndarray]

@@ -17,7 +17,7 @@ from statejump.core.units import unit_of
 from statejump.results.contents import Result
 
 # How a case is computed, written and judged; the other sections say what it is.
-NUMERICAL_SECTIONS = ("case", "dem", "reduced", "output", "ensemble", "tolerance")
+NUMERICAL_SECTIONS = ("case", "dem", "reduced", "motion", "output", "ensemble", "tolerance")
 # Groups of columns that are compared: of a contact that opens there are columns that are no number.
 COMPARED = ("history", "energy", "links")
 SAME_TIME = 1e-9  # of the duration: rounding of the last sample's time

@@ -35,6 +35,7 @@ class Truss(Kind[TrussCase]):
         "kinetic_energy_J",
         "friction_dissipation_J",
         "damping_dissipation_J",  # of links, pins and contacts
+        "impact_dissipation_J",  # of contacts across their surfaces, in motion
         "thermal_work_J",
         "external_work_J",  # of the dead loads
     )
@@ -55,6 +56,11 @@ class Truss(Kind[TrussCase]):
         from statejump.kinds.truss import result, solve
 
         return result.reduced_run(case, solve.solve(case, tell), result.sample_times(case))
+
+    def dynamic(self, case: TrussCase, tell: Tell) -> Run:
+        from statejump.kinds.truss import motion, result
+
+        return result.motion_run(case, motion.simulate(case, tell))
 
     def dem_input(self, case: TrussCase) -> dict[str, Any]:
         from statejump.kinds.truss import dem

@@ -58,8 +58,8 @@ class Link(Item):
     stress_free_length_m: float | None = parameter(
         None, "m", 0, LARGEST_LENGTH_M, "at ΔT = 0; the distance of its nodes", above=True
     )
-    density_kg_per_m3: float | None = parameter(None, "kg/m3", 0, 1e5, "this or mass_kg; DEM only", above=True)
-    mass_kg: float | None = parameter(None, "kg", 0, 1e6, "this or density_kg_per_m3; DEM only", above=True)
+    density_kg_per_m3: float | None = parameter(None, "kg/m3", 0, 1e5, "this or mass_kg; DEM and motion", above=True)
+    mass_kg: float | None = parameter(None, "kg", 0, 1e6, "this or density_kg_per_m3; DEM and motion", above=True)
     poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM)
     temperature_fraction: float = parameter(1.0, "-", -10, 10, "of its program's ΔT; fully sunlit")
     program: str | None = text(None, "name of a [[program]]; the common [thermal]")
@@ -180,6 +180,17 @@ class TrussReduced(Section):
 
 
 @definition
+class TrussMotion(Section):
+    """How a truss in motion is stepped: ``statejump reduced --dynamic``. Its dashpots are those of the links and pins
+    in [dem]."""
+
+    steps_per_cycle: int = whole(10_000, 10, 1_000_000_000, CHOICE)
+    theta: float = parameter(0.5, "-", 0.5, 1, "second order, no numerical damping; 1: implicit Euler")
+    restitution: float = parameter(0.0, "-", 0, 1, CHOICE + "; Newton's, of stops and of revolutes with rigid contact")
+    masses: str = choice("consistent", ("consistent", "lumped"), "exact for straight rods; lumped: as in the DEM")
+
+
+@definition
 class TrussDem(Section):
     """How the DEM is integrated."""
 
@@ -227,6 +238,7 @@ class TrussCase(Case):
     thermal: TrussThermal = section(TrussThermal, required=True)
     output: Output = section(Output)
     reduced: TrussReduced = section(TrussReduced)
+    motion: TrussMotion = section(TrussMotion)
     dem: TrussDem = section(TrussDem)
     reflector: Reflector | None = optional_section(Reflector)
     tolerance: TrussTolerance = section(TrussTolerance)

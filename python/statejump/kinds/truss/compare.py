@@ -17,7 +17,7 @@ def energy_residual(energy: Mapping[str, Column]) -> float:
     undamped = energy_residue_J(energy, ("thermal_work_J", "external_work_J"), ("elastic_energy_J", "kinetic_energy_J"),
                                 ("friction_dissipation_J",))
     # Last, because the residue is a small difference: another order rounds otherwise.
-    return undamped - change(energy, "damping_dissipation_J")
+    return undamped - change(energy, "damping_dissipation_J") - change(energy, "impact_dissipation_J")
 
 
 def jumps_m(run: Run) -> np.ndarray:

@@ -15,6 +15,7 @@ from statejump.core.units import unit_of
 from statejump.kinds.truss import compare
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.dem import pressing_directions
+from statejump.kinds.truss.motion import TrussMotion
 from statejump.kinds.truss.resolved import GROUND, ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, engine_program
 from statejump.results import scene as drawing
@@ -234,7 +235,33 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
     return replace(run, contacts={**run.contacts, "dissipation_J": heat_of_joints})
 
 
-def _events(case: TrussCase, path: TrussPath) -> list[Event]:
+def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
+    """Return the motion of a case as a run of the reduced model; its samples are those of the DEM."""
+    states = motion.states
+    items = {key: states[key] for key in ITEMS if not key.endswith("_state")}
+    for kind in ("slider", "revolute"):
+        items[f"{kind}_state"] = STATES[states[f"{kind}_status"].astype(int)]
+    of_joints = np.concatenate((states["slider_dissipation_J"], states["revolute_dissipation_J"]), axis=1)
+    plain, energy = columns_of({
+        **{key: states[key] for key in (
+            "time_s", "temperature_change_K", "elastic_energy_J", "kinetic_energy_J", "damping_dissipation_J",
+            "impact_dissipation_J", "thermal_work_J")},
+        "friction_dissipation_J": of_joints.sum(axis=1),
+        "external_work_J": states["load_potential_J"][0] - states["load_potential_J"],
+    })
+    summary = {
+        "energy_residue_J": compare.energy_residual(energy), "time_step_s": motion.time_step_s,
+        "contact_problems": float(motion.iterations), "negative_dissipation_J": motion.negative_dissipation_J,
+        "unknowns": float(motion.unknowns),
+    }
+    run = _run(case, "reduced", plain, energy, items, _events(case, motion), summary, native=motion)
+    velocity = Column(states["velocity_m_per_s"], "m/s", "nodes")
+    heat = Column(of_joints, "J", "contacts", note="heat of friction since the start")
+    return replace(run, history={**run.history, "velocity_m_per_s": velocity},
+                   contacts={**run.contacts, "dissipation_J": heat})
+
+
+def _events(case: TrussCase, path: TrussPath | TrussMotion) -> list[Event]:
     truss, at = path.truss, path.states["time_s"]
     joints, slipped, events = _names_of_joints(truss), set(), []
     for event in path.events:

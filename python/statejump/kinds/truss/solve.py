@@ -69,6 +69,33 @@ def _table(part: Any, *keys: str, **more: Any) -> dict[str, Any]:
     return {"names": list(part.names), **{key: getattr(part, key) for key in keys}, **more}
 
 
+def engine_items(truss: ResolvedTruss) -> dict[str, Any]:
+    """Return the truss as the engine's tables and temperature programs."""
+    sliders = truss.sliders
+    hertz, mindlin, tangential = solver_stiffness(truss)
+    return {
+        "nodes": _table(truss.nodes, "position_m", "fixed", "guide_normal", "force_N"),
+        "links": _table(truss.links, "nodes", "stress_free_length_m", "thermal_expansion_per_K", "program",
+                        "temperature_fraction",
+                        axial_stiffness_N=truss.links.young_modulus_Pa * truss.links.cross_section_area_m2),
+        "springs": _table(truss.springs, "nodes", "stiffness_N_per_m", "free_length_m", "cable"),
+        "torsion_springs": _table(truss.torsion_springs, "links", "stiffness_N_m_per_rad", "bias_rad", "axis"),
+        "joints": {
+            "slider": _table(
+                sliders, "axis", "clearance_minus_m", "clearance_plus_m",
+                first_node=sliders.nodes[:, 0], second_node=sliders.nodes[:, 1],
+                friction_force_N=sliders.friction_coefficient * sliders.normal_force_N,
+                tangential_stiffness_N_per_m=tangential),
+            "revolute": _table(
+                truss.revolutes, "journal_node", "bearing_node", "journal_link", "bearing_link",
+                "journal_radius_m", "radial_clearance_m", "journal_thermal_expansion_per_K",
+                "bearing_thermal_expansion_per_K", "friction_coefficient", "axis", "program",
+                "temperature_fraction", hertz_stiffness_N_per_m15=hertz, mindlin_stiffness_N_per_m15=mindlin),
+        },
+        "programs": [engine_program(program) for program in truss.programs],
+    }
+
+
 def path(
     truss: ResolvedTruss,
     *,
@@ -87,30 +114,9 @@ def path(
     :param progress: called with the share that is done; returning False ends the path
     :raises FailedRun: for a mechanism, an unloaded joint, no equilibrium: with names and temperature
     """
-    sliders, springs, torsion = truss.sliders, truss.springs, truss.torsion_springs
-    hertz, mindlin, tangential = solver_stiffness(truss)
     try:
         found = _engine.truss_path(
-            _table(truss.nodes, "position_m", "fixed", "guide_normal", "force_N"),
-            _table(truss.links, "nodes", "stress_free_length_m", "thermal_expansion_per_K", "program",
-                   "temperature_fraction",
-                   axial_stiffness_N=truss.links.young_modulus_Pa * truss.links.cross_section_area_m2),
-            _table(springs, "nodes", "stiffness_N_per_m", "free_length_m", "cable"),
-            _table(torsion, "links", "stiffness_N_m_per_rad", "bias_rad", "axis"),
-            {
-                "slider": _table(
-                    sliders, "axis", "clearance_minus_m", "clearance_plus_m",
-                    first_node=sliders.nodes[:, 0], second_node=sliders.nodes[:, 1],
-                    friction_force_N=sliders.friction_coefficient * sliders.normal_force_N,
-                    tangential_stiffness_N_per_m=tangential),
-                "revolute": _table(
-                    truss.revolutes, "journal_node", "bearing_node", "journal_link", "bearing_link",
-                    "journal_radius_m", "radial_clearance_m", "journal_thermal_expansion_per_K",
-                    "bearing_thermal_expansion_per_K", "friction_coefficient", "axis", "program",
-                    "temperature_fraction", hertz_stiffness_N_per_m15=hertz, mindlin_stiffness_N_per_m15=mindlin),
-            },
-            [engine_program(program) for program in truss.programs],
-            increments_per_branch=increments_per_branch, locate_events=locate_events,
+            **engine_items(truss), increments_per_branch=increments_per_branch, locate_events=locate_events,
             event_tolerance=event_tolerance, cycle_ends_only=cycle_ends_only, progress=progress,
         )
     except _engine.EngineFailure as failure:

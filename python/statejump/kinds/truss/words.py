@@ -11,6 +11,7 @@ from statejump.core.tables import Shown
 from statejump.core.units import text
 from statejump.kinds.truss import compare
 from statejump.kinds.truss.case import Node, TrussCase
+from statejump.kinds.truss.motion import TrussMotion
 
 
 def _count(items: Sequence[object], one: str) -> str:
@@ -106,5 +107,6 @@ def told(case: TrussCase, runs: Mapping[str, Run]) -> list[Shown | str]:
         found.append(f"{label}{len(run.events)} events, energy residue {run.summary['energy_residue_J']:.3g} J")
     if first.native is not None and not others:
         path = first.native
-        found.append(f"{path.solves:,} solves, {len(path.events)} changes of joints, {path.unknowns} unknowns")
+        done = (f"{path.iterations:,} contact problems" if isinstance(path, TrussMotion) else f"{path.solves:,} solves")
+        found.append(f"{done}, {len(path.events)} changes of joints, {path.unknowns} unknowns")
     return found

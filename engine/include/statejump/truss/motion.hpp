@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "statejump/truss/path.hpp"
+
+namespace statejump::truss {
+
+/// What a truss needs beside its Model to move. A vector has one number for each item; an empty one
+/// stands for zeros.
+struct Inertia {
+  /// Of each link [kg], >= 0: a straight rod whose velocity is linear along it. Its mass matrix
+  /// m/6 [2 1; 1 2] is exact for rods that stay straight, and constant.
+  Eigen::VectorXd link_mass;
+  Eigen::VectorXd node_mass;  ///< Of each node besides, a point [kg], >= 0.
+  /// c of each link's dashpot on its strain rate, c (L' − l_T') [N s/m], >= 0.
+  Eigen::VectorXd link_damping;
+  /// c_p of each link's moment −c_p θ' against turning [N m s/rad], >= 0.
+  Eigen::VectorXd pin_damping;
+  Eigen::VectorXd spring_damping;  ///< c of each spring's dashpot, c L' [N s/m], >= 0.
+};
+
+/// Places and velocities of all nodes from which a motion begins.
+struct MotionStart {
+  Eigen::Matrix3Xd displacement;  ///< From the drawn shape [m].
+  Eigen::Matrix3Xd velocity;      ///< [m/s]
+};
+
+struct MotionOptions {
+  long steps = 10000;      ///< Over all cycles, >= 1.
+  long sample_every = 1;   ///< Steps between samples, >= 1; start and end are samples as well.
+  double theta = 0.5;      ///< θ of the scheme, 0.5 to 1.
+  double restitution = 0;  ///< e of Newton's impact law, 0 to 1; of rigid contacts only.
+  int most_iterations = 50;
+  /// Without: the equilibrium in which the quasi-static path begins, at rest.
+  std::optional<MotionStart> start = {};
+  /// Node whose velocity is kept at every step; −1: none.
+  int watched_node = -1;
+  /// Called with the share that is done (0 to 1); returning false ends the motion there, with
+  /// Motion::complete false.
+  std::function<bool(double)> progress = {};
+};
+
+/// What moves, beside the State of the same sample.
+struct MovingState {
+  Eigen::Matrix3Xd velocity;  ///< Of each node [m/s].
+  double kinetic_energy = 0.0;
+  double damping_dissipation = 0.0;  ///< Heat of the dashpots since the start [J].
+  double impact_dissipation = 0.0;   ///< What contacts took across their surfaces since then [J].
+};
+
+/// What simulate() returns.
+struct Motion {
+  std::vector<State> states;
+  std::vector<MovingState> moving;    ///< Of the same samples.
+  std::vector<Event> events;          ///< Interval: the step.
+  std::vector<double> event_heat;     ///< Heat of all joints in the step of each event [J].
+  Eigen::Matrix3Xd watched_velocity;  ///< Of the watched node at every step, the start first.
+  bool complete = true;               ///< False if MotionOptions::progress ended it.
+  double time_step = 0.0;             ///< [s]
+  long iterations = 0;                ///< Contact problems solved.
+  long factorizations = 0;
+  int unknowns = 0;                    ///< Free displacements.
+  double largest_contact_merit = 0.0;  ///< Of the contact problems, see complementarity::Merit.
+  double negative_dissipation = 0.0;   ///< Sum of what steps gave below zero [J], <= 0.
+};
+
+/// Motion of a truss through its temperature programs, after Moreau and Jean [1, 2].
+///
+/// **Scheme.** Of a step h, with M the constant mass matrix, f the forces of links, springs,
+/// torsion springs, dashpots and loads, and r the impulses of the contacts in directions H,
+///
+///     M (v1 − v0) = h (θ f1 + (1 − θ) f0) + H r,   q1 = q0 + h (θ v1 + (1 − θ) v0)
+///
+/// solved by Newton's method on the factors of M + h θ C + (h θ)² K at the middle of the step; H is
+/// taken there too. Each iterate is one local frictional contact problem (complementarity/) with
+/// W = Hᵀ (M + …)⁻¹ H. Second order where no contact changes, first order over changes; θ = 1/2
+/// has no numerical damping.
+///
+/// **Contacts.** Velocities are those at the end of the step. Rigid contacts obey Newton's
+/// u1 + e min(u0, 0) >= 0 ⟂ r >= 0 once their gap is closed at the middle of the step, and
+/// Coulomb's law as a set. A revolute with a Hertz stiffness keeps the truss' elastic law,
+/// gap + (λ/K)^(2/3) >= 0 ⟂ λ >= 0 at the end of the step (implicit Euler in the contact, so steps
+/// may be longer than its period; then its impact is without rebound), one with Mindlin's stiffness
+/// gives way tangentially by the truss' rule. A slider's friction has a given bound; its stops are
+/// rigid contacts.
+///
+/// **Energies.** Impulses work by the mean velocity of the step, so thermal_work + work of loads −
+/// changes of kinetic and elastic energy − dissipation closes to the error of the scheme in the
+/// forces f. A contact's own dissipation is what it took less what it stores; in a step in which a
+/// slide reverses it may come out below zero by O(h²), which `negative_dissipation` adds up.
+///
+/// Planar and spatial trusses; three-dimensional joints slide as the quasi-static ones do.
+///
+/// Throws std::invalid_argument for a model or option out of range; Failure for a step without
+/// solution (`not_converged`, `singular`, with the joint whose law is violated most), and
+/// `not_finite`.
+///
+/// [1] M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235-257.
+/// [2] V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, Springer 2008.
+Motion simulate(const Model& model, const Inertia& inertia, const MotionOptions& options = {});
+
+}  // namespace statejump::truss

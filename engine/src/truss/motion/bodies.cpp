@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bodies.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "statejump/kernel/require.hpp"
+
+namespace statejump::truss::detail {
+
+namespace {
+
+/// Number of an item in an optional list.
+double of(const VectorXd& values, std::size_t i) {
+  return values.size() == 0 ? 0.0 : values[static_cast<Eigen::Index>(i)];
+}
+
+void check(const VectorXd& values, std::size_t count, const char* name, const char* unit) {
+  if (values.size() != 0 && static_cast<std::size_t>(values.size()) != count) {
+    throw kernel::OutOfRange("", std::string("count of ") + name,
+                             static_cast<double>(values.size()),
+                             std::to_string(count) + " or none");
+  }
+  for (const double value : values) {
+    kernel::require(std::isfinite(value) && value >= 0.0, name, value,
+                    (std::string("finite, >= 0 ") + unit).c_str());
+  }
+}
+
+}  // namespace
+
+Bodies::Bodies(const System& system, const Inertia& inertia) : system_(&system) {
+  const Model& model = system.model();
+  check(inertia.link_mass, model.links.size(), "link mass", "kg");
+  check(inertia.node_mass, model.nodes.size(), "node mass", "kg");
+  check(inertia.link_damping, model.links.size(), "link damping", "N s/m");
+  check(inertia.pin_damping, model.links.size(), "pin damping", "N m s/rad");
+  check(inertia.spring_damping, model.springs.size(), "spring damping", "N s/m");
+  int rows = 0;
+  for (const Node& node : model.nodes) {
+    row_.push_back(rows);
+    rows += node.freedoms;
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&](int i, int j, double value) { entries.emplace_back(i, j, value); };
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    const Matrix3d sixth = of(inertia.link_mass, i) / 6.0 * Matrix3d::Identity();
+    spread(link.first, link.first, 2.0 * sixth, add);
+    spread(link.second, link.second, 2.0 * sixth, add);
+    spread(link.first, link.second, sixth, add);
+    spread(link.second, link.first, sixth, add);
+    const double axial = of(inertia.link_damping, i);
+    const double turning = of(inertia.pin_damping, i);
+    if (axial > 0.0 || turning > 0.0) {
+      struts_.push_back({link.first, link.second, axial, turning, &link});
+    }
+  }
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const int node = static_cast<int>(i);
+    spread(node, node, of(inertia.node_mass, i) * Matrix3d::Identity(), add);
+  }
+  for (std::size_t i = 0; i < model.springs.size(); ++i) {
+    const AxialSpring& spring = model.springs[i];
+    const double axial = of(inertia.spring_damping, i);
+    if (axial > 0.0) struts_.push_back({spring.first, spring.second, axial, 0.0, nullptr});
+  }
+  damped_ = !struts_.empty();
+  mass_.resize(rows, rows);
+  mass_.setFromTriplets(entries.begin(), entries.end());
+}
+
+template <class Add>
+void Bodies::spread(int row_node, int column_node, const Matrix3d& value, Add&& add) const {
+  const Node& rows = system_->model().nodes[index(row_node)];
+  const Node& columns = system_->model().nodes[index(column_node)];
+  for (int j = 0; j < columns.freedoms; ++j) {
+    const Vector3d image = value * columns.free_directions.col(j);
+    for (int i = 0; i < rows.freedoms; ++i) {
+      add(row_[index(row_node)] + i, row_[index(column_node)] + j,
+          rows.free_directions.col(i).dot(image));
+    }
+  }
+}
+
+double Bodies::growth_rate(const Strut& strut, const Step& step) const {
+  if (strut.link == nullptr) return 0.0;
+  const Link& link = *strut.link;
+  const Model& model = system_->model();
+  const double change =
+      model.temperature_change(link.program, link.temperature_fraction, step.to) -
+      model.temperature_change(link.program, link.temperature_fraction, step.from);
+  return link.stress_free_length * link.thermal_expansion * change / (step.to - step.from);
+}
+
+Bodies::Rate Bodies::rate(const Strut& strut, const VectorXd& q, const VectorXd& v,
+                          const Step& step) const {
+  const Model& model = system_->model();
+  const Vector3d along =
+      (model.nodes[index(strut.second)].position - model.nodes[index(strut.first)].position) +
+      (at(strut.second, q) - at(strut.first, q));
+  Rate found;
+  found.length = along.norm();
+  found.direction = along / found.length;
+  const Vector3d relative = at(strut.second, v) - at(strut.first, v);
+  const double length_rate = relative.dot(found.direction);
+  found.strain_rate = length_rate - growth_rate(strut, step);
+  found.across = relative - length_rate * found.direction;
+  return found;
+}
+
+VectorXd Bodies::force(const VectorXd& q, const VectorXd& v, const Step& step) const {
+  VectorXd found = VectorXd::Zero(mass_.rows());
+  const Model& model = system_->model();
+  for (const Strut& strut : struts_) {
+    const Rate now = rate(strut, q, v, step);
+    const Vector3d pull = strut.axial * now.strain_rate * now.direction +
+                          strut.turning / (now.length * now.length) * now.across;
+    for (const auto& [node, sign] : {std::pair{strut.first, 1.0}, std::pair{strut.second, -1.0}}) {
+      const Node& part = model.nodes[index(node)];
+      for (int i = 0; i < part.freedoms; ++i) {
+        found[row_[index(node)] + i] += sign * part.free_directions.col(i).dot(pull);
+      }
+    }
+  }
+  return found;
+}
+
+Eigen::SparseMatrix<double> Bodies::damping(const VectorXd& q) const {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&](int i, int j, double value) { entries.emplace_back(i, j, value); };
+  const VectorXd none = VectorXd::Zero(q.size());
+  for (const Strut& strut : struts_) {
+    const Rate now = rate(strut, q, none, {0.0, 1.0});
+    const Matrix3d along = now.direction * now.direction.transpose();
+    const Matrix3d block = strut.axial * along + strut.turning / (now.length * now.length) *
+                                                     (Matrix3d::Identity() - along);
+    spread(strut.first, strut.first, block, add);
+    spread(strut.second, strut.second, block, add);
+    spread(strut.first, strut.second, -block, add);
+    spread(strut.second, strut.first, -block, add);
+  }
+  Eigen::SparseMatrix<double> made(mass_.rows(), mass_.cols());
+  made.setFromTriplets(entries.begin(), entries.end());
+  return made;
+}
+
+Bodies::Work Bodies::work(const VectorXd& q0, const VectorXd& v0, const VectorXd& q1,
+                          const VectorXd& v1, const Step& step, double theta) const {
+  Work sum;
+  const double h = step.to - step.from;
+  for (const Strut& strut : struts_) {
+    const Rate before = rate(strut, q0, v0, step);
+    const Rate after = rate(strut, q1, v1, step);
+    const double force =
+        strut.axial * (theta * after.strain_rate + (1.0 - theta) * before.strain_rate);
+    sum.heat += h * force * 0.5 * (before.strain_rate + after.strain_rate);
+    sum.thermal -= h * force * growth_rate(strut, step);
+    const Vector3d turned =
+        strut.turning * (theta / (after.length * after.length) * after.across +
+                         (1.0 - theta) / (before.length * before.length) * before.across);
+    sum.heat += h * turned.dot(0.5 * (before.across + after.across));
+  }
+  return sum;
+}
+
+VectorXd Bodies::free_part(const Eigen::Matrix3Xd& of_nodes) const {
+  VectorXd found(mass_.rows());
+  const Model& model = system_->model();
+  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+    for (int i = 0; i < model.nodes[n].freedoms; ++i) {
+      found[row_[n] + i] =
+          model.nodes[n].free_directions.col(i).dot(of_nodes.col(static_cast<Eigen::Index>(n)));
+    }
+  }
+  return found;
+}
+
+Eigen::Matrix3Xd Bodies::of_nodes(const VectorXd& free) const {
+  const auto count = static_cast<Eigen::Index>(system_->model().nodes.size());
+  Eigen::Matrix3Xd found(3, count);
+  for (Eigen::Index n = 0; n < count; ++n) found.col(n) = at(static_cast<int>(n), free);
+  return found;
+}
+
+}  // namespace statejump::truss::detail

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "statejump/truss/motion.hpp"
+#include "truss/system.hpp"
+
+namespace statejump::truss::detail {
+
+/// Masses and dashpots of a truss in its free displacements.
+class Bodies {
+ public:
+  /// All arguments must outlive it. @throws kernel::OutOfRange for numbers of a wrong count or sign
+  Bodies(const System& system, const Inertia& inertia);
+
+  const Eigen::SparseMatrix<double>& mass() const { return mass_; }
+  bool damped() const { return damped_; }
+
+  /// What the dashpots do in a step [s].
+  struct Step {
+    double from;
+    double to;
+  };
+  /// Forces of the dashpots on the free displacements [N]; stress-free lengths grow evenly over
+  /// the step, as a corner of a program within it would make a jump of an instant's rate.
+  VectorXd force(const VectorXd& q, const VectorXd& v, const Step& step) const;
+  /// −∂force/∂v at q.
+  Eigen::SparseMatrix<double> damping(const VectorXd& q) const;
+  /// Heat of the dashpots over the step, and the temperature's work on them [J].
+  struct Work {
+    double heat = 0.0;
+    double thermal = 0.0;
+  };
+  Work work(const VectorXd& q0, const VectorXd& v0, const VectorXd& q1, const VectorXd& v1,
+            const Step& step, double theta) const;
+
+  /// Free displacements of node vectors, and back.
+  VectorXd free_part(const Eigen::Matrix3Xd& of_nodes) const;
+  Eigen::Matrix3Xd of_nodes(const VectorXd& free) const;
+
+ private:
+  struct Strut {  // link or spring with a dashpot
+    int first;
+    int second;
+    double axial;
+    double turning;
+    const Link* link;  // whose stress-free length grows; null: none
+  };
+  struct Rate {
+    Vector3d direction;
+    double length;
+    double strain_rate;  // L' − l_T' [m/s]
+    Vector3d across;     // [m/s]
+  };
+  Rate rate(const Strut& strut, const VectorXd& q, const VectorXd& v, const Step& step) const;
+  double growth_rate(const Strut& strut, const Step& step) const;
+  Vector3d at(int node, const VectorXd& free) const { return system_->displacement(node, free); }
+  template <class Add>
+  void spread(int row_node, int column_node, const Matrix3d& value, Add&& add) const;
+
+  const System* system_;
+  std::vector<int> row_;  // first free displacement of each node
+  std::vector<Strut> struts_;
+  Eigen::SparseMatrix<double> mass_;
+  bool damped_ = false;
+};
+
+}  // namespace statejump::truss::detail

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace statejump::truss::detail {
+
+namespace {
+
+/// Share of Coulomb's bound from which a contact slips: the contact problem is solved to 1e-10.
+constexpr double at_bound = 1.0 - 1e-8;
+
+JointStatus sliding(double friction, double bound) {
+  if (bound <= 0.0) return JointStatus::slip_plus;  // slips freely either way
+  return friction >= at_bound * bound    ? JointStatus::slip_plus
+         : friction <= -at_bound * bound ? JointStatus::slip_minus
+                                         : JointStatus::stick;
+}
+
+}  // namespace
+
+double Contact::depth(double force) const {
+  return is_elastic() && force > 0.0 ? std::pow(force / hertz_stiffness, 2.0 / 3.0) : 0.0;
+}
+
+double Contact::force_at(double depth) const {
+  return depth > 0.0 ? hertz_stiffness * depth * std::sqrt(depth) : 0.0;
+}
+
+double Contact::tangential_compliance(double normal) const {
+  if (tangential_stiffness < infinite) return 1.0 / tangential_stiffness;
+  if (mindlin_stiffness == infinite) return 0.0;
+  return 1.0 / (mindlin_stiffness * std::sqrt(std::max(depth(normal), least_depth)));
+}
+
+double Contact::kept_bend(double compliance_now) const {
+  return std::min(compliance, compliance_now) * friction_force;
+}
+
+Contacts::Contacts(const System& system) : system_(&system) {
+  int column = system.displacements();
+  const Model& model = system.model();
+  for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
+    const JointFrame frame =
+        std::visit([&](const auto& one) { return one.frame(model); }, model.joints[index(i)]);
+    const auto held = static_cast<int>(std::count(frame.holds.begin(), frame.holds.end(), true));
+    for (int k = frame.forces - held; k < frame.forces; ++k) holds_.push_back(column + k);
+    std::visit([&](const auto& one) { add(i, column, one); }, model.joints[index(i)]);
+    column += frame.forces;
+  }
+}
+
+void Contacts::add(int joint, int first_column, const Slider& slider) {
+  Contact rubbing;
+  rubbing.joint = joint;
+  rubbing.tangential_column = first_column;
+  rubbing.friction_coefficient = 1.0;
+  rubbing.given_force = slider.friction_force;
+  rubbing.tangential_stiffness = slider.tangential_stiffness;
+  rubbing.active = true;
+  all_.push_back(rubbing);
+  const auto stop = [&](JointStatus which, double sign, double clearance) {
+    if (std::isinf(clearance)) return;
+    Contact end;
+    end.joint = joint;
+    end.normal_column = first_column;
+    end.normal_sign = sign;
+    end.stop = which;
+    end.clearance = end.clearance_after = clearance;
+    all_.push_back(end);
+  };
+  stop(JointStatus::stop_plus, -1.0, slider.clearance_plus);
+  stop(JointStatus::stop_minus, 1.0, slider.clearance_minus);
+}
+
+void Contacts::add(int joint, int first_column, const ClearanceRevolute& revolute) {
+  Contact contact;
+  contact.joint = joint;
+  contact.normal_column = first_column;
+  contact.tangential_column = first_column + 1;
+  contact.friction_coefficient = revolute.friction_coefficient;
+  contact.hertz_stiffness = revolute.hertz_stiffness;
+  contact.mindlin_stiffness = revolute.mindlin_stiffness;
+  contact.least_depth = 1e-6 * revolute.radial_clearance;
+  all_.push_back(contact);
+}
+
+void Contacts::begin(const State& state) {
+  for (Contact& contact : all_) {
+    if (contact.normal_column < 0 || contact.stop != JointStatus::open) continue;
+    contact.normal_force = output(system_->model(), state, contact.joint, "normal_force_N")[0];
+  }
+}
+
+void Contacts::measure(const VectorXd& z, double time, const StepStart& start,
+                       const VectorXd& closures, double rounding) {
+  for (Contact& contact : all_) {
+    if (contact.normal_column < 0) continue;
+    const Trial at = system_->trial(contact.joint, z, time, start, JointModel::friction, 1.0);
+    if (contact.stop != JointStatus::open) {
+      const double slide = at.frame.axes.col(0).dot(at.moved[0] - at.moved[1]);
+      contact.gap = contact.clearance + contact.normal_sign * slide;
+      contact.clearance_after = contact.clearance;
+    } else {
+      contact.gap = -closures[contact.normal_column];
+      Vector3d apart = at.between(1, 0);
+      const Vector3d axis = at.frame.axes.col(2);
+      apart -= axis.dot(apart) * axis;
+      contact.clearance_after = contact.gap + apart.norm();
+    }
+    contact.active = contact.is_elastic() || contact.gap <= rounding;
+  }
+}
+
+void Contacts::remember_clearances() {
+  for (Contact& contact : all_) contact.clearance = contact.clearance_after;
+}
+
+void Contacts::write(VectorXd& z, Statuses& statuses) const {
+  z.tail(z.size() - system_->displacements()).setZero();
+  for (const Contact& contact : all_) {
+    JointStatus& status = statuses[index(contact.joint)];
+    if (contact.normal_column < 0) {
+      z[contact.tangential_column] += contact.friction_force;
+      status = sliding(contact.friction_force, contact.given_force);
+    } else if (contact.stop != JointStatus::open) {
+      z[contact.normal_column] -= contact.normal_sign * contact.normal_force;
+      if (contact.normal_force > 0.0) status = contact.stop;
+    } else {
+      z[contact.normal_column] = contact.normal_force;
+      z[contact.tangential_column] = contact.friction_force;
+      status =
+          contact.normal_force > 0.0
+              ? sliding(contact.friction_force, contact.friction_coefficient * contact.normal_force)
+              : JointStatus::open;
+    }
+  }
+}
+
+}  // namespace statejump::truss::detail

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace statejump::truss::detail {
+
+using complementarity::Problem;
+
+namespace {
+
+/// Momentum and forces balance to this share of the largest of either.
+constexpr double balance = 1e-10;
+/// An elastic contact is on its law to this share of its force: its problem is solved to 1e-10 of
+/// the largest velocity in it, which a stiff contact turns into much more of a force.
+constexpr double on_law = 1e-6;
+
+}  // namespace
+
+Stepper::Stepper(const System& system, const Bodies& bodies, const MotionOptions& options)
+    : system_(&system),
+      bodies_(&bodies),
+      options_(&options),
+      contacts_(system),
+      at_(system.assembly()) {
+  account_.friction = VectorXd::Zero(static_cast<Eigen::Index>(system.model().joints.size()));
+}
+
+void Stepper::begin(const VectorXd& q, const VectorXd& v, const State* equilibrium) {
+  q_ = q;
+  v_ = v;
+  time_ = 0.0;
+  z_ = VectorXd::Zero(system_->unknowns());
+  z_.head(q.size()) = q;
+  Statuses statuses = system_->all_stick();
+  origin_ = system_->begin(z_, 0.0, statuses, 1.0);
+  if (equilibrium != nullptr) contacts_.begin(*equilibrium);
+  contacts_.write(z_, statuses);
+  evaluate(q_, 0.0);
+  contacts_.measure(z_, 0.0, origin_, at_.residual, 0.0);
+  contacts_.remember_clearances();
+  internal_ = -at_.residual.head(q_.size());
+  origin_ = system_->begin(z_, 0.0, statuses, 1.0);
+}
+
+/// Residual, stiffness and directions with all joints closed and free of force.
+void Stepper::evaluate(const VectorXd& q, double time) {
+  VectorXd z = VectorXd::Zero(system_->unknowns());
+  z.head(q.size()) = q;
+  system_->evaluate(z, time, origin_, system_->all_stick(), JointModel::friction, 1.0, at_);
+}
+
+VectorXd Stepper::force(const VectorXd& q, const VectorXd& v, double time,
+                        const Bodies::Step& step) {
+  evaluate(q, time);
+  VectorXd found = -at_.residual.head(q.size());
+  if (bodies_->damped()) found += bodies_->force(q, v, step);
+  return found;
+}
+
+void Stepper::factorize(const Trial& step) {
+  const Eigen::Index n = q_.size();
+  const double theta = options_->theta;
+  const double h = step.h;
+  Eigen::SparseMatrix<double> matrix =
+      bodies_->mass() + (h * theta * h * theta) * at_.jacobian.block(0, 0, n, n);
+  if (bodies_->damped()) matrix += (h * theta) * bodies_->damping(step.q_middle);
+  const auto held = static_cast<Eigen::Index>(contacts_.holds().size());
+  holds_.resize(n, held);
+  if (held > 0) {
+    // Of the size of the rest, so that pivots compare.
+    const double scale = matrix.diagonal().maxCoeff();
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Eigen::Index j = 0; j < matrix.outerSize(); ++j) {
+      for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it) {
+        entries.emplace_back(it.row(), it.col(), it.value());
+      }
+    }
+    std::vector<Eigen::Triplet<double>> columns;
+    for (Eigen::Index k = 0; k < held; ++k) {
+      const int column = contacts_.holds()[static_cast<std::size_t>(k)];
+      for (Eigen::SparseMatrix<double>::InnerIterator it(at_.jacobian, column); it; ++it) {
+        if (it.row() >= n) continue;
+        columns.emplace_back(it.row(), k, scale * it.value());
+        entries.emplace_back(it.row(), n + k, scale * it.value());
+        entries.emplace_back(n + k, it.row(), scale * it.value());
+      }
+    }
+    holds_.setFromTriplets(columns.begin(), columns.end());
+    matrix.resize(n + held, n + held);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+  }
+  matrix.makeCompressed();
+  ++factorizations_;
+  if (!factor_.factorize(matrix)) fail(FailureKind::singular, step.to, nullptr);
+}
+
+Stepper::Local Stepper::local_problem(const Trial& step) {
+  Local local;
+  for (Contact& contact : contacts_.all()) {
+    if (contact.active) local.contacts.push_back(&contact);
+  }
+  const Eigen::Index n = q_.size();
+  const Eigen::Index held = holds_.cols();
+  const auto rows = static_cast<Eigen::Index>(2 * local.contacts.size());
+  local.directions = Eigen::MatrixXd::Zero(n, rows);
+  const auto take = [&](int column, double sign, Eigen::Index to) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(at_.jacobian, column); it; ++it) {
+      if (it.row() < n) local.directions(it.row(), to) = sign * it.value();
+    }
+  };
+  for (Eigen::Index i = 0; i < rows / 2; ++i) {
+    const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+    if (contact.normal_column >= 0) take(contact.normal_column, contact.normal_sign, 2 * i);
+    if (contact.tangential_column >= 0) take(contact.tangential_column, 1.0, 2 * i + 1);
+  }
+  local.answers = Eigen::MatrixXd::Zero(n + held, rows);
+  VectorXd right = VectorXd::Zero(n + held);
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    if (local.directions.col(k).isZero(0.0)) continue;
+    right.head(n) = local.directions.col(k);
+    local.answers.col(k) = factor_.solve(right);
+  }
+  local.delassus = local.directions.transpose() * local.answers.topRows(n);
+  local.before = local.directions.transpose() * v_;
+  for (Eigen::Index i = 0; i < rows / 2; ++i) {
+    const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+    local.before[2 * i] += (contact.clearance_after - contact.clearance) / step.h;
+  }
+  // Rows that touch nothing else are of the size of the others.
+  const auto real = (local.delassus.diagonal().array() > 0.0).count();
+  const double size = real > 0 ? local.delassus.trace() / static_cast<double>(real) : 1.0;
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    const Contact& contact = *local.contacts[static_cast<std::size_t>(k / 2)];
+    const int column = k % 2 == 0 ? contact.normal_column : contact.tangential_column;
+    if (column < 0) local.delassus(k, k) = size;
+  }
+  local.impulses = VectorXd::Zero(rows);
+  for (Eigen::Index i = 0; i < rows / 2; ++i) {
+    const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+    local.impulses[2 * i] =
+        step.h * (contact.normal_column < 0 ? contact.given_force : contact.normal_force);
+    local.impulses[2 * i + 1] = -step.h * contact.friction_force;
+  }
+  return local;
+}
+
+void Stepper::solve_contacts(const Trial& step, const VectorXd& free, bool first, Local& local) {
+  const double h = step.h;
+  Problem problem{2, local.delassus, local.directions.transpose() * free,
+                  VectorXd::Zero(static_cast<Eigen::Index>(local.contacts.size()))};
+  Eigen::MatrixXd& w = std::get<Eigen::MatrixXd>(problem.delassus);
+  for (Eigen::Index i = 0; i < problem.mu.size(); ++i) {
+    const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+    const Eigen::Index n = 2 * i;
+    const Eigen::Index t = n + 1;
+    problem.mu[i] = contact.friction_coefficient;
+    double normal = contact.given_force;
+    if (contact.normal_column < 0) {
+      problem.q[n] = -w(n, n) * h * contact.given_force;
+    } else if (contact.is_elastic()) {
+      // Gap at the end of the step: from the middle on by the velocity that comes.
+      const double toward = contact.gap - 0.5 * h * local.directions.col(n).dot(v_);
+      const double speed =
+          first ? local.directions.col(n).dot(v_)
+                : local.directions.col(n).dot(free) + local.delassus.row(n) * local.impulses;
+      const double depth = std::max(-(toward + h * speed), contact.least_depth);
+      normal = contact.force_at(depth);
+      const double compliance = depth / (1.5 * normal);
+      w(n, n) += compliance / (h * h);
+      problem.q[n] += (toward + depth - compliance * normal) / h;
+    } else {
+      problem.q[n] += (contact.clearance_after - contact.clearance) / h +
+                      options_->restitution * std::min(local.before[n], 0.0);
+    }
+    const double compliance = contact.tangential_compliance(normal);
+    w(t, t) += compliance / (h * h);
+    problem.q[t] += contact.kept_bend(compliance) / h;
+  }
+  ++iterations_;
+  if (problem.q.isZero(0.0)) {
+    local.impulses.setZero();
+    return;
+  }
+  complementarity::Options options;
+  options.guess = local.impulses;
+  const complementarity::Solution solution = complementarity::solve(problem, options);
+  if (solution.status != complementarity::Status::solved) {
+    fail(FailureKind::not_converged, step.to, worst(problem, solution.reactions, local));
+  }
+  largest_merit_ = std::max(largest_merit_, solution.merit.largest());
+  local.impulses = solution.reactions;
+}
+
+/// The contact whose law is violated most.
+const Contact* Stepper::worst(const Problem& problem, const VectorXd& impulses,
+                              const Local& local) const {
+  const VectorXd u = complementarity::velocities(problem, impulses);
+  const Contact* found = nullptr;
+  double most = -1.0;
+  for (Eigen::Index i = 0; i < problem.mu.size(); ++i) {
+    const double weight = std::get<Eigen::MatrixXd>(problem.delassus)(2 * i, 2 * i);
+    const double normal = std::abs(std::min(u[2 * i], weight * impulses[2 * i]));
+    const double bound = problem.mu[i] * std::max(impulses[2 * i], 0.0);
+    const double pulled = impulses[2 * i + 1] - u[2 * i + 1] / weight;
+    const double along = weight * std::abs(impulses[2 * i + 1] - std::clamp(pulled, -bound, bound));
+    if (normal + along > most) {
+      most = normal + along;
+      found = local.contacts[static_cast<std::size_t>(i)];
+    }
+  }
+  return found;
+}
+
+bool Stepper::balanced(const Trial& step, const VectorXd& residual, const VectorXd& held,
+                       const Local& local) const {
+  VectorXd left = residual;
+  double largest = step.h * at_.largest_force + (bodies_->mass() * step.v).cwiseAbs().maxCoeff();
+  if (local.impulses.size() > 0) {
+    const VectorXd pushed = local.directions * local.impulses;
+    largest = std::max(largest, pushed.cwiseAbs().maxCoeff());
+    left -= pushed;
+  }
+  if (held.size() > 0) left += holds_ * held;
+  VectorXd z = z_;
+  z.head(step.q.size()) = step.q;
+  const double bound = balance * largest + step.h * system_->rounding(z).force;
+  if (!(left.cwiseAbs().maxCoeff() <= bound)) return false;
+  // Elastic contacts are on their law, not only on its tangent.
+  for (std::size_t i = 0; i < local.contacts.size(); ++i) {
+    const Contact& contact = *local.contacts[i];
+    if (!contact.is_elastic()) continue;
+    const auto n = static_cast<Eigen::Index>(2 * i);
+    const auto direction = local.directions.col(n);
+    const double gap = contact.gap + step.h * direction.dot(step.v - 0.5 * v_);
+    const double force = contact.force_at(-gap);
+    const double least = contact.force_at(contact.least_depth);
+    if (std::abs(local.impulses[n] - step.h * force) > step.h * (on_law * force + least)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void Stepper::advance(double to) {
+  const double theta = options_->theta;
+  Trial step{to - time_, to, q_ + 0.5 * (to - time_) * v_, {}, {}, v_};
+  const double h = step.h;
+  const Eigen::Index n = q_.size();
+  const Bodies::Step span{time_, to};
+  step.force_before = internal_;
+  if (bodies_->damped()) step.force_before += bodies_->force(q_, v_, span);
+
+  evaluate(step.q_middle, to);
+  VectorXd middle = z_;
+  middle.head(n) = step.q_middle;
+  contacts_.measure(middle, to, origin_, at_.residual, system_->rounding(middle).length);
+  factorize(step);
+  Local local = local_problem(step);
+
+  VectorXd held;
+  for (int k = 0;; ++k) {
+    step.q = q_ + h * (theta * step.v + (1.0 - theta) * v_);
+    const VectorXd now = force(step.q, step.v, to, span);
+    const VectorXd residual =
+        bodies_->mass() * (step.v - v_) - h * (theta * now + (1.0 - theta) * step.force_before);
+    if (!residual.allFinite()) fail(FailureKind::not_finite, to, nullptr);
+    if (k > 0 && balanced(step, residual, held, local)) break;
+    if (k == options_->most_iterations) fail(FailureKind::not_converged, to, nullptr);
+    VectorXd right(n + holds_.cols());
+    right.head(n) = -residual;
+    if (holds_.cols() > 0) right.tail(holds_.cols()) = -(holds_.transpose() * step.v);
+    const VectorXd correction = factor_.solve(right);
+    const VectorXd free = step.v + correction.head(n);
+    held = correction.tail(holds_.cols());
+    step.v = free;
+    if (!local.contacts.empty()) {
+      solve_contacts(step, free, k == 0, local);
+      const VectorXd answer = local.answers * local.impulses;
+      step.v += answer.head(n);
+      held += answer.tail(holds_.cols());
+    }
+  }
+  book(step, local);
+}
+
+/// Takes the step: memories, energies, statuses.
+void Stepper::book(const Trial& step, const Local& local) {
+  const Bodies::Step span{time_, step.to};
+  const double h = step.h;
+  for (Contact& contact : contacts_.all()) {
+    if (contact.active) continue;
+    contact.normal_force = contact.friction_force = contact.compliance = 0.0;
+  }
+  const VectorXd mean =
+      0.5 * (local.before + local.directions.transpose() * step.v);  // normals: less the growth
+  for (std::size_t i = 0; i < local.contacts.size(); ++i) {
+    Contact& contact = *local.contacts[i];
+    const auto n = static_cast<Eigen::Index>(2 * i);
+    const double stored_before[] = {contact.normal_energy(), contact.tangential_energy()};
+    const double normal = local.impulses[n] / h;
+    if (contact.normal_column >= 0) contact.normal_force = normal;
+    contact.friction_force = normal > 0.0 ? -local.impulses[n + 1] / h : 0.0;
+    contact.compliance = normal > 0.0 ? contact.tangential_compliance(normal) : 0.0;
+    if (contact.tangential_column >= 0) {
+      const double heat = contact.friction_force * h * mean[n + 1] -
+                          (contact.tangential_energy() - stored_before[1]);
+      account_.friction[contact.joint] += heat;
+      account_.negative += std::min(heat, 0.0);
+    }
+    if (contact.normal_column >= 0) {
+      const double growth = contact.clearance_after - contact.clearance;
+      const double heat = -local.impulses[n] * (mean[n] + 0.5 * growth / h) -
+                          (contact.normal_energy() - stored_before[0]);
+      account_.impact += heat;
+      account_.negative += std::min(heat, 0.0);
+      account_.thermal_work -= contact.normal_force * growth;
+    }
+  }
+  if (bodies_->damped()) {
+    const Bodies::Work work = bodies_->work(q_, v_, step.q, step.v, span, options_->theta);
+    account_.damping += work.heat;
+    account_.thermal_work += work.thermal;
+  }
+  VectorXd z(z_.size());
+  z.head(step.q.size()) = step.q;
+  Statuses statuses = origin_.statuses;
+  contacts_.write(z, statuses);
+  StepStart after = system_->commit(z, step.to, statuses, origin_);
+  State worked;
+  worked.joint_dissipation = VectorXd::Zero(account_.friction.size());
+  system_->account(z_, time_, z, step.to, origin_, after, VectorXd::Zero(account_.friction.size()),
+                   worked);
+  account_.thermal_work += worked.thermal_work;
+  contacts_.remember_clearances();
+  internal_ = -at_.residual.head(step.q.size());
+  q_ = step.q;
+  v_ = step.v;
+  z_ = std::move(z);
+  time_ = step.to;
+  origin_ = std::move(after);
+}
+
+void Stepper::describe(State& state) const {
+  system_->describe(z_, time_, origin_, state);
+  state.thermal_work = account_.thermal_work;
+  state.joint_dissipation = account_.friction;
+}
+
+void Stepper::fail(FailureKind kind, double when, const Contact* contact) const {
+  const Model& model = system_->model();
+  FailureFields fields{kind};
+  fields.time = when;
+  fields.temperature_change = model.temperature_change(0, 1.0, when);
+  fields.sought = "no step of the motion";
+  if (contact != nullptr) {
+    const Joint& joint = model.joints[index(contact->joint)];
+    fields.joints.push_back({kind_of(joint), name_of(joint)});
+  }
+  throw Failure(std::move(fields));
+}
+
+}  // namespace statejump::truss::detail

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bodies.hpp"
+#include "contacts.hpp"
+#include "linear/sparse_factor.hpp"
+#include "statejump/complementarity/solve.hpp"
+#include "statejump/failure.hpp"
+
+namespace statejump::truss::detail {
+
+/// Energies since the start that a state does not tell [J].
+struct Account {
+  double thermal_work = 0.0;
+  double damping = 0.0;
+  double impact = 0.0;    ///< Of all contacts, across their surfaces.
+  VectorXd friction;      ///< Of every joint.
+  double negative = 0.0;  ///< Sum of what a contact gave below zero in a step.
+};
+
+/// A truss in motion, one step of Moreau and Jean's scheme after the other; see simulate().
+class Stepper {
+ public:
+  Stepper(const System& system, const Bodies& bodies, const MotionOptions& options);
+
+  /// Sets places and velocities, at rest in their contacts where a quasi-static state is given.
+  void begin(const VectorXd& q, const VectorXd& v, const State* equilibrium);
+  /// One step to this time. @throws Failure if it has no solution that is found
+  void advance(double to);
+
+  const VectorXd& velocity() const { return v_; }
+  double time() const { return time_; }
+  const Statuses& statuses() const { return origin_.statuses; }
+  const Account& account() const { return account_; }
+  double kinetic_energy() const { return 0.5 * v_.dot(bodies_->mass() * v_); }
+  void describe(State& state) const;
+  long iterations() const { return iterations_; }
+  long factorizations() const { return factorizations_; }
+  double largest_merit() const { return largest_merit_; }
+
+ private:
+  /// The contact problem of a step: which contacts, and what their impulses do to the velocities.
+  struct Local {
+    std::vector<Contact*> contacts;
+    Eigen::MatrixXd directions;  ///< H, its columns those of the problem's rows; zero: none.
+    Eigen::MatrixXd answers;     ///< (M + …)⁻¹ H, and of the holds.
+    VectorXd before;             ///< Velocities of the contacts at the start of the step.
+    Eigen::MatrixXd delassus;
+    VectorXd impulses;
+  };
+  /// A step in the making.
+  struct Trial {
+    double h;
+    double to;
+    VectorXd q_middle;
+    VectorXd force_before;  ///< f0 [N]
+    VectorXd q;
+    VectorXd v;
+  };
+
+  void factorize(const Trial& step);
+  Local local_problem(const Trial& step);
+  /// Solves the contact problem of an iterate. @param free velocities without impulses
+  void solve_contacts(const Trial& step, const VectorXd& free, bool first, Local& local);
+  /// f [N] at places and velocities; also leaves the largest force in `at_`.
+  VectorXd force(const VectorXd& q, const VectorXd& v, double time, const Bodies::Step& step);
+  void evaluate(const VectorXd& q, double time);
+  bool balanced(const Trial& step, const VectorXd& residual, const VectorXd& held,
+                const Local& local) const;
+  void book(const Trial& step, const Local& local);
+  [[noreturn]] void fail(FailureKind kind, double when, const Contact* contact) const;
+  const Contact* worst(const complementarity::Problem& problem, const VectorXd& impulses,
+                       const Local& local) const;
+
+  const System* system_;
+  const Bodies* bodies_;
+  const MotionOptions* options_;
+  Contacts contacts_;
+  Assembly at_;
+  linear::SparseFactor factor_;
+  Eigen::SparseMatrix<double> holds_;  ///< Columns that hold, scaled, of the current factors.
+  StepStart origin_;
+  VectorXd q_;
+  VectorXd v_;
+  VectorXd z_;  ///< q and the forces of the joints at the end of the last step.
+  double time_ = 0.0;
+  VectorXd internal_;  ///< Forces of links, springs and loads at (q, time) [N].
+  Account account_;
+  long iterations_ = 0;
+  long factorizations_ = 0;
+  double largest_merit_ = 0.0;
+};
+
+}  // namespace statejump::truss::detail

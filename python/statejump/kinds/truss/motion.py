@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Motion of a truss case: the reduced model with inertia. Masses and dashpots are those of the DEM."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil
+from typing import Any
+
+import numpy as np
+
+from statejump import _engine
+from statejump.core import physics
+from statejump.core.engine_failures import EngineFailed
+from statejump.core.errors import Interrupted
+from statejump.core.progress import Tell
+from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.dem import lumped_mass_kg
+from statejump.kinds.truss.resolved import ResolvedTruss
+from statejump.kinds.truss.solve import TrussEvent, engine_items
+
+
+@dataclass(frozen=True)
+class TrussMotion:
+    """What the engine found. ``states`` are those of :class:`TrussPath` with velocities and energies."""
+
+    truss: ResolvedTruss
+    states: dict[str, np.ndarray]
+    events: tuple[TrussEvent, ...]
+    event_heat_J: np.ndarray  # of all joints in the step of each event
+    watched_velocity_m_per_s: np.ndarray  # (steps + 1, 3)
+    complete: bool
+    time_step_s: float
+    iterations: int
+    factorizations: int
+    unknowns: int
+    largest_contact_merit: float
+    negative_dissipation_J: float
+
+
+def dashpots_N_s_per_m(nodes: np.ndarray, stiffness_N_per_m: np.ndarray, ratio: float, mass_kg: np.ndarray
+                       ) -> np.ndarray:
+    """Return c = 2 ζ sqrt(k m) of parts between two nodes, m the mass of both in series, as the DEM has them.
+
+    :param mass_kg: of every node; 0 for one that does not move
+    """
+    inverse = np.divide(1, mass_kg, out=np.zeros_like(mass_kg), where=mass_kg > 0)
+    pair = inverse[nodes].sum(axis=1)
+    made: np.ndarray = 2 * ratio * np.sqrt(np.divide(stiffness_N_per_m, pair, out=np.zeros_like(pair), where=pair > 0))
+    return made
+
+
+def inertia(case: TrussCase) -> dict[str, Any]:
+    """Return masses and dashpots of a case as the engine takes them."""
+    truss, links, springs = case.resolve(), case.resolve().links, case.resolve().springs
+    lumped = lumped_mass_kg(truss)
+    axial = physics.axial_stiffness_N_per_m(
+        links.young_modulus_Pa, links.cross_section_area_m2, links.stress_free_length_m)
+    ratio, is_lumped = case.dem.link_damping_ratio, case.motion.masses == "lumped"
+    return {
+        "link_mass_kg": np.zeros(len(links.names)) if is_lumped else links.mass_kg,
+        "node_mass_kg": lumped if is_lumped else np.zeros(len(truss.nodes.names)),
+        "link_damping_N_s_per_m": dashpots_N_s_per_m(links.nodes, axial, ratio, lumped),
+        "pin_damping_N_m_s_per_rad": np.full(len(links.names), case.dem.pin_damping_N_m_s_per_rad),
+        "spring_damping_N_s_per_m": dashpots_N_s_per_m(springs.nodes, springs.stiffness_N_per_m, ratio, lumped),
+    }
+
+
+def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int = -1) -> TrussMotion:
+    """Return the motion of a case through its program.
+
+    :param tell: takes the finished share, 0 to 1
+    :param watched_node: number of a node whose velocity is kept at every step
+    :raises FailedRun: no start, or a step without solution: with joint and temperature
+    :raises Interrupted: Ctrl-C
+    """
+    def going_on(share: float) -> bool:
+        tell(share)
+        return True
+
+    truss, samples = case.resolve(), case.samples_per_cycle
+    steps_per_sample = ceil(case.motion.steps_per_cycle / samples)
+    try:
+        found = _engine.truss_motion(
+            **engine_items(truss), inertia=inertia(case), steps=steps_per_sample * samples * case.thermal.cycles,
+            sample_every=steps_per_sample, theta=case.motion.theta, restitution=case.motion.restitution,
+            watched_node=watched_node, progress=going_on,
+        )
+    except _engine.EngineFailure as failure:
+        raise EngineFailed(failure, remedy=_remedy(failure), case=truss.name, place=truss.name) from None
+    if not found["complete"]:
+        raise Interrupted()
+    events: Sequence[TrussEvent] = [TrussEvent(**event) for event in found.pop("events")]
+    return TrussMotion(truss=truss, events=tuple(events), **found)
+
+
+def _remedy(failure: _engine.EngineFailure) -> str | None:
+    stepped = failure.kind in ("not_converged", "singular") and "no step" in str(failure.message)
+    return "set motion.steps_per_cycle to more" if stepped else None

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/truss/motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <boost/numeric/odeint.hpp>
+#include <cmath>
+#include <vector>
+
+#include "statejump/failure.hpp"
+
+namespace statejump::truss {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Matrix3Xd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+thermal::Program lasting(double seconds, double largest = 0.0) {
+  thermal::Program program;
+  program.shape = thermal::Shape::triangle;
+  program.temperature_change_max = largest;
+  program.period = seconds;
+  return program;
+}
+
+Node node(const std::string& name, double x, double y, int freedoms) {
+  Node made;
+  made.name = name;
+  made.position = {x, y, 0.0};
+  made.freedoms = freedoms;
+  return made;
+}
+
+MotionStart at_rest(const Model& model) {
+  const auto nodes = static_cast<Eigen::Index>(model.nodes.size());
+  return {Matrix3Xd::Zero(3, nodes), Matrix3Xd::Zero(3, nodes)};
+}
+
+/// Energy that came in less what is stored and what became heat, since the start [J].
+double residue(const Motion& motion) {
+  const auto sum = [](const State& state, const MovingState& moving) {
+    return state.thermal_work - state.load_potential - state.elastic_energy -
+           moving.kinetic_energy - state.joint_dissipation.sum() - moving.damping_dissipation -
+           moving.impact_dissipation;
+  };
+  return sum(motion.states.back(), motion.moving.back()) -
+         sum(motion.states.front(), motion.moving.front());
+}
+
+constexpr double stiffness = 5e3;  // E A [N]
+constexpr double rod_mass = 0.3;   // [kg]
+
+/// Two rods that hang from a hinge, with weights.
+Model double_pendulum() {
+  Model model;
+  model.programs = {lasting(0.5)};
+  model.nodes = {node("A", 0, 0, 0), node("B", 1, 0, 2), node("C", 1.5, 0.5, 2)};
+  for (int i : {1, 2}) model.nodes[static_cast<std::size_t>(i)].load = {0.0, -5.0, 0.0};
+  model.links = {{"AB", 0, 1, stiffness, 1.0, 0.0, 0, 1.0},
+                 {"BC", 1, 2, stiffness, std::sqrt(0.5), 0.0, 0, 1.0}};
+  return model;
+}
+
+/// The same from its own equations, to 1e-12: places of B and C at the end.
+Eigen::Vector4d double_pendulum_by_ode() {
+  using Numbers = std::vector<double>;
+  // Rods of linear velocity: m/3 of both at B and of one at C, m/6 between them.
+  Matrix2d mass;
+  mass << 2.0 * rod_mass / 3.0, rod_mass / 6.0, rod_mass / 6.0, rod_mass / 3.0;
+  const Matrix2d inverse = mass.inverse();
+  const auto pull = [](const Vector2d& along, double length) -> Vector2d {
+    return stiffness * (along.norm() / length - 1.0) * along.normalized();
+  };
+  const auto rates = [&](const Numbers& y, Numbers& dy, double) {
+    const Vector2d b(y[0], y[1]);
+    const Vector2d c(y[2], y[3]);
+    const Vector2d lower = pull(c - b, std::sqrt(0.5));
+    const Vector2d on_b = Vector2d(0.0, -5.0) - pull(b, 1.0) + lower;
+    const Vector2d on_c = Vector2d(0.0, -5.0) - lower;
+    for (std::size_t k = 0; k < 2; ++k) {
+      dy[k] = y[4 + k];
+      dy[2 + k] = y[6 + k];
+      const auto i = static_cast<Eigen::Index>(k);
+      dy[4 + k] = inverse(0, 0) * on_b[i] + inverse(0, 1) * on_c[i];
+      dy[6 + k] = inverse(1, 0) * on_b[i] + inverse(1, 1) * on_c[i];
+    }
+  };
+  namespace odeint = boost::numeric::odeint;
+  Numbers y{1.0, 0.0, 1.5, 0.5, 0.0, 0.0, 0.0, 0.0};
+  odeint::integrate_adaptive(
+      odeint::make_controlled(1e-12, 1e-12, odeint::runge_kutta_dopri5<Numbers>()), rates, y, 0.0,
+      0.5, 1e-4);
+  return {y[0], y[1], y[2], y[3]};
+}
+
+TEST(Motion, DoublePendulumConvergesAtSecondOrderToItsOwnEquations) {
+  const Model model = double_pendulum();
+  const Inertia inertia{Eigen::Vector2d(rod_mass, rod_mass), {}, {}, {}, {}};
+  const Eigen::Vector4d exact = double_pendulum_by_ode();
+  const auto error = [&](long steps) {
+    MotionOptions options;
+    options.steps = options.sample_every = steps;
+    options.start = at_rest(model);
+    const Motion motion = simulate(model, inertia, options);
+    const Matrix3Xd& moved = motion.states.back().displacement;
+    const Eigen::Vector4d found(1.0 + moved(0, 1), moved(1, 1), 1.5 + moved(0, 2),
+                                0.5 + moved(1, 2));
+    return (found - exact).norm();
+  };
+  const double coarse = error(8000);
+  const double fine = error(16000);
+  EXPECT_LT(fine, 1e-4);
+  EXPECT_NEAR(coarse / fine, 4.0, 0.2);
+}
+
+TEST(Motion, FreeChainKeepsItsMomenta) {
+  // Nothing outside acts: momentum is kept to rounding, angular momentum and energy to the order.
+  Model model = double_pendulum();
+  model.nodes[0].freedoms = 2;
+  for (Node& one : model.nodes) one.load.setZero();
+  const Inertia inertia{Eigen::Vector2d(rod_mass, rod_mass), Vector3d(0.1, 0.2, 0.3), {}, {}, {}};
+  const auto run = [&](long steps) {
+    MotionOptions options;
+    options.steps = options.sample_every = steps;
+    options.start = at_rest(model);
+    options.start->velocity << 0.3, -1.0, 0.5, -1.0, 2.0, 1.0, 0.0, 0.0, 0.0;
+    return simulate(model, inertia, options);
+  };
+  const auto momenta = [&](const Motion& motion, std::size_t sample) {
+    // Of rods with linear velocity, as the mass matrix has them.
+    Eigen::Matrix3d mass = Vector3d(0.1, 0.2, 0.3).asDiagonal();
+    for (int i : {0, 1}) {
+      Matrix2d rod;
+      rod << 2.0, 1.0, 1.0, 2.0;
+      mass.block<2, 2>(i, i) += rod_mass / 6.0 * rod;
+    }
+    Matrix3Xd places = motion.states[sample].displacement;
+    for (int i = 0; i < 3; ++i) places.col(i) += model.nodes[static_cast<std::size_t>(i)].position;
+    const Matrix3Xd carried = motion.moving[sample].velocity * mass;
+    double turning = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      turning += places(0, i) * carried(1, i) - places(1, i) * carried(0, i);
+    }
+    return Vector3d(carried.row(0).sum(), carried.row(1).sum(), turning);
+  };
+  const auto lost = [&](const Motion& motion) -> Vector3d {
+    return momenta(motion, motion.states.size() - 1) - momenta(motion, 0);
+  };
+  const Motion coarse = run(4000);
+  const Motion fine = run(8000);
+  for (const Motion* one : {&coarse, &fine}) {
+    // 1e-10 of a step's forces may be left: 8000 times, by chance.
+    EXPECT_LT(lost(*one).head<2>().norm(), 1e-8);
+  }
+  EXPECT_NEAR(lost(coarse)[2] / lost(fine)[2], 4.0, 0.5);
+  EXPECT_NEAR(residue(coarse) / residue(fine), 4.0, 0.5);
+}
+
+/// A journal that falls within its bearing, both rigid.
+Model falling_journal() {
+  Model model;
+  model.programs = {lasting(0.1)};
+  model.nodes = {node("bearing", 0, 0, 0), node("journal", 0, 0, 2)};
+  model.nodes[1].load = {0.0, -9.81, 0.0};
+  ClearanceRevolute joint;
+  joint.name = "joint";
+  joint.bearing_node = 0;
+  joint.journal_node = 1;
+  joint.journal_radius = 5e-3;
+  joint.radial_clearance = 1e-3;
+  model.joints = {joint};
+  return model;
+}
+
+TEST(Motion, JournalBouncesAtItsAnalyticTimes) {
+  const Model model = falling_journal();
+  const Inertia inertia{{}, Vector2d(0.0, 1.0), {}, {}, {}};
+  const double e = 0.7;
+  MotionOptions options;
+  options.steps = 20000;
+  options.restitution = e;
+  options.start = at_rest(model);
+  options.start->displacement(1, 1) = -0.5e-3;
+  const Motion motion = simulate(model, inertia, options);
+  const double h = motion.time_step;
+  double speed = std::sqrt(2.0 * 9.81 * 0.5e-3);
+  double time = speed / 9.81;
+  double energy = 0.5 * speed * speed;
+  int impact = 0;
+  for (const Event& event : motion.events) {
+    if (event.before != JointStatus::open || impact == 6) continue;
+    // A contact is found within a step; every bounce takes over what was missed.
+    EXPECT_NEAR(event.time, time, 3.0 * h * (1 + impact)) << "impact " << impact;
+    speed *= e;
+    time += 2.0 * speed / 9.81;
+    ++impact;
+  }
+  EXPECT_EQ(impact, 6);
+  // At the end it rests, and impacts took the energy of the fall.
+  EXPECT_NEAR(motion.moving.back().impact_dissipation, energy, 1e-3 * energy);
+  EXPECT_LT(motion.moving.back().velocity.norm(), 9.81 * h * 2.0);
+  EXPECT_LT(std::abs(residue(motion)), 1e-12 * energy * 1e3);
+}
+
+/// Bar of Table 1 on a block that slides on the ground.
+Model bar(double seconds) {
+  Model model;
+  model.programs = {lasting(seconds, 100.0)};
+  model.nodes = {node("A", 0, 0, 0), node("B", 0.5, 0, 1)};
+  model.links = {{"AB", 0, 1, 70e9 * 9e-6, 0.5, 23.4e-6, 0, 1.0}};
+  Slider slider;
+  slider.name = "S";
+  slider.first = 1;
+  slider.friction_force = 30.0;
+  slider.clearance_plus = 1e-3;
+  model.joints = {slider};
+  return model;
+}
+
+TEST(Motion, SlidingBlockStopsWhereFrictionHasTakenItsEnergy) {
+  Model model = bar(0.02);
+  model.programs = {lasting(0.02)};
+  model.links.clear();
+  const Inertia inertia{{}, Vector2d(0.0, 2.0), {}, {}, {}};
+  const auto slid = [&](long steps) {
+    MotionOptions options;
+    options.steps = steps;
+    options.start = at_rest(model);
+    options.start->velocity(0, 1) = 0.1;
+    const Motion motion = simulate(model, inertia, options);
+    EXPECT_NEAR(motion.states.back().joint_dissipation[0], 0.5 * 2.0 * 0.01, 1e-12);
+    EXPECT_EQ(motion.states.back().joint_status[0], JointStatus::stick);
+    return motion.states.back().displacement(0, 1);
+  };
+  const double exact = 2.0 * 0.01 / (2.0 * 30.0);
+  EXPECT_NEAR(slid(1000), exact, 0.1 * 2e-5);  // the step in which it stops
+}
+
+TEST(Motion, SlowHeatingFollowsTheQuasiStaticPath) {
+  // Inertia of the block, m a, beside its friction goes with the period squared.
+  const auto error = [](double seconds) {
+    const Model model = bar(seconds);
+    const double k = 70e9 * 9e-6 / 0.5;
+    const double mass = 0.1;
+    const Inertia inertia{Vector2d(mass, 0.0).head(1),
+                          {},
+                          Vector2d(2.0 * 0.5 * std::sqrt(k * mass / 3.0), 0.0).head(1),
+                          {},
+                          {}};
+    MotionOptions options;
+    options.steps = 20000;
+    const Motion motion = simulate(model, inertia, options);
+    const double jump = 30.0 * 0.5 / (70e9 * 9e-6);
+    EXPECT_NEAR(residue(motion) / motion.states.back().joint_dissipation.sum(), 0.0, 1e-3);
+    return std::abs(motion.states.back().displacement(0, 1) - jump) / jump;
+  };
+  const double fast = error(0.1);
+  const double slow = error(1.0);
+  EXPECT_LT(slow, 1e-3);
+  EXPECT_LT(slow, 0.2 * fast);
+}
+
+}  // namespace
+}  // namespace statejump::truss

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Trusses in motion, through the command and from Python."""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import statejump as sj
+from statejump.kinds.truss import generate
+from statejump.kinds.truss.generate.document import write
+from statejump.results.read import read
+
+K = 70e9 * 9e-6 / 0.5  # stiffness of a bar of Table 1 [N/m]
+FRICTION = 100.0
+
+
+def chain(**changes: Any) -> dict[str, Any]:
+    made = generate.chain(3, friction_force_N=FRICTION, cycles=1, period_s=0.1)
+    made.setdefault("motion", {}).update(changes)
+    return made
+
+
+def case_file(folder: Path, made: dict[str, Any]) -> Path:
+    path = folder / f"{made['case']['name']}.toml"
+    write(made, path, [])
+    return path
+
+
+def test_chain_in_motion_is_written_beside_the_quasi_static_run(statejump, tmp_path: Path) -> None:
+    outcome = statejump("reduced", "--dynamic", case_file(tmp_path, chain()))
+    assert outcome.status == 0, outcome.output + outcome.errors
+    assert "contact problems" in outcome.output
+    folder = tmp_path / "results" / "chain_3_dynamic"
+    run = read(folder / "reduced.h5").models["reduced"]
+    # All blocks slide at the end. Inertia: m a of the tip, 1e-2 N at 3.3 mm in 0.05 s, beside 100 N; the last step of
+    # heating and of cooling moves the tip by 1e-3 of the way less or more.
+    jump = float(np.linalg.norm(run["displacement_m"][-1] - run["displacement_m"][0], axis=1).max())
+    assert jump == pytest.approx(FRICTION / K * 6, rel=1e-3)
+    assert run.history["velocity_m_per_s"].values.shape == run.history["displacement_m"].values.shape
+    heat = run["friction_dissipation_J"]
+    assert heat[-1] > 0.1 and np.all(np.diff(heat) > -1e-9 * heat[-1])
+    assert abs(run.summary["energy_residue_J"]) < 1e-6 * heat[-1]
+    assert (folder / "reduced_history.csv").exists()
+
+
+def test_masses_are_those_of_rods_or_of_the_dem() -> None:
+    # A bar whose end is free swings at the frequency of m/3 at its tip, and so does the lumped one; rods between two
+    # moving nodes differ.
+    runs = [sj.load(chain(masses=masses)).reduced(dynamic=True) for masses in ("consistent", "lumped")]
+    apart = np.abs(runs[0]["displacement_m"] - runs[1]["displacement_m"]).max()
+    assert 0 < apart < 1e-2 * np.abs(runs[0]["displacement_m"]).max()
+    assert runs[0].summary["unknowns"] == 3
+
+
+@pytest.mark.parametrize(("key", "value", "allowed"), [
+    ("theta", 0.4, "0.5"), ("restitution", 1.2, "1"), ("steps_per_cycle", 5, "10"), ("masses", "heavy", "lumped"),
+])
+def test_keys_out_of_range_are_refused(statejump, tmp_path: Path, key: str, value: Any, allowed: str) -> None:
+    outcome = statejump("reduced", "--dynamic", case_file(tmp_path, chain(**{key: value})))
+    assert outcome.status == 2
+    assert key in outcome.errors and allowed in outcome.errors and len(outcome.errors.splitlines()) == 1
+    assert not (tmp_path / "results").exists()
+
+
+def test_kinds_whose_reduced_model_is_no_truss_are_refused(statejump, tmp_path: Path) -> None:
+    outcome = statejump("reduced", "--dynamic", "table1")
+    assert outcome.status == 2 and "'statejump reduced --dynamic' is for 'truss'" in outcome.errors
+
+
+def test_motion_beside_the_dem(statejump, tmp_path: Path) -> None:
+    outcome = statejump("compare", "--dynamic", case_file(tmp_path, chain(masses="lumped")))
+    assert outcome.status == 0, outcome.output + outcome.errors
+    assert (tmp_path / "results" / "chain_3_dynamic" / "comparison.csv").exists()
+    refused = statejump("compare", "--dynamic", *[tmp_path / "results" / "chain_3_dynamic" / "comparison.h5"] * 2)
+    assert refused.status == 2 and "--dynamic" in refused.errors
