@@ -94,6 +94,42 @@ TEST(LinkageLaws, StateSaysWhatTheJointDoes) {
   EXPECT_GT(touching, 10);
 }
 
+TEST(LinkageLaws, FrictionSeesTheMaterialAtTheContactPoint) {
+  // Each link turns about its pin; the friction of `ambrosio` rises from 0 at 1e-5 m/s to Coulomb's
+  // at 1e-4 m/s, so that it says how fast the surfaces slide.
+  const Linkage model = with_laws({"hertz_internal", "none", "ambrosio", "material"});
+  State state = initial_state(model, Start::rest, 0.0, {1e-4, 0.0});
+  state.journal_centre.x() += 1e-8;
+  const Eigen::Vector2d ab = state.bearing_centre;
+  const Eigen::Vector2d bc = state.journal_centre - Eigen::Vector2d(frame, 0.0);
+  for (const double turn_ab : {0.0, 8e-4}) {
+    for (const double turn_bc : {7e-4, -9e-4}) {
+      state.bearing_velocity = turn_ab * Eigen::Vector2d(-ab.y(), ab.x());
+      state.journal_velocity = turn_bc * Eigen::Vector2d(-bc.y(), bc.x());
+      // Along (0, 1), at the point half-way between the surfaces, 5.1 mm + 5 nm from the bearing.
+      const double speed = turn_bc * (bc.x() + 5e-3 - 5e-9) - turn_ab * (ab.x() + 5.1e-3 + 5e-9);
+      const double share = (std::abs(speed) - 1e-5) / 9e-5;
+      ASSERT_TRUE(share > 0.1 && share < 0.99) << share;
+      const Joint joint = joint_state(model, state, 0.0, 0.0);
+      EXPECT_NEAR(joint.tangential_force, -std::copysign(0.3 * share, speed) * joint.normal_force,
+                  1e-9 * joint.normal_force);
+    }
+  }
+}
+
+TEST(LinkageLaws, RunThatStartsInContactSaysSo) {
+  const Linkage model = with_laws({"hertz_internal", "hunt_crossley", "none", "material"});
+  State state = initial_state(model, Start::rest, 0.0, {1e-4, 0.0});
+  state.journal_centre.x() += 1e-8;
+  const thermal::Program program = heating(0.05, 1.0);
+  for (const linkage::Run& run :
+       {simulate(model, program, state, {20000, 0}), simulate_adaptive(model, program, state)}) {
+    ASSERT_TRUE(run.first_contact);
+    EXPECT_EQ(run.first_contact->time, 0.0);
+    EXPECT_EQ(run.first_contact->temperature_change, 0.0);
+  }
+}
+
 TEST(LinkageLaws, DepthOutsideTheRangeStopsWithTheInstant) {
   // Johnson's formula ends at 4 e^-2 ΔR = 0.54 ΔR; a journal that arrives at 30 m/s goes beyond.
   const Linkage model = with_laws({"johnson", "none", "none", "material"});
