@@ -7,38 +7,11 @@ from math import cos, pi, sin
 from pathlib import Path
 
 import statejump_yade as sj
-from yade import wrapper
 from yade.minieigenHP import Quaternion, Vector3
 
 from parts import *  # noqa: F403
 
 Law = sj.Law2_BoreGeom_BorePhys_JointLaw
-LENGTH = 10e-3
-
-
-def bore_engines(program=None, damping=0.0, law=None, angle=2e-4, other=None):
-    O.engines = [
-        wrapper.ForceResetter(),
-        sj.ThermalExpansionEngine(program=program or constant()),
-        wrapper.InsertionSortCollider(
-            [sj.Bo1_Journal_Aabb(), sj.Bo1_Bearing_Aabb(), sj.Bo1_Ball_Aabb(), sj.Bo1_Socket_Aabb(),
-             sj.Bo1_MeshBore_Aabb()],
-            verletDist=1e-4,
-        ),
-        wrapper.InteractionLoop(
-            [sj.Ig2_Journal_Bearing_JointGeom(), sj.Ig2_Ball_Socket_JointGeom(),
-             sj.Ig2_Journal_MeshBore_BoreGeom(patchAngle=angle), sj.Ig2_Ball_MeshBore_BoreGeom(patchAngle=angle)],
-            [sj.Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys(
-                normalDampingRatio=damping, tangentialDampingRatio=damping)],
-            [sj.Law2_JointGeom_JointPhys_JointLaw(), law or Law()],
-        ),
-        sj.ThermalLinks(),
-        wrapper.NewtonIntegrator(damping=0),
-    ]
-
-
-def tube(around=200, along=20, **keywords):
-    return sj.MeshBore(**sj.bore_triangles(R2, LENGTH, around, along, **keywords))
 
 
 def cup():

@@ -107,6 +107,33 @@ def engines(
     ]
 
 
+def bore_engines(program=None, damping=0.0, law=None, angle=2e-4) -> None:
+    """Set the engines of a scene with bores of triangles."""
+    O.engines = [
+        wrapper.ForceResetter(),
+        sj.ThermalExpansionEngine(program=program or constant()),
+        wrapper.InsertionSortCollider(
+            [sj.Bo1_Journal_Aabb(), sj.Bo1_Bearing_Aabb(), sj.Bo1_Ball_Aabb(), sj.Bo1_Socket_Aabb(),
+             sj.Bo1_MeshBore_Aabb()],
+            verletDist=1e-4,
+        ),
+        wrapper.InteractionLoop(
+            [sj.Ig2_Journal_Bearing_JointGeom(), sj.Ig2_Ball_Socket_JointGeom(),
+             sj.Ig2_Journal_MeshBore_BoreGeom(patchAngle=angle), sj.Ig2_Ball_MeshBore_BoreGeom(patchAngle=angle)],
+            [sj.Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys(
+                normalDampingRatio=damping, tangentialDampingRatio=damping)],
+            [sj.Law2_JointGeom_JointPhys_JointLaw(), law or sj.Law2_BoreGeom_BorePhys_JointLaw()],
+        ),
+        sj.ThermalLinks(),
+        wrapper.NewtonIntegrator(damping=0),
+    ]
+
+
+def tube(around=200, along=20, **keywords) -> sj.MeshBore:
+    """Return a round bore of triangles, 10 mm long."""
+    return sj.MeshBore(**sj.bore_triangles(R2, 10e-3, around, along, **keywords))
+
+
 def energies() -> dict[str, float]:
     """Return O.energy as a dict."""
     return {name: O.energy[name] for name in O.energy.keys()}

@@ -37,12 +37,25 @@ def joint(law=None, expansion=2e-5, link_expansion=2e-5, heat=30.0, blocked="zXY
     MAIN.links, MAIN.spring, MAIN.metal = links, spring, metal
 
 
+def bored():
+    """A journal (1) pressed into a bore of triangles (2)."""
+    reset()
+    MAIN.metal = material(expansion=2e-5)
+    body((-0.5, 0, 0))
+    pin = body((CLEARANCE + 2e-6, 0, 0), sj.Journal(radius=R1), MAIN.metal, mass=0.02, inertia=1e-6, blocked="zXY")
+    body((0, 0, 0), tube(120, 12), material(expansion=2e-5))
+    bore_engines(sj.ThermalProgram(shape="half_sine", temperatureChangeMax=30.0, period=2e-5), damping=0.02)
+    O.dt = 1e-7
+    O.forces.setPermF(pin, (20, 3, 0))
+
+
 def state(number):
     return O.bodies[number].state
 
 
 def physics():
-    return O.interactions[1, 2].phys
+    found = O.interactions[1, 2].phys
+    return found.contacts[0] if isinstance(found, sj.BorePhys) else found
 
 
 def go(steps):
@@ -52,10 +65,10 @@ def go(steps):
     return sentence_of(O.step) if found[0] == "none" and O.iter < last else found
 
 
-def both(change, when="start", build=joint):
+def both(change, when="start", build=joint, steppers=(False, True)):
     """Return what ends the scene, both ways: class, text, step, the part and bodies that the plugin names."""
     found = []
-    for stepper in (False, True):
+    for stepper in steppers:
         build()
         if stepper:
             with_stepper(SUBSTEPS)
@@ -163,6 +176,16 @@ def by_name():
     }
 
 
+def bore():
+    """The same questions in a bore of triangles, which YADE's own loop steps; it has no link, spring or third body."""
+    changes = {**CHANGES, **MATERIALS, **CONTACTS}
+    named = [name for name in changes if "link" not in name and "spring" not in name]
+    return {
+        when: {name: both(changes[name], when, bored, (False,))[0] for name in named if when != "start" or name not in CONTACTS}
+        for when in ("start", "between", "within")
+    } | {"good": both(nothing, build=bored, steppers=(False,))[0]}
+
+
 def nothing():
     pass
 
@@ -222,5 +245,6 @@ def without_our_engines():
     return found
 
 
-PARTS = {each.__name__: each for each in (at_start, between, within, kept, by_name, lengths, good, setters, without_our_engines)}
+PARTS = {each.__name__: each for each in (
+    at_start, between, within, kept, by_name, bore, lengths, good, setters, without_our_engines)}
 finish(PARTS[sys.argv[1]]())
