@@ -80,6 +80,43 @@ TEST(PartialSlip, OneDirectionNeedsNoMorePointsThanItHasPieces) {
   }
 }
 
+TEST(PartialSlip, GrowthWithoutSlideLeavesNoPoint) {
+  Contact contact = pressed(0.5 * usual_depth);
+  for (const double depth : {0.7, 0.9, 1.0}) {
+    contact.to(depth * usual_depth, 0.0);
+    EXPECT_EQ(contact.memory.size(), 2) << depth;
+  }
+}
+
+TEST(PartialSlip, PointsThatSayNothingGoFirst) {
+  // A full zigzag over x^2 but for one point, on the line between its neighbours, wherever that is:
+  // the contact grows, which makes one point too many, and three quarters are kept.
+  constexpr int full = PartialSlipMemory::capacity;
+  const double edge = Contact::stiffness(usual_depth);
+  const double limit = mu * Contact::normal(usual_depth);
+  const double slope = 1.5 * limit / (edge * edge * edge);
+  for (int straight = 1; straight + 3 < full; ++straight) {
+    PartialSlipMemory memory;
+    memory.begin(slope, 0.0);
+    const auto at = [&](int i) {
+      const double square = edge * edge * i / (full - 1);
+      const double bound = slope * (edge * edge - square);
+      return PartialSlipMemory::Point{std::sqrt(square), {(i % 2 ? 0.1 : -0.1) * bound, 0.0}};
+    };
+    for (int i = 0; i < full; ++i) {
+      PartialSlipMemory::Point point = at(i);
+      if (i == straight) point.u = 0.5 * (at(i - 1).u + at(i + 1).u);
+      memory.push(point);
+    }
+    const PartialSlipMemory before = memory;
+    partial_slip_step(1.01 * edge, 1.01 * 1.01 * 1.01 * limit, {0.0, 0.0}, memory);
+    EXPECT_EQ(memory.size(), 3 * full / 4);
+    for (int i = 0; i < memory.size(); ++i) EXPECT_NE(memory[i].x, before[straight].x) << straight;
+    EXPECT_GT(memory.merged(), 0.0);
+    EXPECT_LT(memory.merged(), 0.05 * limit);
+  }
+}
+
 TEST(PartialSlip, LoadingUnloadingReloadingAtConstantLoad) {
   const double limit = mu * Contact::normal(usual_depth);
   const double gross = Contact::gross(usual_depth);
