@@ -124,6 +124,39 @@ void archive_value(Archive& archive, const char* name, std::vector<std::array<in
   archive_triples(archive, name, value, std::vector<int>());
 }
 
+// What a script must give for an attribute of a type.
+template <class Type>
+constexpr const char* what_it_takes() {
+  if constexpr (std::is_same_v<Type, bool>) return "True or False";
+  if constexpr (std::is_integral_v<Type>) return "a whole number";
+  if constexpr (std::is_floating_point_v<Type>) return "a number";
+  if constexpr (std::is_same_v<Type, std::string>) return "a text";
+  if constexpr (std::is_same_v<Type, Vector3r>) return "three numbers";
+  if constexpr (std::is_same_v<Type, std::vector<Real>>) return "a list of numbers";
+  if constexpr (std::is_same_v<Type, std::vector<Vector3r>>) return "a list of three numbers each";
+  if constexpr (std::is_same_v<Type, std::vector<std::array<int, 3>>>) {
+    return "a list of three whole numbers each";
+  }
+  return "of the type that the documentation names";
+}
+
+// @throws TypeError in Python's words, with the name of the attribute
+template <class Type>
+Type value_of(const char* class_name, const char* attribute, const boost::python::object& value) {
+  const boost::python::extract<Type> given(value);
+  try {
+    if (given.check()) return given();
+  } catch (const boost::python::error_already_set&) {  // an item of a list
+    PyErr_Clear();
+  }
+  const std::string text = boost::python::extract<std::string>(value.attr("__repr__")());
+  const std::string said = std::string(class_name) + "." + attribute + " = " + text +
+                           " is not allowed: must be " + what_it_takes<Type>();
+  PyErr_SetString(PyExc_TypeError, said.c_str());
+  boost::python::throw_error_already_set();
+  throw std::logic_error(said);  // not reached
+}
+
 template <class Class>
 boost::shared_ptr<Class> construct(boost::python::tuple& arguments, boost::python::dict& keywords) {
   auto instance = boost::make_shared<Class>();
@@ -174,7 +207,7 @@ class Registered : public Base {
       if (key != a.name) return;
       known = true;
       using Type = std::decay_t<decltype(self.*a.member)>;
-      self.*a.member = Type(boost::python::extract<Type>(value));
+      self.*a.member = detail::value_of<Type>(Derived::class_name, a.name, value);
     });
     if (!known) Base::pySetAttr(key, value);
   }
@@ -204,9 +237,9 @@ class Registered : public Base {
         entry.add_property(a.name, get, a.doc);
       } else {
         // Checked as on construction; a refused value leaves the old one in place.
-        const auto set = [member](Derived& self, const Type& value) {
+        const auto set = [member, name = a.name](Derived& self, const py::object& value) {
           const Type old = self.*member;
-          self.*member = value;
+          self.*member = detail::value_of<Type>(Derived::class_name, name, value);
           try {
             self.callPostLoad();
           } catch (...) {
@@ -214,10 +247,11 @@ class Registered : public Base {
             throw;
           }
         };
-        entry.add_property(a.name, get,
-                           py::make_function(set, py::default_call_policies(),
-                                             boost::mpl::vector<void, Derived&, const Type&>()),
-                           a.doc);
+        entry.add_property(
+            a.name, get,
+            py::make_function(set, py::default_call_policies(),
+                              boost::mpl::vector<void, Derived&, const py::object&>()),
+            a.doc);
       }
     });
     Derived::register_methods(entry);

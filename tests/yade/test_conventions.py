@@ -86,8 +86,19 @@ def test_unknown_and_positional_arguments_are_refused(seen):
     for name, (kind, text) in seen["unknown"].items():
         assert kind == "AttributeError" and "noSuchAttribute" in text, name
     assert seen["positional"][0] == "ValueError" and "keywords" in seen["positional"][1]
-    assert seen["wrong_type"][0] == "TypeError"
     assert seen["read_only"][0] == "AttributeError"
+
+
+def test_values_of_another_type_give_a_sentence(seen):
+    assert seen["wrong_types"] == [["TypeError", f"{value} is not allowed: must be {allowed}"] for value, allowed in (
+        ("Journal.radius = 'large'", "a number"),
+        ("Journal.radius = 'large'", "a number"),
+        ("ThermalProgram.cycles = 1.5", "a whole number"),
+        ("ThermalProgram.tableTimes = [0, 'one']", "a list of numbers"),
+        ("ThermalProgram.shape = 3", "a text"),
+        ("SlotFace.normal = (0, 1)", "three numbers"),
+    )] + [["TypeError", seen["wrong_types"][-1][1]]]
+    assert seen["wrong_types"][-1][1].startswith("ThermalLinks.links = [<")
 
 
 def test_values_out_of_range_give_a_sentence(seen):

@@ -108,6 +108,6 @@ def test_wrong_numbers_of_substeps(wrong, name, value):
     assert text == f"JointStepper.substeps = {value} is not allowed: must be 1 or above [-]"
 
 
-@pytest.mark.parametrize("name", ["fraction", "text"])
-def test_substeps_are_a_whole_number(wrong, name):
-    assert wrong[f"substeps {name}"][0] == "TypeError"
+@pytest.mark.parametrize("name, value", [("fraction", "1.5"), ("text", "'many'"), ("set", "2.5")])
+def test_substeps_are_a_whole_number(wrong, name, value):
+    assert wrong[f"substeps {name}"] == ["TypeError", f"JointStepper.substeps = {value} is not allowed: must be a whole number"]

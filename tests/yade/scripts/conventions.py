@@ -104,7 +104,15 @@ finish(
             for name in classes
         },
         "positional": sentence_of(lambda: sj.Journal(0.005)),
-        "wrong_type": sentence_of(lambda: sj.Journal(radius="large")),
+        "wrong_types": [sentence_of(call) for call in (
+            lambda: sj.Journal(radius="large"),
+            lambda: set_radius("large"),
+            lambda: sj.ThermalProgram(cycles=1.5),
+            lambda: sj.ThermalProgram(tableTimes=[0, "one"]),
+            lambda: sj.ThermalProgram(shape=3),
+            lambda: sj.SlotFace(normal=(0, 1)),
+            lambda: sj.ThermalLinks(links=[journal]),
+        )],
         "ranges": {name: sentence_of(call) for name, call in ranges.items()},
         "by_assignment": {str(v): sentence_of(lambda v=v: set_radius(v)) for v in (-1.0, float("nan"))},
         "kept": journal.radius,

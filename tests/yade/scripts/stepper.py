@@ -274,6 +274,7 @@ def wrong():
     found = {}
     for name, value in (("zero", 0), ("negative", -3), ("fraction", 1.5), ("text", "many")):
         found["substeps " + name] = sentence_of(lambda value=value: sj.JointStepper(substeps=value))
+    found["substeps set"] = sentence_of(lambda: setattr(sj.JointStepper(), "substeps", 2.5))
     e = lambda: O.engines  # noqa: E731
     changes = {
         "sphere": add_sphere,
