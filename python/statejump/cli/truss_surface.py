@@ -50,7 +50,7 @@ def surface_command(
 
     \b
     Examples:
-      statejump truss surface cases/trusses/ring_12.toml
+      statejump truss surface cases/trusses/umbrella_8.toml
       statejump truss surface nodes.csv --focal-length 2.5 --zernike 36
     """
     from statejump import surface
