@@ -329,6 +329,25 @@ py::dict path_dict(const truss::Model& model, const truss::Path& path) {
   result["states"] = states_dict(model, path.states);
   result["cycle_ends"] = states_dict(model, path.cycle_ends);
   result["events"] = event_list(model, path.events);
+  py::list problems;
+  for (const truss::LocalProblem& problem : path.problems) {
+    py::dict one;
+    one["time_s"] = problem.time;
+    one["temperature_change_K"] = problem.temperature_change;
+    one["delassus"] = std::get<Eigen::MatrixXd>(problem.problem.delassus);
+    one["q"] = problem.problem.q;
+    one["mu"] = problem.problem.mu;
+    one["reactions"] = problem.reactions;
+    one["velocities"] = problem.velocities;
+    py::list names;
+    for (const int joint : problem.joints) {
+      names.append(truss::name_of(model.joints[static_cast<std::size_t>(joint)]));
+    }
+    one["joints"] = names;
+    one["proximal_stiffness_N_per_m"] = problem.proximal_stiffness;
+    problems.append(one);
+  }
+  result["problems"] = problems;
   result["complete"] = path.complete;
   result["solves"] = path.solves;
   result["factorizations"] = path.factorizations;
@@ -369,7 +388,8 @@ void bind_truss(py::module_& module) {
       [](const py::dict& nodes, const py::dict& links, const py::dict& springs,
          const py::dict& torsion_springs, const py::dict& joints,
          std::vector<thermal::Program> programs, int increments_per_branch, bool locate_events,
-         double event_tolerance, bool cycle_ends_only, const py::object& progress) {
+         double event_tolerance, bool cycle_ends_only, std::vector<double> problem_times,
+         const py::object& progress) {
         const truss::Model model =
             make_model(nodes, links, springs, torsion_springs, joints, std::move(programs));
         truss::Options options;
@@ -377,6 +397,7 @@ void bind_truss(py::module_& module) {
         options.locate_events = locate_events;
         options.event_tolerance = event_tolerance;
         options.cycle_ends_only = cycle_ends_only;
+        options.problem_times = std::move(problem_times);
         options.progress = going_on(progress);
         truss::Path path;
         {
@@ -388,7 +409,8 @@ void bind_truss(py::module_& module) {
       py::arg("nodes"), py::arg("links"), py::arg("springs"), py::arg("torsion_springs"),
       py::arg("joints"), py::arg("programs"), py::kw_only(), py::arg("increments_per_branch") = 50,
       py::arg("locate_events") = true, py::arg("event_tolerance") = 1e-9,
-      py::arg("cycle_ends_only") = false, py::arg("progress") = py::none(),
+      py::arg("cycle_ends_only") = false, py::arg("problem_times") = std::vector<double>(),
+      py::arg("progress") = py::none(),
       "Quasi-static path of a truss: exact Coulomb friction at every joint.\n\n"
       "Every kind of item is a dict of arrays, one entry per item, and 'names'. Index -1: ground.\n"
       "nodes: position_m (n, 3), fixed (n, 3), guide_normal (n, 3), force_N (n, 3)\n"
@@ -398,7 +420,10 @@ void bind_truss(py::module_& module) {
       "torsion_springs: links (t, 2), stiffness_N_m_per_rad, bias_rad, axis (t, 3)\n"
       "joints: kind -> such a dict, with the arrays that truss_joints() lists for it\n\n"
       "Returns states and cycle_ends (dicts of arrays, first axis the state; axial force positive\n"
-      "in compression), events, complete, solves, factorizations, unknowns, largest residuals.\n"
+      "in compression), events, problems (frictional contact problems of the first steps that end "
+      "at\n"
+      "problem_times or later, see truss/local_problem.hpp), complete, solves, factorizations, "
+      "unknowns, largest residuals.\n"
       "progress(share) may return False to end the path early: complete is then False. Raises "
       "ValueError for items out of range, RuntimeError that names joint or nodes "
       "and\n"

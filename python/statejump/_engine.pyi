@@ -363,6 +363,7 @@ def truss_path(
     locate_events: bool = ...,
     event_tolerance: float = ...,
     cycle_ends_only: bool = ...,
+    problem_times: Sequence[float] = ...,
     progress: Callable[[float], bool | None] | None = ...,
 ) -> _Fields: ...
 def truss_motion(

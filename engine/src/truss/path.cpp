@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "condense.hpp"
 #include "newton.hpp"
 #include "statejump/failure.hpp"
 
@@ -333,6 +334,10 @@ StepEnd Walker::step_to(double target, double tolerance) {
     }
   }
   note(report);
+  const std::vector<double>& asked = options.problem_times;
+  if (path.problems.size() < asked.size() && target >= asked[path.problems.size()]) {
+    path.problems.push_back(detail::local_problem(system, trial, target, begin, trial_statuses));
+  }
   const StepStart after = system.commit(trial, target, trial_statuses, begin);
   const VectorXd slips = system.slips(trial, target, begin, after);
   system.account(z, time, trial, target, begin, after, slips, state);

@@ -97,6 +97,8 @@ class System {
   double slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start) const;
   /// Node of a free displacement.
   int node_of(int displacement) const;
+  /// First unknown of a joint's forces.
+  int force_row(int joint) const { return force_row_[index(joint)]; }
   double stiffness_scale() const { return stiffness_scale_; }
   double size() const { return size_; }  ///< Largest extent of the drawn shape [m].
 

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from statejump.cli.terminal import QUIET, make_console
+from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, undivided
+from statejump.core.errors import NotAllowed
+from statejump.core.results_folder import Results
 
 if TYPE_CHECKING:
     from statejump.fclib import Merit
@@ -20,6 +22,7 @@ def fclib_command() -> None:
     \b
     Example:
       statejump fclib solve Capsules-i125-1213.hdf5 -o solved.hdf5
+      statejump fclib write cases/trusses/ring_12.toml
     """
 
 
@@ -69,3 +72,41 @@ def solve_command(file: Path, output: Path | None, tolerance: float, method: str
     if output is not None:
         fclib.write(output, problem, solution)
         console.print(f"results: {output}")
+
+
+@fclib_command.command("write")
+@CASE
+@click.option("--number", type=int, default=20, show_default=True, metavar="N",
+              help="Of steps, evenly spread over the path.")
+@RESULTS
+@QUIET
+def write_command(case_file: Path, number: int, results: Results, quiet: bool) -> None:
+    """Write frictional contact problems of the joints along the path of CASE, a truss, as FCLIB's local problems.
+
+    The truss is condensed to its joints; u = W r + q are the motions [m] of one step of the path. Each file holds the
+    path's own forces as its solution. They appear in the folder fclib of the case's results.
+
+    \b
+    Example:
+      statejump fclib write cases/trusses/ring_12.toml --number 50
+    """
+    from statejump import fclib
+
+    console = make_console(quiet)
+    case = loaded(case_file, "contact_problems")
+    try:
+        with undivided(console, f"{case.name}, path") as tell, results.folder(f"{case.name}/fclib") as folder:
+            found = case.behaviour.ability("contact_problems", case)(case, number, tell)
+            written = []
+            for place, one in enumerate(found, start=1):
+                path = folder.staged / f"step_{place:0{len(str(number))}d}.hdf5"
+                fclib.write(path, one.problem, one.problem.stored[0])
+                written.append(path)
+            written = folder.publish(written)
+    except NotAllowed as refused:
+        refused.key = {"number": "--number"}.get(refused.key or "", refused.key)
+        raise
+    worst = max((one.merit.largest for one in found), default=0.0)
+    console.print(f"{len(written)} problems of {max((one.problem.contacts for one in found), default=0)} contacts at "
+                  f"most; the path's own forces have a merit of {worst:.3g} at most")
+    console.print(f"results: {folder.path}")

@@ -178,8 +178,10 @@ def _text(parent: Any, name: str) -> str:
     return value.decode("utf-8", "replace").strip() if isinstance(value, bytes) else ""
 
 
-def write(path: str | Path, problem: Problem, solution: Solution | None = None) -> None:
+def write(path: str | Path, problem: Problem, solution: Solution | Stored | None = None) -> None:
     """Write a problem, and with it a solution, as FCLIB reads them.
+
+    :param solution: what :func:`statejump.fclib.solve` found, or reactions that are known
 
     :raises NotWritten: the file cannot be written
     """
@@ -201,7 +203,7 @@ def write(path: str | Path, problem: Problem, solution: Solution | None = None) 
         info["math_info"] = np.bytes_(" ")
         if solution is not None:
             stored = file.create_group("solution")
-            stored["u"], stored["r"] = solution.velocities, solution.reactions
+            stored["u"], stored["r"] = problem.velocities(solution.reactions), solution.reactions
 
 
 def _write_numbers(group: h5py.Group, numbers: dict[str, int]) -> None:

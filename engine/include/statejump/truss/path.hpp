@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "statejump/truss/local_problem.hpp"
 #include "statejump/truss/model.hpp"
 
 namespace statejump::truss {
@@ -20,6 +21,9 @@ struct Options {
   double event_tolerance = 1e-9;
   /// Keep the states at the ends of the cycles only.
   bool cycle_ends_only = false;
+  /// When the frictional contact problem of a step is told, in order [s]: of the first step that
+  /// ends there or later.
+  std::vector<double> problem_times;
   /// Newton iterations after the last change of a status, and of one that goes round in circles.
   int most_iterations = 40;
   /// Called with the share of the program that is done (0 to 1); returning false ends the path
@@ -61,8 +65,9 @@ struct Path {
   std::vector<State> states;      ///< Start, points of the path, events if located.
   std::vector<State> cycle_ends;  ///< Start and end of every cycle.
   std::vector<Event> events;
-  bool complete = true;  ///< False if Options::progress ended it.
-  long solves = 0;       ///< Newton solves.
+  std::vector<LocalProblem> problems;  ///< At Options::problem_times.
+  bool complete = true;                ///< False if Options::progress ended it.
+  long solves = 0;                     ///< Newton solves.
   long factorizations = 0;
   double largest_force_residual = 0.0;    ///< Over the largest force of its state [-].
   double largest_closure_residual = 0.0;  ///< Of sticking, stops and contacts [m].

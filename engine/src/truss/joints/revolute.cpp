@@ -494,6 +494,12 @@ bool ClearanceRevolute::remembers_when(JointStatus before, JointStatus after) co
          (is_slip(before) && (after == JointStatus::stick || is_slip(after)));
 }
 
+std::optional<LocalContact> ClearanceRevolute::contact(const Trial& trial, JointStatus) const {
+  // In the middle of its play no direction is normal.
+  if (trial.between(bearing, journal).isZero(0.0)) return {};
+  return LocalContact{1, 0, friction_coefficient, 0.0};
+}
+
 Seat ClearanceRevolute::seat(const Trial& trial, double opened, double next,
                              double rounding) const {
   Seat seat;

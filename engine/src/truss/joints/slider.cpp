@@ -235,6 +235,12 @@ bool Slider::remembers_when(JointStatus before, JointStatus after) const {
   return friction_force > 0.0 && is_slip(before) && (after == JointStatus::stick || is_slip(after));
 }
 
+std::optional<LocalContact> Slider::contact(const Trial&, JointStatus status) const {
+  // Wall and friction share a force that is not told apart: at a stop it is held.
+  if (status == JointStatus::stop_plus || status == JointStatus::stop_minus) return {};
+  return LocalContact{0, -1, 1.0, friction_force};
+}
+
 Seat Slider::seat(const Trial&, double, double, double) const {
   return {};
 }

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from statejump.core.figures import Sheet
     from statejump.kinds.truss.answers.study import TrussAnswers
+    from statejump.kinds.truss.contact_problems import ContactProblem
     from statejump.kinds.truss.page import TrussPart
     from statejump.results.contents import Result
 
@@ -132,6 +133,12 @@ class Truss(Kind[TrussCase]):
         from statejump.kinds.truss import draw
 
         return draw.draw(case, axes)
+
+    def contact_problems(self, case: TrussCase, number: int, tell: Tell) -> list[ContactProblem]:
+        """Return frictional contact problems of steps of the path."""
+        from statejump.kinds.truss import contact_problems
+
+        return contact_problems.contact_problems(case, number, tell)
 
     def answers(self, case: TrussCase, **settings: Any) -> TrussAnswers:
         """Return what a designer asks of the truss; see :func:`statejump.truss.answers`."""

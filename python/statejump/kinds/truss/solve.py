@@ -2,7 +2,7 @@
 """Quasi-static path of a truss case: the reduced model."""
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -48,6 +48,7 @@ class TrussPath:
     solves: int
     factorizations: int
     unknowns: int
+    problems: list[dict[str, Any]]  # frictional contact problems at the times that were asked for
     largest_force_residual: float
     largest_closure_residual_m: float
 
@@ -103,6 +104,7 @@ def path(
     locate_events: bool = True,
     event_tolerance: float = 1e-9,
     cycle_ends_only: bool = False,
+    problem_times: Sequence[float] = (),
     progress: Callable[[float], bool | None] | None = None,
 ) -> TrussPath:
     """Return the quasi-static path of a truss.
@@ -111,13 +113,15 @@ def path(
     :param locate_events: locate every change of a joint's status, else only those that matter
     :param event_tolerance: share of a branch within which a change is located
     :param cycle_ends_only: keep the states at the ends of cycles only
+    :param problem_times: when the frictional contact problem of a step is kept, in order [s]
     :param progress: called with the share that is done; returning False ends the path
     :raises FailedRun: for a mechanism, an unloaded joint, no equilibrium: with names and temperature
     """
     try:
         found = _engine.truss_path(
             **engine_items(truss), increments_per_branch=increments_per_branch, locate_events=locate_events,
-            event_tolerance=event_tolerance, cycle_ends_only=cycle_ends_only, progress=progress,
+            event_tolerance=event_tolerance, cycle_ends_only=cycle_ends_only, problem_times=problem_times,
+            progress=progress,
         )
     except _engine.EngineFailure as failure:
         raise _failed(truss, failure, locate_events) from None

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -65,6 +66,15 @@ struct Parameter {
 struct Output {
   const char* key;  ///< With its unit.
   int width;
+};
+
+/// A joint as a contact of a frictional contact problem: which of its rows, on the branch `stick`,
+/// are gap and slide.
+struct LocalContact {
+  int tangential = 0;                 ///< Row of the slide.
+  int normal = -1;                    ///< Row of the gap; −1: the normal force is given.
+  double friction_coefficient = 0.0;  ///< [-]
+  double normal_force = 0.0;          ///< Where it is given [N].
 };
 
 constexpr int most_joint_nodes = 4;
@@ -131,8 +141,9 @@ struct Seat {
 //   describe()            outputs in their order
 //   slide_rounding()      of the slide less what friction bends [m]
 //   remembers_when()      whether the state depends on when in a step the status changed
-//   rest()                status with which the path begins
-//   seat(), jumps()       joints with play: how the start finds contact, and whether a step was a
+//   contact()             which rows are those of a frictional contact, none on a branch that is
+//   not one rest()                status with which the path begins seat(), jumps()       joints
+//   with play: how the start finds contact, and whether a step was a
 //                         jump
 //
 // A natural map of Alart and Curnier [1] is piecewise smooth: λ − proj(λ − r g; bounds) is r g on

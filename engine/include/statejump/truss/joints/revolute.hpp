@@ -60,6 +60,7 @@ struct ClearanceRevolute {
   void describe(const Trial& trial, double* outputs) const;
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
+  std::optional<LocalContact> contact(const Trial& trial, JointStatus status) const;
   double least_slide() const { return radial_clearance; }
   JointStatus rest() const {
     return friction_coefficient > 0.0 ? JointStatus::stick : JointStatus::slip_plus;

@@ -48,6 +48,7 @@ struct Slider {
   void describe(const Trial& trial, double* outputs) const;
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
+  std::optional<LocalContact> contact(const Trial& trial, JointStatus status) const;
   double least_slide() const { return 0.0; }
   JointStatus rest() const { return JointStatus::stick; }
   bool has_play() const { return false; }

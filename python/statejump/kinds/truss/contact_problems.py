@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frictional contact problems along the path of a truss: the truss condensed to its joints."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from statejump.core.errors import Range, StatejumpError
+from statejump.core.progress import Tell
+from statejump.fclib import Problem, Stored, merit
+from statejump.fclib.problem import Merit
+from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.solve import whole_path
+from statejump.schema.rules import WHOLE, Rule
+
+NUMBER = Rule(WHOLE, allowed=Range(1, 10_000))
+# W is dense: 2 rows a joint. 2000 joints make 128 MB of each problem.
+MOST_JOINTS = 2000
+
+
+@dataclass(frozen=True)
+class ContactProblem:
+    """The frictional contact problem of one step.
+
+    :param problem: u = W r + q of the joints that can be contacts, the path's own reactions as what is stored
+    :param velocities: the path's motions of the step [m]: gap at its end, slide of the step
+    :param joints: the joint of every contact
+    :param merit: of the path's reactions
+    """
+
+    time_s: float
+    temperature_change_K: float
+    problem: Problem
+    velocities: np.ndarray
+    joints: tuple[str, ...]
+    merit: Merit
+
+
+def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: None) -> list[ContactProblem]:
+    """Return the problems of so many steps, evenly spread over the path; fewer where the path has fewer steps.
+
+    :raises NotAllowed: the number is out of its range
+    :raises StatejumpError: the truss has no joints, or too many for a dense W
+    :raises FailedRun: the solver finds no path
+    """
+    NUMBER.check("number", number)
+    truss = case.resolve()
+    joints = len(truss.sliders.names) + len(truss.revolutes.names)
+    if not 1 <= joints <= MOST_JOINTS:
+        raise StatejumpError(f"the truss has {joints} joints", case=case.name,
+                             cause=f"the matrix of a contact problem is dense, so it must be 1 to {MOST_JOINTS}")
+    wanted = (np.arange(number) + 0.5) / number * case.duration_s
+    found = whole_path(
+        truss, tell, increments_per_branch=case.reduced.increments_per_branch,
+        locate_events=case.reduced.locate_events, event_tolerance=case.reduced.event_tolerance, cycle_ends_only=True,
+        problem_times=wanted,
+    )
+    return [_problem(case, problem) for problem in found.problems if problem["joints"]]
+
+
+def _problem(case: TrussCase, found: dict) -> ContactProblem:
+    held = found["proximal_stiffness_N_per_m"]
+    description = (
+        f"Joints of the truss {case.name} in one step of its path, t = {found['time_s']:.9g} s, temperature change "
+        f"{found['temperature_change_K']:.9g} K. r in N; u in m: gap at the end, slide of the step. Contacts: "
+        f"{', '.join(found['joints'])}."
+        + (f" Without the contacts the truss is a mechanism: {held:.6g} N/m hold every displacement to the path's."
+           if held else "")
+    )
+    problem = Problem(found["delassus"], found["q"], found["mu"], 2, f"{case.name}, t = {found['time_s']:.9g} s",
+                      description, (Stored("solution", found["reactions"]),))
+    return ContactProblem(found["time_s"], found["temperature_change_K"], problem, found["velocities"],
+                          tuple(found["joints"]), merit(problem, found["reactions"]))
