@@ -36,8 +36,8 @@ def measured(what: str, repetition: int, campaign: Plan, workers: int) -> dict[s
             done = execute.run_missing(campaign, kept, None, workers, lambda fraction: None)
     return {
         "what": what, "repetition": repetition, "workers": workers, "samples": done.run_now,
-        "wall_time_s": done.wall_time_s, "worker_time_s": done.worker_time_s,
-        "samples_per_second": done.samples_per_second, "load": load,
+        "wall_time_s": done.wall_time_s - done.start_time_s, "worker_time_s": done.worker_time_s,
+        "samples_per_second": done.run_now / (done.wall_time_s - done.start_time_s), "load": load,
     }
 
 

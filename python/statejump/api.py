@@ -138,8 +138,7 @@ def identify(
 
 def sweep(
     case: Case, values: Mapping[str, Sequence[float] | Mapping[str, Any]], *, model: str = "reduced",
-    workers: int | None = None,
-    progress: Progress = False,
+    workers: int | None = None, progress: Progress = False, outputs: Sequence[str] = (),
 ) -> Campaign:
     """Run a case on a grid of its parameters.
 
@@ -147,16 +146,18 @@ def sweep(
         a key what a ``[[vary]]`` table says, as ``{"start": 0.1, "stop": 1, "count": 10, "spacing": "log"}``
     :param model: ``reduced`` or ``dem``
     :param workers: processes; None: one for each core, or none of their own where the grid is small
+    :param outputs: more to record of every run, as ``jump:displacement_m[P].x``: end, jump, max, min or range of any
+        column of a run, of one of its items; see :mod:`statejump.campaign.outputs`
     :raises StatejumpError: there is no such key, or the kind of case has no outcomes
     """
     from statejump.campaign import sweep as run_sweep
 
-    return run_sweep(case.definition, values, model=model, workers=workers, progress=progress)
+    return run_sweep(case.definition, values, model=model, workers=workers, progress=progress, outputs=outputs)
 
 
 def montecarlo(
     case: Case, distributions: Mapping[str, Mapping[str, Any]], *, samples: int = 1000, seed: int = 1,
-    model: str = "reduced", workers: int | None = None, progress: Progress = False,
+    model: str = "reduced", workers: int | None = None, progress: Progress = False, outputs: Sequence[str] = (),
 ) -> Campaign:
     """Run a case whose parameters are random.
 
@@ -165,9 +166,10 @@ def montecarlo(
     :param seed: of the random numbers: the same seed gives the same samples
     :param model: ``reduced`` or ``dem``
     :param workers: as of :func:`sweep`
+    :param outputs: as of :func:`sweep`
     :raises StatejumpError: there is no such key or distribution
     """
     from statejump.campaign import montecarlo as run_montecarlo
 
     return run_montecarlo(case.definition, distributions, samples=samples, seed=seed, model=model, workers=workers,
-                          progress=progress)
+                          progress=progress, outputs=outputs)

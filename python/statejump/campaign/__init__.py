@@ -15,7 +15,7 @@ __all__ = ["Campaign", "montecarlo", "sweep"]
 
 def sweep(
     case: Case, values: Mapping[str, Sequence[float] | Mapping[str, Any]], *, model: str = "reduced",
-    workers: int | None = None, progress: Progress = False,
+    workers: int | None = None, progress: Progress = False, outputs: Sequence[str] = (),
 ) -> Campaign:
     """Run a case on a grid of its parameters; see :func:`statejump.sweep`."""
     from statejump.campaign.campaign_file import points_of
@@ -25,12 +25,12 @@ def sweep(
         key: {"key": key, **wanted} if isinstance(wanted, Mapping) else {"key": key, "values": _plain(wanted)}
         for key, wanted in values.items()
     }
-    return _run(case, SWEEP, tables, model, points_of, None, workers, progress)
+    return _run(case, SWEEP, tables, model, points_of, None, workers, progress, outputs)
 
 
 def montecarlo(
     case: Case, distributions: Mapping[str, Mapping[str, Any]], *, samples: int = 1000, seed: int = 1,
-    model: str = "reduced", workers: int | None = None, progress: Progress = False,
+    model: str = "reduced", workers: int | None = None, progress: Progress = False, outputs: Sequence[str] = (),
 ) -> Campaign:
     """Run a case whose parameters are random; see :func:`statejump.montecarlo`."""
     from statejump.campaign.campaign_file import MonteCarloHeader
@@ -40,7 +40,7 @@ def montecarlo(
     for name, value in (("samples", samples), ("seed", seed)):
         rule_of(fields_of(MonteCarloHeader)[name]).check(name, value)
     tables = {key: {"key": key, **wanted} for key, wanted in distributions.items()}
-    return _run(case, MONTECARLO, tables, model, lambda vary: samples, seed, workers, progress)
+    return _run(case, MONTECARLO, tables, model, lambda vary: samples, seed, workers, progress, outputs)
 
 
 def _plain(values: Any) -> list[Any]:
@@ -50,9 +50,10 @@ def _plain(values: Any) -> list[Any]:
 
 def _run(
     case: Case, command: str, tables: Mapping[str, Mapping[str, Any]], model: str, count: Any, seed: int | None,
-    workers: int | None, progress: Progress,
+    workers: int | None, progress: Progress, outputs: Sequence[str],
 ) -> Campaign:
     from statejump.campaign.campaign_file import check_campaign, check_workers, vary_of
+    from statejump.campaign.outputs import checked
     from statejump.campaign.plan import plan_of
     from statejump.campaign.result import run
     from statejump.core.errors import MissingKey
@@ -65,7 +66,7 @@ def _run(
         raise MissingKey("what varies", "at least one key is needed")
     vary = vary_of(((f"vary[{key!r}]", table) for key, table in tables.items()), case, command)
     plan = plan_of(case, command=command, model=model, vary=vary, samples=count(vary), seed=seed,
-                   name=f"{case.name}_{command}", title=case.title)
+                   name=f"{case.name}_{command}", title=case.title, asked=checked(outputs, case))
     with shown(progress, f"{plan.name}, {plan.samples:,} samples") as tell:
         return run(plan, workers, tell)
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from statejump.campaign import outputs
 from statejump.campaign.plan import MONTECARLO, MOST_SAMPLES, SWEEP, Plan, plan_of
 from statejump.campaign.sampling import Values, Varied, number_of_points
 from statejump.campaign.vary import MonteCarloVary, SweepVary, check_apart, varied
@@ -15,7 +16,7 @@ from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, Unknow
 from statejump.core.run import MODELS
 from statejump.kinds.loading import load_case
 from statejump.schema.fields import (
-    CHOICE, Section, choice, definition, fields_of, rule_of, section, structure, tables, text, whole,
+    CHOICE, Section, choice, definition, fields_of, rule_of, section, structure, tables, text, texts, whole,
 )
 from statejump.schema.rules import FOLDER_NAME
 from statejump.schema.toml import read_toml
@@ -31,6 +32,7 @@ class SweepHeader(Section):
     title: str = text("", "one line for figures")
     case: str = text(..., "case file, relative to the campaign file")
     model: str = choice("reduced", MODEL_NAMES, CHOICE + ": the fast one")
+    outputs: list[str] = texts([], "more to record, HOW:COLUMN[ITEM].AXIS", pattern=outputs.PATTERN)
 
 
 @definition
@@ -94,11 +96,16 @@ def _campaign(path: Path, text_read: str, data: Mapping[str, Any], command: str)
         isinstance(table, Mapping) for table in tables_given
     ):
         raise MissingKey("vary", "at least one table says what varies", section="[[vary]]")
+    try:
+        asked = outputs.checked(header.outputs, case)
+    except NotAllowed as refused:
+        refused.key = f"campaign.{refused.key}" if refused.key == "outputs" else refused.key
+        raise
     vary = vary_of(((f"vary[{number}]", table) for number, table in enumerate(tables_given, start=1)), case, command)
     return plan_of(
         case, command=command, model=header.model, vary=vary,
         samples=points_of(vary) if command == SWEEP else header.samples, seed=None if command == SWEEP else header.seed,
-        name=header.name, title=header.title, file=path, text=text_read,
+        name=header.name, title=header.title, file=path, text=text_read, asked=asked,
     )
 
 

@@ -24,7 +24,8 @@ class Statistics:
     already_there: int
     run_now: int = 0
     workers: int = 0
-    wall_time_s: float = 0.0  # of the samples, without starting the cluster
+    wall_time_s: float = 0.0  # of the samples and of starting the cluster
+    start_time_s: float = 0.0  # of it, until the cluster was ready
     worker_time_s: float = 0.0  # sum over all tasks
     batch_sizes: list[int] = field(default_factory=list)
     note: str = ""  # of the journal
@@ -92,8 +93,9 @@ def _on_workers(
 
     done = account.done
     wanted = min(workers or len(os.sched_getaffinity(0)), len(missing))
+    before, started = done.wall_time_s, time.perf_counter()
     with workers_for(campaign.recipe, scheduler, wanted) as cluster:
-        before, started = done.wall_time_s, time.perf_counter()
+        done.start_time_s = time.perf_counter() - started
         done.workers = cluster.count
         for seconds, batch in cluster.run(missing):
             account.add(seconds, batch)

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from statejump import __version__
+from statejump.campaign import outputs
 from statejump.campaign.sampling import Random, Values, Varied, montecarlo_draws, montecarlo_values, sweep_values
 from statejump.core.case import Case
-from statejump.core.units import unit_of
 from statejump.kinds import registered
 from statejump.schema.fields import attached_to_json, rule_of
 from statejump.schema.paths import attribute_of, filled
@@ -30,7 +30,8 @@ class Recipe:
     :param case_data: the case as in its file, without what it leaves out
     :param vary: what varies
     :param seed: of the random numbers; None in a sweep
-    :param outcomes: names of what is recorded of a run, in the order of the table
+    :param outcomes: names of what is recorded of a run, in the order of the table; outputs last
+    :param outputs: those of them that the campaign asks for, see :mod:`statejump.campaign.outputs`
     :param kinds: where the kinds are that are not the project's own
     """
 
@@ -41,6 +42,7 @@ class Recipe:
     seed: int | None
     outcomes: tuple[str, ...]
     kinds: tuple[str, ...]
+    outputs: tuple[str, ...] = ()
 
     def _random(self) -> tuple[tuple[Random, ...], int]:
         assert self.seed is not None
@@ -92,7 +94,7 @@ class Plan(Recipe):
     @property
     def units(self) -> dict[str, str]:
         """Unit of every outcome, in the order of the table."""
-        return {name: unit_of(name) for name in self.outcomes}
+        return {name: outputs.unit(name) for name in self.outcomes}
 
     def unit_of(self, path: str) -> str:
         """Return the unit of a varied key."""
@@ -111,11 +113,14 @@ class Plan(Recipe):
 
 def plan_of(
     case: Case, *, command: str, model: str, vary: tuple[Varied, ...], samples: int, seed: int | None, name: str,
-    title: str = "", file: Path | None = None, text: str = "",
+    title: str = "", file: Path | None = None, text: str = "", asked: tuple[str, ...] = (),
 ) -> Plan:
-    """Return the plan of a campaign whose parts are checked."""
+    """Return the plan of a campaign whose parts are checked.
+
+    :param asked: outputs beside the outcomes of the kind
+    """
     return Plan(
         command=command, model=model, case_data=case.origin.data, vary=vary, seed=seed,
-        outcomes=case.behaviour.OUTCOMES, kinds=tuple(registered()), name=name, title=title or name, case=case,
-        samples=samples, file=file, text=text,
+        outcomes=(*case.behaviour.OUTCOMES, *asked), outputs=asked, kinds=tuple(registered()), name=name,
+        title=title or name, case=case, samples=samples, file=file, text=text,
     )

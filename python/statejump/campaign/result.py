@@ -101,6 +101,7 @@ class Campaign:
         if done.run_now:
             lines.append(
                 f"{done.run_now:,} samples in {done.wall_time_s:.2f} s on {done.workers} worker(s), "
+                + (f"{done.start_time_s:.2f} s of it to start them, " if done.start_time_s else "") +
                 f"{shown(done.samples_per_second)} per second; {len(done.batch_sizes)} tasks of up to "
                 f"{max(done.batch_sizes)} samples"
             )
@@ -125,7 +126,7 @@ class Campaign:
         done = self.done
         write_json(folder / "run.json", {
             "samples_already_there": done.already_there, "samples_run": done.run_now, "workers": done.workers,
-            "wall_time_s": done.wall_time_s, "worker_time_s": done.worker_time_s,
+            "wall_time_s": done.wall_time_s, "start_time_s": done.start_time_s, "worker_time_s": done.worker_time_s,
             "samples_per_second": done.samples_per_second, "tasks": len(done.batch_sizes),
             "largest_batch": max(done.batch_sizes, default=0),
         })

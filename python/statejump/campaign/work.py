@@ -8,10 +8,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from statejump.campaign.outputs import needs_all_samples, value
 from statejump.campaign.plan import Recipe
 from statejump.core.case import Case
 from statejump.core.errors import StatejumpError
 from statejump.core.progress import silent
+from statejump.core.run import Run
 from statejump.kinds import KINDS, register
 from statejump.kinds.loading import parse_case
 
@@ -26,26 +28,35 @@ class Sample:
     error_kind: str = ""
 
 
-def outcome(case: Case, model: str) -> dict[str, float]:
-    """Run one sampled case and return its outcomes.
+def sampled(case: Case, model: str, outputs: Sequence[str]) -> Run:
+    """Run one sampled case, with all samples in time only where an output needs them.
 
     :raises StatejumpError: the run failed
     """
     behaviour = case.behaviour
     if model == "dem":
-        run = behaviour.dem(case, silent)
-    elif behaviour.can("quick"):
-        run = behaviour.ability("quick", case)(case)
+        found: Run = behaviour.dem(case, silent)
+    elif behaviour.can("quick") and not any(needs_all_samples(name) for name in outputs):
+        found = behaviour.ability("quick", case)(case)
     else:
-        run = behaviour.ability("reduced", case)(case, silent)
-    found: dict[str, float] = behaviour.ability("outcomes", case)(case, run)
+        found = behaviour.ability("reduced", case)(case, silent)
     return found
+
+
+def outcome(case: Case, model: str, outputs: Sequence[str] = ()) -> dict[str, float]:
+    """Run one sampled case and return its outcomes and outputs.
+
+    :raises StatejumpError: the run failed
+    """
+    run = sampled(case, model, outputs)
+    found: dict[str, float] = case.behaviour.ability("outcomes", case)(case, run)
+    return found | {name: value(name, run) for name in outputs}
 
 
 def run_sample(recipe: Recipe, index: int) -> Sample:
     """Run one sample; whatever goes wrong is its error, in one sentence."""
     try:
-        found = outcome(parse_case(recipe.data(index)), recipe.model)
+        found = outcome(parse_case(recipe.data(index)), recipe.model, recipe.outputs)
         return Sample(index, tuple(float(found[name]) for name in recipe.outcomes))
     except StatejumpError as problem:
         return Sample(index, None, _one_line(str(problem)), _one_line(problem.general()))

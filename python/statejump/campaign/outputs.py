@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Outputs that a campaign records besides the outcomes of its kind of case: any column of a run, at named items.
+
+``HOW:COLUMN[ITEM].AXIS``, as ``jump:displacement_m[P].x`` or ``max:links.axial_force_N[L3]``. Columns are those of the
+CSV files, of links and contacts with that word before; a vector without axis counts by its length.
+"""
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from difflib import get_close_matches
+
+import numpy as np
+
+from statejump.core.case import Case
+from statejump.core.errors import NotAllowed
+from statejump.core.run import AXES, GROUPS, Column, Run
+from statejump.core.units import unit_of
+
+FORM = re.compile(r"(?P<how>\w+):(?:(?P<group>links|contacts)\.)?(?P<column>\w+)(?:\[(?P<item>.*)\])?"
+                  r"(?:\.(?P<axis>\w+))?")
+# Of a column over time; which of them need every sample of a run, not only its ends.
+ENDS: dict[str, Callable[[np.ndarray], np.ndarray]] = {"end": lambda values: values[-1],
+                                                       "jump": lambda values: values[-1] - values[0]}
+ALL: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+    "max": lambda values: values.max(axis=0), "min": lambda values: values.min(axis=0),
+    "range": lambda values: np.ptp(values, axis=0)}
+# For editors, which know no names of groups.
+PATTERN = re.sub(r"\?P<\w+>", "", FORM.pattern)
+LIKE = "must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"
+
+
+def _parts(name: str) -> re.Match[str]:
+    found = FORM.fullmatch(name) if isinstance(name, str) else None
+    if found is None:
+        raise NotAllowed("outputs", name, LIKE)
+    if found["how"] not in ENDS and found["how"] not in ALL:
+        raise NotAllowed("outputs", name, f"HOW must be one of {', '.join((*ENDS, *ALL))}")
+    return found
+
+
+def needs_all_samples(name: str) -> bool:
+    """Whether an output needs every sample of a run."""
+    return _parts(name)["how"] in ALL
+
+
+def unit(name: str) -> str:
+    """Return the unit of an output, or of an outcome of a kind of case."""
+    found = FORM.fullmatch(name)
+    return unit_of(found["column"] if found else name)
+
+
+def value(name: str, run: Run) -> float:
+    """Return an output of a run.
+
+    :raises NotAllowed: the run has no such column, item or axis; a near one is told
+    """
+    asked = _parts(name)
+    groups = (asked["group"],) if asked["group"] else ("history", "energy")
+    columns: dict[str, Column] = {key: column for group in groups for key, column in getattr(run, group).items()
+                                  if not column.labels and np.issubdtype(column.values.dtype, np.number)}
+    if asked["column"] not in columns:
+        where = next((f"{group}." for group in GROUPS[2:] if asked["column"] in getattr(run, group)), "")
+        raise NotAllowed("outputs", name, f"did you mean {where}{asked['column']}?" if where else
+                         _near("column", asked["column"], list(columns)))
+    column = columns[asked["column"]]
+    values = np.asarray(column.values, dtype=float)
+    if column.items:
+        names = list(run.names[column.items])
+        if asked["item"] is None:
+            raise NotAllowed("outputs", name, f"{asked['column']} is one of each of the {column.items}: which one?")
+        if asked["item"] not in names:
+            raise NotAllowed("outputs", name, _near(column.items, asked["item"], names))
+        values = values[:, names.index(asked["item"])]
+    elif asked["item"] is not None:
+        raise NotAllowed("outputs", name, f"{asked['column']} has no items")
+    if asked["axis"] is not None:
+        if values.ndim == 1 or asked["axis"] not in AXES:
+            raise NotAllowed("outputs", name, f"{asked['column']} is no vector" if values.ndim == 1 else
+                             f"the axis must be one of {', '.join(AXES)}")
+        values = values[:, AXES.index(asked["axis"])]
+    elif values.ndim > 1 and asked["how"] in ALL:
+        values = np.linalg.norm(values, axis=1)
+    return float(np.linalg.norm((ENDS | ALL)[asked["how"]](values)) if values.ndim > 1
+                 else (ENDS | ALL)[asked["how"]](values))
+
+
+def _near(what: str, given: str, known: Sequence[str]) -> str:
+    near = get_close_matches(given, known, n=1)
+    if near:
+        return f"did you mean {near[0]}?"
+    listed = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "")
+    return f"there is no such {what.removesuffix('s')}; there are {listed}" if known else f"there are no {what}"
+
+
+def checked(given: Sequence[str], case: Case) -> tuple[str, ...]:
+    """Return outputs after they were taken from one run of the reduced model of the case itself.
+
+    :raises NotAllowed: what is wrong with one of them
+    """
+    names = tuple(given)
+    for place, name in enumerate(names):
+        _parts(name)
+        if name in names[:place]:
+            raise NotAllowed("outputs", name, "it is there twice")
+    if names:
+        from statejump.campaign.work import sampled
+
+        run = sampled(case, "reduced", ())
+        for name in names:
+            value(name, run)
+    return names

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Outputs of campaigns: any column of a run at a named item, and what is refused before anything runs."""
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import statejump as sj
+from statejump.core.errors import StatejumpError
+
+TRUSS = "cases/trusses/chain_10.toml"
+
+
+def test_outputs_are_the_columns_of_the_run() -> None:
+    case = sj.load(TRUSS)
+    link, node = case.link[0].name, case.node[3].name
+    names = [f"jump:displacement_m[{node}].x", f"end:displacement_m[{node}]", f"max:links.axial_force_N[{link}]",
+             f"range:links.angle_rad[{link}]", "min:temperature_change_K"]
+    first = case.slider[0].name
+    friction = [0.2, 0.3]
+    found = sj.sweep(case, {f"slider.{first}.friction_coefficient": friction}, outputs=names).frame()
+    for row, value in enumerate(friction):
+        run = case.changed({f"slider.{first}.friction_coefficient": value}).reduced()
+        columns = run.flat(("history", "energy", "links"))
+        moved = np.stack([columns[f"displacement_m[{node}].{axis}"] for axis in "xyz"], axis=1)
+        wanted = [moved[-1, 0] - moved[0, 0], np.linalg.norm(moved[-1]), columns[f"links/axial_force_N[{link}]"].max(),
+                  np.ptp(columns[f"links/angle_rad[{link}]"]), run["temperature_change_K"].min()]
+        np.testing.assert_allclose([found[name][row] for name in names], wanted, rtol=1e-12, atol=1e-15)
+
+
+def test_ends_alone_need_no_full_run() -> None:
+    """The quick model has two samples; jumps of both are the same to the tolerance of located events, 1e-9."""
+    case = sj.load(TRUSS)
+    node = case.node[3].name
+    found = sj.sweep(case, {"thermal.cycles": [1]}, outputs=[f"jump:displacement_m[{node}].x"]).frame()
+    run = case.reduced()
+    columns = run.flat()
+    jump = columns[f"displacement_m[{node}].x"][-1] - columns[f"displacement_m[{node}].x"][0]
+    assert found[f"jump:displacement_m[{node}].x"][0] == pytest.approx(jump, rel=1e-6)
+
+
+@pytest.mark.parametrize("output, sentence", [
+    ("jump", "must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"),
+    ("mean:displacement_m[N1]", "HOW must be one of end, jump, max, min, range"),
+    ("jump:displacment_m[N1]", "did you mean displacement_m?"),
+    ("jump:displacement_m", "displacement_m is one of each of the nodes: which one?"),
+    ("jump:displacement_m[N1].w", "the axis must be one of x, y, z"),
+    ("jump:displacement_m[nowhere at all]", "there is no such node; there are "),
+    ("max:axial_force_N[L1]", "did you mean links.axial_force_N?"),
+    ("max:time_s[L1]", "time_s has no items"),
+    ("max:time_s.x", "time_s is no vector"),
+])
+def test_what_is_refused(output: str, sentence: str) -> None:
+    case = sj.load(TRUSS)
+    output = output.replace("N1", case.node[1].name).replace("L1", case.link[0].name)
+    with pytest.raises(StatejumpError) as refused:
+        sj.sweep(case, {"thermal.cycles": [1]}, outputs=[output])
+    assert str(refused.value).startswith(f"outputs = {output!r} is not allowed: {sentence}")
+
+
+def test_near_name_of_a_node_is_told() -> None:
+    case = sj.load(TRUSS)
+    name = case.node[3].name
+    with pytest.raises(StatejumpError, match=rf"did you mean {name}\?"):
+        sj.sweep(case, {"thermal.cycles": [1]}, outputs=[f"jump:displacement_m[{name}x]"])
+
+
+def test_command(statejump: Callable[..., Any], tmp_path: Path, cases: Path) -> None:
+    (tmp_path / "campaign.toml").write_text(f"""
+[campaign]
+name = "outputs"
+case = "{cases}/table1.toml"
+outputs = ["max:axial_force_N", "range:links.axial_force_N[bar]"]
+[[vary]]
+key = "joint.friction_coefficient"
+values = [0.2, 0.3]
+""")
+    done = statejump("sweep", "campaign.toml")
+    assert done.status == 0, done.errors
+    with (tmp_path / "results" / "outputs" / "samples.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    force = [float(row["max:axial_force_N"]) for row in rows]
+    # The samples of the history against the exact path: the largest force lies at most a sample beside one of them.
+    assert force == pytest.approx([float(row["largest_axial_force_N"]) for row in rows], rel=1e-3)
+    ran = json.loads((tmp_path / "results" / "outputs" / "run.json").read_text())
+    assert ran["wall_time_s"] >= ran["start_time_s"] >= 0
+
+
+def test_wall_time_includes_the_start_of_workers() -> None:
+    done = sj.sweep(sj.load("table1"), {"joint.friction_coefficient": [0.2, 0.3]}, workers=1).done
+    assert 0 < done.start_time_s < done.wall_time_s
