@@ -5,10 +5,11 @@
     parsers.py --python build/python [--inputs N] [--only NAME ...] [--seed N] [--first N]
 
 Shipped files, and results made of them, are spoiled by chance and given to what reads them: the library for cases,
-campaigns and journals, the command itself for result files, files of FCLIB and histories of `laws --drive`. A refusal
-is a failure of exit status 2 whose sentence is one printable line (or the documented status 1 of a command); any other
-exception, a signal, more than MEMORY_BYTES more memory or more than CPU_S seconds are faults. Each input depends on the
-seed, the reader and its number alone: `--only NAME --first N --inputs 1` makes one again.
+campaigns, journals and temperatures, the command itself for result files, files of FCLIB, histories of `laws --drive`
+and decks of other programs. A refusal is a failure of exit status 2 whose sentence is one printable line (or the
+documented status 1 of a command); any other exception, a signal, more than MEMORY_BYTES more memory or more than CPU_S
+seconds are faults. Each input depends on the seed, the reader and its number alone: `--only NAME --first N --inputs 1`
+makes one again.
 
 Meshes are another campaign's (fuzz_mesh.cpp). Bytes of HDF5 files of FCLIB, which have no checksum, are not spoiled:
 that would try the HDF5 library.
@@ -275,7 +276,54 @@ def drives(folder: Path) -> Reader:
     return Reader("drive", spoiled, read)
 
 
-READERS = (cases, campaigns, journals, results, fclib_files, drives)
+def temperatures(folder: Path) -> Reader:
+    """Files of temperatures that a case names, as text and as HDF5."""
+    from statejump import load
+
+    seeds = [b"time_s,sun_K,shade_K\n0,0,0\n1.5,10,-3\n4,100,7.5\n9,0,0\n",
+             b"time_s,sun_degC,shade_degC\n100,20,20\n101,25,19.5\n120,20,20\n"]
+    with h5py.File(folder / "seed.h5", "w") as file:
+        file["time_s"], file["temperature_K"] = [0.0, 1.0, 4.0], [[293.15] * 10, [300.0] * 10, [293.15] * 10]
+        file["members"] = [f"L{number}" for number in range(1, 11)]
+    image = (folder / "seed.h5").read_bytes()
+    slider = tomllib.loads((REPOSITORY / "cases/table1.toml").read_text())
+    slider["dem"].pop("period_s", None)
+    truss = tomllib.loads((REPOSITORY / "cases/trusses/chain_10.toml").read_text())
+
+    def spoiled(place: Path, chance: random.Random) -> Any:
+        thermal = {"shape": "table"} | ({"reference_temperature_K": 293.15} if chance.random() < 0.7 else {}) | (
+            {"lead_in_s": 5.0} if chance.random() < 0.5 else {})
+        if chance.random() < 0.4:
+            with changed_hdf5(image, chance) as changed:
+                (place / "given.h5").write_bytes(changed.getvalue())
+            return truss | {"thermal": thermal | {"members_file": str(place / "given.h5")}}
+        change = mutations.spoiled_bytes if chance.random() < 0.3 else mutations.spoiled_text
+        (place / "given.csv").write_bytes(change(chance.choice(seeds), seeds, chance))
+        return slider | {"thermal": thermal | {"table_file": str(place / "given.csv"), "table_column": "sun"}}
+
+    return Reader("temperatures", spoiled, lambda place, data: load(data).reduced().complete)
+
+
+def decks(folder: Path) -> Reader:
+    """Trusses of other programs: `truss import`."""
+    seeds = {path.suffix: path.read_bytes() for path in sorted((REPOSITORY / "tests/fuzz/decks").iterdir())}
+
+    def spoiled(place: Path, chance: random.Random) -> Any:
+        suffix = chance.choice(sorted(seeds))
+        change = mutations.spoiled_bytes if chance.random() < 0.3 else mutations.spoiled_text
+        path = place / f"given{suffix}"
+        path.write_bytes(change(seeds[suffix], list(seeds.values()), chance))
+        return path
+
+    def read(place: Path, path: Path) -> bool:
+        bars = ["--bars", path] if path.suffix == ".csv" else []
+        return command("truss", "import", path, *bars, "-o", place / "made.toml", "--density", 2700,
+                       "--temperature-change", 100, "--quiet")
+
+    return Reader("deck", spoiled, read)
+
+
+READERS = (cases, campaigns, journals, results, fclib_files, drives, temperatures, decks)
 
 
 class Counts:

@@ -15,6 +15,7 @@ import click
 from statejump.case import Case
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console
 from statejump.cli.truss_answers import answers_command
+from statejump.cli.truss_import import import_command
 from statejump.cli.truss_surface import surface_command
 from statejump.core.errors import NotWritten, StatejumpError
 from statejump.core.results_folder import Results
@@ -133,5 +134,6 @@ def draw_command(case_file: Path, results: Results, quiet: bool) -> None:
     console.print(f"drawing: {', '.join(str(path) for path in written)}")
 
 
+truss_command.add_command(import_command)
 truss_command.add_command(answers_command)
 truss_command.add_command(surface_command)

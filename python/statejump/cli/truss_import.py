@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``statejump truss import``: a truss of another program as a case file."""
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import click
+
+from statejump.cli.terminal import QUIET, make_console, print_table
+from statejump.core.errors import NotAllowed, StatejumpError, printable
+from statejump.core.output import check_target
+
+
+def _joint(text: str) -> dict[str, str]:
+    found = {}
+    for part in text.split(","):
+        key, equal, value = part.partition("=")
+        if not equal or not key.strip() or key.strip() in found:
+            raise NotAllowed("--joint", text, "must be KEY=VALUE,KEY=VALUE, every key once")
+        found[key.strip()] = value.strip()
+    return found
+
+
+@click.command("import")
+@click.argument("file", metavar="FILE", type=click.Path(path_type=Path))
+@click.option("-o", "--output", required=True, metavar="CASE", type=click.Path(path_type=Path),
+              help="Case file to write; its name is that of the case.")
+@click.option("--format", "form", type=click.Choice(["abaqus", "nastran", "tables"]),
+              help="What FILE is; by its suffix where nothing is said.")
+@click.option("--bars", metavar="FILE", type=click.Path(path_type=Path), help="Table of bars beside a table of nodes.")
+@click.option("--length-unit", type=click.FloatRange(min=0, min_open=True), default=1.0, show_default=True,
+              metavar="METRES", help="Length of one unit of a deck: 0.001 for millimetres.")
+@click.option("--force-unit", type=click.FloatRange(min=0, min_open=True), default=1.0, show_default=True,
+              metavar="NEWTON", help="Force of one unit of a deck.")
+@click.option("--temperature-change", type=float, metavar="KELVIN", help="Of all links, where the deck says nothing.")
+@click.option("--density", type=float, metavar="KG/M3", help="Of links whose density the deck does not say.")
+@click.option("--joint", "joints", multiple=True, metavar="node=NAME,...",
+              help="Put in a slider (axis=x, friction_coefficient, normal_force_N, ...) or, with link=NAME, a revolute "
+                   "between that link and the others (journal_radius_m, radial_clearance_m, ...).")
+@click.option("--force", is_flag=True, help="Overwrite the file.")
+@QUIET
+def import_command(
+    file: Path, output: Path, form: str | None, bars: Path | None, length_unit: float, force_unit: float,
+    temperature_change: float | None, density: float | None, joints: tuple[str, ...], force: bool, quiet: bool,
+) -> None:
+    """A truss of another program as a case file: decks of CalculiX and Abaqus, Nastran bulk data, CSV tables.
+
+    Prints what was taken, what was left out and why.
+
+    \b
+    Example:
+      statejump truss import mast.bdf -o mast.toml --length-unit 0.001
+    """
+    from statejump.kinds.loading import parse_case
+    from statejump.kinds.truss.generate.document import write
+    from statejump.kinds.truss.importing import case_document, read
+    from statejump.schema.json_schema import head_line
+
+    console = make_console(quiet)
+    if os.path.exists(output) and not force:
+        raise StatejumpError(cause="exists already", file=output, remedy="--force overwrites it")
+    check_target(output)
+    deck = read(file, form, bars)
+    document = case_document(
+        deck, output.stem, length_unit_m=length_unit, force_unit_N=force_unit,
+        temperature_change_K=temperature_change, density_kg_per_m3=density, joints=[_joint(text) for text in joints],
+    )
+    try:
+        case = parse_case(document)
+    except StatejumpError as refused:
+        raise refused.located(file=file) from None
+    left = [f"# Left out: {printable(card)} ({count}): {why}" for card, count, _, why in deck.left_rows()]
+    write(document, output, [head_line("truss", output), f"# Imported from {printable(file.name)}", *left,
+                             "# Units are in the names."])
+    for table in deck.account():
+        print_table(table, console)
+    console.print(f"{output}: nodes {len(document['node'])}, links {len(document['link'])}, joints "
+                  f"{len(document.get('slider', ())) + len(document.get('revolute', ()))}, "
+                  f"{'planar' if case['truss.dimension'] == 2 else 'spatial'}")

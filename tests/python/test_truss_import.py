@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Trusses of other programs: what comes back from a solve is that of the truss written by hand; what is left out is
+named."""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Callable
+
+import numpy as np
+import pytest
+from conftest import Outcome
+
+import statejump as sj
+from statejump.kinds.truss.importing import case_document, read
+
+BAR = {"young_modulus_Pa": 7e10, "cross_section_area_m2": 1e-4, "thermal_expansion_per_K": 2.3e-5,
+       "density_kg_per_m3": 2700.0, "poisson_ratio": 0.3}
+# A triangle on a pin and a roller, its free corner loaded, every bar of another temperature: 105, 110, 115 K.
+BY_HAND: dict[str, Any] = {
+    "case": {"name": "by_hand", "kind": "truss"}, "truss": {"dimension": 2},
+    "node": [{"name": "N1", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
+             {"name": "N2", "position_m": [1.0, 0.0], "fixed": ["y"]},
+             {"name": "N3", "position_m": [0.0, 1.0], "force_N": [1000.0, 0.0]}],
+    "link": [{"name": "L1", "nodes": ["N1", "N2"], "temperature_fraction": 105 / 115, **BAR},
+             {"name": "L2", "nodes": ["N1", "N3"], "temperature_fraction": 110 / 115, **BAR},
+             {"name": "L3", "nodes": ["N2", "N3"], **BAR}],
+    "thermal": {"shape": "triangle", "temperature_change_max_K": 115.0},
+}
+ABAQUS = """*HEADING
+triangle
+** comment
+*NODE, NSET=ALLN
+1, 0, 0, 0
+2, 1000, 0, 0
+3, 0, 1000, 0
+*ELEMENT, TYPE=T3D2, ELSET=BARS
+1, 1, 2
+2, 1, 3
+3, 2, 3
+*NSET, NSET=FLAT, GENERATE
+1, 3, 1
+*MATERIAL, NAME=AL
+*ELASTIC
+7e4, 0.3
+*EXPANSION
+2.3e-5
+*DENSITY
+2.7e-9
+*SOLID SECTION, ELSET=BARS,
+MATERIAL=AL
+100.
+*INITIAL CONDITIONS, TYPE=TEMPERATURE
+ALLN, 20
+*BOUNDARY
+1, 1, 2
+2, 2
+FLAT, 3
+*STEP
+*STATIC
+*TEMPERATURE
+1, 120
+2, 130
+3, 140
+*CLOAD
+3, 1, 1000
+*CONTROLS, PARAMETERS=FIELD
+*END STEP
+"""
+HEAD = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nTEMP(LOAD) = 3\nBEGIN BULK\n"
+FREE = HEAD + """GRID,1,,0.,0.,0.
+GRID,2,,1.,0.,0.
+GRID,3,,0.,1.,0.
+CROD,1,7,1,2
+CROD,2,7,1,3
+CONROD,3,2,3,5,1.-4
+PROD,7,5,1.-4
+MAT1,5,7.+10,,.3,2700.,2.3-5,20.
+SPC1,1,12,1
+SPC1,1,2,2
+SPC1,1,3,1,THRU,3
+SPC1,9,123,3
+FORCE,2,3,0,1000.,1.,0.,0.
+TEMP,3,1,120.,2,130.,3,140.
+MPC,9,1,1,1.,2,1,-1.
+PLOAD4,2,1,5.
+ENDDATA
+"""
+SMALL = HEAD + """$ columns of eight
+GRID           1              0.      0.      0.
+GRID           2              1.      0.      0.
+GRID           3              0.      1.      0.
+CROD           1       7       1       2
+CROD           2       7       1       3
+CONROD         3       2       3       5   1.0-4
+PROD           7       5   1.0-4
+MAT1           5   7.+10             .3   2700.  2.3-5     20.
+SPC1           1      12       1
+SPC1           1       2       2
+SPC1           1       3       1       2       3
+FORCE          2       3       0   1000.      1.      0.      0.
+TEMP           3       1    120.       2    130.       3    140.
+ENDDATA
+"""
+
+
+def large(name: str, *fields: str) -> str:
+    """Return a line of fields of 16 columns."""
+    return f"{name:<8}" + "".join(f"{field:>16}" for field in fields) + "\n"
+
+
+LARGE = SMALL.replace(
+    "MAT1           5   7.+10             .3   2700.  2.3-5     20.\n",
+    large("MAT1*", "5", "7.E10", "", "0.3") + large("*", "2700.", "2.30D-5", "20."))
+assert LARGE != SMALL
+
+
+def check(found: sj.Case) -> None:
+    """The path of the import is that of the truss by hand, to the rounding of the deck's numbers."""
+    ours, theirs = found.reduced(), sj.load(BY_HAND).reduced()
+    for place, wanted in (("displacement_m", ours.history), ("axial_force_N", ours.links)):
+        other = (theirs.history if place in theirs.history else theirs.links)[place].values
+        assert np.abs(wanted[place].values - other).max() <= 1e-9 * np.abs(other).max()
+
+
+@pytest.mark.parametrize("text", [FREE, SMALL, LARGE], ids=["free", "small", "large"])
+def test_nastran_gives_the_numbers_of_the_truss_by_hand(
+    text: str, tmp_path: Path, statejump: Callable[..., Outcome]
+) -> None:
+    (tmp_path / "deck.bdf").write_text(text)
+    told = statejump("truss", "import", "deck.bdf", "-o", "deck.toml")
+    assert told.status == 0, told.errors
+    check(sj.load(tmp_path / "deck.toml"))
+
+
+def test_calculix_gives_the_numbers_of_the_truss_by_hand(tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
+    (tmp_path / "deck.inp").write_text(ABAQUS)
+    told = statejump("truss", "import", "deck.inp", "-o", "deck.toml", "--length-unit", 0.001)
+    assert told.status == 0, told.errors
+    check(sj.load(tmp_path / "deck.toml"))
+
+
+def test_tables_give_the_numbers_of_the_truss_by_hand(tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
+    (tmp_path / "nodes.csv").write_text("name,x_m,y_m,fixed,force_x_N\nN1,0,0,xy,\nN2,1,0,y,\nN3,0,1,,1000\n")
+    (tmp_path / "bars.csv").write_text(
+        "name,first,second,young_modulus_Pa,cross_section_area_m2,thermal_expansion_per_K,density_kg_per_m3,"
+        "temperature_change_K\n" + "".join(
+            f"L{number},N{first},N{second},7e10,1e-4,2.3e-5,2700,{change}\n"
+            for number, first, second, change in ((1, 1, 2, 105), (2, 1, 3, 110), (3, 2, 3, 115))))
+    told = statejump("truss", "import", "nodes.csv", "--bars", "bars.csv", "-o", "deck.toml")
+    assert told.status == 0, told.errors
+    check(sj.load(tmp_path / "deck.toml"))
+
+
+def test_nothing_is_dropped_in_silence(tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
+    (tmp_path / "deck.bdf").write_text(FREE)
+    told = statejump("truss", "import", "deck.bdf", "-o", "deck.toml")
+    for text in (told.output, (tmp_path / "deck.toml").read_text()):
+        for word in ("MPC", "PLOAD4", "SPC1", "set 9: the case control selects 1"):
+            assert word in text
+    (tmp_path / "deck.inp").write_text(ABAQUS)
+    assert "*CONTROLS" in statejump("truss", "import", "deck.inp", "-o", "deck2.toml").output
+    # Every card of a deck is in one of the two tables.
+    deck = read(tmp_path / "deck.bdf")
+    cards = {line.split(",")[0] for line in FREE.split("BEGIN BULK\n")[1].splitlines()} - {"ENDDATA"}
+    assert cards == {card for card, _ in (*deck.taken, *deck.left)}
+    deck = read(tmp_path / "deck.inp")
+    keywords = {line.split(",")[0] for line in ABAQUS.splitlines() if line[0] == "*" and line[1] != "*"}
+    assert keywords == {card.split(",")[0] for card, _ in (*deck.taken, *deck.left)}
+
+
+def test_joints_are_put_in_by_name(tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
+    (tmp_path / "deck.bdf").write_text(FREE)
+    told = statejump("truss", "import", "deck.bdf", "-o", "deck.toml",
+                     "--joint", "node=N1,axis=x,friction_coefficient=0.3,normal_force_N=1e4,clearance_plus_m=1e-3",
+                     "--joint", "node=N3,link=L3,journal_radius_m=5e-3,radial_clearance_m=1e-5,friction_coefficient=0.2")
+    assert told.status == 0, told.errors
+    case = sj.load(tmp_path / "deck.toml")
+    assert [slider.nodes for slider in case.slider] == [["N1"]] and case.node[0].fixed == ["y"]
+    joint = case.revolute[0]
+    assert (joint.bearing_node, joint.journal_node, joint.bearing_link, joint.journal_link) == ("N3", "N3_L3", "L2", "L3")
+    assert case.reduced().complete
+
+
+def test_beams_become_bars_and_say_so(tmp_path: Path) -> None:
+    text = ABAQUS.replace("T3D2", "B31").replace("*SOLID SECTION", "*BEAM SECTION, SECTION=RECT").replace("100.", "10,10")
+    (tmp_path / "deck.inp").write_text(text)
+    deck = read(tmp_path / "deck.inp")
+    assert ("*ELEMENT, TYPE=B31", "link: it carries axial force only, its bending is left out") in deck.taken
+    check(sj.load(case_document(deck, "beams", length_unit_m=1e-3)))
+
+
+WRONG: dict[str, tuple[str, str, str, list[str], str]] = {
+    "no node": ("inp", "3, 2, 3\n*NSET", "3, 2, 9\n*NSET", [], "deck.inp: line 11: element 3: there is no node 9"),
+    "twice": ("inp", "2, 1000, 0, 0", "1, 1000, 0, 0", [], "deck.inp: line 6: node '1' is there twice"),
+    "no number": ("inp", "7e4, 0.3", "nan, 0.3", [], "'nan' is not a finite number"),
+    "no section": ("inp", "*SOLID SECTION", "*SHELL SECTION", [], "has no Young's modulus"),
+    "no density": ("inp", "*DENSITY\n2.7e-9\n", "", [], "--density is missing: link '1' has none"),
+    "other files": ("inp", "*HEADING", "*INCLUDE, INPUT=/etc/passwd", [], "*INCLUDE is not read"),
+    "coordinate system": ("bdf", "GRID,1,,0.", "GRID,1,5,0.", [], "GRID '1' has CP = '5'"),
+    "no property": ("bdf", "PROD,7", "PROD,8", [], "CROD 1: there is no property '7' that is read"),
+    "two sets": ("bdf", "SPC = 1\n", "", [], "SPC1 of set 9 beside set 1"),
+    "continuation": ("bdf", "GRID,1,,", ",7\nGRID,1,,", [], "a continuation of nothing"),
+    "no bars": ("bdf", "CROD,", "CTUBE,", [], ""),
+    "joint": ("bdf", "", "", ["--joint", "node=N9"], "node = 'N9' is unknown: did you mean N"),
+    "joint's key": ("bdf", "", "", ["--joint", "node=N1,axe=x"], "axe is unknown: did you mean axis?"),
+    "joint's axis": ("bdf", "", "", ["--joint", "node=N1,axis=z"], "axis = 'z' is not allowed: must be x, y"),
+    "suffix": ("txt", "", "", [], "must end with .inp, .bdf"),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_what_is_wrong_is_one_sentence(what: str, tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
+    suffix, old, new, more, sentence = WRONG[what]
+    text = ABAQUS if suffix == "inp" else FREE
+    assert old in text
+    if what == "no bars":
+        text = text.replace("CONROD,3", "CTUBE,3")
+        sentence = "deck.bdf: holds no bars"
+    (tmp_path / f"deck.{suffix}").write_text(text.replace(old, new) if old else text)
+    told = statejump("truss", "import", f"deck.{suffix}", "-o", "deck.toml", *more)
+    assert told.status == 2 and told.errors.count("\n") == 1 and sentence in told.errors, told.errors
+    assert not (tmp_path / "deck.toml").exists()
