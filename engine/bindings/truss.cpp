@@ -321,6 +321,14 @@ py::dict motion_dict(const truss::Model& model, const truss::Motion& motion) {
   result["unknowns"] = motion.unknowns;
   result["largest_contact_merit"] = motion.largest_contact_merit;
   result["negative_dissipation_J"] = motion.negative_dissipation;
+  result["undetermined"] = py::none();
+  if (motion.undetermined) {
+    py::list joints;
+    for (const int joint : motion.undetermined->joints) {
+      joints.append(truss::name_of(model.joints[static_cast<std::size_t>(joint)]));
+    }
+    result["undetermined"] = py::make_tuple(motion.undetermined->time, joints);
+  }
   return result;
 }
 

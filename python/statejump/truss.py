@@ -33,8 +33,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from statejump.kinds.truss.answers.study import TrussAnswers
+    from statejump.kinds.truss.creak import Creak
 
-__all__ = ["answers", "chain", "draw", "iwan", "mast", "ring", "umbrella"]
+__all__ = ["answers", "chain", "creak", "draw", "iwan", "mast", "ring", "umbrella"]
 
 Keys = ParamSpec("Keys")
 LARGEST = 1_000_000
@@ -78,6 +79,22 @@ def draw(case: Case, axes: Axes | None = None) -> Figure:
     asked = case.definition
     figure: Figure = asked.behaviour.ability("draw", asked)(asked, axes)
     return figure
+
+
+def creak(case: Case, node: str, *, progress: Progress = False) -> Creak:
+    """Return what a node feels while the truss moves through its program: slips of the joints and the heat of each,
+    the node's acceleration with its spectrum, peak and RMS in octaves.
+
+    :param case: a case of kind ``truss``; its ``[motion]`` gives the steps
+    :param node: name of the node
+    :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
+    :raises StatejumpError: the case is of another kind, there is no such node, or a step has no solution
+    """
+    asked = case.definition
+    ability = asked.behaviour.ability("creak", asked)
+    with shown(progress, "motion") as tell:
+        found: Creak = ability(asked, node, tell)
+    return found
 
 
 def answers(

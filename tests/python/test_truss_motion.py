@@ -76,3 +76,24 @@ def test_motion_beside_the_dem(statejump, tmp_path: Path) -> None:
     assert (tmp_path / "results" / "chain_3_dynamic" / "comparison.csv").exists()
     refused = statejump("compare", "--dynamic", *[tmp_path / "results" / "chain_3_dynamic" / "comparison.h5"] * 2)
     assert refused.status == 2 and "--dynamic" in refused.errors
+
+
+def test_creak_tells_slips_and_bands(statejump, tmp_path: Path) -> None:
+    outcome = statejump("truss", "creak", case_file(tmp_path, chain()), "--node", "N3")
+    assert outcome.status == 0, outcome.output + outcome.errors
+    folder = tmp_path / "results" / "chain_3_creak"
+    assert {path.name for path in folder.iterdir()} >= {"reduced.h5", "slips.csv", "bands.csv", "spectrum.csv", "creak.png"}
+    found = sj.truss.creak(sj.load(chain()), "N3")
+    # Every block slides out and back; what friction takes is in the slips.
+    slips = found.frame("slips")
+    assert set(slips["joint"]) == {"S1", "S2", "S3"} and len(slips) >= 6
+    assert slips["heat_J"].sum() == pytest.approx(found.run["friction_dissipation_J"][-1], rel=1e-2)
+    # Parseval: octaves add up to the whole, as far as filters of fourth order part them; so does the density, as far as
+    # its segments see the slowest motion.
+    bands = found.frame("bands")
+    assert np.sqrt((bands["rms_m_per_s2"] ** 2).sum()) == pytest.approx(found.rms_m_per_s2, rel=0.1)
+    step = np.diff(found.frequency_Hz)[0]
+    assert np.sqrt(found.density_m2_per_s4_per_Hz.sum() * step) == pytest.approx(found.rms_m_per_s2, rel=0.1)
+    assert bands["peak_m_per_s2"].max() <= 1.5 * found.peak_m_per_s2
+    refused = statejump("truss", "creak", tmp_path / "chain_3.toml", "--node", "N9")
+    assert refused.status == 2 and "node = 'N9'" in refused.errors and "N3" in refused.errors

@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 from statejump.case import Case
-from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console
+from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown, progress
 from statejump.cli.truss_answers import answers_command
 from statejump.cli.truss_import import import_command
 from statejump.cli.truss_surface import surface_command
@@ -132,6 +132,29 @@ def draw_command(case_file: Path, results: Results, quiet: bool) -> None:
     with results.folder(case.name) as folder:
         written = folder.publish(save(case.behaviour.ability("draw", case)(case), folder.staged, f"{case.name}_truss"))
     console.print(f"drawing: {', '.join(str(path) for path in written)}")
+
+
+@truss_command.command("creak")
+@CASE
+@click.option("--node", required=True, metavar="NAME", help="Whose acceleration is asked for.")
+@RESULTS
+@QUIET
+def creak_command(case_file: Path, node: str, results: Results, quiet: bool) -> None:
+    """CASE in motion: which joints slip when and with how much heat, and what a node feels of it: acceleration,
+    spectrum, peak and RMS in octaves.
+
+    \b
+    Example:
+      statejump truss creak cases/trusses/chain_10.toml --node N10
+    """
+    console = make_console(quiet)
+    case = loaded(case_file, "creak")
+    with results.folder(f"{case.name}_creak") as folder:
+        with progress(console, "motion") as tell:
+            found = case.behaviour.ability("creak", case)(case, node, tell)
+        written = folder.publish(found.write(folder.staged))
+    print_shown(found.told(), console)
+    console.print(f"results: {', '.join(str(path) for path in written)}")
 
 
 truss_command.add_command(import_command)

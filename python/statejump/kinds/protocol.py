@@ -23,8 +23,8 @@ ability that it lacks is not there, and what needs it refuses the case with one 
 ``control``         ``(case, **settings) -> Study``: what makes the state jump smaller, :mod:`statejump.control`
 ==================  =====================================================================================
 
-Further abilities are those of single commands and have their names: ``statics``, ``answers``, ``convergence``,
-``hold``, ``slow``, ``energy``, ``figures``, ``laws``, ``contact_problems``.
+Further abilities are those of single commands and have their names: ``statics``, ``answers``, ``creak``,
+``convergence``, ``hold``, ``slow``, ``energy``, ``figures``, ``laws``, ``contact_problems``.
 """
 from __future__ import annotations
 
@@ -123,6 +123,6 @@ class Kind(Generic[CaseType]):
 
 
 # Commands whose name is not that of the ability.
-COMMANDS = {"dem_input": "dem", "dynamic": "reduced --dynamic", "answers": "truss answers", "draw": "truss draw",
-            "contact_problems": "fclib write", "outcomes": "sweep", "sheet": "plot"}
+COMMANDS = {"dem_input": "dem", "dynamic": "reduced --dynamic", "answers": "truss answers", "creak": "truss creak",
+            "draw": "truss draw", "contact_problems": "fclib write", "outcomes": "sweep", "sheet": "plot"}
 Columns = Mapping[str, np.ndarray]

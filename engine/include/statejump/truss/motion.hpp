@@ -53,6 +53,13 @@ struct MovingState {
   double impact_dissipation = 0.0;   ///< What contacts took across their surfaces since then [J].
 };
 
+/// A step in which the laws of rigid contacts leave their reactions open: one of several is given,
+/// velocities are the same for all.
+struct Undetermined {
+  double time;              ///< [s]
+  std::vector<int> joints;  ///< Whose reactions may be traded for each other.
+};
+
 /// What simulate() returns.
 struct Motion {
   std::vector<State> states;
@@ -66,7 +73,8 @@ struct Motion {
   long factorizations = 0;
   int unknowns = 0;                    ///< Free displacements.
   double largest_contact_merit = 0.0;  ///< Of the contact problems, see complementarity::Merit.
-  double negative_dissipation = 0.0;   ///< Sum of what steps gave below zero [J], <= 0.
+  std::optional<Undetermined> undetermined;  ///< The first such step.
+  double negative_dissipation = 0.0;         ///< Sum of what steps gave below zero [J], <= 0.
 };
 
 /// Motion of a truss through its temperature programs, after Moreau and Jean [1, 2].
@@ -92,7 +100,9 @@ struct Motion {
 /// **Energies.** Impulses work by the mean velocity of the step, so thermal_work + work of loads −
 /// changes of kinetic and elastic energy − dissipation closes to the error of the scheme in the
 /// forces f. A contact's own dissipation is what it took less what it stores; in a step in which a
-/// slide reverses it may come out below zero by O(h²), which `negative_dissipation` adds up.
+/// slide reverses friction's may come out below zero by O(h²), which `negative_dissipation` adds up
+/// with that of rigid impacts. Across its surface an elastic contact is conservative: what it took
+/// there is the scheme's, of either sign in a step.
 ///
 /// Planar and spatial trusses; three-dimensional joints slide as the quasi-static ones do.
 ///

@@ -11,6 +11,13 @@ namespace {
 /// Share of Coulomb's bound from which a contact slips: the contact problem is solved to 1e-10.
 constexpr double at_bound = 1.0 - 1e-8;
 
+/// Journal minus bearing centre across the joint's axis [m].
+Vector3d eccentricity(const Trial& at) {
+  const Vector3d apart = at.between(1, 0);
+  const Vector3d axis = at.frame.axes.col(2);
+  return apart - axis.dot(apart) * axis;
+}
+
 JointStatus sliding(double friction, double bound) {
   if (bound <= 0.0) return JointStatus::slip_plus;  // slips freely either way
   return friction >= at_bound * bound    ? JointStatus::slip_plus
@@ -32,6 +39,10 @@ double Contact::tangential_compliance(double normal) const {
   if (tangential_stiffness < infinite) return 1.0 / tangential_stiffness;
   if (mindlin_stiffness == infinite) return 0.0;
   return 1.0 / (mindlin_stiffness * std::sqrt(std::max(depth(normal), least_depth)));
+}
+
+bool Contact::sticks(double normal, double tangential) const {
+  return tangential_column >= 0 && std::abs(tangential) < at_bound * friction_coefficient * normal;
 }
 
 double Contact::kept_bend(double compliance_now) const {
@@ -86,6 +97,16 @@ void Contacts::add(int joint, int first_column, const ClearanceRevolute& revolut
   all_.push_back(contact);
 }
 
+Statuses Contacts::closed(const VectorXd& z, double time, const StepStart& start) const {
+  Statuses statuses = system_->all_stick();
+  for (const Contact& contact : all_) {
+    if (contact.normal_column < 0 || contact.stop != JointStatus::open) continue;
+    const Trial at = system_->trial(contact.joint, z, time, start, JointModel::friction, 1.0);
+    if (eccentricity(at).squaredNorm() == 0.0) statuses[index(contact.joint)] = JointStatus::open;
+  }
+  return statuses;
+}
+
 void Contacts::begin(const State& state) {
   for (Contact& contact : all_) {
     if (contact.normal_column < 0 || contact.stop != JointStatus::open) continue;
@@ -103,13 +124,13 @@ void Contacts::measure(const VectorXd& z, double time, const StepStart& start,
       contact.gap = contact.clearance + contact.normal_sign * slide;
       contact.clearance_after = contact.clearance;
     } else {
-      contact.gap = -closures[contact.normal_column];
-      Vector3d apart = at.between(1, 0);
-      const Vector3d axis = at.frame.axes.col(2);
-      apart -= axis.dot(apart) * axis;
-      contact.clearance_after = contact.gap + apart.norm();
+      const Vector3d apart = eccentricity(at);
+      const bool has_normal = apart.squaredNorm() > 0.0;
+      contact.gap = has_normal ? -closures[contact.normal_column] : Contact::infinite;
+      if (has_normal) contact.clearance_after = contact.gap + apart.norm();
     }
-    contact.active = contact.is_elastic() || contact.gap <= rounding;
+    contact.active =
+        contact.gap <= rounding || (contact.is_elastic() && contact.gap < Contact::infinite);
   }
 }
 

@@ -46,6 +46,8 @@ struct Contact {
   /// Bend [m] that friction has kept of the last step, now that the compliance is another one:
   /// what loads a contact keeps the force, what unloads it the bend.
   double kept_bend(double compliance_now) const;
+  /// Whether friction holds it at these impulses.
+  bool sticks(double normal, double tangential) const;
   /// Stored across and along its surface [J].
   double normal_energy() const { return 0.4 * normal_force * depth(normal_force); }
   double tangential_energy() const { return 0.5 * compliance * friction_force * friction_force; }
@@ -62,6 +64,9 @@ class Contacts {
   /// Columns that hold two nodes together.
   const std::vector<int>& holds() const { return holds_; }
 
+  /// Statuses in which every joint has its closures and directions; open only where a journal is in
+  /// the very middle of its bearing, where no normal is defined.
+  Statuses closed(const VectorXd& z, double time, const StepStart& start) const;
   /// Forces of contacts as a quasi-static state has them.
   void begin(const State& state);
   /// Gaps at q, where the closures are those of an evaluation at the same q and time with all

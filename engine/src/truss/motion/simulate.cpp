@@ -111,6 +111,7 @@ Motion simulate(const Model& model, const Inertia& inertia, const MotionOptions&
   motion.iterations = stepper.iterations();
   motion.factorizations = stepper.factorizations();
   motion.largest_contact_merit = stepper.largest_merit();
+  motion.undetermined = stepper.undetermined();
   motion.negative_dissipation = stepper.account().negative;
   return motion;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stepper.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -15,6 +16,11 @@ constexpr double balance = 1e-10;
 /// An elastic contact is on its law to this share of its force: its problem is solved to 1e-10 of
 /// the largest velocity in it, which a stiff contact turns into much more of a force.
 constexpr double on_law = 1e-6;
+/// Share of the largest pivot of W below which a reaction follows from others. W comes of solves
+/// whose matrix has a condition of 1e4 at most: h²K is about as large as M.
+constexpr double dependent = 1e-10;
+/// Share of the largest reaction in a trade of reactions from which a joint is named.
+constexpr double takes_part = 1e-3;
 
 }  // namespace
 
@@ -48,7 +54,8 @@ void Stepper::begin(const VectorXd& q, const VectorXd& v, const State* equilibri
 void Stepper::evaluate(const VectorXd& q, double time) {
   VectorXd z = VectorXd::Zero(system_->unknowns());
   z.head(q.size()) = q;
-  system_->evaluate(z, time, origin_, system_->all_stick(), JointModel::friction, 1.0, at_);
+  system_->evaluate(z, time, origin_, contacts_.closed(z, time, origin_), JointModel::friction, 1.0,
+                    at_);
 }
 
 VectorXd Stepper::force(const VectorXd& q, const VectorXd& v, double time,
@@ -282,7 +289,48 @@ void Stepper::advance(double to) {
       held += answer.tail(holds_.cols());
     }
   }
+  check_determined(step, local);
   book(step, local);
+}
+
+void Stepper::check_determined(const Trial& step, const Local& local) {
+  if (undetermined_) return;
+  // Rows of W that hold. How a slider's friction and its stop share a force is never determined:
+  // it is one force there.
+  std::vector<Eigen::Index> rows;
+  std::vector<Eigen::Index> key;
+  int sticking_slider = -1;
+  for (std::size_t i = 0; i < local.contacts.size(); ++i) {
+    const Contact& contact = *local.contacts[i];
+    const auto n = static_cast<Eigen::Index>(2 * i);
+    const double normal = local.impulses[n];
+    if (!(normal > 0.0)) continue;
+    const bool stops = contact.stop != JointStatus::open && contact.joint == sticking_slider;
+    if (contact.normal_column >= 0 && !contact.is_elastic() && !stops) {
+      rows.push_back(n);
+      key.push_back(contact.normal_column);
+    }
+    if (contact.sticks(normal, local.impulses[n + 1]) &&
+        contact.tangential_compliance(normal / step.h) == 0.0) {
+      rows.push_back(n + 1);
+      key.push_back(contact.tangential_column);
+      if (contact.normal_column < 0) sticking_slider = contact.joint;
+    }
+  }
+  if (key == holding_) return;
+  holding_ = key;
+  if (rows.size() < 2) return;
+  Eigen::FullPivLU<Eigen::MatrixXd> factors(Eigen::MatrixXd(local.delassus(rows, rows)));
+  factors.setThreshold(dependent);
+  if (factors.dimensionOfKernel() == 0) return;
+  const VectorXd trade = factors.kernel().col(0).cwiseAbs();
+  undetermined_ = Undetermined{step.to, {}};
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (trade[static_cast<Eigen::Index>(k)] < takes_part * trade.maxCoeff()) continue;
+    const int joint = local.contacts[static_cast<std::size_t>(rows[k] / 2)]->joint;
+    std::vector<int>& joints = undetermined_->joints;
+    if (std::find(joints.begin(), joints.end(), joint) == joints.end()) joints.push_back(joint);
+  }
 }
 
 /// Takes the step: memories, energies, statuses.
@@ -314,7 +362,7 @@ void Stepper::book(const Trial& step, const Local& local) {
       const double heat = -local.impulses[n] * (mean[n] + 0.5 * growth / h) -
                           (contact.normal_energy() - stored_before[0]);
       account_.impact += heat;
-      account_.negative += std::min(heat, 0.0);
+      if (!contact.is_elastic()) account_.negative += std::min(heat, 0.0);
       account_.thermal_work -= contact.normal_force * growth;
     }
   }

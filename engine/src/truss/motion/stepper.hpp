@@ -38,6 +38,7 @@ class Stepper {
   const Account& account() const { return account_; }
   double kinetic_energy() const { return 0.5 * v_.dot(bodies_->mass() * v_); }
   void describe(State& state) const;
+  const std::optional<Undetermined>& undetermined() const { return undetermined_; }
   long iterations() const { return iterations_; }
   long factorizations() const { return factorizations_; }
   double largest_merit() const { return largest_merit_; }
@@ -71,6 +72,8 @@ class Stepper {
   void evaluate(const VectorXd& q, double time);
   bool balanced(const Trial& step, const VectorXd& residual, const VectorXd& held,
                 const Local& local) const;
+  /// Notes the first step whose reactions are not unique.
+  void check_determined(const Trial& step, const Local& local);
   void book(const Trial& step, const Local& local);
   [[noreturn]] void fail(FailureKind kind, double when, const Contact* contact) const;
   const Contact* worst(const complementarity::Problem& problem, const VectorXd& impulses,
@@ -90,6 +93,8 @@ class Stepper {
   double time_ = 0.0;
   VectorXd internal_;  ///< Forces of links, springs and loads at (q, time) [N].
   Account account_;
+  std::optional<Undetermined> undetermined_;
+  std::vector<Eigen::Index> holding_;  ///< Rows of contacts, see check_determined().
   long iterations_ = 0;
   long factorizations_ = 0;
   double largest_merit_ = 0.0;

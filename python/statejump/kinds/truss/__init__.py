@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from statejump.core.figures import Sheet
     from statejump.kinds.truss.answers.study import TrussAnswers
     from statejump.kinds.truss.contact_problems import ContactProblem
+    from statejump.kinds.truss.creak import Creak
     from statejump.kinds.truss.page import TrussPart
     from statejump.results.contents import Result
 
@@ -139,6 +140,12 @@ class Truss(Kind[TrussCase]):
         from statejump.kinds.truss import contact_problems
 
         return contact_problems.contact_problems(case, number, tell)
+
+    def creak(self, case: TrussCase, node: str, tell: Tell) -> Creak:
+        """Return what a node feels while the truss moves; see :func:`statejump.truss.creak`."""
+        from statejump.kinds.truss import creak
+
+        return creak.creak(case, node, tell)
 
     def answers(self, case: TrussCase, **settings: Any) -> TrussAnswers:
         """Return what a designer asks of the truss; see :func:`statejump.truss.answers`."""

@@ -36,6 +36,17 @@ class TrussMotion:
     unknowns: int
     largest_contact_merit: float
     negative_dissipation_J: float
+    undetermined: tuple[float, list[str]] | None  # first step [s] whose reactions are not unique, and the joints
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the motion leaves open, in sentences."""
+        if self.undetermined is None:
+            return ()
+        time_s, joints = self.undetermined
+        named = ", ".join(repr(name) for name in joints)
+        return (f"from {time_s:.6g} s on rigid contacts of joints {named} hold each other: their forces are one of "
+                "several solutions, the motion is the same for all",)
 
 
 def dashpots_N_s_per_m(nodes: np.ndarray, stiffness_N_per_m: np.ndarray, ratio: float, mass_kg: np.ndarray

@@ -42,10 +42,10 @@ NOTES = {
 
 def _joints(truss: ResolvedTruss) -> list[str]:
     """Names of all contacts, sliders first."""
-    return list(_names_of_joints(truss).values())
+    return list(joint_names(truss).values())
 
 
-def _names_of_joints(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
+def joint_names(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
     """Name of every contact by kind and name of its joint; with the kind where a slider and a revolute share one."""
     sliders, revolutes = truss.sliders.names, truss.revolutes.names
     shared = bool(set(sliders) & set(revolutes))
@@ -254,7 +254,8 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
         "contact_problems": float(motion.iterations), "negative_dissipation_J": motion.negative_dissipation_J,
         "unknowns": float(motion.unknowns),
     }
-    run = _run(case, "reduced", plain, energy, items, _events(case, motion), summary, native=motion)
+    run = _run(case, "reduced", plain, energy, items, _events(case, motion), summary, native=motion,
+               warnings=motion.warnings)
     velocity = Column(states["velocity_m_per_s"], "m/s", "nodes")
     heat = Column(of_joints, "J", "contacts", note="heat of friction since the start")
     return replace(run, history={**run.history, "velocity_m_per_s": velocity},
@@ -263,7 +264,7 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
 
 def _events(case: TrussCase, path: TrussPath | TrussMotion) -> list[Event]:
     truss, at = path.truss, path.states["time_s"]
-    joints, slipped, events = _names_of_joints(truss), set(), []
+    joints, slipped, events = joint_names(truss), set(), []
     for event in path.events:
         name = joints[event.joint_kind, event.name]
         before, after = STATE_OF[event.before], STATE_OF[event.after]

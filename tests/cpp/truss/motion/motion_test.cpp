@@ -6,9 +6,10 @@
 #include <Eigen/LU>
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
+#include <tuple>
 #include <vector>
 
-#include "statejump/failure.hpp"
+#include "statejump/linkage/run.hpp"
 
 namespace statejump::truss {
 namespace {
@@ -261,6 +262,82 @@ TEST(Motion, SlowHeatingFollowsTheQuasiStaticPath) {
   const double slow = error(1.0);
   EXPECT_LT(slow, 1e-3);
   EXPECT_LT(slow, 0.2 * fast);
+}
+
+TEST(Motion, RibMeetsTheLinkageThroughImpacts) {
+  // The rib of the umbrella antenna without friction: the linkage's RK4 with 20 times the steps is
+  // its measure. Implicit Euler in the contact is of first order.
+  linkage::Linkage antenna;
+  antenna.frame_length = 0.12;
+  antenna.link_ab = {0.050, 0.5, 70e9, 9e-6, 23.75e-6, 0.3};
+  antenna.link_bc = {0.100, 1.0, 70e9, 9e-6, 23.75e-6, 0.3};
+  antenna.journal_radius = 5e-3;
+  antenna.bearing_radius = 5.1e-3;
+  const thermal::Program program = lasting(0.012, 60.0);
+  const linkage::State start = linkage::initial_state(antenna, linkage::Start::matched,
+                                                      program.temperature_rate(0.0), {1e-6, 0.0});
+  const linkage::Run exact = linkage::simulate(antenna, program, start, {400000, 0});
+  ASSERT_GT(exact.contacts, 0);
+
+  Model model;
+  model.programs = {program};
+  const double x = 0.02875;
+  const double y = std::sqrt(0.05 * 0.05 - x * x);
+  model.nodes = {node("A", 0, 0, 0), node("C", 0.12, 0, 0), node("B", x, y, 2), node("J", x, y, 2)};
+  model.links = {{"AB", 0, 2, 6.3e5, 0.05, 23.75e-6, 0, 1.0},
+                 {"CJ", 1, 3, 6.3e5, 0.1, 23.75e-6, 0, 1.0}};
+  ClearanceRevolute joint;
+  joint.name = "joint";
+  joint.bearing_node = 2;
+  joint.journal_node = 3;
+  joint.bearing_link = 0;
+  joint.journal_link = 1;
+  joint.journal_radius = 5e-3;
+  joint.radial_clearance = 1e-4;
+  joint.hertz_stiffness = 4.0 / 3.0 * 70e9 / (2.0 * (1.0 - 0.09)) * std::sqrt(5e-3 * 5.1e-3 / 1e-4);
+  model.joints = {joint};
+  const auto error = [&](long steps) {
+    MotionOptions options;
+    options.steps = options.sample_every = steps;
+    options.start = at_rest(model);
+    for (const auto& [k, centre, velocity] :
+         {std::tuple{2, start.bearing_centre, start.bearing_velocity},
+          std::tuple{3, start.journal_centre, start.journal_velocity}}) {
+      options.start->displacement.col(k).head<2>() =
+          centre - model.nodes[static_cast<std::size_t>(k)].position.head<2>();
+      options.start->velocity.col(k).head<2>() = velocity;
+    }
+    const Motion motion = simulate(model, {Eigen::Vector2d(0.5, 1.0), {}, {}, {}, {}}, options);
+    const Vector2d at =
+        model.nodes[3].position.head<2>() + motion.states.back().displacement.col(3).head<2>();
+    return (at - exact.samples.back().state.journal_centre).norm();
+  };
+  const double coarse = error(20000);
+  const double fine = error(40000);
+  EXPECT_LT(fine, 2e-2 * 1e-4);  // of the play
+  EXPECT_NEAR(coarse / fine, 2.0, 0.4);
+}
+
+TEST(Motion, StepsWhoseReactionsAreOpenAreNamed) {
+  // Two sliders in a row on one rigid node: which of them carries the load nothing determines.
+  Model model = bar(0.01);
+  model.programs = {lasting(0.01)};
+  Slider twin = std::get<Slider>(model.joints[0]);
+  twin.name = "T";
+  model.nodes[1].load = {10.0, 0.0, 0.0};
+  const auto run = [&] {
+    MotionOptions options;
+    options.steps = 100;
+    options.start = at_rest(model);
+    return simulate(model, {Vector2d(0.1, 0.0).head(1), {}, {}, {}, {}}, options);
+  };
+  EXPECT_FALSE(run().undetermined);
+  model.joints.push_back(twin);
+  const Motion motion = run();
+  ASSERT_TRUE(motion.undetermined);
+  EXPECT_EQ(motion.undetermined->joints, (std::vector<int>{0, 1}));
+  EXPECT_NEAR(motion.states.back().displacement(0, 1), 0.0,
+              1e-12);  // merit 1e-10 of h f W, 1e-4 m/s
 }
 
 }  // namespace
