@@ -9,6 +9,7 @@ from statejump.core.case import Case as Definition
 
 if TYPE_CHECKING:
     from statejump.core.run import Run
+    from statejump.kinds.umbrella.quasi_static import QuasiStatic
 
 Progress = bool | Callable[[float], None]
 
@@ -79,6 +80,15 @@ class Case:
         :raises StatejumpError: the kind has no such reduced model, or the run could not be finished
         """
         return self._run("dynamic" if dynamic else "reduced", "reduced model", progress)
+
+    def quasi_static(self) -> QuasiStatic:
+        """Return the paths of infinitely slow heating, of a case whose reduced model has inertia: a loaded rib, with
+        rigid and, where its laws allow, elastic links.
+
+        :raises StatejumpError: the kind has no such paths, or nothing loads the joint at the start
+        """
+        found: QuasiStatic = self.definition.behaviour.ability("quasi_static", self.definition)(self.definition)
+        return found
 
     def dem(self, progress: Progress = False) -> Run:
         """Run the case in YADE, in a process of its own.

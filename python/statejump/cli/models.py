@@ -57,23 +57,41 @@ def _folder_name(case: Case, dynamic: bool) -> str:
 @click.command("reduced")
 @CASE
 @DYNAMIC
+@click.option("--quasi-static", "slow", is_flag=True,
+              help="Without inertia: paths of a loaded rib. Results go to the folder CASE_quasi_static.")
 @RESULTS
 @QUIET
-def reduced_command(case_file: Path, dynamic: bool, results: Results, quiet: bool) -> None:
+def reduced_command(case_file: Path, dynamic: bool, slow: bool, results: Results, quiet: bool) -> None:
     """Reduced model of CASE: events, state jump, history.
 
     \b
     Examples:
       statejump reduced cases/table1.toml
       statejump reduced --dynamic cases/trusses/chain_10.toml
+      statejump reduced --quasi-static cases/umbrella_bias.toml
     """
     console = make_console(quiet)
+    if slow:
+        if dynamic:
+            raise click.UsageError("'--dynamic' is with inertia, '--quasi-static' without.")
+        _quasi_static(Case(loaded(case_file, "quasi_static")), results, console)
+        return
     case = Case(loaded(case_file, "dynamic" if dynamic else "reduced"))
     with results.folder(_folder_name(case, dynamic)) as folder:
         _check(case, folder, "reduced")
         with progress(console, "reduced model") as tell:
             run = case.reduced(tell, dynamic=dynamic)
         _finish("reduced", case, run, folder, console)
+
+
+def _quasi_static(case: Case, results: Results, console: Console) -> None:
+    with results.folder(f"{case.name}_quasi_static") as folder:
+        found = case.quasi_static()
+        written = folder.publish(found.write(folder.staged))
+    print_shown(found.told(), console)
+    for warning in found.warnings:
+        console.print(f"warning: {warning}")
+    console.print(f"results: {', '.join(str(path) for path in written)}")
 
 
 def _dem(command: str, case: Case, before: dict[str, Run], folder: ResultsFolder, console: Console) -> Run:

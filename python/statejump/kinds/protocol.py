@@ -6,6 +6,7 @@ ability that it lacks is not there, and what needs it refuses the case with one 
 
 ==================  =====================================================================================
 ``reduced``         ``(case, tell) -> Run``: the reduced model; ``tell`` takes the finished share
+``quasi_static``    ``(case)``: paths of infinitely slow heating, of a kind whose ``reduced`` has inertia
 ``dynamic``         ``(case, tell) -> Run``: the reduced model with inertia, of a kind whose ``reduced`` has none
 ``dem_input``       ``(case) -> dict``: what the scene in YADE needs, as plain values
 ``dem_run``         ``(case, columns, about) -> Run``: a finished or interrupted DEM run
@@ -123,6 +124,7 @@ class Kind(Generic[CaseType]):
 
 
 # Commands whose name is not that of the ability.
-COMMANDS = {"dem_input": "dem", "dynamic": "reduced --dynamic", "answers": "truss answers", "creak": "truss creak",
-            "draw": "truss draw", "contact_problems": "fclib write", "outcomes": "sweep", "sheet": "plot"}
+COMMANDS = {"dem_input": "dem", "dynamic": "reduced --dynamic", "quasi_static": "reduced --quasi-static",
+            "answers": "truss answers", "creak": "truss creak", "draw": "truss draw", "contact_problems": "fclib write",
+            "outcomes": "sweep", "sheet": "plot"}
 Columns = Mapping[str, np.ndarray]

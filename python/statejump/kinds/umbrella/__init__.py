@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from statejump.core.charts import Chart
     from statejump.core.figures import Sheet
     from statejump.core.results_folder import Results
+    from statejump.kinds.umbrella.quasi_static import QuasiStatic
     from statejump.laws.curves import Joint
     from statejump.paper.energy import Accounts
     from statejump.paper.figures.runs import Part
@@ -83,6 +84,11 @@ class Umbrella(Kind):
             case.title, case.joint.journal_radius_m, case.bearing_radius_m, case.joint.contact_length_m,
             case.effective_young_modulus_Pa, curves.reduced_mass_kg(case.link_ab.mass_kg, case.link_bc.mass_kg),
         )
+
+    def quasi_static(self, case: UmbrellaCase) -> QuasiStatic:
+        from statejump.kinds.umbrella.quasi_static import quasi_static
+
+        return quasi_static(case)
 
     def reduced(self, case: UmbrellaCase, tell: Tell) -> Run:
         from statejump.kinds.umbrella import reduced

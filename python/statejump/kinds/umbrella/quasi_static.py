@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The quasi-static path of a loaded rib: what remains of its motion when it is heated infinitely slowly."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from statejump import _engine, laws
+from statejump.core.engine_failures import engine
+from statejump.core.errors import NotAllowed
+from statejump.core.tables import Shown, write_columns, write_rows
+from statejump.core.units import plain, unit_of
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.kinds.umbrella.control_loaded import has_elastic_loop
+from statejump.kinds.umbrella.reduced import linkage
+
+if TYPE_CHECKING:
+    import pandas
+
+RIGID, ELASTIC = "rigid", "elastic"
+SAMPLES = 400  # of a branch of the temperature
+JUMPS = ("theta2_jump_rad", "theta4_jump_rad")
+
+
+@dataclass(frozen=True)
+class QuasiStatic:
+    """Quasi-static paths of a loaded rib.
+
+    :param case: name of the case
+    :param paths: by links: ``rigid``, with rigid contact and Coulomb's friction; ``elastic``, with Hertz's contact and
+        the compliance of the friction law, where the laws of the case have such a path
+    """
+
+    case: str
+    paths: dict[str, Any]
+
+    def _path(self, links: str) -> Any:
+        if links not in self.paths:
+            raise NotAllowed("links", links, f"must be {' or '.join(map(repr, self.paths))}", allowed=tuple(self.paths))
+        return self.paths[links]
+
+    def frame(self, links: str = RIGID) -> pandas.DataFrame:
+        """Return the samples of a path, units in the names of the columns.
+
+        :raises NotAllowed: there is no such path
+        """
+        import pandas
+
+        return pandas.DataFrame(self._path(links).columns())
+
+    def events(self, links: str = RIGID) -> pandas.DataFrame:
+        """Return where the joint begins to roll or to slip, a row each. :raises NotAllowed: there is no such path"""
+        import pandas
+
+        return pandas.DataFrame(self._path(links).events)
+
+    @property
+    def summary(self) -> dict[str, float]:
+        """Jumps of both angles on every path; NaN: the contact is lost on the way, with it the place in the play."""
+        return {f"{key.removesuffix('_rad')}_{links}_rad": float("nan") if path.separated else float(getattr(path, key))
+                for links, path in self.paths.items() for key in JUMPS}
+
+    @property
+    def warnings(self) -> list[str]:
+        """What has to be known of the paths."""
+        lost = [f"the contact is lost on the path with {links} links: the place in the play is undetermined from there"
+                for links, path in self.paths.items() if path.separated]
+        return lost if ELASTIC in self.paths else [*lost, "the laws of the case have no path with elastic links"]
+
+    def told(self) -> list[Shown | str]:
+        """Return what the command prints."""
+        jumps = [(name, plain(value, unit_of(name))) for name, value in self.summary.items()]
+        events = [(links, str(event["motion"]), f"{event['temperature_change_K']:.6g}", f"{event['theta2_rad']:.9g}",
+                   f"{event['contact_angle_rad']:.6g}")
+                  for links, path in self.paths.items() for event in path.events]
+        return [Shown("jumps over all cycles", ("quantity", "value"), jumps, left=("quantity",)),
+                Shown("where the joint begins to roll or to slip",
+                      ("links", "motion", "temperature change [K]", "theta2 [rad]", "contact angle [rad]"), events,
+                      left=("links", "motion"))]
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write the samples and events of every path into a folder; return the paths of the files."""
+        written = []
+        for links, path in self.paths.items():
+            target = folder / f"quasi_static_{links}.csv"
+            write_columns(path.columns(), target)
+            written += [target, write_rows(folder / f"quasi_static_{links}_events.csv", path.events)]
+        return written
+
+
+def quasi_static(case: UmbrellaCase) -> QuasiStatic:
+    """Return the quasi-static paths of a rib whose torsion spring loads the joint.
+
+    :raises FailedRun: there is no such path: nothing loads the joint at the start, or a law left its range
+    """
+    angle, program = case.start.contact_angle_rad, case.thermal_program()
+    with engine("the quasi-static path failed", case=case.name):
+        model = linkage(case)
+        paths: dict[str, Any] = {RIGID: _engine.joint_loop(model, program, angle, SAMPLES)}
+        if has_elastic_loop(case):
+            compliance = "mindlin" if laws.law("friction", case.joint.friction_law).has_memory else "rigid"
+            paths[ELASTIC] = _engine.elastic_loop(model, program, angle, SAMPLES, compliance)
+    return QuasiStatic(case.name, paths)
