@@ -46,6 +46,10 @@ void validate_laws(const linkage::Linkage& model) {
   }
 }
 
+bool slips_at_the_rim(const linkage::Linkage& model) {
+  return std::holds_alternative<kernel::laws::MindlinDeresiewiczFriction>(model.law.friction);
+}
+
 /// The equations solve a point contact as Hertz's: a law that says it is one is held to its word.
 /// @param p at ΔT = 0
 void require_hertz(const linkage::Linkage& model, const Parameters& p) {
@@ -147,6 +151,12 @@ class Walk {
     slips_ = mu_ == 0.0 || std::abs(contact_angle) >= std::atan(mu_);
     sign_ = contact_angle < 0.0 ? -1.0 : 1.0;
     side_ = equations_.moment(now_.z) < 0.0 ? -1.0 : 1.0;
+    if (compliance_ == TangentialCompliance::mindlin && slips_at_the_rim(model)) {
+      // Loaded at a constant ratio of both forces, as loaded_state() is: no ring has slipped.
+      partial_.friction_coefficient = mu_;
+      partial_.step(now_.p, now_.z[dep], -1.5 * now_.z[ft] / now_.stiffness(), partial_.memory);
+      is_partial_ = true;
+    }
     stick_from_here();
     note(now_);
     loop_.points.push_back(point());
@@ -155,7 +165,11 @@ class Walk {
   /// Settles which way the joint goes when ΔT starts to change towards `to`.
   void turn(double to) {
     heading_ = to > now_.p.temperature_change ? 1.0 : -1.0;
-    if (slips_ && mu_ > 0.0 && !(slip_rate(now_) < 0.0)) slips_ = false;
+    if (is_partial_) {
+      slips_ = false;
+    } else if (slips_ && mu_ > 0.0 && !(slip_rate(now_) < 0.0)) {
+      slips_ = false;
+    }
     loop_.points.back() = point();
     event();
   }
@@ -174,9 +188,13 @@ class Walk {
         continue;
       }
       if (next.p.temperature_change != from) failures = 0;
+      const bool slipped = slips_;
       accept(next);
       target = to;
-      if (outcome == Outcome::arrives) continue;
+      if (outcome == Outcome::arrives) {
+        if (slips_ != slipped) event();  // of partial slip; what else changes has an instant
+        continue;
+      }
       if (outcome == Outcome::separates) loop_.separated = true;
       if (outcome == Outcome::turns) {
         if (++failures > halving_limit) fail(next);  // turns on the spot
@@ -199,7 +217,8 @@ class Walk {
  private:
   FrictionLine line() const {
     FrictionLine result;
-    result.sticks = !slips_;
+    result.sticks = is_partial_ || !slips_;
+    result.partial = is_partial_ ? &partial_ : nullptr;
     result.ratio = sign_ * mu_;
     result.compliance = compliance_;
     result.from = &now_;
@@ -219,7 +238,7 @@ class Walk {
       outcome = Outcome::separates;
       next = last_contact(to);
     }
-    if (mu_ == 0.0) return outcome;
+    if (mu_ == 0.0 || is_partial_) return outcome;
     if (slips_) {
       if (slip_rate(next) < 0.0) return outcome;
       if (!(slip_rate(now_) < 0.0)) {
@@ -299,6 +318,13 @@ class Walk {
 
   void accept(const Equilibrium& next) {
     const bool rigid = compliance_ == TangentialCompliance::rigid;
+    if (is_partial_) {
+      const Slide& slide = equations_.slide();
+      const double moved = slide.arc(next.z) - arc_ + slide.rest(now_, next.p, next.z);
+      kernel::PartialSlipMemory after;
+      slips_ = partial_.step(next.p, next.z[dep], moved, after).slipping;
+      partial_.memory = after;
+    }
     if (!slips_ && rigid) past_ += equations_.slide().rest(now_, next.p, next.z);
     now_ = next;
     if (slips_ || !rigid) stick_from_here();
@@ -343,6 +369,8 @@ class Walk {
   ElasticLoop& loop_;
   Equilibrium now_;
   bool slips_ = false;
+  bool is_partial_ = false;
+  PartialSlip partial_;
   double sign_ = 1.0;     ///< of F_t in slip
   double side_ = 1.0;     ///< of the joint force along AC
   double heading_ = 1.0;  ///< of dΔT
@@ -369,12 +397,6 @@ linkage::State loaded_state(const linkage::Linkage& model, double contact_angle)
 ElasticLoop elastic_loop(const linkage::Linkage& model, const thermal::Program& program,
                          const ElasticLoopOptions& options, double contact_angle) {
   model.validate();
-  if (has(model.law.friction, kernel::laws::Trait::needs_point_contact)) {
-    throw kernel::OutOfRange("friction", law_info(model.law.friction).name,
-                             kernel::laws::names_with<kernel::laws::FrictionLaw>(
-                                 kernel::laws::Trait::needs_point_contact, false) +
-                                 " in the elastic loop, where friction sticks as a spring");
-  }
   program.validate();
   require(options.samples >= 1, "samples", options.samples, ">= 1");
   const std::vector<thermal::Branch> branches = thermal::monotone_branches(program);

@@ -181,6 +181,10 @@ void Equations::evaluate(const FrictionLine& line, const Parameters& p, const Ve
   const Equilibrium& from = *line.from;
   residual[friction] = slide_.arc(z) - line.arc + line.past + slide_.rest(from, p, z);
   slide_.derivative(from, p, z, jacobian.row(friction));
+  if (line.partial != nullptr) {
+    evaluate_partial(line, p, z, residual[friction], residual, jacobian);
+    return;
+  }
   if (line.compliance == TangentialCompliance::rigid) return;
   const double stiffness = tangential_stiffness(p, z[dep]);
   const double slope = 0.5 * stiffness / z[dep];
@@ -195,6 +199,33 @@ void Equations::evaluate(const FrictionLine& line, const Parameters& p, const Ve
     jacobian(friction, ft) += 1.0 / mean;
     jacobian(friction, dep) -= (z[ft] - from.z[ft]) / (mean * mean) * 0.5 * slope;
   }
+}
+
+/// F_t is that of the law, in metres by the stiffness at the start of the step. The law is straight
+/// between many kinks: differences over a millionth of its own measures are its derivatives to that
+/// share, and Newton's method loses no more than that of its speed.
+void Equations::evaluate_partial(const FrictionLine& line, const Parameters& p, const Vector& z,
+                                 double slide, Vector& residual, Matrix& jacobian) {
+  constexpr double share = 1e-6;
+  const PartialSlip& partial = *line.partial;
+  kernel::PartialSlipMemory after;
+  const auto force = [&](double depth, double moved) {
+    return partial.step(p, depth, moved, after).force.a;
+  };
+  const double unit = 1.0 / line.from->stiffness();
+  const double small_slide = share * partial.friction_coefficient * normal_force(p, z[dep]) /
+                             tangential_stiffness(p, z[dep]);
+  const double small_depth = share * z[dep];
+  const double by_slide =
+      (force(z[dep], slide + small_slide) - force(z[dep], slide - small_slide)) /
+      (2.0 * small_slide);
+  const double by_depth =
+      (force(z[dep] + small_depth, slide) - force(z[dep] - small_depth, slide)) /
+      (2.0 * small_depth);
+  residual[friction] = unit * (z[ft] + force(z[dep], slide));
+  jacobian.row(friction) *= unit * by_slide;
+  jacobian(friction, dep) += unit * by_depth;
+  jacobian(friction, ft) += unit;
 }
 
 bool Equations::judge(const FrictionLine& line, const Vector& residual, Equilibrium& at) const {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "statejump/joint_loop/elastic_loop.hpp"
+#include "statejump/kernel/partial_slip.hpp"
 
 namespace statejump::joint_loop::detail {
 
@@ -111,7 +112,21 @@ class Slide {
   double r1_, r2_;
 };
 
-/// The friction line: F_t = ratio F_N, or no slip since `from`.
+/// Partial slip as one step of its law from a state to another: force against slide and depth.
+struct PartialSlip {
+  double friction_coefficient = 0.0;
+  kernel::PartialSlipMemory memory;  ///< at the start of the step
+
+  kernel::PartialSlipResponse step(const Parameters& p, double depth, double slide,
+                                   kernel::PartialSlipMemory& after) const {
+    after = memory;
+    return kernel::partial_slip_step(tangential_stiffness(p, depth),
+                                     friction_coefficient * normal_force(p, depth), {slide, 0.0},
+                                     after);
+  }
+};
+
+/// The friction line: F_t = ratio F_N, no slip since `from`, or partial slip since then.
 struct FrictionLine {
   bool sticks = false;
   double ratio = 0.0;
@@ -119,6 +134,7 @@ struct FrictionLine {
   const Equilibrium* from = nullptr;  ///< start of the step
   double arc = 0.0;                   ///< Slide::arc() that counts as no slide
   double past = 0.0;                  ///< Slide::rest() since then, up to `from` [m]
+  const PartialSlip* partial = nullptr;
 };
 
 class Equations {
@@ -141,6 +157,8 @@ class Equations {
  private:
   void evaluate(const FrictionLine& line, const Parameters& p, const Vector& z, Vector& residual,
                 Matrix& jacobian) const;
+  static void evaluate_partial(const FrictionLine& line, const Parameters& p, const Vector& z,
+                               double slide, Vector& residual, Matrix& jacobian);
   bool judge(const FrictionLine& line, const Vector& residual, Equilibrium& at) const;
 
   double a_, torsion_, free_angle_;

@@ -50,6 +50,11 @@ linkage::Linkage expanding(double mu) {
   return model;
 }
 
+linkage::Linkage with_partial_slip(linkage::Linkage model) {
+  model.law.friction = kernel::laws::friction_law("mindlin_deresiewicz");
+  return model;
+}
+
 // Angles of order 1 carry 1e-16 each, the closure 1e-16 m over links of 0.05 m.
 constexpr double angle_rounding = 1e-14;
 
@@ -278,6 +283,16 @@ linkage::Linkage with_radii_at(const linkage::Linkage& model, double temperature
   return now;
 }
 
+/// k_t [N/m]: 1/G* = (2 - nu)/G of both bodies, G = E/2.6.
+double contact_stiffness(const linkage::Linkage& model, const ElasticJointPoint& point) {
+  const linkage::Linkage now = with_radii_at(model, point.temperature_change);
+  const bool internal = has(model.law.normal, kernel::laws::Trait::accepts_bulging_wall);
+  const double sum = now.bearing_radius + (internal ? -1.0 : 1.0) * now.journal_radius;
+  const double radius = now.journal_radius * now.bearing_radius / sum;
+  const double soft = 1.0 / model.link_ab.young_modulus + 1.0 / model.link_bc.young_modulus;
+  return 8.0 / (2.6 * 1.7 * soft) * std::sqrt(radius * point.depth);
+}
+
 /// Plastic part of the slide between two close points [m].
 double plastic_slide(const linkage::Linkage& model, const ElasticJointPoint& a,
                      const ElasticJointPoint& b, TangentialCompliance compliance) {
@@ -288,15 +303,61 @@ double plastic_slide(const linkage::Linkage& model, const ElasticJointPoint& a,
                        (middle.journal_radius - 0.5 * depth) * (b.theta4 - a.theta4) -
                        (middle.bearing_radius + 0.5 * depth) * (b.theta2 - a.theta2);
   if (compliance == rigid) return slide;
-  const auto stiffness = [&](const ElasticJointPoint& point) {  // G* = G/(2 (2 - nu))
-    const linkage::Linkage now = with_radii_at(model, point.temperature_change);
-    const double radius = now.journal_radius * now.bearing_radius / now.radial_clearance();
-    return 8.0 * 70e9 / (2.6 * 3.4) * std::sqrt(radius * point.depth);
-  };
-  const double k_a = stiffness(a);
-  const double k_b = stiffness(b);
+  const double k_a = contact_stiffness(model, a);
+  const double k_b = contact_stiffness(model, b);
   return slide + (k_b < k_a ? b.tangential_force / k_b - a.tangential_force / k_a
                             : 2.0 * (b.tangential_force - a.tangential_force) / (k_a + k_b));
+}
+
+TEST(ElasticLoop, PartialSlipIsItsLawAlongThePath) {
+  for (const linkage::Linkage& model :
+       {with_partial_slip(biased(0.3)), with_partial_slip(expanding(0.2)),
+        with_partial_slip(biased(0.45))}) {
+    for (const double phi : {0.0, 0.15}) {
+      const ElasticLoop loop = elastic_loop(model, heating(), {200, mindlin}, phi);
+      kernel::PartialSlipMemory memory;
+      const ElasticJointPoint* before = nullptr;
+      for (const ElasticJointPoint& point : loop.points) {
+        EXPECT_LT(out_of_balance(model, point), 1e-7);
+        const double edge = contact_stiffness(model, point);
+        const double slide = before == nullptr ? -1.5 * point.tangential_force / edge
+                                               : plastic_slide(model, *before, point, rigid);
+        const kernel::PartialSlipResponse answer = kernel::partial_slip_step(
+            edge, model.friction_coefficient() * point.normal_force, {slide, 0.0}, memory);
+        // Where the closure is met, see above, the spring of all rings is, too.
+        EXPECT_NEAR(answer.force.a, -point.tangential_force, 2.4e-16 * edge);
+        before = &point;
+      }
+      EXPECT_LE(loop.most_iterations, 8);  // one step may meet several kinks of the law
+    }
+  }
+}
+
+TEST(ElasticLoop, IncrementsOfPartialSlipAreOfSecondOrder) {
+  // Slip is not located: within the increment in which it starts the path is a chord as elsewhere.
+  for (const double mu : {0.3, 0.45}) {
+    const auto jump = [&](int samples) {
+      return elastic_loop(with_partial_slip(biased(mu)), heating(), {samples, mindlin})
+          .theta2_jump();
+    };
+    const double limit = jump(2560);
+    for (const int samples : {10, 20}) {
+      const double fine = jump(2 * samples) - limit;
+      const double ratio = (jump(samples) - limit) / fine;
+      const double rounding = 5.0 * 2.3e-16 / std::abs(fine);  // one bit of each angle of order 1
+      EXPECT_NEAR(ratio, 4.0, 4.0 / samples + rounding) << mu << ", " << samples;
+      EXPECT_LT(rounding, 2.5);
+    }
+  }
+}
+
+TEST(ElasticLoop, PartialSlipLeavesAJumpThoughNothingSlips) {
+  // The path of rigid bodies rolls and comes back; rings at the rim of the contact do not.
+  const linkage::Linkage model = with_partial_slip(biased(0.45));
+  EXPECT_LT(std::abs(elastic_loop(biased(0.45), heating(), {400, rigid}).theta2_jump()), 1e-15);
+  const ElasticLoop loop = elastic_loop(model, heating(), {400, mindlin});
+  for (const ElasticJointPoint& point : loop.points) EXPECT_EQ(point.motion, JointMotion::roll);
+  EXPECT_GT(std::abs(loop.theta2_jump()), 4e-8);
 }
 
 /// `model` with the expansion of BC at which a slip at φ turns round at 50 K, in the rigid limit:
@@ -408,7 +469,8 @@ TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
   // Velocities vanish as 1/T: the error is A/T + B/T^2 + ... B/T is taken to be to A no more than
   // A/T is to the jump: the lag behind the path, twice over. (Not so where the static path comes
   // near to the limit without slipping: there the dynamics slips or not.)
-  for (linkage::Linkage model : {biased(0.15), biased(0.3), expanding(0.2)}) {
+  for (linkage::Linkage model :
+       {biased(0.15), biased(0.3), expanding(0.2), with_partial_slip(biased(0.3))}) {
     model.axial_damping_ratio = 0.1;
     model.pin_damping = 0.1;
     const ElasticLoop loop = elastic_loop(model, heating(), {2000, mindlin});
@@ -439,6 +501,25 @@ TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
       EXPECT_NEAR(other, jump, angle_rounding);
     }
   }
+}
+
+TEST(ElasticLoop, SlowDampedDynamicsCreepsAsMuchWithPartialSlip) {
+  // Without slip nothing lags behind the limit of friction: the error is A/T^2 + B/T^3 + ...; what
+  // Richardson's extrapolation leaves is less than a quarter of the last error where B/T is.
+  linkage::Linkage model = with_partial_slip(biased(0.4));
+  model.axial_damping_ratio = 0.1;
+  model.pin_damping = 0.1;
+  const double jump = elastic_loop(model, heating(), {2000, mindlin}).theta2_jump();
+  const linkage::State start = loaded_state(model);
+  double error[2];
+  for (int i = 0; i < 2; ++i) {
+    const double duration = 8 << i;
+    const linkage::Run run =
+        simulate(model, heating(duration), start, {static_cast<int>(duration / 4e-5), 0});
+    error[i] = theta2_of(run.samples.back().state) - theta2_of(start) - jump;
+  }
+  EXPECT_LT(std::abs(error[1]), 0.3 * std::abs(jump));
+  EXPECT_LT(std::abs(4.0 * error[1] - error[0]) / 3.0, 0.25 * std::abs(error[1]));
 }
 
 void expect_refused(const linkage::Linkage& model, const thermal::Program& program,

@@ -14,7 +14,8 @@ namespace statejump::joint_loop {
 /// `rigid`: not at all; the joint rolls without slide, the force is whatever equilibrium asks for.
 /// `mindlin`: a spring k_t = 8 G* sqrt(R δ) that follows the normal load: on loading the force
 /// stays, on unloading the elastic slide stays and the force falls with k_t. This is the spring of
-/// the dynamics and of the DEM law in the limit of small increments.
+/// the dynamics and of the DEM law in the limit of small increments. If the model's friction law is
+/// `mindlin_deresiewicz`, that law in its place: the contact slips at its rim.
 enum class TangentialCompliance : unsigned char { rigid, mindlin };
 
 struct ElasticLoopOptions {
@@ -89,18 +90,21 @@ linkage::State loaded_state(const linkage::Linkage& model, double contact_angle 
 /// joint force (plus the rounding of K_M θ/L) and rows in metres below 4 ε (a + l1 + l2); one
 /// further step polishes. A step that does not converge is halved.
 ///
-/// Slip starts where |F_t| reaches μ F_N and ends where its rate, from the derivative of the
+/// Partial slip is one step of kernel::partial_slip_step() per increment, from a contact loaded at
+/// a constant ratio of forces, with differences for its derivatives. Stick and slip are then what
+/// the law answers at the end of an increment; events are samples. The path stays of second order.
+///
+/// Else slip starts where |F_t| reaches μ F_N and ends where its rate, from the derivative of the
 /// equations by ΔT, turns round; both are roots within a step. μ = 0 slips throughout. The path
 /// ends with the contact force, at the last point where F_N exceeds 4e-13 K_M/l: below, the force's
 /// direction drowns in rounding.
 ///
-/// Of the friction law only μ counts; damping and masses do not matter. Radii may expand. Limits:
-/// those of linkage::Linkage and of Hertz's contact.
-/// Throws std::invalid_argument for a model, program or option out of range, for a normal law other
-/// than Hertz's or a tangential velocity other than `material`, a spring that is absent or unloaded
-/// at the start (the position is then undetermined), radii without clearance somewhere in the
-/// program and |contact_angle| > atan μ; std::runtime_error with temperature and residual if
-/// equilibrium is not found.
+/// Of other friction laws only μ counts; damping and masses do not matter. Radii may expand.
+/// Limits: those of linkage::Linkage and of Hertz's contact. Throws std::invalid_argument for a
+/// model, program or option out of range, for a normal law other than Hertz's or a tangential
+/// velocity other than `material`, a spring that is absent or unloaded at the start (the position
+/// is then undetermined), radii without clearance somewhere in the program and |contact_angle| >
+/// atan μ; std::runtime_error with temperature and residual if equilibrium is not found.
 ElasticLoop elastic_loop(const linkage::Linkage& model, const thermal::Program& program,
                          const ElasticLoopOptions& options = {}, double contact_angle = 0.0);
 

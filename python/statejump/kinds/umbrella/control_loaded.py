@@ -45,8 +45,7 @@ class LoadedJump:
 def has_elastic_loop(case: UmbrellaCase) -> bool:
     """Whether the path with elastic links covers the laws of a case."""
     velocity = laws.law("tangential_velocity", case.joint.tangential_velocity)
-    spring = not laws.law("friction", case.joint.friction_law).needs_point_contact
-    return laws.law("normal", case.joint.normal_law).point_contact and not velocity.needs_axis and spring
+    return laws.law("normal", case.joint.normal_law).point_contact and not velocity.needs_axis
 
 
 def _slips(loop: Any) -> bool:
