@@ -14,8 +14,11 @@ What is listed in ``__all__`` is the public interface; it is loaded when it is f
 """
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from statejump import _paths
 
 if TYPE_CHECKING:
     from statejump.api import (
@@ -33,6 +36,11 @@ if TYPE_CHECKING:
     from statejump.core.errors import StatejumpError as StatejumpError
     from statejump.core.run import Column as Column, Event as Event, Run as Run
     from statejump.kinds.protocol import Kind as Kind
+
+if sys.version_info[:2] != _paths.PYTHON_VERSION:
+    raise ImportError(
+        "statejump is for {} ({}.{}), for which YADE was built; this is {} ({}.{})".format(
+            _paths.PYTHON, *_paths.PYTHON_VERSION, sys.executable, *sys.version_info[:2]))
 
 __version__ = "0.1.0"
 

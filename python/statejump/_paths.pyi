@@ -8,3 +8,4 @@ PYTHON: str
 GIT_COMMIT: str
 KERNEL_INCLUDE: Path
 EIGEN_INCLUDE: Path
+PYTHON_VERSION: tuple[int, int]

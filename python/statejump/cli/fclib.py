@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from statejump.cli.suggesting import Suggesting
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, undivided
 from statejump.core.errors import NotAllowed
 from statejump.core.results_folder import Results
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from statejump.fclib import Merit
 
 
-@click.group("fclib")
+@click.group("fclib", cls=Suggesting)
 def fclib_command() -> None:
     """Frictional contact problems of many contacts, in files of FCLIB.
 

@@ -11,6 +11,7 @@ import click
 from rich.table import Table
 
 from statejump import _engine
+from statejump.cli.suggesting import Suggesting
 from statejump.cli.terminal import QUIET, RESULTS, CaseFile, loaded, make_console
 from statejump.core.errors import StatejumpError
 from statejump.core.results_folder import Results
@@ -21,7 +22,7 @@ from statejump.laws.traits import KINDS, catalogue
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
-class CaseOrCommand(click.Group):
+class CaseOrCommand(Suggesting):
     """A group whose first argument may be a case: ``statejump laws [CASE]`` is ``statejump laws show [CASE]``, and
     ``statejump laws --drive FILE`` is ``statejump laws drive --drive FILE``."""
 

@@ -16,39 +16,55 @@ import click
 
 from statejump import __version__
 from statejump.cli import streams
+from statejump.cli.suggesting import Suggesting
 from statejump.core import errors
 from statejump.core.errors import Interrupted, StatejumpError, TolerancesMissed, printable
 
 JSON = "--json"
 
-# Where each command is, and what ``--help`` says of it: the first sentence of its own help.
-COMMANDS: dict[str, tuple[str, str]] = {
-    "reduced": ("models:reduced_command", "Reduced model of CASE: events, state jump, history."),
-    "dem": ("models:dem_command", "DEM run of CASE in YADE: history."),
-    "compare": ("models:compare_command", "Both models of CASE side by side, or two result files of the same case."),
-    "convergence": ("convergence:convergence_command", "DEM error of CASE against cycle duration and time step."),
-    "laws": ("laws:laws_command", "Catalogue of contact laws, and their curves for the joint of CASE."),
-    "control": ("control:control_command", "What makes the state jump of CASE smaller, and by how much."),
-    "statics": ("statics:statics_command", "Where the joint of CASE can rest, and the largest jump it can make."),
-    "identify": ("identify:identify_command", "Clearance, stiffness, friction of a joint from a measured loop."),
-    "bore": ("bore:bore_command", "What a measured bore is: roundness, lobes, clearance."),
-    "orbit": ("orbit:orbit_command", "Temperatures of members over an orbit with shadow, as a file that cases take."),
-    "truss": ("truss:truss_command", "Trusses: make, draw, and what a designer asks of them."),
-    "fclib": ("fclib:fclib_command", "Frictional contact problems of many contacts, in files of FCLIB."),
-    "montecarlo": ("campaign:montecarlo_command", "Many samples of a case whose parameters are random."),
-    "sweep": ("campaign:sweep_command", "A case on a grid of its parameters."),
-    "figures": ("paper:figures_command", "The paper's Figs 13-16 in both models, and its claims in numbers."),
-    "slow": ("paper:slow_command", "Slow heating tends to the quasi-static path."),
-    "hold": ("paper:hold_command", "Friction that creeps and friction that holds."),
-    "energy": ("paper:energy_command", "Energy account of CASE over time steps."),
-    "report": ("report:report_command", "One HTML page of a run, or of many."),
-    "info": ("results:info_command", "What is in a result file."),
-    "export": ("results:export_command", "CSV tables and ParaView files of a result file."),
-    "schema": ("schema:schema_command", "JSON Schema of case and campaign files."),
+# By task: where each command is, and what ``--help`` says of it.
+TASKS: dict[str, dict[str, tuple[str, str]]] = {
+    "One case": {
+        "reduced": ("models:reduced_command", "Reduced model of CASE: events, state jump, history."),
+        "dem": ("models:dem_command", "DEM run of CASE in YADE: history."),
+        "compare": ("models:compare_command",
+                    "Both models of CASE side by side, or two result files of the same case."),
+        "convergence": ("convergence:convergence_command", "DEM error of CASE against cycle duration and time step."),
+        "control": ("control:control_command", "What makes the state jump of CASE smaller, and by how much."),
+        "statics": ("statics:statics_command", "Where the joint of CASE can rest, and the largest jump it can make."),
+    },
+    "Joints, contacts and temperatures": {
+        "identify": ("identify:identify_command", "Clearance, stiffness, friction of a joint from a measured loop."),
+        "bore": ("bore:bore_command", "What a measured bore is: roundness, lobes, clearance."),
+        "laws": ("laws:laws_command", "Catalogue of contact laws, and their curves for the joint of CASE."),
+        "orbit": ("orbit:orbit_command",
+                  "Temperatures of members over an orbit with shadow, as a file that cases take."),
+        "fclib": ("fclib:fclib_command", "Frictional contact problems of many contacts, in files of FCLIB."),
+    },
+    "Trusses and antennas": {
+        "truss": ("truss:truss_command", "Trusses: make, draw, and what a designer asks of them."),
+    },
+    "Many cases": {
+        "montecarlo": ("campaign:montecarlo_command", "Many samples of a case whose parameters are random."),
+        "sweep": ("campaign:sweep_command", "A case on a grid of its parameters."),
+    },
+    "Results and files": {
+        "report": ("report:report_command", "One HTML page of a run, or of many."),
+        "info": ("results:info_command", "What is in a result file."),
+        "export": ("results:export_command", "CSV tables and ParaView files of a result file."),
+        "schema": ("schema:schema_command", "JSON Schema of case and campaign files."),
+    },
+    "The paper": {
+        "figures": ("paper:figures_command", "The paper's Figs 13-16 in both models, and its claims in numbers."),
+        "slow": ("paper:slow_command", "Slow heating tends to the quasi-static path."),
+        "hold": ("paper:hold_command", "Friction that creeps and friction that holds."),
+        "energy": ("paper:energy_command", "Energy account of CASE over time steps."),
+    },
 }
+COMMANDS = {name: found for commands in TASKS.values() for name, found in commands.items()}
 
 
-class Commands(click.Group):
+class Commands(Suggesting):
     """Loads the module of a command when it is called."""
 
     def list_commands(self, context: click.Context) -> list[str]:
@@ -62,8 +78,9 @@ class Commands(click.Group):
         return found
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, text) for name, (_, text) in COMMANDS.items()])
+        for task, commands in TASKS.items():
+            with formatter.section(task):
+                formatter.write_dl([(name, text) for name, (_, text) in commands.items()])
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})

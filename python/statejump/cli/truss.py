@@ -14,6 +14,7 @@ import click
 
 from statejump.case import Case
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown, progress
+from statejump.cli.suggesting import Suggesting
 from statejump.cli.truss_answers import answers_command
 from statejump.cli.truss_import import import_command
 from statejump.cli.truss_surface import surface_command
@@ -34,7 +35,7 @@ _NAMES = {
 }
 
 
-@click.group("truss")
+@click.group("truss", cls=Suggesting)
 def truss_command() -> None:
     """Trusses of many joints: make case files of a size N, draw them, answer a designer's questions.
 

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a newcomer meets: help by task, nearest names, the wrong Python."""
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from conftest import BUILT
+
+
+def test_help_names_every_command_once_by_task(statejump: Callable[..., Any]) -> None:
+    from statejump.cli.main import COMMANDS, TASKS
+
+    said = statejump("--help").output
+    assert all(f"\n{task}:\n" in said for task in TASKS)
+    for name, (_, text) in COMMANDS.items():
+        assert text.endswith(".") and said.count(f"\n  {name} ") == 1, name
+        assert text in " ".join(said.split()), name
+
+
+def test_commands_of_a_group_have_whole_sentences(statejump: Callable[..., Any]) -> None:
+    assert "..." not in statejump("truss", "--help").output.split("Commands:")[1]
+
+
+@pytest.mark.parametrize("words, meant", [
+    (("reducd", "table1"), "reduced"), (("truss", "anwsers", "x"), "answers"), (("fclib", "slove"), "solve"),
+])
+def test_misspelt_command_is_told_the_nearest(statejump: Callable[..., Any], words: tuple[str, ...], meant: str) -> None:
+    done = statejump(*words)
+    assert done.status == 2 and f"Did you mean '{meant}'?" in done.errors, done.errors
+    assert done.errors.count("\n") == 1
+
+
+def test_another_python_is_told_which_one_it_takes() -> None:
+    """As another version would import it; the name of the interpreter and both versions are in one sentence."""
+    code = ("import sys; sys.version_info = (3, 99, 0, 'final', 0)\n"
+            "try:\n    import statejump\nexcept ImportError as error:\n    print(error)")
+    done = subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": str(BUILT)},
+                          capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.startswith("statejump is for /usr/bin/python3") and done.stdout.endswith("(3.99)\n")
