@@ -119,7 +119,7 @@ def moved_by(path: TrussPath, each: list[float], node: int = 0) -> TrussPath:
     """The path with a node that moves so far [m] along x over each cycle, and nothing else."""
     moved = np.zeros((len(each) + 1, len(path.truss.nodes.names), 3))
     moved[1:, node, 0] = np.cumsum(each)
-    still = {key: np.zeros((len(each) + 1, 1)) for key in ("slider_dissipation_J", "revolute_dissipation_J")}
+    still = {key: np.zeros((len(each) + 1, 1)) for key in path.cycle_ends if key.endswith("_dissipation_J")}
     ends = {**path.cycle_ends, **still, "displacement_m": moved}
     return replace(path, cycle_ends=ends, states=ends)
 

@@ -131,7 +131,7 @@ def _column(dataset: h5py.Dataset) -> Column:
         dataset[()], attributes["unit"], attributes.get("items", ""),
         tuple(attributes.get("labels", ())), attributes.get("note", ""),
     )
-    if column.labels and int(column.values.max()) >= len(column.labels):
+    if column.labels and int(column.values.max(initial=0)) >= len(column.labels):
         raise ValueError(f"{dataset.name} has values without a label")
     return column
 

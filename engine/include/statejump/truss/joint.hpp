@@ -6,13 +6,14 @@
 #include <variant>
 
 #include "statejump/truss/joints/interface.hpp"
+#include "statejump/truss/joints/latch_hinge.hpp"
 #include "statejump/truss/joints/revolute.hpp"
 #include "statejump/truss/joints/slider.hpp"
 
 namespace statejump::truss {
 
 /// A joint of any type: what a type has to bring, joints/interface.hpp says.
-using Joint = std::variant<Slider, ClearanceRevolute>;
+using Joint = std::variant<Slider, ClearanceRevolute, LatchHinge>;
 
 inline const std::string& name_of(const Joint& joint) {
   return std::visit([](const auto& one) -> const std::string& { return one.name; }, joint);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "statejump/complementarity/problem.hpp"
@@ -82,6 +84,12 @@ class Contacts {
  private:
   void add(int joint, int first_column, const Slider& slider);
   void add(int joint, int first_column, const ClearanceRevolute& revolute);
+  /// A type of joint whose contacts are not known here. @throws std::invalid_argument with its name
+  template <class Type>
+  void add(int, int, const Type& other) {
+    throw std::invalid_argument(std::string(Type::kind) + " '" + other.name +
+                                "' is a joint of quasi-static paths only");
+  }
 
   const System* system_;
   std::vector<Contact> all_;

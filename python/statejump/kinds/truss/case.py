@@ -130,6 +130,23 @@ class TrussTorsionSpring(Item):
 
 
 @definition
+class LatchHinge(Item):
+    """A hinge with a latch: the rotation of the second link against the first, or of one link against the ground,
+    is free within a play and meets a stiffness beyond it, against dry friction.
+
+    Angles as of torsion springs. The moment against a rotation from the drawn shape is preload + stiffness (rotation
+    beyond the play) ± friction.
+    """
+
+    links: list[str] = texts(..., "two links that share a place, or one")
+    deadband_rad: float = parameter(..., "rad", 0, pi, USER + "; free play to either side")
+    stiffness_N_m_per_rad: float = parameter(..., "N m/rad", 0, 1e12, USER + "; beyond the play", above=True)
+    friction_moment_N_m: float = parameter(0.0, "N m", 0, 1e9, "no friction")
+    preload_moment_N_m: float = parameter(0.0, "N m", -1e9, 1e9, "against the rotation; none")
+    axis: list[float] | None = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
+
+
+@definition
 class TrussThermal(Thermal):
     """A temperature program that says how long its cycle lasts, or the temperatures of all members."""
 
@@ -235,6 +252,7 @@ class TrussCase(Case):
     revolute: list[Revolute] = tables(Revolute, "sections [[revolute]]")
     spring: list[Spring] = tables(Spring, "sections [[spring]]")
     torsion_spring: list[TrussTorsionSpring] = tables(TrussTorsionSpring, "sections [[torsion_spring]]")
+    latch_hinge: list[LatchHinge] = tables(LatchHinge, "sections [[latch_hinge]]")
     thermal: TrussThermal = section(TrussThermal, required=True)
     output: Output = section(Output)
     reduced: TrussReduced = section(TrussReduced)

@@ -10,7 +10,9 @@ from scipy.sparse.csgraph import connected_components
 
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.kinds.truss.check_references import MOST_LISTED, listed
-from statejump.kinds.truss.resolved import GROUND, Links, ResolvedTruss, Springs, distances
+from statejump.kinds.truss.resolved import (
+    GROUND, LatchHinges, Links, ResolvedTruss, Springs, TorsionSprings, distances,
+)
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.case import TrussCase
@@ -26,7 +28,8 @@ def check_geometry(case: TrussCase) -> None:
     _temperatures(case, truss)
     _sliders(truss)
     _revolutes(case, truss)
-    _torsion_springs(truss)
+    _turned_links(truss, "torsion_spring", truss.torsion_springs)
+    _turned_links(truss, "latch_hinge", truss.latch_hinges)
     _supports(truss)
 
 
@@ -126,13 +129,13 @@ def joined(truss: ResolvedTruss) -> np.ndarray:
     ))
 
 
-def _torsion_springs(truss: ResolvedTruss) -> None:
-    springs, links = truss.torsion_springs, truss.links
-    if not len(springs.links):
+def _turned_links(truss: ResolvedTruss, section: str, items: TorsionSprings | LatchHinges) -> None:
+    links = truss.links
+    if not len(items.links):
         return
     pairs = {frozenset(map(int, pair)) for pair in joined(truss)}
-    for index, (one, two) in enumerate(springs.links):
-        where = f"torsion_spring {springs.names[index]!r}"
+    for index, (one, two) in enumerate(items.links):
+        where = f"{section} {items.names[index]!r}"
         if two != GROUND:
             ends = [(int(a), int(b)) for a in links.nodes[one] for b in links.nodes[two]]
             if not any(a == b or frozenset((a, b)) in pairs for a, b in ends):
@@ -145,8 +148,8 @@ def _torsion_springs(truss: ResolvedTruss) -> None:
                 continue
             start, end = truss.nodes.position_m[links.nodes[link]]
             direction = (end - start) / np.linalg.norm(end - start)
-            if np.linalg.norm(np.cross(direction, springs.axis[index])) < SAME_DIRECTION:
-                raise NotAllowed("axis", [float(value) for value in springs.axis[index]],
+            if np.linalg.norm(np.cross(direction, items.axis[index])) < SAME_DIRECTION:
+                raise NotAllowed("axis", [float(value) for value in items.axis[index]],
                                  f"link {links.names[link]!r} lies along it and has no angle about it", item=where)
 
 

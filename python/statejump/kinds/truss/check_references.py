@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
 
 if TYPE_CHECKING:
-    from statejump.kinds.truss.case import Revolute, TrussCase
+    from statejump.kinds.truss.case import LatchHinge, Revolute, TrussCase, TrussTorsionSpring
 
 MOST_LISTED = 5
 # Sections whose items name nodes: least and greatest number of nodes.
@@ -26,7 +26,8 @@ def check_references(case: TrussCase) -> None:
     _alternatives(case)
     for revolute in case.revolute:
         _revolute(revolute, nodes, links)
-    _torsion_springs(case, links)
+    for section in ("torsion_spring", "latch_hinge"):
+        _turned_links(section, getattr(case, section), links)
     if case.reflector is not None:
         if not case.reflector.nodes:
             raise NotAllowed("reflector.nodes", [], "must be one or more nodes")
@@ -142,12 +143,14 @@ def _revolute(revolute: Revolute, nodes: Mapping[str, Any], links: Mapping[str, 
         raise NotAllowed("journal_link", revolute.journal_link, "must be another link than bearing_link", **where)
 
 
-def _torsion_springs(case: TrussCase, links: Mapping[str, Any]) -> None:
-    for spring in case.torsion_spring:
-        where = {"item": f"torsion_spring {spring.name!r}"}
-        if not 1 <= len(spring.links) <= 2:
-            raise NotAllowed("links", spring.links, "must be 2 links, or 1 against ground", **where)
-        for name in spring.links:
-            known_name("links", spring.links, name, links, "link", **where)
-        if len(spring.links) == 2 and spring.links[0] == spring.links[1]:
-            raise NotAllowed("links", spring.links, "must be two different links", **where)
+def _turned_links(section: str, items: Iterable[TrussTorsionSpring | LatchHinge], links: Mapping[str, Any]) -> None:
+    for item in items:
+        where: dict[str, Any] = {
+            "item": f"{section} {item.name!r}", "joint": None if section == "torsion_spring" else item.name,
+        }
+        if not 1 <= len(item.links) <= 2:
+            raise NotAllowed("links", item.links, "must be 2 links, or 1 against ground", **where)
+        for name in item.links:
+            known_name("links", item.links, name, links, "link", **where)
+        if len(item.links) == 2 and item.links[0] == item.links[1]:
+            raise NotAllowed("links", item.links, "must be two different links", **where)

@@ -16,7 +16,7 @@ from statejump.kinds.truss.check_references import check_references
 if TYPE_CHECKING:
     from statejump.kinds.truss.case import TrussCase
 
-SECTIONS = ("node", "link", "program", "slider", "revolute", "spring", "torsion_spring")
+SECTIONS = ("node", "link", "program", "slider", "revolute", "spring", "torsion_spring", "latch_hinge")
 
 
 def check(case: TrussCase) -> None:
@@ -74,10 +74,10 @@ def _vectors(case: TrussCase) -> None:
                              nodes=(node.name,))
     for slider in case.slider:
         _vector("axis", slider.axis, "-", dimension, True, item=f"slider {slider.name!r}", joint=slider.name)
-    for section in ("revolute", "torsion_spring"):
+    for section in ("revolute", "torsion_spring", "latch_hinge"):
         for item in getattr(case, section):
             where: dict[str, Any] = {
-                "item": f"{section} {item.name!r}", "joint": item.name if section == "revolute" else None,
+                "item": f"{section} {item.name!r}", "joint": None if section == "torsion_spring" else item.name,
             }
             if dimension == 2 and item.axis is not None:
                 raise NotAllowed("axis", item.axis, "in a planar truss it is z", **where)

@@ -154,6 +154,9 @@ def check(case: TrussCase) -> None:
     truss = case.resolve()
     mass = lumped_mass_kg(truss)
     nodes, sliders, joints, springs = truss.nodes, truss.sliders, truss.revolutes, truss.springs
+    for name in truss.latch_hinges.names[:1]:
+        raise refuse(case, f"latch_hinge {name!r} is a joint of the quasi-static solver only, the DEM has none",
+                     joint=name)
     for index in np.flatnonzero(sliders.nodes[:, 1] != GROUND)[:1]:
         raise refuse(case, f"slider {sliders.names[index]!r} is between two nodes, the DEM has sliders on ground only",
                      joint=sliders.names[index])

@@ -15,8 +15,8 @@ from matplotlib.transforms import Affine2D
 
 from statejump.core.figures import Constrained, Drawing
 from statejump.kinds.truss.draw_symbols import (
-    BLOCK, CABLE, FRACTION, JOINT, LOAD, MOST_NAMED, PIN, ROLLER, SPIRAL, SPRING, STOPS, SURFACE, TORSION, gap_m,
-    guided, legend, link_colours, names, symbol_size, torsion_places,
+    BLOCK, CABLE, FRACTION, JOINT, LATCH, LOAD, MOST_NAMED, PIN, ROLLER, SPIRAL, SPRING, STOPS, SURFACE, TORSION, gap_m,
+    guided, legend, link_colours, names, symbol_size, turning_places,
 )
 from statejump.kinds.truss.resolved import ResolvedTruss
 
@@ -161,8 +161,11 @@ def _draw(panel: Axes, truss: ResolvedTruss, lines: list[np.ndarray], colours: A
     panel.plot(*nodes.position_m[bare, :2].T, "o", markersize=0.4 * size, color="0.2", zorder=5)
     if len(truss.torsion_springs.names):
         # A revolute has its own symbol in the middle: the spring stands around it.
-        panel.plot(*torsion_places(truss)[:, :2].T, marker=MarkerStyle(SPIRAL), linestyle="none", color=TORSION,
-                   markerfacecolor="none", markersize=1.6 * size, markeredgewidth=max(0.5, size / 9), zorder=4.5)
+        panel.plot(*turning_places(truss, truss.torsion_springs)[:, :2].T, marker=MarkerStyle(SPIRAL), linestyle="none",
+                   color=TORSION, markerfacecolor="none", markersize=1.6 * size, markeredgewidth=max(0.5, size / 9),
+                   zorder=4.5)
+    if len(truss.latch_hinges.names):
+        panel.plot(*turning_places(truss, truss.latch_hinges)[:, :2].T, **LATCH, markersize=0.9 * size, zorder=4.6)
     _draw_loads(panel, truss, size)
     if truss.reflector is not None:
         panel.plot(*nodes.position_m[truss.reflector.nodes, :2].T, "D", color=SURFACE, markerfacecolor="none",

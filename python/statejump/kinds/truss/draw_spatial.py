@@ -10,8 +10,8 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
 from statejump.core.figures import Drawing
 from statejump.kinds.truss.draw_symbols import (
-    CABLE, FRACTION, JOINT, LOAD, MOST_NAMED, SPIRAL, SPRING, SURFACE, TORSION, gap_m, legend, link_colours, names,
-    symbol_size, torsion_places,
+    CABLE, FRACTION, JOINT, LATCH, LOAD, MOST_NAMED, SPIRAL, SPRING, SURFACE, TORSION, gap_m, legend, link_colours,
+    names, symbol_size, turning_places,
 )
 from statejump.kinds.truss.resolved import ResolvedTruss
 
@@ -95,8 +95,10 @@ def _points(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> Non
         bare[truss.revolutes.bearing_node] = bare[truss.revolutes.journal_node] = False
     axes.plot(*positions[bare].T, "o", color="0.2", markersize=0.35 * size, zorder=4, linestyle="none")
     if len(truss.torsion_springs.names):
-        axes.plot(*torsion_places(truss).T, marker=MarkerStyle(SPIRAL), color=TORSION, markerfacecolor="none",
-                  markersize=1.3 * size, zorder=4.5, **dots)
+        axes.plot(*turning_places(truss, truss.torsion_springs).T, marker=MarkerStyle(SPIRAL), color=TORSION,
+                  markerfacecolor="none", markersize=1.3 * size, zorder=4.5, **dots)
+    if len(truss.latch_hinges.names):
+        axes.plot(*turning_places(truss, truss.latch_hinges).T, **LATCH, markersize=0.7 * size, zorder=4.6)
     forces = np.linalg.norm(nodes.force_N, axis=1)
     if forces.any():
         arrows = 0.15 * span * nodes.force_N / forces.max()

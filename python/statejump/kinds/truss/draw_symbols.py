@@ -15,7 +15,7 @@ from matplotlib.markers import MarkerStyle
 from matplotlib.path import Path as Outline
 from scipy.spatial import cKDTree
 
-from statejump.kinds.truss.resolved import GROUND, ResolvedTruss
+from statejump.kinds.truss.resolved import GROUND, LatchHinges, ResolvedTruss, TorsionSprings
 
 COLOURS = colormaps["cividis_r"]  # cold light, hot dark: reads in grey and for colour-blind eyes
 LINK, SPRING, CABLE, LOAD, JOINT, TORSION, SURFACE = (
@@ -41,6 +41,8 @@ BLOCK = _outline([(-0.75, -0.45), (0.75, -0.45), (0.75, 0.45), (-0.75, 0.45), (-
                  [(-1.0, -0.55), (1.0, -0.55)], *[[(x, -0.55), (x - 0.2, -0.75)] for x in (-0.7, -0.3, 0.1, 0.5, 0.9)])
 STOPS = _outline([(-1.0, -0.55), (-1.0, 0.45)], [(1.0, -0.55), (1.0, 0.45)])
 SPIRAL = Outline([(0.28 * t * np.cos(5.2 * t), 0.28 * t * np.sin(5.2 * t)) for t in np.linspace(0.4, 3.6, 60)])
+# Of a latch hinge: a square that stands on its tip, in the colour of joints.
+LATCH: dict[str, Any] = dict(marker="D", linestyle="none", color=JOINT, markerfacecolor="white", markeredgewidth=1.2)
 
 
 def gap_m(truss: ResolvedTruss) -> float:
@@ -111,6 +113,8 @@ def legend(truss: ResolvedTruss) -> list[Line2D]:
         stiffness = _spread(truss.torsion_springs.stiffness_N_m_per_rad, 1.0, "N m/rad")
         found.append(entry(f"torsion spring, {stiffness}", marker=MarkerStyle(SPIRAL), color=TORSION, markersize=12,
                            markeredgewidth=0.8, markerfacecolor="none"))
+    if len(truss.latch_hinges.names):
+        found.append(entry(f"latch hinge, play ±{_spread(truss.latch_hinges.deadband_rad, 1e3, 'mrad')}", **LATCH))
     forces = np.linalg.norm(truss.nodes.force_N, axis=1)
     if forces.any():
         found.append(entry(f"load, {_spread(forces[forces > 0], 1.0, 'N')}", marker=r"$\rightarrow$", color=LOAD))
@@ -128,11 +132,12 @@ def guided(truss: ResolvedTruss) -> np.ndarray:
     return held
 
 
-def torsion_places(truss: ResolvedTruss) -> np.ndarray:
-    """Where torsion springs are drawn (t, 3): the nearest ends of their links, else a link's first node."""
+def turning_places(truss: ResolvedTruss, items: TorsionSprings | LatchHinges) -> np.ndarray:
+    """Where what turns links against each other is drawn (t, 3): the nearest ends of its links, else a link's first
+    node."""
     positions, links = truss.nodes.position_m, truss.links
     places = []
-    for one, two in truss.torsion_springs.links:
+    for one, two in items.links:
         first = links.nodes[one]
         if two == GROUND:
             places.append(positions[first[0]])

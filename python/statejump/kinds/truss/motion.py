@@ -12,7 +12,7 @@ import numpy as np
 from statejump import _engine
 from statejump.core import physics
 from statejump.core.engine_failures import EngineFailed
-from statejump.core.errors import Interrupted
+from statejump.core.errors import Interrupted, StatejumpError
 from statejump.core.progress import Tell
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.dem import lumped_mass_kg
@@ -90,6 +90,9 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         return True
 
     truss, samples = case.resolve(), case.samples_per_cycle
+    for name in truss.latch_hinges.names[:1]:
+        raise StatejumpError(cause=f"latch_hinge {name!r} is a joint of quasi-static paths only", case=case.name,
+                             remedy="'statejump reduced' without --dynamic can run the case", joint=name)
     steps_per_sample = ceil(case.motion.steps_per_cycle / samples)
     try:
         found = _engine.truss_motion(

@@ -9,7 +9,7 @@ from statejump.kinds.truss.answers import reflector
 from statejump.kinds.truss.answers.jumps import node_jumps, quick_path
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.result import reduced_run
-from statejump.kinds.truss.solve import TrussPath
+from statejump.kinds.truss.solve import TrussPath, heat_of_joints_J
 
 # Share of the heat of all joints below which a joint does not slip: what it has is rounding.
 LEAST_HEAT = 1e-9
@@ -27,7 +27,7 @@ def outcomes(case: TrussCase, run: Run) -> dict[str, float]:
     found: TrussPath = run.native
     truss, ends = found.truss, found.cycle_ends
     jumps = np.linalg.norm(node_jumps(found)[-1], axis=1)
-    heat = np.concatenate((ends["slider_dissipation_J"][-1], ends["revolute_dissipation_J"][-1]))
+    heat = heat_of_joints_J(ends)[-1]
     values = dict.fromkeys(case.behaviour.OUTCOMES, float("nan"))
     surface = reflector.surface(truss)
     if surface is not None:

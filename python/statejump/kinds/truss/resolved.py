@@ -124,6 +124,19 @@ class TorsionSprings:
 
 
 @dataclass(frozen=True)
+class LatchHinges:
+    """Hinges with free play, stiffness beyond it and friction on the angle that torsion springs have."""
+
+    names: tuple[str, ...]
+    links: np.ndarray  # (h, 2) int; (link, GROUND): the angle of one link, from ground to it
+    deadband_rad: np.ndarray
+    stiffness_N_m_per_rad: np.ndarray
+    friction_moment_N_m: np.ndarray
+    preload_moment_N_m: np.ndarray
+    axis: np.ndarray  # (h, 3) unit; z in planar trusses
+
+
+@dataclass(frozen=True)
 class ReflectorSurface:
     """Nodes of the reflecting surface."""
 
@@ -145,6 +158,7 @@ class ResolvedTruss:
     revolutes: Revolutes
     springs: Springs
     torsion_springs: TorsionSprings
+    latch_hinges: LatchHinges
     programs: tuple[TrussThermal | MemberProgram, ...]
     program_names: tuple[str, ...]  # "thermal", those of the file, those of members
     reflector: ReflectorSurface | None
@@ -281,6 +295,12 @@ def resolve(case: TrussCase) -> ResolvedTruss:
         axis=_axes(case.torsion_spring, dimension),
         **columns(case.torsion_spring, "stiffness_N_m_per_rad", "bias_rad"),
     )
+    latch_hinges = LatchHinges(
+        names=names(case.latch_hinge), links=_pairs(case.latch_hinge, "links", link_number),
+        axis=_axes(case.latch_hinge, dimension),
+        **columns(case.latch_hinge, "deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m",
+                  "preload_moment_N_m"),
+    )
     reflector = None
     if case.reflector is not None:
         reflector = ReflectorSurface(
@@ -290,7 +310,7 @@ def resolve(case: TrussCase) -> ResolvedTruss:
         )
     return ResolvedTruss(
         name=case.name, dimension=dimension, nodes=nodes, links=links, sliders=sliders, revolutes=revolutes,
-        springs=springs, torsion_springs=torsion_springs, programs=tuple(case.programs),
+        springs=springs, torsion_springs=torsion_springs, latch_hinges=latch_hinges, programs=tuple(case.programs),
         program_names=("thermal", *names(case.program), *(() if members is None else members.names)),
         reflector=reflector,
         sticking=case.reduced.sticking,

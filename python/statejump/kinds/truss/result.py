@@ -17,7 +17,7 @@ from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.dem import pressing_directions
 from statejump.kinds.truss.motion import TrussMotion
 from statejump.kinds.truss.resolved import GROUND, ResolvedTruss
-from statejump.kinds.truss.solve import TrussPath, engine_program
+from statejump.kinds.truss.solve import TrussPath, engine_program, heat_of_joints_J
 from statejump.results import scene as drawing
 from statejump.results.events import from_states, kind_of
 
@@ -31,11 +31,14 @@ ITEMS = {
     "slide_m": ("sliders", False), "slider_force_N": ("sliders", False), "slider_state": ("sliders", False),
     "eccentricity_m": ("revolutes", True), "normal_force_N": ("revolutes", False),
     "friction_force_N": ("revolutes", False), "revolute_state": ("revolutes", False),
+    "hinge_rotation_rad": ("latch_hinges", False), "hinge_moment_N_m": ("latch_hinges", False),
 }
 LOCATED = 1e-6  # of a cycle: an event within less has no uncertainty worth telling
 NOTES = {
     "displacement_m": "from the drawn shape", "axial_force_N": "compression positive",
     "slider_force_N": "friction and stop on the slider, against its axis",
+    "hinge_rotation_rad": "from the drawn shape",
+    "hinge_moment_N_m": "against the rotation: preload, stiffness beyond the play, friction",
     "eccentricity_m": "journal minus bearing centre", "friction_force_N": "on the journal, clockwise about the axis",
 }
 
@@ -59,6 +62,8 @@ def names(case: TrussCase) -> dict[str, list[str]]:
     """Names of the items of columns."""
     truss = case.resolve()
     of = {key: list(getattr(truss, key).names) for key in ("nodes", "links", "springs", "sliders", "revolutes")}
+    if truss.latch_hinges.names:
+        of["latch_hinges"] = list(truss.latch_hinges.names)
     return {**of, "contacts": _joints(truss)}
 
 
@@ -217,7 +222,7 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
     items = {key: sampled(states[key]) for key in ITEMS if not key.endswith("_state")}
     for kind in ("slider", "revolute"):
         items[f"{kind}_state"] = STATES[states[f"{kind}_status"].astype(int)][ending]
-    heat = states["slider_dissipation_J"].sum(axis=1) + states["revolute_dissipation_J"].sum(axis=1)
+    heat = heat_of_joints_J(states).sum(axis=1)
     plain, energy = columns_of({
         "time_s": times_s,
         "temperature_change_K": sampled(states["temperature_change_K"]),
@@ -265,6 +270,9 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
 def _events(case: TrussCase, path: TrussPath | TrussMotion) -> list[Event]:
     truss, at = path.truss, path.states["time_s"]
     joints, slipped, events = joint_names(truss), set(), []
+    taken = set(joints.values())
+    joints |= {("latch_hinge", name): f"latch_hinge {name}" if name in taken else name
+               for name in truss.latch_hinges.names}
     for event in path.events:
         name = joints[event.joint_kind, event.name]
         before, after = STATE_OF[event.before], STATE_OF[event.after]

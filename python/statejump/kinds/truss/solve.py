@@ -2,7 +2,7 @@
 """Quasi-static path of a truss case: the reduced model."""
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -29,7 +29,7 @@ class TrussEvent:
     time_s: float
     interval_s: float
     temperature_change_K: float
-    joint_kind: str  # "slider" or "revolute"
+    joint_kind: str  # "slider", "revolute" or "latch_hinge"
     name: str
     before: str
     after: str
@@ -57,8 +57,13 @@ class TrussPath:
         """Thermal work less elastic energy, load potential and friction's heat since the start [J]."""
         states = self.states
         stored = states["elastic_energy_J"] + states["load_potential_J"]
-        heat = states["slider_dissipation_J"].sum(axis=1) + states["revolute_dissipation_J"].sum(axis=1)
-        return float((states["thermal_work_J"] - (stored - stored[0]) - heat)[-1])
+        return float((states["thermal_work_J"] - (stored - stored[0]) - heat_of_joints_J(states).sum(axis=1))[-1])
+
+
+def heat_of_joints_J(states: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return friction's heat since the start [J] (states, joints) of all joints: sliders, revolutes, latch hinges."""
+    kinds = _engine.truss_joints()
+    return np.concatenate([states[f"{kind}_dissipation_J"] for kind in kinds], axis=1)
 
 
 def engine_program(program: TrussThermal | MemberProgram) -> _engine.ThermalProgram:
@@ -92,6 +97,10 @@ def engine_items(truss: ResolvedTruss) -> dict[str, Any]:
                 "journal_radius_m", "radial_clearance_m", "journal_thermal_expansion_per_K",
                 "bearing_thermal_expansion_per_K", "friction_coefficient", "axis", "program",
                 "temperature_fraction", hertz_stiffness_N_per_m15=hertz, mindlin_stiffness_N_per_m15=mindlin),
+            "latch_hinge": _table(
+                truss.latch_hinges, "deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m",
+                "preload_moment_N_m", "axis", first_link=truss.latch_hinges.links[:, 0],
+                second_link=truss.latch_hinges.links[:, 1]),
         },
         "programs": [engine_program(program) for program in truss.programs],
     }

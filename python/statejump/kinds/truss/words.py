@@ -74,6 +74,13 @@ def _joints(case: TrussCase) -> list[str]:
         limits = (joint.friction_coefficient * joint.normal_force_N for joint in case.slider)
         sentences.append(f"{_count(case.slider, 'sliding joint')} held by friction up to {spread(limits, 'N')}, "
                          f"{f'with {stops} stops' if stops else 'without stops'}.")
+    if case.latch_hinge:
+        sentences.append(
+            f"{_count(case.latch_hinge, 'latch hinge')} with a free play of ±"
+            f"{spread((hinge.deadband_rad for hinge in case.latch_hinge), 'rad')}, "
+            f"{spread((hinge.stiffness_N_m_per_rad for hinge in case.latch_hinge), 'N m/rad')} beyond it, friction of "
+            f"{spread((hinge.friction_moment_N_m for hinge in case.latch_hinge), 'N m')}."
+        )
     if case.reduced.sticking == "elastic":
         sentences.append("Joints of the reduced model stick elastically, as those of the DEM.")
     return sentences

@@ -12,7 +12,7 @@ from statejump.kinds.truss.answers import reflector
 from statejump.kinds.truss.answers.contributions import Contributions
 from statejump.kinds.truss.answers.jumps import node_jumps
 from statejump.kinds.truss.answers.sensitivity import Sensitivity
-from statejump.kinds.truss.solve import TrussPath
+from statejump.kinds.truss.solve import TrussPath, heat_of_joints_J
 
 Row = dict[str, Any]
 
@@ -21,7 +21,7 @@ def cycle_rows(found: TrussPath) -> list[Row]:
     """Return what happens over each cycle."""
     ends = found.cycle_ends
     largest = np.linalg.norm(np.diff(ends["displacement_m"], axis=0), axis=2).max(axis=1)
-    heat = np.diff(ends["slider_dissipation_J"].sum(axis=1) + ends["revolute_dissipation_J"].sum(axis=1))
+    heat = np.diff(heat_of_joints_J(ends).sum(axis=1))
     return [
         {"cycle": cycle, "largest_jump_m": float(jump), "dissipation_J": float(warmth)}
         for cycle, (jump, warmth) in enumerate(zip(largest, heat), start=1)

@@ -43,6 +43,8 @@ def parameters(truss: ResolvedTruss) -> list[tuple[str, str, np.ndarray]]:
         ("link", truss.links, ("young_modulus_Pa", "cross_section_area_m2")),
         ("spring", truss.springs, ("stiffness_N_per_m", "preload_N")),
         ("torsion_spring", truss.torsion_springs, ("stiffness_N_m_per_rad", "bias_rad")),
+        ("latch_hinge", truss.latch_hinges,
+         ("deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m", "preload_moment_N_m")),
     )
     found = [(section, key, getattr(part, key)) for section, part, keys in parts for key in keys]
     hertz = ~truss.revolutes.rigid
@@ -55,7 +57,7 @@ def changed(truss: ResolvedTruss, section: str, key: str, factor: np.ndarray) ->
     """Return the truss with one parameter of every item times a factor (items,). The stiffness of a spring
     changes at constant preload, the preload at constant stiffness."""
     field = {"slider": "sliders", "revolute": "revolutes", "link": "links", "spring": "springs",
-             "torsion_spring": "torsion_springs"}[section]
+             "torsion_spring": "torsion_springs", "latch_hinge": "latch_hinges"}[section]
     part = getattr(truss, field)
     part = replace(part, **{key: getattr(part, key) * factor})
     if section == "spring":
@@ -86,7 +88,8 @@ def sensitivities(
     """
     truss, own_jump = found.truss, output.jump(found)
     names = {"slider": truss.sliders.names, "revolute": truss.revolutes.names, "link": truss.links.names,
-             "spring": truss.springs.names, "torsion_spring": truss.torsion_springs.names}
+             "spring": truss.springs.names, "torsion_spring": truss.torsion_springs.names,
+             "latch_hinge": truss.latch_hinges.names}
     asked: list[tuple[str, str, str, np.ndarray, np.ndarray]] = []
     for section, key, values in parameters(truss):
         there = np.isfinite(values) & (values != 0)

@@ -209,6 +209,10 @@ def _jumps(found: TrussPath, output: Output, jump: float) -> bool:
 
 def _shares(found: TrussPath, output: Output, tell: Tell, tables: dict[str, list[rows.Row]],
             notes: list[str]) -> Contributions | None:
+    if found.truss.latch_hinges.friction_moment_N_m.any():
+        notes.append("no contributions: the friction of a latch hinge is a moment that turns with links, no load on "
+                     "nodes")
+        return None
     try:
         shares = contributions(found, output, tell)
     except EngineFailed as failure:

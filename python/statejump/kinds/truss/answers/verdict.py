@@ -16,7 +16,7 @@ import numpy as np
 
 from statejump.core.units import plain
 from statejump.kinds.truss.answers.outputs import Output
-from statejump.kinds.truss.solve import TrussPath
+from statejump.kinds.truss.solve import TrussPath, heat_of_joints_J
 
 # A jump of a cycle below this share of the largest has settled: events are located to 1e-9 of a branch.
 SETTLED = 1e-6
@@ -62,8 +62,7 @@ def verdict(coarse: TrussPath, finer: TrussPath, increments: int, output: Output
     motion = output.over_cycles(finer)
     each = output.sizes(motion)
     left = output.sizes(motion - output.over_cycles(coarse))
-    ends = finer.cycle_ends
-    heat = np.diff(ends["slider_dissipation_J"].sum(axis=1) + ends["revolute_dissipation_J"].sum(axis=1))
+    heat = np.diff(heat_of_joints_J(finer.cycle_ends).sum(axis=1))
     floor = ROUNDING * output.scale(finer)
     last, most = float(each[-1]), float(each.max())
 

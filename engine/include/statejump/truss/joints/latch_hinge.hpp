@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "statejump/truss/joints/interface.hpp"
+
+namespace statejump::truss {
+
+/// Hinge with a latch: free play in rotation, stiffness beyond it, dry friction, and a moment that
+/// preloads it.
+///
+/// **Law.** With the rotation φ of the second link against the first about a fixed axis, from the
+/// drawn shape (without a second link: of the first one against the ground), the moment that
+/// resists φ is
+///
+///     M = M0 + K (φ − clamp(φ; −a, a)) + M_f
+///
+/// with friction M_f a subgradient of M_c |φ − φ_k|:
+///
+///     stick   φ = φ_k, |M_f| <= M_c      slip±   M_f = ±M_c, ±(φ − φ_k) >= 0
+///
+/// Play and stiffness have a potential and no memory: only friction has branches. The unknown is
+/// M_f over the drawn length of the first link, a force, and its row a path on that radius.
+struct LatchHinge {
+  std::string name;
+  int first_link = 0;
+  int second_link = -1;          ///< −1: ground.
+  double deadband = 0.0;         ///< a [rad], >= 0: free play to either side.
+  double stiffness = 0.0;        ///< K beyond the play [N m/rad], >= 0.
+  double friction_moment = 0.0;  ///< M_c [N m], >= 0.
+  double preload_moment = 0.0;   ///< M0 against the rotation [N m].
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+
+  static constexpr const char* kind = "latch_hinge";
+  static constexpr int history = 1;
+  static std::span<const Parameter<LatchHinge>> parameters();
+  static std::span<const Output> outputs();
+  void validate(const Model& model) const;
+  JointFrame frame(const Model& model) const;
+  void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
+  JointStatus decide(const Trial& trial, JointStatus status) const;
+  void begin(const Trial& trial, JointStatus status, double* now) const;
+  void commit(const Trial& trial, JointStatus status, double* after) const;
+  double slip(const Trial& trial, const double* after) const;
+  double dissipation(const Trial& trial, const double* after, double slip) const;
+  double elastic_energy(const Trial& trial, const double* now) const;
+  void describe(const Trial& trial, double* outputs) const;
+  double slide_rounding(const Trial& trial, double length, double force) const;
+  bool remembers_when(JointStatus before, JointStatus after) const;
+  std::optional<LocalContact> contact(const Trial& trial, JointStatus status) const;
+  double least_slide() const { return 0.0; }
+  JointStatus rest() const { return JointStatus::stick; }
+  bool has_play() const { return false; }
+  Seat seat(const Trial&, double, double, double) const { return {}; }
+  bool jumps(const Trial&, JointStatus) const { return false; }
+};
+
+}  // namespace statejump::truss

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gradients.hpp"
+#include "statejump/thermal/program.hpp"
+
+namespace statejump::truss {
+namespace {
+
+TEST(LatchHinge, GradientsAreThoseOfItsForces) {
+  Model model;
+  thermal::Program program;
+  program.period = 1.0;
+  model.programs = {program};
+  const auto node = [](const char* name, double x, double y, double z) {
+    Node made;
+    made.name = name;
+    made.position = {x, y, z};
+    return made;
+  };
+  model.nodes = {node("A", 0.0, 0.0, 0.0), node("B", 0.1, 0.02, 0.01),
+                 node("C", 0.15, 0.09, -0.02)};
+  model.links = {{"AB", 0, 1, 1e2, 0.1, 0.0, 0, 1.0}, {"BC", 1, 2, 1e2, 0.1, 0.0, 0, 1.0}};
+  LatchHinge hinge;
+  hinge.name = "H";
+  hinge.axis = Eigen::Vector3d(1.0, 2.0, 9.0).normalized();
+  hinge.stiffness = 0.3;
+  hinge.friction_moment = 0.2;
+  hinge.preload_moment = -0.1;
+  for (const int second : {-1, 1}) {
+    // Within the play and beyond it: the displacements below turn the links by some 1e-3.
+    for (const double deadband : {0.0, 1e-6, 0.1}) {
+      hinge.second_link = second;
+      hinge.deadband = deadband;
+      model.joints = {hinge};
+      const detail::System system(model);
+      Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(system.unknowns(), 1e-5, 3e-4);
+      z[4] = -2e-4;
+      z[9] = 1.5;
+      Eigen::VectorXd before = z;
+      before[1] += 1e-5;
+      check_gradients(model, z, before,
+                      {JointStatus::stick, JointStatus::slip_plus, JointStatus::slip_minus}, 1e-8,
+                      1e-4);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace statejump::truss
