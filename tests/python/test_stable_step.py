@@ -52,6 +52,35 @@ def test_spring_slider_by_hand(undamped) -> None:
     assert stable_step.stable_time_step(undamped) == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.parametrize("play_m, heated_K, stiffer", [
+    (1e-3, 100.0, "along"),  # Table 1: pressed against a stop
+    (1e-3, -100.0, "along"),  # the other stop, by cooling
+    (2e-3, 100.0, "across"),  # no stop is met
+])
+def test_damped_spring_slider_by_hand(play_m: float, heated_K: float, stiffer: str) -> None:
+    """Both axes of the slider: springs of bar, floor and stop at twice their forces, a dashpot 2 zeta sqrt(k m) each."""
+    values = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text())
+    values["joint"].update(clearance_plus_m=play_m, clearance_minus_m=play_m, preload_stiffness_N_per_m=1e5)
+    values["thermal"]["temperature_change_max_K"] = heated_K
+    values["dem"].update(link_damping_ratio=0.2, contact_damping_ratio=0.3, slider_mass_kg=0.01)
+    modulus, shear = 70e9 / (2 * 0.91), 70e9 / (4 * 1.7 * 1.3)
+    mass = 2700 * 9e-6 * 0.5 / 3 + 0.01
+    bar = 70e9 * 9e-6 / 0.5
+
+    def contact(force_N: float) -> tuple[float, float]:
+        width = (2 * force_N * 0.05 / (4 / 3 * modulus)) ** (1 / 3)
+        return 2 * modulus * width, 8 * shear * width
+
+    floor, stop = contact(100), contact(bar * max(0.0, 0.5 * 23.4e-6 * abs(heated_K) - play_m))
+    steps = []
+    for spring, contacts in ((0.0, (floor[0], stop[1])), (bar + 1e5, (floor[1], stop[0]))):
+        stiffness = spring + sum(contacts)
+        damping = 2 * sqrt(mass) * (0.2 * sqrt(spring) + 0.3 * (sqrt(contacts[0]) + sqrt(contacts[1])))
+        steps.append(4 * mass / (damping + sqrt(damping**2 + 4 * mass * stiffness)))
+    assert stable_step.stable_time_step(parse_case(values)) == pytest.approx(min(steps), rel=1e-12)
+    assert steps.index(min(steps)) == ("across", "along").index(stiffer)
+
+
 def test_spring_slider_as_the_dem_reports(undamped) -> None:
     """The estimate is made of the stiffness that the DEM's contact has; the run's own is on the safe side of it."""
     script = REPOSITORY / "tests" / "yade" / "scripts" / "stable_step.py"
@@ -130,3 +159,14 @@ def test_truss_by_hand() -> None:
     case = parse_case(tomllib.loads(TRUSS))
     found = truss_dem.stable_time_step(case, solve(case))
     assert found == pytest.approx(2 * sqrt(2 * 2700 * 9e-6 * 0.5 / 3 / (2 * 70e9 * 9e-6 / 0.5)), rel=1e-12)
+
+
+def test_damped_and_cooled_truss_by_hand() -> None:
+    """Links 0.1 % shorter are stiffer by that; a dashpot 2 zeta sqrt(k m) on each, m the node's, and two on the node."""
+    text = TRUSS.replace("thermal_expansion_per_K = 0.0", "thermal_expansion_per_K = 1e-4")
+    text = text.replace("temperature_change_max_K = 10", "temperature_change_max_K = -10")
+    case = parse_case(tomllib.loads(text.replace("link_damping_ratio = 0.0", "link_damping_ratio = 0.3")))
+    mass, link = 2 * 2700 * 9e-6 * 0.5 / 3, 70e9 * 9e-6 / (0.5 * 0.999)
+    damping = 2 * 2 * 0.3 * sqrt(link * mass)
+    expected = 4 * mass / (damping + sqrt(damping**2 + 4 * mass * 2 * link))
+    assert truss_dem.stable_time_step(case, solve(case)) == pytest.approx(expected, rel=1e-12)

@@ -28,10 +28,12 @@ SLACK_BYTES = 32_000
 # What the allocator may hold back without anything being lost: pieces of its arenas.
 LARGEST_BYTES = 8 << 20
 FEWEST_ROUNDS = 4
+# Rounds until a campaign has a worker process again: in the first one, so that what is loaded for it is counted there.
+ROUNDS_PER_CLUSTER = 8
 
 
-def rounds(folder: Path) -> Callable[[], None]:
-    """Return what a round does; files go to the folder, over those of the round before."""
+def rounds(folder: Path) -> Callable[[int], None]:
+    """Return what a round with a number does; files go to the folder, over those of the round before."""
     import statejump as sj
     from statejump.cli import main
 
@@ -43,7 +45,7 @@ def rounds(folder: Path) -> Callable[[], None]:
         status = main.run([*map(str, words), "--quiet"] if words[0] != "info" else list(map(str, words)))
         assert status == wanted, (status, words)
 
-    def once() -> None:
+    def once(number: int) -> None:
         for case in reduced:
             run = case.reduced()
             run.frame()
@@ -59,7 +61,8 @@ def rounds(folder: Path) -> Callable[[], None]:
         command(0, "report", file, "-o", folder / "page.html")
         command(0, "export", file, "--to", folder / "out", "--frames", "2")
         command(0, "truss", "answers", "trusses/chain_10", "--no-sensitivity", "--results", folder)
-        command(0, "sweep", REPOSITORY / "cases/campaigns/table1_friction.toml", "--restart", "--results", folder)
+        command(0, "sweep", REPOSITORY / "cases/campaigns/table1_friction.toml", "--restart", "--results", folder,
+                *(("--workers", "1") if number % ROUNDS_PER_CLUSTER == 0 else ()))
         command(2, "reduced", "nowhere", "--results", folder)
         command(2, "info", REPOSITORY / "README.md")
 
@@ -100,7 +103,7 @@ def main() -> int:
         once, found, end = rounds(Path(root) / "results"), [], time.monotonic() + 60 * given.minutes
         try:
             while time.monotonic() < end or len(found) < FEWEST_ROUNDS:
-                once()
+                once(len(found))
                 found.append(counted(temporary))
                 if len(found).bit_count() == 1:
                     os.write(told, f"{_line(found)}\n".encode())
