@@ -6,7 +6,6 @@ the same facts by name. Nothing ever reads a sentence back.
 """
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Sequence
 from copy import copy
@@ -214,6 +213,8 @@ def _remade(kind: type[StatejumpError], state: dict[str, Any]) -> StatejumpError
 
 def _plain(value: Any) -> Any:
     """Return a value if JSON can hold it, else as text."""
+    import json  # not to start the command
+
     try:
         json.dumps(value, allow_nan=False)
     except (TypeError, ValueError):
@@ -332,5 +333,7 @@ def fields(kind: str, message: str, exit_status: int, **details: Any) -> dict[st
 
 def to_json(failure: dict[str, Any]) -> str:
     """Return the fields of a failure as one line."""
+    import json
+
     line = json.dumps(failure, ensure_ascii=False, allow_nan=False)
     return _CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", line)

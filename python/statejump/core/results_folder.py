@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import fcntl
 import os
-import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -58,7 +57,7 @@ class Results:
             try:
                 yield found
             finally:
-                shutil.rmtree(found.staged, ignore_errors=True)
+                _remove(found.staged, ignore_errors=True)
         finally:
             os.close(descriptor)
 
@@ -95,7 +94,8 @@ class ResultsFolder:
 
     def check_space(self, needed_bytes: float) -> None:
         """Raise NotWritten where the file system has no room for so many bytes."""
-        free = shutil.disk_usage(self.path).free
+        room = os.statvfs(self.path)
+        free = room.f_bavail * room.f_frsize
         if needed_bytes > free:
             raise _unusable(self.path, f"the results need about {size(needed_bytes)}, the file system has {size(free)} "
                             "left", OTHER, what="no space left")
@@ -145,13 +145,22 @@ def _move(ready: Path, path: Path) -> None:
         os.rmdir(folder)
 
 
+def _remove(folder: Path, ignore_errors: bool = False) -> None:
+    """Remove a folder with what is in it."""
+    with suppress(OSError):
+        return os.rmdir(folder)  # as a rule there is nothing left in it
+    from shutil import rmtree  # loads what packs archives
+
+    rmtree(folder, ignore_errors=ignore_errors)
+
+
 def _recover(path: Path) -> None:
     """Finish what a killed run had decided, and remove what it had not."""
     for ready in sorted(path.glob(f".*{READY}")):
         _move(ready, path)
     for left in path.glob(f".*{PARTIAL}"):
         if left.is_dir():
-            shutil.rmtree(left)
+            _remove(left)
 
 
 def _unusable(path: Path, cause: str, remedy: str, what: str = "cannot be written") -> NotWritten:

@@ -14,10 +14,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, Unreadable, printable, size
 from statejump.core.reading import is_file
@@ -25,7 +24,10 @@ from statejump.core.thermal import KEYS_OF_FILES, LARGEST_CHANGE_K, LONGEST_TABL
 from statejump.schema.fields import Attached, Section, fields_of, rule_of
 from statejump.schema.toml import LARGEST_BYTES
 
-Numbers = NDArray[np.float64]
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Numbers = NDArray[np.float64]
 
 ZERO_CELSIUS_K = 273.15
 ENDINGS = {"_K": 0.0, "_degC": ZERO_CELSIUS_K}

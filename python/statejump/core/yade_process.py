@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import signal
-import subprocess
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,7 +21,6 @@ from statejump.core.case import Case
 from statejump.core.errors import FailedRun, Interrupted, StatejumpError
 from statejump.core.progress import Tell
 from statejump.core.run import Run
-from statejump.core.scratch import scratch
 from statejump.core.tables import read_columns
 from statejump.schema.fields import choice
 
@@ -58,8 +55,10 @@ def stepper() -> Any:
 
 def find_yade() -> str:
     """Return the yade command: STATEJUMP_YADE if set, otherwise from PATH."""
+    from shutil import which  # as the others below: cases know this module, few of them start YADE
+
     wanted = os.environ.get("STATEJUMP_YADE", "yade")
-    found = shutil.which(wanted)
+    found = which(wanted)
     if found is None:
         raise FailedRun("YADE is missing", cause=f"no command {wanted!r} found",
                         remedy="install Debian's package 'yade' or set STATEJUMP_YADE to the command")
@@ -103,6 +102,8 @@ def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, tell: Tell) ->
 
 def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
     """Run a resolved case in YADE; see :func:`run`. Of an interrupted one ``run`` is :class:`Samples`."""
+    from statejump.core.scratch import scratch
+
     name, threads = values["case"]["name"], values["dem"]["threads"]
     command = [find_yade(), "-n", "-x", f"-j{threads}", str(_paths.YADE_SCRIPTS / "runner" / "run_case.py")]
     with scratch() as folder:
@@ -135,6 +136,8 @@ def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
 
 def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
     """Run the command and pass its progress on. :raises FailedRun: what went wrong"""
+    import subprocess
+
     failure: dict[str, Any] | None = None
     finished, last = False, ""
     with subprocess.Popen(
