@@ -201,9 +201,6 @@ MISTAKES: dict[str, tuple[Callable[[dict[str, Any]], None], str]] = {
     "mass and density": (
         set_key("link", "AB", density_kg_per_m3=1.0),
         "link 'AB': mass_kg = 1.0 is not allowed: only without density_kg_per_m3"),
-    "neither mass nor density": (
-        set_key("link", "AB", mass_kg=None),
-        "link 'AB': density_kg_per_m3 or mass_kg is missing: one of them is needed"),
     "preload and free length": (
         set_key("spring", "K", free_length_m=1.0), "spring 'K': preload_N = 5.0 is not allowed: only without free_length_m"),
     # names

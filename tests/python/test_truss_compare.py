@@ -188,3 +188,20 @@ def test_what_the_dem_cannot_represent_is_named(change, sentence: str) -> None:
         dem.check(case)
         dem.resolved(case, solve(case))  # whether a cable goes slack is seen on the path
     assert sentence in str(refusal.value) and "\n" not in str(refusal.value)
+
+
+def test_a_truss_without_masses_is_at_rest_and_does_not_move(cases: Path) -> None:
+    """Mass is for what moves: the quasi-static solver asks for none, the DEM and the motion do."""
+    import statejump as sj
+    from statejump.core.errors import MissingKey
+
+    heavy = sj.load(cases / "trusses" / "chain_10.toml")
+    data = heavy.to_dict()
+    for link in data["link"]:
+        link.pop("density_kg_per_m3", None), link.pop("mass_kg", None)
+    light = sj.load(data)
+    assert light.reduced().summary == heavy.reduced().summary
+    name = heavy.link[0].name
+    for moves in (light.dem, lambda: light.reduced(dynamic=True)):
+        with pytest.raises(MissingKey, match=f"link '{name}': density_kg_per_m3 or mass_kg is missing: what moves has"):
+            moves()

@@ -108,11 +108,8 @@ def _members(case: TrussCase) -> None:
 
 def _alternatives(case: TrussCase) -> None:
     for link in case.link:
-        if (link.density_kg_per_m3 is None) == (link.mass_kg is None):
-            where = f"link {link.name!r}"
-            if link.mass_kg is None:
-                raise MissingKey("mass_kg", "one of them is needed", section="density_kg_per_m3 or mass_kg", item=where)
-            raise NotAllowed("mass_kg", link.mass_kg, "only without density_kg_per_m3", item=where)
+        if link.density_kg_per_m3 is not None and link.mass_kg is not None:
+            raise NotAllowed("mass_kg", link.mass_kg, "only without density_kg_per_m3", item=f"link {link.name!r}")
     for spring in case.spring:
         if spring.preload_N is not None and spring.free_length_m is not None:
             raise NotAllowed("preload_N", spring.preload_N, "only without free_length_m",

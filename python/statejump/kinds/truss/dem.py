@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 
 from statejump import _engine
 from statejump.core import physics, thermal, yade_process
-from statejump.core.errors import StatejumpError
+from statejump.core.errors import MissingKey, StatejumpError
 from statejump.core.progress import Tell
 from statejump.core.run import Run
 from statejump.kinds.truss.case import TrussCase
@@ -40,7 +40,11 @@ def refuse(case: TrussCase, why: str, **fields: Any) -> StatejumpError:
 
 
 def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
-    """Return the mass of every node [kg]."""
+    """Return the mass of every node [kg]. :raises MissingKey: a link has none"""
+    for name, link in zip(truss.links.names, truss.links.mass_kg):
+        if np.isnan(link):
+            raise MissingKey("mass_kg", "what moves has one of them", section="density_kg_per_m3 or mass_kg",
+                             item=f"link {name!r}", case=truss.name)
     mass = np.zeros(len(truss.nodes.names))
     held = np.asarray(truss.nodes.fixed.all(axis=1))
     for ends, link in zip(truss.links.nodes, truss.links.mass_kg):

@@ -42,7 +42,7 @@ class Links:
     cross_section_area_m2: np.ndarray
     thermal_expansion_per_K: np.ndarray
     stress_free_length_m: np.ndarray  # at ΔT = 0
-    mass_kg: np.ndarray  # from the density: density · area · stress-free length
+    mass_kg: np.ndarray  # from the density: density · area · stress-free length; NaN: neither is given
     poisson_ratio: np.ndarray
     temperature_fraction: np.ndarray  # of the program's ΔT
     program: np.ndarray  # int, index into ResolvedTruss.programs
