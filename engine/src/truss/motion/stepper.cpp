@@ -66,7 +66,7 @@ VectorXd Stepper::force(const VectorXd& q, const VectorXd& v, double time,
   return found;
 }
 
-void Stepper::factorize(const Trial& step) {
+Eigen::SparseMatrix<double> Stepper::iteration_matrix(const Trial& step) {
   const Eigen::Index n = q_.size();
   const double theta = options_->theta;
   const double h = step.h;
@@ -99,8 +99,7 @@ void Stepper::factorize(const Trial& step) {
     matrix.setFromTriplets(entries.begin(), entries.end());
   }
   matrix.makeCompressed();
-  ++factorizations_;
-  if (!factor_.factorize(matrix)) fail(FailureKind::singular, step.to, nullptr);
+  return matrix;
 }
 
 Stepper::Local Stepper::local_problem(const Trial& step) {
@@ -109,32 +108,47 @@ Stepper::Local Stepper::local_problem(const Trial& step) {
     if (contact.active) local.contacts.push_back(&contact);
   }
   const Eigen::Index n = q_.size();
-  const Eigen::Index held = holds_.cols();
   const auto rows = static_cast<Eigen::Index>(2 * local.contacts.size());
-  local.directions = Eigen::MatrixXd::Zero(n, rows);
+  std::vector<Eigen::Triplet<double>> entries;
   const auto take = [&](int column, double sign, Eigen::Index to) {
+    if (column < 0) return;
     for (Eigen::SparseMatrix<double>::InnerIterator it(at_.jacobian, column); it; ++it) {
-      if (it.row() < n) local.directions(it.row(), to) = sign * it.value();
+      if (it.row() < n) entries.emplace_back(it.row(), to, sign * it.value());
     }
   };
+  local.impulses = VectorXd::Zero(rows);
   for (Eigen::Index i = 0; i < rows / 2; ++i) {
     const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
-    if (contact.normal_column >= 0) take(contact.normal_column, contact.normal_sign, 2 * i);
-    if (contact.tangential_column >= 0) take(contact.tangential_column, 1.0, 2 * i + 1);
+    take(contact.normal_column, contact.normal_sign, 2 * i);
+    take(contact.tangential_column, 1.0, 2 * i + 1);
+    local.impulses[2 * i] =
+        step.h * (contact.normal_column < 0 ? contact.given_force : contact.normal_force);
+    local.impulses[2 * i + 1] = -step.h * contact.friction_force;
   }
-  local.answers = Eigen::MatrixXd::Zero(n + held, rows);
-  VectorXd right = VectorXd::Zero(n + held);
-  for (Eigen::Index k = 0; k < rows; ++k) {
-    if (local.directions.col(k).isZero(0.0)) continue;
-    right.head(n) = local.directions.col(k);
-    local.answers.col(k) = factor_.solve(right);
-  }
-  local.delassus = local.directions.transpose() * local.answers.topRows(n);
+  local.directions.resize(n, rows);
+  local.directions.setFromTriplets(entries.begin(), entries.end());
   local.before = local.directions.transpose() * v_;
   for (Eigen::Index i = 0; i < rows / 2; ++i) {
     const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
     local.before[2 * i] += (contact.clearance_after - contact.clearance) / step.h;
   }
+  return local;
+}
+
+/// What impulses do to the velocities.
+void Stepper::complete(const Trial& step, Local& local) {
+  ++factorizations_;
+  if (!factor_.factorize(iteration_matrix(step))) fail(FailureKind::singular, step.to, nullptr);
+  const Eigen::Index n = q_.size();
+  const Eigen::Index rows = local.directions.cols();
+  local.answers = Eigen::MatrixXd::Zero(n + holds_.cols(), rows);
+  VectorXd right = VectorXd::Zero(n + holds_.cols());
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    if (local.directions.col(k).nonZeros() == 0) continue;
+    right.head(n) = local.directions.col(k);
+    local.answers.col(k) = factor_.solve(right);
+  }
+  local.delassus = local.directions.transpose() * local.answers.topRows(n);
   // Rows that touch nothing else are of the size of the others.
   const auto real = (local.delassus.diagonal().array() > 0.0).count();
   const double size = real > 0 ? local.delassus.trace() / static_cast<double>(real) : 1.0;
@@ -143,14 +157,17 @@ Stepper::Local Stepper::local_problem(const Trial& step) {
     const int column = k % 2 == 0 ? contact.normal_column : contact.tangential_column;
     if (column < 0) local.delassus(k, k) = size;
   }
-  local.impulses = VectorXd::Zero(rows);
-  for (Eigen::Index i = 0; i < rows / 2; ++i) {
-    const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
-    local.impulses[2 * i] =
-        step.h * (contact.normal_column < 0 ? contact.given_force : contact.normal_force);
-    local.impulses[2 * i + 1] = -step.h * contact.friction_force;
-  }
-  return local;
+}
+
+Stepper::Tangent Stepper::tangent(const Trial& step, const Local& local, Eigen::Index i,
+                                  double speed) const {
+  const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+  // Gap at the end of the step: from the middle on by the velocity that comes.
+  const double toward = contact.gap - 0.5 * step.h * local.directions.col(2 * i).dot(v_);
+  const double depth = std::max(-(toward + step.h * speed), contact.least_depth);
+  const double force = contact.force_at(depth);
+  const double compliance = depth / (1.5 * force);
+  return {force, compliance, toward + depth - compliance * force};
 }
 
 void Stepper::solve_contacts(const Trial& step, const VectorXd& free, bool first, Local& local) {
@@ -167,16 +184,13 @@ void Stepper::solve_contacts(const Trial& step, const VectorXd& free, bool first
     if (contact.normal_column < 0) {
       problem.q[n] = -w(n, n) * h * contact.given_force;
     } else if (contact.is_elastic()) {
-      // Gap at the end of the step: from the middle on by the velocity that comes.
-      const double toward = contact.gap - 0.5 * h * local.directions.col(n).dot(v_);
       const double speed =
           first ? local.directions.col(n).dot(v_)
                 : local.directions.col(n).dot(free) + local.delassus.row(n) * local.impulses;
-      const double depth = std::max(-(toward + h * speed), contact.least_depth);
-      normal = contact.force_at(depth);
-      const double compliance = depth / (1.5 * normal);
-      w(n, n) += compliance / (h * h);
-      problem.q[n] += (toward + depth - compliance * normal) / h;
+      const Tangent law = tangent(step, local, i, speed);
+      normal = law.force;
+      w(n, n) += law.compliance / (h * h);
+      problem.q[n] += law.gap / h;
     } else {
       problem.q[n] += (contact.clearance_after - contact.clearance) / h +
                       options_->restitution * std::min(local.before[n], 0.0);
@@ -251,30 +265,39 @@ bool Stepper::balanced(const Trial& step, const VectorXd& residual, const Vector
 }
 
 void Stepper::advance(double to) {
-  const double theta = options_->theta;
   Trial step{to - time_, to, q_ + 0.5 * (to - time_) * v_, {}, {}, v_};
-  const double h = step.h;
-  const Eigen::Index n = q_.size();
-  const Bodies::Step span{time_, to};
   step.force_before = internal_;
-  if (bodies_->damped()) step.force_before += bodies_->force(q_, v_, span);
+  if (bodies_->damped()) step.force_before += bodies_->force(q_, v_, {time_, to});
 
   evaluate(step.q_middle, to);
   VectorXd middle = z_;
-  middle.head(n) = step.q_middle;
+  middle.head(q_.size()) = step.q_middle;
   contacts_.measure(middle, to, origin_, at_.residual, system_->rounding(middle).length);
-  factorize(step);
   Local local = local_problem(step);
+  if (!on_branches(step, local)) {
+    step.v = v_;
+    evaluate(step.q_middle, to);
+    local = local_problem(step);
+    solve(step, local);
+    check_determined(step, local);
+  }
+  book(step, local);
+}
 
+void Stepper::solve(Trial& step, Local& local) {
+  complete(step, local);
+  const double theta = options_->theta;
+  const double h = step.h;
+  const Eigen::Index n = q_.size();
   VectorXd held;
   for (int k = 0;; ++k) {
     step.q = q_ + h * (theta * step.v + (1.0 - theta) * v_);
-    const VectorXd now = force(step.q, step.v, to, span);
+    const VectorXd now = force(step.q, step.v, step.to, {time_, step.to});
     const VectorXd residual =
         bodies_->mass() * (step.v - v_) - h * (theta * now + (1.0 - theta) * step.force_before);
-    if (!residual.allFinite()) fail(FailureKind::not_finite, to, nullptr);
-    if (k > 0 && balanced(step, residual, held, local)) break;
-    if (k == options_->most_iterations) fail(FailureKind::not_converged, to, nullptr);
+    if (!residual.allFinite()) fail(FailureKind::not_finite, step.to, nullptr);
+    if (k > 0 && balanced(step, residual, held, local)) return;
+    if (k == options_->most_iterations) fail(FailureKind::not_converged, step.to, nullptr);
     VectorXd right(n + holds_.cols());
     right.head(n) = -residual;
     if (holds_.cols() > 0) right.tail(holds_.cols()) = -(holds_.transpose() * step.v);
@@ -289,8 +312,6 @@ void Stepper::advance(double to) {
       held += answer.tail(holds_.cols());
     }
   }
-  check_determined(step, local);
-  book(step, local);
 }
 
 void Stepper::check_determined(const Trial& step, const Local& local) {
@@ -381,6 +402,10 @@ void Stepper::book(const Trial& step, const Local& local) {
   system_->account(z_, time_, z, step.to, origin_, after, VectorXd::Zero(account_.friction.size()),
                    worked);
   account_.thermal_work += worked.thermal_work;
+  std::vector<Branch> branches;
+  for (const Contact& contact : contacts_.all()) branches.push_back(branch(contact));
+  if (branches != branches_) branch_factor_.reset();
+  branches_ = std::move(branches);
   contacts_.remember_clearances();
   internal_ = -at_.residual.head(step.q.size());
   q_ = step.q;

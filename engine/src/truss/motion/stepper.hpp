@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -47,9 +48,10 @@ class Stepper {
   /// The contact problem of a step: which contacts, and what their impulses do to the velocities.
   struct Local {
     std::vector<Contact*> contacts;
-    Eigen::MatrixXd directions;  ///< H, its columns those of the problem's rows; zero: none.
-    Eigen::MatrixXd answers;     ///< (M + …)⁻¹ H, and of the holds.
-    VectorXd before;             ///< Velocities of the contacts at the start of the step.
+    Eigen::SparseMatrix<double> directions;  ///< H, columns by the problem's rows; empty: none.
+    VectorXd before;  ///< Velocities of the contacts at the start of the step.
+    // Only where the problem is solved.
+    Eigen::MatrixXd answers;  ///< (M + …)⁻¹ H, and of the holds.
     Eigen::MatrixXd delassus;
     VectorXd impulses;
   };
@@ -63,8 +65,27 @@ class Stepper {
     VectorXd v;
   };
 
-  void factorize(const Trial& step);
+  /// The normal law of an elastic contact as its tangent at a gap that comes.
+  struct Tangent {
+    double force;       ///< [N]
+    double compliance;  ///< [m/N]
+    double gap;         ///< At the end of the step by the velocity alone, less that at `force` [m].
+  };
+  Tangent tangent(const Trial& step, const Local& local, Eigen::Index contact, double speed) const;
+
+  Eigen::SparseMatrix<double> iteration_matrix(const Trial& step);
   Local local_problem(const Trial& step);
+  /// Solves the step with every contact on the branch of the step before, without a contact
+  /// problem. False if one is not on it; the step is then as it was.
+  bool on_branches(Trial& step, Local& local);
+  /// Of a contact: open, or in touch and held along its surface, or sliding on it.
+  enum class Branch : unsigned char { open, stick, slip_plus, slip_minus };
+  Branch branch(const Contact& contact) const;
+  /// Whether a contact obeys the inequalities of its branch.
+  bool branch_holds(const Trial& step, const Local& local, Eigen::Index i, Branch branch) const;
+  /// Solves the step with its contact problem.
+  void solve(Trial& step, Local& local);
+  void complete(const Trial& step, Local& local);
   /// Solves the contact problem of an iterate. @param free velocities without impulses
   void solve_contacts(const Trial& step, const VectorXd& free, bool first, Local& local);
   /// f [N] at places and velocities; also leaves the largest force in `at_`.
@@ -85,6 +106,8 @@ class Stepper {
   Contacts contacts_;
   Assembly at_;
   linear::SparseFactor factor_;
+  std::vector<Branch> branches_;                         ///< Of all contacts in the last step.
+  std::unique_ptr<linear::SparseFactor> branch_factor_;  ///< Its pattern is that of `branches_`.
   Eigen::SparseMatrix<double> holds_;  ///< Columns that hold, scaled, of the current factors.
   StepStart origin_;
   VectorXd q_;

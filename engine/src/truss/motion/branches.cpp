@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Steps in which no contact changes what it does: the laws of all contacts are then equations,
+// which stand beside those of the bodies in one sparse matrix.
+#include <algorithm>
+#include <cmath>
+
+#include "stepper.hpp"
+
+namespace statejump::truss::detail {
+
+namespace {
+
+/// Newton's method converges in three or four iterations, or a contact is on another branch.
+constexpr int most_iterations = 8;
+/// Share of a contact's own force by which it may miss an inequality, as the contact problem's
+/// tolerance allows.
+constexpr double allowance = 1e-10;
+
+}  // namespace
+
+Stepper::Branch Stepper::branch(const Contact& contact) const {
+  if (!contact.active) return Branch::open;
+  const double normal = contact.normal_column < 0 ? contact.given_force : contact.normal_force;
+  if (!(normal > 0.0)) return Branch::open;
+  if (contact.sticks(normal, contact.friction_force)) return Branch::stick;
+  return contact.friction_force >= 0.0 ? Branch::slip_plus : Branch::slip_minus;
+}
+
+bool Stepper::on_branches(Trial& step, Local& local) {
+  if (branches_.empty()) return false;
+  const double h = step.h;
+  const double theta = options_->theta;
+  const Eigen::Index n = q_.size();
+  const Eigen::Index bodies = n + static_cast<Eigen::Index>(contacts_.holds().size());
+  // What a contact asks for: that it moves along `row` as its law says, by a force along `push`.
+  struct Row {
+    Eigen::Index contact;
+    bool normal;
+    double slide;  ///< Tangential force over that of the normal one.
+  };
+  std::vector<Row> rows;
+  std::vector<Branch> branch_of;
+  std::size_t place = 0;
+  VectorXd given = VectorXd::Zero(local.impulses.size());
+  for (const Contact& contact : contacts_.all()) {
+    const Branch now = branches_[place++];
+    if (!contact.active) {
+      if (now != Branch::open) return false;
+      continue;
+    }
+    const auto i = static_cast<Eigen::Index>(branch_of.size());
+    branch_of.push_back(now);
+    if (now == Branch::open) continue;
+    // Friction on the body is against the slide.
+    const double slide = (now == Branch::slip_plus    ? -1.0
+                          : now == Branch::slip_minus ? 1.0
+                                                      : 0.0) *
+                         contact.friction_coefficient;
+    if (contact.normal_column < 0) {
+      given[2 * i] = h * contact.given_force;
+      given[2 * i + 1] = slide * given[2 * i];
+    } else {
+      rows.push_back({i, true, slide});
+    }
+    if (now == Branch::stick) rows.push_back({i, false, 0.0});
+  }
+  // A rigid contact that closes in this step was open in the last one.
+  for (std::size_t i = 0; i < local.contacts.size(); ++i) {
+    const Contact& contact = *local.contacts[i];
+    const bool rigid = contact.normal_column >= 0 && !contact.is_elastic();
+    if (rigid && branch_of[i] == Branch::open) return false;
+  }
+
+  const Eigen::SparseMatrix<double> matrix = iteration_matrix(step);
+  const double scale = matrix.diagonal().head(n).maxCoeff();
+  const auto size = bodies + static_cast<Eigen::Index>(rows.size());
+  std::vector<Eigen::Triplet<double>> fixed;
+  for (Eigen::Index j = 0; j < matrix.outerSize(); ++j) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it) {
+      fixed.emplace_back(it.row(), it.col(), it.value());
+    }
+  }
+  const auto along = [&](Eigen::Index column, auto&& use) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(local.directions, column); it; ++it) {
+      use(it.row(), it.value());
+    }
+  };
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Row& row = rows[k];
+    const auto to = bodies + static_cast<Eigen::Index>(k);
+    const Eigen::Index column = 2 * row.contact + (row.normal ? 0 : 1);
+    along(column, [&](Eigen::Index at, double value) {
+      fixed.emplace_back(to, at, scale * value);
+      fixed.emplace_back(at, to, -scale * value);
+    });
+    if (row.slide != 0.0) {
+      along(column + 1, [&](Eigen::Index at, double value) {
+        fixed.emplace_back(at, to, -scale * row.slide * value);
+      });
+    }
+  }
+  if (!branch_factor_) branch_factor_ = std::make_unique<linear::SparseFactor>();
+  Eigen::SparseMatrix<double> bordered(size, size);
+  VectorXd held;
+  for (int k = 0;; ++k) {
+    step.q = q_ + h * (theta * step.v + (1.0 - theta) * v_);
+    const VectorXd now = force(step.q, step.v, step.to, {time_, step.to});
+    const VectorXd residual =
+        bodies_->mass() * (step.v - v_) - h * (theta * now + (1.0 - theta) * step.force_before);
+    if (!residual.allFinite()) return false;
+    if (k > 0 && balanced(step, residual, held, local)) break;
+    if (k == most_iterations) return false;
+    VectorXd right(size);
+    right.head(n) = -residual + local.directions * given;
+    if (holds_.cols() > 0) right.segment(n, holds_.cols()) = -(holds_.transpose() * step.v);
+    std::vector<Eigen::Triplet<double>> entries = fixed;
+    double normal_force = 0.0;
+    Eigen::Index normal_of = -1;
+    for (std::size_t j = 0; j < rows.size(); ++j) {
+      const Row& row = rows[j];
+      const Contact& contact = *local.contacts[static_cast<std::size_t>(row.contact)];
+      const auto at = bodies + static_cast<Eigen::Index>(j);
+      const double speed = local.directions.col(2 * row.contact + (row.normal ? 0 : 1)).dot(step.v);
+      double compliance = 0.0;
+      double offset = 0.0;
+      if (row.normal && contact.is_elastic()) {
+        const Tangent law = tangent(step, local, row.contact, speed);
+        compliance = law.compliance;
+        offset = law.gap / h;
+        normal_force = law.force;
+        normal_of = row.contact;
+      } else if (row.normal) {
+        offset = (contact.clearance_after - contact.clearance) / h +
+                 options_->restitution * std::min(local.before[2 * row.contact], 0.0);
+      } else {
+        compliance = contact.tangential_compliance(normal_of == row.contact ? normal_force
+                                                                            : contact.given_force);
+        offset = contact.kept_bend(compliance) / h;
+      }
+      entries.emplace_back(at, at, scale * scale * compliance / (h * h));
+      right[at] = -scale * (speed + offset);
+    }
+    bordered.setFromTriplets(entries.begin(), entries.end());
+    bordered.makeCompressed();
+    ++factorizations_;
+    if (!branch_factor_->factorize(bordered)) return false;
+    const VectorXd found = branch_factor_->solve(right);
+    step.v += found.head(n);
+    held = found.segment(n, holds_.cols());
+    local.impulses = given;
+    for (std::size_t j = 0; j < rows.size(); ++j) {
+      const Row& row = rows[j];
+      const double impulse = scale * found[bodies + static_cast<Eigen::Index>(j)];
+      local.impulses[2 * row.contact + (row.normal ? 0 : 1)] = impulse;
+      if (row.slide != 0.0) local.impulses[2 * row.contact + 1] = row.slide * impulse;
+    }
+  }
+  for (std::size_t i = 0; i < local.contacts.size(); ++i) {
+    if (!branch_holds(step, local, static_cast<Eigen::Index>(i), branch_of[i])) return false;
+  }
+  return true;
+}
+
+bool Stepper::branch_holds(const Trial& step, const Local& local, Eigen::Index i,
+                           Branch branch) const {
+  const double h = step.h;
+  const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+  const double normal = local.impulses[2 * i];
+  const double tangential = local.impulses[2 * i + 1];
+  if (branch == Branch::open) {
+    if (contact.normal_column < 0) return true;
+    const double end = contact.gap + h * local.directions.col(2 * i).dot(step.v - 0.5 * v_);
+    return end >= 0.0;
+  }
+  if (!(normal > 0.0)) return false;
+  const double bound = contact.friction_coefficient * normal;
+  if (branch == Branch::stick) return std::abs(tangential) <= bound * (1.0 - allowance);
+  if (contact.tangential_column < 0 || bound == 0.0) return true;
+  const double compliance = contact.tangential_compliance(normal / h);
+  const double slide = local.directions.col(2 * i + 1).dot(step.v) +
+                       (compliance * tangential / h + contact.kept_bend(compliance)) / h;
+  return tangential * slide <= 0.0;
+}
+
+}  // namespace statejump::truss::detail
