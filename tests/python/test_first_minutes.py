@@ -6,11 +6,12 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from conftest import BUILT
+from conftest import BUILT, COMMAND, REPOSITORY
 
 
 def test_help_names_every_command_once_by_task(statejump: Callable[..., Any]) -> None:
@@ -43,3 +44,19 @@ def test_another_python_is_told_which_one_it_takes() -> None:
     done = subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": str(BUILT)},
                           capture_output=True, text=True, timeout=60, check=True)
     assert done.stdout.startswith("statejump is for /usr/bin/python3") and done.stdout.endswith("(3.99)\n")
+
+
+def test_manual_and_completion_are_of_the_commands(tmp_path: Path) -> None:
+    from statejump.cli.main import COMMANDS
+
+    environment = {**os.environ, "PYTHONPATH": str(BUILT)}
+    subprocess.run([sys.executable, str(REPOSITORY / "cmake" / "shell_files.py"), str(tmp_path)], env=environment,
+                   timeout=120, check=True)
+    assert {path.name for path in tmp_path.iterdir()} == {"statejump.1", "statejump", "_statejump", "statejump.fish"}
+    page = (tmp_path / "statejump.1").read_text()
+    for name in COMMANDS:
+        assert f"\\fB{name}\\fR\n" in page and f".SS statejump {name}" in page, name
+    subprocess.run(["bash", "-n", str(tmp_path / "statejump")], timeout=60, check=True)
+    done = subprocess.run([COMMAND], capture_output=True, text=True, timeout=60, env={
+        **os.environ, "_STATEJUMP_COMPLETE": "bash_complete", "COMP_WORDS": "statejump truss an", "COMP_CWORD": "2"})
+    assert done.stdout == "plain,answers\n" and not done.stderr

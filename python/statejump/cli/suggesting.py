@@ -2,6 +2,7 @@
 """Groups of commands that say the nearest name of a misspelt one, and list their commands in full sentences."""
 from __future__ import annotations
 
+from collections.abc import Iterator
 from difflib import get_close_matches
 
 import click
@@ -29,3 +30,15 @@ class Suggesting(click.Group):
         if rows:
             with formatter.section("Commands"):
                 formatter.write_dl(rows)
+
+
+def commands(command: click.Command, name: str) -> Iterator[tuple[str, click.Command]]:
+    """Yield every command that does something: as it is typed, and itself."""
+    if isinstance(command, click.Group):
+        context = click.Context(command, info_name=name)
+        for part in command.list_commands(context):
+            found = command.get_command(context, part)
+            assert found is not None
+            yield from commands(found, f"{name} {part}")
+    else:
+        yield name, command
