@@ -143,13 +143,78 @@ void System::assemble(const VectorXd& z, double time, const StepStart& start,
   }
 
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
-    JointWriter writer(to);
-    for (std::size_t k = 0; k < most_joint_nodes; ++k)
-      writer.places[k] = place(frames_[i].nodes[k]);
-    writer.first_force = force_row_[i];
+    JointWriter to_joint = writer(static_cast<int>(i), to);
     const Trial at = trial(static_cast<int>(i), z, time, start, joints, opening);
-    std::visit([&](const auto& one) { one.evaluate(at, statuses[i], writer); }, model.joints[i]);
+    std::visit([&](const auto& one) { one.evaluate(at, statuses[i], to_joint); }, model.joints[i]);
   }
+}
+
+VectorXd System::heating(const VectorXd& z, double time, const StepStart& start,
+                         const Statuses& statuses, const std::vector<double>& program_rates) const {
+  const Model& model = *model_;
+  Assembly to(unknowns_);
+  to.residual.setZero();
+  NodeWriter nodes(model, node_row_, to);
+  for (const Link& link : model.links) {
+    const double growth = link.stress_free_length * link.thermal_expansion *
+                          link.temperature_fraction * program_rates[index(link.program)];
+    if (growth == 0.0) continue;
+    // N = E A (L/l_T − 1) by l_T.
+    const Lengths length = lengths_between(link.first, link.second, z);
+    const double change = model.temperature_change(link.program, link.temperature_fraction, time);
+    const double free = thermal::length(link.stress_free_length, link.thermal_expansion, change);
+    const Vector3d tension = -link.axial_stiffness * growth / (free * free) * length.along;
+    nodes.force(link.first, -tension);
+    nodes.force(link.second, tension);
+  }
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const JointFrame& frame = frames_[i];
+    if (frame.program < 0) continue;
+    JointWriter to_joint = writer(static_cast<int>(i), to);
+    const Trial at = trial(static_cast<int>(i), z, time, start, JointModel::friction, 1.0);
+    const double rate = frame.temperature_fraction * program_rates[index(frame.program)];
+    std::visit([&](const auto& one) { one.warm(at, statuses[i], rate, to_joint); },
+               model.joints[i]);
+  }
+  return to.residual;
+}
+
+VectorXd System::slide_rates(const VectorXd& z, double time, const StepStart& start,
+                             const Statuses& statuses, const VectorXd& rate,
+                             const std::vector<double>& program_rates) const {
+  const Model& model = *model_;
+  VectorXd rates = VectorXd::Zero(static_cast<Eigen::Index>(model.joints.size()));
+  // A joint that slips is asked for the rate of what would be closed if it stuck.
+  Assembly moving(rate);
+  Assembly heated(unknowns_);
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    if (!is_slip(statuses[i])) continue;
+    const Trial at = trial(static_cast<int>(i), z, time, start, JointModel::friction, 1.0);
+    const JointFrame& frame = frames_[i];
+    const double warming =
+        frame.program < 0 ? 0.0 : frame.temperature_fraction * program_rates[index(frame.program)];
+    JointWriter to_moving = writer(static_cast<int>(i), moving);
+    JointWriter to_heated = writer(static_cast<int>(i), heated);
+    std::visit(
+        [&](const auto& one) {
+          const int row = force_row_[i] + one.slide_row;
+          heated.residual[row] = 0.0;
+          one.evaluate(at, JointStatus::stick, to_moving);
+          one.warm(at, JointStatus::stick, warming, to_heated);
+          rates[static_cast<Eigen::Index>(i)] = moving.product[row] + heated.residual[row];
+        },
+        model.joints[i]);
+  }
+  return rates;
+}
+
+JointWriter System::writer(int joint, Assembly& to) const {
+  JointWriter made(to);
+  for (std::size_t k = 0; k < most_joint_nodes; ++k) {
+    made.places[k] = place(frames_[index(joint)].nodes[k]);
+  }
+  made.first_force = force_row_[index(joint)];
+  return made;
 }
 
 JointWriter::Place System::place(int node) const {

@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
 #include <cmath>
+#include <utility>
 
+#include "hermite.hpp"
 #include "system.hpp"
 
 namespace statejump::truss::detail {
 
 namespace {
+
+/// Abscissae and weights on (0, 1) of the quadrature of order 8.
+constexpr std::array<std::pair<double, double>, 4> gauss_legendre{
+    {{0.069431844202973712, 0.17392742256872693},
+     {0.33000947820757187, 0.32607257743127307},
+     {0.66999052179242813, 0.32607257743127307},
+     {0.93056815579702629, 0.17392742256872693}}};
 
 /// Angle between two links from the drawn shape, or of one from the ground [rad].
 double torsion_angle(const Model& model, const TorsionSpring& spring, const Matrix32& plane,
@@ -79,7 +89,7 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
 
 void System::account(const VectorXd& z_before, double time_before, const VectorXd& z, double time,
                      const StepStart& start, const StepStart& after, const VectorXd& slips,
-                     State& state) const {
+                     State& state, const VectorXd& rate_before, const VectorXd& rate) const {
   const Model& model = *model_;
   for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
     const Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
@@ -87,18 +97,41 @@ void System::account(const VectorXd& z_before, double time_before, const VectorX
         [&](const auto& one) { return one.dissipation(at, history(i, after), slips[i]); },
         model.joints[index(i)]);
   }
+  const double step = time - time_before;
+  const auto growth_rate = [&](const Link& link, const VectorXd& at, const VectorXd& moving) {
+    const Lengths length = lengths_between(link.first, link.second, at);
+    return step *
+           length.along.dot(displacement(link.second, moving) - displacement(link.first, moving)) /
+           length.now;
+  };
   for (const Link& link : model.links) {
-    if (link.thermal_expansion == 0.0) continue;
-    // ∂V/∂l_T = −N − N²/(2 E A), by the trapezoidal rule.
-    const auto rate = [&](const VectorXd& at, double when) {
-      const double tension = axial(link, at, when).tension;
+    const double expansion =
+        link.stress_free_length * link.thermal_expansion * link.temperature_fraction;
+    if (expansion == 0.0) continue;
+    const thermal::Program& program = model.programs[index(link.program)];
+    const Lengths first = lengths_between(link.first, link.second, z_before);
+    const Lengths last = lengths_between(link.first, link.second, z);
+    // ∂V/∂l_T = −N − N²/(2 E A)
+    const auto by_length = [&](double growth, double when) {
+      const double change = link.temperature_fraction * program.temperature_change(when);
+      const double tension = link_axial(link, growth, last.drawn, change).tension;
       return -tension * (1.0 + 0.5 * tension / link.axial_stiffness);
     };
-    const double growth =
-        link.stress_free_length * link.thermal_expansion *
-        (model.temperature_change(link.program, link.temperature_fraction, time) -
-         model.temperature_change(link.program, link.temperature_fraction, time_before));
-    state.thermal_work += 0.5 * (rate(z_before, time_before) + rate(z, time)) * growth;
+    if (rate_before.size() == 0 || rate.size() == 0) {
+      const double warmed =
+          program.temperature_change(time) - program.temperature_change(time_before);
+      state.thermal_work += 0.5 *
+                            (by_length(first.growth, time_before) + by_length(last.growth, time)) *
+                            expansion * warmed;
+      continue;
+    }
+    const Cubic growth{first.growth, last.growth, growth_rate(link, z_before, rate_before),
+                       growth_rate(link, z, rate)};
+    for (const auto& [share, weight] : gauss_legendre) {
+      const double when = time_before + share * step;
+      state.thermal_work += weight * step * expansion * program.temperature_rate(when) *
+                            by_length(growth.at(share), when);
+    }
   }
 }
 

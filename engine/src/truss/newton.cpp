@@ -249,4 +249,26 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   return report;
 }
 
+std::optional<VectorXd> Newton::rate(const VectorXd& by_time) {
+  // The factors are those of the state before the last step: what that leaves is refined away, and
+  // where it is not (the branches have changed since), there are new factors.
+  for (const bool fresh : {false, true}) {
+    if (fresh && (++factorizations_, !factor_.factorize(at_.jacobian))) return std::nullopt;
+    VectorXd found = factor_.solve(-by_time);
+    double last = found.lpNorm<Eigen::Infinity>();
+    if (!std::isfinite(last)) continue;
+    const double rounding = epsilon * last;
+    while (last > rounding) {
+      const VectorXd change = factor_.solve(-by_time - at_.jacobian * found);
+      const double size = change.lpNorm<Eigen::Infinity>();
+      if (!(size <= 0.5 * last)) break;
+      found += change;
+      last = size;
+    }
+    // Rounding ends it as well: the best that these factors give.
+    if (last <= std::sqrt(epsilon) * found.lpNorm<Eigen::Infinity>()) return found;
+  }
+  return std::nullopt;
+}
+
 }  // namespace statejump::truss::detail

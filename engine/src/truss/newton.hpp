@@ -72,6 +72,11 @@ class Newton {
                     int most_iterations, VectorXd& z, Statuses& statuses,
                     const std::optional<Ahead>& ahead = {});
 
+  /// Rates of the unknowns along the path from where the last solve converged, by its factors.
+  /// @param by_time derivative of the residual by time, see System::heating()
+  /// @returns nothing where the equations are singular
+  std::optional<VectorXd> rate(const VectorXd& by_time);
+
   long factorizations() const { return factorizations_; }
 
  private:

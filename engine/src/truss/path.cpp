@@ -9,12 +9,14 @@
 #include <utility>
 
 #include "condense.hpp"
+#include "hermite.hpp"
 #include "newton.hpp"
 #include "statejump/failure.hpp"
 
 namespace statejump::truss {
 
 using detail::Ahead;
+using detail::Cubic;
 using detail::FoundModes;
 using detail::index;
 using detail::Newton;
@@ -84,6 +86,21 @@ FailureFields failure_at(FailureKind kind, const Model& model, double time) {
 /// How a step ended: with the state moved on, or back at its start.
 enum class StepEnd : unsigned char { done, event_inside, not_converged, stopped };
 
+/// Both ends of a step that has converged.
+struct Ends {
+  double from_time;
+  double to_time;
+  const StepStart& start;
+  const Statuses& statuses;  ///< At its end.
+  const VectorXd& from;
+  const VectorXd& to;
+  const VectorXd& from_rate;
+  const VectorXd& to_rate;
+  const VectorXd& from_slide_rate;
+  const VectorXd& to_slide_rate;
+  const VectorXd& slips;
+};
+
 /// Equilibrium being followed.
 struct Walker {
   const Model& model;
@@ -97,7 +114,9 @@ struct Walker {
   double time = 0.0;
   /// Share of the last step that was tried after which its first event comes; 1: unknown.
   double event_share = 1.0;
-  /// How fast every joint slid in the last step [m/s].
+  /// Rates of the unknowns at `time`; empty where they are not known.
+  VectorXd rate;
+  /// How fast every joint that slips slides at `time` [m/s].
   VectorXd slide_rate;
 
   [[noreturn]] void fail(const SolveReport& report, JointModel joints, double when,
@@ -127,6 +146,9 @@ struct Walker {
   void refuse_buckled(double when) const;
   StepEnd step_to(double target, double tolerance);
   bool slide_at_stake(int joint, JointStatus before, double target) const;
+  double first_turn(const Ends& ends) const;
+  double turn_of_slip(int joint, const Ends& ends) const;
+  double turn_of_stick(int joint, const Ends& ends) const;
 
   /// What the type of a joint says.
   template <class Ask>
@@ -270,7 +292,96 @@ bool Walker::slide_at_stake(int i, JointStatus before, double target) const {
   if (!options.locate_events) {
     least += options.event_tolerance * joint(i, [](const auto& one) { return one.least_slide(); });
   }
-  return slide_rate[i] * (target - time) > least;
+  return std::abs(slide_rate[i]) * (target - time) > least;
+}
+
+/// Share of a step after which the first joint turns round within it: one that slips the other way
+/// for a while, or one that leaves its branch and comes back. 1: none does. The unknowns and the
+/// slides are cubics through both ends of the step and their rates.
+double Walker::first_turn(const Ends& ends) const {
+  double first = 1.0;
+  for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
+    const JointStatus status = ends.statuses[index(i)];
+    if (is_slip(status)) {
+      first = std::min(first, turn_of_slip(i, ends));
+    } else if (status == ends.start.statuses[index(i)]) {
+      first = std::min(first, turn_of_stick(i, ends));
+    }
+  }
+  return first;
+}
+
+double Walker::turn_of_slip(int i, const Ends& ends) const {
+  const JointStatus status = ends.statuses[index(i)];
+  const bool matters =
+      joint(i, [&](const auto& one) { return one.remembers_when(status, JointStatus::stick); });
+  if (!matters) return 1.0;
+  const double step = ends.to_time - ends.from_time;
+  const double sense = status == JointStatus::slip_plus ? 1.0 : -1.0;
+  const bool slipped = ends.start.statuses[index(i)] == status;
+  const Cubic slide{0.0, sense * ends.slips[i],
+                    slipped ? std::max(0.0, sense * step * ends.from_slide_rate[i]) : 0.0,
+                    sense * step * ends.to_slide_rate[i]};
+  const double rounding = system.slide_rounding(i, ends.to, ends.to_time, ends.start);
+  if (slide.last_rate < -rounding) return slipped ? slide.turn(1.0) : 0.5;
+  const auto slowest = slide.slowest();
+  if (slipped && slowest && slide.rate(*slowest) < -rounding) return slide.turn(*slowest);
+  return 1.0;
+}
+
+double Walker::turn_of_stick(int i, const Ends& ends) const {
+  const JointStatus status = ends.statuses[index(i)];
+  const double step = ends.to_time - ends.from_time;
+  const Trial first =
+      system.trial(i, ends.from, ends.from_time, ends.start, JointModel::friction, 1.0);
+  const Trial last = system.trial(i, ends.to, ends.to_time, ends.start, JointModel::friction, 1.0);
+  const Trial first_rate =
+      system.trial(i, ends.from_rate, ends.from_time, ends.start, JointModel::friction, 1.0);
+  const Trial last_rate =
+      system.trial(i, ends.to_rate, ends.to_time, ends.start, JointModel::friction, 1.0);
+  const detail::Rounding rounding = system.rounding(ends.to);
+  const auto leaves = [&](double share) {
+    Trial at = last;
+    at.length_rounding = rounding.length;
+    at.force_rounding = rounding.force;
+    const JointFrame& frame = last.frame;
+    if (frame.program >= 0) {
+      at.temperature_change = model.temperature_change(frame.program, frame.temperature_fraction,
+                                                       ends.from_time + share * step);
+    }
+    for (std::size_t k = 0; k < most_joint_nodes; ++k) {
+      for (Eigen::Index x = 0; x < 3; ++x) {
+        at.moved[k][x] = Cubic{first.moved[k][x], last.moved[k][x], step * first_rate.moved[k][x],
+                               step * last_rate.moved[k][x]}
+                             .at(share);
+      }
+    }
+    for (std::size_t k = 0; k < most_joint_forces; ++k) {
+      at.force[k] = Cubic{first.force[k], last.force[k], step * first_rate.force[k],
+                          step * last_rate.force[k]}
+                        .at(share);
+    }
+    return joint(i, [&](const auto& one) { return one.decide(at, status); }) != status;
+  };
+  // What goes to and fro is farthest where its rate is 0.
+  double found = 1.0;
+  const auto ask = [&](double from, double to, double from_rate, double to_rate) {
+    if (!(from_rate * to_rate < 0.0)) return;
+    const double sense = from_rate > 0.0 ? step : -step;
+    const double share =
+        Cubic{0.0, (from_rate > 0.0 ? 1.0 : -1.0) * (to - from), sense * from_rate, sense * to_rate}
+            .turn(1.0);
+    if (share < found && leaves(share)) found = share;
+  };
+  for (std::size_t k = 0; k < most_joint_forces; ++k) {
+    ask(first.force[k], last.force[k], first_rate.force[k], last_rate.force[k]);
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d along = last.frame.axes.col(k);
+    const auto apart = [&](const Trial& of) { return along.dot(of.moved[0] - of.moved[1]); };
+    ask(apart(first), apart(last), apart(first_rate), apart(last_rate));
+  }
+  return found;
 }
 
 /// One step, if it is converged and exact or no longer than `tolerance`; else nothing happens.
@@ -333,15 +444,41 @@ StepEnd Walker::step_to(double target, double tolerance) {
       fail_modes(std::move(fields), std::move(modes));
     }
   }
+  // The rates on this side of a corner that may be at `target`.
+  std::vector<double> program_rates;
+  for (const thermal::Program& program : model.programs) {
+    const double near = std::min(Model::same_time * program.duration(), 0.5 * (target - time));
+    program_rates.push_back(program.temperature_rate(target - near));
+  }
+  VectorXd rate_after;
+  VectorXd slide_rate_after = VectorXd::Zero(joints);
+  if (const auto found =
+          newton.rate(system.heating(trial, target, begin, trial_statuses, program_rates))) {
+    rate_after = *found;
+    slide_rate_after =
+        system.slide_rates(trial, target, begin, trial_statuses, rate_after, program_rates);
+  }
+  const StepStart after = system.commit(trial, target, trial_statuses, begin);
+  const VectorXd slips = system.slips(trial, target, begin, after);
+  const Ends ends{time, target,     begin,      trial_statuses,   z,    trial,
+                  rate, rate_after, slide_rate, slide_rate_after, slips};
+  if (!is_short && rate.size() > 0 && rate_after.size() > 0) {
+    event_share = first_turn(ends);
+    if (event_share < 1.0) {
+      ++path.solves;
+      return StepEnd::event_inside;
+    }
+  }
   note(report);
   const std::vector<double>& asked = options.problem_times;
   if (path.problems.size() < asked.size() && target >= asked[path.problems.size()]) {
     path.problems.push_back(detail::local_problem(system, trial, target, begin, trial_statuses));
   }
-  const StepStart after = system.commit(trial, target, trial_statuses, begin);
-  const VectorXd slips = system.slips(trial, target, begin, after);
-  system.account(z, time, trial, target, begin, after, slips, state);
-  slide_rate = slips.cwiseAbs() / (target - time);
+  const bool smooth = trial_statuses == origin.statuses && !is_short;
+  system.account(z, time, trial, target, begin, after, slips, state, smooth ? rate : VectorXd(),
+                 smooth ? rate_after : VectorXd());
+  rate = rate_after;
+  slide_rate = slide_rate_after;
   z = trial;
   origin = after;
   time = target;
@@ -401,7 +538,7 @@ Path solve(const Model& model, const Options& options) {
   const auto going_on = [&] { return !options.progress || options.progress(now / duration); };
   Walker walker{model, system, options, Newton(system, options.locate_events, going_on),
                 {},    {},     {},      {},
-                0.0,   1.0,    {}};
+                0.0,   1.0,    {},      {}};
   const auto joints = static_cast<Eigen::Index>(model.joints.size());
   walker.slide_rate = VectorXd::Zero(joints);
   walker.path.unknowns = system.unknowns();

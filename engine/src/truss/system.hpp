@@ -47,6 +47,16 @@ class System {
   void evaluate(const VectorXd& z, double time, const StepStart& start, const Statuses& statuses,
                 JointModel joints, double opening, Assembly& to) const;
 
+  /// Derivative of the residual by time where nothing moves, from the rates of the programs [K/s].
+  VectorXd heating(const VectorXd& z, double time, const StepStart& start, const Statuses& statuses,
+                   const std::vector<double>& program_rates) const;
+
+  /// How fast every joint that slips slides at z [m/s]; 0 for the others.
+  /// @param rate of the unknowns, @param program_rates of the programs [K/s]
+  VectorXd slide_rates(const VectorXd& z, double time, const StepStart& start,
+                       const Statuses& statuses, const VectorXd& rate,
+                       const std::vector<double>& program_rates) const;
+
   Statuses all_stick() const { return Statuses(model_->joints.size(), JointStatus::stick); }
 
   /// The branch that a joint's inequalities ask for, from the branch whose rows hold at z.
@@ -67,9 +77,11 @@ class System {
 
   /// Friction's heat of a step and the temperature's work, added to the state's.
   /// @param after the state at z as the start of the next step, @param slips see slips()
+  /// @param rate_before, rate rates of the unknowns at both ends, by which the temperature's work
+  /// is of fourth order; without, or where a status changed between them, it is of second
   void account(const VectorXd& z_before, double time_before, const VectorXd& z, double time,
-               const StepStart& start, const StepStart& after, const VectorXd& slips,
-               State& state) const;
+               const StepStart& start, const StepStart& after, const VectorXd& slips, State& state,
+               const VectorXd& rate_before = {}, const VectorXd& rate = {}) const;
 
   /// Displacements, forces and energies at z; dissipation and thermal work are left alone.
   /// @param now the state at z as the start of the next step
@@ -107,6 +119,7 @@ class System {
                 JointModel joints, double opening, Assembly& to) const;
   Lengths lengths_between(int from, int to, const VectorXd& z) const;
   Axial axial(const Link& link, const VectorXd& z, double time) const;
+  JointWriter writer(int joint, Assembly& to) const;
   JointWriter::Place place(int node) const;
   double temperature_change(const JointFrame& frame, double time) const {
     return frame.program < 0

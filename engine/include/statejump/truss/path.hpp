@@ -92,10 +92,16 @@ struct Path {
 /// taken by the trapezoidal rule, as is the k_t of a revolute that sticks: an error of second order
 /// in the increment.) Memory enters only where a slip ends in a stick and where an open
 /// joint closes. Steps with such a change are shortened until it happens within `event_tolerance`
-/// of a branch, or until what the joint may have slid by then is below that share of its clearance
-/// plus rounding; and so is the first step after each corner of a program, where slips turn into
-/// sticks. With `locate_events` this is done for every change of status. A step that does not
-/// converge is shortened as well.
+/// of a branch, or until what the joint may have slid by then, at the rate with which it begins the
+/// step, is below that share of its clearance plus rounding; and so is the first step after each
+/// corner of a program, where slips turn into sticks. With `locate_events` this is done for every
+/// change of status. A step that does not converge is shortened as well.
+///
+/// **What turns within a step.** The rates of all unknowns, from the tangent of the last solve, are
+/// known at both ends of a step; with the states they make a cubic. A joint that slips backwards
+/// somewhere on it, or that leaves its branch on the way and is back at the end, turned round
+/// within the step, which is then shortened to that place. The temperature's work is integrated
+/// along the same cubic, with an error of fourth order in the increment where no status changes.
 ///
 /// **Start.** The drawn shape need not be in equilibrium: it is first relaxed at ΔT = 0 with
 /// bilateral pins in place of clearance revolutes; their pin forces say where each journal touches;

@@ -415,6 +415,36 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
   if (trial.frame.holds[2]) writer.hold(2, axis, axial, axis.dot(trial.between(bearing, journal)));
 }
 
+void ClearanceRevolute::warm(const Trial& trial, JointStatus status, double temperature_rate,
+                             JointWriter& writer) const {
+  if (trial.model == JointModel::pins || status == JointStatus::open) return;
+  const Geometry g = geometry_of(*this, trial);
+  const Motion motion = motion_of(g, Memory::of(trial.history));
+  // How fast the radii grow [m/s].
+  const double of_journal = temperature_rate * journal_thermal_expansion * journal_radius;
+  const double of_bore =
+      temperature_rate * bearing_thermal_expansion * (journal_radius + radial_clearance);
+  const double clearance = trial.opening * (of_bore - of_journal);
+  const double depth = g.depth > 0.0 ? -clearance : 0.0;
+  const double by_journal = of_journal - 0.5 * depth;
+  const double by_bearing = of_bore + 0.5 * depth;
+  writer.closure(0, -clearance);
+  if (status == JointStatus::stick && trial.model == JointModel::friction) {
+    writer.closure(
+        1, 0.5 * by_journal * motion.journal_turned - 0.5 * by_bearing * motion.bearing_turned);
+  }
+  const double friction = trial.force[1];
+  const auto turn = [&](std::size_t at, std::size_t far, const Vector2d& direction,
+                        double by_radius) {
+    const Vector3d force =
+        friction * by_radius * angle_derivatives(direction, plane_of(trial)).gradient;
+    writer.force(at, force);
+    writer.force(far, -force);
+  };
+  if (journal_link >= 0) turn(journal, journal_far, g.journal_direction, by_journal);
+  if (bearing_link >= 0) turn(bearing, bearing_far, g.bearing_direction, -by_bearing);
+}
+
 JointStatus ClearanceRevolute::decide(const Trial& trial, JointStatus status) const {
   if (trial.model == JointModel::pins) return status;
   const Geometry g = geometry_of(*this, trial);

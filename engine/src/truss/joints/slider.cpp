@@ -43,6 +43,18 @@ double bent_friction(const Slider& slider, double bend) {
   return std::clamp(slider.tangential_stiffness * bend, -f, f);
 }
 
+/// What of the slide has slipped [m]. @param before the same at the start of the step
+double slipped(const Slider& slider, const Trial& trial, JointStatus status, double before) {
+  const bool plus_stop = status == JointStatus::stop_plus;
+  if (!plus_stop && status != JointStatus::stop_minus) {
+    return slide_of(slider, trial) - trial.force[0] / slider.tangential_stiffness;
+  }
+  // At a stop the slide is the clearance itself: rounding must not add up.
+  const double s = plus_stop ? slider.clearance_plus : -slider.clearance_minus;
+  if (std::isinf(slider.tangential_stiffness)) return s;
+  return s - bent_friction(slider, s - before) / slider.tangential_stiffness;
+}
+
 /// Branch in which a slider that slips one way should be.
 JointStatus after_slip(const Slider& slider, const Trial& trial, const Sense& way) {
   const double s = slide_of(slider, trial);
@@ -192,19 +204,12 @@ JointStatus Slider::decide(const Trial& trial, JointStatus status) const {
 }
 
 void Slider::begin(const Trial& trial, JointStatus status, double* now) const {
-  // At a stop the slide is the clearance itself: rounding must not add up.
-  now[0] = status == JointStatus::stop_plus ? clearance_plus
-           : status == JointStatus::stop_minus
-               ? -clearance_minus
-               : slide_of(*this, trial) - trial.force[0] / tangential_stiffness;
+  // The start was found from the drawn shape, where nothing had slipped.
+  now[0] = slipped(*this, trial, status, 0.0);
 }
 
 void Slider::commit(const Trial& trial, JointStatus status, double* after) const {
-  begin(trial, status, after);
-  const bool at_stop = status == JointStatus::stop_plus || status == JointStatus::stop_minus;
-  if (at_stop && std::isfinite(tangential_stiffness)) {
-    after[0] -= bent_friction(*this, after[0] - trial.history[0]) / tangential_stiffness;
-  }
+  after[0] = slipped(*this, trial, status, trial.history[0]);
 }
 
 double Slider::slip(const Trial& trial, const double* after) const {

@@ -22,6 +22,11 @@ class Assembly {
  public:
   explicit Assembly(Eigen::Index unknowns)
       : residual(unknowns), units(static_cast<std::size_t>(unknowns), RowUnit::balance) {}
+  /// Adds up the Jacobian times a vector, which must outlive it, instead of the Jacobian.
+  explicit Assembly(const Eigen::VectorXd& along) : Assembly(along.size()) {
+    along_ = &along;
+    product = residual = Eigen::VectorXd::Zero(along.size());
+  }
 
   /// Begins an evaluation.
   void clear() {
@@ -33,6 +38,8 @@ class Assembly {
   void add(int row, int column, double value) {
     if (recorded_) {
       jacobian.valuePtr()[slots_[next_++]] += value;
+    } else if (along_ != nullptr) {
+      product[row] += value * (*along_)[column];
     } else {
       places_.emplace_back(row, column);
     }
@@ -42,11 +49,13 @@ class Assembly {
 
   Eigen::VectorXd residual;
   Eigen::SparseMatrix<double> jacobian;
+  Eigen::VectorXd product;     ///< Jacobian times the vector.
   std::vector<RowUnit> units;  ///< Of every row.
   double largest_force = 0.0;  ///< Of any part [N].
 
  private:
   bool recorded_ = false;
+  const Eigen::VectorXd* along_ = nullptr;
   std::size_t next_ = 0;
   std::vector<std::pair<int, int>> places_;
   std::vector<int> slots_;

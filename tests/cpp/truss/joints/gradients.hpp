@@ -12,7 +12,8 @@
 namespace statejump::truss {
 
 /// Holds the Jacobian of a truss against central differences of its residual, at z after a step
-/// from `before`, on each of the branches and as pins.
+/// from `before`, on each of the branches and as pins; and the residual's derivative by time, where
+/// nothing moves, likewise.
 /// @param steps of the unknowns: displacements [m] and forces [N]; so small that the residual is
 /// nearly linear over them
 inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
@@ -55,6 +56,21 @@ inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
               << " column " << j;
         }
       }
+    }
+    std::vector<double> rates;
+    for (const auto& program : model.programs) rates.push_back(program.temperature_rate(0.3));
+    const Eigen::VectorXd heating = system.heating(z, 0.3, start, statuses, rates);
+    const double step = 1e-4;
+    const auto residual = [&](double time) {
+      system.evaluate(z, time, start, statuses, JointModel::friction, 1.0, moved_to);
+      return Eigen::VectorXd(moved_to.residual);
+    };
+    const Eigen::VectorXd difference = (residual(0.3 + step) - residual(0.3 - step)) / (2 * step);
+    for (int i = 0; i < system.unknowns(); ++i) {
+      // The program bends by (ω step)²/6 of its rate; rounding of forces of 100 N over the step.
+      const double rounded = i < system.displacements() ? 2e-14 / step : 2e-17 / step;
+      EXPECT_NEAR(heating[i], difference[i], 1e-7 * std::abs(heating[i]) + 4 * rounded)
+          << to_string(status) << " row " << i;
     }
   }
 }

@@ -22,7 +22,7 @@ Model rib() {
   model.nodes = {node("A", 0, 0, 2), node("C", 0.12, 0, 2), node("B", 0.02875, 0.0409, 2),
                  node("J", 0.02875, 0.0409, 2)};
   // Soft links: their rounding does not hide what the joint adds.
-  model.links = {{"AB", 0, 2, 1e2, 0.05, 0.0, 0, 1.0}, {"CJ", 1, 3, 1e2, 0.1, 0.0, 0, 1.0}};
+  model.links = {{"AB", 0, 2, 1e2, 0.05, 2e-5, 0, 1.0}, {"CJ", 1, 3, 1e2, 0.1, 1e-5, 0, 0.5}};
   ClearanceRevolute joint;
   joint.name = "joint";
   joint.bearing_node = 2;

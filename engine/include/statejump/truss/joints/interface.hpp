@@ -132,6 +132,8 @@ struct Seat {
 //   frame()               nodes, directions, number of unknown forces
 //   evaluate()            forces on nodes and rows of the branch `status`, with all derivatives;
 //                         writes the same places whatever the status
+//   warm()                rates of those forces and rows where only its temperature moves
+//   slide_row             the row that closes the slide where it sticks
 //   decide()              the branch that its inequalities ask for, from the branch whose rows hold
 //   commit()              what it remembers at the start of the next step
 //   begin()               the same at the very start, where nothing is remembered

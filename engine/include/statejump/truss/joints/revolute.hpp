@@ -46,11 +46,14 @@ struct ClearanceRevolute {
 
   static constexpr const char* kind = "revolute";
   static constexpr int history = 11;
+  static constexpr int slide_row = 1;
   static std::span<const Parameter<ClearanceRevolute>> parameters();
   static std::span<const Output> outputs();
   void validate(const Model& model) const;
   JointFrame frame(const Model& model) const;
   void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
+  void warm(const Trial& trial, JointStatus status, double temperature_rate,
+            JointWriter& writer) const;
   JointStatus decide(const Trial& trial, JointStatus status) const;
   void begin(const Trial& trial, JointStatus status, double* now) const;
   void commit(const Trial& trial, JointStatus status, double* after) const;

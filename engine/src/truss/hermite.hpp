@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+namespace statejump::truss::detail {
+
+/// Cubic over a step from the values and rates at its ends (Hermite), as a function of the share of
+/// the step; its error is of fourth order in the step.
+struct Cubic {
+  double first;
+  double last;
+  double first_rate;  ///< Per step.
+  double last_rate;   ///< Per step.
+
+  double at(double share) const {
+    const double passed = last - first;
+    const double left = 1.0 - share;
+    return first + share * passed +
+           share * left * (left * (first_rate - passed) - share * (last_rate - passed));
+  }
+  /// Rate at a share is first_rate + linear · share + square · share².
+  double linear() const { return 6.0 * (last - first) - 4.0 * first_rate - 2.0 * last_rate; }
+  double square() const { return 3.0 * (first_rate + last_rate) - 6.0 * (last - first); }
+  double rate(double share) const { return first_rate + share * (linear() + share * square()); }
+  /// Share within the step at which the rate is least; nothing if that is an end of it.
+  std::optional<double> slowest() const {
+    if (!(square() > 0.0)) return std::nullopt;
+    const double share = -0.5 * linear() / square();
+    return share > 0.0 && share < 1.0 ? std::optional(share) : std::nullopt;
+  }
+  /// First share in (0, end] at which a rate that begins above 0 is 0; it is not above 0 at `end`.
+  double turn(double end) const {
+    double before = 0.0;
+    for (int halving = 0; halving < 60; ++halving) {
+      const double middle = 0.5 * (before + end);
+      (rate(middle) > 0.0 ? before : end) = middle;
+    }
+    return end;
+  }
+};
+
+}  // namespace statejump::truss::detail

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "oracle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "statejump/truss/path.hpp"
+
+namespace statejump::truss {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Draws of one seed, the same on every machine (those of the standard's distributions are not).
+class Draw {
+ public:
+  explicit Draw(unsigned seed) : engine_(seed) {}
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_()) / 4294967296.0;
+  }
+  double logarithmic(double low, double high) {
+    return std::exp(between(std::log(low), std::log(high)));
+  }
+  bool happens(double share) { return between(0.0, 1.0) < share; }
+
+ private:
+  std::mt19937 engine_;
+};
+
+std::string named(const char* kind, std::size_t number) {
+  return std::string(kind).append(std::to_string(number));
+}
+
+Vector3d in_plane(double angle) {
+  return {std::cos(angle), std::sin(angle), 0.0};
+}
+
+/// Plane truss of so many sliders, on the ground and between two nodes, every node of which is
+/// braced by itself and tied to others: whatever slips, the energy stays convex. Two programs, each
+/// link with its own share of one.
+Model random_truss(unsigned seed, int sliders) {
+  Draw draw(seed);
+  Model model;
+  for (const auto shape : {thermal::Shape::triangle, thermal::Shape::half_sine}) {
+    thermal::Program program;
+    program.shape = shape;
+    program.temperature_change_max = 100.0;
+    program.cycles = 2;
+    model.programs.push_back(program);
+  }
+  const bool prestressed = draw.happens(0.25);
+  const auto add_node = [&](const Vector3d& at, int freedoms, double angle) {
+    Node node;
+    node.name = named("N", model.nodes.size());
+    node.position = at;
+    node.freedoms = freedoms;
+    node.free_directions << in_plane(angle), in_plane(angle + 0.5 * std::numbers::pi),
+        Vector3d::UnitZ();
+    if (freedoms > 0 && prestressed) node.load = draw.between(0.0, 100.0) * in_plane(angle + 1.0);
+    model.nodes.push_back(node);
+    return static_cast<int>(model.nodes.size()) - 1;
+  };
+  const auto add_link = [&](int first, int second) {
+    Link link;
+    link.name = named("L", model.links.size());
+    link.first = first;
+    link.second = second;
+    link.axial_stiffness = draw.logarithmic(2e5, 2e6);
+    link.stress_free_length =
+        (model.nodes[std::size_t(second)].position - model.nodes[std::size_t(first)].position)
+            .norm() *
+        (prestressed ? 1.0 + draw.between(-1e-4, 1e-4) : 1.0);
+    link.thermal_expansion = draw.between(1e-5, 3e-5);
+    link.program = draw.happens(0.3) ? 1 : 0;
+    link.temperature_fraction = draw.between(-0.3, 1.0);
+    model.links.push_back(link);
+  };
+  std::vector<int> movable;
+  const auto tied = [&](const Vector3d& at, int freedoms, double angle) {
+    const int made = add_node(at, freedoms, angle);
+    for (int i = 0; i < freedoms; ++i) {
+      const double towards = angle + 0.5 * std::numbers::pi * i + draw.between(-0.7, 0.7);
+      const int ground = add_node(at + draw.between(0.2, 0.8) * in_plane(towards), 0, 0.0);
+      add_link(ground, made);
+    }
+    for (int ties = 0; ties < 2 && !movable.empty(); ++ties) {
+      const int other = movable[std::size_t(draw.between(0.0, double(movable.size())))];
+      if ((model.nodes[std::size_t(other)].position - at).norm() > 0.05) add_link(other, made);
+    }
+    return made;
+  };
+  for (int j = 0; j < sliders; ++j) {
+    Slider slider;
+    slider.name = named("S", std::size_t(j));
+    const Vector3d at(draw.between(0.0, 2.0), draw.between(0.0, 2.0), 0.0);
+    const double angle = draw.between(-std::numbers::pi, std::numbers::pi);
+    slider.axis = in_plane(angle);
+    if (draw.happens(0.65)) {
+      slider.first = tied(at, 1, angle);
+      movable.push_back(slider.first);
+    } else {
+      slider.first = tied(at, 2, angle);
+      slider.second = tied(at, 2, angle);
+      movable.push_back(slider.first);
+      movable.push_back(slider.second);
+    }
+    // Held links carry E A times a strain of up to 3e-3, some kN.
+    slider.friction_force = draw.logarithmic(1.0, 1000.0);
+    if (draw.happens(0.1)) slider.friction_force = 0.0;
+    if (draw.happens(0.1)) slider.friction_force = 1e6;
+    for (double* clearance : {&slider.clearance_minus, &slider.clearance_plus}) {
+      if (draw.happens(0.5)) *clearance = draw.logarithmic(1e-6, 1e-3);
+      if (draw.happens(0.05)) *clearance = 0.0;
+    }
+    if (draw.happens(0.3)) slider.tangential_stiffness = draw.logarithmic(1e6, 1e8);
+    model.joints.push_back(slider);
+  }
+  return model;
+}
+
+class Oracle : public testing::TestWithParam<unsigned> {};
+
+TEST_P(Oracle, RandomTrussesMinimiseTheirEnergy) {
+  // Ten trusses a test. A located change is late by at most 1e-9 of a branch in which a joint
+  // slides some mm, 1e-12 m, each time; other joints follow by at most as much.
+  constexpr double tolerance = 1e-11;
+  std::size_t events = 0;
+  for (unsigned seed = 10 * GetParam(); seed < 10 * GetParam() + 10; ++seed) {
+    const int sliders = 2 + static_cast<int>(seed) % 39;
+    const Model model = random_truss(seed, sliders);
+    Options options;
+    const Path path = solve(model, options);
+    events += path.events.size();
+    MinimisingTruss minimum(model);
+    // The path begins where friction lets the drawn shape come to rest, and counts heat from there.
+    minimum.step(0.0);
+    const Eigen::VectorXd cold = minimum.heat();
+    double before = 0.0;
+    double apart = 0.0;
+    double force_apart = 0.0;
+    double heat_apart = 0.0;
+    std::vector<double> begun;  // intervals within which something changed
+    for (const Event& event : path.events) begun.push_back(event.time - event.interval);
+    auto next = begun.begin();
+    for (std::size_t i = 1; i < path.states.size(); ++i) {
+      const State& state = path.states[i];
+      for (; next != begun.end() && *next < state.time; ++next) {
+        if (*next > before) minimum.step(before = *next);
+      }
+      // Its own increments between the states of the path: what the path misses between two of its
+      // states is not missed here.
+      constexpr double longest = 0.5 / 100;
+      const int parts = static_cast<int>(std::ceil((state.time - before) / longest));
+      for (int part = 1; part < parts; ++part) {
+        minimum.step(before + (state.time - before) * part / parts);
+      }
+      minimum.step(state.time);
+      before = state.time;
+      for (int n = 0; n < static_cast<int>(model.nodes.size()); ++n) {
+        apart = std::max(apart, (minimum.displacement(n) - state.displacement.col(n)).norm());
+      }
+      for (std::size_t j = 0; j < model.joints.size(); ++j) {
+        force_apart = std::max(
+            force_apart,
+            std::abs(minimum.force(j) - output(model, state, int(j), "slider_force_N")[0]));
+      }
+      heat_apart = std::max(
+          heat_apart, (minimum.heat() - cold - state.joint_dissipation).lpNorm<Eigen::Infinity>());
+    }
+    EXPECT_LT(apart, tolerance) << "seed " << seed;
+    // Stiffest part: 2 MN over 0.05 m.
+    EXPECT_LT(force_apart, 4e7 * tolerance) << "seed " << seed;
+    EXPECT_LT(heat_apart, 1e3 * tolerance) << "seed " << seed;
+  }
+  EXPECT_GT(events, 200u);  // else little was compared
+}
+
+INSTANTIATE_TEST_SUITE_P(TwoHundred, Oracle, testing::Range(0u, 20u));
+
+}  // namespace
+}  // namespace statejump::truss
