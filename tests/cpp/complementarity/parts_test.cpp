@@ -10,6 +10,7 @@
 #include "complementarity/block_system.hpp"
 #include "complementarity/interior_point.hpp"
 #include "complementarity/newton.hpp"
+#include "complementarity/one_contact.hpp"
 #include "support.hpp"
 
 namespace statejump::complementarity {
@@ -96,6 +97,19 @@ TEST(Parts, BlockSystemSolvesItsEquations) {
         // Random equations of at most 15 unknowns: conditions up to some thousand.
         EXPECT_LT((left - right[k].head(dimension)).norm(), 1e-11);
       }
+    }
+  }
+}
+
+TEST(Parts, ContactThatDoesNotApproachCarriesNothing) {
+  // Friction of 4 could hold it by the coupling, pressed on by nothing: a solution as well.
+  BlockMatrix w = BlockMatrix::Identity() * 3.0;
+  w(0, 1) = w(1, 0) = 1.0;
+  for (const double apart : {0.0, 1e-3}) {
+    for (const double sliding : {-1.0, 0.0, 1.0}) {
+      Block r = Block::Ones();
+      ASSERT_TRUE(solve_one_contact(w, Block(apart, sliding, 0.0), 4.0, 1e-12, r));
+      EXPECT_EQ(r.norm(), 0.0) << apart << " " << sliding;
     }
   }
 }
