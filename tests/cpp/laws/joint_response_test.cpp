@@ -100,6 +100,47 @@ TEST(JointResponse, DefaultLawsAreHertzMindlin) {
   EXPECT_GT(sticking_damped, 50);
 }
 
+// A unit of force that is 2^40 times as large: the same answer to the last bit, whatever the laws,
+// so that none of them holds a force, stiffness or energy of its own against zero.
+TEST(JointResponse, UnitOfForceDoesNotMatter) {
+  const double unit = std::ldexp(1.0, -40);
+  for (const std::string& normal : law_names<NormalLaw>()) {
+    for (const std::string& friction : law_names<FrictionLaw>()) {
+      for (const char* dissipation : {"none", "flores"}) {
+        JointLaw law = joint_law({normal, dissipation, friction, "material"});
+        law.restitution = 0.8;
+        if (!contradiction(law).empty()) continue;
+        RandomJoint joint;
+        int damped = 0;
+        for (int i = 0; i < 200; ++i) {
+          ContactParameters parameters = aluminium(i % 2 ? 0.1 : 0.0, 0.2);
+          ContactParameters small = parameters;
+          small.elastic.effective_young_modulus *= unit;
+          small.elastic.effective_shear_modulus *= unit;
+          small.effective_mass *= unit;
+          JointKinematics at = joint.next();
+          at.time_step = 1e-9;  // short of slipping
+          ContactHistory history;
+          ContactHistory small_history;
+          for (int step = 0; step < 3; ++step) {
+            const JointResponse found = joint_response(law, parameters, at, history);
+            const JointResponse same = joint_response(law, small, at, small_history);
+            ASSERT_EQ(same.contact.normal_force, unit * found.contact.normal_force) << normal;
+            ASSERT_EQ(same.contact.force_on_1, unit * found.contact.force_on_1)
+                << normal << " " << friction;
+            ASSERT_EQ(same.contact.damping_dissipation, unit * found.contact.damping_dissipation);
+            ASSERT_EQ(small_history.slipping, history.slipping);
+            damped += !history.slipping && found.contact.tangential_force.norm() > 0.0;
+          }
+        }
+        if (friction == "mindlin") {
+          EXPECT_GT(damped, 50);
+        }
+      }
+    }
+  }
+}
+
 // Whatever the laws, what the bodies lose is what the contact takes: power of the wrench on the
 // bodies = power of the contact force with the velocity that friction saw.
 TEST(JointResponse, VelocityAndWrenchBelongTogether) {
