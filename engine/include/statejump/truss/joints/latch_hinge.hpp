@@ -32,11 +32,13 @@ struct LatchHinge {
 
   static constexpr const char* kind = "latch_hinge";
   static constexpr int history = 1;
+  static constexpr int slide_row = 0;
   static std::span<const Parameter<LatchHinge>> parameters();
   static std::span<const Output> outputs();
   void validate(const Model& model) const;
   JointFrame frame(const Model& model) const;
   void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
+  void warm(const Trial&, JointStatus, double, JointWriter&) const {}
   JointStatus decide(const Trial& trial, JointStatus status) const;
   void begin(const Trial& trial, JointStatus status, double* now) const;
   void commit(const Trial& trial, JointStatus status, double* after) const;
