@@ -29,6 +29,7 @@ TASKS: dict[str, dict[str, tuple[str, str]]] = {
         "dem": ("models:dem_command", "DEM run of CASE in YADE: history."),
         "compare": ("models:compare_command",
                     "Both models of CASE side by side, or two result files of the same case."),
+        "fe": ("fe:fe_command", "CASE in finite elements (CalculiX) beside the reduced model."),
         "convergence": ("convergence:convergence_command", "DEM error of CASE against cycle duration and time step."),
         "control": ("control:control_command", "What makes the state jump of CASE smaller, and by how much."),
         "statics": ("statics:statics_command", "Where the joint of CASE can rest, and the largest jump it can make."),

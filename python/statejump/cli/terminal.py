@@ -102,7 +102,7 @@ def print_shown(parts: Sequence[Shown | str], console: Console) -> None:
 def print_comparison(title: str, rows: Sequence[Quantity], console: Console,
                      names: dict[str, str] | None = None) -> None:
     """Print rows of a comparison; ``names`` head the columns of values, by whose they are."""
-    heads = {"closed_form": "closed form", "reduced": "reduced", "dem": "DEM", **(names or {})}
+    heads = {"closed_form": "closed form", "reduced": "reduced", "dem": "DEM", "fe": "CalculiX", **(names or {})}
     known = sides(rows)
     table = Table(title=title)
     for heading in ("quantity", "unit", *(heads[side] for side in known), "difference", "tolerance", ""):

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from statejump.core.case import Case
 
 # Whose value a number can be, in the order of the columns.
-CLOSED_FORM, REDUCED, DEM = "closed_form", "reduced", "dem"
+CLOSED_FORM, REDUCED, DEM, FE = "closed_form", "reduced", "dem", "fe"
 # Of two runs of one model, or of two files.
 FIRST, SECOND = "first", "second"
-SIDES = (CLOSED_FORM, REDUCED, DEM, FIRST, SECOND)
+SIDES = (CLOSED_FORM, REDUCED, DEM, FE, FIRST, SECOND)
 
 
 @dataclass(frozen=True)

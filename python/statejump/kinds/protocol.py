@@ -25,7 +25,7 @@ ability that it lacks is not there, and what needs it refuses the case with one 
 ==================  =====================================================================================
 
 Further abilities are those of single commands and have their names: ``statics``, ``answers``, ``creak``,
-``convergence``, ``hold``, ``slow``, ``energy``, ``figures``, ``laws``, ``contact_problems``.
+``convergence``, ``fe``, ``hold``, ``slow``, ``energy``, ``figures``, ``laws``, ``contact_problems``.
 """
 from __future__ import annotations
 

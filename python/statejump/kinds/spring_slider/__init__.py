@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from statejump.control.study import Study
     from statejump.core.charts import Chart
     from statejump.core.figures import Sheet
+    from statejump.fe.ccx import Answer
     from statejump.kinds.spring_slider.convergence import Convergence
     from statejump.kinds.spring_slider.statics import RestSets
 
@@ -112,6 +113,12 @@ class SpringSlider(Kind[SpringSliderCase]):
         from statejump.kinds.spring_slider import words
 
         return words.describe(case)
+
+    def fe(self, case: SpringSliderCase) -> Answer:
+        """Return the case in CalculiX, with frictional contact, beside the reduced model."""
+        from statejump.kinds.spring_slider import fe
+
+        return fe.answer(case)
 
     def statics(self, case: SpringSliderCase, friction_coefficient: float | None = None) -> RestSets:
         from statejump.kinds.spring_slider import statics

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from statejump.core.figures import Sheet
+    from statejump.fe.ccx import Answer
     from statejump.kinds.truss.answers.study import TrussAnswers
     from statejump.kinds.truss.contact_problems import ContactProblem
     from statejump.kinds.truss.creak import Creak
@@ -146,6 +147,12 @@ class Truss(Kind[TrussCase]):
         from statejump.kinds.truss import creak
 
         return creak.creak(case, node, tell)
+
+    def fe(self, case: TrussCase) -> Answer:
+        """Return the truss with locked joints in CalculiX beside the solver."""
+        from statejump.kinds.truss import fe
+
+        return fe.answer(case)
 
     def answers(self, case: TrussCase, **settings: Any) -> TrussAnswers:
         """Return what a designer asks of the truss; see :func:`statejump.truss.answers`."""

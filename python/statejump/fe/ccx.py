@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs CalculiX on a deck and reads back what it printed."""
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from statejump.core.comparison import Quantity
+from statejump.core.errors import FailedRun, StatejumpError
+from statejump.core.scratch import scratch
+
+PROGRAM = "ccx"
+LONGEST_S = 120.0
+_HEAD = re.compile(r"displacements \(vx,vy,vz\) for set (\S+) and time +(\S+)")
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a finite-element model of a case says.
+
+    :param deck: the deck as CalculiX took it
+    :param rows: by quantity, of the reduced model and of CalculiX
+    :param notes: what the model leaves out, in sentences
+    """
+
+    deck: str
+    rows: tuple[Quantity, ...]
+    notes: tuple[str, ...]
+
+
+def displacements(deck: Sequence[str], set_name: str) -> list[dict[int, np.ndarray]]:
+    """Run a deck and return the displacements [m] of a set of nodes by number, for every increment that it prints.
+
+    :raises StatejumpError: there is no CalculiX
+    :raises FailedRun: it did not come to the end
+    """
+    program = shutil.which(PROGRAM)
+    if program is None:
+        raise StatejumpError("CalculiX is not installed", cause=f"there is no {PROGRAM} on the PATH",
+                             remedy="install Debian's calculix-ccx")
+    with scratch() as folder:
+        (folder / "deck.inp").write_text("\n".join(deck) + "\n", encoding="ascii")
+        try:
+            done = subprocess.run([program, "deck"], cwd=folder, capture_output=True, text=True, errors="replace",
+                                  stdin=subprocess.DEVNULL, timeout=LONGEST_S, check=False)
+        except subprocess.TimeoutExpired:
+            raise FailedRun(f"CalculiX was not done after {LONGEST_S:g} s") from None
+        said = [" ".join(line.split()) for line in done.stdout.splitlines() if "*ERROR" in line]
+        if done.returncode or said or "Job finished" not in done.stdout:
+            raise FailedRun("CalculiX did not come to the end", cause=said[0] if said else None)
+        return _read(folder / "deck.dat", set_name)
+
+
+def _read(path: Path, set_name: str) -> list[dict[int, np.ndarray]]:
+    found: list[dict[int, np.ndarray]] = []
+    wanted = False
+    for line in path.read_text(encoding="ascii", errors="replace").splitlines():
+        head = _HEAD.search(line)
+        if head:
+            wanted = head[1].upper() == set_name.upper()
+            if wanted:
+                found.append({})
+        elif wanted and line.strip():
+            words = line.split()
+            found[-1][int(words[0])] = np.array([float(word) for word in words[1:4]])
+    return found
+
+
+def number(value: float) -> str:
+    """Return a number as a deck takes it: CalculiX reads 20 characters."""
+    whole = repr(float(value))
+    return whole if len(whole) <= 20 else f"{value:.13E}"

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A truss with every joint locked in CalculiX: bars of type T3D2, small displacements.
+
+CalculiX linearizes and the solver does not, so what is compared is the rate of the solver's path at ΔT = 0, of
+temperatures and loads together, times their full size: (u(h) - u(-h))/(2 h) with h = STEP leaves an error of order
+(strain)², 1e-11 here. CalculiX prints seven digits; of a second run, in which every displacement is told as its
+difference from the first (an equation with two nodes that nothing else holds), seven more.
+"""
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from statejump.core.comparison import Quantity
+from statejump.core.errors import NotAllowed
+from statejump.core.thermal import Thermal
+from statejump.fe import ccx
+from statejump.fe.ccx import number
+from statejump.kinds.truss.case import TrussCase, TrussThermal
+from statejump.kinds.truss.resolved import GROUND, ResolvedTruss
+from statejump.kinds.truss.solve import whole_path
+
+Numbers = NDArray[np.float64]
+
+STEP = 1e-3
+TOLERANCE = 1e-8  # of the largest displacement and of the largest force
+UNSTRESSED = 1e-12  # relative: a drawn length that differs by less from the stress-free one is the same
+LARGEST_HELD = 1e12  # N: what holds a locked slider
+
+
+def answer(case: TrussCase) -> ccx.Answer:
+    """Run the truss with every joint locked in CalculiX and return it beside the solver.
+
+    :raises NotAllowed: what the deck does not have
+    :raises StatejumpError: there is no CalculiX, or it failed
+    """
+    truss = case.resolve()
+    _refuse(truss)
+    locked = _without_revolutes(truss)
+    changes = _hottest(case, truss)
+    lines = deck(locked, changes)
+    rough = _displacements(ccx.displacements(lines, "JOINTS")[-1], len(locked.nodes.names))
+    told = ccx.displacements(deck(locked, changes, rough), "TOLD")[-1]
+    fine = rough + _displacements(told, len(locked.nodes.names), offset=len(locked.nodes.names))
+    own = _rate(locked, changes)
+    carried, other = (_forces(locked, changes, moved) for moved in (own, fine))
+    held = np.abs(_forces(locked, changes, np.zeros_like(own))).max()
+    rows = (_row("largest_displacement", "m", own, fine), _row("largest_axial_force", "N", carried, other, float(held)))
+    return ccx.Answer("\n".join(lines) + "\n", rows, (
+        "every joint is locked, displacements are small: the solver's rate at ΔT = 0 times the largest ΔT of each link",
+        "differences are the largest of all nodes and links, over the largest value; of forces over the one that holds "
+        "a link's expansion, where it is larger"))
+
+
+def _refuse(truss: ResolvedTruss) -> None:
+    """Raise NotAllowed for what the deck does not have."""
+    for section, names in (("spring", truss.springs.names), ("torsion_spring", truss.torsion_springs.names)):
+        if names:
+            raise NotAllowed(section, cause="'statejump fe' takes trusses of links and joints only")
+    ends = truss.nodes.position_m[truss.links.nodes]
+    drawn = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    free = truss.links.stress_free_length_m
+    for index in np.flatnonzero(np.abs(drawn - free) > UNSTRESSED * drawn)[:1]:
+        raise NotAllowed("stress_free_length_m", float(free[index]), "'statejump fe' takes links as long as drawn, "
+                         f"{drawn[index]:.9g} m", item=f"link {truss.links.names[index]!r}")
+
+
+def _hottest(case: TrussCase, truss: ResolvedTruss) -> Numbers:
+    """Return the ΔT [K] of every link that is the largest of its program."""
+    ranges = np.array(case.temperature_ranges_K)[truss.links.program]
+    largest = np.where(np.abs(ranges[:, 0]) > np.abs(ranges[:, 1]), ranges[:, 0], ranges[:, 1])
+    return np.asarray(largest * truss.links.temperature_fraction)
+
+
+def _without_revolutes(truss: ResolvedTruss) -> ResolvedTruss:
+    """Return the truss with a pin in place of every revolute: the journal's node is the bearing's."""
+    joints, place = truss.revolutes, np.arange(len(truss.nodes.names))
+    for bearing, journal in zip(joints.bearing_node, joints.journal_node):
+        place[place == place[journal]] = place[bearing]
+    kept = np.unique(place)
+    number_of = {int(node): index for index, node in enumerate(kept)}
+    at = np.array([number_of[int(node)] for node in place])
+    nodes, links, sliders = truss.nodes, truss.links, truss.sliders
+    fixed, force = np.zeros((len(kept), 3), dtype=bool), np.zeros((len(kept), 3))
+    np.logical_or.at(fixed, at, nodes.fixed)
+    np.add.at(force, at, nodes.force_N)
+    ends = np.where(sliders.nodes == GROUND, GROUND, at[sliders.nodes])
+    none = {key: value[:0] for key, value in vars(joints).items()}
+    return replace(
+        truss, nodes=replace(nodes, names=tuple(nodes.names[node] for node in kept), fixed=fixed, force_N=force,
+                             position_m=nodes.position_m[kept], guide_normal=nodes.guide_normal[kept]),
+        links=replace(links, nodes=at[links.nodes]), sliders=replace(sliders, nodes=ends),
+        revolutes=type(joints)(**none),
+    )
+
+
+def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:
+    """Return the rate of the solver's displacements (n, 3) [m] with temperatures and loads at nothing, times both."""
+    found = []
+    for step in (STEP, -STEP):
+        count = len(truss.links.names)
+        program = TrussThermal(**Thermal(shape="triangle", temperature_change_max_K=1.0).to_dict(), period_s=1.0)
+        scaled = replace(
+            truss, programs=(program,), program_names=("thermal",),
+            nodes=replace(truss.nodes, force_N=step * truss.nodes.force_N),
+            links=replace(truss.links, program=np.zeros(count, dtype=int), temperature_fraction=step * changes),
+            sliders=replace(truss.sliders, friction_coefficient=np.ones(len(truss.sliders.names)),
+                            normal_force_N=np.full(len(truss.sliders.names), LARGEST_HELD)),
+            sticking="rigid",
+        )
+        path = whole_path(scaled, increments_per_branch=1)
+        peak = int(np.argmin(np.abs(path.states["time_s"] - 0.5)))
+        found.append(path.states["displacement_m"][peak])
+    return np.asarray((found[0] - found[1]) / (2 * STEP))
+
+
+def _forces(truss: ResolvedTruss, changes: Numbers, moved: Numbers) -> Numbers:
+    """Return the axial forces [N] of small displacements, compression positive."""
+    links = truss.links
+    ends = truss.nodes.position_m[links.nodes]
+    along = (ends[:, 1] - ends[:, 0]) / links.stress_free_length_m[:, None]
+    stretch = ((moved[links.nodes[:, 1]] - moved[links.nodes[:, 0]]) * along).sum(axis=1) / links.stress_free_length_m
+    rigidity = links.young_modulus_Pa * links.cross_section_area_m2
+    return np.asarray(rigidity * (links.thermal_expansion_per_K * changes - stretch))
+
+
+def _row(name: str, unit: str, own: Numbers, other: Numbers, least: float = 0.0) -> Quantity:
+    size = max(float(np.abs(own).max()), least)
+    difference = float(np.abs(other - own).max()) / size if size else float(np.abs(other).max())
+    values = {"reduced": float(np.abs(own).max()), "fe": float(np.abs(other).max())}
+    return Quantity(name, unit, values, difference, TOLERANCE,
+                    difference <= TOLERANCE)
+
+
+def _displacements(found: dict[int, Numbers], count: int, offset: int = 0) -> Numbers:
+    return np.array([found[offset + node + 1] for node in range(count)])
+
+
+def deck(truss: ResolvedTruss, changes: Numbers, reference: Numbers | None = None) -> list[str]:
+    """Return the deck of a truss with locked joints.
+
+    :param changes: temperature change of every link [K]
+    :param reference: displacements (n, 3) [m] from which those of the set TOLD are counted; None: no such set
+    """
+    nodes, links, count = truss.nodes, truss.links, len(truss.nodes.names)
+    lines = ["*HEADING", f"statejump fe {truss.name}, joints locked", "*NODE, NSET=JOINTS"]
+    lines += _points(nodes.position_m, 0)
+    if reference is not None:
+        lines += ["*NODE, NSET=TOLD", *_points(nodes.position_m, count), "*NODE, NSET=ZERO",
+                  *_points(nodes.position_m, 2 * count)]
+    for index, (first, second) in enumerate(links.nodes, start=1):
+        lines += [f"*ELEMENT, TYPE=T3D2, ELSET=E{index}", f"{index}, {first + 1}, {second + 1}"]
+    poisson = links.poisson_ratio
+    for index in range(len(links.names)):
+        # All nodes are heated by 1 K: each bar's expansion is that of its own temperature change.
+        lines += [f"*MATERIAL, NAME=M{index + 1}", "*ELASTIC",
+                  f"{number(links.young_modulus_Pa[index])}, {number(poisson[index])}", "*EXPANSION, ZERO=0.",
+                  number(links.thermal_expansion_per_K[index] * changes[index]),
+                  f"*SOLID SECTION, ELSET=E{index + 1}, MATERIAL=M{index + 1}",
+                  number(links.cross_section_area_m2[index])]
+    lines += _locks(truss)
+    if reference is not None:
+        for node in range(1, count + 1):
+            for axis in (1, 2, 3):
+                lines += ["*EQUATION", "3", f"{count + node}, {axis}, 1., {node}, {axis}, -1., "
+                                            f"{2 * count + node}, {axis}, 1."]
+    lines += ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "JOINTS, 0.", "*BOUNDARY"]
+    lines += [f"{node + 1}, {axis + 1}" for node, axis in zip(*np.nonzero(nodes.fixed))]
+    if reference is not None:
+        lines += [f"{2 * count + node + 1}, {axis + 1}, {axis + 1}, {number(reference[node, axis])}"
+                  for node in range(count) for axis in range(3)]
+    lines += ["*STEP", "*STATIC", "*TEMPERATURE", "JOINTS, 1."]
+    loads = [f"{node + 1}, {axis + 1}, {number(nodes.force_N[node, axis])}"
+             for node, axis in zip(*np.nonzero(nodes.force_N))]
+    lines += ["*CLOAD", *loads] if loads else []
+    return lines + [f"*NODE PRINT, NSET={'JOINTS' if reference is None else 'TOLD'}", "U", "*END STEP"]
+
+
+def _points(position_m: Numbers, offset: int) -> list[str]:
+    return [f"{offset + index}, " + ", ".join(map(number, where)) for index, where in enumerate(position_m, start=1)]
+
+
+def _locks(truss: ResolvedTruss) -> list[str]:
+    """Return the equations of guides and of locked sliders. The first term is eliminated: it must be free."""
+    lines: list[str] = []
+    fixed, axes = truss.nodes.fixed, np.eye(3)
+
+    def tie(terms: list[tuple[int, int, float]]) -> None:
+        moving = sorted((term for term in terms if term[2] and not fixed[term[0], term[1]]), key=lambda t: -abs(t[2]))
+        if moving:
+            lines.extend(["*EQUATION", str(len(moving)), *(
+                f"{node + 1}, {axis + 1}, {number(factor)}" for node, axis, factor in moving)])
+
+    for node in np.flatnonzero(truss.nodes.guide_normal.any(axis=1)):
+        tie([(int(node), axis, float(truss.nodes.guide_normal[node, axis])) for axis in range(3)])
+    for (first, second), along in zip(truss.sliders.nodes, truss.sliders.axis):
+        if second == GROUND:
+            tie([(int(first), axis, float(along[axis])) for axis in range(3)])
+        else:  # two nodes are held together across the axis too
+            for one in axes:
+                tie([(int(node), axis, sign * float(one[axis])) for node, sign in ((first, 1.0), (second, -1.0))
+                     for axis in range(3)])
+    return lines

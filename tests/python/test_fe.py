@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cases in CalculiX, which shares no line with this project, beside the reduced model."""
+from __future__ import annotations
+
+from typing import Any, Callable
+
+import numpy as np
+import pytest
+from conftest import Outcome
+
+import statejump as sj
+from statejump.kinds.spring_slider.fe import kinks
+from statejump.kinds.truss import fe
+
+BAR = {"young_modulus_Pa": 7e10, "cross_section_area_m2": 1e-4, "thermal_expansion_per_K": 2.3e-5,
+       "density_kg_per_m3": 2700.0}
+
+
+def truss(dimension: int = 2, **more: Any) -> dict[str, Any]:
+    """Return a square of bars with both diagonals, or a tetrahedron on three supports, every bar of its own ΔT."""
+    if dimension == 2:
+        points = {"A": [0.0, 0.0], "B": [1.0, 0.0], "C": [1.0, 1.1], "D": [0.1, 0.9]}
+        pairs = ["AD", "BC", "DC", "AC", "BD"]
+    else:
+        points = {"A": [0.0, 0.0, 0.0], "B": [1.0, 0.0, 0.0], "C": [0.3, 1.1, 0.0], "E": [0.9, 0.9, 0.1],
+                  "D": [0.4, 0.4, 0.8]}
+        pairs = ["AD", "BD", "CD", "ED"]
+    links = [{"name": pair, "nodes": list(pair), "temperature_fraction": round(1 - 0.3 * place, 3), **BAR}
+             for place, pair in enumerate(pairs)]
+    held = "AB" if dimension == 2 else "ABCE"
+    nodes = [{"name": name, "position_m": where, **({"fixed": list("xyz"[:dimension])} if name in held else {})}
+             for name, where in points.items()]
+    nodes[-1]["force_N"] = [300.0, -500.0, 200.0][:dimension]
+    return {"case": {"name": "held", "kind": "truss"}, "truss": {"dimension": dimension}, "node": nodes, "link": links,
+            "thermal": {"shape": "triangle", "temperature_change_max_K": 100.0}, **more}
+
+
+def free() -> dict[str, Any]:
+    """Return a triangle on a pin and a roller: it expands without force."""
+    data = truss()
+    data["node"] = [{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
+                    {"name": "B", "position_m": [1.0, 0.0], "fixed": ["y"]}, {"name": "C", "position_m": [0.0, 1.0]}]
+    data["link"] = [{"name": pair, "nodes": list(pair), **BAR} for pair in ("AB", "AC", "BC")]
+    return data
+
+
+def with_slider() -> dict[str, Any]:
+    """Return the square with a slider on a tilted axis, which is locked."""
+    data = truss()
+    data["node"][2]["guide_normal"] = [-0.6, 0.8]
+    data["slider"] = [{"name": "S", "nodes": ["C"], "axis": [0.8, 0.6], "friction_coefficient": 0.3,
+                       "normal_force_N": 10.0}]
+    return data
+
+
+def with_revolute() -> dict[str, Any]:
+    """Return the square whose diagonal ends in a clearance joint, which is locked."""
+    data = truss()
+    data["node"].append({"name": "J", "position_m": data["node"][2]["position_m"]})
+    data["link"][3]["nodes"] = ["A", "J"]
+    data["revolute"] = [{"name": "R", "bearing_node": "C", "journal_node": "J", "bearing_link": "BC",
+                         "journal_link": "AC", "journal_radius_m": 5e-3, "radial_clearance_m": 1e-5,
+                         "friction_coefficient": 0.2}]
+    return data
+
+
+TRUSSES = {"free expansion": free, "statically indeterminate": truss, "in space": lambda: truss(3),
+           "locked slider": with_slider, "locked revolute": with_revolute}
+
+
+@pytest.mark.parametrize("what", TRUSSES)
+def test_a_truss_with_locked_joints_agrees_to_1e_8(what: str) -> None:
+    found = fe.answer(sj.load(TRUSSES[what]()).definition)
+    moved, force = found.rows
+    assert moved.values["reduced"] > 1e-4 and moved.passed and force.passed
+    assert what == "free expansion" or force.values["reduced"] > 100
+
+
+def test_events_and_jump_of_table_1_agree_within_a_thousandth(statejump: Callable[..., Outcome]) -> None:
+    told = statejump("fe", "cases/table1.toml")
+    assert told.status == 0, told.errors
+    rows = {row.name: row for row in sj.load("table1").definition.behaviour.fe(sj.load("table1").definition).rows}
+    assert list(rows) == ["slide_1_temperature_change", "rest_2_temperature_change", "slide_3_temperature_change",
+                          "state_jump"]
+    # Sticking that gives way by 1/STICK, stops by 1/PUSH of what the bar does.
+    assert all(row.difference < 1e-4 for row in rows.values())
+    assert rows["state_jump"].values["fe"] == pytest.approx(30.0 * 0.5 / (70e9 * 9e-6), rel=1e-6)
+
+
+def test_kinks_are_where_straight_pieces_meet() -> None:
+    change = np.linspace(0, 100, 51)
+    moved = np.interp(change, [0, 13.3, 71.7, 100], [0, 0, 58.4, 58.4])
+    assert kinks(change, moved, 1.0) == [("slide", pytest.approx(13.3)), ("rest", pytest.approx(71.7))]
+
+
+def test_without_calculix_one_sentence_says_so(statejump: Callable[..., Outcome], monkeypatch: Any) -> None:
+    monkeypatch.setenv("PATH", "/nowhere")
+    told = statejump("fe", "cases/table1.toml")
+    assert told.status == 2
+    assert told.errors == ("error: CalculiX is not installed: there is no ccx on the PATH; install Debian's "
+                           "calculix-ccx\n")
+
+
+@pytest.mark.parametrize(("case", "sentence"), [
+    ("trusses/umbrella_rib", "torsion_spring is not allowed: 'statejump fe' takes trusses of links and joints only"),
+    ("umbrella", "case.kind = 'umbrella' is not allowed: 'statejump fe' is for 'spring_slider' and 'truss'"),
+    ("table1_frictionless", "joint.friction_coefficient = 0.0 is not allowed"),
+])
+def test_what_the_deck_does_not_have_is_refused(case: str, sentence: str, statejump: Callable[..., Outcome]) -> None:
+    told = statejump("fe", f"cases/{case}.toml")
+    assert told.status == 2 and told.errors.count("\n") == 1 and sentence in told.errors
