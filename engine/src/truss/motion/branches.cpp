@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps in which no contact changes what it does: the laws of all contacts are then equations,
-// which stand beside those of the bodies in one sparse matrix.
+// Steps whose contacts keep or soon find their branches: the laws of all contacts are then
+// equations, which stand beside those of the bodies in one sparse matrix.
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +12,8 @@ namespace {
 
 /// Newton's method converges in three or four iterations, or a contact is on another branch.
 constexpr int most_iterations = 8;
+/// Tries to find the branches. Most changes are of one contact, found at the second one.
+constexpr int most_pivots = 6;
 /// Share of a contact's own force by which it may miss an inequality, as the contact problem's
 /// tolerance allows.
 constexpr double allowance = 1e-10;
@@ -28,29 +30,53 @@ Stepper::Branch Stepper::branch(const Contact& contact) const {
 
 bool Stepper::on_branches(Trial& step, Local& local) {
   if (branches_.empty()) return false;
+  std::vector<Branch> branches;
+  std::vector<int> active;
+  for (std::size_t place = 0; place < branches_.size(); ++place) {
+    const Contact& contact = contacts_.all()[place];
+    if (!contact.active) continue;
+    // A rigid contact that is active has closed.
+    const bool closes =
+        branches_[place] == Branch::open && contact.normal_column >= 0 && !contact.is_elastic();
+    branches.push_back(closes ? Branch::stick : branches_[place]);
+    active.push_back(static_cast<int>(place));
+  }
+  if (active != active_) branch_factor_.reset();
+  active_ = std::move(active);
+  const Eigen::SparseMatrix<double> middle = at_.jacobian;
+  for (int pivots = 0; pivots < most_pivots; ++pivots) {
+    if (pivots > 0) at_.jacobian = middle;
+    step.v = v_;
+    if (!solve_on(branches, step, local)) return false;
+    bool holds = true;
+    for (std::size_t i = 0; i < branches.size(); ++i) {
+      const Branch next = asked(step, local, static_cast<Eigen::Index>(i), branches[i]);
+      holds = holds && next == branches[i];
+      branches[i] = next;
+    }
+    if (holds) return true;
+  }
+  return false;
+}
+
+bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& local) {
   const double h = step.h;
   const double theta = options_->theta;
   const Eigen::Index n = q_.size();
   const Eigen::Index bodies = n + static_cast<Eigen::Index>(contacts_.holds().size());
-  // What a contact asks for: that it moves along `row` as its law says, by a force along `push`.
+  // What a contact asks for: that it moves as its law says along one of its directions.
   struct Row {
     Eigen::Index contact;
     bool normal;
     double slide;  ///< Tangential force over that of the normal one.
   };
   std::vector<Row> rows;
-  std::vector<Branch> branch_of;
-  std::size_t place = 0;
   VectorXd given = VectorXd::Zero(local.impulses.size());
-  for (const Contact& contact : contacts_.all()) {
-    const Branch now = branches_[place++];
-    if (!contact.active) {
-      if (now != Branch::open) return false;
-      continue;
-    }
-    const auto i = static_cast<Eigen::Index>(branch_of.size());
-    branch_of.push_back(now);
+  for (std::size_t k = 0; k < branches.size(); ++k) {
+    const Contact& contact = *local.contacts[k];
+    const Branch now = branches[k];
     if (now == Branch::open) continue;
+    const auto i = static_cast<Eigen::Index>(k);
     // Friction on the body is against the slide.
     const double slide = (now == Branch::slip_plus    ? -1.0
                           : now == Branch::slip_minus ? 1.0
@@ -62,13 +88,7 @@ bool Stepper::on_branches(Trial& step, Local& local) {
     } else {
       rows.push_back({i, true, slide});
     }
-    if (now == Branch::stick) rows.push_back({i, false, 0.0});
-  }
-  // A rigid contact that closes in this step was open in the last one.
-  for (std::size_t i = 0; i < local.contacts.size(); ++i) {
-    const Contact& contact = *local.contacts[i];
-    const bool rigid = contact.normal_column >= 0 && !contact.is_elastic();
-    if (rigid && branch_of[i] == Branch::open) return false;
+    if (now == Branch::stick && contact.tangential_column >= 0) rows.push_back({i, false, 0.0});
   }
 
   const Eigen::SparseMatrix<double> matrix = iteration_matrix(step);
@@ -99,7 +119,10 @@ bool Stepper::on_branches(Trial& step, Local& local) {
       });
     }
   }
-  if (!branch_factor_) branch_factor_ = std::make_unique<linear::SparseFactor>();
+  if (!branch_factor_ || factored_ != branches) {
+    branch_factor_ = std::make_unique<linear::SparseFactor>();
+    factored_ = branches;
+  }
   Eigen::SparseMatrix<double> bordered(size, size);
   VectorXd held;
   for (int k = 0;; ++k) {
@@ -155,31 +178,33 @@ bool Stepper::on_branches(Trial& step, Local& local) {
       if (row.slide != 0.0) local.impulses[2 * row.contact + 1] = row.slide * impulse;
     }
   }
-  for (std::size_t i = 0; i < local.contacts.size(); ++i) {
-    if (!branch_holds(step, local, static_cast<Eigen::Index>(i), branch_of[i])) return false;
-  }
   return true;
 }
 
-bool Stepper::branch_holds(const Trial& step, const Local& local, Eigen::Index i,
-                           Branch branch) const {
+Stepper::Branch Stepper::asked(const Trial& step, const Local& local, Eigen::Index i,
+                               Branch branch) const {
   const double h = step.h;
   const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
   const double normal = local.impulses[2 * i];
   const double tangential = local.impulses[2 * i + 1];
-  if (branch == Branch::open) {
-    if (contact.normal_column < 0) return true;
-    const double end = contact.gap + h * local.directions.col(2 * i).dot(step.v - 0.5 * v_);
-    return end >= 0.0;
-  }
-  if (!(normal > 0.0)) return false;
   const double bound = contact.friction_coefficient * normal;
-  if (branch == Branch::stick) return std::abs(tangential) <= bound * (1.0 - allowance);
-  if (contact.tangential_column < 0 || bound == 0.0) return true;
+  if (branch == Branch::open) {
+    if (contact.normal_column < 0) return branch;
+    const double end = contact.gap + h * local.directions.col(2 * i).dot(step.v - 0.5 * v_);
+    return end < 0.0 ? Branch::stick : branch;
+  }
+  if (!(normal > 0.0)) return Branch::open;
+  if (contact.tangential_column < 0 || bound == 0.0) {
+    return branch == Branch::stick ? Branch::slip_plus : branch;  // slides freely either way
+  }
+  if (branch == Branch::stick) {
+    if (std::abs(tangential) <= bound * (1.0 - allowance)) return branch;
+    return tangential < 0.0 ? Branch::slip_plus : Branch::slip_minus;
+  }
   const double compliance = contact.tangential_compliance(normal / h);
   const double slide = local.directions.col(2 * i + 1).dot(step.v) +
                        (compliance * tangential / h + contact.kept_bend(compliance)) / h;
-  return tangential * slide <= 0.0;
+  return tangential * slide <= 0.0 ? branch : Branch::stick;
 }
 
 }  // namespace statejump::truss::detail

@@ -404,7 +404,6 @@ void Stepper::book(const Trial& step, const Local& local) {
   account_.thermal_work += worked.thermal_work;
   std::vector<Branch> branches;
   for (const Contact& contact : contacts_.all()) branches.push_back(branch(contact));
-  if (branches != branches_) branch_factor_.reset();
   branches_ = std::move(branches);
   contacts_.remember_clearances();
   internal_ = -at_.residual.head(step.q.size());

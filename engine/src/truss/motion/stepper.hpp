@@ -75,14 +75,16 @@ class Stepper {
 
   Eigen::SparseMatrix<double> iteration_matrix(const Trial& step);
   Local local_problem(const Trial& step);
-  /// Solves the step with every contact on the branch of the step before, without a contact
-  /// problem. False if one is not on it; the step is then as it was.
+  /// Seeks the branches of all contacts from those of the step before, by block pivoting; each try
+  /// is one sparse system. False if a few tries do not find them: step and `at_` are then spoilt.
   bool on_branches(Trial& step, Local& local);
   /// Of a contact: open, or in touch and held along its surface, or sliding on it.
   enum class Branch : unsigned char { open, stick, slip_plus, slip_minus };
   Branch branch(const Contact& contact) const;
-  /// Whether a contact obeys the inequalities of its branch.
-  bool branch_holds(const Trial& step, const Local& local, Eigen::Index i, Branch branch) const;
+  /// Solves the step with every active contact on a branch. False if it does not converge.
+  bool solve_on(const std::vector<Branch>& branches, Trial& step, Local& local);
+  /// The branch that a contact's inequalities ask for, from the one whose equations hold.
+  Branch asked(const Trial& step, const Local& local, Eigen::Index i, Branch branch) const;
   /// Solves the step with its contact problem.
   void solve(Trial& step, Local& local);
   void complete(const Trial& step, Local& local);
@@ -106,8 +108,10 @@ class Stepper {
   Contacts contacts_;
   Assembly at_;
   linear::SparseFactor factor_;
-  std::vector<Branch> branches_;                         ///< Of all contacts in the last step.
-  std::unique_ptr<linear::SparseFactor> branch_factor_;  ///< Its pattern is that of `branches_`.
+  std::vector<Branch> branches_;  ///< Of all contacts in the last step.
+  std::vector<int> active_;       ///< Places of the contacts that were active in it.
+  std::vector<Branch> factored_;  ///< Of the active contacts, whose pattern the factors have.
+  std::unique_ptr<linear::SparseFactor> branch_factor_;
   Eigen::SparseMatrix<double> holds_;  ///< Columns that hold, scaled, of the current factors.
   StepStart origin_;
   VectorXd q_;
