@@ -84,9 +84,10 @@ struct Motion {
 ///
 ///     M (v1 − v0) = h (θ f1 + (1 − θ) f0) + H r,   q1 = q0 + h (θ v1 + (1 − θ) v0)
 ///
-/// solved by Newton's method on the factors of M + h θ C + (h θ)² K at the middle of the step; H is
-/// taken there too. Each iterate is one local frictional contact problem (complementarity/) with
-/// W = Hᵀ (M + …)⁻¹ H. Second order where no contact changes, first order over changes; θ = 1/2
+/// solved by Newton's method with M + h θ C + (h θ)² K at the middle of the step; H is taken there
+/// too. Contacts are first taken on the branches of the step before and pivoted: one sparse system
+/// a try. What that does not settle is a local frictional contact problem (complementarity/) with
+/// W = Hᵀ (M + …)⁻¹ H, dense. Second order where no contact changes, first order over changes; θ = 1/2
 /// has no numerical damping.
 ///
 /// **Contacts.** Velocities are those at the end of the step. Rigid contacts obey Newton's
