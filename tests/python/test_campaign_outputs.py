@@ -20,7 +20,7 @@ TRUSS = "cases/trusses/chain_10.toml"
 def test_outputs_are_the_columns_of_the_run() -> None:
     case = sj.load(TRUSS)
     link, node = case.link[0].name, case.node[3].name
-    names = [f"jump:displacement_m[{node}].x", f"end:displacement_m[{node}]", f"max:links.axial_force_N[{link}]",
+    names = [f"jump:position_m[{node}].x", f"end:displacement_m[{node}]", f"max:links.axial_force_N[{link}]",
              f"range:links.angle_rad[{link}]", "min:temperature_change_K"]
     first = case.slider[0].name
     friction = [0.2, 0.3]
