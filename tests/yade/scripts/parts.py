@@ -16,6 +16,7 @@ YOUNG, POISSON, FRICTION = 70e9, 0.3, 0.3
 R1, CLEARANCE = 5e-3, 1e-4
 R2 = R1 + CLEARANCE
 PLANAR = "zXY"
+LENGTH = 10e-3  # of bores of triangles
 
 
 def finish(result: dict) -> None:
@@ -130,8 +131,8 @@ def bore_engines(program=None, damping=0.0, law=None, angle=2e-4) -> None:
 
 
 def tube(around=200, along=20, **keywords) -> sj.MeshBore:
-    """Return a round bore of triangles, 10 mm long."""
-    return sj.MeshBore(**sj.bore_triangles(R2, 10e-3, around, along, **keywords))
+    """Return a round bore of triangles."""
+    return sj.MeshBore(**sj.bore_triangles(R2, LENGTH, around, along, **keywords))
 
 
 def energies() -> dict[str, float]:
