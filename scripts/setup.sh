@@ -9,7 +9,8 @@
 #     page    bundling the page of the report       bench   benchmarks
 #     package making the Debian package             docs    documentation
 #
-# A group is a file in scripts/packages. Does nothing when everything is there. Root and sudo alike.
+# A group is a file in scripts/packages. Does nothing when everything is there. Root and sudo alike. A package with a
+# question mark behind its name is one that not every Debian has: it is installed where it can be had.
 set -euo pipefail
 
 lists=$(dirname "${BASH_SOURCE[0]}")/packages
@@ -18,6 +19,7 @@ if [[ $# -eq 0 ]]; then
   for list in "$lists"/*.txt; do groups+=("$(basename "$list" .txt)"); done
 fi
 missing=()
+optional=()
 for group in "${groups[@]}"; do
   [[ -f $lists/$group.txt ]] || { echo "set-up: no group $group in $lists" >&2; exit 2; }
   while read -r package; do
@@ -25,11 +27,22 @@ for group in "${groups[@]}"; do
       nodejs) ! command -v node >/dev/null || continue ;;
       npm) ! command -v npm >/dev/null || continue ;;
     esac
-    status=$(dpkg-query --show --showformat='${db:Status-Abbrev}' "$package" 2>/dev/null || true)
-    [[ $status == ii* ]] || missing+=("$package")
+    status=$(dpkg-query --show --showformat='${db:Status-Abbrev}' "${package%\?}" 2>/dev/null || true)
+    case $status,$package in
+      ii*) ;;
+      *\?) optional+=("${package%\?}") ;;
+      *) missing+=("$package") ;;
+    esac
   done <"$lists/$group.txt"
 done
-[[ ${#missing[@]} -eq 0 ]] && exit 0
+can_be_had() { # those of the optional packages that the lists of apt have
+  local package version
+  for package in "${optional[@]}"; do
+    version=$(LC_ALL=C apt-cache policy "$package" 2>/dev/null | sed -n 's/^ *Candidate: *//p')
+    [[ -z $version || $version == "(none)" ]] || echo "$package"
+  done
+}
+[[ ${#missing[@]} -ne 0 || -n $(can_be_had) ]] || exit 0
 
 if ! command -v apt-get >/dev/null; then
   echo "set-up: apt-get not found; install by hand: ${missing[*]}" >&2
@@ -43,7 +56,8 @@ if [[ $(id -u) -ne 0 ]]; then
   }
   as_root=(sudo)
 fi
-echo "set-up: installing ${missing[*]}"
 "${as_root[@]}" apt-get update -qq
+mapfile -t -O "${#missing[@]}" missing < <(can_be_had)
+echo "set-up: installing ${missing[*]}"
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
   apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

@@ -2,6 +2,7 @@
 """Cases in CalculiX, which shares no line with this project, beside the reduced model."""
 from __future__ import annotations
 
+import shutil
 from typing import Any, Callable
 
 import numpy as np
@@ -68,6 +69,10 @@ TRUSSES = {"free expansion": free, "statically indeterminate": truss, "in space"
            "locked slider": with_slider, "locked revolute": with_revolute}
 
 
+with_calculix = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not here: not every Debian has it")
+
+
+@with_calculix
 @pytest.mark.parametrize("what", TRUSSES)
 def test_a_truss_with_locked_joints_agrees_to_1e_8(what: str) -> None:
     found = fe.answer(sj.load(TRUSSES[what]()).definition)
@@ -76,6 +81,7 @@ def test_a_truss_with_locked_joints_agrees_to_1e_8(what: str) -> None:
     assert what == "free expansion" or force.values["reduced"] > 100
 
 
+@with_calculix
 def test_events_and_jump_of_table_1_agree_within_a_thousandth(statejump: Callable[..., Outcome]) -> None:
     told = statejump("fe", "cases/table1.toml")
     assert told.status == 0, told.errors
