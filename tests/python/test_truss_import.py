@@ -189,12 +189,19 @@ def test_beams_become_bars_and_say_so(tmp_path: Path) -> None:
     check(sj.load(case_document(deck, "beams", length_unit_m=1e-3)))
 
 
+def test_a_deck_without_density_is_a_case_for_the_solver(tmp_path: Path) -> None:
+    (tmp_path / "deck.inp").write_text(ABAQUS.replace("*DENSITY\n2.7e-9\n", ""))
+    deck = read(tmp_path / "deck.inp")
+    case = sj.load(case_document(deck, "light", length_unit_m=1e-3))
+    assert any("no density" in why for (_, why) in deck.left)
+    assert case.reduced().summary
+
+
 WRONG: dict[str, tuple[str, str, str, list[str], str]] = {
     "no node": ("inp", "3, 2, 3\n*NSET", "3, 2, 9\n*NSET", [], "deck.inp: line 11: element 3: there is no node 9"),
     "twice": ("inp", "2, 1000, 0, 0", "1, 1000, 0, 0", [], "deck.inp: line 6: node '1' is there twice"),
     "no number": ("inp", "7e4, 0.3", "nan, 0.3", [], "'nan' is not a finite number"),
     "no section": ("inp", "*SOLID SECTION", "*SHELL SECTION", [], "has no Young's modulus"),
-    "no density": ("inp", "*DENSITY\n2.7e-9\n", "", [], "--density is missing: link '1' has none"),
     "other files": ("inp", "*HEADING", "*INCLUDE, INPUT=/etc/passwd", [], "*INCLUDE is not read"),
     "coordinate system": ("bdf", "GRID,1,,0.", "GRID,1,5,0.", [], "GRID '1' has CP = '5'"),
     "no property": ("bdf", "PROD,7", "PROD,8", [], "CROD 1: there is no property '7' that is read"),

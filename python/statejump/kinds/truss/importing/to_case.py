@@ -112,7 +112,7 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, length: float, force
     elif density is not None:
         made["density_kg_per_m3"] = density
     else:
-        raise MissingKey("--density", f"link {bar.name!r} has none, and a case needs one", file=deck.path)
+        deck.leave(bar.kind, "no density: the DEM and --dynamic need one, see --density", 0)
     if bar.poisson_ratio is not None:
         made["poisson_ratio"] = bar.poisson_ratio
     if peak and change != peak:
