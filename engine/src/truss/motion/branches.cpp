@@ -61,7 +61,6 @@ bool Stepper::on_branches(Trial& step, Local& local) {
 
 bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& local) {
   const double h = step.h;
-  const double theta = options_->theta;
   const Eigen::Index n = q_.size();
   const Eigen::Index bodies = n + static_cast<Eigen::Index>(contacts_.holds().size());
   // What a contact asks for: that it moves as its law says along one of its directions.
@@ -126,10 +125,7 @@ bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& 
   Eigen::SparseMatrix<double> bordered(size, size);
   VectorXd held;
   for (int k = 0;; ++k) {
-    step.q = q_ + h * (theta * step.v + (1.0 - theta) * v_);
-    const VectorXd now = force(step.q, step.v, step.to, {time_, step.to});
-    const VectorXd residual =
-        bodies_->mass() * (step.v - v_) - h * (theta * now + (1.0 - theta) * step.force_before);
+    const VectorXd residual = move(step);
     if (!residual.allFinite()) return false;
     if (k > 0 && balanced(step, residual, held, local)) break;
     if (k == most_iterations) return false;
@@ -153,8 +149,7 @@ bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& 
         normal_force = law.force;
         normal_of = row.contact;
       } else if (row.normal) {
-        offset = (contact.clearance_after - contact.clearance) / h +
-                 options_->restitution * std::min(local.before[2 * row.contact], 0.0);
+        offset = leaving(step, local, row.contact);
       } else {
         compliance = contact.tangential_compliance(normal_of == row.contact ? normal_force
                                                                             : contact.given_force);

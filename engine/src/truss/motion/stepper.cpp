@@ -170,6 +170,20 @@ Stepper::Tangent Stepper::tangent(const Trial& step, const Local& local, Eigen::
   return {force, compliance, toward + depth - compliance * force};
 }
 
+double Stepper::leaving(const Trial& step, const Local& local, Eigen::Index i) const {
+  const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+  return (contact.clearance_after - contact.clearance) / step.h +
+         options_->restitution * std::min(local.before[2 * i], 0.0);
+}
+
+VectorXd Stepper::move(Trial& step) {
+  const double theta = options_->theta;
+  step.q = q_ + step.h * (theta * step.v + (1.0 - theta) * v_);
+  const VectorXd now = force(step.q, step.v, step.to, {time_, step.to});
+  return bodies_->mass() * (step.v - v_) -
+         step.h * (theta * now + (1.0 - theta) * step.force_before);
+}
+
 void Stepper::solve_contacts(const Trial& step, const VectorXd& free, bool first, Local& local) {
   const double h = step.h;
   Problem problem{2, local.delassus, local.directions.transpose() * free,
@@ -192,8 +206,7 @@ void Stepper::solve_contacts(const Trial& step, const VectorXd& free, bool first
       w(n, n) += law.compliance / (h * h);
       problem.q[n] += law.gap / h;
     } else {
-      problem.q[n] += (contact.clearance_after - contact.clearance) / h +
-                      options_->restitution * std::min(local.before[n], 0.0);
+      problem.q[n] += leaving(step, local, i);
     }
     const double compliance = contact.tangential_compliance(normal);
     w(t, t) += compliance / (h * h);
@@ -286,15 +299,10 @@ void Stepper::advance(double to) {
 
 void Stepper::solve(Trial& step, Local& local) {
   complete(step, local);
-  const double theta = options_->theta;
-  const double h = step.h;
   const Eigen::Index n = q_.size();
   VectorXd held;
   for (int k = 0;; ++k) {
-    step.q = q_ + h * (theta * step.v + (1.0 - theta) * v_);
-    const VectorXd now = force(step.q, step.v, step.to, {time_, step.to});
-    const VectorXd residual =
-        bodies_->mass() * (step.v - v_) - h * (theta * now + (1.0 - theta) * step.force_before);
+    const VectorXd residual = move(step);
     if (!residual.allFinite()) fail(FailureKind::not_finite, step.to, nullptr);
     if (k > 0 && balanced(step, residual, held, local)) return;
     if (k == options_->most_iterations) fail(FailureKind::not_converged, step.to, nullptr);

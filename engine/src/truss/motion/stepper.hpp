@@ -73,6 +73,9 @@ class Stepper {
   };
   Tangent tangent(const Trial& step, const Local& local, Eigen::Index contact, double speed) const;
 
+  /// Speed with which a rigid contact opens after an impact, with its sign turned [m/s].
+  double leaving(const Trial& step, const Local& local, Eigen::Index contact) const;
+
   Eigen::SparseMatrix<double> iteration_matrix(const Trial& step);
   Local local_problem(const Trial& step);
   /// Seeks the branches of all contacts from those of the step before, by block pivoting; each try
@@ -93,6 +96,8 @@ class Stepper {
   /// f [N] at places and velocities; also leaves the largest force in `at_`.
   VectorXd force(const VectorXd& q, const VectorXd& v, double time, const Bodies::Step& step);
   void evaluate(const VectorXd& q, double time);
+  /// Goes to the places of the step's velocities; what their momentum lacks without impulses [N s].
+  VectorXd move(Trial& step);
   bool balanced(const Trial& step, const VectorXd& residual, const VectorXd& held,
                 const Local& local) const;
   /// Notes the first step whose reactions are not unique.
