@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from statejump.core.errors import Unreadable
+from statejump.core.errors import NotAllowed, StatejumpError, Unreadable
 from statejump.core.output import write_atomically
 
 
@@ -130,3 +130,19 @@ class Shown:
     header: Sequence[str]
     rows: Sequence[Sequence[str]]
     left: Sequence[str] = ()
+
+
+def check_columns(columns: Mapping[str, np.ndarray]) -> None:
+    """Refuse columns that are not numbers, one for every row, in the words of a table.
+
+    :raises StatejumpError: they differ in length, hold no number in a row or one that is not finite
+    """
+    if len({len(values) for values in columns.values()}) > 1:
+        raise StatejumpError("columns differ in length", cause=", ".join(
+            f"{name} has {len(values)}" for name, values in columns.items()))
+    for name, values in columns.items():
+        if values.ndim != 1 or not np.issubdtype(values.dtype, np.number):
+            raise NotAllowed(name, beside="as a column", cause="every row needs a number there")
+        wrong = np.flatnonzero(~np.isfinite(values))
+        if wrong.size:
+            raise NotAllowed(name, float(values[wrong[0]]), "must be a finite number", item=f"row {wrong[0] + 1}")

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey, Unreadable
-from statejump.core.tables import read_columns
+from statejump.core.tables import check_columns, read_columns
 from statejump.identification.hysteresis import Memory, remembered
 
 PAIRS = (("displacement_m", "force_N"), ("rotation_rad", "moment_N_m"))
@@ -113,15 +113,7 @@ def _loop(name: str, columns: Mapping[str, np.ndarray], start: str) -> Loop:
         if column not in columns:
             raise MissingKey(column, f"it goes with {next(one for one in pairs[0] if one != column)}",
                              section=f"column {column}")
-    if len({len(values) for values in columns.values()}) > 1:
-        raise StatejumpError("columns differ in length", cause=", ".join(
-            f"{column} has {len(values)}" for column, values in columns.items()))
-    for column, values in columns.items():
-        if values.ndim != 1 or not np.issubdtype(values.dtype, np.number):
-            raise NotAllowed(column, beside="as a column", cause="every row needs a number there")
-        wrong = np.flatnonzero(~np.isfinite(values))
-        if wrong.size:
-            raise NotAllowed(column, float(values[wrong[0]]), "must be a finite number", item=f"row {wrong[0] + 1}")
+    check_columns(columns)
     displacement, force = (np.array(columns[column], dtype=float) for column in pairs[0])
     for column, values in zip(pairs[0], (displacement, force)):
         if not np.ptp(values) > 0:

@@ -12,7 +12,7 @@ import numpy as np
 
 from statejump import _engine
 from statejump.core.errors import FailedRun, MissingKey, NotAllowed, StatejumpError, UnknownKey, Unreadable
-from statejump.core.tables import read_columns, write_columns
+from statejump.core.tables import check_columns, read_columns, write_columns
 from statejump.laws.traits import Law, catalogue
 
 # Kinds whose laws answer a path; the first that knows a name has it.
@@ -162,15 +162,7 @@ def _check(columns: Mapping[str, np.ndarray], kind: str, law: Law) -> None:
     if ("slide_x_m" in columns) != ("slide_y_m" in columns):
         there, missing = sorted(("slide_x_m", "slide_y_m"), key=lambda name: name not in columns)
         raise MissingKey(missing, f"{there} goes with it", section=f"column {missing}")
-    if len({len(values) for values in columns.values()}) > 1:
-        raise StatejumpError("columns differ in length", cause=", ".join(
-            f"{name} has {len(values)}" for name, values in columns.items()))
-    for name, values in columns.items():
-        if values.ndim != 1 or not np.issubdtype(values.dtype, np.number):
-            raise NotAllowed(name, beside="as a column", cause="every row needs a number there")
-        wrong = np.flatnonzero(~np.isfinite(values))
-        if wrong.size:
-            raise NotAllowed(name, float(values[wrong[0]]), "must be a finite number", item=f"row {wrong[0] + 1}")
+    check_columns(columns)
     if "normal_force_N" in columns:
         below = np.flatnonzero(columns["normal_force_N"] < 0)
         if below.size:
