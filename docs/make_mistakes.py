@@ -38,7 +38,7 @@ GROUPS: dict[str, tuple[Mistake, ...]] = {
         Mistake("not TOML", "table1", "[joint]", "[joint"),
         Mistake("no such kind", "table1", 'kind = "spring_slider"', 'kind = "spring_slidr"'),
         Mistake("a name that is no folder", "table1", 'name = "table1"', 'name = "table 1"'),
-        Mistake("a case of another kind than the command is for", "trusses/chain_10", "", "", "control"),
+        Mistake("a case of another kind than the command is for", "statics_slot", "", "", "control"),
     ),
     "Keys and sections": (
         Mistake("misspelt key", "table1", NU, "frictoin_coefficient = 0.3"),

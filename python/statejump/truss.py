@@ -16,7 +16,7 @@ commands of ``statejump truss`` have the same ones.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, ParamSpec
 
@@ -32,10 +32,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from statejump.control.study import Study
     from statejump.kinds.truss.answers.study import TrussAnswers
     from statejump.kinds.truss.creak import Creak
 
-__all__ = ["answers", "chain", "creak", "draw", "iwan", "mast", "ring", "umbrella"]
+__all__ = ["answers", "chain", "control", "creak", "draw", "iwan", "mast", "ring", "umbrella"]
 
 Keys = ParamSpec("Keys")
 LARGEST = 1_000_000
@@ -118,4 +119,31 @@ def answers(
         asked, output=output, cycles=cycles, each=each, step=step, sensitivity=sensitivity,
         phase=lambda label: shown(progress, label),
     )
+    return found
+
+
+def control(
+    case: Case, *, node: str | None = None, jump_below: float | None = None,
+    add_spring: Sequence[tuple[str, str]] = (), scale: Sequence[str] = (), progress: Progress = False,
+) -> Study:
+    """Return the smallest springs, preloads, frictions or other parameters that keep the jump of a node at or below a
+    value: of each candidate by itself, and which of them is best.
+
+    :param case: a case of kind ``truss``
+    :param node: name of the node; None: the most moved one
+    :param jump_below: wanted largest jump over all cycles [m]; None: half of what the case has
+    :param add_spring: pairs of nodes between which a spring may be added, free of force in the drawn shape
+    :param scale: keys whose values may be scaled: ``section.item.key``, or ``section.*.key`` of all items; without
+        candidates all keys that a jump may follow
+    :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
+    :return: ``sentences`` and ``remarks`` say what was found, ``recommendation`` has it as numbers, ``frame()`` all
+        that was scanned
+    :raises StatejumpError: the case is of another kind, there is no such node or key, or the case has no path
+    """
+    from statejump.control.study import Places
+
+    asked = case.definition
+    ability = asked.behaviour.ability("control", asked)
+    with shown(progress, "control") as tell:
+        found: Study = ability(asked, jump_below=jump_below, tell=tell, places=Places(node, add_spring, scale))
     return found

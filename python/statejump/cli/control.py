@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from textwrap import shorten
 
 import click
 
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown, undivided
 from statejump.control import study
-from statejump.control.study import Study, Sweep, number
+from statejump.control.study import Places, Study, Sweep, number
 from statejump.core.results_folder import Results
 from statejump.core.tables import Shown
+
+LONGEST_NOTE = 60  # of a table; control.csv has all of it
 
 
 def _table(title: str, done: Study, sweep: Sweep, unit: str) -> Shown:
@@ -22,9 +25,10 @@ def _table(title: str, done: Study, sweep: Sweep, unit: str) -> Shown:
     for row in sweep.shown():
         marks = [name for name, value in (("case", sweep.own), ("recommended", sweep.recommended))
                  if value == row.value]
+        note = shorten(row.note, LONGEST_NOTE, placeholder=" …")
         rows.append((
             number(row.value * sweep.display_scale, 5), *(shown(row.results.get(name)) for name in done.results),
-            *([shown(row.dem_jump)] if with_dem else []), "; ".join(filter(None, [*marks, row.note])),
+            *([shown(row.dem_jump)] if with_dem else []), "; ".join(filter(None, [*marks, note])),
         ))
     heads = (sweep.label + unit, *done.results.values(), *([f"DEM [{done.display_unit}]"] if with_dem else []), "")
     return Shown(f"{title}: {sweep.parameter}", heads, rows, left=("",))
@@ -50,19 +54,27 @@ def _told(title: str, done: Study) -> Iterator[Shown | str]:
 @CASE
 @click.option("--jump-below", type=float, metavar="VALUE",
               help="Wanted largest jump, in m or, for an umbrella, rad.  [default: half of the case's]")
+@click.option("--node", metavar="NAME", help="Of a truss: the node that jumps.  [default: the most moved one]")
+@click.option("--add-spring", type=(str, str), multiple=True, metavar="A B",
+              help="Of a truss: two nodes between which a spring may be added; may be given again.")
+@click.option("--scale", multiple=True, metavar="KEY",
+              help="Of a truss: section.item.key, or section.*.key of all items, whose value may be scaled; may be "
+                   "given again.  [default: all that a jump may follow, unless springs may be added]")
 @click.option("--runs", type=int, metavar="N",
               help=f"Runs of each ensemble, where one is needed.  [default: {study.RUNS}]")
 @click.option("--dem", "with_dem", is_flag=True, help="Check the case and what is recommended in YADE too.")
 @RESULTS
 @QUIET
 def control_command(
-    case_file: Path, jump_below: float | None, runs: int | None, with_dem: bool, results: Results, quiet: bool
+    case_file: Path, jump_below: float | None, node: str | None, add_spring: tuple[tuple[str, str], ...],
+    scale: tuple[str, ...], runs: int | None, with_dem: bool, results: Results, quiet: bool,
 ) -> None:
     """What governs the state jump of CASE, and the smallest spring that keeps it below a value.
 
     \b
-    Example:
+    Examples:
       statejump control cases/table1.toml --jump-below 5e-6
+      statejump control ring_12 --node J1 --jump-below 1e-6 --add-spring J0 J2 --scale 'revolute.*.friction_coefficient'
     """
     from statejump.control import plot
 
@@ -71,7 +83,8 @@ def control_command(
     with results.folder(case.name) as folder:
         with undivided(console, "control") as tell:
             done: Study = case.behaviour.ability("control", case)(
-                case, jump_below=jump_below, runs=runs, with_dem=with_dem, tell=tell)
+                case, jump_below=jump_below, runs=runs, with_dem=with_dem, tell=tell,
+                places=Places(node, add_spring, scale))
         written = folder.publish(
             study.write(case.name, done, folder.staged) + plot.figure(case.title, done, folder.staged))
     print_shown(list(_told(case.title, done)), console)

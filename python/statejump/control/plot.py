@@ -23,11 +23,11 @@ NOTHING = 1e-4  # of the jump: a joint that never touches leaves 1e-12, off any 
 def figure(title: str, study: Study, folder: Path) -> list[Path]:
     """Write ``control.png`` and ``control.svg`` into the folder and return their paths."""
     count = len(study.sweeps)
-    columns = 2 if count == 4 else 3
-    rows = -(-(count + (count != 4)) // columns)  # with a place for the legend
+    columns = 2 if count == 4 else min(count + 1, 3)
+    rows = -(-count // columns)
     with style():
         size = (9.5 if columns == 2 else 12.0, 3.3 * rows + 0.6)
-        drawing, grid = panels(rows, columns, size, sharey=True)
+        drawing, grid = panels(rows, columns, size, sharey=True, squeeze=False)
         places = list(np.ravel(grid))
         handles: dict[str, Any] = {}
         for panel, sweep in zip(places, study.sweeps):
@@ -41,9 +41,10 @@ def figure(title: str, study: Study, folder: Path) -> list[Path]:
         if count < len(places):
             places[count].legend(handles.values(), handles.keys(), loc="center", framealpha=1, handlelength=3.4)
         else:
-            # The clearance governs least: its panel has room.
+            # Of four parameters the clearance governs least: its panel has room.
             places[count - 1].legend(
-                handles.values(), handles.keys(), loc="lower right", framealpha=1, handlelength=3.4, fontsize=8
+                handles.values(), handles.keys(), loc="lower right" if count == 4 else "best", framealpha=1,
+                handlelength=3.4, fontsize=8
             )
         drawing.suptitle(f"{title}: control of the state jump", fontsize=11)
         return save(drawing, folder, "control")

@@ -2,11 +2,11 @@
 """What a control study is made of, whatever the case: swept parameters, wanted value, searches."""
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from statejump.core.errors import NotAllowed
 from statejump.core.tables import write_csv, write_json
 from statejump.schema.fields import rule_of
 from statejump.schema.paths import attribute_of
+
+if TYPE_CHECKING:
+    import pandas
 
 # How a result is drawn: its name in the legend, and its line.
 Line = tuple[str, Mapping[str, Any]]
@@ -67,6 +70,20 @@ class Sweep:
         ]
 
 
+@dataclass(frozen=True)
+class Places:
+    """Of what the jump is asked and what may be changed, of a case with many nodes and parameters.
+
+    :param node: that jumps; None: the most moved one
+    :param add_spring: pairs of nodes between which a spring may be added
+    :param scale: parameters that may be scaled, ``section.item.key`` or ``section.*.key``
+    """
+
+    node: str | None = None
+    add_spring: Sequence[tuple[str, str]] = ()
+    scale: Sequence[str] = ()
+
+
 @dataclass
 class Study:
     """A study of a case.
@@ -103,6 +120,22 @@ class Study:
         """Return the sweep of a parameter."""
         return next(sweep for sweep in self.sweeps if sweep.parameter == parameter)
 
+    def columns(self) -> list[str]:
+        """Return the names of the columns of :meth:`rows`."""
+        return ["parameter", "value", "is_own_value", "is_recommended", *self.results, f"dem_jump_{self.unit}", "note"]
+
+    def rows(self) -> list[tuple[Any, ...]]:
+        """Return all that was swept, see :meth:`columns`."""
+        return [(sweep.parameter, row.value, int(row.value == sweep.own), int(row.value == sweep.recommended),
+                 *(row.results.get(name) for name in self.results), row.dem_jump, row.note)
+                for sweep in self.sweeps for row in sweep.rows]
+
+    def frame(self) -> pandas.DataFrame:
+        """Return all that was swept as a table, units in the names of its columns."""
+        import pandas
+
+        return pandas.DataFrame(self.rows(), columns=self.columns())
+
 
 def check_wanted(jump_below: float | None, unit: str) -> None:
     """Raise NotAllowed for a wanted jump that is none."""
@@ -114,6 +147,16 @@ def refuse_runs(runs: int | None, case: Case) -> None:
     """Raise NotAllowed for a size of an ensemble where none is run."""
     if runs is not None:
         raise NotAllowed("--runs", runs, f"case {case.name} has one exact path, no ensemble is run")
+
+
+def refuse_places(places: Places, case: Case) -> None:
+    """Raise NotAllowed for nodes and parameters to choose from where a case has one jump and a study of all it has."""
+    asked = (("--node", [places.node] if places.node else []),
+             ("--add-spring", [" ".join(ends) for ends in places.add_spring]), ("--scale", places.scale))
+    for option, values in asked:
+        for value in values:
+            raise NotAllowed(option, value,
+                             f"a case of kind {case.kind!r} has one jump, and all that governs it is studied")
 
 
 def highest(case: Case, path: str) -> float:
@@ -144,9 +187,20 @@ def bisect(
 
 
 def ranges_that_pass(
-    values: list[float], flags: list[bool], passes: Callable[[float], bool] | None = None
+    values: Sequence[float], flags: Sequence[bool], passes: Callable[[float], bool] | None = None,
+    narrow: Callable[[float, float], float] | None = None,
 ) -> list[tuple[float, float]]:
-    """Return the ranges of neighbouring values that pass; with ``passes`` their ends are refined."""
+    """Return the ranges of neighbouring values that pass, with their ends refined.
+
+    :param passes: by which they are, with bisection; None: they are not refined
+    :param narrow: instead: takes a value that does not pass and one that does, returns the end that passes
+    """
+    if narrow is None and passes is not None:
+        by_bisection = passes
+
+        def narrow(bad: float, good: float) -> float:
+            return bisect(by_bisection, bad, good, 1e-9)[1]
+
     found: list[tuple[float, float]] = []
     i = 0
     while i < len(values):
@@ -157,10 +211,10 @@ def ranges_that_pass(
         while j + 1 < len(values) and flags[j + 1]:
             j += 1
         low, high = values[i], values[j]
-        if passes is not None and i > 0:
-            low = bisect(passes, values[i - 1], low, 1e-9)[1]
-        if passes is not None and j + 1 < len(values):
-            high = bisect(passes, values[j + 1], high, 1e-9)[1]
+        if narrow is not None and i > 0:
+            low = narrow(values[i - 1], low)
+        if narrow is not None and j + 1 < len(values):
+            high = narrow(values[j + 1], high)
         found.append((low, high))
         i = j + 1
     return found
@@ -184,14 +238,7 @@ def number(value: float | None, digits: int = 4) -> str:
 
 def write(case_name: str, study: Study, folder: Path) -> list[Path]:
     """Write ``control.csv`` and ``control.json``."""
-    names = list(study.results)
-    table = write_csv(
-        folder / "control.csv",
-        ["parameter", "value", "is_own_value", "is_recommended", *names, f"dem_jump_{study.unit}", "note"],
-        ([sweep.parameter, row.value, int(row.value == sweep.own), int(row.value == sweep.recommended),
-          *(row.results.get(name) for name in names), row.dem_jump, row.note]
-         for sweep in study.sweeps for row in sweep.rows),
-    )
+    table = write_csv(folder / "control.csv", study.columns(), study.rows())
     summary = write_json(folder / "control.json", {
         "case": case_name,
         "measure": study.measure,

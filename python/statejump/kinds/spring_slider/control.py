@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from statejump.control.study import (
-    Line, Row, Study, Sweep, bisect, check_wanted, grid, highest, number, ranges_that_pass, refuse_runs,
+    Line, Places, Row, Study, Sweep, bisect, check_wanted, grid, highest, number, ranges_that_pass, refuse_places,
+    refuse_runs,
 )
 from statejump.core.engine_failures import engine
 from statejump.core.errors import StatejumpError
@@ -142,15 +143,17 @@ def _sweeps(case: SpringSliderCase) -> list[Sweep]:
 
 def control(
     case: SpringSliderCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
-    tell: Tell = lambda share: None,
+    tell: Tell = lambda share: None, places: Places = Places(),
 ) -> Study:
     """Sweep, search and, if wanted, check by DEM.
 
     :param jump_below: wanted largest jump [m]; None: half of what the case has
     :param runs: there is one exact path: None
+    :param places: there is nothing to choose from: none
     :raises StatejumpError: bad input, or a run failed
     """
     check_wanted(jump_below, "m")
+    refuse_places(places, case)
     refuse_runs(runs, case)
     wanted = jump_below
     now = jump_of(case)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from statejump.control.study import Study
     from statejump.core.figures import Sheet
     from statejump.fe.ccx import Answer
     from statejump.kinds.truss.answers.study import TrussAnswers
@@ -153,6 +154,12 @@ class Truss(Kind[TrussCase]):
         from statejump.kinds.truss import fe
 
         return fe.answer(case)
+
+    def control(self, case: TrussCase, **settings: Any) -> Study:
+        """Return what keeps the jump of a node below a value; see :func:`statejump.truss.control`."""
+        from statejump.kinds.truss.control import study
+
+        return study.control(case, **settings)
 
     def answers(self, case: TrussCase, **settings: Any) -> TrussAnswers:
         """Return what a designer asks of the truss; see :func:`statejump.truss.answers`."""

@@ -66,7 +66,7 @@ def changed(truss: ResolvedTruss, section: str, key: str, factor: np.ndarray) ->
     return replace(truss, **{field: part})
 
 
-def _histories(found: TrussPath) -> dict[tuple[str, str], list[str]]:
+def histories_of(found: TrussPath) -> dict[tuple[str, str], list[str]]:
     """Return the statuses that every joint goes through. Those of different joints within one increment
     have no order of their own."""
     histories: dict[tuple[str, str], list[str]] = {}
@@ -106,7 +106,7 @@ def sensitivities(
         same = float(own[0]) if np.ptp(own) <= 1e-12 * abs(own[0]) else None
         label = f"{section}.{name}.{key}"
         try:
-            found_of = _differences(truss, section, key, which, output, own_jump, step)
+            found_of = differences(truss, section, key, which, output, own_jump, step)
             rows.append(Sensitivity(label, len(own), same, *found_of))
         except StatejumpError as problem:
             rows.append(Sensitivity(label, len(own), same, float("nan"), float("nan"), f"failed: {problem}"))
@@ -114,9 +114,15 @@ def sensitivities(
     return rows
 
 
-def _differences(
-    truss: ResolvedTruss, section: str, key: str, which: np.ndarray, output: Output, own_jump: float, step: float
+def differences(
+    truss: ResolvedTruss, section: str, key: str, which: np.ndarray, output: Output, own_jump: float,
+    step: float = STEP,
 ) -> tuple[float, float, str]:
+    """Return the derivative of an output's jump with respect to the logarithm of a parameter of some items (items,),
+    that of half the step, and the verdict, see :func:`sensitivities`.
+
+    :raises StatejumpError: a changed truss has no path
+    """
     jumps: list[float] = []
     slopes, gaps, histories = [], [], []
     for size in (step, step / 2):
@@ -126,7 +132,7 @@ def _differences(
         jumps += values
         slopes.append((values[0] - values[1]) / (2 * size))
         gaps.append(abs(values[0] + values[1] - 2 * own_jump) / size)  # of a smooth function as small as the step
-        histories += [_histories(one) for one in pair]
+        histories += [histories_of(one) for one in pair]
     whole, half = slopes
     largest = max(abs(whole), abs(half))
     noise = NOISE * max(abs(jump) for jump in jumps) / step

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What may be changed of a truss so that a node jumps less: a spring that is added, a parameter that is scaled."""
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from math import ceil, log, log10
+
+import numpy as np
+
+from statejump.control.study import Places, grid, highest
+from statejump.core.errors import NotAllowed, UnknownKey
+from statejump.kinds.truss.answers.sensitivity import changed, parameters
+from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.check_references import known_name
+from statejump.kinds.truss.resolved import ResolvedTruss, distances
+from statejump.schema.fields import rule_of
+from statejump.schema.paths import EVERY, attribute_of, split_path
+from statejump.schema.rules import suggestion
+
+PER_DECADE = 3
+FACTORS = (1e-3, 1e3)  # of a parameter that is scaled
+STIFFER = 1e3  # than the stiffest link or softer than the softest part: springs that are tried
+STIFFNESS = "spring.*.stiffness_N_per_m"
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One change of a truss that a number tells.
+
+    :param parameter: as it was asked for
+    :param own: the number of the case as it is: no spring, factor 1
+    :param values: that are tried
+    :param truss: of a number
+    :param section: of the changed items, with their key and which of the changed truss' items they are
+    """
+
+    parameter: str
+    label: str
+    unit: str
+    own: float
+    values: tuple[float, ...]
+    truss: Callable[[float], ResolvedTruss]
+    section: str
+    key: str
+    which: Callable[[ResolvedTruss], np.ndarray]
+
+    @property
+    def is_spring(self) -> bool:
+        """Whether it adds a spring; else it scales what is there."""
+        return self.own == 0
+
+    def size(self, value: float) -> float:
+        """Return how much a value changes the truss: a stiffness [N/m], or the logarithm of a factor."""
+        return value if self.is_spring else abs(log(value))
+
+
+def candidates(case: TrussCase, places: Places) -> list[Candidate]:
+    """Return what may be changed: as asked, or all parameters that the jump may follow.
+
+    :raises NotAllowed: a place that is none, or a parameter without value
+    """
+    found = [_spring(case, one, two) for one, two in places.add_spring]
+    wanted = [_scaled(case, path) for path in places.scale]
+    if not found and not wanted:
+        wanted = [_scaled(case, f"{section}.{EVERY}.{key}") for section, key, values in parameters(case.resolve())
+                  if _has_value(values).any()]
+    told = [one.parameter for one in found + wanted]
+    for one in found + wanted:
+        if told.count(one.parameter) > 1:
+            option, _, value = one.parameter.partition(" ")
+            raise NotAllowed(f"--{option.replace('_', '-')}", value, "it is there twice")
+    return found + wanted
+
+
+def with_spring(truss: ResolvedTruss, ends: Sequence[int], stiffness_N_per_m: float) -> ResolvedTruss:
+    """Return the truss with one more spring, the last one, which is free of force in the drawn shape; of stiffness 0:
+    the truss as it is."""
+    if stiffness_N_per_m == 0:
+        return truss
+    springs, pair = truss.springs, np.array([ends])
+    return replace(truss, springs=replace(
+        springs, names=(*springs.names, "added"), nodes=np.concatenate((springs.nodes.reshape(-1, 2), pair)),
+        stiffness_N_per_m=np.append(springs.stiffness_N_per_m, stiffness_N_per_m),
+        free_length_m=np.append(springs.free_length_m, distances(truss.nodes.position_m, pair)),
+        preload_N=np.append(springs.preload_N, 0.0), cable=np.append(springs.cable, False),
+    ))
+
+
+def _spring(case: TrussCase, one: str, two: str) -> Candidate:
+    truss, told = case.resolve(), f"{one} {two}"
+    for name in (one, two):
+        known_name("--add-spring", told, name, dict.fromkeys(truss.nodes.names), "node", case=case.name)
+    ends = [truss.nodes.names.index(name) for name in (one, two)]
+    if not distances(truss.nodes.position_m, np.array([ends]))[0] > 0:
+        raise NotAllowed("--add-spring", told, "a spring needs two nodes at different places", case=case.name)
+    if truss.nodes.fixed[ends].all():
+        raise NotAllowed("--add-spring", told, "neither of these nodes can move", case=case.name)
+    links, springs, turned = truss.links, truss.springs, truss.torsion_springs
+    bars = links.young_modulus_Pa * links.cross_section_area_m2 / links.stress_free_length_m
+    size = float(np.ptp(truss.nodes.position_m, axis=0).max())
+    stiffest = min(highest(case, STIFFNESS), STIFFER * bars.max())
+    softest = min(np.concatenate((bars, springs.stiffness_N_per_m, turned.stiffness_N_m_per_rad / size**2))) / STIFFER
+    return Candidate(
+        f"add_spring {told}", f"Spring from {one} to {two}", "N/m", 0.0, _grid(0.0, softest, stiffest),
+        lambda stiffness: with_spring(truss, ends, stiffness), "spring", "stiffness_N_per_m",
+        lambda changed_truss: np.arange(len(changed_truss.springs.names)) == len(springs.names))
+
+
+def _scaled(case: TrussCase, path: str) -> Candidate:
+    truss = case.resolve()
+    section, item, key = split_path(path)
+    known = {(of, name): values for of, name, values in parameters(truss)}
+    if (section, key) not in known:
+        paths = [f"{of}.{EVERY}.{name}" for of, name in known]
+        raise UnknownKey("--scale", value=path, **suggestion(path, paths))
+    names = [one.name for one in getattr(case, section)]
+    if item != EVERY and item not in names:
+        cause = None if names else f"the case has no [[{section}]]"
+        raise UnknownKey("--scale", value=path, **({"cause": cause} if cause else suggestion(item, names)))
+    values = known[section, key]
+    which = _has_value(values) & (np.array([item in (EVERY, name) for name in names], dtype=bool))
+    if not which.any():
+        raise NotAllowed("--scale", path, "it has no value but 0 in this case: there is nothing to scale")
+    sizes, allowed = np.abs(values[which]), rule_of(attribute_of(TrussCase, f"{section}.{EVERY}.{key}")).allowed
+    assert allowed is not None
+    # Nothing but a number of its range is tried; the lower end only counts where it is above 0.
+    most = min(FACTORS[1], allowed.high / sizes.max())
+    least = max(FACTORS[0], allowed.low / sizes.min())
+    return Candidate(
+        f"scale {path}", f"{path}, times", "-", 1.0, _grid(1.0, least, most),
+        lambda factor: changed(truss, section, key, np.where(which, factor, 1.0)), section, key, lambda _: which)
+
+
+def _has_value(values: np.ndarray) -> np.ndarray:
+    return np.isfinite(values) & (values != 0)
+
+
+def _grid(own: float, low: float, high: float) -> tuple[float, ...]:
+    count = 1 + ceil(PER_DECADE * log10(high / low))
+    return tuple(grid(own, low, high, count))

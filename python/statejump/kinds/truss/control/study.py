@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Control of the jump of a node of a truss: the smallest spring, preload, friction or other parameter that keeps it at
+or below a bound, and which of several candidates is best."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from statejump.control.study import Line, Places, Study, Sweep, check_wanted, number, refuse_runs
+from statejump.core.errors import NotAllowed
+from statejump.core.progress import Tell, one_of
+from statejump.core.units import plain
+from statejump.kinds.truss.answers.jumps import most_moved, quick_path
+from statejump.kinds.truss.answers.verdict import RESOLVED
+from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.check_references import known_name
+from statejump.kinds.truss.control.candidates import candidates
+from statejump.kinds.truss.control.search import Jump, Search, jump_of
+
+RESULTS = {"jump_m": "|jump| [µm]"}
+LINES: dict[str, Line] = {
+    "jump_m": ("quasi-static path", dict(color="#E69F00", linewidth=2.0, marker="o", markersize=3.5)),
+}
+MICRO = 1e6
+
+
+def control(
+    case: TrussCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
+    tell: Tell = lambda share: None, places: Places = Places(),
+) -> Study:
+    """Sweep every candidate and search where it brings the jump of a node below a bound.
+
+    :param jump_below: wanted largest jump [m]; None: half of what the case has
+    :param runs: there is one path: None
+    :param with_dem: not for trusses, see ``statejump compare``
+    :param places: node, springs that may be added, parameters that may be scaled; nothing: all that a jump may follow
+    :raises StatejumpError: bad input, or the case has no path
+    """
+    check_wanted(jump_below, "m")
+    refuse_runs(runs, case)
+    if with_dem:
+        raise NotAllowed("--dem", cause="a truss with what is found goes into a case of its own, which 'statejump "
+                         "compare' checks", case=case.name)
+    truss, increments = case.resolve(), case.reduced.increments_per_branch
+    names = truss.nodes.names
+    if places.node is not None:
+        known_name("--node", places.node, places.node, dict.fromkeys(names), "node", case=case.name)
+    asked = candidates(case, places)
+    node = most_moved(quick_path(truss, increments)) if places.node is None else names.index(places.node)
+    now = jump_of(truss, node, increments)
+    wanted = now.size_m / 2 if jump_below is None and now.size_m > 0 else jump_below
+    measure = (f"quasi-static path of the truss, solved again for every value; jump of node {names[node]} over "
+               f"{case.thermal.cycles} cycle(s)")
+    result = Study(measure, "m", "µm", MICRO, RESULTS, now.size_m, wanted, "|State jump| [µm]", LINES)
+    result.recommendation["node"] = names[node]
+    searches = [Search(one, Sweep(one.parameter, one.label, one.unit, 1.0, one.own, []), node, increments)
+                for one in asked]
+    for done, search in enumerate(searches):
+        part = one_of(tell, done, len(searches))
+        search.scan(lambda share, part=part: part(0.7 * share))  # type: ignore[misc]
+        result.sweeps.append(search.sweep)
+        if wanted is not None:
+            search.narrow(wanted)
+            if search.value is not None:
+                search.tell_value(now, wanted, names[node])
+            result.sentences.append(_sentence(search, wanted))
+            result.remarks += _remarks(search, now, wanted)
+        part(1.0)
+    if wanted is None:
+        result.sentences.append("The node does not jump: there is nothing to control.")
+    else:
+        result.recommendation["candidates"] = [
+            search.found or {"parameter": search.sweep.parameter, "value": None, "monotone": not search.turns}
+            for search in searches]
+        for name, kind in (("best_spring", True), ("best_scale", False)):
+            _best(result, name, [search for search in searches if search.candidate.is_spring == kind])
+    return result
+
+
+def _shown(search: Search, value: float) -> str:
+    return f"{value:.6g} N/m" if search.candidate.is_spring else f"{value:.6g} times its value"
+
+
+def _subject(search: Search) -> str:
+    label = search.candidate.label.removesuffix(", times")
+    return f"A {label[0].lower()}{label[1:]}" if search.candidate.is_spring else label
+
+
+def _sentence(search: Search, wanted: float) -> str:
+    low, high = (_shown(search, row.value) for row in (search.sweep.rows[0], search.sweep.rows[-1]))
+    asked, subject = plain(wanted, "m"), _subject(search)
+    if search.value is None:
+        reached = [row for row in search.sweep.rows if row.results.get("jump_m") is not None]
+        least = min(reached, key=lambda row: float(row.results["jump_m"] or 0.0), default=None)
+        told = "" if least is None else (f"; the smallest jump of them is {plain(least.results['jump_m'], 'm')}, with "
+                                         f"{_shown(search, least.value)}")
+        return f"{subject}: no scanned value from {low} to {high} keeps the jump at or below {asked}{told}."
+    found = search.found
+    if search.value == search.candidate.own:
+        return f"{subject}: nothing is needed, the jump is {plain(found['jump_with_it_m'], 'm')} without."
+    told = f"{subject}: {_shown(search, search.value)} is the smallest change that keeps the jump at or below {asked}"
+    told += f" ({found['found_by']}); solved with it, the jump is {plain(found['jump_with_it_m'], 'm')}"
+    elasticity, verdict = found["elasticity"], found["verdict"]
+    if verdict == "smooth":
+        told += (f". There the path is smooth: 1 % more changes the jump by {number(elasticity, 3)} %, "
+                 "by differences of 1 and of 0.5 %")
+    else:
+        told += f". There the derivative is {verdict}: only solving again tells" if not verdict.startswith("failed") \
+            else f". There the derivative {verdict}"
+    return told + "."
+
+
+def _remarks(search: Search, now: Jump, wanted: float) -> list[str]:
+    found, subject, said = search.found, search.candidate.parameter, []
+    if search.turns:
+        at = ", ".join(number(turn) for turn in search.turns)
+        said.append(f"{subject}: the jump is not monotone, it turns near {at}; a range that is narrower than the "
+                    "scan may be missed")
+    failed = sum(bool(row.note) for row in search.sweep.rows)
+    if failed:
+        said.append(f"{subject}: with {failed} scanned value(s) the truss has no path, see the notes in control.csv")
+    if found.get("leaps"):
+        said.append(f"{subject}: the jump leaps across the bound at the value found, or a truss has no path there")
+    if found and search.value != search.candidate.own and not found["joints_go_as_in_the_case"]:
+        said.append(f"{subject}: with it joints stick, slip or touch otherwise than in the case, whose own "
+                    "sensitivities do not tell what it does")
+    if found and abs(found["jump_with_twice_the_increments_m"] - found["jump_with_it_m"]) > RESOLVED * wanted:
+        said.append(f"{subject}: with twice the increments a branch the jump is "
+                    f"{plain(found['jump_with_twice_the_increments_m'], 'm')}: more reduced.increments_per_branch are "
+                    "needed")
+    return said
+
+
+def _best(result: Study, name: str, searches: Sequence[Search]) -> None:
+    if len(searches) < 2:
+        return
+    reaching = [search for search in searches if search.value is not None]
+    if not reaching:
+        return
+    best = min(reaching, key=lambda search: search.candidate.size(search.value or search.candidate.own))
+    assert best.value is not None
+    result.recommendation[name] = best.candidate.parameter
+    if best.value == best.candidate.own:
+        return
+    what = "softest spring" if best.candidate.is_spring else "smallest relative change"
+    result.sentences.append(f"Best of {len(searches)}, {len(reaching)} of which reach the bound, is the {what}: "
+                            f"{best.candidate.parameter} with {_shown(best, best.value)}.")
