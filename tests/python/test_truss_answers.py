@@ -37,11 +37,10 @@ def chain() -> TrussPath:
     """Chain whose frictions and bars all differ."""
     truss = made("chain", 5)
     varied = 1 + 0.1 * np.arange(5)
+    truss = truss.with_joints(
+        slider=replace(truss.sliders, normal_force_N=truss.sliders.normal_force_N * varied[::-1]))
     return quick_path(replace(
-        truss,
-        sliders=replace(truss.sliders, normal_force_N=truss.sliders.normal_force_N * varied[::-1]),
-        links=replace(truss.links, cross_section_area_m2=truss.links.cross_section_area_m2 * varied),
-    ))
+        truss, links=replace(truss.links, cross_section_area_m2=truss.links.cross_section_area_m2 * varied)))
 
 
 @pytest.fixture(scope="module")
@@ -91,7 +90,7 @@ def test_not_differentiable_is_said() -> None:
     # Friction at which the joint of a rib just slips back: more, and it stays.
     case = GENERATORS["umbrella"](3, name="t")
     truss = parse_case(case).resolve()
-    truss = replace(truss, revolutes=replace(truss.revolutes, friction_coefficient=np.full(3, 0.1885)))
+    truss = truss.with_joints(revolute=replace(truss.revolutes, friction_coefficient=np.full(3, 0.1885)))
     path = quick_path(truss)
     words = {row.parameter: row.verdict for row in sensitivities(path, chosen_output(path, "node"), step=0.1)}
     assert words["revolute.*.friction_coefficient"] == "not differentiable"
@@ -104,7 +103,7 @@ def test_kink_whose_slopes_cancel_is_said() -> None:
     links = truss.links
     strain = float(links.thermal_expansion_per_K[0]) * 100.0
     most = float((links.young_modulus_Pa * links.cross_section_area_m2)[0]) * strain / (2 + strain)
-    truss = replace(truss, sliders=replace(
+    truss = truss.with_joints(slider=replace(
         truss.sliders, normal_force_N=most / truss.sliders.friction_coefficient))
     path = quick_path(truss)
     found = {row.parameter: row for row in sensitivities(path, chosen_output(path, "node"))}

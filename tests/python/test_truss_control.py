@@ -152,9 +152,9 @@ def test_without_candidates_all_that_the_jump_may_follow_is_scanned() -> None:
     found = sj.truss.control(sj.truss.umbrella(1))
     assert [sweep.parameter for sweep in found.sweeps] == [
         "scale revolute.*.friction_coefficient", "scale revolute.*.radial_clearance_m",
-        "scale revolute.*.journal_radius_m", "scale link.*.young_modulus_Pa", "scale link.*.cross_section_area_m2",
-        "scale torsion_spring.*.stiffness_N_m_per_rad", "scale torsion_spring.*.bias_rad",
-        "scale revolute.*.young_modulus_Pa"]
+        "scale revolute.*.journal_radius_m", "scale revolute.*.young_modulus_Pa",
+        "scale link.*.young_modulus_Pa", "scale link.*.cross_section_area_m2",
+        "scale torsion_spring.*.stiffness_N_m_per_rad", "scale torsion_spring.*.bias_rad"]
     assert found.wanted == found.jump / 2 > 0
 
 

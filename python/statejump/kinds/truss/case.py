@@ -17,6 +17,10 @@ from statejump.core.case import Case
 from statejump.core.temperature_files import Histories, MemberProgram
 from statejump.core.thermal import Thermal
 from statejump.kinds.truss import checks
+from statejump.kinds.truss.joints.latch_hinge import LatchHinge
+from statejump.kinds.truss.joints.revolute import Revolute
+from statejump.kinds.truss.joints.slider import Slider
+from statejump.kinds.truss.joints.words import ALUMINIUM, USER
 from statejump.kinds.truss.resolved import ResolvedTruss, resolve
 from statejump.schema.fields import (
     CHOICE, Section, attached, choice, definition, evolved, numbers, optional_section, parameter, section, switch,
@@ -24,8 +28,6 @@ from statejump.schema.fields import (
 )
 from statejump.schema.items import Item
 
-USER = "no default: the truss decides"
-ALUMINIUM = CHOICE + ": aluminium"
 AXES = ("x", "y", "z")
 LARGEST_LENGTH_M = 1e6
 
@@ -66,45 +68,6 @@ class Link(Item):
 
 
 @definition
-class Slider(Item):
-    """A frictional prismatic joint: the first node slides along an axis fixed in space, on ground or on
-    the second node. Between two nodes it also holds them together across the axis; on ground the
-    supports of the node do."""
-
-    nodes: list[str] = texts(..., "one node, on ground, or two")
-    axis: list[float] = numbers(..., "-", -1e9, 1e9, "of any length")
-    friction_coefficient: float = parameter(..., "-", 0, 10, USER)
-    normal_force_N: float = parameter(..., "N", 0, 1e9, USER)
-    clearance_minus_m: float | None = parameter(None, "m", 0, 1e2, "against the axis; no stop", above=True)
-    clearance_plus_m: float | None = parameter(None, "m", 0, 1e2, "along the axis; no stop", above=True)
-    pad_radius_m: float = parameter(0.05, "m", 0, 1e2, CHOICE + "; DEM and elastic sticking only", above=True)
-    young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM + "; DEM and elastic sticking only", above=True)
-    poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM + "; DEM and elastic sticking only")
-
-
-@definition
-class Revolute(Item):
-    """A clearance revolute joint with Coulomb friction: the journal, at one node, plays in the bearing, at
-    another. A link carries and turns each; without a link a part does not turn."""
-
-    bearing_node: str = text(..., "where the bearing's centre is")
-    journal_node: str = text(..., "where the journal's centre is")
-    bearing_link: str | None = text(None, "whose end carries the bearing; none: it does not turn")
-    journal_link: str | None = text(None, "whose end carries the journal; none: it does not turn")
-    journal_radius_m: float = parameter(..., "m", 0, 1e2, USER, above=True)
-    radial_clearance_m: float = parameter(..., "m", 0, 1e2, USER + "; at ΔT = 0", above=True)
-    friction_coefficient: float = parameter(..., "-", 0, 10, USER)
-    axis: list[float] | None = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
-    journal_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, CHOICE + ": constant radii")
-    bearing_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, CHOICE + ": constant radii")
-    temperature_fraction: float = parameter(1.0, "-", -10, 10, "of its program's ΔT; fully sunlit")
-    program: str | None = text(None, "name of a [[program]]; the common [thermal]")
-    young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM, above=True)
-    poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM)
-    contact: str = choice("hertz", ("hertz", "rigid"), CHOICE + "; of the reduced model, DEM is always elastic")
-
-
-@definition
 class Spring(Item):
     """A linear spring between two nodes, or a cable that only pulls."""
 
@@ -126,23 +89,6 @@ class TrussTorsionSpring(Item):
     links: list[str] = texts(..., "two links that share a place, or one")
     stiffness_N_m_per_rad: float = parameter(..., "N m/rad", 0, 1e12, USER, above=True)
     bias_rad: float = parameter(0.0, "rad", -pi, pi, "free angle beyond the drawn one")
-    axis: list[float] | None = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
-
-
-@definition
-class LatchHinge(Item):
-    """A hinge with a latch: the rotation of the second link against the first, or of one link against the ground,
-    is free within a play and meets a stiffness beyond it, against dry friction.
-
-    Angles as of torsion springs. The moment against a rotation from the drawn shape is preload + stiffness (rotation
-    beyond the play) ± friction.
-    """
-
-    links: list[str] = texts(..., "two links that share a place, or one")
-    deadband_rad: float = parameter(..., "rad", 0, pi, USER + "; free play to either side")
-    stiffness_N_m_per_rad: float = parameter(..., "N m/rad", 0, 1e12, USER + "; beyond the play", above=True)
-    friction_moment_N_m: float = parameter(0.0, "N m", 0, 1e9, "no friction")
-    preload_moment_N_m: float = parameter(0.0, "N m", -1e9, 1e9, "against the rotation; none")
     axis: list[float] | None = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
 
 

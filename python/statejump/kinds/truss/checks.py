@@ -6,17 +6,20 @@ is the solver's to find: it depends on which joints are in contact.
 """
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from statejump.core import thermal
-from statejump.core.errors import MissingKey, NotAllowed, StatejumpError
+from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.kinds.truss.check_geometry import check_geometry
 from statejump.kinds.truss.check_references import check_references
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.protocol import listed_joints
+from statejump.kinds.truss.references import axis_of_rotation, vector
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.case import TrussCase
 
-SECTIONS = ("node", "link", "program", "slider", "revolute", "spring", "torsion_spring", "latch_hinge")
+SECTIONS = ("node", "link", "program", *(joint.section for joint in JOINTS), "spring", "torsion_spring")
 
 
 def check(case: TrussCase) -> None:
@@ -54,36 +57,19 @@ def _names(case: TrussCase) -> None:
             seen.add(item.name)
 
 
-def _vector(key: str, value: list[float] | None, unit: str, dimension: int, direction: bool, **where: Any) -> None:
-    if value is None:
-        return
-    if len(value) != dimension:
-        raise NotAllowed(key, value, f"must be {dimension} numbers [{unit}], as truss.dimension is {dimension}",
-                         **where)
-    if direction and not any(value):
-        raise NotAllowed(key, value, "must not be zero in every direction", **where)
-
-
 def _vectors(case: TrussCase) -> None:
     dimension = case.truss.dimension
     for node in case.node:
         for key, unit, direction in (("position_m", "m", False), ("guide_normal", "-", True), ("force_N", "N", False)):
-            _vector(key, getattr(node, key), unit, dimension, direction, item=f"node {node.name!r}", nodes=(node.name,))
+            vector(key, getattr(node, key), unit, dimension, direction, item=f"node {node.name!r}", nodes=(node.name,))
         if dimension == 2 and "z" in node.fixed:
             raise NotAllowed("fixed", node.fixed, "a planar truss has 'x' and 'y' only", item=f"node {node.name!r}",
                              nodes=(node.name,))
-    for slider in case.slider:
-        _vector("axis", slider.axis, "-", dimension, True, item=f"slider {slider.name!r}", joint=slider.name)
-    for section in ("revolute", "torsion_spring", "latch_hinge"):
-        for item in getattr(case, section):
-            where: dict[str, Any] = {
-                "item": f"{section} {item.name!r}", "joint": None if section == "torsion_spring" else item.name,
-            }
-            if dimension == 2 and item.axis is not None:
-                raise NotAllowed("axis", item.axis, "in a planar truss it is z", **where)
-            if dimension == 3 and item.axis is None:
-                raise MissingKey("axis", "a list of 3 numbers is needed in a spatial truss", **where)
-            _vector("axis", item.axis, "-", dimension, True, **where)
+    for joint in JOINTS:
+        for item in listed_joints(case, joint):
+            joint.check_vectors(item, dimension)
+    for spring in case.torsion_spring:
+        axis_of_rotation(spring.axis, dimension, {"item": f"torsion_spring {spring.name!r}"})
     if case.reflector is not None:
         axis = case.reflector.axis
         if len(axis) != dimension or not any(axis):

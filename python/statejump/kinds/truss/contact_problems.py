@@ -46,7 +46,7 @@ def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: No
     """
     NUMBER.check("number", number)
     truss = case.resolve()
-    joints = len(truss.sliders.names) + len(truss.revolutes.names) + len(truss.latch_hinges.names)
+    joints = truss.number_of_joints()
     if not 1 <= joints <= MOST_JOINTS:
         raise StatejumpError(f"the truss has {joints} joints", case=case.name,
                              cause=f"the matrix of a contact problem is dense, so it must be 1 to {MOST_JOINTS}")

@@ -20,16 +20,13 @@ from statejump.core import physics, thermal, yade_process
 from statejump.core.errors import MissingKey, StatejumpError
 from statejump.core.progress import Tell
 from statejump.core.run import Run
+from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.check_geometry import SAME_DIRECTION
-from statejump.kinds.truss.contacts import pad_hertz_stiffness, pads, revolute_stiffness
-from statejump.kinds.truss.resolved import GROUND, ResolvedTruss, Revolutes, Sliders
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, solve
 
 CONTACT_GROUPS = 30  # bits of a body's mask in YADE that are free to use
-# Friction may double a contact's force for a moment; Hertz's stiffness grows with its cube root.
-IMPACT = 2 ** (1 / 3)
-
 
 PATH_SHARE = 0.1  # of the progress that is told of a DEM run: the path that it begins with
 
@@ -87,16 +84,9 @@ def stable_time_step(case: TrussCase, path: TrussPath) -> float:
         for link in turned:
             for node in links.nodes[link]:
                 stiffness[node] += moving * moment / shortest[link] ** 2 * inverse[node]
-    if len(truss.sliders.names):
-        pad = pads(truss)
-        at_stop = np.isfinite(truss.sliders.clearance_minus_m) | np.isfinite(truss.sliders.clearance_plus_m)
-        force = IMPACT**3 * np.abs(path.states["slider_force_N"]).max(axis=0)
-        stop = np.where(at_stop, physics.hertz_tangent_N_per_m(force, pad_hertz_stiffness(truss)), 0.0)
-        touch(truss.sliders.nodes[:, :1], pad.tangential_N_per_m + stop, contact)
-    if len(truss.revolutes.names):
-        force = IMPACT**3 * path.states["normal_force_N"].max(axis=0)
-        nodes = np.stack((truss.revolutes.bearing_node, truss.revolutes.journal_node), axis=1)
-        touch(nodes, revolute_stiffness(truss, force), contact)
+    for joint in JOINTS:
+        if len(truss.joints[joint.section].names):
+            touch(*joint.contact_stiffness(path, truss.joints[joint.section]), contact)
     return float(np.min(_engine.critical_time_step_s(1.0, stiffness, damping), initial=inf))
 
 
@@ -107,21 +97,21 @@ def number_of_steps(case: TrussCase, path: TrussPath) -> int:
 
 
 def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) -> np.ndarray:
-    """Return a number per joint (sliders first), different for joints whose bodies could meet.
+    """Return a number per contact (of all types in turn), different for joints whose bodies could meet.
 
     YADE looks for contacts between all bodies that are near; only those of one joint may touch.
     """
-    sliders, joints = truss.sliders, truss.revolutes
-    where = truss.nodes.position_m[np.concatenate((sliders.nodes[:, 0], joints.bearing_node)).astype(int)]
+    touching = [nodes for joint in JOINTS for nodes in joint.contact_nodes(truss.joints[joint.section]).tolist()]
+    where = truss.nodes.position_m[[nodes[0] for nodes in touching]]
     owner = np.arange(len(where))
     # Journals in one bearing, and bearings around one journal, are one group.
     seen: dict[int, int] = {}
-    for place, (bearing, journal) in enumerate(zip(joints.bearing_node, joints.journal_node), len(sliders.names)):
-        known = {owner[seen[node]] for node in (bearing, journal) if node in seen}
+    for place, nodes in enumerate(touching):
+        known = {owner[seen[node]] for node in nodes if node in seen}
         for other in known:
             owner[owner == other] = place
         owner[place] = place
-        seen[bearing] = seen[journal] = place
+        seen.update(dict.fromkeys(nodes, place))
     group = np.full(len(where), -1)
     if not len(where):
         return group
@@ -131,60 +121,44 @@ def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) 
     for place, others in enumerate(near):
         if group[place] >= 0:
             continue
-        members = np.flatnonzero(owner == owner[place]) if place >= len(sliders.names) else np.array([place])
+        members = np.flatnonzero(owner == owner[place])
         taken = {group[other] for member in members for other in near[member] if other not in members}
         free = next((number for number in range(CONTACT_GROUPS) if number not in taken), None)
         if free is None:
-            name = (*sliders.names, *joints.names)[place]
+            name = [name for joint in JOINTS if len(joint.contact_nodes(truss.joints[joint.section]))
+                    for name in truss.joints[joint.section].names][place]
             raise refuse(case, f"joint {name!r} is within reach of more than {CONTACT_GROUPS} other joints, "
                                "the DEM cannot keep their contacts apart", joint=name)
         group[members] = free
     return group
 
 
-def pressing_directions(truss: ResolvedTruss) -> np.ndarray:
-    """Return for every slider the unit normal of its floor, across its axis (s, 3)."""
-    if truss.dimension == 2:
-        return np.tile([0.0, 0.0, -1.0], (len(truss.sliders.names), 1))
-    found = []
-    for axis in truss.sliders.axis:
-        across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-        found.append(across / np.linalg.norm(across))
-    return np.array(found).reshape(-1, 3)
-
-
 def check(case: TrussCase) -> None:
     """Raise StatejumpError if the DEM cannot represent an item, before anything is solved."""
     truss = case.resolve()
     mass = lumped_mass_kg(truss)
-    nodes, sliders, joints, springs = truss.nodes, truss.sliders, truss.revolutes, truss.springs
-    for name in truss.latch_hinges.names[:1]:
-        raise refuse(case, f"latch_hinge {name!r} is a joint of the quasi-static solver only, the DEM has none",
-                     joint=name)
-    for index in np.flatnonzero(sliders.nodes[:, 1] != GROUND)[:1]:
-        raise refuse(case, f"slider {sliders.names[index]!r} is between two nodes, the DEM has sliders on ground only",
-                     joint=sliders.names[index])
+    nodes, springs = truss.nodes, truss.springs
+    for joint in JOINTS:
+        joints = truss.joints[joint.section]
+        refused = joint.dem_refuses(joints)
+        if joint.not_in_dem and joints.names:
+            refused = joints.names[0], joint.not_in_dem
+        if refused is not None:
+            name, why = refused
+            raise refuse(case, f"{joint.section} {name!r} {why}", joint=name)
     free = ~_blocked(truss).all(axis=1)
     for index in np.flatnonzero(free & (mass <= 0))[:1]:
         raise refuse(case, f"node {nodes.names[index]!r} has no mass because no link ends there, the DEM needs one",
                      nodes=(nodes.names[index],))
     roles: dict[int, tuple[Any, ...]] = {}
-    parts: tuple[tuple[str, Sliders | Revolutes, np.ndarray, np.ndarray], ...] = (
-        ("pad", sliders, sliders.nodes[:, 0], sliders.pad_radius_m),
-        ("bearing", joints, joints.bearing_node, joints.bearing_radius_m),
-        ("journal", joints, joints.journal_node, joints.journal_radius_m),
-    )
-    for part, items, node_of, shape in parts:
-        kind = "slider" if part == "pad" else "revolute"
-        link = joints.bearing_link if part == "bearing" else joints.journal_link
-        for index, node in enumerate(node_of):
-            role = (part, float(shape[index]), float(items.friction_coefficient[index]),
-                    float(items.young_modulus_Pa[index]), int(link[index]) if part != "pad" else None)
-            if int(node) in roles and (roles[int(node)] != role or part == "pad"):
-                raise refuse(case, f"{kind} {items.names[index]!r} gives node {nodes.names[node]!r} a second contact "
-                                   "part, in the DEM a node has one", joint=items.names[index],
-                             nodes=(nodes.names[node],))
-            roles[int(node)] = role
+    for joint in JOINTS:
+        names = truss.joints[joint.section].names
+        for part in joint.contact_parts(truss.joints[joint.section]):
+            for name, node, role in zip(names, map(int, part.nodes), part.roles):
+                if node in roles and (roles[node] != role or not part.shared):
+                    raise refuse(case, f"{joint.section} {name!r} gives node {nodes.names[node]!r} a second contact "
+                                       "part, in the DEM a node has one", joint=name, nodes=(nodes.names[node],))
+                roles[node] = role
     for index in np.flatnonzero(springs.free_length_m <= 0)[:1]:
         raise refuse(case, f"spring {springs.names[index]!r} has the free length {springs.free_length_m[index]:.6g} m, "
                            "the DEM needs one above 0")
@@ -237,11 +211,8 @@ def resolved(case: TrussCase, path: TrussPath) -> dict[str, Any]:
     if path.cycle_ends and len(path.states["time_s"]) <= len(path.cycle_ends["time_s"]):
         raise refuse(case, "the path is too large to be kept as a whole")
     _refuse_slack(case, path)
-    pad = pads(truss)
-    # A floor ends where no pad gets to: twice as far as in the quasi-static model, and the pad itself.
-    reach = truss.sliders.pad_radius_m + 2 * np.abs(path.states["slide_m"]).max(axis=0)
-    groups = _contact_groups(truss, case, np.concatenate((reach, np.sqrt(2) * truss.revolutes.bearing_radius_m)))
-    count = len(truss.sliders.names)
+    reach = [joint.reach_m(path, truss.joints[joint.section]) for joint in JOINTS]
+    groups = np.split(_contact_groups(truss, case, np.concatenate(reach)), np.cumsum([len(own) for own in reach]))
     torsion = truss.torsion_springs
     if len(torsion.links) and np.abs(torsion.bias_rad).max() > pi / 2:
         raise refuse(case, "a torsion spring has a bias above π/2, beyond what the DEM can tell from its opposite")
@@ -253,17 +224,11 @@ def resolved(case: TrussCase, path: TrussPath) -> dict[str, Any]:
         "programs": _programs(truss),
         "node": _lists(truss.nodes, blocked=_blocked(truss), mass_kg=mass, start_m=truss.nodes.position_m + start),
         "link": _lists(truss.links),
-        "slider": _lists(truss.sliders, depth_m=pad.depth_m, reach_m=reach, floor_normal=pressing_directions(truss),
-                         clearance_minus_m=_finite(truss.sliders.clearance_minus_m),
-                         clearance_plus_m=_finite(truss.sliders.clearance_plus_m), group=groups[:count]),
-        "revolute": _lists(truss.revolutes, bearing_radius_m=truss.revolutes.bearing_radius_m, group=groups[count:]),
+        **{joint.section: _lists(truss.joints[joint.section], **joint.scene(path, truss.joints[joint.section]),
+                                 group=group) for joint, group in zip(JOINTS, groups)},
         "spring": _lists(truss.springs),
         "torsion_spring": _lists(torsion),
     }
-
-
-def _finite(values: np.ndarray) -> list[float | None]:
-    return [float(value) if np.isfinite(value) else None for value in values]
 
 
 def dem_input(case: TrussCase, tell: Tell = lambda share: None) -> dict[str, Any]:

@@ -2,34 +2,25 @@
 """Drawing of a planar truss; of a dense one with a detail."""
 from __future__ import annotations
 
-from math import atan2, pi
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.markers import MarkerStyle
-from matplotlib.path import Path as Outline
-from matplotlib.transforms import Affine2D
 
 from statejump.core.figures import Constrained, Drawing
 from statejump.kinds.truss.draw_symbols import (
-    BLOCK, CABLE, FRACTION, JOINT, LATCH, LOAD, MOST_NAMED, PIN, ROLLER, SPIRAL, SPRING, STOPS, SURFACE, TORSION, gap_m,
-    guided, legend, link_colours, names, symbol_size, turning_places,
+    CABLE, FRACTION, LOAD, MOST_NAMED, PIN, ROLLER, SPRING, SURFACE, covered, gap_m, guided, legend, link_colours,
+    marker, names, symbol_size, symbols,
 )
+from statejump.kinds.truss.joints.protocol import Symbol
 from statejump.kinds.truss.resolved import ResolvedTruss
 
 MOST_ZIGZAGS = 60
 LEAST_LEGIBLE = 4.5  # size of symbols [pt] below which a detail is drawn as well
 DETAIL_GAPS = 8  # places along the detail's shorter side, or along half of the longer
 WIDTH_IN, HEIGHT_IN = 8.0, 7.0  # of the panel, at most
-
-
-def _turned(outline: Outline, direction: np.ndarray) -> MarkerStyle:
-    """Return the symbol turned so that its ground lies against a direction (up: as drawn)."""
-    angle = atan2(direction[1], direction[0]) - pi / 2
-    return MarkerStyle(outline.transformed(Affine2D().rotate(angle)))
 
 
 def _bowed(truss: ResolvedTruss) -> list[np.ndarray]:
@@ -128,8 +119,7 @@ def _corners(truss: ResolvedTruss, lines: list[np.ndarray]) -> tuple[np.ndarray,
 
 def _first_joint(truss: ResolvedTruss) -> np.ndarray:
     """Where the first joint is, of a truss without any the first node."""
-    carriers = [*truss.sliders.nodes[:1, 0], *truss.revolutes.bearing_node[:1], 0]
-    return truss.nodes.position_m[carriers[0]]
+    return truss.nodes.position_m[[*covered(truss), 0][0]]
 
 
 def _frame(panel: Axes, middle: np.ndarray, extent: np.ndarray) -> None:
@@ -149,23 +139,10 @@ def _draw(panel: Axes, truss: ResolvedTruss, lines: list[np.ndarray], colours: A
     _draw_springs(panel, truss, size / (scale * 72))
     _draw_supports(panel, truss, size)
     bare = np.ones(len(nodes.names), dtype=bool)
-    _draw_sliders(panel, truss, size)
-    bare[truss.sliders.nodes[:, 0]] = False
-    if len(truss.revolutes.names):
-        centres = nodes.position_m[truss.revolutes.bearing_node, :2].T
-        panel.plot(*centres, marker="o", markersize=0.8 * size, markerfacecolor="white", zorder=5, linestyle="none",
-                   color=JOINT, markeredgewidth=max(0.4, size / 10))
-        panel.plot(*centres, marker="o", markersize=0.42 * size, zorder=6, linestyle="none", color=JOINT,
-                   markeredgewidth=0)
-        bare[truss.revolutes.bearing_node] = bare[truss.revolutes.journal_node] = False
+    bare[covered(truss)] = False
+    for symbol in symbols(truss):
+        _draw_symbol(panel, symbol, size)
     panel.plot(*nodes.position_m[bare, :2].T, "o", markersize=0.4 * size, color="0.2", zorder=5)
-    if len(truss.torsion_springs.names):
-        # A revolute has its own symbol in the middle: the spring stands around it.
-        panel.plot(*turning_places(truss, truss.torsion_springs)[:, :2].T, marker=MarkerStyle(SPIRAL), linestyle="none",
-                   color=TORSION, markerfacecolor="none", markersize=1.6 * size, markeredgewidth=max(0.5, size / 9),
-                   zorder=4.5)
-    if len(truss.latch_hinges.names):
-        panel.plot(*turning_places(truss, truss.latch_hinges)[:, :2].T, **LATCH, markersize=0.9 * size, zorder=4.6)
     _draw_loads(panel, truss, size)
     if truss.reflector is not None:
         panel.plot(*nodes.position_m[truss.reflector.nodes, :2].T, "D", color=SURFACE, markerfacecolor="none",
@@ -180,17 +157,16 @@ def _draw(panel: Axes, truss: ResolvedTruss, lines: list[np.ndarray], colours: A
                            va="center" if abs(way[1]) < 0.5 else ("bottom" if way[1] > 0 else "top"), zorder=8)
 
 
-def _draw_sliders(panel: Axes, truss: ResolvedTruss, size: float) -> None:
-    """Blocks, all of one axis at once, with stops where there are any."""
-    sliders, places = truss.sliders, truss.nodes.position_m[truss.sliders.nodes[:, 0], :2]
-    style = dict(linestyle="none", color=JOINT, markeredgewidth=max(0.4, size / 10), zorder=4)
-    stopped = np.isfinite(np.minimum(sliders.clearance_minus_m, sliders.clearance_plus_m))
-    axes, which = np.unique(np.round(sliders.axis, 9), axis=0, return_inverse=True)
-    for number, axis in enumerate(axes):
-        up = np.array([-axis[1], axis[0]])
-        own = which == number
-        panel.plot(*places[own].T, marker=_turned(BLOCK, up), markersize=1.4 * size, markerfacecolor="white", **style)
-        panel.plot(*places[own & stopped].T, marker=_turned(STOPS, up), markersize=1.9 * size, **style)
+def _draw_symbol(panel: Axes, symbol: Symbol, size: float) -> None:
+    """Symbols, all that point one way at once."""
+    style = dict(linestyle="none", color=symbol.colour, markerfacecolor=symbol.face, markersize=symbol.size * size,
+                 markeredgewidth=0 if symbol.face == symbol.colour else max(0.4, size / 10), zorder=symbol.order)
+    if symbol.up is None:
+        panel.plot(*symbol.places[:, :2].T, marker=marker(symbol.marker), **style)
+        return
+    ways, which = np.unique(np.round(symbol.up, 9), axis=0, return_inverse=True)
+    for number, up in enumerate(ways):
+        panel.plot(*symbol.places[which == number, :2].T, marker=marker(symbol.marker, up), **style)
 
 
 def _draw_springs(panel: Axes, truss: ResolvedTruss, height: float) -> None:
@@ -208,13 +184,13 @@ def _draw_supports(panel: Axes, truss: ResolvedTruss, size: float) -> None:
     style = dict(linestyle="none", color="0.25", markerfacecolor="white", markersize=1.5 * size,
                  markeredgewidth=max(0.4, size / 12), zorder=3)
     pinned = nodes.fixed[:, :2].all(axis=1)
-    panel.plot(*nodes.position_m[pinned, :2].T, marker=MarkerStyle(PIN), **style)
+    panel.plot(*nodes.position_m[pinned, :2].T, marker=marker(PIN), **style)
     for index in np.flatnonzero(guided(truss)):
         if nodes.fixed[index, :2].any():
             normal = np.array([1.0, 0.0]) if nodes.fixed[index, 0] else np.array([0.0, 1.0])
         else:
             normal = nodes.guide_normal[index, :2]
-        panel.plot(*nodes.position_m[index, :2], marker=_turned(ROLLER, normal), **style)
+        panel.plot(*nodes.position_m[index, :2], marker=marker(ROLLER, normal), **style)
 
 
 def _draw_loads(panel: Axes, truss: ResolvedTruss, size: float) -> None:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.markers import MarkerStyle
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
 from statejump.core.figures import Drawing
 from statejump.kinds.truss.draw_symbols import (
-    CABLE, FRACTION, JOINT, LATCH, LOAD, MOST_NAMED, SPIRAL, SPRING, SURFACE, TORSION, gap_m, legend, link_colours,
-    names, symbol_size, turning_places,
+    CABLE, FRACTION, LOAD, MOST_NAMED, SPRING, SURFACE, covered, gap_m, legend, link_colours, marker, names,
+    symbol_size, symbols,
 )
+from statejump.kinds.truss.joints.protocol import Symbol
 from statejump.kinds.truss.resolved import ResolvedTruss
 
 
@@ -78,27 +78,10 @@ def _points(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> Non
     axes.plot(*positions[held].T, marker="^", color="0.25", markerfacecolor="white", markersize=0.8 * size, zorder=4,
               **dots)
     bare = ~held
-    if len(truss.sliders.names):
-        carriers = truss.sliders.nodes[:, 0]
-        axes.plot(*positions[carriers].T, marker="s", color=JOINT, markerfacecolor="white", markersize=0.7 * size,
-                  zorder=4, **dots)
-        reach = 0.05 * span * truss.sliders.axis
-        axes.add_collection3d(Line3DCollection(
-            list(np.stack((positions[carriers] - reach, positions[carriers] + reach), axis=1)), colors=JOINT,
-            linewidths=1, zorder=3))
-        bare[carriers] = False
-    if len(truss.revolutes.names):
-        centres = positions[truss.revolutes.bearing_node].T
-        axes.plot(*centres, marker="o", color=JOINT, markerfacecolor="white", markersize=0.7 * size, zorder=5, **dots)
-        axes.plot(*centres, marker="o", color=JOINT, markersize=0.35 * size, zorder=6, linestyle="none",
-                  markeredgewidth=0)
-        bare[truss.revolutes.bearing_node] = bare[truss.revolutes.journal_node] = False
+    bare[covered(truss)] = False
+    for symbol in symbols(truss):
+        _draw_symbol(axes, symbol, size, span)
     axes.plot(*positions[bare].T, "o", color="0.2", markersize=0.35 * size, zorder=4, linestyle="none")
-    if len(truss.torsion_springs.names):
-        axes.plot(*turning_places(truss, truss.torsion_springs).T, marker=MarkerStyle(SPIRAL), color=TORSION,
-                  markerfacecolor="none", markersize=1.3 * size, zorder=4.5, **dots)
-    if len(truss.latch_hinges.names):
-        axes.plot(*turning_places(truss, truss.latch_hinges).T, **LATCH, markersize=0.7 * size, zorder=4.6)
     forces = np.linalg.norm(nodes.force_N, axis=1)
     if forces.any():
         arrows = 0.15 * span * nodes.force_N / forces.max()
@@ -107,6 +90,20 @@ def _points(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> Non
     if truss.reflector is not None:
         axes.plot(*positions[truss.reflector.nodes].T, marker="D", color=SURFACE, markerfacecolor="none",
                   markersize=1.1 * size, zorder=6, **dots)
+
+
+def _draw_symbol(axes: Axes3D, symbol: Symbol, size: float, span: float) -> None:
+    if not symbol.size_in_space or not len(symbol.places):
+        return
+    edge = 0 if symbol.face == symbol.colour else max(0.4, size / 12)
+    axes.plot(*symbol.places.T, marker=marker(symbol.marker_in_space or symbol.marker), linestyle="none",
+              color=symbol.colour, markerfacecolor=symbol.face, markersize=symbol.size_in_space * size,
+              markeredgewidth=edge, zorder=symbol.order)
+    if symbol.line_in_space is not None:
+        reach = 0.05 * span * symbol.line_in_space
+        axes.add_collection3d(Line3DCollection(
+            list(np.stack((symbol.places - reach, symbol.places + reach), axis=1)), colors=symbol.colour,
+            linewidths=1, zorder=3))
 
 
 def _name(axes: Axes3D, truss: ResolvedTruss, middle: np.ndarray, span: float) -> None:

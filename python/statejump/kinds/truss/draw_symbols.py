@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import pi
+from math import atan2, pi
 from typing import Any
 
 import numpy as np
@@ -13,13 +13,17 @@ from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 from matplotlib.markers import MarkerStyle
 from matplotlib.path import Path as Outline
+from matplotlib.transforms import Affine2D
 from scipy.spatial import cKDTree
 
-from statejump.kinds.truss.resolved import GROUND, LatchHinges, ResolvedTruss, TorsionSprings
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.protocol import Strokes, Symbol
+from statejump.kinds.truss.joints.words import scaled
+from statejump.kinds.truss.resolved import ResolvedTruss
 
 COLOURS = colormaps["cividis_r"]  # cold light, hot dark: reads in grey and for colour-blind eyes
-LINK, SPRING, CABLE, LOAD, JOINT, TORSION, SURFACE = (
-    "#0072B2", "#009E73", "#D55E00", "#D55E00", "#000000", "#CC79A7", "#E69F00",
+LINK, SPRING, CABLE, LOAD, TORSION, SURFACE = (
+    "#0072B2", "#009E73", "#D55E00", "#D55E00", "#CC79A7", "#E69F00",
 )
 FRACTION = "Temperature fraction of a link [-]"
 MOST_NAMED = 24  # nodes; of more the names would cover the drawing
@@ -34,15 +38,10 @@ def _outline(*strokes: Sequence[tuple[float, float]]) -> Outline:
 
 
 # Symbols in units of their size, the node at (0, 0), the ground below.
-PIN = _outline([(0, 0), (-0.55, -0.8), (0.55, -0.8), (0, 0)], [(-0.9, -0.8), (0.9, -0.8)],
-               *[[(x, -0.8), (x - 0.2, -1.0)] for x in (-0.6, -0.2, 0.2, 0.6)])
-ROLLER = _outline([(0, 0), (-0.5, -0.7), (0.5, -0.7), (0, 0)], [(-0.9, -0.95), (0.9, -0.95)])
-BLOCK = _outline([(-0.75, -0.45), (0.75, -0.45), (0.75, 0.45), (-0.75, 0.45), (-0.75, -0.45)],
-                 [(-1.0, -0.55), (1.0, -0.55)], *[[(x, -0.55), (x - 0.2, -0.75)] for x in (-0.7, -0.3, 0.1, 0.5, 0.9)])
-STOPS = _outline([(-1.0, -0.55), (-1.0, 0.45)], [(1.0, -0.55), (1.0, 0.45)])
-SPIRAL = Outline([(0.28 * t * np.cos(5.2 * t), 0.28 * t * np.sin(5.2 * t)) for t in np.linspace(0.4, 3.6, 60)])
-# Of a latch hinge: a square that stands on its tip, in the colour of joints.
-LATCH: dict[str, Any] = dict(marker="D", linestyle="none", color=JOINT, markerfacecolor="white", markeredgewidth=1.2)
+PIN: Strokes = (((0, 0), (-0.55, -0.8), (0.55, -0.8), (0, 0)), ((-0.9, -0.8), (0.9, -0.8)),
+                *(((x, -0.8), (x - 0.2, -1.0)) for x in (-0.6, -0.2, 0.2, 0.6)))
+ROLLER: Strokes = (((0, 0), (-0.5, -0.7), (0.5, -0.7), (0, 0)), ((-0.9, -0.95), (0.9, -0.95)))
+SPIRAL: Strokes = (tuple((0.28 * t * np.cos(5.2 * t), 0.28 * t * np.sin(5.2 * t)) for t in np.linspace(0.4, 3.6, 60)),)
 
 
 def gap_m(truss: ResolvedTruss) -> float:
@@ -54,12 +53,6 @@ def gap_m(truss: ResolvedTruss) -> float:
 def symbol_size(gap_pt: float) -> float:
     """Size of symbols [pt] for places that far apart on the drawing [pt]."""
     return float(np.clip(0.6 * gap_pt, 2.0, 13.0))
-
-
-def _spread(values: np.ndarray, scale: float, unit: str) -> str:
-    """Return one value or the range of several."""
-    low, high = values.min() * scale, values.max() * scale
-    return f"{low:.4g} {unit}" if high - low <= 1e-9 * abs(high) else f"{low:.3g} to {high:.3g} {unit}"
 
 
 def link_colours(truss: ResolvedTruss) -> tuple[Any, ScalarMappable | None]:
@@ -76,48 +69,40 @@ def legend(truss: ResolvedTruss) -> list[Line2D]:
     def entry(label: str, **style: Any) -> Line2D:
         return Line2D([], [], **{"linestyle": "none", "markersize": 9, **style}, label=label)
 
-    sliders, revolutes, springs = truss.sliders, truss.revolutes, truss.springs
+    springs = truss.springs
     fraction = truss.links.temperature_fraction
     uniform = np.ptp(fraction) < 1e-9
-    text = "link" if (fraction == 1).all() else f"link, {_spread(fraction, 1.0, 'of ΔT')}"
+    text = "link" if (fraction == 1).all() else f"link, {scaled(fraction, 1.0, 'of ΔT')}"
     if not uniform:
         text = "link, coloured by temperature fraction"
     found = [entry(text, linestyle="-", linewidth=2, color=LINK if uniform else COLOURS(0.6))]
     symbol: dict[str, Any] = dict(color="0.25", markerfacecolor="white")
     if truss.dimension == 2:
         if truss.nodes.fixed[:, :2].all(axis=1).any():
-            found.append(entry("fixed", marker=MarkerStyle(PIN), **symbol))
+            found.append(entry("fixed", marker=marker(PIN), **symbol))
         if guided(truss).any():
-            found.append(entry("held in one direction", marker=MarkerStyle(ROLLER), **symbol))
+            found.append(entry("held in one direction", marker=marker(ROLLER), **symbol))
     else:
         found.append(entry("fixed", marker="^", **symbol))
         if truss.nodes.guide_normal.any():
             found.append(entry("stays in a plane, its normal", linestyle="-", linewidth=1, color="0.45"))
-    if len(sliders.names):
-        limit = sliders.friction_coefficient * sliders.normal_force_N
-        text = f"slider, friction {_spread(limit, 1.0, 'N')}"
-        stops = np.concatenate((sliders.clearance_minus_m, sliders.clearance_plus_m))
-        if np.isfinite(stops).any():
-            text += f", stops at {_spread(stops[np.isfinite(stops)], 1e3, 'mm')}"
-        found.append(entry(text, marker=MarkerStyle(BLOCK), color=JOINT, markerfacecolor="white"))
-    if len(revolutes.names):
-        found.append(entry(
-            f"clearance joint, c = {_spread(revolutes.radial_clearance_m, 1e3, 'mm')}, "
-            f"μ = {_spread(revolutes.friction_coefficient, 1.0, '').strip()}",
-            marker="o", color=JOINT, markerfacecolor="white", markeredgewidth=1.4))
+    for joint in JOINTS:
+        joints = truss.joints[joint.section]
+        if len(joints.names):
+            first = joint.symbols(truss, joints)[0]
+            found.append(entry(joint.legend(joints), marker=marker(first.marker), color=first.colour,
+                               markerfacecolor=first.face, markeredgewidth=1.2))
     for what, mask, style in (("spring", ~springs.cable, dict(color=SPRING, linestyle="-", linewidth=1)),
                               ("cable", springs.cable, dict(color=CABLE, linestyle=(0, (5, 2)), linewidth=1))):
         if mask.any():
-            found.append(entry(f"{what}, preload {_spread(springs.preload_N[mask], 1.0, 'N')}", **style))
+            found.append(entry(f"{what}, preload {scaled(springs.preload_N[mask], 1.0, 'N')}", **style))
     if len(truss.torsion_springs.names):
-        stiffness = _spread(truss.torsion_springs.stiffness_N_m_per_rad, 1.0, "N m/rad")
-        found.append(entry(f"torsion spring, {stiffness}", marker=MarkerStyle(SPIRAL), color=TORSION, markersize=12,
+        stiffness = scaled(truss.torsion_springs.stiffness_N_m_per_rad, 1.0, "N m/rad")
+        found.append(entry(f"torsion spring, {stiffness}", marker=marker(SPIRAL), color=TORSION, markersize=12,
                            markeredgewidth=0.8, markerfacecolor="none"))
-    if len(truss.latch_hinges.names):
-        found.append(entry(f"latch hinge, play ±{_spread(truss.latch_hinges.deadband_rad, 1e3, 'mrad')}", **LATCH))
     forces = np.linalg.norm(truss.nodes.force_N, axis=1)
     if forces.any():
-        found.append(entry(f"load, {_spread(forces[forces > 0], 1.0, 'N')}", marker=r"$\rightarrow$", color=LOAD))
+        found.append(entry(f"load, {scaled(forces[forces > 0], 1.0, 'N')}", marker=r"$\rightarrow$", color=LOAD))
     if truss.reflector is not None:
         found.append(entry("reflecting surface", marker="D", color=SURFACE, markerfacecolor="none"))
     return found
@@ -128,23 +113,37 @@ def guided(truss: ResolvedTruss) -> np.ndarray:
     nodes = truss.nodes
     held = (nodes.fixed[:, :2].sum(axis=1) == 1) | (
         ~nodes.fixed[:, :2].any(axis=1) & nodes.guide_normal.any(axis=1))
-    held[truss.sliders.nodes[truss.sliders.nodes[:, 1] == GROUND, 0]] = False
+    for joint in JOINTS:
+        held[joint.guided_nodes(truss.joints[joint.section])] = False
     return held
 
 
-def turning_places(truss: ResolvedTruss, items: TorsionSprings | LatchHinges) -> np.ndarray:
-    """Where what turns links against each other is drawn (t, 3): the nearest ends of its links, else a link's first
-    node."""
-    positions, links = truss.nodes.position_m, truss.links
-    places = []
-    for one, two in items.links:
-        first = links.nodes[one]
-        if two == GROUND:
-            places.append(positions[first[0]])
-            continue
-        pairs = [(np.linalg.norm(positions[a] - positions[b]), a) for a in first for b in links.nodes[two]]
-        places.append(positions[min(pairs)[1]])
-    return np.array(places).reshape(-1, 3)
+def marker(given: str | Strokes, up: np.ndarray | None = None) -> MarkerStyle:
+    """Return a marker of matplotlib's.
+
+    :param up: (2,) to where its top points; None: as drawn
+    """
+    if isinstance(given, str):
+        return MarkerStyle(given)
+    outline = _outline(*given)
+    turned = outline if up is None else outline.transformed(Affine2D().rotate(atan2(up[1], up[0]) - pi / 2))
+    return MarkerStyle(turned)
+
+
+def symbols(truss: ResolvedTruss) -> list[Symbol]:
+    """Return the symbols of joints and torsion springs."""
+    found = [symbol for joint in JOINTS if len(truss.joints[joint.section].names)
+             for symbol in joint.symbols(truss, truss.joints[joint.section])]
+    if len(truss.torsion_springs.names):
+        # A revolute has its own symbol in the middle: the spring stands around it.
+        found.append(Symbol(truss.turning_places(truss.torsion_springs.links), SPIRAL, 1.6, 1.3, colour=TORSION,
+                            face="none", order=4.5))
+    return found
+
+
+def covered(truss: ResolvedTruss) -> np.ndarray:
+    """Return the nodes that symbols of joints stand for, of each joint the first one first."""
+    return np.concatenate([joint.covered_nodes(truss.joints[joint.section]) for joint in JOINTS]).astype(int)
 
 
 def names(truss: ResolvedTruss) -> list[tuple[np.ndarray, str, np.ndarray]]:
@@ -163,8 +162,9 @@ def names(truss: ResolvedTruss) -> list[tuple[np.ndarray, str, np.ndarray]]:
         taken.setdefault(int(index), []).append(np.array(ground))
     for index in np.flatnonzero(truss.nodes.force_N.any(axis=1)):
         taken.setdefault(int(index), []).append(-truss.nodes.force_N[index, :2])
-    for (node, _), axis in zip(truss.sliders.nodes, truss.sliders.axis):
-        taken[int(node)] = [np.array([-axis[1], axis[0]])]  # below the block, where no link is
+    for joint in JOINTS:
+        for node, up in joint.sides(truss.joints[joint.section]):
+            taken[node] = [up]  # below the symbol, where no link is
     angles = pi / 2 + np.arange(16) * pi / 8
     candidates = np.stack((np.cos(angles), np.sin(angles)), axis=1)
     found = []

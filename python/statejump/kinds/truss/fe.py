@@ -19,7 +19,8 @@ from statejump.core.thermal import Thermal
 from statejump.fe import ccx
 from statejump.fe.ccx import number
 from statejump.kinds.truss.case import TrussCase, TrussThermal
-from statejump.kinds.truss.resolved import GROUND, ResolvedTruss
+from statejump.kinds.truss.arrays import GROUND
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import whole_path
 
 Numbers = NDArray[np.float64]
@@ -91,9 +92,8 @@ def _without_revolutes(truss: ResolvedTruss) -> ResolvedTruss:
     return replace(
         truss, nodes=replace(nodes, names=tuple(nodes.names[node] for node in kept), fixed=fixed, force_N=force,
                              position_m=nodes.position_m[kept], guide_normal=nodes.guide_normal[kept]),
-        links=replace(links, nodes=at[links.nodes]), sliders=replace(sliders, nodes=ends),
-        revolutes=type(joints)(**none),
-    )
+        links=replace(links, nodes=at[links.nodes]),
+    ).with_joints(slider=replace(sliders, nodes=ends), revolute=type(joints)(**none))
 
 
 def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:
@@ -106,10 +106,10 @@ def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:
             truss, programs=(program,), program_names=("thermal",),
             nodes=replace(truss.nodes, force_N=step * truss.nodes.force_N),
             links=replace(truss.links, program=np.zeros(count, dtype=int), temperature_fraction=step * changes),
-            sliders=replace(truss.sliders, friction_coefficient=np.ones(len(truss.sliders.names)),
-                            normal_force_N=np.full(len(truss.sliders.names), LARGEST_HELD)),
             sticking="rigid",
-        )
+        ).with_joints(slider=replace(
+            truss.sliders, friction_coefficient=np.ones(len(truss.sliders.names)),
+            normal_force_N=np.full(len(truss.sliders.names), LARGEST_HELD)))
         path = whole_path(scaled, increments_per_branch=1)
         peak = int(np.argmin(np.abs(path.states["time_s"] - 0.5)))
         found.append(path.states["displacement_m"][peak])

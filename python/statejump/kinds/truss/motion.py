@@ -16,6 +16,7 @@ from statejump.core.errors import Interrupted, StatejumpError
 from statejump.core.progress import Tell
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.dem import lumped_mass_kg
+from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussEvent, engine_items
 
@@ -90,9 +91,10 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         return True
 
     truss, samples = case.resolve(), case.samples_per_cycle
-    for name in truss.latch_hinges.names[:1]:
-        raise StatejumpError(cause=f"latch_hinge {name!r} is a joint of quasi-static paths only", case=case.name,
-                             remedy="'statejump reduced' without --dynamic can run the case", joint=name)
+    for joint in JOINTS:
+        for name in truss.joints[joint.section].names[:1] if joint.not_in_motion else ():
+            raise StatejumpError(cause=f"{joint.section} {name!r} {joint.not_in_motion}", case=case.name,
+                                 remedy="'statejump reduced' without --dynamic can run the case", joint=name)
     steps_per_sample = ceil(case.motion.steps_per_cycle / samples)
     try:
         found = _engine.truss_motion(

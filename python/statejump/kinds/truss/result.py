@@ -14,9 +14,10 @@ from statejump.core.run import (
 from statejump.core.units import unit_of
 from statejump.kinds.truss import compare
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.dem import pressing_directions
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.protocol import Contacts, Sampled
 from statejump.kinds.truss.motion import TrussMotion
-from statejump.kinds.truss.resolved import GROUND, ResolvedTruss
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, engine_program, heat_of_joints_J
 from statejump.results import scene as drawing
 from statejump.results.events import from_states, kind_of
@@ -26,44 +27,43 @@ STATES = np.array([STICK, SLIP, SLIP, AT_STOP, AT_STOP, SEPARATED], dtype=np.uin
 STATE_OF = {"stick": STICK, "slip_plus": SLIP, "slip_minus": SLIP, "stop_plus": AT_STOP, "stop_minus": AT_STOP,
             "open": SEPARATED}
 # Columns by item: what it is of, whether it is a vector. Names and order are those of the DEM's samples.
-ITEMS = {
-    "displacement_m": ("nodes", True), "axial_force_N": ("links", False), "tension_N": ("springs", False),
-    "slide_m": ("sliders", False), "slider_force_N": ("sliders", False), "slider_state": ("sliders", False),
-    "eccentricity_m": ("revolutes", True), "normal_force_N": ("revolutes", False),
-    "friction_force_N": ("revolutes", False), "revolute_state": ("revolutes", False),
-    "hinge_rotation_rad": ("latch_hinges", False), "hinge_moment_N_m": ("latch_hinges", False),
-}
+ITEMS = {"displacement_m": ("nodes", True), "axial_force_N": ("links", False), "tension_N": ("springs", False)} | {
+    column.name: (joint.items, column.vector) for joint in JOINTS for column in joint.columns}
+TOUCHING = [joint for joint in JOINTS if joint.has_contacts]
 LOCATED = 1e-6  # of a cycle: an event within less has no uncertainty worth telling
-NOTES = {
-    "displacement_m": "from the drawn shape", "axial_force_N": "compression positive",
-    "slider_force_N": "friction and stop on the slider, against its axis",
-    "hinge_rotation_rad": "from the drawn shape",
-    "hinge_moment_N_m": "against the rotation: preload, stiffness beyond the play, friction",
-    "eccentricity_m": "journal minus bearing centre", "friction_force_N": "on the journal, clockwise about the axis",
-}
+NOTES = {"displacement_m": "from the drawn shape", "axial_force_N": "compression positive"} | {
+    column.name: column.note for joint in JOINTS for column in joint.columns}
 
 
 def _joints(truss: ResolvedTruss) -> list[str]:
-    """Names of all contacts, sliders first."""
+    """Names of all contacts, type by type."""
     return list(joint_names(truss).values())
 
 
 def joint_names(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
-    """Name of every contact by kind and name of its joint; with the kind where a slider and a revolute share one."""
-    sliders, revolutes = truss.sliders.names, truss.revolutes.names
-    shared = bool(set(sliders) & set(revolutes))
-    return {
-        (kind, name): f"{kind} {name}" if shared else name
-        for kind, found in (("slider", sliders), ("revolute", revolutes)) for name in found
-    }
+    """Name of every contact by kind and name of its joint; with the kind where joints of two types share one."""
+    listed = [(joint.section, name) for joint in TOUCHING for name in truss.joints[joint.section].names]
+    shared = len({name for _, name in listed}) < len(listed)
+    return {(kind, name): f"{kind} {name}" if shared else name for kind, name in listed}
+
+
+def _all_names(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
+    """Name of every joint, those of contacts as there; with the kind where a joint before has the same."""
+    found = joint_names(truss)
+    taken = set(found.values())
+    for joint in JOINTS:
+        own = () if joint.has_contacts else truss.joints[joint.section].names
+        found |= {(joint.section, name): f"{joint.section} {name}" if name in taken else name for name in own}
+        taken |= set(own)
+    return found
 
 
 def names(case: TrussCase) -> dict[str, list[str]]:
     """Names of the items of columns."""
     truss = case.resolve()
-    of = {key: list(getattr(truss, key).names) for key in ("nodes", "links", "springs", "sliders", "revolutes")}
-    if truss.latch_hinges.names:
-        of["latch_hinges"] = list(truss.latch_hinges.names)
+    of = {key: list(getattr(truss, key).names) for key in ("nodes", "links", "springs")}
+    of |= {joint.items: list(truss.joints[joint.section].names) for joint in JOINTS
+           if joint.has_contacts or truss.joints[joint.section].names}
     return {**of, "contacts": _joints(truss)}
 
 
@@ -78,45 +78,16 @@ def scene(case: TrussCase) -> dict[str, Any]:
     for name, ends, stiffness in zip(truss.springs.names, truss.springs.nodes, truss.springs.stiffness_N_per_m):
         parts.append({"name": f"spring {name}", "type": "spring", "ends": [nodes[end] for end in ends],
                       "stiffness_N_per_m": float(stiffness)})
-    contacts = []
-    joints = _joints(truss)
-    for place, (ends, axis, radius) in enumerate(
-        zip(truss.sliders.nodes, truss.sliders.axis, truss.sliders.pad_radius_m)
-    ):
-        block = f"block {joints[place]}"
-        parts.append({
-            "name": block, "type": "block", "centre": nodes[ends[0]], "angle_rad": float(np.arctan2(axis[1], axis[0])),
-            "half_width_m": float(radius), "half_height_m": float(radius), "pad_radius_m": float(radius),
-        })
-        held = truss.nodes.position_m[ends[0]]
-        floor = f"floor {joints[place]}"
-        parts.append({"name": floor, "type": "frame", "points": [(held - radius * axis).tolist(),
-                                                                 (held + radius * axis).tolist()]})
-        contacts.append((joints[place], block, floor))
-    revolutes = truss.revolutes
-    drawn: set[str] = set()
-    for place in range(len(revolutes.names)):
-        name = joints[len(truss.sliders.names) + place]
-        pair = []
-        for part in ("journal", "bearing"):
-            node, link = (int(getattr(revolutes, f"{part}_{what}")[place]) for what in ("node", "link"))
-            label = f"{part} {truss.nodes.names[node]}"
-            pair.append(label)
-            if label in drawn:
-                continue
-            drawn.add(label)
-            # About an axis in space a link's view along z has no angle of its own to tell.
-            turns = link != GROUND and truss.dimension == 2
-            angle = drawing.ref("links/angle_rad", truss.links.names[link]) if turns else 0.0
-            axis = {} if truss.dimension == 2 else {"axis": revolutes.axis[place].tolist()}
-            parts.append({
-                "name": label, "type": part, "centre": nodes[node], "angle_rad": angle,
-                "radius_m": float(getattr(revolutes, f"{part}_radius_m")[place]),
-                "thermal_expansion_per_K": float(getattr(revolutes, f"{part}_thermal_expansion_per_K")[place]), **axis,
-            })
-        contacts.append((name, pair[0], pair[1]))
-    clearances = [*revolutes.radial_clearance_m, *truss.sliders.clearance_minus_m, *truss.sliders.clearance_plus_m]
-    smallest = min((float(value) for value in clearances if np.isfinite(value)), default=0.0)
+    labels, taken = joint_names(truss), {part["name"] for part in parts}
+    contacts, clearances = [], [np.zeros(0)]
+    for joint in JOINTS:
+        joints = truss.joints[joint.section]
+        own = joint.drawn(truss, joints, [labels.get((joint.section, name), name) for name in joints.names], taken)
+        parts += own.parts
+        contacts += own.contacts
+        clearances.append(own.clearances_m)
+    every = np.concatenate(clearances)
+    smallest = float(every[np.isfinite(every)].min(initial=np.inf)) if np.isfinite(every).any() else 0.0
     return {**drawing.description(parts, contacts, smallest), "plane": "xy" if truss.dimension == 2 else "xyz"}
 
 
@@ -145,7 +116,7 @@ def _run(
     truss, time = case.resolve(), plain["time_s"].values
     history = dict(plain)
     for key, (of, _) in ITEMS.items():
-        if key not in ("slider_state", "revolute_state", "axial_force_N") and items[key].shape[1]:
+        if key != "axial_force_N" and items[key].shape[1]:
             history[key] = Column(items[key], unit_of(key), of, note=NOTES.get(key, ""))
     position = truss.nodes.position_m + items["displacement_m"]
     history["position_m"] = Column(position, "m", "nodes")
@@ -169,32 +140,35 @@ def _run(
 def _contacts(
     truss: ResolvedTruss, time: np.ndarray, position: np.ndarray, items: dict[str, np.ndarray]
 ) -> dict[str, Column]:
-    sliders, revolutes = truss.sliders, truss.revolutes
-    samples = len(time)
-    state = np.concatenate((items["slider_state"], items["revolute_state"]), axis=1).astype(np.uint8)
-    slide = items["slide_m"]
-    stops = np.minimum(slide + sliders.clearance_minus_m, sliders.clearance_plus_m - slide)
-    offset = items["eccentricity_m"]
-    distance = np.linalg.norm(offset, axis=2)
-    clearance = revolutes.clearance_m(_changes(truss, time, revolutes))
-    gap = np.concatenate((np.where(np.isfinite(stops), stops, np.nan), clearance - distance), axis=1)
-    normal = np.divide(offset, distance[:, :, None], out=np.zeros_like(offset), where=distance[:, :, None] > 0)
-    floor = pressing_directions(truss)
-    pads = position[:, sliders.nodes[:, 0]] + sliders.pad_radius_m[:, None] * floor
-    bearings = position[:, revolutes.bearing_node] + revolutes.bearing_radius_m[:, None] * normal
-    push = np.tile(-sliders.normal_force_N[:, None] * floor, (samples, 1, 1))
-    friction = -items["slider_force_N"][:, :, None] * sliders.axis
-    across = np.cross(revolutes.axis, normal) if len(revolutes.names) else normal
+    found: list[Contacts] = []
+    for joint in TOUCHING:
+        joints = truss.joints[joint.section]
+        changes = _changes(truss, time, joints) if joint.has_temperature else np.zeros((len(time), 0))
+        own = {column.name: items[column.name] for column in joint.columns}
+        found.append(joint.contacts(Sampled(truss, position, own, changes), joints))
+    state = np.concatenate([items[joint.state_column] for joint in TOUCHING], axis=1).astype(np.uint8)
+
+    def together(key: str) -> np.ndarray:
+        return np.concatenate([getattr(one, key) for one in found], axis=1)
+
     return {
         "state": Column(state, items="contacts", labels=CONTACT_STATES),
-        "gap_m": Column(gap, "m", "contacts", note="of sliders: to the nearer stop; NaN: there is none"),
-        "point_m": Column(np.concatenate((pads, bearings), axis=1), "m", "contacts"),
-        "normal_force_N": Column(np.concatenate((push, -items["normal_force_N"][:, :, None] * normal), axis=1), "N",
-                                 "contacts", note="on pad or journal"),
-        "tangential_force_N": Column(
-            np.concatenate((friction, -items["friction_force_N"][:, :, None] * across), axis=1), "N", "contacts",
-            note="on pad (with the stops' force) or journal"),
+        "gap_m": Column(together("gap_m"), "m", "contacts", note="of sliders: to the nearer stop; NaN: there is none"),
+        "point_m": Column(together("point_m"), "m", "contacts"),
+        "normal_force_N": Column(together("normal_force_N"), "N", "contacts", note="on pad or journal"),
+        "tangential_force_N": Column(together("tangential_force_N"), "N", "contacts",
+                                     note="on pad (with the stops' force) or journal"),
     }
+
+
+def _states(states: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the states of contacts by the names of their columns, of the engine's statuses."""
+    return {joint.state_column: STATES[states[f"{joint.section}_status"].astype(int)] for joint in TOUCHING}
+
+
+def _heat(states: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return friction's heat since the start [J] (states, contacts)."""
+    return np.concatenate([states[f"{joint.section}_dissipation_J"] for joint in TOUCHING], axis=1)
 
 
 def sample_times(case: TrussCase) -> np.ndarray:
@@ -219,9 +193,8 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
 
     # The status of a state is that of the increment which ends there.
     ending = np.clip(np.searchsorted(at, times_s, side="left"), 0, len(at) - 1)
-    items = {key: sampled(states[key]) for key in ITEMS if not key.endswith("_state")}
-    for kind in ("slider", "revolute"):
-        items[f"{kind}_state"] = STATES[states[f"{kind}_status"].astype(int)][ending]
+    items = {key: sampled(states[key]) for key in ITEMS}
+    items |= {key: values[ending] for key, values in _states(states).items()}
     heat = heat_of_joints_J(states).sum(axis=1)
     plain, energy = columns_of({
         "time_s": times_s,
@@ -235,18 +208,15 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
                "unknowns": float(path.unknowns)}
     run = _run(case, "reduced", plain, energy, items, _events(case, path), summary, native=path,
                sampler=lambda times: reduced_run(case, path, times))
-    of_joints = np.concatenate((states["slider_dissipation_J"], states["revolute_dissipation_J"]), axis=1)
-    heat_of_joints = Column(sampled(of_joints), "J", "contacts", note="heat of friction since the start")
+    heat_of_joints = Column(sampled(_heat(states)), "J", "contacts", note="heat of friction since the start")
     return replace(run, contacts={**run.contacts, "dissipation_J": heat_of_joints})
 
 
 def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
     """Return the motion of a case as a run of the reduced model; its samples are those of the DEM."""
     states = motion.states
-    items = {key: states[key] for key in ITEMS if not key.endswith("_state")}
-    for kind in ("slider", "revolute"):
-        items[f"{kind}_state"] = STATES[states[f"{kind}_status"].astype(int)]
-    of_joints = np.concatenate((states["slider_dissipation_J"], states["revolute_dissipation_J"]), axis=1)
+    items = {key: states[key] for key in ITEMS} | _states(states)
+    of_joints = _heat(states)
     plain, energy = columns_of({
         **{key: states[key] for key in (
             "time_s", "temperature_change_K", "elastic_energy_J", "kinetic_energy_J", "damping_dissipation_J",
@@ -269,10 +239,7 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
 
 def _events(case: TrussCase, path: TrussPath | TrussMotion) -> list[Event]:
     truss, at = path.truss, path.states["time_s"]
-    joints, slipped, events = joint_names(truss), set(), []
-    taken = set(joints.values())
-    joints |= {("latch_hinge", name): f"latch_hinge {name}" if name in taken else name
-               for name in truss.latch_hinges.names}
+    joints, slipped, events = _all_names(truss), set(), []
     for event in path.events:
         name = joints[event.joint_kind, event.name]
         before, after = STATE_OF[event.before], STATE_OF[event.after]
@@ -289,11 +256,12 @@ def _events(case: TrussCase, path: TrussPath | TrussMotion) -> list[Event]:
 
 def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
     """Return a DEM run: events between samples."""
-    truss, samples = case.resolve(), len(columns["time_s"])
-    items = {}
-    for key, (of, vector) in ITEMS.items():
+    samples = len(columns["time_s"])
+    items, listed = {}, names(case)
+    states = {joint.state_column: (joint.items, False) for joint in TOUCHING}
+    for key, (of, vector) in {**ITEMS, **states}.items():
         ends = (".x", ".y", ".z") if vector else ("",)
-        found = [columns[f"{key}[{name}]{end}"] for name in getattr(truss, of).names for end in ends]
+        found = [columns[f"{key}[{name}]{end}"] for name in listed.get(of, ()) for end in ends]
         values = np.stack(found, axis=1) if found else np.zeros((samples, 0))
         items[key] = values.reshape(samples, -1, 3) if vector else values
     plain, energy = columns_of({name: values for name, values in columns.items() if "[" not in name})

@@ -15,7 +15,8 @@ from statejump.core.errors import Interrupted
 from statejump.core.progress import Tell
 from statejump.core.temperature_files import MemberProgram
 from statejump.kinds.truss.case import TrussCase, TrussThermal
-from statejump.kinds.truss.contacts import solver_stiffness
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.protocol import JointType
 from statejump.kinds.truss.resolved import ResolvedTruss
 
 # Bytes of the states of a whole path beyond which only the ends of cycles are kept.
@@ -29,7 +30,7 @@ class TrussEvent:
     time_s: float
     interval_s: float
     temperature_change_K: float
-    joint_kind: str  # "slider", "revolute" or "latch_hinge"
+    joint_kind: str  # section of its type: "slider", "revolute", ...
     name: str
     before: str
     after: str
@@ -61,7 +62,7 @@ class TrussPath:
 
 
 def heat_of_joints_J(states: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Return friction's heat since the start [J] (states, joints) of all joints: sliders, revolutes, latch hinges."""
+    """Return friction's heat since the start [J] (states, joints) of all joints, type by type."""
     kinds = _engine.truss_joints()
     return np.concatenate([states[f"{kind}_dissipation_J"] for kind in kinds], axis=1)
 
@@ -75,10 +76,16 @@ def _table(part: Any, *keys: str, **more: Any) -> dict[str, Any]:
     return {"names": list(part.names), **{key: getattr(part, key) for key in keys}, **more}
 
 
+def _joints(truss: ResolvedTruss, joint: JointType[Any, Any]) -> dict[str, Any]:
+    """Return the joints of a type with the arrays that the engine lists for it."""
+    joints = truss.joints[joint.section]
+    made = joint.engine_arrays(truss, joints)
+    keys = [parameter["key"] for parameter in _engine.truss_joints()[joint.section]["parameters"]]
+    return _table(joints, *(key for key in keys if key not in made), **made)
+
+
 def engine_items(truss: ResolvedTruss) -> dict[str, Any]:
     """Return the truss as the engine's tables and temperature programs."""
-    sliders = truss.sliders
-    hertz, mindlin, tangential = solver_stiffness(truss)
     return {
         "nodes": _table(truss.nodes, "position_m", "fixed", "guide_normal", "force_N"),
         "links": _table(truss.links, "nodes", "stress_free_length_m", "thermal_expansion_per_K", "program",
@@ -86,22 +93,7 @@ def engine_items(truss: ResolvedTruss) -> dict[str, Any]:
                         axial_stiffness_N=truss.links.young_modulus_Pa * truss.links.cross_section_area_m2),
         "springs": _table(truss.springs, "nodes", "stiffness_N_per_m", "free_length_m", "cable"),
         "torsion_springs": _table(truss.torsion_springs, "links", "stiffness_N_m_per_rad", "bias_rad", "axis"),
-        "joints": {
-            "slider": _table(
-                sliders, "axis", "clearance_minus_m", "clearance_plus_m",
-                first_node=sliders.nodes[:, 0], second_node=sliders.nodes[:, 1],
-                friction_force_N=sliders.friction_coefficient * sliders.normal_force_N,
-                tangential_stiffness_N_per_m=tangential),
-            "revolute": _table(
-                truss.revolutes, "journal_node", "bearing_node", "journal_link", "bearing_link",
-                "journal_radius_m", "radial_clearance_m", "journal_thermal_expansion_per_K",
-                "bearing_thermal_expansion_per_K", "friction_coefficient", "axis", "program",
-                "temperature_fraction", hertz_stiffness_N_per_m15=hertz, mindlin_stiffness_N_per_m15=mindlin),
-            "latch_hinge": _table(
-                truss.latch_hinges, "deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m",
-                "preload_moment_N_m", "axis", first_link=truss.latch_hinges.links[:, 0],
-                second_link=truss.latch_hinges.links[:, 1]),
-        },
+        "joints": {joint.section: _joints(truss, joint) for joint in JOINTS},
         "programs": [engine_program(program) for program in truss.programs],
     }
 

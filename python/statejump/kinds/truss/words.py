@@ -2,27 +2,18 @@
 """A ``truss`` case in words, and what a command prints of its runs."""
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from statejump.core.run import Run
 from statejump.core.tables import Shown
-from statejump.core.units import text
 from statejump.kinds.truss import compare
 from statejump.kinds.truss.case import Node, TrussCase
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.protocol import listed_joints
+from statejump.kinds.truss.joints.words import count, spread
 from statejump.kinds.truss.motion import TrussMotion
-
-
-def _count(items: Sequence[object], one: str) -> str:
-    return f"{len(items)} {one}{'' if len(items) == 1 else 's'}"
-
-
-def spread(values: Iterable[float], unit: str = "-", digits: int = 4) -> str:
-    """Return the one value of many items, or from where to where their values go."""
-    known = [float(value) for value in values]
-    low, high = min(known), max(known)
-    return text(low, unit, digits) if low == high else f"{text(low, unit, digits)} to {text(high, unit, digits)}"
 
 
 def is_held(case: TrussCase, node: Node) -> bool:
@@ -41,13 +32,13 @@ def describe(case: TrussCase) -> list[str]:
     held = [node for node in case.node if is_held(case, node)]
     guided = [node for node in case.node if is_guided(case, node)]
     sentences = [
-        f"A {kind} truss of {_count(case.node, 'node')} and {_count(case.link, 'link')}; {_count(held, 'node')} "
+        f"A {kind} truss of {count(case.node, 'node')} and {count(case.link, 'link')}; {count(held, 'node')} "
         f"{'is' if len(held) == 1 else 'are'} held" + (f", {len(guided)} guided" if guided else "") + "."
     ]
     sentences += [*_joints(case), *_tied(case)]
     loads = [sum(part**2 for part in node.force_N) ** 0.5 for node in case.node if node.force_N]
     if any(loads):
-        sentences.append(f"Dead loads of {spread(loads, 'N')} on {_count(loads, 'node')}.")
+        sentences.append(f"Dead loads of {spread(loads, 'N')} on {count(loads, 'node')}.")
     shares = [link.temperature_fraction for link in case.link]
     if set(shares) != {1.0}:
         sentences.append(f"Links are shaded: they take {spread(shares, digits=3)} of the temperature change.")
@@ -55,32 +46,13 @@ def describe(case: TrussCase) -> list[str]:
         sentences.append(f"{len(case.thermal.members.names)} members have temperature histories of their own, of "
                          f"{len(case.thermal.members.time_s)} times.")
     if case.program:
-        sentences.append(f"{_count(case.program, 'further temperature program')} for members that name one.")
+        sentences.append(f"{count(case.program, 'further temperature program')} for members that name one.")
     return sentences
 
 
 def _joints(case: TrussCase) -> list[str]:
-    sentences = []
-    if case.revolute:
-        sentences.append(
-            f"{_count(case.revolute, 'revolute joint')} with clearance: radial clearance "
-            f"{spread((joint.radial_clearance_m for joint in case.revolute), 'm')}, journal radius "
-            f"{spread((joint.journal_radius_m for joint in case.revolute), 'm')}, friction coefficient "
-            f"{spread(joint.friction_coefficient for joint in case.revolute)}."
-        )
-    if case.slider:
-        stops = sum(side is not None for joint in case.slider for side in (joint.clearance_minus_m,
-                                                                           joint.clearance_plus_m))
-        limits = (joint.friction_coefficient * joint.normal_force_N for joint in case.slider)
-        sentences.append(f"{_count(case.slider, 'sliding joint')} held by friction up to {spread(limits, 'N')}, "
-                         f"{f'with {stops} stops' if stops else 'without stops'}.")
-    if case.latch_hinge:
-        sentences.append(
-            f"{_count(case.latch_hinge, 'latch hinge')} with a free play of ±"
-            f"{spread((hinge.deadband_rad for hinge in case.latch_hinge), 'rad')}, "
-            f"{spread((hinge.stiffness_N_m_per_rad for hinge in case.latch_hinge), 'N m/rad')} beyond it, friction of "
-            f"{spread((hinge.friction_moment_N_m for hinge in case.latch_hinge), 'N m')}."
-        )
+    found = ((joint, listed_joints(case, joint)) for joint in JOINTS)
+    sentences = [joint.describe(items) for joint, items in found if items]
     if case.reduced.sticking == "elastic":
         sentences.append("Joints of the reduced model stick elastically, as those of the DEM.")
     return sentences
@@ -92,7 +64,7 @@ def _tied(case: TrussCase) -> list[str]:
     kinds: tuple[tuple[Sequence[object], str], ...] = (
         (springs, "spring"), (cables, "cable"), (case.torsion_spring, "torsion spring"),
     )
-    tied = [_count(found, name) for found, name in kinds if found]
+    tied = [count(found, name) for found, name in kinds if found]
     return [f"It has {' and '.join(filter(None, [', '.join(tied[:-1]), tied[-1]]))}."] if tied else []
 
 

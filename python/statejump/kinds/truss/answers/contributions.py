@@ -8,7 +8,8 @@ import numpy as np
 
 from statejump.core.progress import Tell
 from statejump.kinds.truss.answers.outputs import Output
-from statejump.kinds.truss.resolved import GROUND, ResolvedTruss
+from statejump.kinds.truss.arrays import GROUND
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, whole_path
 
 STOPS = (3, 4)  # statuses of a slider at a stop, as the engine numbers them
@@ -85,11 +86,12 @@ def without_friction(truss: ResolvedTruss) -> ResolvedTruss:
     return replace(
         truss,
         links=replace(truss.links, temperature_fraction=0 * truss.links.temperature_fraction),
-        sliders=replace(truss.sliders, friction_coefficient=0 * truss.sliders.friction_coefficient),
-        revolutes=replace(truss.revolutes, friction_coefficient=0 * truss.revolutes.friction_coefficient,
-                          temperature_fraction=0 * truss.revolutes.temperature_fraction),
         # Nothing follows them any more, but all have to last equally long.
         programs=len(truss.programs) * (truss.programs[0].repeated(1),),
+    ).with_joints(
+        slider=replace(truss.sliders, friction_coefficient=0 * truss.sliders.friction_coefficient),
+        revolute=replace(truss.revolutes, friction_coefficient=0 * truss.revolutes.friction_coefficient,
+                         temperature_fraction=0 * truss.revolutes.temperature_fraction),
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.answers import reflector
 from statejump.kinds.truss.answers.jumps import most_moved, node_jumps
-from statejump.kinds.truss.check_references import known_name
+from statejump.kinds.truss.references import known_name
 from statejump.kinds.truss.solve import TrussPath
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +11,9 @@ from statejump.core.errors import StatejumpError
 from statejump.core.progress import Tell
 from statejump.kinds.truss.answers.jumps import quick_path
 from statejump.kinds.truss.answers.outputs import Output
-from statejump.kinds.truss.resolved import ResolvedTruss, distances
+from statejump.kinds.truss.arrays import distances
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
 STEP = 1e-2  # of the value; the second difference takes half of it
@@ -37,33 +40,30 @@ class Sensitivity:
 
 def parameters(truss: ResolvedTruss) -> list[tuple[str, str, np.ndarray]]:
     """Return section, key and the values (items,) of every parameter that a jump may follow."""
+    found = [(joint.section, key, values) for joint in JOINTS
+             for key, values in joint.parameters(truss.joints[joint.section])]
     parts = (
-        ("slider", truss.sliders, ("friction_coefficient", "normal_force_N", "clearance_minus_m", "clearance_plus_m")),
-        ("revolute", truss.revolutes, ("friction_coefficient", "radial_clearance_m", "journal_radius_m")),
         ("link", truss.links, ("young_modulus_Pa", "cross_section_area_m2")),
         ("spring", truss.springs, ("stiffness_N_per_m", "preload_N")),
         ("torsion_spring", truss.torsion_springs, ("stiffness_N_m_per_rad", "bias_rad")),
-        ("latch_hinge", truss.latch_hinges,
-         ("deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m", "preload_moment_N_m")),
     )
-    found = [(section, key, getattr(part, key)) for section, part, keys in parts for key in keys]
-    hertz = ~truss.revolutes.rigid
-    if hertz.any():
-        found.append(("revolute", "young_modulus_Pa", np.where(hertz, truss.revolutes.young_modulus_Pa, 0.0)))
-    return found
+    return found + [(section, key, getattr(part, key)) for section, part, keys in parts for key in keys]
+
+
+def _part(truss: ResolvedTruss, section: str) -> Any:
+    """Return the arrays of a section."""
+    return truss.joints[section] if section in truss.joints else getattr(truss, f"{section}s")
 
 
 def changed(truss: ResolvedTruss, section: str, key: str, factor: np.ndarray) -> ResolvedTruss:
     """Return the truss with one parameter of every item times a factor (items,). The stiffness of a spring
     changes at constant preload, the preload at constant stiffness."""
-    field = {"slider": "sliders", "revolute": "revolutes", "link": "links", "spring": "springs",
-             "torsion_spring": "torsion_springs", "latch_hinge": "latch_hinges"}[section]
-    part = getattr(truss, field)
+    part = _part(truss, section)
     part = replace(part, **{key: getattr(part, key) * factor})
     if section == "spring":
         drawn = distances(truss.nodes.position_m, part.nodes)
         part = replace(part, free_length_m=drawn - part.preload_N / part.stiffness_N_per_m)
-    return replace(truss, **{field: part})
+    return truss.with_joints(**{section: part}) if section in truss.joints else replace(truss, **{f"{section}s": part})
 
 
 def histories_of(found: TrussPath) -> dict[tuple[str, str], list[str]]:
@@ -87,9 +87,6 @@ def sensitivities(
     than with another; "steps disagree": the slopes of both steps differ by more than AGREE, for another reason.
     """
     truss, own_jump = found.truss, output.jump(found)
-    names = {"slider": truss.sliders.names, "revolute": truss.revolutes.names, "link": truss.links.names,
-             "spring": truss.springs.names, "torsion_spring": truss.torsion_springs.names,
-             "latch_hinge": truss.latch_hinges.names}
     asked: list[tuple[str, str, str, np.ndarray, np.ndarray]] = []
     for section, key, values in parameters(truss):
         there = np.isfinite(values) & (values != 0)
@@ -99,7 +96,7 @@ def sensitivities(
             asked.append((section, key, "*", there, values))
             continue
         for index in np.flatnonzero(there):
-            asked.append((section, key, names[section][index], np.arange(len(values)) == index, values))
+            asked.append((section, key, _part(truss, section).names[index], np.arange(len(values)) == index, values))
     rows = []
     for place, (section, key, name, which, values) in enumerate(asked):
         own = values[which]

@@ -22,6 +22,7 @@ from statejump.kinds.truss.answers.outputs import Output, chosen_output
 from statejump.kinds.truss.answers.sensitivity import STEP, sensitivities
 from statejump.kinds.truss.answers.verdict import RESOLVED, Verdict, judged, others
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.result import reduced_run
 from statejump.kinds.truss.solve import TrussPath
 from statejump.results.contents import Answers, Scalar
@@ -209,10 +210,12 @@ def _jumps(found: TrussPath, output: Output, jump: float) -> bool:
 
 def _shares(found: TrussPath, output: Output, tell: Tell, tables: dict[str, list[rows.Row]],
             notes: list[str]) -> Contributions | None:
-    if found.truss.latch_hinges.friction_moment_N_m.any():
-        notes.append("no contributions: the friction of a latch hinge is a moment that turns with links, no load on "
-                     "nodes")
-        return None
+    for joint in JOINTS:
+        if joint.has_moments(found.truss.joints[joint.section]):
+            kind = joint.section.replace("_", " ")
+            notes.append(f"no contributions: the friction of a {kind} is a moment that turns with links, no load on "
+                         "nodes")
+            return None
     try:
         shares = contributions(found, output, tell)
     except EngineFailed as failure:

@@ -11,9 +11,10 @@ import numpy as np
 from statejump.control.study import Places, grid, highest
 from statejump.core.errors import NotAllowed, UnknownKey
 from statejump.kinds.truss.answers.sensitivity import changed, parameters
+from statejump.kinds.truss.arrays import distances
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.check_references import known_name
-from statejump.kinds.truss.resolved import ResolvedTruss, distances
+from statejump.kinds.truss.references import known_name
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.fields import rule_of
 from statejump.schema.paths import EVERY, attribute_of, split_path
 from statejump.schema.rules import suggestion

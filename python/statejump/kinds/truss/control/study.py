@@ -12,9 +12,9 @@ from statejump.core.units import plain
 from statejump.kinds.truss.answers.jumps import most_moved, quick_path
 from statejump.kinds.truss.answers.verdict import RESOLVED
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.check_references import known_name
 from statejump.kinds.truss.control.candidates import candidates
 from statejump.kinds.truss.control.search import Jump, Search, jump_of
+from statejump.kinds.truss.references import known_name
 
 RESULTS = {"jump_m": "|jump| [µm]"}
 LINES: dict[str, Line] = {

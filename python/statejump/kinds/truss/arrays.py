@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From items of a truss, which have keys and refer to each other by name, to arrays.
+
+Vectors have three components; the third is 0 in planar trusses. Items are numbered as in the file.
+Index -1 stands for ground.
+"""
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from statejump.schema.items import Item
+
+GROUND = -1
+# Directions that differ by less are one: far above rounding, far below what anybody means.
+SAME_DIRECTION = 1e-6
+
+
+def column(items: Sequence[Item], key: str) -> np.ndarray:
+    """Return one number of every item; NaN where it is not given."""
+    return np.array([getattr(item, key) for item in items], dtype=float)
+
+
+def columns(items: Sequence[Item], *keys: str) -> dict[str, np.ndarray]:
+    """Return one number of every item by key; see :func:`column`."""
+    return {key: column(items, key) for key in keys}
+
+
+def names(items: Sequence[Item]) -> tuple[str, ...]:
+    """Return the names of the items."""
+    return tuple(item.name for item in items)
+
+
+def numbering(items: Iterable[Item]) -> dict[str | None, int]:
+    """Return the index of every name; that of no name is GROUND."""
+    return {None: GROUND, **{item.name: index for index, item in enumerate(items)}}
+
+
+def vectors(values: Sequence[Sequence[float] | None], dimension: int) -> np.ndarray:
+    """Return vectors (n, 3) of 2 or 3 numbers each, zero where there is none."""
+    none = (0.0,) * dimension
+    given = np.array([none if value is None else value for value in values], dtype=float).reshape(-1, dimension)
+    found = np.zeros((len(given), 3))
+    found[:, :dimension] = given
+    return found
+
+
+def unit(given: np.ndarray) -> np.ndarray:
+    """Return vectors (n, 3) of length 1; a zero vector stays."""
+    lengths = np.linalg.norm(given, axis=-1, keepdims=True)
+    return given / np.where(lengths > 0, lengths, 1.0)
+
+
+def distances(position_m: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+    """Return the distances [m] between the nodes of each pair."""
+    return np.linalg.norm(position_m[pairs[:, 1]] - position_m[pairs[:, 0]], axis=1)
+
+
+@dataclass(frozen=True)
+class References:
+    """What names of a case stand for. References must be right: ``checks`` sees to it when a case is read."""
+
+    dimension: int
+    node: dict[str | None, int]
+    link: dict[str | None, int]
+    program: dict[str | None, int]  # of [[program]]; 0 is the common one
+    member: dict[str, int]  # programs of members that have histories of their own
+
+    def programs_of(self, items: Sequence[Any]) -> np.ndarray:
+        """Return the temperature program (items,) of items that may name one."""
+        return np.array([self.member.get(item.name, 0) if item.program is None else self.program[item.program]
+                         for item in items], dtype=int)
+
+    def axes(self, items: Sequence[Any]) -> np.ndarray:
+        """Return unit axes of rotation (items, 3): z in the plane."""
+        if self.dimension == 2:
+            return np.tile([0.0, 0.0, 1.0], (len(items), 1))
+        return unit(vectors([item.axis for item in items], self.dimension))
+
+
+def indices(items: Sequence[Any], key: str, number: dict[str | None, int]) -> np.ndarray:
+    """Return what a key of every item names (items,)."""
+    return np.array([number[getattr(item, key)] for item in items], dtype=int)
+
+
+def pairs(items: Sequence[Any], key: str, number: dict[str | None, int]) -> np.ndarray:
+    """Return the one or two that a key of every item names (items, 2), GROUND in place of the second."""
+    found = [[number[name] for name in getattr(item, key)] for item in items]
+    return np.array([(pair + [GROUND])[:2] for pair in found], dtype=int).reshape(-1, 2)

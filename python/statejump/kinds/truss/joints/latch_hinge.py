@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Latch hinges: free play in rotation, stiffness beyond it, friction and a moment that preloads them."""
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import pi
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from statejump.kinds.truss.arrays import References, columns, names, pairs
+from statejump.kinds.truss.joints.protocol import JointColumn, JointType, Symbol
+from statejump.kinds.truss.joints.words import USER, count, scaled, spread
+from statejump.kinds.truss.references import axis_of_rotation, known_links, turned_links
+from statejump.schema.fields import definition, numbers, parameter, texts
+from statejump.schema.items import Item
+
+if TYPE_CHECKING:
+    from statejump.kinds.truss.resolved import ResolvedTruss
+
+
+@definition
+class LatchHinge(Item):
+    """A hinge with a latch: the rotation of the second link against the first, or of one link against the ground,
+    is free within a play and meets a stiffness beyond it, against dry friction.
+
+    Angles as of torsion springs. The moment against a rotation from the drawn shape is preload + stiffness (rotation
+    beyond the play) ± friction.
+    """
+
+    links: list[str] = texts(..., "two links that share a place, or one")
+    deadband_rad: float = parameter(..., "rad", 0, pi, USER + "; free play to either side")
+    stiffness_N_m_per_rad: float = parameter(..., "N m/rad", 0, 1e12, USER + "; beyond the play", above=True)
+    friction_moment_N_m: float = parameter(0.0, "N m", 0, 1e9, "no friction")
+    preload_moment_N_m: float = parameter(0.0, "N m", -1e9, 1e9, "against the rotation; none")
+    axis: list[float] | None = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
+
+
+@dataclass(frozen=True)
+class LatchHinges:
+    """Hinges with free play, stiffness beyond it and friction on the angle that torsion springs have."""
+
+    names: tuple[str, ...]
+    links: np.ndarray  # (h, 2) int; (link, GROUND): the angle of one link, from ground to it
+    deadband_rad: np.ndarray
+    stiffness_N_m_per_rad: np.ndarray
+    friction_moment_N_m: np.ndarray
+    preload_moment_N_m: np.ndarray
+    axis: np.ndarray  # (h, 3) unit; z in planar trusses
+
+
+class LatchHingeType(JointType[LatchHinge, LatchHinges]):
+    """Latch hinges, in the solver."""
+
+    section = "latch_hinge"
+    Item = LatchHinge
+    columns: ClassVar[tuple[JointColumn, ...]] = (
+        JointColumn("hinge_rotation_rad", "from the drawn shape"),
+        JointColumn("hinge_moment_N_m", "against the rotation: preload, stiffness beyond the play, friction"),
+    )
+    varied = ("deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m", "preload_moment_N_m")
+    not_in_dem = "is a joint of the quasi-static solver only, the DEM has none"
+    not_in_motion = "is a joint of quasi-static paths only"
+
+    def check_vectors(self, item: LatchHinge, dimension: int) -> None:
+        axis_of_rotation(item.axis, dimension, self.where(item.name))
+
+    def check_references(self, item: LatchHinge, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+        known_links(item.links, links, self.where(item.name))
+
+    def resolve(self, items: Sequence[LatchHinge], known: References) -> LatchHinges:
+        return LatchHinges(
+            names=names(items), links=pairs(items, "links", known.link), axis=known.axes(items),
+            **columns(items, "deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m", "preload_moment_N_m"),
+        )
+
+    def check_geometry(self, truss: ResolvedTruss, joints: LatchHinges, ranges_K: np.ndarray) -> None:
+        turned_links(truss, self.section, joints)
+
+    def engine_arrays(self, truss: ResolvedTruss, joints: LatchHinges) -> dict[str, Any]:
+        return {"first_link": joints.links[:, 0], "second_link": joints.links[:, 1]}
+
+    def symbols(self, truss: ResolvedTruss, joints: LatchHinges) -> list[Symbol]:
+        return [Symbol(truss.turning_places(joints.links), "D", 0.9, 0.7, order=4.6)]
+
+    def legend(self, joints: LatchHinges) -> str:
+        return f"latch hinge, play ±{scaled(joints.deadband_rad, 1e3, 'mrad')}"
+
+    def describe(self, items: Sequence[LatchHinge]) -> str:
+        return (
+            f"{count(items, 'latch hinge')} with a free play of ±"
+            f"{spread((hinge.deadband_rad for hinge in items), 'rad')}, "
+            f"{spread((hinge.stiffness_N_m_per_rad for hinge in items), 'N m/rad')} beyond it, friction of "
+            f"{spread((hinge.friction_moment_N_m for hinge in items), 'N m')}."
+        )
+
+    def has_moments(self, joints: LatchHinges) -> bool:
+        return bool(joints.friction_moment_N_m.any())
+
+
+LATCH_HINGE = LatchHingeType()

@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a type of joint of a truss brings in Python: one object per type, in a file of its own.
+
+Case, checks, arrays, solver, result, drawing, words, sensitivities, DEM and motion ask the registry
+(:data:`statejump.kinds.truss.joints.JOINTS`) and know no type. What a type cannot do is left out; where a model has no
+such joint, the type says so in a sentence.
+"""
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+
+import numpy as np
+
+from statejump.kinds.truss.arrays import References
+from statejump.schema.items import Item
+
+if TYPE_CHECKING:
+    from statejump.kinds.truss.case import TrussCase
+    from statejump.kinds.truss.resolved import ResolvedTruss
+    from statejump.kinds.truss.solve import TrussPath
+
+ItemType = TypeVar("ItemType", bound=Item)
+ArraysType = TypeVar("ArraysType")
+
+Strokes = tuple[tuple[tuple[float, float], ...], ...]  # in units of a symbol's size, the node at (0, 0)
+BLACK = "#000000"
+# Friction may double a contact's force for a moment; Hertz's stiffness grows with its cube root.
+IMPACT = 2 ** (1 / 3)
+
+
+@dataclass(frozen=True)
+class JointColumn:
+    """A column that both models have of every joint of a type, under the name that the engine's output has."""
+
+    name: str  # with its unit
+    note: str = ""
+    vector: bool = False
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """Symbols of a drawing, planar or spatial, at places (k, 3). Sizes are in units of the drawing's symbol size."""
+
+    places: np.ndarray
+    marker: str | Strokes
+    size: float
+    size_in_space: float  # 0: not drawn there
+    marker_in_space: str | Strokes | None = None  # None: the same
+    colour: str = BLACK
+    face: str = "white"
+    order: float = 4.0  # what is higher covers what is lower
+    up: np.ndarray | None = None  # (k, 3) to where the marker's top points in the plane; None: up
+    line_in_space: np.ndarray | None = None  # (k, 3) unit: a line along it through the place
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """A run at its samples, as a type takes it to say what its contacts do."""
+
+    truss: ResolvedTruss
+    position_m: np.ndarray  # (samples, nodes, 3)
+    columns: Mapping[str, np.ndarray]  # of the joints of the type
+    temperature_change_K: np.ndarray  # (samples, joints); of types without temperature (samples, 0)
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """What contacts do over the samples of a run; forces on the first part."""
+
+    gap_m: np.ndarray  # (samples, joints)
+    point_m: np.ndarray  # (samples, joints, 3)
+    normal_force_N: np.ndarray  # (samples, joints, 3)
+    tangential_force_N: np.ndarray  # (samples, joints, 3)
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Parts of the page's drawing for the joints of a type."""
+
+    parts: list[dict[str, Any]]
+    contacts: list[tuple[str, str, str]]  # contact, its part, the part that it touches
+    clearances_m: np.ndarray
+
+
+@dataclass(frozen=True)
+class ContactPart:
+    """Nodes that the DEM gives a contact part. A node has one: parts that are equal are one."""
+
+    nodes: np.ndarray  # (k,)
+    roles: list[tuple[Any, ...]]  # (k,) what the part is made of
+    shared: bool = True  # whether several joints may have one part
+
+
+class JointType(Generic[ItemType, ArraysType]):
+    """A type of joint. ``section`` is its list in a case file, its kind in the engine and its name in messages."""
+
+    section: ClassVar[str]
+    Item: ClassVar[type[Item]]
+    columns: ClassVar[tuple[JointColumn, ...]] = ()
+    varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that a jump may follow
+    has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
+    has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result
+    not_in_dem: ClassVar[str] = ""  # what follows its name where the DEM refuses it; empty: the DEM has it
+    not_in_motion: ClassVar[str] = ""  # likewise for trusses in motion
+
+    @property
+    def items(self) -> str:
+        """Name of its list of items in results."""
+        return f"{self.section}s"
+
+    @property
+    def state_column(self) -> str:
+        """Name of the column of its states in the DEM's samples; the solver has statuses of its own."""
+        return f"{self.section}_state"
+
+    def where(self, name: str) -> dict[str, Any]:
+        """Return how failures name one of its joints."""
+        return {"item": f"{self.section} {name!r}", "joint": name}
+
+    # ---------------------------------------------------------------- case
+
+    def check_vectors(self, item: ItemType, dimension: int) -> None:
+        """Raise NotAllowed for a vector that does not fit the truss' dimension."""
+
+    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+        """Raise an error for a name that is not there or does not fit."""
+
+    def expands(self, item: ItemType) -> bool:
+        """Whether a joint that has a temperature follows it."""
+        return False
+
+    def resolve(self, items: Sequence[ItemType], known: References) -> ArraysType:
+        """Return the joints as a dataclass of arrays: ``names`` and one array per number, axes of length 1."""
+        raise NotImplementedError
+
+    def check_geometry(self, truss: ResolvedTruss, joints: ArraysType, ranges_K: np.ndarray) -> None:
+        """Raise an error for what is wrong with places, directions and clearances.
+
+        :param ranges_K: smallest and largest ΔT of every program (programs, 2)
+        """
+
+    def joined(self, joints: ArraysType) -> np.ndarray:
+        """Return the pairs of nodes (k, 2) that the joints hold together."""
+        return np.zeros((0, 2), dtype=int)
+
+    # ---------------------------------------------------------------- solver
+
+    def engine_arrays(self, truss: ResolvedTruss, joints: ArraysType) -> dict[str, Any]:
+        """Return the engine's parameters that are not arrays of the same name."""
+        return {}
+
+    # ---------------------------------------------------------------- result
+
+    def contacts(self, run: Sampled, joints: ArraysType) -> Contacts:
+        """Return what the contacts of its joints do."""
+        raise NotImplementedError
+
+    def drawn(self, truss: ResolvedTruss, joints: ArraysType, labels: Sequence[str], taken: set[str]) -> Drawn:
+        """Return the parts of the page's drawing.
+
+        :param labels: names of its contacts
+        :param taken: names of parts that are there; those that are added here as well
+        """
+        return Drawn([], [], np.zeros(0))
+
+    # ---------------------------------------------------------------- drawing and words
+
+    def symbols(self, truss: ResolvedTruss, joints: ArraysType) -> list[Symbol]:
+        """Return its symbols, the first of them for the legend."""
+        raise NotImplementedError
+
+    def legend(self, joints: ArraysType) -> str:
+        """Return what the legend says of its symbol, with the numbers that a drawing cannot show."""
+        raise NotImplementedError
+
+    def covered_nodes(self, joints: ArraysType) -> np.ndarray:
+        """Return the nodes that its symbols stand for."""
+        return np.zeros(0, dtype=int)
+
+    def guided_nodes(self, joints: ArraysType) -> np.ndarray:
+        """Return the nodes whose guides its symbols show."""
+        return np.zeros(0, dtype=int)
+
+    def sides(self, joints: ArraysType) -> Iterable[tuple[int, np.ndarray]]:
+        """Yield nodes of planar trusses whose names are to stand below a symbol, and its upward direction (2,)."""
+        return ()
+
+    def describe(self, items: Sequence[ItemType]) -> str:
+        """Return a sentence on the joints of a case."""
+        raise NotImplementedError
+
+    # ---------------------------------------------------------------- answers
+
+    def parameters(self, joints: ArraysType) -> list[tuple[str, np.ndarray]]:
+        """Return keys and values (joints,) of what a jump may follow; 0 or infinity: that joint has none."""
+        return [(key, getattr(joints, key)) for key in self.varied]
+
+    def has_moments(self, joints: ArraysType) -> bool:
+        """Whether its friction is a moment that turns with links, which no load on nodes stands for."""
+        return False
+
+    # ---------------------------------------------------------------- DEM
+
+    def dem_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
+        """Return name and reason of a joint that the DEM does not have, though it has others of the type."""
+        return None
+
+    def contact_parts(self, joints: ArraysType) -> list[ContactPart]:
+        """Return which nodes get which part."""
+        return []
+
+    def contact_nodes(self, joints: ArraysType) -> np.ndarray:
+        """Return the nodes (joints, k) whose bodies touch or carry what touches, the place of the contact first."""
+        return np.zeros((0, 1), dtype=int)
+
+    def reach_m(self, path: TrussPath, joints: ArraysType) -> np.ndarray:
+        """Return how far from its place a contact's bodies extend [m] (joints,)."""
+        return np.zeros(0)
+
+    def contact_stiffness(self, path: TrussPath, joints: ArraysType) -> tuple[np.ndarray, np.ndarray]:
+        """Return the nodes (joints, k) that a contact pushes and its greatest stiffness [N/m] on the path."""
+        return np.zeros((0, 1), dtype=int), np.zeros(0)
+
+    def scene(self, path: TrussPath, joints: ArraysType) -> dict[str, Any]:
+        """Return what the YADE script gets beside the arrays."""
+        return {}
+
+
+def listed_joints(case: TrussCase, joint: JointType[ItemType, Any]) -> list[ItemType]:
+    """Return the joints of a type that a case has."""
+    found: list[ItemType] = getattr(case, joint.section)
+    return found

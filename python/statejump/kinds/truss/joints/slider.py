@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sliders: frictional prismatic joints on ground or between two nodes."""
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from statejump.core import physics
+from statejump.core.errors import NotAllowed
+from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION, References, columns, names, pairs, unit, vectors
+from statejump.kinds.truss.joints.protocol import (
+    IMPACT, ContactPart, Contacts, Drawn, JointColumn, JointType, Sampled, Strokes, Symbol,
+)
+from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
+from statejump.kinds.truss.references import known_nodes, vector
+from statejump.schema.fields import CHOICE, definition, numbers, parameter, texts
+from statejump.schema.items import Item
+
+if TYPE_CHECKING:
+    from statejump.kinds.truss.resolved import ResolvedTruss
+    from statejump.kinds.truss.solve import TrussPath
+
+BLOCK: Strokes = (
+    ((-0.75, -0.45), (0.75, -0.45), (0.75, 0.45), (-0.75, 0.45), (-0.75, -0.45)), ((-1.0, -0.55), (1.0, -0.55)),
+    *(((x, -0.55), (x - 0.2, -0.75)) for x in (-0.7, -0.3, 0.1, 0.5, 0.9)),
+)
+STOPS: Strokes = (((-1.0, -0.55), (-1.0, 0.45)), ((1.0, -0.55), (1.0, 0.45)))
+
+
+@definition
+class Slider(Item):
+    """A frictional prismatic joint: the first node slides along an axis fixed in space, on ground or on
+    the second node. Between two nodes it also holds them together across the axis; on ground the
+    supports of the node do."""
+
+    nodes: list[str] = texts(..., "one node, on ground, or two")
+    axis: list[float] = numbers(..., "-", -1e9, 1e9, "of any length")
+    friction_coefficient: float = parameter(..., "-", 0, 10, USER)
+    normal_force_N: float = parameter(..., "N", 0, 1e9, USER)
+    clearance_minus_m: float | None = parameter(None, "m", 0, 1e2, "against the axis; no stop", above=True)
+    clearance_plus_m: float | None = parameter(None, "m", 0, 1e2, "along the axis; no stop", above=True)
+    pad_radius_m: float = parameter(0.05, "m", 0, 1e2, CHOICE + "; DEM and elastic sticking only", above=True)
+    young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM + "; DEM and elastic sticking only", above=True)
+    poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM + "; DEM and elastic sticking only")
+
+
+@dataclass(frozen=True)
+class Sliders:
+    """Prismatic joints: axis · (motion of the first node - motion of the second) slides, against friction
+    friction_coefficient · normal_force_N, from -clearance_minus_m to clearance_plus_m."""
+
+    names: tuple[str, ...]
+    nodes: np.ndarray  # (s, 2) int, the second GROUND or a node that is held to the first across the axis
+    axis: np.ndarray  # (s, 3) unit
+    friction_coefficient: np.ndarray
+    normal_force_N: np.ndarray
+    clearance_minus_m: np.ndarray  # inf: no stop
+    clearance_plus_m: np.ndarray  # inf: no stop
+    pad_radius_m: np.ndarray
+    young_modulus_Pa: np.ndarray
+    poisson_ratio: np.ndarray
+
+
+@dataclass(frozen=True)
+class Pad:
+    """Contacts of sliders with their floors: pads of a sphere on a plane."""
+
+    depth_m: np.ndarray  # at which the floor carries the normal force
+    normal_N_per_m: np.ndarray  # tangent stiffnesses at that depth
+    tangential_N_per_m: np.ndarray
+
+
+def _effective_modulus(sliders: Sliders) -> np.ndarray:
+    return physics.effective_young_modulus_Pa(sliders.young_modulus_Pa, sliders.poisson_ratio)
+
+
+def pad_hertz_stiffness(sliders: Sliders) -> np.ndarray:
+    """Return K of F = K δ^1.5 [N/m^1.5] of every slider's pad on a plane, its floor or a stop. Both parts are of one
+    material; the formulas are Hertz's and Mindlin's, not the DEM's contact law."""
+    return physics.hertz_stiffness_N_per_m15(_effective_modulus(sliders), sliders.pad_radius_m)
+
+
+def pads(sliders: Sliders) -> Pad:
+    """Return the contacts of the sliders' pads with their floors."""
+    depth = physics.hertz_depth_m(sliders.normal_force_N, pad_hertz_stiffness(sliders))
+    normal = physics.hertz_tangent_at_depth_N_per_m(_effective_modulus(sliders), sliders.pad_radius_m, depth)
+    return Pad(depth, normal, normal * physics.shear_over_normal_stiffness(sliders.poisson_ratio))
+
+
+def pressing_directions(truss: ResolvedTruss, sliders: Sliders) -> np.ndarray:
+    """Return for every slider the unit normal of its floor, across its axis (s, 3)."""
+    if truss.dimension == 2:
+        return np.tile([0.0, 0.0, -1.0], (len(sliders.names), 1))
+    found = []
+    for axis in sliders.axis:
+        across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+        found.append(across / np.linalg.norm(across))
+    return np.array(found).reshape(-1, 3)
+
+
+class SliderType(JointType[Slider, Sliders]):
+    """Sliders, in the solver, in motion and, on ground, in the DEM."""
+
+    section = "slider"
+    Item = Slider
+    columns: ClassVar[tuple[JointColumn, ...]] = (
+        JointColumn("slide_m"),
+        JointColumn("slider_force_N", "friction and stop on the slider, against its axis"),
+    )
+    varied = ("friction_coefficient", "normal_force_N", "clearance_minus_m", "clearance_plus_m")
+    has_contacts = True
+
+    def check_vectors(self, item: Slider, dimension: int) -> None:
+        vector("axis", item.axis, "-", dimension, True, **self.where(item.name))
+
+    def check_references(self, item: Slider, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+        known_nodes(item.nodes, 1, nodes, self.where(item.name))
+
+    def resolve(self, items: Sequence[Slider], known: References) -> Sliders:
+        stops = columns(items, "clearance_minus_m", "clearance_plus_m")
+        return Sliders(
+            names=names(items), nodes=pairs(items, "nodes", known.node),
+            axis=unit(vectors([slider.axis for slider in items], known.dimension)),
+            **columns(items, "friction_coefficient", "normal_force_N", "pad_radius_m", "young_modulus_Pa",
+                      "poisson_ratio"),
+            **{key: np.where(np.isnan(values), inf, values) for key, values in stops.items()},
+        )
+
+    def check_geometry(self, truss: ResolvedTruss, joints: Sliders, ranges_K: np.ndarray) -> None:
+        nodes = truss.nodes
+        on_ground = np.flatnonzero(joints.nodes[:, 1] == GROUND)
+        carrier, axis = joints.nodes[on_ground, 0], joints.axis[on_ground]
+        guide = nodes.guide_normal[carrier]
+        # Sum of n n^T over the directions in which supports hold the node: its rank is how many these are.
+        held = nodes.fixed[carrier][:, :, None] * np.eye(3) + guide[:, :, None] * guide[:, None, :]
+        along = np.einsum("ki,kij,kj->k", axis, held, axis) > SAME_DIRECTION**2
+        across = np.linalg.eigvalsh(held)[:, 1] <= SAME_DIRECTION**2
+        for number in np.flatnonzero(along | across)[:1]:
+            joint, node = joints.names[on_ground[number]], nodes.names[carrier[number]]
+            cause = (
+                f"the supports of node {node!r} hold it along the axis" if along[number] else
+                f"node {node!r} is free across the axis, a slider on ground needs supports there (fixed or "
+                "guide_normal)"
+            )
+            raise NotAllowed("axis", [float(value) for value in axis[number, : truss.dimension]], cause,
+                             nodes=(node,), **self.where(joint))
+
+    def joined(self, joints: Sliders) -> np.ndarray:
+        return joints.nodes[joints.nodes[:, 1] != GROUND]
+
+    def engine_arrays(self, truss: ResolvedTruss, joints: Sliders) -> dict[str, Any]:
+        loaded = (truss.sticking == "elastic") & (joints.normal_force_N > 0)
+        return {
+            "first_node": joints.nodes[:, 0], "second_node": joints.nodes[:, 1],
+            "friction_force_N": joints.friction_coefficient * joints.normal_force_N,
+            "tangential_stiffness_N_per_m": np.where(loaded, pads(joints).tangential_N_per_m, inf),
+        }
+
+    def contacts(self, run: Sampled, joints: Sliders) -> Contacts:
+        slide = run.columns["slide_m"]
+        stops = np.minimum(slide + joints.clearance_minus_m, joints.clearance_plus_m - slide)
+        floor = pressing_directions(run.truss, joints)
+        return Contacts(
+            gap_m=np.where(np.isfinite(stops), stops, np.nan),
+            point_m=run.position_m[:, joints.nodes[:, 0]] + joints.pad_radius_m[:, None] * floor,
+            normal_force_N=np.tile(-joints.normal_force_N[:, None] * floor, (len(slide), 1, 1)),
+            tangential_force_N=-run.columns["slider_force_N"][:, :, None] * joints.axis,
+        )
+
+    def drawn(self, truss: ResolvedTruss, joints: Sliders, labels: Sequence[str], taken: set[str]) -> Drawn:
+        from statejump.results import scene as drawing
+
+        parts: list[dict[str, Any]] = []
+        contacts = []
+        for label, ends, axis, radius in zip(labels, joints.nodes, joints.axis, joints.pad_radius_m):
+            block, floor, held = f"block {label}", f"floor {label}", truss.nodes.position_m[ends[0]]
+            parts += [{
+                "name": block, "type": "block", "centre": drawing.ref("history/position_m", truss.nodes.names[ends[0]]),
+                "angle_rad": float(np.arctan2(axis[1], axis[0])), "half_width_m": float(radius),
+                "half_height_m": float(radius), "pad_radius_m": float(radius),
+            }, {"name": floor, "type": "frame", "points": [(held - radius * axis).tolist(),
+                                                           (held + radius * axis).tolist()]}]
+            contacts.append((label, block, floor))
+        return Drawn(parts, contacts, np.concatenate((joints.clearance_minus_m, joints.clearance_plus_m)))
+
+    def symbols(self, truss: ResolvedTruss, joints: Sliders) -> list[Symbol]:
+        places = truss.nodes.position_m[joints.nodes[:, 0]]
+        up = np.stack((-joints.axis[:, 1], joints.axis[:, 0], np.zeros(len(places))), axis=1)
+        stopped = np.isfinite(np.minimum(joints.clearance_minus_m, joints.clearance_plus_m))
+        return [Symbol(places, BLOCK, 1.4, 0.7, marker_in_space="s", up=up, line_in_space=joints.axis),
+                Symbol(places[stopped], STOPS, 1.9, 0.0, up=up[stopped])]
+
+    def legend(self, joints: Sliders) -> str:
+        said = f"slider, friction {scaled(joints.friction_coefficient * joints.normal_force_N, 1.0, 'N')}"
+        stops = np.concatenate((joints.clearance_minus_m, joints.clearance_plus_m))
+        if np.isfinite(stops).any():
+            said += f", stops at {scaled(stops[np.isfinite(stops)], 1e3, 'mm')}"
+        return said
+
+    def covered_nodes(self, joints: Sliders) -> np.ndarray:
+        return joints.nodes[:, 0]
+
+    def guided_nodes(self, joints: Sliders) -> np.ndarray:
+        return joints.nodes[joints.nodes[:, 1] == GROUND, 0]
+
+    def sides(self, joints: Sliders) -> Iterable[tuple[int, np.ndarray]]:
+        for node, axis in zip(joints.nodes[:, 0], joints.axis):
+            yield int(node), np.array([-axis[1], axis[0]])
+
+    def describe(self, items: Sequence[Slider]) -> str:
+        stops = sum(side is not None for joint in items for side in (joint.clearance_minus_m, joint.clearance_plus_m))
+        limits = (joint.friction_coefficient * joint.normal_force_N for joint in items)
+        return (f"{count(items, 'sliding joint')} held by friction up to {spread(limits, 'N')}, "
+                f"{f'with {stops} stops' if stops else 'without stops'}.")
+
+    def dem_refuses(self, joints: Sliders) -> tuple[str, str] | None:
+        for index in np.flatnonzero(joints.nodes[:, 1] != GROUND)[:1]:
+            return joints.names[index], "is between two nodes, the DEM has sliders on ground only"
+        return None
+
+    def contact_parts(self, joints: Sliders) -> list[ContactPart]:
+        roles = list(zip(joints.pad_radius_m, joints.friction_coefficient, joints.young_modulus_Pa))
+        return [ContactPart(joints.nodes[:, 0], [("pad", *role) for role in roles], shared=False)]
+
+    def contact_nodes(self, joints: Sliders) -> np.ndarray:
+        return joints.nodes[:, :1]
+
+    def reach_m(self, path: TrussPath, joints: Sliders) -> np.ndarray:
+        # A floor ends where no pad gets to: twice as far as in the quasi-static model, and the pad itself.
+        return joints.pad_radius_m + 2 * np.abs(path.states["slide_m"]).max(axis=0)
+
+    def contact_stiffness(self, path: TrussPath, joints: Sliders) -> tuple[np.ndarray, np.ndarray]:
+        at_stop = np.isfinite(joints.clearance_minus_m) | np.isfinite(joints.clearance_plus_m)
+        force = IMPACT**3 * np.abs(path.states["slider_force_N"]).max(axis=0)
+        stop = np.where(at_stop, physics.hertz_tangent_N_per_m(force, pad_hertz_stiffness(joints)), 0.0)
+        return joints.nodes[:, :1], pads(joints).tangential_N_per_m + stop
+
+    def scene(self, path: TrussPath, joints: Sliders) -> dict[str, Any]:
+        def finite(values: np.ndarray) -> list[float | None]:
+            return [float(value) if np.isfinite(value) else None for value in values]
+
+        return {
+            "depth_m": pads(joints).depth_m, "reach_m": self.reach_m(path, joints),
+            "floor_normal": pressing_directions(path.truss, joints),
+            "clearance_minus_m": finite(joints.clearance_minus_m), "clearance_plus_m": finite(joints.clearance_plus_m),
+        }
+
+
+SLIDER = SliderType()

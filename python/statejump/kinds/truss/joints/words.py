@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How sentences and legends say numbers of many items."""
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from statejump.core.units import text
+
+USER = "no default: the truss decides"
+ALUMINIUM = "choice, the paper is silent: aluminium"
+
+
+def count(items: Sequence[object], one: str) -> str:
+    """Return how many there are of something."""
+    return f"{len(items)} {one}{'' if len(items) == 1 else 's'}"
+
+
+def spread(values: Iterable[float], unit: str = "-", digits: int = 4) -> str:
+    """Return the one value of many items, or from where to where their values go."""
+    known = [float(value) for value in values]
+    low, high = min(known), max(known)
+    return text(low, unit, digits) if low == high else f"{text(low, unit, digits)} to {text(high, unit, digits)}"
+
+
+def scaled(values: np.ndarray, scale: float, unit: str) -> str:
+    """Return one value or the range of several, in a unit that the values times ``scale`` have."""
+    low, high = values.min() * scale, values.max() * scale
+    return f"{low:.4g} {unit}" if high - low <= 1e-9 * abs(high) else f"{low:.3g} to {high:.3g} {unit}"

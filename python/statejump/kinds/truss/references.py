@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Checks that several sections of a truss share: names that are there, ends, axes, links that turn."""
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from statejump.core.errors import MissingKey, NotAllowed
+from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
+
+if TYPE_CHECKING:
+    from statejump.kinds.truss.resolved import ResolvedTruss
+
+MOST_LISTED = 5
+
+
+def listed(names: list[str]) -> str:
+    """Return the first names as a sentence lists them."""
+    return ", ".join(repr(name) for name in names[:MOST_LISTED]) + (", ..." if len(names) > MOST_LISTED else "")
+
+
+def known_name(key: str, value: Any, name: str, known: Mapping[str, Any], what: str, **where: Any) -> None:
+    """Raise NotAllowed for a name that is not known; its remedy is the nearest one."""
+    if name in known:
+        return
+    nearest = difflib.get_close_matches(name, list(known), n=1, cutoff=0.5)
+    if nearest:
+        remedy = f"did you mean {nearest[0]!r}?"
+    else:
+        remedy = f"known are {listed(list(known))}" if known else f"the file has no section [[{what}]]"
+    raise NotAllowed(key, value, f"there is no {what} {name!r}", remedy=remedy,
+                     nodes=(name,) if what == "node" else (), **where)
+
+
+def known_nodes(names: list[str], least: int, nodes: Mapping[str, Any], where: Mapping[str, Any]) -> None:
+    """Raise NotAllowed unless ``nodes`` of an item are two different nodes, or one where the least is one."""
+    if not least <= len(names) <= 2:
+        many = "2 nodes" if least == 2 else "1 node, on ground, or 2 nodes"
+        raise NotAllowed("nodes", names, f"must be {many}", **where)
+    for name in names:
+        if name not in nodes:
+            known_name("nodes", names, name, nodes, "node", **where)
+    if len(names) == 2 and names[0] == names[1]:
+        raise NotAllowed("nodes", names, "must be two different nodes", **where)
+
+
+def known_links(names: list[str], links: Mapping[str, Any], where: Mapping[str, Any]) -> None:
+    """Raise NotAllowed unless ``links`` of an item are two different links or one."""
+    if not 1 <= len(names) <= 2:
+        raise NotAllowed("links", names, "must be 2 links, or 1 against ground", **where)
+    for name in names:
+        known_name("links", names, name, links, "link", **where)
+    if len(names) == 2 and names[0] == names[1]:
+        raise NotAllowed("links", names, "must be two different links", **where)
+
+
+def vector(key: str, value: list[float] | None, unit: str, dimension: int, direction: bool, **where: Any) -> None:
+    """Raise NotAllowed for a vector of another dimension than the truss', or for a direction that is zero."""
+    if value is None:
+        return
+    if len(value) != dimension:
+        raise NotAllowed(key, value, f"must be {dimension} numbers [{unit}], as truss.dimension is {dimension}",
+                         **where)
+    if direction and not any(value):
+        raise NotAllowed(key, value, "must not be zero in every direction", **where)
+
+
+def axis_of_rotation(axis: list[float] | None, dimension: int, where: Mapping[str, Any]) -> None:
+    """Raise an error unless an axis of rotation is z, unsaid, in the plane, and said in space."""
+    if dimension == 2 and axis is not None:
+        raise NotAllowed("axis", axis, "in a planar truss it is z", **where)
+    if dimension == 3 and axis is None:
+        raise MissingKey("axis", "a list of 3 numbers is needed in a spatial truss", **where)
+    vector("axis", axis, "-", dimension, True, **where)
+
+
+def turned_links(truss: ResolvedTruss, section: str, items: Any) -> None:
+    """Raise NotAllowed unless links that something turns against each other share a place and have an angle.
+
+    :param items: arrays with names, links (k, 2) and axis (k, 3)
+    """
+    if not len(items.links):
+        return
+    links = truss.links
+    together = {frozenset(map(int, pair)) for pair in truss.joined()}
+    for index, (one, two) in enumerate(items.links):
+        where = f"{section} {items.names[index]!r}"
+        if two != GROUND:
+            ends = [(int(a), int(b)) for a in links.nodes[one] for b in links.nodes[two]]
+            if not any(a == b or frozenset((a, b)) in together for a, b in ends):
+                raise NotAllowed(
+                    "links", [links.names[one], links.names[two]],
+                    "the links share no place, neither a node nor a joint between their ends", item=where,
+                )
+        for link in (one, two):
+            if link == GROUND or truss.dimension == 2:
+                continue
+            start, end = truss.nodes.position_m[links.nodes[link]]
+            direction = (end - start) / np.linalg.norm(end - start)
+            if np.linalg.norm(np.cross(direction, items.axis[index])) < SAME_DIRECTION:
+                raise NotAllowed("axis", [float(value) for value in items.axis[index]],
+                                 f"link {links.names[link]!r} lies along it and has no angle about it", item=where)
