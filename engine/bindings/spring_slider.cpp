@@ -31,17 +31,19 @@ void bind_model(py::module_& module) {
       "Raises ValueError for a value out of range.")
       .def(py::init([](double young_modulus, double cross_section_area, double stress_free_length,
                        double thermal_expansion, double friction_force, double clearance_minus,
-                       double clearance_plus, double preload_stiffness) {
+                       double clearance_plus, double preload_stiffness, double preload_force) {
              const spring_slider::SpringSlider model{
-                 young_modulus,  cross_section_area, stress_free_length, thermal_expansion,
-                 friction_force, clearance_minus,    clearance_plus,     preload_stiffness};
+                 young_modulus,     cross_section_area, stress_free_length,
+                 thermal_expansion, friction_force,     clearance_minus,
+                 clearance_plus,    preload_stiffness,  preload_force};
              model.validate();
              return model;
            }),
            py::kw_only(), py::arg("young_modulus_Pa"), py::arg("cross_section_area_m2"),
            py::arg("stress_free_length_m"), py::arg("thermal_expansion_per_K"),
            py::arg("friction_force_N"), py::arg("clearance_minus_m") = no_stop,
-           py::arg("clearance_plus_m") = no_stop, py::arg("preload_stiffness_N_per_m") = 0.0)
+           py::arg("clearance_plus_m") = no_stop, py::arg("preload_stiffness_N_per_m") = 0.0,
+           py::arg("preload_force_N") = 0.0)
       .def_readonly("young_modulus_Pa", &spring_slider::SpringSlider::young_modulus)
       .def_readonly("cross_section_area_m2", &spring_slider::SpringSlider::cross_section_area)
       .def_readonly("stress_free_length_m", &spring_slider::SpringSlider::stress_free_length)
@@ -50,6 +52,12 @@ void bind_model(py::module_& module) {
       .def_readonly("clearance_minus_m", &spring_slider::SpringSlider::clearance_minus)
       .def_readonly("clearance_plus_m", &spring_slider::SpringSlider::clearance_plus)
       .def_readonly("preload_stiffness_N_per_m", &spring_slider::SpringSlider::preload_stiffness)
+      .def_readonly("preload_force_N", &spring_slider::SpringSlider::preload_force,
+                    "Tension of the preload spring at x = 0, towards -x when positive.")
+      .def_property_readonly(
+          "start_displacement_m",
+          [](const spring_slider::SpringSlider& self) { return start_displacement(self); },
+          "Where the block starts [m]: it needs no friction there, or a stop is in its way.")
       .def(
           "link_stiffness_N_per_m",
           [](const spring_slider::SpringSlider& self, double change) {

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from conftest import REPOSITORY
+from statejump.core.tables import read_columns
 
 CASES = ("table1", "table1_wide", "table1_frictionless", "table1_ten_cycles")
 
@@ -62,6 +63,39 @@ def test_preload_spring_in_the_dem(statejump, edited, tmp_path: Path) -> None:
     jump = quantities(tmp_path / "results" / "table1")["state_jump"]
     assert jump["reduced"] == pytest.approx(30 / (1.26e6 + 1e6), rel=1e-12)
     assert jump["dem"] == pytest.approx(jump["reduced"], rel=0.005)
+
+
+def test_preload_force_in_the_dem(statejump, edited, tmp_path: Path) -> None:
+    # Both models start at 630/(1.26e6 + 2e5) m, beyond the middle; the stop + is reached at a lower temperature.
+    path = edited(("clearance_plus_m = 1e-3", "clearance_plus_m = 1e-3\npreload_force_N = -630\n"
+                   "preload_stiffness_N_per_m = 2e5"), ("period_s = 1.0", "period_s = 0.25"))
+    outcome = statejump("compare", path)
+    assert outcome.status == 0, outcome.output + outcome.errors
+    found = quantities(tmp_path / "results" / "table1")
+    assert found["state_jump"]["reduced"] == pytest.approx(30 / 1.46e6, rel=1e-12)
+    with_none = 87.5092 + 0.2  # without a force, and rounded up
+    assert found["stop_reached_temperature_change"]["dem"] < with_none - 25
+
+
+def test_block_that_a_preload_force_seats_on_a_stop_in_the_dem(statejump, edited, tmp_path: Path) -> None:
+    path = edited(("clearance_plus_m = 1e-3", "clearance_plus_m = 1e-3\npreload_force_N = 1350"),
+                  ("period_s = 1.0", "period_s = 0.25"))
+    outcome = statejump("dem", path)
+    assert outcome.status == 0, outcome.output + outcome.errors
+    history = read_columns(tmp_path / "results" / "table1" / "dem_history.csv")
+    x, stop = history["displacement_m"], history["stop_force_N"]
+    depth = -1e-3 - x
+    # The bar carries k (c + depth) of the 1350 N, the stop the rest from the first step on, to what a step of heating
+    # adds, 1e-6 of it.
+    assert stop[0] == pytest.approx(1350 - 1.26e6 * (1e-3 + depth[0]), abs=1e-4)
+    # The first sample heats by 0.157 K, 2.3 N of the bar. An error of the start would swing the block by more than a
+    # Hertzian stop of 3/2 F/depth gives to that.
+    assert abs(x[1] - x[0]) < 2.32 / (1.5 * stop[1] / depth[1])
+    # It comes back to the stop. Friction, none at the start, carries f of the load at the end: the jump is what the stop,
+    # less deep by then, gives. 1 N: friction ends that far from its limit, as the tangential spring follows the load.
+    assert stop[-1] == pytest.approx(1350 - 30 - 1.26e6 * (1e-3 + depth[-1]), abs=1.0)
+    # The dashpot of the stop adds 0.04 N, 70 N s/m at 0.5 mm/s.
+    assert depth[-1] / depth[0] == pytest.approx((stop[-1] / stop[0]) ** (2 / 3), rel=1e-3)
 
 
 def test_table_program_in_the_dem(statejump, edited, tmp_path: Path) -> None:

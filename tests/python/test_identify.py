@@ -166,9 +166,10 @@ def test_correlated_residuals_are_told() -> None:
 
 
 def test_what_is_found_goes_into_a_case_and_a_campaign() -> None:
-    joint = {name: value for name, value in JOINT.items() if name != "preload"} | {"preload": 0.0}
-    found = sj.identify(measured("coulomb_clearance_spring", joint), start="cycled", normal_force_N=500)
+    found = sj.identify(measured("coulomb_clearance_spring", JOINT), start="cycled", normal_force_N=500)
     case = sj.load("table1").changed(found.changes())
+    assert case["joint.preload_force_N"] == found.values["preload"]
+    assert found.distributions()["joint.preload_force_N"]["distribution"] == "normal"
     assert case["joint.friction_coefficient"] == found.values["friction"] / 500
     assert case["joint.clearance_plus_m"] == found.values["clearance_plus"]
     section = tomllib.loads(found.joint())["joint"]
@@ -231,7 +232,8 @@ def test_command(statejump: Callable[..., Any], tmp_path: Path) -> None:
     section = tomllib.loads((folder / "joint.toml").read_text())["joint"]
     assert section["normal_force_N"] == 500 and section["clearance_plus_m"] == pytest.approx(5e-4, rel=0.01)
     keys = [table["key"] for table in tomllib.loads((folder / "vary.toml").read_text())["vary"]]
-    assert keys == ["joint.friction_coefficient", "joint.clearance_minus_m", "joint.clearance_plus_m"]
+    assert keys == ["joint.friction_coefficient", "joint.clearance_minus_m", "joint.clearance_plus_m",
+                    "joint.preload_force_N"]
     assert "coulomb_clearance" in done.output and "\nfriction_coefficient = 0." in done.output
 
 

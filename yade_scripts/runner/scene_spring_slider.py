@@ -31,13 +31,14 @@ class SpringSliderScene:
     link: sj.ThermalLink
     preload_link: sj.ThermalLink | None
     start_height_m: float  # y of the slider at the start, where the floor carries the normal force
+    start_energy_J: float  # of bar and preload at the start
 
 
 def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSliderScene:
     """Build the scene of a bar with a slider at its tip, in a slot (1-D clearance joint).
 
-    The bar lies along x with its root at -l0, the slider starts at the slot's centre, pressed on
-    the floor by the normal force at the depth at which the floor carries it.
+    The bar lies along x with its root at -l0. The slider starts in equilibrium without friction: at the slot's
+    centre, or where a preload force has taken it, at the depths at which floor and stop carry their loads.
 
     :param case: resolved case, sections and keys as in the case file
     :param recorders: engines that read the state, run before the motion of each step
@@ -66,10 +67,11 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
     body.material = materials["pad"]
     body.bound = wrapper.Aabb()
     body.state.mass = dem["tip_mass_kg"]
-    body.state.pos = body.state.refPos = (0, -depth, 0)
+    start = dem["start_displacement_m"]
+    body.state.pos = body.state.refPos = (start, -depth, 0)
     body.state.blockedDOFs = "zXYZ"
     slider = O.bodies.append(body)
-    O.forces.setPermF(slider, (0, -joint["normal_force_N"], 0))
+    O.forces.setPermF(slider, (-joint["preload_force_N"], -joint["normal_force_N"], 0))
     floor, stop_minus, stop_plus = O.bodies.append(
         sj.slot(
             (0, 0, 0),
@@ -112,9 +114,16 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
     )
     O.trackEnergy = True
     O.dt = dem["time_step_s"]
+    stiffness = link["young_modulus_Pa"] * link["cross_section_area_m2"] / link["stress_free_length_m"]
     return SpringSliderScene(
-        program, slider, floor, stop_minus, stop_plus, bar, preload, start_height_m=-depth
+        program, slider, floor, stop_minus, stop_plus, bar, preload, start_height_m=-depth,
+        start_energy_J=0.5 * stiffness * start**2 + stored_by_preload(joint, start),
     )
+
+
+def stored_by_preload(joint: dict[str, Any], displacement: float) -> float:
+    """Return what the preload spring stores [J]: k_p x²/2 + P x."""
+    return (0.5 * joint["preload_stiffness_N_per_m"] * displacement + joint["preload_force_N"]) * displacement
 
 
 def sample(case: dict[str, Any], built: SpringSliderScene) -> tuple:
@@ -132,12 +141,9 @@ def sample(case: dict[str, Any], built: SpringSliderScene) -> tuple:
         raise SceneFailure("the slider has left the floor of its slot: the contact is lost", "floor")
     stops = [contacts[face] for face in (built.stop_minus, built.stop_plus) if face in contacts]
     energy = {name: O.energy[name] for name in O.energy.keys()}
-    bar, preload = built.link, built.preload_link
+    bar = built.link
     stiffness = bar.youngModulus * bar.crossSectionArea / bar.previousStressFreeLength
     elastic = 0.5 * stiffness * bar.previousExtension**2
-    preload_energy = 0.0
-    if preload is not None:
-        preload_energy = 0.5 * case["joint"]["preload_stiffness_N_per_m"] * preload.previousExtension**2
     return (
         O.time,
         bar.temperatureChange,
@@ -152,7 +158,7 @@ def sample(case: dict[str, Any], built: SpringSliderScene) -> tuple:
         energy.get("linkThermalWork", 0.0) + energy.get("jointThermalWork", 0.0),
         -case["joint"]["normal_force_N"] * (state.pos[1] - built.start_height_m),
         energy["jointElastic"],
-        preload_energy,
+        stored_by_preload(case["joint"], state.pos[0]) - built.start_energy_J,
         int(floor.slipping),
         int(bool(stops)),
         floor.normalForce.norm(),

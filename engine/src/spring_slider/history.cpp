@@ -41,12 +41,17 @@ History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times)
   }
   history.stage.reserve(static_cast<std::size_t>(n));
   std::size_t hint = 0;
+  const double start = start_displacement(path.model);
+  const auto stored = [&model](double x) {
+    return (0.5 * model.preload_stiffness * x + model.preload_force) * x;
+  };
+  const double start_energy = 0.5 * link_stiffness(model, 0.0) * start * start + stored(start);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double time = times[i];
     kernel::require(std::isfinite(time) && time >= 0.0, "time", time, "finite, >= 0 s");
     const Segment& segment = segment_at(path.segments, time, hint);
     const auto [change, x, force] = place_at(model, path.program, segment, time);
-    const double preload_force = -model.preload_stiffness * x;
+    const double preload_force = -model.preload_force - model.preload_stiffness * x;
     const double load = force + preload_force;
     const double friction =
         segment.motion == Motion::stick ? -load : -segment.direction * model.friction_force;
@@ -58,7 +63,7 @@ History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times)
     history.friction_force[i] = friction;
     history.stop_force[i] = segment.motion == Motion::stop ? -(load + friction) : 0.0;
     history.elastic_energy[i] = 0.5 * force * force / link_stiffness(model, change);
-    history.preload_energy[i] = 0.5 * model.preload_stiffness * x * x;
+    history.preload_energy[i] = stored(x) - start_energy;
     history.friction_dissipation[i] = segment.friction_dissipation + model.friction_force * slid;
     history.thermal_work[i] = segment.thermal_work + thermal_work(model, segment, change);
     history.stage.push_back(segment.stage);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "statejump/spring_slider/model.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "statejump/kernel/require.hpp"
@@ -26,6 +27,8 @@ void SpringSlider::validate() const {
   require(clearance_plus > 0.0, "clearance_plus", clearance_plus, "> 0 m, or infinity");
   require(std::isfinite(preload_stiffness) && preload_stiffness >= 0.0, "preload_stiffness",
           preload_stiffness, "finite, >= 0 N/m");
+  require(std::abs(preload_force) + friction_force < axial_rigidity(), "preload_force",
+          preload_force, "of a size below young_modulus * cross_section_area - friction_force [N]");
 }
 
 double free_length(const SpringSlider& model, double temperature_change) {
@@ -45,18 +48,26 @@ double axial_force(const SpringSlider& model, double temperature_change, double 
          (thermal_displacement(model, temperature_change) - displacement);
 }
 
+double start_displacement(const SpringSlider& model) {
+  const double stiffness = link_stiffness(model, 0.0) + model.preload_stiffness;
+  // 0 − 0/k would be −0.
+  const double free = model.preload_force == 0.0 ? 0.0 : -model.preload_force / stiffness;
+  return std::clamp(free, -model.clearance_minus, model.clearance_plus);
+}
+
 double sliding_displacement(const SpringSlider& model, double temperature_change, int direction) {
   const double rigidity = model.axial_rigidity();
   const double length = free_length(model, temperature_change);
   return (rigidity * thermal_displacement(model, temperature_change) -
-          direction * model.friction_force * length) /
+          (direction * model.friction_force + model.preload_force) * length) /
          (rigidity + model.preload_stiffness * length);
 }
 
 double sliding_temperature(const SpringSlider& model, double displacement, int direction) {
-  // E A (x_T − x) = g l_T with g = s f + k_p x is linear in ΔT: x_T = l0 α ΔT, l_T = l0 + x_T.
+  // E A (x_T − x) = g l_T with g = s f + P + k_p x is linear in ΔT: x_T = l0 α ΔT, l_T = l0 + x_T.
   const double rigidity = model.axial_rigidity();
-  const double force = direction * model.friction_force + model.preload_stiffness * displacement;
+  const double force = direction * model.friction_force + model.preload_force +
+                       model.preload_stiffness * displacement;
   const double slope = model.stress_free_length * model.thermal_expansion * (rigidity - force);
   if (slope == 0.0 || force >= rigidity) return std::numeric_limits<double>::quiet_NaN();
   return (rigidity * displacement + force * model.stress_free_length) / slope;

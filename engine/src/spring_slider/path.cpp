@@ -26,7 +26,19 @@ class Follower {
  public:
   /// `kept`: the cycles to keep, ascending.
   Follower(Path& path, const std::vector<int>& kept)
-      : path_(path), model_(path.model), kept_(kept) {}
+      : path_(path), model_(path.model), kept_(kept) {
+    open_.start_displacement = open_.end_displacement = start_displacement(model_);
+    const double load =
+        -model_.preload_force -
+        (link_stiffness(model_, 0.0) + model_.preload_stiffness) * open_.end_displacement;
+    const int side = sign(load);
+    if (open_.end_displacement == side * model_.clearance(side) &&
+        side * load > model_.friction_force) {
+      open_.stage = stage_at_stop(side);
+      open_.motion = Motion::stop;
+      open_.direction = side;
+    }
+  }
 
   void follow(const thermal::Branch& branch) {
     const int heating = sign(branch.end - branch.start);
@@ -130,14 +142,20 @@ class Follower {
   void load_stop() {
     // Snapped, so that x is the clearance itself and leaving the stop can be told by equality.
     open_.end_displacement = drive_ * model_.clearance(drive_);
-    enter(EventKind::stop_reached, drive_ > 0 ? Stage::at_stop_plus : Stage::at_stop_minus,
-          Motion::stop, drive_);
+    enter(EventKind::stop_reached, stage_at_stop(drive_), Motion::stop, drive_);
   }
 
-  void turn_back() {
+  void turn_back() { enter(EventKind::reversal, stage_of_stick(), Motion::stick, 0); }
+
+  static Stage stage_at_stop(int side) {
+    return side > 0 ? Stage::at_stop_plus : Stage::at_stop_minus;
+  }
+
+  /// Stage of a stick that begins where the open segment ends.
+  Stage stage_of_stick() const {
+    if (last_slide_ == 0) return Stage::S1;
     const double force = axial_force(model_, open_.end_temperature_change, open_.end_displacement);
-    const bool unloads = last_slide_ * force >= 0.0;
-    enter(EventKind::reversal, unloads ? Stage::S3 : Stage::S4, Motion::stick, 0);
+    return last_slide_ * force >= 0.0 ? Stage::S3 : Stage::S4;
   }
 
   /// Is ΔT before the end of the branch, or already passed? False for NaN: no such event.
@@ -163,7 +181,7 @@ class Follower {
       const double unload = sliding_temperature(model_, x, open_.direction);
       if (!is_due(unload)) return false;
       move_to_event(unload);
-      enter(EventKind::stop_unloaded, Stage::S3, Motion::stick, 0);
+      enter(EventKind::stop_unloaded, stage_of_stick(), Motion::stick, 0);
       return true;
     }
     if (open_.motion == Motion::slide) {
@@ -327,7 +345,9 @@ Place place_at(const SpringSlider& model, const thermal::Program& program, const
   const double x = displacement(model, segment, change);
   // Sliding, the block carries exactly the friction limit; a difference of x and x_T would not.
   if (segment.motion == Motion::slide) {
-    return {change, x, segment.direction * model.friction_force + model.preload_stiffness * x};
+    return {change, x,
+            segment.direction * model.friction_force + model.preload_force +
+                model.preload_stiffness * x};
   }
   return {change, x, axial_force(model, change, x)};
 }
@@ -354,7 +374,7 @@ double thermal_work(const SpringSlider& model, const Segment& segment, double te
     double strain = 0.0;  // (x − x_T)/l_T
     if (segment.motion == Motion::slide) {
       // Written out: the difference of x and x_T would lose the digits that the balance is about.
-      strain = -(segment.direction * model.friction_force +
+      strain = -(segment.direction * model.friction_force + model.preload_force +
                  model.preload_stiffness * thermal_displacement(model, at)) /
                (model.axial_rigidity() + model.preload_stiffness * length);
     } else {

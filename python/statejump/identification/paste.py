@@ -19,6 +19,7 @@ TARGETS = {
     "umbrella": ("[joint]", "joint", None),
     "torsion_spring": ("[[torsion_spring]]", "torsion_spring.*", True),
 }
+OF_EITHER_SIGN = ("bias_rad", "preload_force_N")
 
 
 @dataclass(frozen=True)
@@ -92,7 +93,8 @@ def entries(
 
     if target in ("spring_slider", "slider"):
         stops = [known(f"{name}_m", name, "the loop meets no stop") for name in ("clearance_minus", "clearance_plus")]
-        spring = [known("preload_stiffness_N_per_m", "preload_stiffness", "the loop shows no spring beside the slide")]
+        spring = [known("preload_stiffness_N_per_m", "preload_stiffness", "the loop shows no spring beside the slide"),
+                  known("preload_force_N", "preload", "the loop shows no force of its own")]
         return friction() + stops + (spring if target == "spring_slider" else [])
     if target == "torsion_spring":
         name = "preload_stiffness" if "friction" in values or "clearance_plus" in values else "stiffness"
@@ -121,7 +123,7 @@ def distributions(target: str, found: list[Entry]) -> dict[str, dict[str, float 
     """Return what a campaign varies: key to what a ``[[vary]]`` table says. Positive parameters are lognormal."""
     return {
         f"{TARGETS[target][1]}.{entry.key}": {
-            "distribution": "lognormal" if entry.value > 0 and entry.key != "bias_rad" else "normal",
+            "distribution": "lognormal" if entry.value > 0 and entry.key not in OF_EITHER_SIGN else "normal",
             "mean": entry.value, "standard_deviation": entry.deviation,
         }
         for entry in found if entry.value is not None and entry.deviation

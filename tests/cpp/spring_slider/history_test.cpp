@@ -18,6 +18,10 @@ Eigen::VectorXd grid(const Path& path, Eigen::Index n) {
 std::vector<Path> paths() {
   SpringSlider preloaded = table1();
   preloaded.preload_stiffness = 3e5;
+  SpringSlider pulled = table1();
+  pulled.preload_force = 200.0;
+  SpringSlider seated = preloaded;
+  seated.preload_force = -2e3;
   SpringSlider frictionless = table1();
   frictionless.friction_force = 0.0;
   SpringSlider shrinking = table1();
@@ -25,7 +29,8 @@ std::vector<Path> paths() {
   std::vector<Path> result;
   for (const thermal::Shape shape :
        {thermal::Shape::triangle, thermal::Shape::half_sine, thermal::Shape::sine}) {
-    for (const SpringSlider& model : {table1(), table1(2e-3), preloaded, frictionless, shrinking}) {
+    for (const SpringSlider& model :
+         {table1(), table1(2e-3), preloaded, pulled, seated, frictionless, shrinking}) {
       result.push_back(solve(model, cycle(shape, 3, 0.7)));
     }
   }
@@ -37,9 +42,10 @@ TEST(SpringSliderHistory, ForcesBalanceWithinTheirLimits) {
     const SpringSlider& model = path.model;
     const History h = sample(path, grid(path, 5000));
     for (Eigen::Index i = 0; i < h.time.size(); ++i) {
-      const double sum = h.axial_force[i] - model.preload_stiffness * h.displacement[i] +
-                         h.friction_force[i] + h.stop_force[i];
-      ASSERT_NEAR(sum, 0.0, 1e-12);
+      const double sum = h.axial_force[i] - model.preload_force -
+                         model.preload_stiffness * h.displacement[i] + h.friction_force[i] +
+                         h.stop_force[i];
+      ASSERT_NEAR(sum, 0.0, 1e-12 + 1e-15 * std::abs(model.preload_force));
       ASSERT_LE(std::abs(h.friction_force[i]), model.friction_force + 1e-10);
       ASSERT_LE(h.displacement[i], model.clearance_plus);
       ASSERT_GE(h.displacement[i], -model.clearance_minus);

@@ -75,6 +75,9 @@ TEST(SpringSlider, RefusesWhatIsOutOfRange) {
   }
   EXPECT_NE(check(&SpringSlider::clearance_minus, 0.6), "");
   EXPECT_NE(check(&SpringSlider::preload_stiffness, -1.0), "");
+  for (const double value : {nan, infinity, EA, f - EA}) {
+    EXPECT_NE(check(&SpringSlider::preload_force, value), "");
+  }
   EXPECT_EQ(check(&SpringSlider::clearance_minus, infinity), "");
   EXPECT_EQ(check(&SpringSlider::clearance_plus, infinity), "");
   EXPECT_EQ(check(&SpringSlider::thermal_expansion, -1e-6), "");

@@ -118,6 +118,36 @@ TEST(SpringSliderPath, PreloadReducesTheJump) {
   EXPECT_NEAR(path.state_jump(), jump, close(jump));
 }
 
+TEST(SpringSliderPath, PreloadForceSeatsTheBlockOnAStop) {
+  // P = k c + 3 f holds the block on the stop at −c with 3 f. Heating unloads it, f is left to
+  // friction, and the block leaves when the link pushes with f more than the spring pulls.
+  SpringSlider model = table1();
+  model.preload_force = EA / l0 * c + 3.0 * f;
+  const auto loaded_root = [&](double x, double s) {
+    const double g = s * f + model.preload_force;
+    return (EA * x + g * l0) / (alpha * l0 * (EA - g));
+  };
+  const double hot = 150.0;
+  const double peak = l0 * alpha * hot - (f + model.preload_force) * l0 * (1.0 + alpha * hot) / EA;
+  thermal::Program program = cycle();
+  program.temperature_change_max = hot;
+  const Path path = solve(model, program);
+  expect_events(path,
+                {{EventKind::stop_unloaded, Stage::at_stop_minus, Stage::S1, loaded_root(-c, -1)},
+                 {EventKind::first_slip, Stage::S1, Stage::S2, loaded_root(-c, 1)},
+                 {EventKind::reversal, Stage::S2, Stage::S3, hot},
+                 {EventKind::slip, Stage::S3, Stage::S5, loaded_root(peak, -1)},
+                 {EventKind::stop_reached, Stage::S5, Stage::at_stop_minus, loaded_root(-c, -1)},
+                 {EventKind::cycle_end, Stage::at_stop_minus, Stage::at_stop_minus, 0.0}});
+  EXPECT_EQ(path.segments.front().start_displacement, -c);
+  EXPECT_EQ(path.state_jump(), 0.0);
+  // Too weak to reach the stop: it starts where it needs no friction, and the jump is that of none.
+  model.preload_force = 0.5 * EA / l0 * c;
+  const Path free = solve(model, cycle());
+  EXPECT_NEAR(free.segments.front().start_displacement, -0.5 * c, close(c));
+  EXPECT_NEAR(free.state_jump(), f * l0 / EA, close(c));
+}
+
 TEST(SpringSliderPath, WithoutFrictionNothingRemains) {
   SpringSlider model = table1();
   model.friction_force = 0.0;
@@ -309,8 +339,8 @@ TEST(SpringSliderPath, LargestForceIsThatOfAFineHistory) {
 double return_mapping(const SpringSlider& model, double change, double x) {
   const double length = model.stress_free_length * (1.0 + model.thermal_expansion * change);
   const double stiffness = model.young_modulus * model.cross_section_area / length;
-  const double trial =
-      stiffness * (length - model.stress_free_length - x) - model.preload_stiffness * x;
+  const double trial = stiffness * (length - model.stress_free_length - x) - model.preload_force -
+                       model.preload_stiffness * x;
   const double excess = std::abs(trial) - model.friction_force;
   if (excess > 0.0) x += std::copysign(excess, trial) / (stiffness + model.preload_stiffness);
   return std::min(std::max(x, -model.clearance_minus), model.clearance_plus);
@@ -328,6 +358,8 @@ TEST(SpringSliderPath, EqualsSmallStepsForRandomModels) {
     model.clearance_plus = uniform(1e-4, 2e-3);
     model.clearance_minus = uniform(1e-4, 2e-3);
     model.preload_stiffness = run % 2 == 0 ? 0.0 : uniform(0.0, 2e6);
+    // Up to what presses the block on a stop all the way: 2 mm times 1.26e6 N/m.
+    model.preload_force = run % 3 == 0 ? 0.0 : uniform(-3e3, 3e3);
     std::vector<double> times{0.0};
     std::vector<double> changes{0.0};
     for (int i = 1; i < 8; ++i) {
@@ -340,7 +372,10 @@ TEST(SpringSliderPath, EqualsSmallStepsForRandomModels) {
     // rounding of l_T − l0, an ulp of 0.5 m, in every step that slides.
     const int steps = 400;
     const double tolerance = 7 * steps * 2e-16;
-    double x = 0.0;
+    // It starts where the spring alone would hold it.
+    SpringSlider smooth = model;
+    smooth.friction_force = 0.0;
+    double x = return_mapping(smooth, 0.0, 0.0);
     std::size_t at = 0;
     for (std::size_t i = 1; i < times.size(); ++i) {
       for (int step = 1; step <= steps; ++step) {

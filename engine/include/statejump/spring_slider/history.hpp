@@ -9,16 +9,16 @@
 namespace statejump::spring_slider {
 
 /// A path at given times, one array entry per time. Forces act on the block, positive towards +x,
-/// and F − k_p x + friction_force + stop_force = 0.
+/// and F − P − k_p x + friction_force + stop_force = 0.
 struct History {
-  Eigen::VectorXd time;                  ///< [s]
-  Eigen::VectorXd temperature_change;    ///< ΔT [K]
-  Eigen::VectorXd displacement;          ///< x [m]
-  Eigen::VectorXd axial_force;           ///< F = k_T (x_T − x) [N], positive in compression
-  Eigen::VectorXd friction_force;        ///< Force of the ground on the block [N]
-  Eigen::VectorXd stop_force;            ///< Force of a stop on the block [N]; see SpringSlider
-  Eigen::VectorXd elastic_energy;        ///< Energy F²/(2 k_T) in the link [J]
-  Eigen::VectorXd preload_energy;        ///< Energy k_p x²/2 in the preload spring [J]
+  Eigen::VectorXd time;                ///< [s]
+  Eigen::VectorXd temperature_change;  ///< ΔT [K]
+  Eigen::VectorXd displacement;        ///< x [m]
+  Eigen::VectorXd axial_force;         ///< F = k_T (x_T − x) [N], positive in compression
+  Eigen::VectorXd friction_force;      ///< Force of the ground on the block [N]
+  Eigen::VectorXd stop_force;          ///< Force of a stop on the block [N]; see SpringSlider
+  Eigen::VectorXd elastic_energy;      ///< Energy F²/(2 k_T) in the link [J]
+  Eigen::VectorXd preload_energy;  ///< k_p x²/2 + P x [J], and what makes all energy 0 at the start
   Eigen::VectorXd friction_dissipation;  ///< Heat of friction since the start, ∫ f |dx| [J]
   Eigen::VectorXd thermal_work;          ///< Work of the temperature since the start [J]
   std::vector<Stage> stage;

@@ -16,19 +16,21 @@ namespace statejump::spring_slider {
 ///     F = k_T (x_T − x),   k_T = E A / l_T   (4)
 ///
 /// is the axial force, positive in compression: it pushes the block towards +x. A preload spring to
-/// the ground adds −k_p x. Friction R with |R| <= f and a stop force W, at x = +c⁺ or x = −c⁻,
-/// balance the rest, F − k_p x + R + W = 0, at every instant: the path is quasi-static and
-/// rate-independent, a function of the sequence of ΔT alone.
+/// the ground pulls it back with P + k_p x. Friction R with |R| <= f and a stop force W, at x = +c⁺
+/// or x = −c⁻, balance the rest, D + R + W = 0 with D = F − P − k_p x, at every instant: the path
+/// is quasi-static and rate-independent, a function of the sequence of ΔT alone.
 ///
-///   stick   |F − k_p x| < f, x stays
-///   slide   F − k_p x = s f with the sense s of the motion, hence
-///           x = (E A x_T − s f l_T)/(E A + k_p l_T); for k_p = 0, x = x_T − s f l_T/(E A)
-///   stop    x = s c and s (F − k_p x) > f
+///   start   where D = 0 at ΔT = 0, x = −P/(k + k_p), or at the stop in its way: without friction
+///   stick   |D| < f, x stays
+///   slide   D = s f with the sense s of the motion, hence
+///           x = (E A x_T − (s f + P) l_T)/(E A + k_p l_T)
+///   stop    x = s c and s D > f
 ///
-/// A cycle that ends sliding leaves |x| = f/(k_T + k_p), the state jump.
+/// A cycle that ends sliding leaves the block f/(k_T + k_p) from where D = 0, the state jump unless
+/// P presses it on a stop at the start.
 ///
 /// Against a rigid stop equilibrium leaves R and W undetermined within −f <= R <= f. Assumed here
-/// is the smallest stop force, |W| = max(0, |F − k_p x| − f): friction keeps the value that it had
+/// is the smallest stop force, |W| = max(0, |D| − f): friction keeps the value that it had
 /// when the block arrived, the stop takes the remainder. With an elastic stop the split depends on
 /// its stiffness; x, F and every energy do not, because the block does not move.
 ///
@@ -49,8 +51,10 @@ struct SpringSlider {
   double clearance_minus = std::numeric_limits<double>::infinity();
   /// Distance c⁺ from the block's start to the stop at positive x [m], > 0, or infinity.
   double clearance_plus = std::numeric_limits<double>::infinity();
-  /// Stiffness k_p of the spring from block to ground, unloaded at x = 0 [N/m], >= 0.
+  /// Stiffness k_p of the spring from block to ground [N/m], >= 0.
   double preload_stiffness = 0.0;
+  /// Tension P of that spring at x = 0 [N], towards −x when positive, |P| + f < E A.
+  double preload_force = 0.0;
 
   /// Throws std::invalid_argument that names the first field out of range, its value and the range.
   void validate() const;
@@ -74,15 +78,20 @@ double link_stiffness(const SpringSlider& model, double temperature_change);
 /// Axial force F = k_T (x_T − x) [N] of the link, positive in compression, with the block at x [m].
 double axial_force(const SpringSlider& model, double temperature_change, double displacement);
 
+/// Position x [m] of the block at the start, ΔT = 0: where it needs no friction, or at the stop
+/// that is in its way.
+double start_displacement(const SpringSlider& model);
+
 /// Position x [m] of the block that slides in sense `direction` (+1 or −1), stops left aside.
 double sliding_displacement(const SpringSlider& model, double temperature_change, int direction);
 
-/// ΔT [K] at which F − k_p x = direction·f with the block at x [m], the inverse of
+/// ΔT [K] at which D = direction·f with the block at x [m], the inverse of
 /// sliding_displacement: onset of sliding from x, and arrival at x while sliding.
-/// NaN if no temperature does it (α = 0, or k_p x + direction·f >= E A).
+/// NaN if no temperature does it (α = 0, or P + k_p x + direction·f >= E A).
 double sliding_temperature(const SpringSlider& model, double displacement, int direction);
 
-/// Displacement f/(k_T + k_p) [m] that one closed cycle leaves if it ends sliding at ΔT = 0;
+/// Displacement f/(k_T + k_p) [m] that one closed cycle leaves if it ends sliding at ΔT = 0 and did
+/// not start at a stop;
 /// positive for a cycle that heats. Independent of the clearance and of the largest temperature
 /// (paper 3.4).
 double state_jump(const SpringSlider& model);

@@ -21,7 +21,8 @@ namespace statejump::spring_slider {
 ///   S5  slide against the sense of the first slide
 ///
 /// A second cycle therefore runs S3, S4, S2, S3, S4, S5. With a preload spring F may change sign
-/// during a slide; S3 or S4 may then be missing.
+/// during a slide; S3 or S4 may then be missing. One that presses the block on a stop lets a path
+/// begin there.
 enum class Stage : unsigned char { S1, S2, S3, S4, S5, at_stop_plus, at_stop_minus };
 
 /// What the block does, whatever the stage is called. `stop`: it rests against a loaded stop.
@@ -94,20 +95,20 @@ struct Path {
   /// starts, or at the end. See place_at().
   double largest_axial_force = 0.0;
 
-  /// Displacement at the end minus that at the start, x = 0 [m].
-  double state_jump() const { return cycle_end_displacements.back(); }
+  /// Displacement at the end minus that at the start [m].
+  double state_jump() const { return cycle_end_displacements.back() - start_displacement(model); }
 
   /// Displacement at the end of cycle `cycle`, counted from 1, minus that at the start [m].
   /// Throws std::invalid_argument unless 1 <= cycle <= program.cycles.
   double jump_after_cycle(int cycle) const;
 };
 
-/// Exact path from rest at x = 0, ΔT = 0. Every event is the root of an equation linear in ΔT, and
-/// its time the closed-form inverse of the program: nothing is stepped over or iterated.
-/// Throws std::invalid_argument if model or program is out of range, or if the program takes the
-/// link to a length l_T <= 0.
-/// Limits: events are ordered by ΔT within rounding, so two that coincide exactly may come in
-/// either order. Without friction a stick has no duration: its events stand at one temperature.
+/// Exact path from rest at start_displacement(), ΔT = 0. Every event is the root of an equation
+/// linear in ΔT, and its time the closed-form inverse of the program: nothing is stepped over or
+/// iterated. Throws std::invalid_argument if model or program is out of range, or if the program
+/// takes the link to a length l_T <= 0. Limits: events are ordered by ΔT within rounding, so two
+/// that coincide exactly may come in either order. Without friction a stick has no duration: its
+/// events stand at one temperature.
 Path solve(const SpringSlider& model, const thermal::Program& program);
 
 /// The same into an existing path, whose memory is used again. On error `path` is unspecified.

@@ -35,6 +35,10 @@ class Joint(Section):
     clearance_minus_m: float = parameter(..., "m", 0, 1e2, PAPER, above=True)
     clearance_plus_m: float = parameter(..., "m", 0, 1e2, PAPER, above=True)
     preload_stiffness_N_per_m: float = parameter(0.0, "N/m", 0, 1e15, "none in the paper's case")
+    preload_force_N: float = parameter(
+        0.0, "N", -1e9, 1e9, "tension of that spring at displacement 0, towards the root of the bar; none in the "
+        "paper's case"
+    )
     pad_radius_m: float = parameter(0.05, "m", 0, 1e2, CHOICE + "; DEM only", above=True)
     young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, CHOICE + ": as the link", above=True)
     poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, CHOICE + ": as the link")
@@ -123,6 +127,11 @@ class SpringSliderCase(Case):
             raise NotAllowed(
                 "joint.friction_coefficient", joint.friction_coefficient,
                 f"the friction force {self.friction_force_N:g} N must be below E A = {rigidity:g} N",
+            )
+        if self.friction_force_N + abs(joint.preload_force_N) >= rigidity:
+            raise NotAllowed(
+                "joint.preload_force_N", joint.preload_force_N,
+                f"its size and the friction force {self.friction_force_N:g} N must stay below E A = {rigidity:g} N",
             )
         if self.dem.time_step_s is not None:
             stable = stable_step.stable_time_step(self)

@@ -40,7 +40,7 @@ class Jump:
     """State jump of one design."""
 
     size_m: float
-    closed_form_m: float | None  # None: the cycle does not end sliding at ΔT = 0
+    closed_form_m: float | None  # None: the cycle does not end sliding at ΔT = 0, or starts at a stop
     slips: bool
 
 
@@ -51,8 +51,10 @@ def jump_of(case: SpringSliderCase) -> Jump:
     # A block that does not slide in the first cycle meets the second as it met the first.
     slips = any(segment.motion == "slide" for segment in path.segments)
     last = path.segments[-1]
-    closed = last.motion == "slide" and last.end_temperature_change_K == 0
-    # A block that has not moved keeps the zero that it started from.
+    start = path.segments[0].start_displacement_m
+    free = -case.joint.clearance_minus_m < start < case.joint.clearance_plus_m
+    closed = free and last.motion == "slide" and last.end_temperature_change_K == 0
+    # A block that has not moved keeps the place that it started from.
     return Jump(abs(path.state_jump_m), path.model.state_jump_m if closed else None, slips)
 
 
@@ -68,7 +70,9 @@ class Spring:
 def smallest_preload(case: SpringSliderCase, wanted_m: float) -> Spring | None:
     """Return the spring, or None if the largest allowed one is too soft.
 
-    The jump never grows with k_p: a stiffer spring slides less far and back earlier.
+    The jump never grows with k_p, for a stiffer spring slides less far and back earlier, unless a preload force presses
+    the block on a stop: then it grows until the stop carries nothing, and falls from there. So it passes any value that
+    it exceeds without a spring once.
     """
 
     def solved(stiffness: float) -> Jump:

@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from scipy.optimize import brentq
+
+from statejump.core import physics
 from statejump.core.yade_process import common_values
-from statejump.kinds.spring_slider import stable_step
+from statejump.kinds.spring_slider import reduced, stable_step
 from statejump.kinds.spring_slider.case import SpringSliderCase
 
 
@@ -27,5 +30,23 @@ def time_step(case: SpringSliderCase) -> float:
 def dem_input(case: SpringSliderCase) -> dict[str, Any]:
     """Return everything that the YADE script needs, as plain values."""
     values = common_values(case, number_of_steps(case))
-    values["dem"].update(tip_mass_kg=stable_step.tip_mass(case))
+    values["dem"].update(tip_mass_kg=stable_step.tip_mass(case), start_displacement_m=start_displacement(case))
     return values
+
+
+def start_displacement(case: SpringSliderCase) -> float:
+    """Return where the block starts [m]: where it needs no friction; a stop in its way gives by Hertz."""
+    joint = case.joint
+    rigid = reduced.spring_slider(case).start_displacement_m
+    for side in (1, -1):
+        clearance = case.clearance_m(side, 0.0)
+        stiffness = stable_step.link_stiffness(case) + joint.preload_stiffness_N_per_m
+        load = -side * joint.preload_force_N - stiffness * clearance
+        if load > 0:
+            hertz = physics.hertz_stiffness_N_per_m15(
+                physics.effective_young_modulus_Pa(joint.young_modulus_Pa, joint.poisson_ratio), joint.pad_radius_m
+            )
+            deepest = float(physics.hertz_depth_m(load, hertz))
+            depth = brentq(lambda there: hertz * there**1.5 + stiffness * there - load, 0.0, deepest)
+            return side * (clearance + float(depth))
+    return rigid

@@ -35,7 +35,8 @@ def answer(case: SpringSliderCase) -> ccx.Answer:
     :raises StatejumpError: there is no CalculiX, or it failed
     """
     joint = case.joint
-    for key in ("preload_stiffness_N_per_m", "pad_thermal_expansion_per_K", "slot_thermal_expansion_per_K"):
+    for key in ("preload_stiffness_N_per_m", "preload_force_N", "pad_thermal_expansion_per_K",
+                "slot_thermal_expansion_per_K"):
         if getattr(joint, key):
             raise NotAllowed(f"joint.{key}", getattr(joint, key), "'statejump fe' takes 0 only")
     if not joint.friction_coefficient:

@@ -45,7 +45,7 @@ def scene(case: SpringSliderCase) -> dict[str, Any]:
         },
         drawing.link("bar", [[root, 0.0, 0.0], [x, 0.0, 0.0]], link),
     ]
-    if joint.preload_stiffness_N_per_m > 0:
+    if joint.preload_stiffness_N_per_m > 0 or joint.preload_force_N:
         parts.append({
             "name": "preload", "type": "spring", "ends": [[x, 0.0, 0.0], [-root, 0.0, 0.0]],
             "stiffness_N_per_m": joint.preload_stiffness_N_per_m,

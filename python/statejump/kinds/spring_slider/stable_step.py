@@ -9,7 +9,7 @@ along two axes:
 
 Contacts are Hertz-Mindlin at the largest force they can see: the floor at twice the normal force (a load
 applied at once overshoots to twice its value), a stop at the force that would hold the whole thermal
-overlap rigidly, doubled for impact. Dashpots of all contacts of an axis are added.
+overlap and the preload rigidly, doubled for impact. Dashpots of all contacts of an axis are added.
 """
 from __future__ import annotations
 
@@ -31,13 +31,14 @@ def tip_mass(case: SpringSliderCase) -> float:
 
 
 def largest_stop_force(case: SpringSliderCase) -> float:
-    """Force [N] that would hold the thermal overlap with a rigid stop."""
-    link = case.link
-    overlap = 0.0
+    """Force [N] that would hold the thermal overlap and the preload with a rigid stop."""
+    link, stiffness, preload = case.link, link_stiffness(case), case.joint.preload_force_N
+    force = 0.0
     for change in case.temperature_range_K:
         stroke = link.stress_free_length_m * link.thermal_expansion_per_K * change
-        overlap = max(overlap, stroke - case.clearance_m(1, change), -stroke - case.clearance_m(-1, change))
-    return link_stiffness(case) * overlap
+        force = max(force, *(stiffness * (side * stroke - case.clearance_m(side, change)) - side * preload
+                             for side in (1, -1)))
+    return force
 
 
 def link_stiffness(case: SpringSliderCase) -> float:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where friction holds the block of a ``spring_slider`` case: its rest set at the temperatures of the program.
 
-The bar pushes with k_T (x_T - x), a preload spring pulls back with k_p x, and friction takes up to f. So the block
-rests wherever |k_T x_T - (k_T + k_p) x| <= f, a segment of half-length f/(k_T + k_p) about the place of zero
+The bar pushes with k_T (x_T - x), a preload spring pulls back with P + k_p x, and friction takes up to f. So the block
+rests wherever |k_T x_T - P - (k_T + k_p) x| <= f, a segment of half-length f/(k_T + k_p) about the place of zero
 force, as far as the stops let it; beyond a stop the wall takes what is left, and the block rests at the stop. At
 the reference temperature the two ends of the segment are as far apart as a state jump can be.
 """
@@ -119,7 +119,8 @@ def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_
     length = link.stress_free_length_m * (1 + link.thermal_expansion_per_K * temperature_change_K)
     bar = axial_stiffness_N_per_m(link.young_modulus_Pa, link.cross_section_area_m2, length)
     total = bar + joint.preload_stiffness_N_per_m
-    zero = bar * (link.stress_free_length_m * link.thermal_expansion_per_K * temperature_change_K) / total
+    stroke = link.stress_free_length_m * link.thermal_expansion_per_K * temperature_change_K
+    zero = (bar * stroke - joint.preload_force_N) / total
     half = friction_force_N / total
     ends = [min(max(place, -joint.clearance_minus_m), joint.clearance_plus_m) for place in (zero - half, zero + half)]
     return Segment(float(temperature_change_K), ends[0], ends[1], zero)

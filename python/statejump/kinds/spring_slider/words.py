@@ -35,6 +35,10 @@ def describe(case: SpringSliderCase) -> list[str]:
     ]
     if joint.preload_stiffness_N_per_m:
         sentences.append(f"A spring of {text(joint.preload_stiffness_N_per_m, 'N/m')} ties the block to the ground.")
+    if joint.preload_force_N:
+        way = "towards" if joint.preload_force_N > 0 else "away from"
+        sentences.append(f"A preload of {text(abs(joint.preload_force_N), 'N')} pulls the block {way} the root of the "
+                         "bar; the block starts where it needs no friction.")
     return sentences
 
 
