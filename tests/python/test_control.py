@@ -353,4 +353,4 @@ def test_kind_without_a_study_is_refused(statejump, cases: Path) -> None:
     done = statejump("control", cases / "statics_slot.toml")
     assert done.status == 2
     assert done.errors == (f"error: {cases / 'statics_slot'}.toml: case.kind = 'statics' is not allowed: 'statejump "
-                           "control' is for 'spring_slider' and 'truss' and 'umbrella'\n")
+                           "control' is for 'spring_slider' and 'umbrella' and 'truss'\n")
