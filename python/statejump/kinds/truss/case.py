@@ -21,7 +21,7 @@ from statejump.kinds.truss.joints.latch_hinge import LatchHinge
 from statejump.kinds.truss.joints.revolute import Revolute
 from statejump.kinds.truss.joints.slider import Slider
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER
-from statejump.kinds.truss.resolved import ResolvedTruss, resolve
+from statejump.kinds.truss.resolved import FIXITY, ResolvedTruss, resolve
 from statejump.schema.fields import (
     CHOICE, Section, attached, choice, definition, evolved, numbers, optional_section, parameter, section, switch,
     tables, text, texts, whole,
@@ -63,6 +63,11 @@ class Link(Item):
     density_kg_per_m3: float | None = parameter(None, "kg/m3", 0, 1e5, "this or mass_kg; DEM and motion", above=True)
     mass_kg: float | None = parameter(None, "kg", 0, 1e6, "this or density_kg_per_m3; DEM and motion", above=True)
     poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM)
+    ends: str = choice("pinned_pinned", tuple(FIXITY), "axial force only; for the warning of buckling")
+    second_moment_of_area_m4: float | None = parameter(
+        None, "m4", 0, 1e3, "smallest; of a square section; for the warning of buckling", above=True
+    )
+    yield_strength_Pa: float | None = parameter(None, "Pa", 0, 1e12, "stress is not checked", above=True)
     temperature_fraction: float = parameter(1.0, "-", -10, 10, "of its program's ΔT; fully sunlit")
     program: str | None = text(None, "name of a [[program]]; the common [thermal]")
 

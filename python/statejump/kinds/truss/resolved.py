@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,6 +24,11 @@ from statejump.kinds.truss.joints.slider import Sliders
 if TYPE_CHECKING:
     from statejump.core.temperature_files import MemberProgram
     from statejump.kinds.truss.case import TrussCase, TrussThermal
+
+# Euler's load over that of pinned ends, by how the ends of a link are held: 4.493... is the first root of tan x = x.
+FIXITY = {
+    "pinned_pinned": 1.0, "clamped_pinned": (4.493409457909064 / np.pi) ** 2, "clamped_clamped": 4.0, "guided": inf,
+}
 
 
 @dataclass(frozen=True)
@@ -50,6 +56,15 @@ class Links:
     poisson_ratio: np.ndarray
     temperature_fraction: np.ndarray  # of the program's ΔT
     program: np.ndarray  # int, index into ResolvedTruss.programs
+    second_moment_of_area_m4: np.ndarray  # smallest one of the section
+    ends: tuple[str, ...]  # keys of FIXITY
+    yield_strength_Pa: np.ndarray  # inf: none is given
+
+    @property
+    def euler_load_N(self) -> np.ndarray:
+        """Compression [N] at which each buckles by itself, inf of a guided one: fixity · π² E I/l0²."""
+        fixity = np.array([FIXITY[ends] for ends in self.ends])
+        return fixity * np.pi**2 * self.young_modulus_Pa * self.second_moment_of_area_m4 / self.stress_free_length_m**2
 
 
 @dataclass(frozen=True)
@@ -171,11 +186,14 @@ def resolve(case: TrussCase) -> ResolvedTruss:
         case.link, "young_modulus_Pa", "cross_section_area_m2", "thermal_expansion_per_K", "poisson_ratio",
         "temperature_fraction",
     )
+    moment, strength = column(case.link, "second_moment_of_area_m4"), column(case.link, "yield_strength_Pa")
     mass = column(case.link, "mass_kg")
     weighed = column(case.link, "density_kg_per_m3") * link["cross_section_area_m2"] * length
     links = Links(
         names=names(case.link), nodes=link_nodes, stress_free_length_m=length,
         mass_kg=np.where(np.isnan(mass), weighed, mass), program=known.programs_of(case.link), **link,
+        second_moment_of_area_m4=np.where(np.isnan(moment), link["cross_section_area_m2"] ** 2 / 12, moment),
+        ends=tuple(one.ends for one in case.link), yield_strength_Pa=np.where(np.isnan(strength), inf, strength),
     )
 
     spring_nodes = pairs(case.spring, "nodes", node_number)

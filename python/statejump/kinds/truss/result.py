@@ -12,7 +12,7 @@ from statejump.core.run import (
     AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Columns, Event, Events, Run, columns_of, numbers_of,
 )
 from statejump.core.units import unit_of
-from statejump.kinds.truss import compare
+from statejump.kinds.truss import compare, members
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import Contacts, Sampled
@@ -206,7 +206,10 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
     })
     summary = {"energy_residue_J": path.energy_residue_J, "solves": float(path.solves),
                "unknowns": float(path.unknowns)}
-    run = _run(case, "reduced", plain, energy, items, _events(case, path), summary, native=path,
+    beyond = members.warnings(path.truss.links, at, states["temperature_change_K"], states["axial_force_N"])
+    if len(at) == len(path.cycle_ends["time_s"]):
+        beyond = (*beyond, "of this long path the ends of cycles are kept: loads of links between them are not checked")
+    run = _run(case, "reduced", plain, energy, items, _events(case, path), summary, native=path, warnings=beyond,
                sampler=lambda times: reduced_run(case, path, times))
     heat_of_joints = Column(sampled(_heat(states)), "J", "contacts", note="heat of friction since the start")
     return replace(run, contacts={**run.contacts, "dissipation_J": heat_of_joints})
@@ -230,7 +233,7 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
         "unknowns": float(motion.unknowns),
     }
     run = _run(case, "reduced", plain, energy, items, _events(case, motion), summary, native=motion,
-               warnings=motion.warnings)
+               warnings=(*motion.warnings, *_beyond(case, plain, items)))
     velocity = Column(states["velocity_m_per_s"], "m/s", "nodes")
     heat = Column(of_joints, "J", "contacts", note="heat of friction since the start")
     return replace(run, history={**run.history, "velocity_m_per_s": velocity},
@@ -266,4 +269,10 @@ def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
         items[key] = values.reshape(samples, -1, 3) if vector else values
     plain, energy = columns_of({name: values for name, values in columns.items() if "[" not in name})
     summary = {**numbers_of(about), "energy_residue_J": compare.energy_residual(energy)}
-    return _run(case, "dem", plain, energy, items, None, summary, about=about)
+    return _run(case, "dem", plain, energy, items, None, summary, about=about, warnings=_beyond(case, plain, items))
+
+
+def _beyond(case: TrussCase, plain: Mapping[str, Column], items: Mapping[str, np.ndarray]) -> tuple[str, ...]:
+    """What the links could not carry of the forces at the samples."""
+    return members.warnings(case.resolve().links, plain["time_s"].values, plain["temperature_change_K"].values,
+                            items["axial_force_N"])

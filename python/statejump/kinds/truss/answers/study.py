@@ -155,7 +155,8 @@ def study(
     tables: dict[str, list[rows.Row]] = {
         "cycles": rows.cycle_rows(found), "node_jumps": rows.node_rows(found), "joint_jumps": rows.joint_rows(found),
     }
-    notes = [*others(found, finer, checked, asked), *_surface(found, tables)]
+    run = reduced_run(case, found, _sample_times(case))
+    notes = [*others(found, finer, checked, asked), *_surface(found, tables), *run.warnings]
     change = abs(asked.jump(finer) - jump)
     if change > RESOLVED * abs(jump):
         notes.append(f"the jump is not resolved: with twice the increments it changes by {change:.2g} {asked.unit}; "
@@ -175,7 +176,7 @@ def study(
                              "verdicts of the sensitivities")
     record = Answers(asked.name, asked.text, asked.unit, checked.word, checked.text, notes,
                      _numbers(found, checked, asked, jump, shares), tables)
-    return TrussAnswers(case, record, reduced_run(case, found, _sample_times(case)), asked, checked, shares)
+    return TrussAnswers(case, record, run, asked, checked, shares)
 
 
 def _of_cycles(case: TrussCase, cycles: int | None) -> TrussCase:

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the axial forces of a run ask of the links: Euler's load and the yield strength, as warnings.
+
+Both models take links as straight and elastic whatever their force. Springs and cables have no section: nothing is said
+of them.
+"""
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from statejump.core.units import plain
+from statejump.kinds.truss.resolved import Links
+
+
+def warnings(links: Links, time_s: np.ndarray, temperature_change_K: np.ndarray, axial_force_N: np.ndarray
+             ) -> tuple[str, ...]:
+    """Return what the links could not carry: one sentence on buckling, one on yielding, each of the worst link.
+
+    :param axial_force_N: (times, links), compression positive
+    """
+    if not axial_force_N.size:
+        return ()
+    places = np.arange(len(links.names))
+
+    def sentence(at: np.ndarray, load: np.ndarray, told: Sequence[str]) -> list[str]:
+        """Return the sentence on links whose load is above 1, reached at these samples; ``told`` is what the worst one
+        bears, what it exceeds, and what the models make of it."""
+        beyond = np.flatnonzero(load > 1)
+        if not len(beyond):
+            return []
+        worst = int(np.argmax(load))
+        more = len(beyond) - 1
+        others = "" if not more else f", and so {'does 1 other link' if more == 1 else f'do {more} other links'}"
+        when = (f"at a temperature change of {plain(float(temperature_change_K[at[worst]]), 'K', 4)} "
+                f"(t = {plain(float(time_s[at[worst]]), 's', 4)})")
+        return [f"link {links.names[worst]!r} {told[0]} {when} {told[1]}{others}: {told[2]}"]
+
+    pressed = np.argmax(axial_force_N, axis=0)
+    compression, euler = axial_force_N[pressed, places], links.euler_load_N
+    worst = int(np.argmax(compression / euler))
+    found = sentence(pressed, compression / euler, (
+        f"is compressed by {plain(float(compression[worst]), 'N', 4)}",
+        f"beyond its Euler load of {plain(float(euler[worst]), 'N', 4)} ({links.ends[worst].replace('_', '-')}, I = "
+        f"{links.second_moment_of_area_m4[worst]:.4g} m4)", "the models keep links straight"))
+    loaded = np.argmax(np.abs(axial_force_N), axis=0)
+    stress = np.abs(axial_force_N[loaded, places]) / links.cross_section_area_m2
+    worst = int(np.argmax(stress / links.yield_strength_Pa))
+    return (*found, *sentence(loaded, stress / links.yield_strength_Pa, (
+        f"is stressed by {plain(float(stress[worst]), 'Pa', 4)}",
+        f"beyond its yield strength of {plain(float(links.yield_strength_Pa[worst]), 'Pa', 4)}",
+        "the models keep links elastic")))
