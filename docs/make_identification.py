@@ -83,7 +83,7 @@ def bar_on_a_slider() -> Known:
         **TABLE, "link.stress_free_length_m": 50.0, "link.cross_section_area_m2": 9e-4,
         "link.thermal_expansion_per_K": 23.4e-8, "joint.clearance_minus_m": 5e-4, "joint.clearance_plus_m": 8e-4,
         "dem.samples_per_cycle": 500,
-        "joint.preload_stiffness_N_per_m": 5e4, "dem.period_s": 5.0})
+        "joint.preload_stiffness_N_per_m": 5e4, "thermal.period_s": 5.0})
     run = case.reduced().frame()
     return Known("closed form, bar on a slider", "coulomb_clearance_spring",
                  {"stiffness": BAR_N_per_m, "friction": 30.0, "clearance_minus": 5e-4, "clearance_plus": 8e-4,
@@ -113,7 +113,7 @@ def sliders_of_a_truss() -> Known:
 def slider_in_yade() -> Known:
     """Table 1 without stops in the DEM: the pad sticks with Mindlin's stiffness behind that of the bar."""
     case = sj.load("table1").changed({**TABLE, "joint.clearance_minus_m": 1e-2, "joint.clearance_plus_m": 1e-2,
-                                      "dem.samples_per_cycle": 500, "dem.period_s": 5.0})
+                                      "dem.samples_per_cycle": 500, "thermal.period_s": 5.0})
     run = case.dem(progress=sys.stderr.isatty()).frame()
     young, shear = 70e9 / (2 * (1 - 0.3**2)), 70e9 / 2.6 / (2 * 1.7)
     pad = 8 * shear * (3 * 100 * 0.05 / (4 * young)) ** (1 / 3)

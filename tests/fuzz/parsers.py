@@ -287,7 +287,6 @@ def temperatures(folder: Path) -> Reader:
         file["members"] = [f"L{number}" for number in range(1, 11)]
     image = (folder / "seed.h5").read_bytes()
     slider = tomllib.loads((REPOSITORY / "cases/table1.toml").read_text())
-    slider["dem"].pop("period_s", None)
     truss = tomllib.loads((REPOSITORY / "cases/trusses/chain_10.toml").read_text())
 
     def spoiled(place: Path, chance: random.Random) -> Any:

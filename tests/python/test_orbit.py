@@ -50,7 +50,6 @@ def test_a_case_takes_the_file(tmp_path: Path, statejump: Callable[..., Outcome]
     told = statejump("orbit", "members.csv", "--period", 5400, "--shadow", "1800:3900", "--orbits", 2, "-o", "orbit.csv")
     assert told.status == 0, told.errors
     data = tomllib.loads((REPOSITORY / "cases/table1.toml").read_text())
-    data["dem"].pop("period_s", None)
     data["thermal"] = {"shape": "table", "table_file": str(tmp_path / "orbit.csv"), "reference_temperature_K": 293.15,
                        "lead_in_s": 600.0}
     case = sj.load(data)

@@ -2,24 +2,32 @@
 """A table of temperatures lasts as long as its last time says, in every kind of case and in both models."""
 from __future__ import annotations
 
+import tomllib
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 
 import statejump as sj
+from conftest import REPOSITORY, Outcome
 
 TABLE = {
     "thermal.shape": "table", "thermal.temperature_change_max_K": None, "thermal.table_time_s": [0, 5, 10],
     "thermal.table_temperature_change_K": [0, 100, 0],
 }
-PERIODS = {"table1": "dem.period_s", "umbrella_damped": "thermal.period_s", "trusses/umbrella_rib": "thermal.period_s"}
+CASES = ("table1", "umbrella_damped", "trusses/umbrella_rib")
+PERIOD = "thermal.period_s"
 
 
-@pytest.mark.parametrize("name", PERIODS)
+@pytest.mark.parametrize("name", CASES)
 def test_times_of_a_table_are_the_times(name: str) -> None:
-    case = sj.load(f"cases/{name}.toml").changed({**TABLE, PERIODS[name]: None})
+    case = sj.load(f"cases/{name}.toml").changed({**TABLE, PERIOD: None})
     assert (case.period_s, case.duration_s, case.thermal_program().period_s) == (10.0, 10.0, 10.0)
     triangle = sj.load(f"cases/{name}.toml").changed(
-        {"thermal.shape": "triangle", "thermal.temperature_change_max_K": 100.0, PERIODS[name]: 10.0})
+        {"thermal.shape": "triangle", "thermal.temperature_change_max_K": 100.0, PERIOD: 10.0})
     ours, other = case.reduced(), triangle.reduced()
     assert ours.time_s[-1] == 10.0
     for jump in (key for key in ours.summary if "jump" in key):
@@ -36,23 +44,59 @@ def test_length_of_the_cycle_matters() -> None:
     assert abs(slow - fast) > 1e-5
 
 
-@pytest.mark.parametrize("name", PERIODS)
+@pytest.mark.parametrize("name", CASES)
 def test_period_beside_a_table_must_agree(name: str) -> None:
-    key = PERIODS[name]
     case = sj.load(f"cases/{name}.toml")
-    assert case.changed({**TABLE, key: 10.0}).period_s == 10.0
+    assert case.changed({**TABLE, PERIOD: 10.0}).period_s == 10.0
     with pytest.raises(sj.StatejumpError) as refused:
-        case.changed({**TABLE, key: 1.0})
-    assert (refused.value.key, refused.value.value) == (key, 1.0)
+        case.changed({**TABLE, PERIOD: 1.0})
+    assert (refused.value.key, refused.value.value) == (PERIOD, 1.0)
     assert refused.value.cause == "the table lasts 10 s, and its own times are the times"
 
 
 def test_what_goes_to_yade_has_the_times_of_the_table() -> None:
-    for name, key in PERIODS.items():
-        case = sj.load(f"cases/{name}.toml").changed({**TABLE, key: None}).definition
+    for name in CASES:
+        case = sj.load(f"cases/{name}.toml").changed({**TABLE, PERIOD: None}).definition
         if case.kind == "truss":
             continue  # its input needs the path; the program of it is the one above
         values = case.behaviour.dem_input(case)
         assert values["thermal"]["table_time_s"] == [0.0, 5.0, 10.0] and values["period_s"] == 10.0
         steps = values["dem"]["number_of_steps"]
         assert values["dem"]["time_step_s"] * steps == pytest.approx(10.0, rel=4 * np.finfo(float).eps)
+
+
+def old_document() -> dict[str, Any]:
+    """Return Table 1 as files had it that said the period among the DEM's numbers."""
+    data = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text(encoding="utf-8"))
+    data["dem"]["period_s"] = data["thermal"].pop("period_s") / 4
+    return data
+
+
+def test_old_place_of_the_period_is_understood_and_told() -> None:
+    with pytest.warns(FutureWarning, match="dem.period_s is thermal.period_s now; the old place is still understood"):
+        case = sj.load(old_document())
+    assert case["thermal.period_s"] == 0.25
+    # What is kept has the new place: nothing is told again.
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert case.changed({"joint.friction_coefficient": 0.1}).period_s == 0.25
+    with pytest.warns(FutureWarning):
+        assert case.changed({"dem.period_s": 0.5}).period_s == 0.5
+
+
+def test_a_period_in_both_places_is_refused() -> None:
+    data = old_document()
+    data["thermal"]["period_s"] = 1.0
+    with pytest.warns(FutureWarning), pytest.raises(sj.StatejumpError) as refused:
+        sj.load(data)
+    assert str(refused.value) == ("dem.period_s = 0.25 is not allowed: the case has thermal.period_s as well; leave "
+                                  "dem.period_s out")
+
+
+def test_command_tells_the_old_place_in_one_line(statejump_process: Callable[..., Outcome], tmp_path: Path) -> None:
+    text = (REPOSITORY / "cases" / "table1.toml").read_text(encoding="utf-8")
+    line = next(line for line in text.splitlines() if line.startswith("period_s"))
+    (tmp_path / "old.toml").write_text(text.replace(line + "\n", "").replace("[dem]", "[dem]\nperiod_s = 0.25"))
+    done = statejump_process("reduced", "old.toml")
+    assert done.status == 0
+    assert done.errors == "warning: old.toml: dem.period_s is thermal.period_s now; the old place is still understood\n"

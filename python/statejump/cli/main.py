@@ -7,10 +7,11 @@ import os
 import signal
 import sys
 import traceback
+import warnings
 from collections.abc import Sequence
 from importlib import import_module
 from itertools import takewhile
-from typing import Any
+from typing import Any, TextIO
 
 import click
 
@@ -150,9 +151,16 @@ def _ended(number: int, frame: Any) -> None:
 ENDING = (signal.SIGTERM, signal.SIGHUP)
 
 
+def _warned(message: Warning | str, category: type[Warning], filename: str, lineno: int, file: TextIO | None = None,
+            line: str | None = None) -> None:
+    """Tell what a library warns of as the command tells its own warnings: without the line of code."""
+    print(f"warning: {printable(str(message))}", file=sys.stderr)
+
+
 def main() -> None:
     """Entry point of the launcher."""
     streams.install()
+    warnings.showwarning = _warned
     for number in ENDING:
         if signal.getsignal(number) is not signal.SIG_IGN:  # as of nohup
             signal.signal(number, _ended)

@@ -38,6 +38,7 @@ class Thermal(Section):
         None, "K", -LARGEST_CHANGE_K, LARGEST_CHANGE_K, "Chen et al. (2021), sections 3.3 and 4.3"
     )
     cycles: int = whole(1, 1, 100_000, "the paper runs one")
+    period_s: float = parameter(None, "s", 0, 1e6, "1 s; a table lasts as long as its last time says", above=True)
     table_time_s: list[float] | None = numbers(None, "s", 0, LONGEST_TABLE_S, "measured data")
     table_temperature_change_K: list[float] | None = numbers(
         None, "K", -LARGEST_CHANGE_K, LARGEST_CHANGE_K, "measured data"
@@ -50,11 +51,6 @@ class Thermal(Section):
     lead_in_s: float | None = parameter(
         None, "s", 0, LONGEST_TABLE_S, "straight way from the reference temperature to the file's first row", above=True
     )
-
-
-def period() -> Any:
-    """Declare the key that says how long a cycle lasts."""
-    return parameter(None, "s", 0, 1e6, "1 s; a table lasts as long as its last time says", above=True)
 
 
 def check(thermal: Thermal, section: str = "thermal.") -> None:

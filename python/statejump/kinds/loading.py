@@ -13,6 +13,7 @@ from statejump.core.errors import StatejumpError
 from statejump.core.temperature_files import with_files
 from statejump.kinds import kind, names
 from statejump.schema.fields import Section, definition, fields_of, section, section_of, structure
+from statejump.schema.paths import with_keys_moved
 from statejump.schema.rules import check_name
 from statejump.schema.toml import read_toml
 
@@ -47,6 +48,7 @@ def parse_case(
     """
     try:
         of_kind = kind(_kind_name(data))
+        data = with_keys_moved(of_kind.Case, data, str(file or ""))
         if files_from is not None:
             data = with_files(data, files_from, section_of(fields_of(of_kind.Case)["thermal"]))
         made = of_kind.case_from(data)

@@ -3,6 +3,7 @@
 ``section.*.key`` of all its items. Names of items may hold dots: the key is what follows the last one."""
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -41,11 +42,49 @@ def pattern_of(path: str) -> str:
     return f"{section}.{EVERY}.{key}" if item else path
 
 
+def current(model: type[Section], path: str, file: str = "") -> str:
+    """Return where a key stands: where it is asked for, or, if it stood there once, where it stands now. That is told
+    by a :class:`FutureWarning`.
+
+    :param file: in which it is found, for the warning
+    """
+    now: str | None = getattr(model, "MOVED", {}).get(path)
+    if now is None:
+        return path
+    where = f"{file}: " if file else ""
+    warnings.warn(f"{where}{path} is {now} now; the old place is still understood", FutureWarning, stacklevel=2)
+    return now
+
+
+def with_keys_moved(model: type[Section], data: Mapping[str, Any], file: str = "") -> Mapping[str, Any]:
+    """Return a parsed case file with every key where it stands now.
+
+    :param file: its name, for warnings
+    :raises NotAllowed: a key stands at its old place and at its new one
+    """
+    for old in getattr(model, "MOVED", {}):
+        section, _, key = split_path(old)
+        part = data.get(section)
+        if not isinstance(part, Mapping) or key not in part:
+            continue
+        now = current(model, old, file)
+        there, _, name = split_path(now)
+        target = data.get(there, {})
+        if not isinstance(target, Mapping):
+            continue  # whoever reads the section refuses it
+        if name in target:
+            raise NotAllowed(old, part[key], f"the case has {now} as well", remedy=f"leave {old} out")
+        data = {**data, section: {name: value for name, value in part.items() if name != key},
+                there: {**target, name: part[key]}}
+    return data
+
+
 def attribute_of(model: type[Section], path: str) -> attrs.Attribute[Any]:
     """Return the declaration of a key. :raises UnknownKey: there is none"""
     known, pattern = keys_of(model), pattern_of(path)
     if pattern not in known:
-        raise UnknownKey(path, **suggestion(path, list(known)))
+        now = getattr(model, "MOVED", {}).get(path)
+        raise UnknownKey(path, **(suggestion(path, list(known)) if now is None else {"remedy": f"it is {now} now"}))
     return known[pattern]
 
 
@@ -54,6 +93,7 @@ def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any)
 
     :raises UnknownKey: there is no such key, or no such item
     """
+    path = current(model, path)
     attribute_of(model, path)
     section, item, key = split_path(path)
     if not item:
@@ -100,6 +140,7 @@ def value_of(case: Section, path: str) -> Any:
 
     :raises StatejumpError: ``*`` stands for items with several values
     """
+    path = current(type(case), path)
     attribute_of(type(case), path)
     section, item, key = split_path(path)
     if not item:

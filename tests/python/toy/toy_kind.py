@@ -37,7 +37,6 @@ class Numerics(Section):
 
     samples_per_cycle: int = whole(20, 2, 1000, "the test")
     error_m: float = parameter(0.0, "m", -1, 1, "of the model that stands for the DEM")
-    period_s: float = parameter(1.0, "s", 0, 1e6, "the test", above=True)
     tolerance_m: float = parameter(1e-9, "m", 0, 1, "the test", above=True)
 
 
@@ -46,7 +45,6 @@ class ToyCase(Case):
     """A rod that comes back with a residue."""
 
     KIND: ClassVar[str] = "toy"
-    PERIOD_KEY: ClassVar[str] = "numerics.period_s"
 
     rod: Rod = section(Rod, required=True)
     numerics: Numerics = section(Numerics)

@@ -2,9 +2,9 @@
 """Cases of kind ``spring_slider``: a heated bar that pushes a block with friction between stops."""
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import ClassVar
 
-from statejump.core import thermal as programs
 from statejump.core import yade_process
 from statejump.core.case import Case, no_length_left
 from statejump.core.errors import NotAllowed
@@ -50,9 +50,8 @@ class Joint(Section):
 
 @definition
 class Dem(Section):
-    """How the DEM runs the case; the reduced model takes only times and samples from here."""
+    """How the DEM runs the case; the reduced model takes only the samples from here."""
 
-    period_s: float = programs.period()
     time_step_s: float | None = parameter(None, "s", 0, 1.0, "from the fraction", above=True)
     time_step_fraction: float = parameter(0.1, "-", 0, 1.0, "of the stable step", above=True)
     link_damping_ratio: float = parameter(0.1, "-", 0, 10, CHOICE)
@@ -81,7 +80,7 @@ class SpringSliderCase(Case):
 
     KIND: ClassVar[str] = "spring_slider"
 
-    PERIOD_KEY: ClassVar[str] = "dem.period_s"
+    MOVED: ClassVar[Mapping[str, str]] = {"dem.period_s": "thermal.period_s"}
 
     link: Link = section(Link, required=True)
     joint: Joint = section(Joint, required=True)

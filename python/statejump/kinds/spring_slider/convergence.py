@@ -75,9 +75,9 @@ def _variant(case: SpringSliderCase, factor: float, **settings: Any) -> SpringSl
     changes = {f"dem.{key}": value for key, value in settings.items()} | {"dem.time_step_s": None}
     times = case.thermal.table_time_s
     if times is None:
-        changes["dem.period_s"] = case.period_s * factor
+        changes["thermal.period_s"] = case.period_s * factor
     else:  # it lasts as long as its last time says
-        changes |= {"dem.period_s": None, "thermal.table_time_s": [time * factor for time in times]}
+        changes |= {"thermal.period_s": None, "thermal.table_time_s": [time * factor for time in times]}
     changed = case.changed(changes)
     assert isinstance(changed, SpringSliderCase)
     return changed

@@ -99,11 +99,10 @@ class TrussTorsionSpring(Item):
 
 @definition
 class TrussThermal(Thermal):
-    """A temperature program that says how long its cycle lasts, or the temperatures of all members."""
+    """A temperature program, or the temperatures of all members."""
 
     ONE_OF = {"shape": {"table": (*Thermal.ONE_OF["shape"]["table"], ("members_file",))}}
 
-    period_s: float = core_thermal.period()
     members_file: str | None = text(None, "CSV or HDF5 file with a column for every link, beside the case file")
     members: Histories | None = attached("it is read from thermal.members_file")
 
@@ -117,7 +116,9 @@ class Program(Item, Thermal):
     """Another temperature program, for links and joints that name it; it lasts as long as the common one."""
 
     cycles: int | None = whole(None, 1, 100_000, "as [thermal]")  # type: ignore[assignment]
-    period_s: float | None = parameter(None, "s", 0, 1e6, "as [thermal]; of a table its last time", above=True)
+    period_s: float | None = parameter(  # type: ignore[assignment]
+        None, "s", 0, 1e6, "as [thermal]; of a table its last time", above=True
+    )
 
     def completed(self, common: TrussThermal) -> TrussThermal:
         """Return the program with cycles and period, those of the common one where it says nothing of them.

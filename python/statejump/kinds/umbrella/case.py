@@ -11,12 +11,10 @@ from math import atan, atan2, pi
 from typing import Any, ClassVar
 
 from statejump import _engine, laws
-from statejump.core import thermal as programs
 from statejump.core import yade_process
 from statejump.core.case import Case, check_radii, no_length_left
 from statejump.core.errors import NotAllowed
 from statejump.core.physics import apex_m
-from statejump.core.thermal import Thermal
 from statejump.schema.fields import CHOICE, Section, choice, definition, parameter, section, whole
 
 PAPER = "Chen et al. (2021), Tables 2 and 3"
@@ -86,13 +84,6 @@ class Damping(Section):
 
     axial_damping_ratio: float = parameter(0.0, "-", 0, 10, NONE)
     pin_damping_N_m_s_per_rad: float = parameter(0.0, "N m s/rad", 0, 1e9, NONE)
-
-
-@definition
-class UmbrellaThermal(Thermal):
-    """The temperature program of both links."""
-
-    period_s: float = programs.period()
 
 
 @definition
@@ -167,7 +158,6 @@ class UmbrellaCase(Case):
     joint: UmbrellaJoint = section(UmbrellaJoint, required=True)
     torsion_spring: TorsionSpring = section(TorsionSpring)
     damping: Damping = section(Damping)
-    thermal: UmbrellaThermal = section(UmbrellaThermal, required=True)
     start: Start = section(Start)
     output: Output = section(Output)
     reduced: Reduced = section(Reduced)
