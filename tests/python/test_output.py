@@ -2,6 +2,7 @@
 """The door through which files are written: whole or not at all, together or not at all, one run at a time."""
 from __future__ import annotations
 
+import csv
 import multiprocessing
 import os
 import shutil
@@ -10,6 +11,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from conftest import COMMAND
@@ -17,6 +19,7 @@ from statejump.core import output, results_folder, scratch
 from statejump.core.errors import NotWritten
 from statejump.core.output import write_atomically, write_bytes
 from statejump.core.results_folder import Results
+from statejump.core.tables import write_columns
 
 
 def names(folder: Path) -> list[str]:
@@ -39,6 +42,20 @@ def test_what_fails_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.Mo
 
 def failing(*arguments: object) -> None:
     raise OSError(28, "No space left on device")
+
+
+def test_columns_are_written_as_by_csv(tmp_path: Path) -> None:
+    texts = ["S1", "x,y", 'a"b', "two\nlines", "a\rb", "\u00fc ", ""]
+    columns = {"number_m": np.array([0.1, -1e-300, np.nan, np.inf, 1 / 3, -0.0, 5e15]), "count": np.arange(7),
+               "yes": np.arange(7) % 2 == 0, "with, comma": np.array(texts), "any": np.array([1.5, None, *texts[:5]])}
+    for chosen in (columns, {"text": columns["with, comma"]}):
+        write_columns(chosen, tmp_path / "columns.csv")
+        with (tmp_path / "expected.csv").open("w", newline="", encoding="utf-8") as stream:
+            writer = csv.writer(stream)
+            writer.writerow(chosen)
+            rows = zip(*(values.tolist() for values in chosen.values()))
+            writer.writerows([cell if isinstance(cell, str) else repr(cell) for cell in row] for row in rows)
+        assert (tmp_path / "columns.csv").read_bytes() == (tmp_path / "expected.csv").read_bytes()
 
 
 @pytest.mark.parametrize("kind", ["folder", "pipe"])

@@ -50,7 +50,7 @@ def history_of(case: Case, model: str) -> History:
 def free_memory() -> int | None:
     """Return the memory that a new process can have [bytes]; None: the system does not say."""
     try:
-        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
+        lines = Path("/proc/meminfo").read_text(encoding="utf-8").splitlines()
         return next(1024 * int(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))
     except (OSError, StopIteration):
         return None

@@ -20,6 +20,7 @@ from statejump.core.output import PARTIAL, check_target, not_written, synced, un
 
 READY = ".ready"
 SYNCED_AT_ONCE = 32
+SIDE_BY_SIDE = 8  # files from which on threads are worth their start
 OTHER = "choose another with --results"
 
 
@@ -107,17 +108,13 @@ class ResultsFolder:
 
         :raises NotWritten: it could not be brought to disk, nothing appears; or a file could not be moved to its place
         """
-        from concurrent.futures import ThreadPoolExecutor
-
         ready = self.path / f"{self.staged.name.removesuffix(PARTIAL)}{READY}"
         try:
             folders = [(Path(folder), files) for folder, _, files in os.walk(self.staged)]
             staged = [folder / name for folder, files in folders for name in files]
             for file in staged:
                 check_target(self.path / file.relative_to(self.staged))
-            # Side by side: a file system brings many files to disk at once.
-            with ThreadPoolExecutor(SYNCED_AT_ONCE) as pool:
-                list(pool.map(synced, [*staged, *(folder for folder, _ in folders)]))
+            _sync([*staged, *(folder for folder, _ in folders)])
             os.rename(self.staged, ready)
         except OSError as error:
             raise not_written(self.path, error) from None
@@ -132,6 +129,18 @@ class ResultsFolder:
                 cause += f"; {ready.name} in it is complete, the next run in this folder moves what is left of it"
             raise _unusable(self.path, cause, OTHER) from None
         return [self.path / file.relative_to(before) if file.is_relative_to(before) else file for file in written]
+
+
+def _sync(paths: Sequence[Path]) -> None:
+    """Bring files and folders to disk: many side by side, which a file system does at once."""
+    if len(paths) < SIDE_BY_SIDE:  # the threads cost more than they save
+        for path in paths:
+            synced(path)
+        return
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(SYNCED_AT_ONCE) as pool:
+        list(pool.map(synced, paths))
 
 
 def _move(ready: Path, path: Path) -> None:

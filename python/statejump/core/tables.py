@@ -18,6 +18,7 @@ from statejump.core.output import write_atomically
 
 
 BLOCK = 4096  # rows that are written at once
+_SPECIAL = re.compile('[,"\r\n]')  # within a cell
 
 
 def _cell(value: Any) -> Any:
@@ -51,11 +52,21 @@ def write_columns(columns: Mapping[str, np.ndarray], path: Path) -> None:
     """Write columns of equal length; NaN stays ``nan``, for it is a value that a model gave."""
     length = max((len(values) for values in columns.values()), default=0)
     with write_atomically(path) as stream:
-        writer = csv.writer(stream)
-        writer.writerow(columns)
+        csv.writer(stream).writerow(columns)
         for start in range(0, length, BLOCK):  # as numbers of Python a column takes four times the memory
-            rows = zip(*(values[start:start + BLOCK].tolist() for values in columns.values()))
-            writer.writerows([value if isinstance(value, str) else repr(value) for value in row] for row in rows)
+            cells = [_cells(values[start:start + BLOCK]) for values in columns.values()]
+            stream.writelines((",".join(row) or '""') + "\r\n" for row in zip(*cells))
+
+
+def _cells(values: np.ndarray) -> Iterable[str]:
+    """Return the cells of a column, as the writer of ``csv`` makes them, who looks for quotes within numbers too."""
+    if values.dtype.kind in "biuf":
+        return map(repr, values.tolist())
+    return (_quoted(value) if isinstance(value, str) else repr(value) for value in values.tolist())
+
+
+def _quoted(text: str) -> str:
+    return '"' + text.replace('"', '""') + '"' if _SPECIAL.search(text) else text
 
 
 def read_columns(path: Path) -> dict[str, np.ndarray]:
