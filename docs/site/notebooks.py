@@ -34,7 +34,7 @@ BLOCK = re.compile(r"^```([a-z+]*)(?: file=(\S+))?\n(.*?)^```$\n?", re.MULTILINE
 # What every YADE says at its start, with ports and cookies that differ from run to run.
 YADES_GREETING = re.compile(
     "Welcome to Yade|Using python version|TCP python prompt|XMLRPC info provider|Running script")
-TIMEOUT_S = 600  # of a cell; the longest takes some seconds on an idle machine
+TIMEOUT_S = 1200  # of a cell; the longest, a thousand masts, takes two minutes on two idle cores
 
 
 def tutorials() -> list[Path]:

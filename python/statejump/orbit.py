@@ -85,6 +85,7 @@ class Temperatures:
 def temperatures(
     members: Sequence[Member], *, period_s: float, shadow_s: Sequence[tuple[float, float]] = (), orbits: int = 1,
     samples_per_orbit: int = 100, sink_K: float = 2.7, solar_constant_W_per_m2: float = SOLAR_CONSTANT_W_PER_M2,
+    within_K: float | None = None,
 ) -> Temperatures:
     """Return the temperatures of members over an orbit that repeats itself.
 
@@ -94,6 +95,8 @@ def temperatures(
     :param samples_per_orbit: equal steps of an orbit; begin and end of every shadow are times as well
     :param sink_K: temperature of what the members see but the Sun [K]
     :param solar_constant_W_per_m2: sunlight across the rays [W/m2]
+    :param within_K: of these times only so many are returned that straight lines between them miss no temperature of
+        the others by more [K]; None: all
     :raises StatejumpError: a number is out of its range, shadows overlap, no repeated orbit is reached
     """
     for key, value, allowed in (
@@ -102,6 +105,8 @@ def temperatures(
         ("orbits", orbits, Range(1, MOST_ORBITS)), ("samples_per_orbit", samples_per_orbit, Range(2, 1_000_000)),
     ):
         Rule(NUMBER, allowed=allowed).check(key, value)
+    if within_K is not None:
+        Rule(NUMBER, allowed=Range(0, 1e4, "K", above=True)).check("within_K", within_K)
     names = [member.name for member in members]
     if not 0 < len(names) <= MOST_MEMBERS or len(set(names)) < len(names):
         raise NotAllowed("members", cause=f"must be 1 to {MOST_MEMBERS} members, each with a name of its own")
@@ -123,8 +128,26 @@ def temperatures(
         raise StatejumpError(f"no orbit repeats itself within {MOST_ORBITS}",
                              cause="members are heavy against the length of the orbit")
     found[-1] = found[0]
+    if within_K is not None:
+        kept = _needed(times, found, within_K, np.searchsorted(times, ends))
+        times, found = times[kept], found[kept]
     whole = np.concatenate([times[:-1] + number * period_s for number in range(orbits)] + [[orbits * period_s]])
     return Temperatures(tuple(names), whole, np.concatenate([found[:-1]] * orbits + [found[-1:]]))
+
+
+def _needed(time_s: Numbers, values: Numbers, within: float, corners: NDArray[np.int64]) -> list[int]:
+    """Return the rows (n) of values (n, m) that are needed: from each the farthest one to which straight lines are
+    near enough to all between. Corners are kept."""
+    kept, fixed = [0], set(corners.tolist())
+    last = 1
+    for row in range(2, len(time_s)):
+        first = kept[-1]
+        share = (time_s[first + 1:row] - time_s[first]) / (time_s[row] - time_s[first])
+        straight = values[first] + share[:, None] * (values[row] - values[first])
+        if last in fixed or np.abs(straight - values[first + 1:row]).max() > within:
+            kept.append(last)
+        last = row
+    return [*kept, last]
 
 
 class _Orbit:

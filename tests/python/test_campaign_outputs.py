@@ -45,7 +45,17 @@ def test_ends_alone_need_no_full_run() -> None:
     assert found[f"jump:displacement_m[{node}].x"][0] == pytest.approx(jump, rel=1e-6)
 
 
+def test_outputs_of_a_surface_are_its_history() -> None:
+    case = sj.load("cases/trusses/umbrella_8.toml")
+    names = ["max:surface.pointing_error_rad", "end:surface.rms_rigid_m"]
+    found = sj.sweep(case, {"thermal.cycles": [1]}, outputs=names).frame()
+    wanted = sj.surface.history(case.reduced())
+    assert found[names[0]][0] == wanted["pointing_error_rad"].max()
+    assert found[names[1]][0] == wanted["rms_rigid_m"][-1]
+
+
 @pytest.mark.parametrize("output, sentence", [
+    ("max:surface.rms_rigid_m", "section [reflector] is missing"),
     ("jump", "must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"),
     ("mean:displacement_m[N1]", "HOW must be one of end, jump, max, min, range"),
     ("jump:displacment_m[N1]", "did you mean displacement_m?"),
@@ -95,3 +105,46 @@ values = [0.2, 0.3]
 def test_wall_time_includes_the_start_of_workers() -> None:
     done = sj.sweep(sj.load("table1"), {"joint.friction_coefficient": [0.2, 0.3]}, workers=1).done
     assert 0 < done.start_time_s < done.wall_time_s
+
+
+def test_a_case_and_a_file_of_distributions_are_a_campaign(
+    statejump: Callable[..., Any], tmp_path: Path, cases: Path
+) -> None:
+    vary = '[[vary]]\nkey = "joint.friction_coefficient"\ndistribution = "normal"\nrelative = 0.1\n'
+    (tmp_path / "vary.toml").write_text(vary)
+    done = statejump("montecarlo", f"{cases}/table1.toml", "--vary", "vary.toml", "--samples", 5, "--seed", 3,
+                     "--output", "max:axial_force_N")
+    assert done.status == 0, done.errors
+    (tmp_path / "campaign.toml").write_text(f"""
+[campaign]
+name = "same"
+case = "{cases}/table1.toml"
+samples = 5
+seed = 3
+outputs = ["max:axial_force_N"]
+{vary}""")
+    done = statejump("montecarlo", "campaign.toml")
+    assert done.status == 0, done.errors
+    ours, theirs = ((tmp_path / "results" / name / "samples.csv").read_text() for name in ("table1_montecarlo", "same"))
+    assert ours == theirs
+    # A page of it needs no campaign file.
+    done = statejump("report", "results/table1_montecarlo")
+    assert done.status == 0, done.errors
+
+
+@pytest.mark.parametrize("arguments, sentence", [
+    (["table1.toml"], "--vary is missing: a case needs a file that says what varies"),
+    (["table1.toml", "--vary", "none.toml"], "none.toml: no such distributions file"),
+    (["table1.toml", "--vary", "other.toml"], "other.toml: section [slider] is unknown: known are [[vary]]"),
+    (["table1.toml", "--vary", "vary.toml", "--samples", 0], "--samples = 0 is not allowed"),
+    (["table1.toml", "--vary", "vary.toml", "--output", "x"], "--output = 'x' is not allowed"),
+    (["campaigns/table1_tolerances.toml", "--samples", 5], "--samples is not allowed with a campaign file"),
+])
+def test_what_a_campaign_of_a_case_refuses(
+    arguments: list[Any], sentence: str, statejump: Callable[..., Any], tmp_path: Path, cases: Path
+) -> None:
+    (tmp_path / "vary.toml").write_text(
+        '[[vary]]\nkey = "joint.friction_coefficient"\ndistribution = "normal"\nrelative = 0.1\n')
+    (tmp_path / "other.toml").write_text("[slider]\n")
+    told = statejump("montecarlo", f"{cases}/{arguments[0]}", *arguments[1:])
+    assert told.status == 2 and told.errors.count("\n") == 1 and sentence in told.errors, told.errors

@@ -44,6 +44,17 @@ def test_without_shadow_sunlight_and_radiation_are_equal() -> None:
     assert found.temperature_K == pytest.approx((sun / (0.8 * orbit.STEFAN_BOLTZMANN_W_PER_M2_K4)) ** 0.25, rel=1e-12)
 
 
+def test_straight_lines_between_the_times_that_are_kept_are_near_enough() -> None:
+    every = orbit.temperatures(BARS, period_s=5400.0, shadow_s=SHADOW, samples_per_orbit=500, orbits=2)
+    for within in (5.0, 0.5):
+        some = orbit.temperatures(BARS, period_s=5400.0, shadow_s=SHADOW, samples_per_orbit=500, orbits=2,
+                                  within_K=within)
+        missed = [np.abs(np.interp(every.time_s, some.time_s, ours) - theirs).max()
+                  for ours, theirs in zip(some.temperature_K.T, every.temperature_K.T)]
+        assert 0.2 * within < max(missed) <= within
+        assert len(some.time_s) < 20 / within**0.5 * 2 and set(SHADOW[0]) <= set(some.time_s)
+
+
 def test_a_case_takes_the_file(tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
     (tmp_path / "members.csv").write_text(
         "name,absorptivity,emissivity,sun_view,heat_capacity_J_per_m2_K\nsun,0.3,0.8,0.318,2500\n")

@@ -154,6 +154,11 @@ def test_the_way_from_the_stress_free_temperature_is_said(chain: tuple[Path, lis
     assert members.time_s.tolist() == [0.0, *(TIMES + 5.0)]
     assert not members.temperature_change_K[0].any()
     assert members.temperature_change_K[1:] == pytest.approx(given - 283.15, abs=1e-12 * 300)
+    # With the way back it may be repeated.
+    path.write_text(text.replace("293.15", "283.15\nlead_in_s = 5.0\nlead_out_s = 7.0\ncycles = 2"))
+    members = sj.load(path).thermal.members
+    assert members.time_s.tolist() == [0.0, *(TIMES + 5.0), TIMES[-1] + 12.0]
+    assert not members.temperature_change_K[-1].any()
 
 
 # What is wrong, how the file is changed, and what is said.

@@ -3,6 +3,8 @@
 named."""
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any, Callable
 
@@ -211,6 +213,11 @@ WRONG: dict[str, tuple[str, str, str, list[str], str]] = {
     "joint": ("bdf", "", "", ["--joint", "node=N9"], "node = 'N9' is unknown: did you mean N"),
     "joint's key": ("bdf", "", "", ["--joint", "node=N1,axe=x"], "axe is unknown: did you mean axis?"),
     "joint's axis": ("bdf", "", "", ["--joint", "node=N1,axis=z"], "axis = 'z' is not allowed: must be x, y"),
+    "joint's link": ("bdf", "", "", ["--joint", "link=L9,axis=link"], "--joint 1: link = 'L9' is unknown: did you mean L"),
+    "no link": ("bdf", "", "", ["--joint", "axis=link"], "--joint 1: link is missing"),
+    "joint's file": ("bdf", "", "", ["--joint", "link=L1,axis=link,from=deck.bdf"], "deck.bdf: not TOML, line 1"),
+    "no members": ("bdf", "", "", ["--lead-in", "5"], "--lead-in = 5.0 is not allowed: only with --members-file"),
+    "reflector": ("bdf", "", "", ["--reflector", "M*"], "--reflector = 'M*' is unknown"),
     "suffix": ("txt", "", "", [], "must end with .inp, .bdf"),
 }
 
@@ -227,3 +234,49 @@ def test_what_is_wrong_is_one_sentence(what: str, tmp_path: Path, statejump: Cal
     told = statejump("truss", "import", f"deck.{suffix}", "-o", "deck.toml", *more)
     assert told.status == 2 and told.errors.count("\n") == 1 and sentence in told.errors, told.errors
     assert not (tmp_path / "deck.toml").exists()
+
+
+def test_sliders_in_links_take_what_identify_wrote(tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
+    (tmp_path / "deck.bdf").write_text(FREE)
+    (tmp_path / "joint.toml").write_text("[[slider]]\nfriction_coefficient = 0.3\nnormal_force_N = 1e4\n")
+    (tmp_path / "day.csv").write_text("time_s," + ",".join(f"L{n}_degC" for n in (1, 2, 3)) + "\n0,30,30,30\n60,80,90,95\n")
+    told = statejump("truss", "import", "deck.bdf", "-o", "deck.toml", "--members-file", "day.csv",
+                     "--reference-temperature", 293.15, "--lead-in", 10,
+                     "--joint", "link=L[13],axis=link,from=joint.toml,clearance_plus_m=1e-3",
+                     "--reflector", "N?,N1", "--reflector-axis", 0, 1, 0)
+    assert told.status == 0, told.errors
+    case = sj.load(tmp_path / "deck.toml")
+    assert [slider.nodes for slider in case.slider] == [["N1_L1", "N1"], ["N2_L3", "N2"]]
+    assert case.link[0].nodes == ["N1_L1", "N2"]
+    assert case.slider[1].axis == pytest.approx([-(0.5**0.5), 0.5**0.5], abs=1e-11)
+    assert {(one.friction_coefficient, one.clearance_plus_m) for one in case.slider} == {(0.3, 1e-3)}
+    assert case.reflector.nodes == ["N1", "N2", "N3"] and case.reflector.axis == [0, 1]
+    assert case.thermal.members.time_s.tolist() == [0, 10, 70]
+    # Friction of 3 kN holds: the truss without joints at the same temperatures.
+    held = case.reduced()
+    assert np.abs(held.links["axial_force_N"].values).max() < 3e3
+    plain = statejump("truss", "import", "deck.bdf", "-o", "plain.toml", "--members-file", "day.csv",
+                      "--reference-temperature", 293.15, "--lead-in", 10)
+    assert plain.status == 0, plain.errors
+    wanted = sj.load(tmp_path / "plain.toml").reduced().links["axial_force_N"].values[-1]
+    assert held.links["axial_force_N"].values[-1] == pytest.approx(wanted, rel=1e-9)
+
+
+def test_a_slide_in_a_link_opens_as_the_link_is_pulled(tmp_path: Path) -> None:
+    """A bar between walls cools: it shortens by 2.3 mm, of which the slide gives its 1 mm."""
+    (tmp_path / "pull.bdf").write_text(
+        "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCONROD,1,1,2,5,1.-4\nMAT1,5,7.+10,,.3,2700.,2.3-5,0.\n"
+        "SPC1,1,123,1,2\nTEMP,3,1,-100.,2,-100.\nENDDATA\n")
+    slack = {"friction_coefficient": "0.1", "normal_force_N": "50", "clearance_plus_m": "1e-3", "clearance_minus_m": "2e-3"}
+    document = case_document(read(tmp_path / "pull.bdf"), "pull", joints=[{"link": "L1", "axis": "link", **slack}])
+    run = sj.load(document).reduced()
+    assert run.history["slide_m"].values.max() == pytest.approx(1e-3, rel=1e-12)
+    assert run.history["displacement_m"].values[:, -1, 0].max() == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_the_shipped_mast_is_that_of_its_generator(tmp_path: Path) -> None:
+    folder = Path(__file__).resolve().parents[2] / "cases" / "imports"
+    before = {path.name: path.read_bytes() for path in folder.glob("*.[bc]*")}
+    (tmp_path / "make_mast.py").write_bytes((folder / "make_mast.py").read_bytes())
+    subprocess.run([sys.executable, tmp_path / "make_mast.py"], check=True)
+    assert {path.name: path.read_bytes() for path in tmp_path.glob("*.[bc]*")} == before and len(before) == 3

@@ -18,14 +18,13 @@ def sweep(
     workers: int | None = None, progress: Progress = False, outputs: Sequence[str] = (),
 ) -> Campaign:
     """Run a case on a grid of its parameters; see :func:`statejump.sweep`."""
-    from statejump.campaign.campaign_file import points_of
     from statejump.campaign.plan import SWEEP
 
     tables: dict[str, dict[str, Any]] = {
         key: {"key": key, **wanted} if isinstance(wanted, Mapping) else {"key": key, "values": _plain(wanted)}
         for key, wanted in values.items()
     }
-    return _run(case, SWEEP, tables, model, points_of, None, workers, progress, outputs)
+    return _run(case, SWEEP, tables, model, None, None, workers, progress, outputs)
 
 
 def montecarlo(
@@ -33,14 +32,10 @@ def montecarlo(
     model: str = "reduced", workers: int | None = None, progress: Progress = False, outputs: Sequence[str] = (),
 ) -> Campaign:
     """Run a case whose parameters are random; see :func:`statejump.montecarlo`."""
-    from statejump.campaign.campaign_file import MonteCarloHeader
     from statejump.campaign.plan import MONTECARLO
-    from statejump.schema.fields import fields_of, rule_of
 
-    for name, value in (("samples", samples), ("seed", seed)):
-        rule_of(fields_of(MonteCarloHeader)[name]).check(name, value)
     tables = {key: {"key": key, **wanted} for key, wanted in distributions.items()}
-    return _run(case, MONTECARLO, tables, model, lambda vary: samples, seed, workers, progress, outputs)
+    return _run(case, MONTECARLO, tables, model, samples, seed, workers, progress, outputs)
 
 
 def _plain(values: Any) -> list[Any]:
@@ -49,24 +44,16 @@ def _plain(values: Any) -> list[Any]:
 
 
 def _run(
-    case: Case, command: str, tables: Mapping[str, Mapping[str, Any]], model: str, count: Any, seed: int | None,
-    workers: int | None, progress: Progress, outputs: Sequence[str],
+    case: Case, command: str, tables: Mapping[str, Mapping[str, Any]], model: str, samples: int | None,
+    seed: int | None, workers: int | None, progress: Progress, outputs: Sequence[str],
 ) -> Campaign:
-    from statejump.campaign.campaign_file import check_campaign, check_workers, vary_of
-    from statejump.campaign.outputs import checked
-    from statejump.campaign.plan import plan_of
+    from statejump.campaign.campaign_file import check_workers, plan_for
     from statejump.campaign.result import run
-    from statejump.core.errors import MissingKey
     from statejump.core.progress import shown
 
-    case.behaviour.ability("outcomes", case)
-    check_campaign(case, model, case.name)
     check_workers("workers", workers)
-    if not tables:
-        raise MissingKey("what varies", "at least one key is needed")
-    vary = vary_of(((f"vary[{key!r}]", table) for key, table in tables.items()), case, command)
-    plan = plan_of(case, command=command, model=model, vary=vary, samples=count(vary), seed=seed,
-                   name=f"{case.name}_{command}", title=case.title, asked=checked(outputs, case))
+    plan = plan_for(case, command, ((f"vary[{key!r}]", table) for key, table in tables.items()), model=model,
+                    samples=samples, seed=seed, asked=outputs)
     with shown(progress, f"{plan.name}, {plan.samples:,} samples") as tell:
         return run(plan, workers, tell)
 

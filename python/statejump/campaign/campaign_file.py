@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
+
+import tomli_w
 
 from statejump.campaign import outputs
 from statejump.campaign.plan import MONTECARLO, MOST_SAMPLES, SWEEP, Plan, plan_of
@@ -109,14 +111,62 @@ def _campaign(path: Path, text_read: str, data: Mapping[str, Any], command: str)
     )
 
 
-def _check_sections(data: Mapping[str, Any]) -> None:
-    hints = {"campaign": "did you mean [campaign]?", "vary": "did you mean [[vary]]?"}
+def plan_for(
+    case: Case, command: str, vary: Iterable[tuple[str, Mapping[str, Any]]], *, model: str = "reduced",
+    samples: int | None = None, seed: int | None = None, asked: Sequence[str] = (),
+) -> Plan:
+    """Return the plan of a campaign without a file.
+
+    :param vary: what ``[[vary]]`` tables say, and how messages call each
+    :param samples: of a Monte Carlo campaign; a sweep has its grid
+    :param seed: likewise
+    :param asked: outputs beside the outcomes of the kind
+    :raises StatejumpError: as of :func:`load_campaign`
+    """
+    case.behaviour.ability("outcomes", case)
+    check_campaign(case, model, case.name)
+    if command == MONTECARLO:
+        for name, value in (("samples", samples), ("seed", seed)):
+            rule_of(fields_of(MonteCarloHeader)[name]).check(name, value)
+    named = list(vary)
+    found = vary_of(named, case, command)
+    if not found:
+        raise MissingKey("what varies", "at least one key is needed")
+    name = f"{case.name}_{command}"
+    header = {"name": name, "title": case.title, "case": str(case.origin.file or case.name), "model": model,
+              "outputs": list(asked), "samples": samples, "seed": seed}
+    said = {"campaign": {key: value for key, value in header.items() if value not in (None, [], "")},
+            "vary": [dict(table) for _, table in named]}
+    return plan_of(case, command=command, model=model, vary=found, seed=seed,
+                   samples=points_of(found) if samples is None else samples, name=name,
+                   title=case.title, text=tomli_w.dumps(said), asked=outputs.checked(asked, case))
+
+
+def vary_tables(path: Path) -> list[tuple[str, Mapping[str, Any]]]:
+    """Return the ``[[vary]]`` tables of a file that has nothing else, as ``statejump identify`` writes it.
+
+    :raises StatejumpError: there is no such file, it has other sections or none
+    """
+    _, data = read_toml(path, "distributions")
+    try:
+        _check_sections(data, ("vary",))
+        tables_given = data.get("vary")
+        if not isinstance(tables_given, list) or not all(isinstance(table, Mapping) for table in tables_given):
+            raise MissingKey("vary", "at least one table says what varies", section="[[vary]]")
+    except StatejumpError as failure:
+        raise failure.located(file=path) from None
+    return [(f"{path.name}: vary[{number}]", table) for number, table in enumerate(tables_given, start=1)]
+
+
+def _check_sections(data: Mapping[str, Any], known: Sequence[str] = ("campaign", "vary")) -> None:
+    forms = {"campaign": "[campaign]", "vary": "[[vary]]"}
+    hints = {name: f"did you mean {forms[name]}?" for name in known}
     for name in data:
         if name in hints:
             continue
         match = difflib.get_close_matches(name, hints, n=1, cutoff=0.5)
         raise UnknownKey(name, section=f"section [{name}]", remedy=hints[match[0]] if match else None,
-                         cause=None if match else "known are [campaign] and [[vary]]")
+                         cause=None if match else "known are " + " and ".join(forms[one] for one in known))
 
 
 def check_campaign(case: Case, model: str, named: str, before: str = "") -> None:

@@ -2,7 +2,8 @@
 """Outputs that a campaign records besides the outcomes of its kind of case: any column of a run, at named items.
 
 ``HOW:COLUMN[ITEM].AXIS``, as ``jump:displacement_m[P].x`` or ``max:links.axial_force_N[L3]``. Columns are those of the
-CSV files, of links and contacts with that word before; a vector without axis counts by its length.
+CSV files, of links and contacts with that word before; a vector without axis counts by its length. Columns of a
+reflecting surface, as ``max:surface.pointing_error_rad``, are those of :func:`statejump.surface.history`.
 """
 from __future__ import annotations
 
@@ -13,11 +14,11 @@ from difflib import get_close_matches
 import numpy as np
 
 from statejump.core.case import Case
-from statejump.core.errors import NotAllowed
+from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.core.run import AXES, GROUPS, Column, Run
-from statejump.core.units import unit_of
+from statejump.core.units import split_unit, unit_of
 
-FORM = re.compile(r"(?P<how>\w+):(?:(?P<group>links|contacts)\.)?(?P<column>\w+)(?:\[(?P<item>.*)\])?"
+FORM = re.compile(r"(?P<how>\w+):(?:(?P<group>links|contacts|surface)\.)?(?P<column>\w+)(?:\[(?P<item>.*)\])?"
                   r"(?:\.(?P<axis>\w+))?")
 # Of a column over time; which of them need every sample of a run, not only its ends.
 ENDS: dict[str, Callable[[np.ndarray], np.ndarray]] = {"end": lambda values: values[-1],
@@ -25,6 +26,9 @@ ENDS: dict[str, Callable[[np.ndarray], np.ndarray]] = {"end": lambda values: val
 ALL: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "max": lambda values: values.max(axis=0), "min": lambda values: values.min(axis=0),
     "range": lambda values: np.ptp(values, axis=0)}
+WORDS = {"end": "{} at the end", "jump": "jump of {}", "max": "largest {}", "min": "smallest {}",
+         "range": "range of {}"}
+SURFACE = "surface"
 # For editors, which know no names of groups.
 PATTERN = re.sub(r"\?P<\w+>", "", FORM.pattern)
 LIKE = "must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"
@@ -50,15 +54,34 @@ def unit(name: str) -> str:
     return unit_of(found["column"] if found else name)
 
 
-def value(name: str, run: Run) -> float:
-    """Return an output of a run.
+def in_words(name: str) -> str | None:
+    """Return an output in words, without unit; None: the name is that of an outcome."""
+    found = FORM.fullmatch(name)
+    if found is None:
+        return None
+    what = split_unit(found["column"])[0].replace("_", " ")
+    of = {"links": "link", "contacts": "contact", SURFACE: "surface"}.get(found["group"] or "", "")
+    of = " ".join(part for part in (of, found["item"], found["axis"] and f"along {found['axis']}") if part)
+    return WORDS[found["how"]].format(what + (f" of {of}" if of else ""))
+
+
+def values(names: Sequence[str], run: Run) -> dict[str, float]:
+    """Return outputs of a run.
 
     :raises NotAllowed: the run has no such column, item or axis; a near one is told
     """
+    columns: dict[str | None, dict[str, Column]] = {}
+    found = {}
+    for name in names:
+        group = _parts(name)["group"]
+        if group not in columns:
+            columns[group] = _surface(run, name) if group == SURFACE else _columns(run, group)
+        found[name] = _value(name, run, columns[group])
+    return found
+
+
+def _value(name: str, run: Run, columns: dict[str, Column]) -> float:
     asked = _parts(name)
-    groups = (asked["group"],) if asked["group"] else ("history", "energy")
-    columns: dict[str, Column] = {key: column for group in groups for key, column in getattr(run, group).items()
-                                  if not column.labels and np.issubdtype(column.values.dtype, np.number)}
     if asked["column"] not in columns:
         where = next((f"{group}." for group in GROUPS[2:] if asked["column"] in getattr(run, group)), "")
         raise NotAllowed("outputs", name, f"did you mean {where}{asked['column']}?" if where else
@@ -85,6 +108,21 @@ def value(name: str, run: Run) -> float:
                  else (ENDS | ALL)[asked["how"]](values))
 
 
+def _columns(run: Run, group: str | None) -> dict[str, Column]:
+    groups = (group,) if group else ("history", "energy")
+    return {key: column for group in groups for key, column in getattr(run, group).items()
+            if not column.labels and np.issubdtype(column.values.dtype, np.number)}
+
+
+def _surface(run: Run, name: str) -> dict[str, Column]:
+    from statejump.surface import history
+
+    try:
+        return {key: Column(values) for key, values in history(run).items()}
+    except StatejumpError as refused:
+        raise NotAllowed("outputs", name, refused.phrase(), remedy=refused.remedy) from None
+
+
 def _near(what: str, given: str, known: Sequence[str]) -> str:
     near = get_close_matches(given, known, n=1)
     if near:
@@ -106,7 +144,5 @@ def checked(given: Sequence[str], case: Case) -> tuple[str, ...]:
     if names:
         from statejump.campaign.work import sampled
 
-        run = sampled(case, "reduced", ())
-        for name in names:
-            value(name, run)
+        values(names, sampled(case, "reduced", names))
     return names

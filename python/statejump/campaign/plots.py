@@ -7,6 +7,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from statejump.campaign.outputs import in_words
 from statejump.campaign.plan import SWEEP, Plan
 from statejump.campaign.sampling import Values
 from statejump.campaign.summary import spearman
@@ -33,6 +34,9 @@ def figures(campaign: Plan, table: Table) -> dict[str, Figure]:
 
 def _label(name: str, unit: str) -> str:
     """Name without its unit, then the unit."""
+    output = in_words(name)
+    if output is not None:
+        return output + ("" if unit == "-" else f" [{unit}]")
     section, _, key = split_unit(name)[0].rpartition(".")
     words = key.replace("_", " ").replace("temperature change", "ΔT")
     # Of every item: of a Monte Carlo campaign the mean of their values.

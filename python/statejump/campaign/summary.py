@@ -15,19 +15,20 @@ from statejump.campaign.sampling import Independent
 from statejump.campaign.tables import Table
 from statejump.core.tables import markdown, write_json, write_markdown
 
-QUANTILES = (0.05, 0.5, 0.95)
+QUANTILES = (0.05, 0.5, 0.95, 0.99)
 
 
 def statistics(values: np.ndarray) -> dict[str, float | None]:
     """Mean, standard deviation, quantiles and extremes of the values that are there."""
     there = values[np.isfinite(values)]
-    names = ("mean", "standard_deviation", "minimum", "quantile_5", "median", "quantile_95", "maximum")
+    names = ("mean", "standard_deviation", "minimum", "quantile_5", "median", "quantile_95", "quantile_99",
+             "maximum")
     if not len(there):
         return {"count": 0, **dict.fromkeys(names)}
-    low, middle, high = (float(value) for value in np.quantile(there, QUANTILES))
+    low, middle, high, highest = (float(value) for value in np.quantile(there, QUANTILES))
     numbers = (
         float(np.mean(there)), float(np.std(there, ddof=1)) if len(there) > 1 else None,
-        float(np.min(there)), low, middle, high, float(np.max(there)),
+        float(np.min(there)), low, middle, high, highest, float(np.max(there)),
     )
     return {"count": len(there), **dict(zip(names, numbers))}
 
@@ -88,7 +89,7 @@ def shown(value: float | None) -> str:
 
 COLUMNS = {
     "count": "count", "mean": "mean", "standard_deviation": "standard deviation", "quantile_5": "5 %",
-    "median": "50 %", "quantile_95": "95 %",
+    "median": "50 %", "quantile_95": "95 %", "quantile_99": "99 %",
 }
 
 

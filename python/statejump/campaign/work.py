@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from statejump.campaign.outputs import needs_all_samples, value
+from statejump.campaign.outputs import needs_all_samples, values
 from statejump.campaign.plan import Recipe
 from statejump.core.case import Case
 from statejump.core.errors import StatejumpError
@@ -50,7 +50,7 @@ def outcome(case: Case, model: str, outputs: Sequence[str] = ()) -> dict[str, fl
     """
     run = sampled(case, model, outputs)
     found: dict[str, float] = case.behaviour.ability("outcomes", case)(case, run)
-    return found | {name: value(name, run) for name in outputs}
+    return found | values(outputs, run)
 
 
 def run_sample(recipe: Recipe, index: int) -> Sample:

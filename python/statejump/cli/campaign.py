@@ -3,19 +3,58 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any, cast
 
 import click
 
-from statejump.campaign.campaign_file import check_workers, load_campaign
-from statejump.campaign.plan import MONTECARLO, SWEEP
+from statejump.campaign.campaign_file import check_workers, load_campaign, plan_for, vary_tables
+from statejump.campaign.plan import MONTECARLO, SWEEP, Plan
 from statejump.cli.terminal import QUIET, RESULTS, CaseFile, make_console, print_shown, progress
-from statejump.core.errors import FailedRun, NotAllowed
+from statejump.core.errors import FailedRun, MissingKey, NotAllowed
 from statejump.core.results_folder import Results
+from statejump.kinds.loading import load_case
+from statejump.schema.toml import read_toml
+
+
+def _of_case(command: Any) -> Any:
+    """Give a command the options of a campaign that no file describes."""
+    for option in reversed((
+        click.option("--vary", "tables", multiple=True, type=click.Path(path_type=Path), metavar="FILE",
+                     help="Of a CASE: file of [[vary]] tables, as vary.toml of 'statejump identify'."),
+        click.option("--samples", type=int, default=None, metavar="N", help="Of a CASE: how many.  [default: 1000]"),
+        click.option("--seed", type=int, default=None, metavar="N", help="Of a CASE: of the random numbers.  "
+                     "[default: 1]"),
+        click.option("--output", "outputs", multiple=True, metavar="HOW:COLUMN",
+                     help="Of a CASE: more to record, as max:surface.pointing_error_rad."),
+    )):
+        command = option(command)
+    return command
+
+
+def _plan(file: Path, name: str, of_case: dict[str, Any]) -> Plan:
+    """Return the campaign of a campaign file, or of a case and what options say."""
+    given = [option for option, value in of_case.items() if value not in (None, ())]
+    _, data = read_toml(file, "campaign")
+    if name != MONTECARLO or "case" not in data or "campaign" in data:
+        for option in given:
+            raise NotAllowed(option, beside="with a campaign file", cause="it says that itself", file=file)
+        return load_campaign(file, name)
+    if not of_case["--vary"]:
+        raise MissingKey("--vary", "a case needs a file that says what varies", file=file)
+    tables = [table for path in of_case["--vary"] for table in vary_tables(path)]
+    samples, seed = (default if of_case[option] is None else of_case[option]
+                     for option, default in (("--samples", 1000), ("--seed", 1)))
+    try:
+        return plan_for(load_case(file), name, tables, samples=samples, seed=seed, asked=of_case["--output"])
+    except NotAllowed as refused:
+        if f"--{refused.key}".removesuffix("s") in ("--sample", "--seed", "--output"):
+            refused.key = f"--{refused.key}" if refused.key != "outputs" else "--output"
+        raise
 
 
 def _command(name: str, text: str) -> click.Command:
     @click.command(name, help=text)
-    @click.argument("file", metavar="CAMPAIGN", type=CaseFile())
+    @click.argument("file", metavar="CAMPAIGN" if name == SWEEP else "CAMPAIGN|CASE", type=CaseFile())
     @click.option("--workers", type=int, metavar="N", help="Processes on this machine.  [default: one per core]")
     @click.option("--scheduler", metavar="ADDRESS",
                   help="Dask scheduler that runs already, as tcp://host:8786, instead of a cluster on this machine.")
@@ -26,7 +65,8 @@ def _command(name: str, text: str) -> click.Command:
     @QUIET
     def command(
         file: Path, workers: int | None, scheduler: str | None, restart: bool, table: Path | None, results: Results,
-        quiet: bool,
+        quiet: bool, tables: tuple[Path, ...] = (), samples: int | None = None, seed: int | None = None,
+        outputs: tuple[str, ...] = (),
     ) -> None:
         from statejump.campaign.result import run_in
         from statejump.campaign.yade_batch import write_table
@@ -35,7 +75,7 @@ def _command(name: str, text: str) -> click.Command:
         check_workers("--workers", workers)
         if workers is not None and scheduler is not None:
             raise NotAllowed("--workers", beside="with --scheduler", cause="that cluster has its own")
-        plan = load_campaign(file, name)
+        plan = _plan(file, name, {"--vary": tables, "--samples": samples, "--seed": seed, "--output": outputs})
         if table is not None:
             write_table(plan, table)
             console.print(f"table of {plan.samples:,} samples: {table}")
@@ -50,14 +90,15 @@ def _command(name: str, text: str) -> click.Command:
             raise FailedRun("every sample failed, the first one", file=file,
                             cause=campaign.summary()["failures"][0]["first_sentence"])
 
-    return command
+    return command if name == SWEEP else cast(click.Command, _of_case(command))
 
 
 montecarlo_command = _command(MONTECARLO, """Samples of a case whose parameters are random, either model.
 
 \b
-Example:
+Examples:
   statejump montecarlo cases/campaigns/table1_tolerances.toml
+  statejump montecarlo mast.toml --vary results/identify_hinge/vary.toml --output max:surface.rms_rigid_m
 """)
 
 sweep_command = _command(SWEEP, """A case on a grid of its parameters, either model.

@@ -26,13 +26,15 @@ def _interval(text: str) -> tuple[float, float]:
 @click.option("--shadow", multiple=True, metavar="BEGIN:END", help="In shadow from BEGIN to END [s]; may be repeated.")
 @click.option("--orbits", type=int, default=1, show_default=True, help="How many orbits are written.")
 @click.option("--samples", type=int, default=100, show_default=True, metavar="N", help="Equal steps of an orbit.")
+@click.option("--within", type=float, metavar="KELVIN",
+              help="Write only as many times as straight lines between them need to be that near.")
 @click.option("--sink", type=float, default=2.7, show_default=True, metavar="KELVIN",
               help="Temperature of what members see but the Sun.")
 @click.option("--solar-constant", type=float, default=1361.0, show_default=True, metavar="W/M2",
               help="Sunlight across the rays.")
 @QUIET
 def orbit_command(file: Path, output: Path, period: float, shadow: tuple[str, ...], orbits: int, samples: int,
-                  sink: float, solar_constant: float, quiet: bool) -> None:
+                  within: float | None, sink: float, solar_constant: float, quiet: bool) -> None:
     """Temperatures of members over an orbit with shadow, each member by itself, as a file that cases take.
 
     MEMBERS is a CSV file with the columns name, absorptivity, emissivity, sun_view (area that the Sun sees over
@@ -50,6 +52,7 @@ def orbit_command(file: Path, output: Path, period: float, shadow: tuple[str, ..
     found = orbit.temperatures(
         orbit.read_members(file), period_s=period, shadow_s=[_interval(text) for text in shadow], orbits=orbits,
         samples_per_orbit=samples, sink_K=sink, solar_constant_W_per_m2=solar_constant,
+        within_K=within,
     )
     found.write(output)
     coldest, hottest = found.temperature_K.min(), found.temperature_K.max()

@@ -22,6 +22,20 @@ def _joint(text: str) -> dict[str, str]:
     return found
 
 
+def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) -> dict[str, dict[str, object]]:
+    """Return the sections that members' histories need."""
+    for option, value in given.items():
+        if value is not None and file is None:
+            raise NotAllowed(option, value, "only with --members-file")
+    if file is None:
+        return {}
+    keys = dict(zip(given, ("reference_temperature_K", "lead_in_s", "lead_out_s")))
+    beside = os.path.relpath(file, output.parent)
+    said = {keys[option]: value for option, value in given.items() if value is not None}
+    # Each piece between two rows is a branch.
+    return {"thermal": {"shape": "table", "members_file": beside, **said}, "reduced": {"increments_per_branch": 1}}
+
+
 @click.command("import")
 @click.argument("file", metavar="FILE", type=click.Path(path_type=Path))
 @click.option("-o", "--output", required=True, metavar="CASE", type=click.Path(path_type=Path),
@@ -35,22 +49,36 @@ def _joint(text: str) -> dict[str, str]:
               metavar="NEWTON", help="Force of one unit of a deck.")
 @click.option("--temperature-change", type=float, metavar="KELVIN", help="Of all links, where the deck says nothing.")
 @click.option("--density", type=float, metavar="KG/M3", help="Of links whose density the deck does not say.")
+@click.option("--members-file", metavar="FILE", type=click.Path(path_type=Path),
+              help="Temperatures of every link over time (CSV, HDF5) instead of the deck's.")
+@click.option("--reference-temperature", type=float, metavar="KELVIN",
+              help="At which links are free of stress, beside --members-file; none: it has changes.")
+@click.option("--lead-in", type=float, metavar="SECONDS", help="Way from there to the first row of --members-file.")
+@click.option("--lead-out", type=float, metavar="SECONDS", help="Way back from its last row.")
 @click.option("--joint", "joints", multiple=True, metavar="node=NAME,...",
-              help="Put in a slider (axis=x, friction_coefficient, normal_force_N, ...) or, with link=NAME, a revolute "
-                   "between that link and the others (journal_radius_m, radial_clearance_m, ...).")
+              help="Put in a slider on a support (node, axis=x) or in links (link=NAME or pattern, axis=link), with "
+                   "friction_coefficient, normal_force_N, ...; or, with link and node, a revolute between that link "
+                   "and the others (journal_radius_m, ...). from=FILE: the section that 'statejump identify' wrote.")
+@click.option("--reflector", metavar="NODES",
+              help="Nodes of a reflecting surface: names or patterns, with commas between them.")
+@click.option("--reflector-axis", type=float, nargs=3, default=(0, 0, 1), show_default=True, metavar="X Y Z",
+              help="Axis of that surface; of a planar truss Z is left out.")
 @click.option("--force", is_flag=True, help="Overwrite the file.")
 @QUIET
 def import_command(
     file: Path, output: Path, form: str | None, bars: Path | None, length_unit: float, force_unit: float,
-    temperature_change: float | None, density: float | None, joints: tuple[str, ...], force: bool, quiet: bool,
+    temperature_change: float | None, density: float | None, members_file: Path | None,
+    reference_temperature: float | None, lead_in: float | None, lead_out: float | None, joints: tuple[str, ...],
+    reflector: str | None, reflector_axis: tuple[float, float, float], force: bool, quiet: bool,
 ) -> None:
     """A truss of another program as a case file: decks of CalculiX and Abaqus, Nastran bulk data, CSV tables.
 
     Prints what was taken, what was left out and why.
 
     \b
-    Example:
+    Examples:
       statejump truss import mast.bdf -o mast.toml --length-unit 0.001
+      statejump truss import mast.bdf -o mast.toml --members-file day.csv --reference-temperature 293.15 --lead-in 3600
     """
     from statejump.kinds.loading import parse_case
     from statejump.kinds.truss.generate.document import write
@@ -65,9 +93,12 @@ def import_command(
     document = case_document(
         deck, output.stem, length_unit_m=length_unit, force_unit_N=force_unit,
         temperature_change_K=temperature_change, density_kg_per_m3=density, joints=[_joint(text) for text in joints],
+        sections=_thermal(output, members_file, {"--reference-temperature": reference_temperature,
+                                                 "--lead-in": lead_in, "--lead-out": lead_out}),
+        reflector=None if reflector is None else (reflector.split(","), reflector_axis),
     )
     try:
-        case = parse_case(document)
+        case = parse_case(document, files_from=output.parent)
     except StatejumpError as refused:
         raise refused.located(file=file) from None
     left = [f"# Left out: {printable(card)} ({count}): {why}" for card, count, _, why in deck.left_rows()]

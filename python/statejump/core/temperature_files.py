@@ -135,7 +135,7 @@ def with_files(data: Mapping[str, Any], folder: Path, section: type[Section] | N
     if section is None or not isinstance(thermal, Mapping):
         return data
     made = dict(data)
-    common = {key: thermal[key] for key in ("reference_temperature_K", "lead_in_s") if key in thermal}
+    common = {key: thermal[key] for key in ("reference_temperature_K", "lead_in_s", "lead_out_s") if key in thermal}
     if thermal.get("members_file") is not None and "members_file" in fields_of(section):
         made["thermal"] = _members(thermal, folder)
     elif thermal.get("table_file") is not None:
@@ -167,7 +167,7 @@ def _rule(key: str, value: Any, section: str) -> None:
 
 def _checked(given: Mapping[str, Any], section: str, key: str) -> None:
     """Raise NotAllowed where what stands beside the name of a file does not go with it."""
-    for name in ("reference_temperature_K", "lead_in_s", "table_column"):
+    for name in ("reference_temperature_K", "lead_in_s", "lead_out_s", "table_column"):
         if given.get(name) is not None:
             _rule(name, given[name], section)
     if not isinstance(given[key], str):
@@ -219,11 +219,12 @@ def _members(given: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def _changes(read: _Read, given: Mapping[str, Any], section: str) -> tuple[Numbers, Numbers]:
-    """Return times from 0 and temperature changes from 0 of a file: its own times since its first, after the lead-in.
+    """Return times from 0 and temperature changes from 0 of a file: its own times since its first, between the lead-in
+    and the lead-out.
 
     :raises StatejumpError: it does not begin at the reference temperature and nothing says how to get there
     """
-    reference, lead_in = given.get("reference_temperature_K"), given.get("lead_in_s")
+    reference, lead_in, lead_out = (given.get(key) for key in ("reference_temperature_K", "lead_in_s", "lead_out_s"))
     time_s = read.time_s - read.time_s[0]
     changes = read.values
     if reference is not None:
@@ -245,6 +246,9 @@ def _changes(read: _Read, given: Mapping[str, Any], section: str) -> tuple[Numbe
             f"temperature (column {read.names[first]!r}), and it must be said how long the way there takes",
             remedy=None if reference is not None else
             f"or, if these are temperatures and not changes, {section}reference_temperature_K is")
+    if lead_out is not None:
+        time_s = np.concatenate((time_s, [time_s[-1] + float(lead_out)]))
+        changes = np.concatenate((changes, np.zeros((1, changes.shape[1]))))
     if not time_s[-1] <= LONGEST_TABLE_S:
         raise Unreadable("its last time is too late", cause=f"at most {LONGEST_TABLE_S:g} s are allowed",
                          file=read.path)

@@ -23,7 +23,8 @@ SAME_TIME = 1e-9  # two durations that differ by less, relatively, are the same 
 LONGEST_TABLE_S, LARGEST_CHANGE_K = 1e12, 1e4
 MOST_SHOWN = 20  # values of a list in a sentence
 # Keys that name a file of temperatures or say what is in it; see :mod:`statejump.core.temperature_files`.
-KEYS_OF_FILES = ("table_file", "table_column", "members_file", "reference_temperature_K", "lead_in_s")
+KEYS_OF_FILES = ("table_file", "table_column", "members_file", "reference_temperature_K", "lead_in_s",
+                 "lead_out_s")
 
 
 @definition
@@ -50,6 +51,9 @@ class Thermal(Section):
     )
     lead_in_s: float | None = parameter(
         None, "s", 0, LONGEST_TABLE_S, "straight way from the reference temperature to the file's first row", above=True
+    )
+    lead_out_s: float | None = parameter(
+        None, "s", 0, LONGEST_TABLE_S, "straight way back from the file's last row; none", above=True
     )
 
 

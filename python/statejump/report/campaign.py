@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -69,6 +69,7 @@ class CampaignDocument:
 
     def __init__(self, path: Path, identifier: str) -> None:
         # What computes campaigns takes a while to load: a page of runs does without.
+        from statejump.campaign import outputs
         from statejump.campaign.plan import MONTECARLO, SWEEP
         from statejump.campaign.summary import statistics
 
@@ -82,7 +83,8 @@ class CampaignDocument:
                 self.case = str(header["name"])
                 self.samples = len(file["sample"])
                 self.parameters = self._variables(file["parameters"])
-                self.outcomes = self._variables(file["outcomes"])
+                self.outcomes = [replace(outcome, title=outputs.in_words(outcome.name) or outcome.title)
+                                 for outcome in self._variables(file["outcomes"])]
                 self.failed = [
                     (int(sample), bytes(error).decode("utf-8"))
                     for sample, error in zip(file["failed/sample"][()], file["failed/error"][()], strict=True)
@@ -141,7 +143,8 @@ class CampaignDocument:
 
     def cards(self) -> list[dict[str, Any]]:
         """The numbers at the top: the first outcomes' middle and spread."""
-        shown = {"median": "median", "quantile_5": "5 % are below", "quantile_95": "5 % are above"}
+        shown = {"median": "median", "quantile_5": "5 % are below", "quantile_95": "5 % are above",
+                 "quantile_99": "1 % are above"}
         if self.command == "sweep":  # a grid has no frequencies
             shown = {"minimum": "smallest", "maximum": "largest"}
         return [
@@ -162,7 +165,7 @@ class CampaignDocument:
                 "count": self.statistics[outcome.name]["count"],
                 **{
                     key: text(self.statistics[outcome.name][key], outcome.unit, 4)
-                    for key in ("mean", "standard_deviation", "minimum", *QUANTILES, "maximum")
+                    for key in ("mean", "standard_deviation", "minimum", *QUANTILES, "quantile_99", "maximum")
                 },
             }
             for outcome in self.outcomes

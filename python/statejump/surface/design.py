@@ -6,8 +6,9 @@ profile: paraboloid reads parabola, and rigid motion is that in the plane.
 """
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -44,6 +45,15 @@ class Errors:
     tilt_rad: np.ndarray
     vertex_shift_m: np.ndarray
     focal_change_m: float | None
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Moves that the nodes determine, an orthonormal basis of what they do, and the moves by shares of it."""
+
+    moves: tuple[str, ...]
+    basis: np.ndarray
+    inverse: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -138,6 +148,25 @@ class Design:
         moves["curvature"] = normals[:, -1] * np.sum(self.local_m[:, :-1]**2, axis=1)
         return moves | {f"shift{place}": normals[:, place] for place in range(size - 1)}
 
+    @cached_property
+    def _fits(self) -> dict[str, dict[str, _Fit]]:
+        """Best fits by measure and definition: the same for all states of the surface."""
+        moves = self._moves()
+        return {measure: {definition: self._fit(self.normals[:, -1] ** power, {
+            name: move for name, move in moves.items() if name != "curvature" or definition == "rigid_focal"
+        }) for definition in ("rigid", "rigid_focal")} for measure, power in MEASURES.items()}
+
+    def _fit(self, weight: np.ndarray, moves: dict[str, np.ndarray]) -> _Fit:
+        names = list(moves)
+        for kept in (names, [name for name in names if not name.startswith("shift")],
+                     [name for name in names if not name.startswith("shift") and name != "curvature"]):
+            matrix = np.stack([weight * moves[name] for name in kept], axis=1)
+            if _determined(matrix):
+                lengths = np.linalg.norm(matrix, axis=0)
+                basis, factor = np.linalg.qr(matrix / lengths)
+                return _Fit(tuple(kept), basis, np.linalg.inv(factor) / lengths[:, None])
+        raise StatejumpError(f"{len(self.position_m)} nodes do not determine a best fit", remedy="more of them")
+
     def errors(self, displacement_m: Any, measure: str = "normal") -> Errors:
         """Return the errors when the nodes have moved.
 
@@ -146,35 +175,41 @@ class Design:
             the change of the ray's path, which the formula of Ruze takes; ``axial``, the distance along the axis
         :raises StatejumpError: there is no such measure, or displacements are not of these nodes
         """
-        if measure not in MEASURES:
-            raise NotAllowed("measure", measure, f"must be one of {', '.join(MEASURES)}", allowed=tuple(MEASURES))
+        check_measure(measure)
         displacement = _points("displacement_m", displacement_m, len(self.position_m))
-        weight = self.normals[:, -1] ** MEASURES[measure]
-        error = np.sum(self.normals * (displacement @ self.frame.T), axis=1)
-        moves = self._moves()
-        residual, values = {"design": weight * error}, {}
-        for definition in ("rigid", "rigid_focal"):
-            names = [name for name in moves if name != "curvature" or definition == "rigid_focal"]
-            for kept in (names, [name for name in names if not name.startswith("shift")],
-                         [name for name in names if not name.startswith("shift") and name != "curvature"]):
-                matrix = np.stack([weight * moves[name] for name in kept], axis=1)
-                if _determined(matrix):
-                    break
-            else:
-                raise StatejumpError(f"{len(self.position_m)} nodes do not determine a best fit", remedy="more of them")
-            lengths = np.linalg.norm(matrix, axis=0)
-            found = np.linalg.lstsq(matrix / lengths, weight * error, rcond=None)[0] / lengths
-            residual[definition] = weight * error - matrix @ found
-            values = dict(zip(kept, found.tolist()))
+        residual, moves = self.best_fits(displacement, measure)
+        values = {name: float(value) for name, value in moves["rigid_focal"].items()}
+        focal = float(self.focal_change_m(values))
         lateral = range(len(self.frame) - 1)
         return Errors(
-            {name: float(np.sqrt(np.mean(left**2))) for name, left in residual.items()}, residual,
+            {name: float(rms(left)) for name, left in residual.items()}, residual,
             np.array([values[f"tilt{place}"] for place in lateral]),
             np.array([*(values.get(f"shift{place}", 0.0) for place in lateral), values["depth"]]),
-            # F = 1/(4 c)
-            -values["curvature"] / (4 * self.curvature_per_m**2)
-            if self.curvature_per_m and "curvature" in values else None,
+            None if np.isnan(focal) else focal,
         )
+
+    def focal_change_m(self, moves: Mapping[str, Any]) -> np.ndarray:
+        """Return the change of the focal length [m] by moves of a best fit; NaN: the nodes do not determine it."""
+        if not self.curvature_per_m or "curvature" not in moves:
+            return np.full_like(moves["depth"], np.nan)
+        return np.asarray(-moves["curvature"] / (4 * self.curvature_per_m**2))  # F = 1/(4 c)
+
+    def best_fits(
+        self, displacement_m: np.ndarray, measure: str
+    ) -> tuple[dict[str, np.ndarray], dict[str, dict[str, np.ndarray]]]:
+        """Return residuals (..., nodes) [m] by definition, and by best fit its moves (...): depth, tilts, curvature,
+        shifts, as far as the nodes determine them.
+
+        :param displacement_m: (..., nodes, 3) [m]
+        """
+        weighted = self.normals[:, -1] ** MEASURES[measure] * np.sum(
+            self.normals * (displacement_m @ self.frame.T), axis=-1)
+        residual, moves = {"design": weighted}, {}
+        for definition, fit in self._fits[measure].items():
+            share = weighted @ fit.basis
+            residual[definition] = weighted - share @ fit.basis.T
+            moves[definition] = dict(zip(fit.moves, np.moveaxis(share @ fit.inverse.T, -1, 0)))
+        return residual, moves
 
     def zernike_m(self, displacement_m: Any, terms: int | None = None) -> np.ndarray:
         """Return the coefficients [m] of Noll's Zernike terms 1 to ``terms`` in the error along the axis, by least
@@ -191,6 +226,17 @@ class Design:
         sag = np.sum(normals * (displacement @ self.frame.T), axis=1) / normals[:, -1]
         middle, radius = self.aperture_m
         return fitted((self.local_m[:, :-1] - middle) / radius, sag, terms)
+
+
+def check_measure(measure: str) -> None:
+    """Raise NotAllowed for a measure that there is not."""
+    if measure not in MEASURES:
+        raise NotAllowed("measure", measure, f"must be one of {', '.join(MEASURES)}", allowed=tuple(MEASURES))
+
+
+def rms(residual_m: np.ndarray) -> Any:
+    """Return the root of the mean square over the last axis, the nodes."""
+    return np.sqrt(np.mean(residual_m**2, axis=-1))
 
 
 def _points(key: str, given: Any, rows: int | None = None) -> np.ndarray:

@@ -14,32 +14,32 @@ ON_A_LINE = 1e-6
 
 
 def rotation_rad(position_m: Any, displacement_m: Any) -> np.ndarray:
-    """Return the rotation (3,) [rad] of the rigid motion that is nearest to the displacements of nodes, by least
+    """Return the rotation (..., 3) [rad] of the rigid motion that is nearest to the displacements of nodes, by least
     squares, to first order.
 
     :param position_m: (nodes, 3) [m]
-    :param displacement_m: (nodes, 3) [m]
+    :param displacement_m: (..., nodes, 3) [m]
     :raises StatejumpError: the nodes lie on one line
     """
     position, displacement = (np.asarray(each, dtype=float) for each in (position_m, displacement_m))
-    if position.ndim != 2 or position.shape[1] != 3 or position.shape != displacement.shape:
+    if position.ndim != 2 or position.shape[1] != 3 or position.shape != displacement.shape[-2:]:
         raise NotAllowed("displacement_m", beside="as an array", cause="must, as position_m, have a row of x, y, z for "
                          "each node")
-    arm, moved = position - position.mean(axis=0), displacement - displacement.mean(axis=0)
+    arm, moved = position - position.mean(axis=0), displacement - displacement.mean(axis=-2, keepdims=True)
     spread = np.linalg.svd(arm, compute_uv=False)
     if len(arm) < 3 or spread[1] <= ON_A_LINE * spread[0]:
         raise StatejumpError("the nodes lie on one line: how they turn about it is not determined")
     inertia = np.sum(arm**2) * np.eye(3) - arm.T @ arm
-    turn: np.ndarray = np.linalg.solve(inertia, np.cross(arm, moved).sum(axis=0))
+    turn: np.ndarray = np.cross(arm, moved).sum(axis=-2) @ np.linalg.inv(inertia)
     return turn
 
 
-def pointing_rad(position_m: Any, displacement_m: Any, direction: Sequence[float]) -> float:
-    """Return the pointing error [rad] of a direction that is fixed to the rigid motion of nodes: the angle by which it
-    turns.
+def pointing_rad(position_m: Any, displacement_m: Any, direction: Sequence[float]) -> Any:
+    """Return the pointing error (...) [rad] of a direction that is fixed to the rigid motion of nodes: the angle by
+    which it turns.
 
     :param position_m: (nodes, 3) [m]
-    :param displacement_m: (nodes, 3) [m]
+    :param displacement_m: (..., nodes, 3) [m]
     :param direction: of any length
     :raises StatejumpError: the nodes lie on one line, or there is no such direction
     """
@@ -47,4 +47,5 @@ def pointing_rad(position_m: Any, displacement_m: Any, direction: Sequence[float
     if way.shape != (3,) or not np.isfinite(way).all() or not np.linalg.norm(way) > 0:
         raise NotAllowed("direction", direction, "must be three numbers that are not all 0")
     turned = np.cross(rotation_rad(position_m, displacement_m), way / np.linalg.norm(way))
-    return float(np.linalg.norm(turned))
+    found = np.linalg.norm(turned, axis=-1)
+    return found if found.ndim else float(found)

@@ -7,7 +7,7 @@ import numpy as np
 from statejump.core.case import Case
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.core.run import Run
-from statejump.surface.design import DEFINITIONS, Design
+from statejump.surface.design import DEFINITIONS, Design, check_measure, rms
 from statejump.surface.motion import pointing_rad
 
 
@@ -39,17 +39,17 @@ def history(run: Run, measure: str = "normal") -> dict[str, np.ndarray]:
     """
     design, nodes = reflector_of(run.definition)
     moved = np.asarray(run.history["position_m"].values)[:, nodes] - design.position_m
-    found = [design.errors(each, measure) for each in moved]
-    axis = design.frame[-1]
+    check_measure(measure)
+    residual, moves = design.best_fits(moved, measure)
+    best = moves["rigid_focal"]
     columns = {name: np.asarray(run.history[name].values) for name in ("time_s", "temperature_change_K")}
     for name in DEFINITIONS:
-        columns[f"rms_{name}_m"] = np.array([each.rms_m[name] for each in found])
+        columns[f"rms_{name}_m"] = rms(residual[name])
     for place in range(len(design.frame) - 1):
-        columns[f"tilt_{place + 1}_rad"] = np.array([each.tilt_rad[place] for each in found])
-    columns["focal_change_m"] = np.array([np.nan if each.focal_change_m is None else each.focal_change_m
-                                          for each in found])
+        columns[f"tilt_{place + 1}_rad"] = best[f"tilt{place}"]
+    columns["focal_change_m"] = design.focal_change_m(best)
     try:
-        columns["pointing_error_rad"] = np.array([pointing_rad(design.position_m, each, axis) for each in moved])
+        columns["pointing_error_rad"] = pointing_rad(design.position_m, moved, design.frame[-1].tolist())
     except StatejumpError:
         columns["pointing_error_rad"] = np.full(len(moved), np.nan)
     return columns

@@ -5,23 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey
+from statejump.core.errors import MissingKey, StatejumpError
 from statejump.kinds.truss.generate.document import Document, finished
+from statejump.kinds.truss.importing.joints import matching, put_in
 from statejump.kinds.truss.importing.model import Bar, Deck
-from statejump.schema.rules import suggestion
 
 # A coordinate that differs by less, over the size of the truss, is the same: decks have eight digits.
 FLAT = 1e-9
-SLIDER = ("axis", "friction_coefficient", "normal_force_N", "clearance_minus_m", "clearance_plus_m", "pad_radius_m")
-REVOLUTE = ("link", "bearing_link", "axis", "journal_radius_m", "radial_clearance_m", "friction_coefficient",
-            "journal_thermal_expansion_per_K", "bearing_thermal_expansion_per_K", "contact")
-AXES = {"x": [1.0, 0.0, 0.0], "y": [0.0, 1.0, 0.0], "z": [0.0, 0.0, 1.0]}
 
 
 def case_document(
     deck: Deck, name: str, *, length_unit_m: float = 1.0, force_unit_N: float = 1.0,
     temperature_change_K: float | None = None, density_kg_per_m3: float | None = None,
-    joints: Sequence[Mapping[str, str]] = (),
+    joints: Sequence[Mapping[str, str]] = (), sections: Mapping[str, Mapping[str, Any]] | None = None,
+    reflector: tuple[Sequence[str], Sequence[float]] | None = None,
 ) -> Document:
     """Return the case of a deck; what becomes of it is noted in the deck's account.
 
@@ -29,15 +26,17 @@ def case_document(
     :param force_unit_N: force of one unit of the deck [N]; stress is force by length squared
     :param temperature_change_K: of all links, of a deck without temperatures
     :param density_kg_per_m3: of links whose density the deck does not say
-    :param joints: what ``--joint`` says: ``node`` and the keys of a slider, or of a revolute with ``link``, whose end
-        becomes the journal
+    :param joints: what ``--joint`` says, see :mod:`~statejump.kinds.truss.importing.joints`
+    :param sections: sections that the deck does not have; ``thermal`` stands for its temperatures
+    :param reflector: nodes of a reflecting surface, names or patterns, and its axis
     :raises StatejumpError: a link lacks a number, there is no such node
     """
     used = {end for bar in deck.bars for end in bar.nodes}
     for node in [node for node in deck.nodes if node not in used]:
         deck.leave(f"node {node}" if len(deck.nodes) < 50 else "node", "no link ends there", 0)
     dimension = _dimension(deck, used)
-    changes = _changes(deck, temperature_change_K)
+    more = dict(sections or {})
+    changes = [0.0] * len(deck.bars) if "thermal" in more else _changes(deck, temperature_change_K)
     peak = max(changes, key=abs)
     made: Document = {
         "case": {"name": name, "kind": "truss", "title": "", "source": f"imported from {deck.path.name}"},
@@ -46,10 +45,15 @@ def case_document(
         "link": [_link(deck, bar, change, peak, length_unit_m, force_unit_N, density_kg_per_m3)
                  for bar, change in zip(deck.bars, changes)],
         "slider": [], "revolute": [],
-        "thermal": {"shape": "triangle", "temperature_change_max_K": float(peak)},
+        "thermal": {"shape": "triangle", "temperature_change_max_K": float(peak)}, **more,
     }
-    for number, joint in enumerate(joints, start=1):
-        _joint(made, joint, number, dimension)
+    if "thermal" in more and (deck.temperature or any(bar.temperature_change is not None for bar in deck.bars)):
+        deck.leave("temperatures", "those of the members' histories are taken", 0)
+    put_in(made, joints, dimension)
+    if reflector is not None:
+        of_deck = [f"N{node}" if node.isdecimal() else node for node in deck.nodes if node in used]
+        made["reflector"] = {"axis": [float(part) for part in reflector[1][:dimension]], "nodes": list(dict.fromkeys(
+            name for pattern in reflector[0] for name in matching("--reflector", pattern.strip(), of_deck)))}
     return finished(made)
 
 
@@ -118,61 +122,3 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, length: float, force
     if peak and change != peak:
         made["temperature_fraction"] = change / peak
     return made
-
-
-def _joint(made: Document, given: Mapping[str, str], number: int, dimension: int) -> None:
-    """Put a slider on a node, or a revolute between the end of a link and the others at its node."""
-    where: dict[str, Any] = {"item": f"--joint {number}"}
-    nodes = {node["name"]: node for node in made["node"]}
-    name = given.get("node", "")
-    if name not in nodes:
-        raise UnknownKey("node", value=name, **suggestion(name, list(nodes)[:50]), **where)
-    known = REVOLUTE if "link" in given else SLIDER
-    for key in given:
-        if key != "node" and key not in known:
-            raise UnknownKey(key, **suggestion(key, known), **where)
-    values: dict[str, Any] = {}
-    for key, text in given.items():
-        if key == "axis":
-            if text not in "xyz"[:dimension] and "link" not in given or text not in AXES:
-                raise NotAllowed("axis", text, "must be " + ", ".join("xyz"[:dimension]), **where)
-            values[key] = AXES[text][:dimension]
-        elif key not in ("node", "link", "bearing_link", "contact"):
-            try:
-                values[key] = float(text)
-            except ValueError:
-                raise NotAllowed(key, text, "must be a number", **where) from None
-        else:
-            values[key] = text
-    (_revolute if "link" in given else _slider)(made, nodes[values.pop("node")], values, where, dimension)
-
-
-def _slider(made: Document, node: dict[str, Any], values: dict[str, Any], where: dict[str, Any],
-            dimension: int) -> None:
-    if "axis" not in values:
-        raise MissingKey("axis", "along which it slides: " + ", ".join("xyz"[:dimension]), **where)
-    place = values["axis"].index(1.0)
-    # The support gives way along the axis; across it the node stays held.
-    node["fixed"] = [axis for axis in node.get("fixed", ()) if axis != "xyz"[place]]
-    made["slider"].append({"name": f"S_{node['name']}", "nodes": [node["name"]], **values})
-
-
-def _revolute(made: Document, node: dict[str, Any], values: dict[str, Any], where: dict[str, Any],
-              dimension: int) -> None:
-    here = [link for link in made["link"] if node["name"] in link["nodes"]]
-    moved = next((link for link in here if link["name"] == values["link"]), None)
-    if moved is None:
-        raise UnknownKey("link", value=values["link"], **suggestion(values["link"], [link["name"] for link in here]),
-                         **where)
-    journal = {"name": f"{node['name']}_{moved['name']}", "position_m": list(node["position_m"])}
-    others = [link["name"] for link in here if link is not moved]
-    bearing = values.pop("bearing_link", None) or (others[0] if others and not node.get("fixed") else None)
-    moved["nodes"] = [journal["name"] if end == node["name"] else end for end in moved["nodes"]]
-    made["node"].append(journal)
-    del values["link"]
-    axis = values.pop("axis", None)
-    made["revolute"].append({
-        "name": f"R_{journal['name']}", "bearing_node": node["name"], "journal_node": journal["name"],
-        **({"bearing_link": bearing} if bearing else {}), "journal_link": moved["name"],
-        **({"axis": axis} if dimension == 3 and axis else {}), **values,
-    })
