@@ -392,6 +392,22 @@ void bind_truss(py::module_& module) {
       },
       "Types of joints of a truss: kind -> parameters (key, unit, source) and keys of outputs.");
   module.def(
+      "iwan_slack_N",
+      [](double tangent_stiffness, double slip_force, double exponent, double stiffness_ratio,
+         int elements, double spacing) {
+        truss::IwanJoint joint;
+        joint.tangent_stiffness = tangent_stiffness;
+        joint.slip_force = slip_force;
+        joint.exponent = exponent;
+        joint.stiffness_ratio = stiffness_ratio;
+        joint.elements = elements;
+        joint.spacing = spacing;
+        return joint.slack();
+      },
+      py::arg("tangent_stiffness_N_per_m"), py::arg("slip_force_N"), py::arg("exponent"),
+      py::arg("stiffness_ratio"), py::arg("elements"), py::arg("spacing"),
+      "Largest error [N] of a first loading of an Iwan joint in Jenkins elements.");
+  module.def(
       "truss_path",
       [](const py::dict& nodes, const py::dict& links, const py::dict& springs,
          const py::dict& torsion_springs, const py::dict& joints,

@@ -356,6 +356,10 @@ class FrictionProblem(metaclass=_pybind11_type):
 _Items = Mapping[str, Any]
 
 def truss_joints() -> dict[str, _Fields]: ...
+def iwan_slack_N(
+    tangent_stiffness_N_per_m: float, slip_force_N: float, exponent: float, stiffness_ratio: float, elements: int,
+    spacing: float,
+) -> float: ...
 def truss_path(
     nodes: _Items,
     links: _Items,

@@ -125,7 +125,7 @@ def identify(
         ``unknown``: rows are left out until it is forgotten
     :param confidence: of the intervals, 0.5 to 0.999
     :param target: where the joint goes: ``spring_slider`` (default), ``slider``, ``revolute``, ``umbrella`` (default of
-        rotations), ``torsion_spring``
+        rotations), ``torsion_spring``, ``iwan_joint``
     :param normal_force_N: in the test [N]: friction becomes a coefficient
     :param journal_radius_m: of a moment of friction [m], likewise
     :raises StatejumpError: the file is no loop, or there is no such joint

@@ -7,6 +7,7 @@
 #include <deque>
 #include <limits>
 #include <unordered_set>
+#include <utility>
 
 namespace statejump::truss::detail {
 
@@ -132,6 +133,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   VectorXd step;
   int halvings = 0;
   int iterations = 0;
+  std::size_t pieces = 0;
   /// False if the sets go round in a circle.
   const auto pivot = [&](const Violations& found) {
     if (found.joints.empty()) return true;
@@ -171,6 +173,11 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const double reach = length(z);
     const double rounding = 64.0 * epsilon * system_->stiffness_scale() * reach;
     const Residuals left = residuals(at_);
+    // Steps on other pieces of the branches say nothing of those on these.
+    if (std::exchange(pieces, at_.pieces) != at_.pieces) {
+      lengths.clear();
+      halvings = 0;
+    }
     const double largest = at_.largest_force;
     if (!std::isfinite(left.balance + left.closure + left.force)) return report;
     // Where rounding is larger than foreseen the iteration stands still: that is the end as well,

@@ -21,7 +21,7 @@ System::System(const Model& model) : model_(&model) {
         [&](const auto& one) {
           frames_.push_back(one.frame(model));
           history_begin_.push_back(history_);
-          history_ += one.history;
+          history_ += one.history();
         },
         joint);
     output_begin_.push_back(outputs_);

@@ -25,7 +25,7 @@ OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence",
                    "(rows are left out until it is forgotten).")
 @click.option("--confidence", type=float, default=0.95, show_default=True, metavar="P", help="Of the intervals.")
 @click.option("--for", "target", default=None, metavar="WHAT",
-              help="Section that is written: spring_slider, slider, revolute, umbrella, torsion_spring.  "
+              help="Section that is written: spring_slider, slider, revolute, umbrella, torsion_spring, iwan_joint.  "
                    "[default: spring_slider, of rotations umbrella]")
 @click.option("--normal-force", type=float, default=None, metavar="N",
               help="Normal force in the test [N]: friction becomes a coefficient.")

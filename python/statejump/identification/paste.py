@@ -18,6 +18,7 @@ TARGETS = {
     "revolute": ("[[revolute]]", "revolute.*", None),
     "umbrella": ("[joint]", "joint", None),
     "torsion_spring": ("[[torsion_spring]]", "torsion_spring.*", True),
+    "iwan_joint": ("[[iwan_joint]]", "iwan_joint.*", False),
 }
 OF_EITHER_SIGN = ("bias_rad", "preload_force_N")
 
@@ -96,6 +97,12 @@ def entries(
         spring = [known("preload_stiffness_N_per_m", "preload_stiffness", "the loop shows no spring beside the slide"),
                   known("preload_force_N", "preload", "the loop shows no force of its own")]
         return friction() + stops + (spring if target == "spring_slider" else [])
+    if target == "iwan_joint":
+        none = "the loop is not of an Iwan joint: --model iwan fits one"
+        is_iwan = "iwan_exponent" in values
+        return [known(key, name if is_iwan else "iwan_exponent", none) for key, name in (
+            ("tangent_stiffness_N_per_m", "stiffness"), ("slip_force_N", "friction"), ("exponent", "iwan_exponent"),
+            ("stiffness_ratio", "iwan_ratio"))]
     if target == "torsion_spring":
         name = "preload_stiffness" if "friction" in values or "clearance_plus" in values else "stiffness"
         stiffness = known("stiffness_N_m_per_rad", name, "the loop shows no spring beside the slide")

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "statejump/truss/joints/interface.hpp"
+#include "statejump/truss/joints/iwan_joint.hpp"
 #include "statejump/truss/joints/latch_hinge.hpp"
 #include "statejump/truss/joints/revolute.hpp"
 #include "statejump/truss/joints/slider.hpp"
@@ -13,7 +14,7 @@
 namespace statejump::truss {
 
 /// A joint of any type: what a type has to bring, joints/interface.hpp says.
-using Joint = std::variant<Slider, ClearanceRevolute, LatchHinge>;
+using Joint = std::variant<Slider, ClearanceRevolute, LatchHinge, IwanJoint>;
 
 inline const std::string& name_of(const Joint& joint) {
   return std::visit([](const auto& one) -> const std::string& { return one.name; }, joint);

@@ -44,7 +44,7 @@ struct Memory {
   double friction;             ///< On the journal against the slide [N].
   double compliance;           ///< 1/k_t [m/N]; 0: rigid or open.
 
-  static constexpr int size = ClearanceRevolute::history;
+  static constexpr int size = ClearanceRevolute::history();
   static Memory of(const double* numbers) {
     return {{numbers[0], numbers[1]},
             {numbers[2], numbers[3]},

@@ -5,14 +5,9 @@
 #include <cmath>
 
 #include "statejump/kernel/require.hpp"
-#include "statejump/truss/model.hpp"
-#include "truss/joints/writer.hpp"
-#include "truss/parts.hpp"
+#include "truss/joints/prismatic.hpp"
 
 namespace statejump::truss {
-
-using detail::index;
-using Eigen::Vector3d;
 
 namespace {
 
@@ -131,29 +126,13 @@ void Slider::validate(const Model&) const {
 }
 
 JointFrame Slider::frame(const Model& model) const {
-  JointFrame frame;
-  frame.nodes = {first, second, -1, -1};
-  frame.node_count = 2;
-  frame.forces = 1;
-  const detail::Matrix32 plane = detail::plane_of(axis);
-  frame.axes << axis, plane;
-  for (int i = 1; i < 3 && second >= 0; ++i) {
-    const Vector3d across = frame.axes.col(i);
-    frame.holds[index(i)] = detail::moves_along(model.nodes[index(first)], across) ||
-                            detail::moves_along(model.nodes[index(second)], across);
-    if (frame.holds[index(i)]) ++frame.forces;
-  }
-  return frame;
+  return detail::prismatic_frame(model, first, second, axis);
 }
 
 void Slider::evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const {
   const double s = slide_of(*this, trial);
   const double force = trial.force[0];
-  writer.carries(force);
-  writer.force(0, force * axis);
-  writer.force(1, -force * axis);
-  writer.column(0, 0, axis);
-  writer.column(1, 0, -axis);
+  detail::push_along(trial, axis, writer);
   double corner = 0.0;
   switch (status) {
     case JointStatus::stop_plus:
@@ -178,14 +157,7 @@ void Slider::evaluate(const Trial& trial, JointStatus status, JointWriter& write
   writer.corner(0, 0, corner);
   writer.row(0, 0, slides * axis);
   writer.row(0, 1, -slides * axis);
-  int held = 1;
-  for (int i = 1; i < 3; ++i) {
-    if (!trial.frame.holds[index(i)]) continue;
-    const Vector3d across = trial.frame.axes.col(i);
-    writer.hold(held, across, trial.force[index(held)],
-                across.dot(trial.moved[0] - trial.moved[1]));
-    ++held;
-  }
+  detail::hold_across(trial, writer);
 }
 
 JointStatus Slider::decide(const Trial& trial, JointStatus status) const {

@@ -34,6 +34,7 @@ class Assembly {
     if (recorded_) std::fill_n(jacobian.valuePtr(), jacobian.nonZeros(), 0.0);
     next_ = 0;
     largest_force = 0.0;
+    pieces = 0;
   }
   void add(int row, int column, double value) {
     if (recorded_) {
@@ -52,6 +53,7 @@ class Assembly {
   Eigen::VectorXd product;     ///< Jacobian times the vector.
   std::vector<RowUnit> units;  ///< Of every row.
   double largest_force = 0.0;  ///< Of any part [N].
+  std::size_t pieces = 0;      ///< Tells sets of pieces of branches that have several.
 
  private:
   bool recorded_ = false;
@@ -117,6 +119,8 @@ class JointWriter {
   void balance(int row, double value) { set(row, value, RowUnit::force); }
   /// A force that rounding and balance are measured by [N].
   void carries(double force) { to_->largest_force = std::max(to_->largest_force, std::abs(force)); }
+  /// On a branch that is piecewise linear: which piece it is.
+  void piece(std::size_t which) { to_->pieces = 1000003 * to_->pieces + which; }
   /// Holds the first two nodes together along a direction by one of the joint's forces.
   void hold(int row, const Eigen::Vector3d& along, double force, double apart) {
     closure(row, apart);

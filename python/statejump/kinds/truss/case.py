@@ -17,6 +17,7 @@ from statejump.core.case import Case
 from statejump.core.temperature_files import Histories, MemberProgram
 from statejump.core.thermal import Thermal
 from statejump.kinds.truss import checks
+from statejump.kinds.truss.joints.iwan_joint import IwanJoint
 from statejump.kinds.truss.joints.latch_hinge import LatchHinge
 from statejump.kinds.truss.joints.revolute import Revolute
 from statejump.kinds.truss.joints.slider import Slider
@@ -205,6 +206,7 @@ class TrussCase(Case):
     spring: list[Spring] = tables(Spring, "sections [[spring]]")
     torsion_spring: list[TrussTorsionSpring] = tables(TrussTorsionSpring, "sections [[torsion_spring]]")
     latch_hinge: list[LatchHinge] = tables(LatchHinge, "sections [[latch_hinge]]")
+    iwan_joint: list[IwanJoint] = tables(IwanJoint, "sections [[iwan_joint]]")
     thermal: TrussThermal = section(TrussThermal, required=True)
     output: Output = section(Output)
     reduced: TrussReduced = section(TrussReduced)

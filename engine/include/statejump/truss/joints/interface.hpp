@@ -48,7 +48,8 @@ enum class Allowed : unsigned char {
   node_or_ground,        ///< Index of a node, −1: the ground.
   link_or_none,          ///< Index of a link, −1: none.
   link,                  ///< Index of a link.
-  program                ///< Index of a temperature program.
+  program,               ///< Index of a temperature program.
+  count                  ///< Whole number >= 1.
 };
 
 /// One parameter of a type of joint: what tables, checks, bindings and messages know of it.
@@ -127,7 +128,7 @@ struct Seat {
 //   kind                  its name in tables and messages
 //   parameters()          what it is described by: units, ranges, sources
 //   outputs()             what it has at every state
-//   history               how many numbers it remembers from state to state
+//   history()             how many numbers it remembers from state to state
 //   validate()            what its ranges do not say; the truss around it is valid
 //   frame()               nodes, directions, number of unknown forces
 //   evaluate()            forces on nodes and rows of the branch `status`, with all derivatives;

@@ -31,7 +31,7 @@ struct LatchHinge {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
 
   static constexpr const char* kind = "latch_hinge";
-  static constexpr int history = 1;
+  static constexpr int history() { return 1; }
   static constexpr int slide_row = 0;
   static std::span<const Parameter<LatchHinge>> parameters();
   static std::span<const Output> outputs();

@@ -45,7 +45,7 @@ struct ClearanceRevolute {
   double temperature_fraction = 1;
 
   static constexpr const char* kind = "revolute";
-  static constexpr int history = 11;
+  static constexpr int history() { return 11; }
   static constexpr int slide_row = 1;
   static std::span<const Parameter<ClearanceRevolute>> parameters();
   static std::span<const Output> outputs();

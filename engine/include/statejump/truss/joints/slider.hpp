@@ -33,7 +33,7 @@ struct Slider {
   double tangential_stiffness = std::numeric_limits<double>::infinity();
 
   static constexpr const char* kind = "slider";
-  static constexpr int history = 1;
+  static constexpr int history() { return 1; }
   static constexpr int slide_row = 0;
   static std::span<const Parameter<Slider>> parameters();
   static std::span<const Output> outputs();

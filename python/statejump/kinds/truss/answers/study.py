@@ -212,10 +212,9 @@ def _jumps(found: TrussPath, output: Output, jump: float) -> bool:
 def _shares(found: TrussPath, output: Output, tell: Tell, tables: dict[str, list[rows.Row]],
             notes: list[str]) -> Contributions | None:
     for joint in JOINTS:
-        if joint.has_moments(found.truss.joints[joint.section]):
-            kind = joint.section.replace("_", " ")
-            notes.append(f"no contributions: the friction of a {kind} is a moment that turns with links, no load on "
-                         "nodes")
+        why = joint.no_load(found.truss.joints[joint.section])
+        if why:
+            notes.append(f"no contributions: {why}")
             return None
     try:
         shares = contributions(found, output, tell)

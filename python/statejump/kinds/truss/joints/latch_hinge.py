@@ -95,8 +95,9 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
             f"{spread((hinge.friction_moment_N_m for hinge in items), 'N m')}."
         )
 
-    def has_moments(self, joints: LatchHinges) -> bool:
-        return bool(joints.friction_moment_N_m.any())
+    def no_load(self, joints: LatchHinges) -> str:
+        return ("the friction of a latch hinge is a moment that turns with links, no load on nodes"
+                if joints.friction_moment_N_m.any() else "")
 
 
 LATCH_HINGE = LatchHingeType()

@@ -197,9 +197,9 @@ class JointType(Generic[ItemType, ArraysType]):
         """Return keys and values (joints,) of what a jump may follow; 0 or infinity: that joint has none."""
         return [(key, getattr(joints, key)) for key in self.varied]
 
-    def has_moments(self, joints: ArraysType) -> bool:
-        """Whether its friction is a moment that turns with links, which no load on nodes stands for."""
-        return False
+    def no_load(self, joints: ArraysType) -> str:
+        """Return why no load on nodes stands for its friction, in words; empty: one does, or there is none."""
+        return ""
 
     # ---------------------------------------------------------------- DEM
 

@@ -2,7 +2,7 @@
 """Sliders: frictional prismatic joints on ground or between two nodes."""
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from statejump.core import physics
-from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION, References, columns, names, pairs, unit, vectors
+from statejump.kinds.truss.arrays import GROUND, References, columns, names, pairs, unit, vectors
+from statejump.kinds.truss.joints.along_axis import AlongAxis
 from statejump.kinds.truss.joints.protocol import (
-    IMPACT, ContactPart, Contacts, Drawn, JointColumn, JointType, Sampled, Strokes, Symbol,
+    IMPACT, ContactPart, Contacts, Drawn, JointColumn, Sampled, Strokes, Symbol,
 )
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
-from statejump.kinds.truss.references import known_nodes, vector
 from statejump.schema.fields import CHOICE, definition, numbers, parameter, texts
 from statejump.schema.items import Item
 
@@ -102,10 +101,11 @@ def pressing_directions(truss: ResolvedTruss, sliders: Sliders) -> np.ndarray:
     return np.array(found).reshape(-1, 3)
 
 
-class SliderType(JointType[Slider, Sliders]):
+class SliderType(AlongAxis[Slider, Sliders]):
     """Sliders, in the solver, in motion and, on ground, in the DEM."""
 
     section = "slider"
+    noun = "a slider"
     Item = Slider
     columns: ClassVar[tuple[JointColumn, ...]] = (
         JointColumn("slide_m"),
@@ -113,12 +113,6 @@ class SliderType(JointType[Slider, Sliders]):
     )
     varied = ("friction_coefficient", "normal_force_N", "clearance_minus_m", "clearance_plus_m")
     has_contacts = True
-
-    def check_vectors(self, item: Slider, dimension: int) -> None:
-        vector("axis", item.axis, "-", dimension, True, **self.where(item.name))
-
-    def check_references(self, item: Slider, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
-        known_nodes(item.nodes, 1, nodes, self.where(item.name))
 
     def resolve(self, items: Sequence[Slider], known: References) -> Sliders:
         stops = columns(items, "clearance_minus_m", "clearance_plus_m")
@@ -130,32 +124,10 @@ class SliderType(JointType[Slider, Sliders]):
             **{key: np.where(np.isnan(values), inf, values) for key, values in stops.items()},
         )
 
-    def check_geometry(self, truss: ResolvedTruss, joints: Sliders, ranges_K: np.ndarray) -> None:
-        nodes = truss.nodes
-        on_ground = np.flatnonzero(joints.nodes[:, 1] == GROUND)
-        carrier, axis = joints.nodes[on_ground, 0], joints.axis[on_ground]
-        guide = nodes.guide_normal[carrier]
-        # Sum of n n^T over the directions in which supports hold the node: its rank is how many these are.
-        held = nodes.fixed[carrier][:, :, None] * np.eye(3) + guide[:, :, None] * guide[:, None, :]
-        along = np.einsum("ki,kij,kj->k", axis, held, axis) > SAME_DIRECTION**2
-        across = np.linalg.eigvalsh(held)[:, 1] <= SAME_DIRECTION**2
-        for number in np.flatnonzero(along | across)[:1]:
-            joint, node = joints.names[on_ground[number]], nodes.names[carrier[number]]
-            cause = (
-                f"the supports of node {node!r} hold it along the axis" if along[number] else
-                f"node {node!r} is free across the axis, a slider on ground needs supports there (fixed or "
-                "guide_normal)"
-            )
-            raise NotAllowed("axis", [float(value) for value in axis[number, : truss.dimension]], cause,
-                             nodes=(node,), **self.where(joint))
-
-    def joined(self, joints: Sliders) -> np.ndarray:
-        return joints.nodes[joints.nodes[:, 1] != GROUND]
-
     def engine_arrays(self, truss: ResolvedTruss, joints: Sliders) -> dict[str, Any]:
         loaded = (truss.sticking == "elastic") & (joints.normal_force_N > 0)
         return {
-            "first_node": joints.nodes[:, 0], "second_node": joints.nodes[:, 1],
+            **super().engine_arrays(truss, joints),
             "friction_force_N": joints.friction_coefficient * joints.normal_force_N,
             "tangential_stiffness_N_per_m": np.where(loaded, pads(joints).tangential_N_per_m, inf),
         }
@@ -188,8 +160,7 @@ class SliderType(JointType[Slider, Sliders]):
         return Drawn(parts, contacts, np.concatenate((joints.clearance_minus_m, joints.clearance_plus_m)))
 
     def symbols(self, truss: ResolvedTruss, joints: Sliders) -> list[Symbol]:
-        places = truss.nodes.position_m[joints.nodes[:, 0]]
-        up = np.stack((-joints.axis[:, 1], joints.axis[:, 0], np.zeros(len(places))), axis=1)
+        places, up = self.places(truss, joints)
         stopped = np.isfinite(np.minimum(joints.clearance_minus_m, joints.clearance_plus_m))
         return [Symbol(places, BLOCK, 1.4, 0.7, marker_in_space="s", up=up, line_in_space=joints.axis),
                 Symbol(places[stopped], STOPS, 1.9, 0.0, up=up[stopped])]
@@ -200,16 +171,6 @@ class SliderType(JointType[Slider, Sliders]):
         if np.isfinite(stops).any():
             said += f", stops at {scaled(stops[np.isfinite(stops)], 1e3, 'mm')}"
         return said
-
-    def covered_nodes(self, joints: Sliders) -> np.ndarray:
-        return joints.nodes[:, 0]
-
-    def guided_nodes(self, joints: Sliders) -> np.ndarray:
-        return joints.nodes[joints.nodes[:, 1] == GROUND, 0]
-
-    def sides(self, joints: Sliders) -> Iterable[tuple[int, np.ndarray]]:
-        for node, axis in zip(joints.nodes[:, 0], joints.axis):
-            yield int(node), np.array([-axis[1], axis[0]])
 
     def describe(self, items: Sequence[Slider]) -> str:
         stops = sum(side is not None for joint in items for side in (joint.clearance_minus_m, joint.clearance_plus_m))

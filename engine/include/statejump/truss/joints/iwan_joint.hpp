@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "statejump/truss/joints/interface.hpp"
+
+namespace statejump::truss {
+
+/// Bolted joint that slips little by little: the four-parameter Iwan model of Segalman [1], in
+/// Jenkins elements. The first node moves along a fixed axis relative to the second, or to the
+/// ground, and is held as that of a slider.
+///
+/// **Law.** Springs in parallel, each in series with a slider, of the density of slip distances
+///
+///     ρ(φ) = R φ^χ + S δ(φ − φm),   0 <= φ <= φm
+///
+/// K_T = ∫ρ is the stiffness of the stuck joint, F_S = ∫φ ρ the force at which all of it slips, and
+/// β = S (χ + 1)/(R φm^(χ + 1)) the stiffness of the last sliders over that of all others.
+///
+/// **Discretisation.** The distances from 0 to φm are divided into intervals, each `spacing` times
+/// as long as the one before [2]. The sliders of an interval are one, with their stiffness
+/// k_i = ∫ρ and their force k_i φ_i = ∫φ ρ. So K_T, F_S and the force of a first loading to the end
+/// of every interval are exact; between them the force is too large, at most by slack(). With
+/// p_i the place of a slider
+///
+///     λ = Σ k_i (s − p_i),   |s − p_i| <= φ_i,   p_i moves only at the bound
+///
+/// Elements need no branches: λ is a piecewise linear, monotone function of s. `slip±` says that
+/// some of them slip that way.
+///
+/// [1] D. J. Segalman, J. Appl. Mech. 72 (2005) 752-760.
+/// [2] D. J. Segalman, Sandia report SAND2002-3828 (2002): distances in a geometric series, there
+///     with a slider in the middle of an interval.
+struct IwanJoint {
+  std::string name;
+  int first = 0;
+  int second = -1;  ///< −1: ground.
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  double tangent_stiffness = 0.0;  ///< K_T [N/m], > 0.
+  double slip_force = 0.0;         ///< F_S [N], > 0.
+  double exponent = -0.5;          ///< χ, above −1 and at most 0.
+  double stiffness_ratio = 1.0;    ///< β, >= 0.
+  int elements = 50;               ///< Of the intervals; the last sliders are one more.
+  double spacing = 1.2;            ///< >= 1; 1: intervals of one length.
+
+  /// A spring and its slider.
+  struct Jenkins {
+    double stiffness = 0.0;  ///< [N/m]
+    double reach = 0.0;      ///< Elongation at which it slips [m].
+  };
+  /// φm, where the last sliders slip [m].
+  double last_reach() const;
+  /// All elements, the first to slip first.
+  std::vector<Jenkins> jenkins() const;
+  /// Largest error of a first loading's force [N].
+  double slack() const;
+
+  static constexpr const char* kind = "iwan_joint";
+  static constexpr int slide_row = 0;
+  int history() const { return elements + 1; }
+  static std::span<const Parameter<IwanJoint>> parameters();
+  static std::span<const Output> outputs();
+  void validate(const Model& model) const;
+  JointFrame frame(const Model& model) const;
+  void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
+  void warm(const Trial&, JointStatus, double, JointWriter&) const {}
+  JointStatus decide(const Trial& trial, JointStatus status) const;
+  void begin(const Trial& trial, JointStatus status, double* now) const;
+  void commit(const Trial& trial, JointStatus status, double* after) const;
+  double slip(const Trial& trial, const double* after) const;
+  double dissipation(const Trial& trial, const double* after, double slip) const;
+  double elastic_energy(const Trial& trial, const double* now) const;
+  void describe(const Trial& trial, double* outputs) const;
+  double slide_rounding(const Trial& trial, double length, double force) const;
+  bool remembers_when(JointStatus before, JointStatus after) const;
+  /// Its friction is no cone: as a contact it is held.
+  std::optional<LocalContact> contact(const Trial&, JointStatus) const { return {}; }
+  double least_slide() const { return 0.0; }
+  JointStatus rest() const { return JointStatus::stick; }
+  bool has_play() const { return false; }
+  Seat seat(const Trial&, double, double, double) const { return {}; }
+  bool jumps(const Trial&, JointStatus) const { return false; }
+};
+
+}  // namespace statejump::truss

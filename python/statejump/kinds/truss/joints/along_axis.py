@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Joints whose first node moves along an axis fixed in space, on ground or on a second node."""
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
+
+import numpy as np
+
+from statejump.core.errors import NotAllowed
+from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
+from statejump.kinds.truss.joints.protocol import JointType
+from statejump.kinds.truss.references import known_nodes, vector
+from statejump.schema.items import Item
+
+if TYPE_CHECKING:
+    from statejump.kinds.truss.resolved import ResolvedTruss
+
+
+class Axes(Protocol):
+    """What their arrays have."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the joints."""
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """(s, 2) int, the second GROUND or a node that is held to the first across the axis."""
+
+    @property
+    def axis(self) -> np.ndarray:
+        """(s, 3) unit."""
+
+
+ItemType = TypeVar("ItemType", bound=Item)
+ArraysType = TypeVar("ArraysType", bound=Axes)
+
+
+class AlongAxis(JointType[ItemType, ArraysType]):
+    """Between two nodes such a joint also holds them together across the axis; on ground supports of the node do."""
+
+    noun: ClassVar[str]  # in sentences
+
+    def check_vectors(self, item: ItemType, dimension: int) -> None:
+        vector("axis", getattr(item, "axis"), "-", dimension, True, **self.where(item.name))
+
+    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+        known_nodes(getattr(item, "nodes"), 1, nodes, self.where(item.name))
+
+    def check_geometry(self, truss: ResolvedTruss, joints: ArraysType, ranges_K: np.ndarray) -> None:
+        nodes = truss.nodes
+        on_ground = np.flatnonzero(joints.nodes[:, 1] == GROUND)
+        carrier, axis = joints.nodes[on_ground, 0], joints.axis[on_ground]
+        guide = nodes.guide_normal[carrier]
+        # Sum of n n^T over the directions in which supports hold the node: its rank is how many these are.
+        held = nodes.fixed[carrier][:, :, None] * np.eye(3) + guide[:, :, None] * guide[:, None, :]
+        along = np.einsum("ki,kij,kj->k", axis, held, axis) > SAME_DIRECTION**2
+        across = np.linalg.eigvalsh(held)[:, 1] <= SAME_DIRECTION**2
+        for number in np.flatnonzero(along | across)[:1]:
+            joint, node = joints.names[on_ground[number]], nodes.names[carrier[number]]
+            cause = (
+                f"the supports of node {node!r} hold it along the axis" if along[number] else
+                f"node {node!r} is free across the axis, {self.noun} on ground needs supports there (fixed or "
+                "guide_normal)"
+            )
+            raise NotAllowed("axis", [float(value) for value in axis[number, : truss.dimension]], cause,
+                             nodes=(node,), **self.where(joint))
+
+    def joined(self, joints: ArraysType) -> np.ndarray:
+        return joints.nodes[joints.nodes[:, 1] != GROUND]
+
+    def engine_arrays(self, truss: ResolvedTruss, joints: ArraysType) -> dict[str, Any]:
+        return {"first_node": joints.nodes[:, 0], "second_node": joints.nodes[:, 1]}
+
+    def places(self, truss: ResolvedTruss, joints: ArraysType) -> tuple[np.ndarray, np.ndarray]:
+        """Return where its symbols are (s, 3), and what is up there in the plane (s, 3)."""
+        along = joints.axis
+        return (truss.nodes.position_m[joints.nodes[:, 0]],
+                np.stack((-along[:, 1], along[:, 0], np.zeros(len(along))), axis=1))
+
+    def covered_nodes(self, joints: ArraysType) -> np.ndarray:
+        return joints.nodes[:, 0]
+
+    def guided_nodes(self, joints: ArraysType) -> np.ndarray:
+        return joints.nodes[joints.nodes[:, 1] == GROUND, 0]
+
+    def sides(self, joints: ArraysType) -> Iterable[tuple[int, np.ndarray]]:
+        for node, axis in zip(joints.nodes[:, 0], joints.axis):
+            yield int(node), np.array([-axis[1], axis[0]])

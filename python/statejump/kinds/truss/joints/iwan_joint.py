@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Iwan joints: bolted joints that slip little by little, after Segalman's four parameters, in Jenkins elements.
+
+The engine's ``iwan_joint.hpp`` has the law and its source.
+"""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from statejump import _engine
+from statejump.core.errors import NotAllowed
+from statejump.kinds.truss.arrays import References, column, columns, names, pairs, unit, vectors
+from statejump.kinds.truss.joints.along_axis import AlongAxis
+from statejump.kinds.truss.joints.protocol import JointColumn, Strokes, Symbol
+from statejump.kinds.truss.joints.words import USER, count, scaled, spread
+from statejump.schema.fields import CHOICE, definition, numbers, parameter, texts, whole
+from statejump.schema.items import Item
+
+if TYPE_CHECKING:
+    from statejump.kinds.truss.resolved import ResolvedTruss
+
+NUMBERS = ("tangent_stiffness_N_per_m", "slip_force_N", "exponent", "stiffness_ratio")
+LONGEST = 1e12  # interval over the first one: less than that of rounding
+# A bolt through two plates.
+BOLT: Strokes = (
+    ((-0.9, -0.35), (0.9, -0.35), (0.9, 0.35), (-0.9, 0.35), (-0.9, -0.35)), ((-0.9, 0.0), (0.9, 0.0)),
+    ((0.0, -0.8), (0.0, 0.8)), ((-0.35, 0.6), (0.35, 0.6)), ((-0.35, -0.6), (0.35, -0.6)),
+)
+
+
+@definition
+class IwanJoint(Item):
+    """A bolted joint after Segalman's four-parameter Iwan model: the first node moves along an axis fixed in space, on
+    ground or on the second node, against springs of which more and more slip. It holds across the axis as a slider."""
+
+    nodes: list[str] = texts(..., "one node, on ground, or two")
+    axis: list[float] = numbers(..., "-", -1e9, 1e9, "of any length")
+    tangent_stiffness_N_per_m: float = parameter(..., "N/m", 0, 1e15, USER + "; K_T, of the stuck joint", above=True)
+    slip_force_N: float = parameter(..., "N", 0, 1e9, USER + "; F_S, at which all of it slips", above=True)
+    exponent: float = parameter(..., "-", -1, 0, USER + "; χ: heat of small cycles goes with the force to 3 + χ",
+                                above=True)
+    stiffness_ratio: float = parameter(..., "-", 0, 1e6, USER + "; β, of the springs that slip last over all others")
+    elements: int = whole(50, 1, 10_000, CHOICE + "; Jenkins elements")
+    spacing: float = parameter(1.2, "-", 1, 10, CHOICE + "; length of an interval over the one before, 1: uniform")
+
+
+@dataclass(frozen=True)
+class IwanJoints:
+    """Iwan joints: axis · (motion of the first node - motion of the second) slides."""
+
+    names: tuple[str, ...]
+    nodes: np.ndarray  # (j, 2) int, the second GROUND or a node that is held to the first across the axis
+    axis: np.ndarray  # (j, 3) unit
+    tangent_stiffness_N_per_m: np.ndarray
+    slip_force_N: np.ndarray
+    exponent: np.ndarray
+    stiffness_ratio: np.ndarray
+    elements: np.ndarray  # int
+    spacing: np.ndarray
+
+
+class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
+    """Iwan joints, in the solver."""
+
+    section = "iwan_joint"
+    noun = "an Iwan joint"
+    Item = IwanJoint
+    columns: ClassVar[tuple[JointColumn, ...]] = (
+        JointColumn("iwan_slide_m", "from the drawn shape"),
+        JointColumn("iwan_force_N", "on the first node, against the axis"),
+    )
+    varied = NUMBERS
+    not_in_dem = "is a joint of the quasi-static solver only, the DEM has none"
+    not_in_motion = "is a joint of quasi-static paths only"
+
+    def resolve(self, items: Sequence[IwanJoint], known: References) -> IwanJoints:
+        return IwanJoints(
+            names=names(items), nodes=pairs(items, "nodes", known.node),
+            axis=unit(vectors([item.axis for item in items], known.dimension)),
+            elements=column(items, "elements").astype(int), **columns(items, *NUMBERS, "spacing"),
+        )
+
+    def check_geometry(self, truss: ResolvedTruss, joints: IwanJoints, ranges_K: np.ndarray) -> None:
+        super().check_geometry(truss, joints, ranges_K)
+        longest = np.log10(joints.spacing) * (joints.elements - 1)
+        for index in np.flatnonzero(longest >= np.log10(LONGEST))[:1]:
+            raise NotAllowed(
+                "spacing", float(joints.spacing[index]),
+                f"with elements = {joints.elements[index]} the last interval is 1e{longest[index]:.0f} times the first "
+                f"one, it must be below {LONGEST:g} times", **self.where(joints.names[index]))
+
+    def symbols(self, truss: ResolvedTruss, joints: IwanJoints) -> list[Symbol]:
+        places, up = self.places(truss, joints)
+        return [Symbol(places, BOLT, 1.4, 0.9, marker_in_space="P", up=up, line_in_space=joints.axis)]
+
+    def legend(self, joints: IwanJoints) -> str:
+        return (f"Iwan joint, slips at {scaled(joints.slip_force_N, 1.0, 'N')}, χ = "
+                f"{scaled(joints.exponent, 1.0, '').strip()}")
+
+    def describe(self, items: Sequence[IwanJoint]) -> str:
+        slack = [_engine.iwan_slack_N(item.tangent_stiffness_N_per_m, item.slip_force_N, item.exponent,
+                                      item.stiffness_ratio, item.elements, item.spacing) / item.slip_force_N
+                 for item in items]
+        return (
+            f"{count(items, 'Iwan joint')}: stiffness "
+            f"{spread((item.tangent_stiffness_N_per_m for item in items), 'N/m')}, slip at "
+            f"{spread((item.slip_force_N for item in items), 'N')}, χ = "
+            f"{spread(item.exponent for item in items)}, β = {spread(item.stiffness_ratio for item in items)}; "
+            f"{spread((float(item.elements) for item in items))} Jenkins elements, whose force is at most "
+            f"{spread((100 * share for share in slack), '-', 2)} % of the slip force above that of the model."
+        )
+
+    def no_load(self, joints: IwanJoints) -> str:
+        return "what of an Iwan joint's force is friction is not told" if joints.names else ""
+
+
+IWAN_JOINT = IwanJointType()
