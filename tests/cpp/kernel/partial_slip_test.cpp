@@ -88,6 +88,28 @@ TEST(PartialSlip, GrowthWithoutSlideLeavesNoPoint) {
   }
 }
 
+TEST(PartialSlip, CornerWhereSlipBeginsToTurnStays) {
+  // The whole contact is on its bound, along x within half of the edge and turned further out. It
+  // is unloaded a little, and all of it slips back to the smaller bound without a turn.
+  const double edge = Contact::stiffness(usual_depth);
+  const double slope = 1.5 * mu * Contact::normal(usual_depth) / (edge * edge * edge);
+  const double corner = 0.5 * edge;
+  PartialSlipMemory memory;
+  memory.begin(slope, 0.0);
+  const std::pair<double, Tangent> points[] = {
+      {0.0, {1.0, 0.0}}, {corner, {1.0, 0.0}}, {0.7 * edge, {0.6, 0.8}}, {edge, {0.0, 0.0}}};
+  for (const auto& [x, direction] : points) {
+    memory.push({x, (slope * (edge - x) * (edge + x)) * direction});
+  }
+  const double depth = 0.9 * usual_depth;
+  partial_slip_step(Contact::stiffness(depth), mu * Contact::normal(depth), {0.0, 0.0}, memory);
+  int found = -1;
+  for (int i = 0; i < memory.size(); ++i) found = memory[i].x == corner ? i : found;
+  ASSERT_GE(found, 0);
+  EXPECT_GT(memory[found].u.a, 0.0);
+  EXPECT_EQ(memory[found].u.b, 0.0);
+}
+
 TEST(PartialSlip, PointsThatSayNothingGoFirst) {
   // A full zigzag over x^2 but for one point, on the line between its neighbours, wherever that is:
   // the contact grows, which makes one point too many, and three quarters are kept.
