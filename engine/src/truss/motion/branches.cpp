@@ -3,6 +3,7 @@
 // equations, which stand beside those of the bodies in one sparse matrix.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "stepper.hpp"
 
@@ -12,8 +13,6 @@ namespace {
 
 /// Newton's method converges in three or four iterations, or a contact is on another branch.
 constexpr int most_iterations = 8;
-/// Tries to find the branches. Most changes are of one contact, found at the second one.
-constexpr int most_pivots = 6;
 /// Share of a contact's own force by which it may miss an inequality, as the contact problem's
 /// tolerance allows.
 constexpr double allowance = 1e-10;
@@ -28,8 +27,12 @@ Stepper::Branch Stepper::branch(const Contact& contact) const {
   return contact.friction_force >= 0.0 ? Branch::slip_plus : Branch::slip_minus;
 }
 
+void Stepper::note_branches() {
+  branches_.clear();
+  for (const Contact& contact : contacts_.all()) branches_.push_back(branch(contact));
+}
+
 bool Stepper::on_branches(Trial& step, Local& local) {
-  if (branches_.empty()) return false;
   std::vector<Branch> branches;
   std::vector<int> active;
   for (std::size_t place = 0; place < branches_.size(); ++place) {
@@ -44,19 +47,36 @@ bool Stepper::on_branches(Trial& step, Local& local) {
   if (active != active_) branch_factor_.reset();
   active_ = std::move(active);
   const Eigen::SparseMatrix<double> middle = at_.jacobian;
-  for (int pivots = 0; pivots < most_pivots; ++pivots) {
-    if (pivots > 0) at_.jacobian = middle;
+  // Block pivoting with single pivots as a safeguard (Judice and Pires 1994): all contacts that ask
+  // for another branch change, unless that has been tried; then only the first of them does, until
+  // fewer ask than ever before. Most changes are of one contact, found at the second try.
+  std::set<std::vector<Branch>> tried{branches};
+  std::size_t fewest = branches.size() + 1;
+  bool one_by_one = false;
+  for (;;) {
     step.v = v_;
     if (!solve_on(branches, step, local)) return false;
-    bool holds = true;
+    std::vector<Branch> next = branches;
+    std::vector<std::size_t> wrong;
     for (std::size_t i = 0; i < branches.size(); ++i) {
-      const Branch next = asked(step, local, static_cast<Eigen::Index>(i), branches[i]);
-      holds = holds && next == branches[i];
-      branches[i] = next;
+      next[i] = asked(step, local, static_cast<Eigen::Index>(i), branches[i]);
+      if (next[i] != branches[i]) wrong.push_back(i);
     }
-    if (holds) return true;
+    if (wrong.empty()) return true;
+    if (wrong.size() < fewest) {
+      fewest = wrong.size();
+      one_by_one = false;
+    }
+    if (!one_by_one && tried.count(next) > 0) one_by_one = true;
+    if (one_by_one) {
+      const Branch first = next[wrong.front()];
+      next = branches;
+      next[wrong.front()] = first;
+    }
+    if (!tried.insert(next).second) return false;
+    branches = std::move(next);
+    at_.jacobian = middle;
   }
-  return false;
 }
 
 bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& local) {

@@ -45,6 +45,7 @@ void Stepper::begin(const VectorXd& q, const VectorXd& v, const State* equilibri
   contacts_.write(z_, statuses);
   evaluate(q_, 0.0);
   contacts_.measure(z_, 0.0, origin_, at_.residual, 0.0);
+  note_branches();
   contacts_.remember_clearances();
   internal_ = -at_.residual.head(q_.size());
   origin_ = system_->begin(z_, 0.0, statuses, 1.0);
@@ -410,9 +411,7 @@ void Stepper::book(const Trial& step, const Local& local) {
   system_->account(z_, time_, z, step.to, origin_, after, VectorXd::Zero(account_.friction.size()),
                    worked);
   account_.thermal_work += worked.thermal_work;
-  std::vector<Branch> branches;
-  for (const Contact& contact : contacts_.all()) branches.push_back(branch(contact));
-  branches_ = std::move(branches);
+  note_branches();
   contacts_.remember_clearances();
   internal_ = -at_.residual.head(step.q.size());
   q_ = step.q;

@@ -79,11 +79,13 @@ class Stepper {
   Eigen::SparseMatrix<double> iteration_matrix(const Trial& step);
   Local local_problem(const Trial& step);
   /// Seeks the branches of all contacts from those of the step before, by block pivoting; each try
-  /// is one sparse system. False if a few tries do not find them: step and `at_` are then spoilt.
+  /// is one sparse system. False if single pivots come back to branches that were not right, or a
+  /// try does not converge: step and `at_` are then spoilt.
   bool on_branches(Trial& step, Local& local);
   /// Of a contact: open, or in touch and held along its surface, or sliding on it.
   enum class Branch : unsigned char { open, stick, slip_plus, slip_minus };
   Branch branch(const Contact& contact) const;
+  void note_branches();
   /// Solves the step with every active contact on a branch. False if it does not converge.
   bool solve_on(const std::vector<Branch>& branches, Trial& step, Local& local);
   /// The branch that a contact's inequalities ask for, from the one whose equations hold.
@@ -113,7 +115,7 @@ class Stepper {
   Contacts contacts_;
   Assembly at_;
   linear::SparseFactor factor_;
-  std::vector<Branch> branches_;  ///< Of all contacts in the last step.
+  std::vector<Branch> branches_;  ///< Of all contacts in the last step, at first where they rest.
   std::vector<int> active_;       ///< Places of the contacts that were active in it.
   std::vector<Branch> factored_;  ///< Of the active contacts, whose pattern the factors have.
   std::unique_ptr<linear::SparseFactor> branch_factor_;
