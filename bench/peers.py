@@ -8,11 +8,13 @@ Every program follows the same n contacts of the same material, load and step (b
 process per run, one thread, in turn. Processor time of the process from its first step to its last: that of a run
 less that of one that ends after the warm-up. ``lammps_bore`` does the same work as a joint under expansion: n spheres
 in one bore, the radii of spheres and bore new in every step. A program that is not installed is left out with a
-sentence. Exit status 2 with one sentence when something fails.
+sentence. ``bare_loop`` is the same kernel in a loop of its own (bench/stepper), by itself: the least that it can cost.
+Exit status 2 with one sentence when something fails.
 """
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import shutil
 import subprocess
@@ -33,14 +35,15 @@ STEPS = {1: 1_000_000, 100: 50_000, 10_000: 300}  # of one run, by number of con
 WARM_UP = 300
 NAME = {
     "joint_stepper": "joint under expansion, `JointStepper`",
+    "bare_loop": "the same kernel in a bare loop",
     "joint": "joint under expansion, YADE's loop",
     "sphere": "YADE's spheres",
     "lammps_bore": "LAMMPS, sphere in a bore, both radii new in every step",
     "lammps_sphere": "LAMMPS' spheres",
     "liggghts_sphere": "LIGGGHTS' spheres",
 }
-PAIRS = (("joint_stepper", "joint"), ("joint_stepper", "lammps_bore"), ("joint", "lammps_bore"),
-         ("sphere", "lammps_sphere"))
+PAIRS = (("joint_stepper", "bare_loop"), ("joint_stepper", "joint"), ("joint_stepper", "lammps_bore"),
+         ("joint", "lammps_bore"), ("sphere", "lammps_sphere"))
 COLUMNS = ("scene", "contacts", "repetition", "steps", "cpu_time_per_contact_and_step_ns")
 
 DENSITY = MASS / (4 / 3 * pi * RADIUS**3)
@@ -145,9 +148,21 @@ def processor_time(deck: Deck, steps: int) -> float:
         return usage.ru_utime + usage.ru_stime
 
 
+def bare_loop(build: Path) -> Path:
+    """Program of the bare loop."""
+    return build / "bench" / "stepper" / "stepper_bench"
+
+
 def cost(build: Path, scene: str, size: int) -> float:
     """Processor time of a contact and step [ns]."""
     steps = STEPS[size]
+    if scene == "bare_loop":
+        done = subprocess.run(
+            [bare_loop(build), f"--benchmark_filter=^bare_loop/{size}$", "--benchmark_format=json"],
+            stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise BenchError(f"stepper_bench: {(done.stderr.splitlines() or ['no output'])[-1]}")
+        return float(json.loads(done.stdout)["benchmarks"][0]["ns_per_joint_and_step"])
     if scene in DECKS:
         deck = DECKS[scene](size)
         return (processor_time(deck, steps) - processor_time(deck, 0)) / steps / size * 1e9
@@ -181,6 +196,9 @@ def main() -> None:
     missing = sorted({program for program in ("lmp", "liggghts") if shutil.which(program) is None})
     scenes = [scene for scene in NAME if scene not in DECKS or DECKS[scene](1).program not in missing]
     left_out = "".join(f"\n`{program}` is not installed: its scenes are left out.\n" for program in missing)
+    if not bare_loop(options.build.resolve()).exists():
+        scenes.remove("bare_loop")
+        left_out += "\n`stepper_bench` is not built (`STATEJUMP_BUILD_BENCH`): the bare loop is left out.\n"
     rows: list[dict[str, Any]] = []
     for repetition in range(1, options.repetitions + 1):
         for size in STEPS:
@@ -193,6 +211,8 @@ def main() -> None:
 n contacts with Hertz's normal force and Mindlin's spring under Coulomb's limit, the same material, load, step and
 search for neighbours in each program; {options.repetitions} repetitions in turn, one thread, medians. LAMMPS and
 LIGGGHTS are Debian's. In a bore LAMMPS knows one wall for all spheres, and one contact of a sphere with it.
+Load average of the machine at the end of the measurement: {os.getloadavg()[2]:.0f} on {os.cpu_count()} processors. A
+load above their number shares caches and cores: then the ratios say more than the nanoseconds.
 
 {table(rows, scenes)}
 {left_out}

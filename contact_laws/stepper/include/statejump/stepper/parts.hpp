@@ -163,6 +163,7 @@ inline void Parts::fill(Part& part, std::vector<int>& places) const {
   scene.time_step = whole_.time_step;
   scene.iteration = whole_.iteration;
   scene.tracks_energy = whole_.tracks_energy;
+  scene.uses_avx2 = whole_.uses_avx2;
   scene.largest_tilt = whole_.largest_tilt;
   scene.newton = whole_.newton;
   scene.programs = whole_.programs;

@@ -15,91 +15,15 @@
 #include <vector>
 
 #include "statejump/kernel/laws/joint_law.hpp"
-#include "statejump/stepper/contact.hpp"
-#include "statejump/stepper/link.hpp"
-#include "statejump/stepper/motion.hpp"
+#include "statejump/stepper/arrays.hpp"
+#include "statejump/stepper/batches.hpp"
 #include "statejump/stepper/numbers.hpp"
 #include "statejump/thermal/program.hpp"
 
 namespace statejump::stepper {
 
-/// Thermal strain that parts share: all that have it now and that the same engines set.
-struct Strain {
-  double strain = 0;  ///< [-]
-  double rate = 0;    ///< of the last step [1/s]
-};
-
-/// Sets strains to expansion times temperature change; a ThermalExpansionEngine.
-struct Heater {
-  struct Target {
-    std::size_t strain;  ///< place in Scene::strains
-    double expansion;    ///< [1/K]
-  };
-  std::size_t program;  ///< place in Scene::programs
-  std::vector<Target> targets;
-};
-
-enum class Joint : unsigned char { revolute, ball, plane };
-
-/// Two bodies that touch or may touch.
-struct Contact {
-  int body_1, body_2;
-  double length_1, length_2;       ///< radii, or pad and distance of the face [m]
-  std::size_t strain_1, strain_2;  ///< places in Scene::strains
-  Vector3 face_normal;             ///< in the axes of body 2; of a plane
-  Joint joint;
-  bool real = false;     ///< it has geometry and physics
-  bool renewed = false;  ///< since the arrays were filled
-  long made = -1;        ///< step in which it became real
-  bool turns = true;     ///< one of the two bodies turns, or may
-  bool tilted =
-      false;  ///< where none does: whether the axes are further from parallel than allowed
-  Vector3 axis = Vector3::Zero();  ///< where none does: of body 2
-  ContactGeometry geometry;
-  ContactPhysics physics;
-};
-
-/// A link, with its program and whether it turns its tip.
-struct LinkPlace {
-  Link link;
-  std::size_t program;  ///< place in Scene::programs
-};
-
-struct TorsionPlace {
-  Torsion spring;
-  std::array<int, 2> first, second;  ///< root and tip of the two links
-};
-
-struct Guide {
-  int body;
-  Vector3 normal;
-};
-
-/// Links of one engine. Where any of them turns its tip, the engine sums up the forces of all
-/// bodies before it adds its own.
-struct Links {
-  std::vector<LinkPlace> places;
-  bool needs_moments = false;
-};
-
-/// What adds forces after the contacts, in the order of the engines.
-using Stage = std::variant<Links, std::vector<TorsionPlace>, std::vector<Guide>>;
-
-/// Energies that grow from step to step [J]. What is stored now belongs to the last step alone.
-struct Energies {
-  double joint_friction = 0, joint_damping = 0, joint_thermal_work = 0;
-  double link_damping = 0, pin_damping = 0, link_thermal_work = 0;
-  double numerical_damping = 0, gravity_work = 0;
-};
-
 /// The law of contacts that is not made of laws by name.
 struct HertzMindlin {};
-
-inline Vector3 axis_of(const Quaternion& q) {
-  // Local z axis in the world: orientation * (0, 0, 1) without the products with zero.
-  return {2 * (q.x() * q.z() + q.w() * q.y()), 2 * (q.y() * q.z() - q.w() * q.x()),
-          1 - 2 * (q.x() * q.x() + q.y() * q.y())};
-}
 
 class Scene {
  public:
@@ -107,6 +31,7 @@ class Scene {
   double time_step = 0;  ///< [s]
   long iteration = 0;
   bool tracks_energy = false;
+  bool uses_avx2 = has_avx2();
   double largest_tilt = 0;  ///< between the axes of journal and bearing [rad]
   Newton newton;
   std::vector<thermal::Program> programs;
@@ -174,8 +99,9 @@ class Scene {
     return !(axis_of(journal.orientation).cross(axis).squaredNorm() <= largest_tilt * largest_tilt);
   }
   Body& body(int id) { return bodies[static_cast<std::size_t>(id)]; }
-  template <class Law>
-  bool step(const Law& law, const Make& make);
+  template <class Contacts, class Move>
+  bool step(const Contacts& contacts_of_all, const Move& move);
+  bool sums_before_moving() const;
   bool heat();
   template <class Law>
   bool step_contact(const Law& law, std::size_t place, const Make& make);
@@ -185,7 +111,7 @@ class Scene {
   bool act(std::vector<Guide>& guides);
   void sum();
   void account_motion(const Body& body);
-  bool move_all();
+  bool move_all(const std::vector<std::size_t>& places);
 
   std::vector<std::size_t> moving_;
   std::vector<double> changes_;  // temperature changes of the programs in this step [K]
@@ -222,30 +148,55 @@ inline void Scene::prepare() {
   }
 }
 
+inline bool Scene::sums_before_moving() const {
+  return std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
+    const auto* links = std::get_if<Links>(&stage);
+    return links ? links->needs_moments : std::holds_alternative<std::vector<Guide>>(stage);
+  });
+}
+
 inline long Scene::run(long steps, const Make& make) {
   return std::visit(
       [&](const auto& one) {
+        const auto contact = [&](std::size_t place) { return step_contact(one, place, make); };
+        const auto move = [&](const std::vector<std::size_t>& places) { return move_all(places); };
         long done = 0;
-        while (done < steps && step(one, make)) ++done;
+        if (steps > 1) {
+          Batches batches(
+              {bodies, contacts, strains, energies, newton, time_step, tracks_energy, uses_avx2});
+          batches.fill(std::is_same_v<decltype(one), const HertzMindlin&>, !sums_before_moving());
+          // The last step is not made in batches: it leaves all that anybody may ask for.
+          while (done < steps - 1 && batches.useful() &&
+                 step([&] { return batches.step_contacts(contact); },
+                      [&] { return batches.move() && move(batches.others()); })) {
+            ++done;
+          }
+          if (batches.useful() && done < steps - 1) return done;
+          batches.unload();
+        }
+        const auto one_by_one = [&] {
+          for (std::size_t i = 0; i < contacts.size(); ++i) {
+            if (!contact(i)) return false;
+          }
+          return true;
+        };
+        while (done < steps && step(one_by_one, [&] { return move(moving_); })) ++done;
         return done;
       },
       law);
 }
 
-template <class Law>
-bool Scene::step(const Law& one, const Make& make) {
+template <class Contacts, class Move>
+bool Scene::step(const Contacts& contacts_of_all, const Move& move) {
   summed_ = false;
   for (std::size_t i = 0; i < programs.size(); ++i) {
     changes_[i] = programs[i].temperature_change(time);
   }
-  if (!heat()) return false;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    if (!step_contact(one, i, make)) return false;
-  }
+  if (!heat() || !contacts_of_all()) return false;
   for (Stage& stage : stages) {
     if (!std::visit([&](auto& list) { return act(list); }, stage)) return false;
   }
-  if (!move_all()) return false;
+  if (!move()) return false;
   time += time_step;
   ++iteration;
   return true;
@@ -452,8 +403,8 @@ inline void Scene::account_motion(const Body& each) {
   energies.gravity_work += -newton.gravity.dot(motion.velocity) * each.mass * time_step;
 }
 
-inline bool Scene::move_all() {
-  for (const std::size_t i : moving_) {
+inline bool Scene::move_all(const std::vector<std::size_t>& places) {
+  for (const std::size_t i : places) {
     Body& each = bodies[i];
     sum_forces(each, !summed_);
     if (tracks_energy) account_motion(each);

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contacts and bodies of a scene, four at once where they allow it. Between two steps the arrays of
+// the scene have all motions; what a contact keeps is here until unload().
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "statejump/stepper/arrays.hpp"
+#include "statejump/stepper/contact_lanes.hpp"
+#include "statejump/stepper/motion_lanes.hpp"
+
+namespace statejump::stepper {
+
+/// What the steps of batches read and write of a scene.
+struct BatchedArrays {
+  std::vector<Body>& bodies;
+  std::vector<Contact>& contacts;
+  const std::vector<Strain>& strains;
+  Energies& energies;
+  const Newton& newton;
+  double time_step;  ///< [s]
+  bool tracks_energy;
+  bool uses_avx2;
+};
+
+class Batches {
+ public:
+  /// @param arrays prepared
+  explicit Batches(const BatchedArrays& arrays) : arrays_(arrays) {}
+
+  /// @param hertz_mindlin whether that is the law of contacts
+  /// @param nothing_between whether the first to sum up forces are those who move the bodies
+  void fill(bool hertz_mindlin, bool nothing_between);
+
+  /// Whether the fill has found anything to do at once.
+  bool useful() const { return useful_; }
+
+  /// One step of all contacts in their order.
+  /// @param one makes the step of a contact by its place, false where it cannot be made
+  template <class One>
+  bool step_contacts(const One& one) {
+    if (arrays_.uses_avx2) {
+      return arrays_.tracks_energy ? with_avx2<true>(one) : with_avx2<false>(one);
+    }
+    return arrays_.tracks_energy ? step_all<true>(one) : step_all<false>(one);
+  }
+
+  /// Moves the bodies of batches. @return false where one has left its bound
+  bool move() { return arrays_.uses_avx2 ? move_with_avx2() : move_all(); }
+
+  /// Places of the bodies that are not moved here, in their order.
+  const std::vector<std::size_t>& others() const { return others_; }
+
+  /// Gives the arrays what their contacts keep.
+  void unload();
+
+ private:
+  // Contacts in their order: of a batch, or each by itself.
+  struct Stretch {
+    bool is_batch;
+    std::size_t first, count;  // of a batch its place in contacts_
+  };
+
+  static bool allows(const Contact& contact) {
+    return !contact.turns && contact.physics.slipMemory.empty() &&
+           !(contact.joint == Joint::revolute && contact.tilted);
+  }
+  void fill_bodies(bool nothing_between);
+  void add(std::size_t first, std::size_t count);
+  void load(ContactLanes& batch, std::size_t lane);
+
+  template <bool tracks_energy, class One>
+  [[gnu::target("avx2")]] bool with_avx2(const One& one) {
+    return step_all<tracks_energy>(one);
+  }
+  [[gnu::target("avx2")]] bool move_with_avx2() { return move_all(); }
+
+  template <bool tracks_energy, class One>
+  [[gnu::always_inline]] inline bool step_all(const One& one);
+  using Places = std::array<std::size_t, lanes>;
+  [[gnu::always_inline]] inline const kernel::BodyMotion& motion(std::size_t body) const {
+    return arrays_.bodies[body].motion;
+  }
+  [[gnu::always_inline]] inline MotionLanes motions(const Places& at) const {
+    const kernel::BodyMotion &a = motion(at[0]), &b = motion(at[1]), &c = motion(at[2]),
+                             &d = motion(at[3]);
+    return {gather(a.position, b.position, c.position, d.position),
+            gather(a.velocity, b.velocity, c.velocity, d.velocity)};
+  }
+  [[gnu::always_inline]] inline Pack grown(const Places& at) const {
+    const std::vector<Strain>& all = arrays_.strains;
+    return 1.0 + Pack{all[at[0]].strain, all[at[1]].strain, all[at[2]].strain, all[at[3]].strain};
+  }
+  template <bool tracks_energy>
+  [[gnu::always_inline]] inline LanesStep step(ContactLanes& batch);
+  [[gnu::always_inline]] inline void exert(const ContactLanes& batch, std::size_t lane,
+                                           const Vector3& force);
+  template <class One>
+  [[gnu::cold, gnu::noinline]] bool make_one(ContactLanes& batch, std::size_t lane, const One& one);
+  [[gnu::always_inline]] inline bool move_all();
+
+  BatchedArrays arrays_;
+  std::vector<ContactLanes> contacts_;
+  std::vector<Stretch> stretches_;
+  std::vector<BodyLanes> bodies_;
+  std::vector<std::size_t> others_;
+  bool useful_ = false;
+};
+
+inline void Batches::fill(bool hertz_mindlin, bool nothing_between) {
+  contacts_.clear();
+  stretches_.clear();
+  const std::vector<Contact>& all = arrays_.contacts;
+  for (std::size_t first = 0; first < all.size();) {
+    std::size_t end = first;
+    while (hertz_mindlin && end < all.size() && end - first < lanes && allows(all[end]) &&
+           all[end].joint == all[first].joint) {
+      ++end;
+    }
+    if (end > first + 1) {  // one alone is faster by itself
+      add(first, end - first);
+      first = end;
+    } else {
+      if (stretches_.empty() || stretches_.back().is_batch) stretches_.push_back({false, first, 0});
+      ++stretches_.back().count;
+      ++first;
+    }
+  }
+  fill_bodies(nothing_between);
+  useful_ = !contacts_.empty() || !bodies_.empty();
+}
+
+inline void Batches::fill_bodies(bool nothing_between) {
+  bodies_.clear();
+  others_.clear();
+  // Energies of motion are summed body by body; without damping and gravity there are none.
+  const bool is_simple =
+      nothing_between &&
+      (!arrays_.tracks_energy || (arrays_.newton.damping == 0 && arrays_.newton.gravity.isZero(0)));
+  for (std::size_t i = 0; i < arrays_.bodies.size(); ++i) {
+    const Body& body = arrays_.bodies[i];
+    if (!body.moves) continue;
+    if (body.turns || !is_simple) {
+      others_.push_back(i);
+      continue;
+    }
+    if (bodies_.empty() || bodies_.back().count == lanes) {
+      BodyLanes& batch = bodies_.emplace_back();
+      for (std::size_t lane = 1; lane < lanes; ++lane) batch.load(lane, i, body, arrays_.newton);
+    }
+    BodyLanes& batch = bodies_.back();
+    batch.load(batch.count, i, body, arrays_.newton);
+    ++batch.count;
+  }
+  if (bodies_.size() == 1 && bodies_.front().count == 1) {
+    others_.insert(std::upper_bound(others_.begin(), others_.end(), bodies_.front().body[0]),
+                   bodies_.front().body[0]);
+    bodies_.clear();
+  }
+}
+
+inline void Batches::add(std::size_t first, std::size_t count) {
+  stretches_.push_back({true, contacts_.size(), 1});
+  ContactLanes& batch = contacts_.emplace_back();
+  batch.first = first;
+  batch.count = count;
+  batch.joint = arrays_.contacts[first].joint;
+  batch.any_moves_2 = false;
+  for (std::size_t lane = 0; lane < lanes; ++lane) load(batch, lane);
+}
+
+inline void Batches::load(ContactLanes& batch, std::size_t lane) {
+  const bool used = lane < batch.count;
+  const Contact& contact = arrays_.contacts[batch.first + (used ? lane : 0)];
+  const auto at = [&](int id) { return static_cast<std::size_t>(id); };
+  const Body& one = arrays_.bodies[at(contact.body_1)];
+  const Body& two = arrays_.bodies[at(contact.body_2)];
+  batch.used[lane] = used ? -1 : 0;
+  batch.body_1[lane] = at(contact.body_1);
+  batch.body_2[lane] = at(contact.body_2);
+  batch.strain_1[lane] = contact.strain_1;
+  batch.strain_2[lane] = contact.strain_2;
+  batch.moves_1[lane] = one.moves;
+  batch.moves_2[lane] = two.moves;
+  batch.any_moves_2 = batch.any_moves_2 || two.moves;
+  batch.length_1[lane] = contact.length_1;
+  batch.length_2[lane] = contact.length_2;
+  put(batch.axis, lane,
+      contact.joint == Joint::plane ? Vector3(two.orientation * contact.face_normal)
+                                    : contact.axis);
+  put(batch.position_2, lane, two.motion.position);
+  put(batch.velocity_2, lane, two.motion.velocity);
+  put(batch.spin_1, lane, one.motion.angular_velocity);
+  put(batch.spin_2, lane, two.motion.angular_velocity);
+  batch.load(lane, contact);
+  if (!used) batch.real[lane] = 0;
+}
+
+inline void Batches::unload() {
+  for (const ContactLanes& batch : contacts_) {
+    for (std::size_t lane = 0; lane < batch.count; ++lane) {
+      batch.unload(lane, arrays_.contacts[batch.first + lane]);
+    }
+  }
+}
+
+template <bool tracks_energy>
+LanesStep Batches::step(ContactLanes& batch) {
+  const MotionLanes two =
+      batch.any_moves_2 ? motions(batch.body_2) : MotionLanes{batch.position_2, batch.velocity_2};
+  return step_lanes<tracks_energy>(batch, motions(batch.body_1), two,
+                                   batch.length_1 * grown(batch.strain_1),
+                                   batch.length_2 * grown(batch.strain_2), arrays_.time_step);
+}
+
+inline void Batches::exert(const ContactLanes& batch, std::size_t lane, const Vector3& force) {
+  if (batch.moves_1[lane]) arrays_.bodies[batch.body_1[lane]].added_force += force;
+  if (batch.moves_2[lane]) arrays_.bodies[batch.body_2[lane]].added_force += -force;
+}
+
+template <class One>
+bool Batches::make_one(ContactLanes& batch, std::size_t lane, const One& one) {
+  const std::size_t place = batch.first + lane;
+  Contact& contact = arrays_.contacts[place];
+  batch.unload(lane, contact);
+  const bool made = one(place);
+  batch.load(lane, contact);
+  return made;
+}
+
+template <bool tracks_energy, class One>
+bool Batches::step_all(const One& one) {
+  for (const Stretch& stretch : stretches_) {
+    if (!stretch.is_batch) {
+      for (std::size_t i = stretch.first; i < stretch.first + stretch.count; ++i) {
+        if (!one(i)) return false;
+      }
+      continue;
+    }
+    ContactLanes& batch = contacts_[stretch.first];
+    const LanesStep step = this->step<tracks_energy>(batch);
+    const bool whole = !any(step.left);
+    for (std::size_t lane = 0; lane < batch.count; ++lane) {
+      if (!whole && step.left[lane]) {
+        if (!make_one(batch, lane, one)) return false;
+      } else if (step.touches[lane]) {
+        if constexpr (tracks_energy) {
+          arrays_.energies.joint_friction += step.friction[lane];
+          arrays_.energies.joint_damping += step.damping[lane];
+          arrays_.energies.joint_thermal_work += step.thermal_work[lane];
+        }
+        exert(batch, lane, get(step.force, lane));
+      }
+    }
+  }
+  return true;
+}
+
+inline bool Batches::move_all() {
+  for (BodyLanes& batch : bodies_) {
+    const auto added = [&](std::size_t lane) -> const Vector3& {
+      return arrays_.bodies[batch.body[lane]].added_force;
+    };
+    const Mask left = move_lanes(batch, gather(added(0), added(1), added(2), added(3)),
+                                 arrays_.newton, arrays_.time_step);
+    for (std::size_t lane = 0; lane < batch.count; ++lane) {
+      Body& body = arrays_.bodies[batch.body[lane]];
+      body.motion.position = get(batch.position, lane);
+      body.motion.velocity = get(batch.velocity, lane);
+      body.added_force = Vector3::Zero();
+    }
+    if (any(left)) return false;
+  }
+  return true;
+}
+
+}  // namespace statejump::stepper
