@@ -1,38 +1,38 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""YADE scene of ``truss`` cases: nodes are bodies, bars are links, joints are contacts.
+"""YADE scene of ``truss`` cases: nodes are bodies, bars are links, joints are contacts (``truss_joints``).
 
 What the DEM cannot represent has been refused before: ``statejump/kinds/truss/dem.py``, which also says how
-masses are lumped. A slider's pad is held at the depth at which its floor carries the normal force.
+masses are lumped.
 """
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import atan, atan2, cos, pi, sin
+from math import atan2, cos, pi, sin
 from typing import Any
 
 import statejump_yade as sj
 from failures import Names, SceneFailure, pair, rounded_down
 from scene import O, fixed_point, joint_engines
+from truss_joints import JOINTS
+from truss_joints.parts import GROUND, Joints, Row, contact, rows
 from yade import wrapper
-from yade.minieigenHP import Matrix3, Quaternion, Vector3
+from yade.minieigenHP import Vector3
 
 PLAIN = (
     "time_s", "temperature_change_K", "elastic_energy_J", "kinetic_energy_J", "friction_dissipation_J",
     "damping_dissipation_J", "thermal_work_J", "external_work_J",
 )
-GROUND = -1
-STICK, SLIP, AT_STOP, SEPARATED = 1, 2, 3, 0  # as statejump.results.contents has them
 
 
 @dataclass
 class TrussScene:
-    """What a script reads from the scene: bodies by node, links, springs, faces of sliders."""
+    """What a script reads from the scene: bodies by node, links, springs, joints."""
 
     program: sj.ThermalProgram
     nodes: list[int]
     links: list[sj.ThermalLink]
     springs: list[sj.ThermalLink]
-    faces: list[tuple[int, list[int]]] = field(default_factory=list)  # floor and stops of each slider
+    joints: list[Joints] = field(default_factory=list)  # of every type
     free: list[int] = field(default_factory=list)  # nodes that move
     loaded: list[int] = field(default_factory=list)  # nodes with a dead load
     start: list[Vector3] = field(default_factory=list)
@@ -44,15 +44,14 @@ class TrussScene:
 def columns(case: dict[str, Any]) -> list[str]:
     """Return the names of the columns of a case."""
 
-    def of(section: str, *names: str, vector: bool = False) -> list[str]:
+    def of(section: str, name: str, vector: bool = False) -> list[str]:
         ends = (".x", ".y", ".z") if vector else ("",)
-        return [f"{name}[{item}]{end}" for name in names for item in case[section]["names"] for end in ends]
+        return [f"{name}[{item}]{end}" for item in case[section]["names"] for end in ends]
 
     return [
-        *PLAIN, *of("node", "displacement_m", vector=True), *of("link", "axial_force_N"), *of("spring", "tension_N"),
-        *of("slider", "slide_m", "slider_force_N", "slider_state"),
-        *of("revolute", "eccentricity_m", vector=True),
-        *of("revolute", "normal_force_N", "friction_force_N", "revolute_state"),
+        *PLAIN, *of("node", "displacement_m", True), *of("link", "axial_force_N"), *of("spring", "tension_N"),
+        *(name for joints in JOINTS for column, vector in joints.columns
+          for name in of(joints.section, column, vector)),
     ]
 
 
@@ -80,25 +79,6 @@ class Programs:
         return self._made[number, fraction]
 
 
-def _rows(section: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return a section of columns as one dict per item."""
-    count = len(section["names"])
-    whole = {key: values for key, values in section.items() if isinstance(values, list) and len(values) == count}
-    return [{key: values[place] for key, values in whole.items()} for place in range(count)]
-
-
-def _material(part: dict[str, Any], expansion: float = 0.0) -> sj.ThermalFrictMat:
-    return sj.ThermalFrictMat(
-        young=part["young_modulus_Pa"], poisson=part["poisson_ratio"],
-        frictionAngle=atan(part["friction_coefficient"]), thermalExpansion=expansion,
-    )
-
-
-def _give(body: wrapper.Body, shape, material, group: int) -> None:
-    body.shape, body.material, body.bound = shape, material, wrapper.Aabb()
-    body.mask = 1 << group
-
-
 def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
     """Build the scene in the equilibrium in which the quasi-static path starts.
 
@@ -107,8 +87,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
     """
     dem = case["dem"]
     programs = Programs(case)
-    nodes, links = _rows(case["node"]), _rows(case["link"])
-    sliders, joints = _rows(case["slider"]), _rows(case["revolute"])
+    nodes, links = rows(case["node"]), rows(case["link"])
     bodies = []
     for node in nodes:
         body = wrapper.Body()
@@ -118,51 +97,23 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
         body.state.blockedDOFs = blocked + "XYZ"
         bodies.append(body)
 
-    faces: list[list[wrapper.Body]] = []
-    for slider in sliders:
-        body, radius = bodies[slider["nodes"][0]], slider["pad_radius_m"]
-        material = _material(slider)
-        _give(body, sj.Slider(radius=radius), material, slider["group"])
-        axis, down = Vector3(slider["axis"]), Vector3(slider["floor_normal"])
-        across = axis.cross(-down)
-        # Columns: the slot's x, y and z in space.
-        turned = Matrix3(*(value for k in range(3) for value in (axis[k], -down[k], across[k])))
-        stops = [
-            None if slider[f"clearance_{side}_m"] is None else radius + slider[f"clearance_{side}_m"]
-            for side in ("minus", "plus")
-        ]
-        made = sj.slot(
-            Vector3(nodes[slider["nodes"][0]]["position_m"]), stopMinus=stops[0], stopPlus=stops[1],
-            halfHeight=radius - slider["depth_m"], material=material, orientation=Quaternion(turned),
-            halfSize=slider["reach_m"],
-        )
-        for face in made:
-            face.mask = 1 << slider["group"]
-        faces.append(made)
-
     turning: dict[int, set[int]] = {}  # of each link, the nodes whose bodies turn with it
     parts_of: dict[tuple[int, float], list[int]] = {}
-    for joint in joints:
-        for part in ("bearing", "journal"):
-            node, expansion = joint[f"{part}_node"], joint[f"{part}_thermal_expansion_per_K"]
-            shape = (sj.Bearing if part == "bearing" else sj.Journal)(radius=joint[f"{part}_radius_m"])
-            _give(bodies[node], shape, _material(joint, expansion), joint["group"])
-            turned = Quaternion()
-            turned.setFromTwoVectors(Vector3(0, 0, 1), Vector3(joint["axis"]))
-            bodies[node].state.ori = turned
-            if expansion:
-                parts_of.setdefault((joint["program"], joint["temperature_fraction"]), []).append(node)
-            if joint[f"{part}_link"] != GROUND:
-                turning.setdefault(joint[f"{part}_link"], set()).add(node)
 
+    def turn(link: int, node: int) -> None:
+        turning.setdefault(link, set()).add(node)
+
+    def expand(node: int, joint: Row) -> None:
+        parts_of.setdefault((joint["program"], joint["temperature_fraction"]), []).append(node)
+
+    made = [joints(case) for joints in JOINTS]
+    for joints in made:
+        joints.furnish(bodies, turn, expand)
     ids = [O.bodies.append(body) for body in bodies]
     common = programs.of(0, 1.0)
-    scene = TrussScene(common, ids, [], [])
-    for place, made in enumerate(faces):
-        numbers = O.bodies.append(made)
-        scene.faces.append((numbers[0], list(numbers[1:])))
-        scene.pairs.update((ids[sliders[place]["nodes"][0]], face) for face in numbers)
-    scene.pairs.update((ids[joint["journal_node"]], ids[joint["bearing_node"]]) for joint in joints)
+    scene = TrussScene(common, ids, [], [], joints=made)
+    for joints in made:
+        scene.pairs.update(joints.append(ids))
     for place, node in enumerate(nodes):
         scene.start.append(Vector3(node["start_m"]))
         if not all(node["blocked"]):
@@ -189,7 +140,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
                 id1=ids[ends[1]], id2=ids[ends[0]], stressFreeLength=link["stress_free_length_m"],
                 tipTurnsWithLink=True, program=program,
             ))
-    for place, spring in enumerate(_rows(case["spring"])):
+    for place, spring in enumerate(rows(case["spring"])):
         length = spring["free_length_m"]
         scene.springs.append(sj.ThermalLink(
             id1=ids[spring["nodes"][0]], id2=ids[spring["nodes"][1]], youngModulus=spring["stiffness_N_per_m"],
@@ -197,13 +148,13 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
         ))
         if spring["cable"]:
             scene.cables.append(place)
-    for spring in _rows(case["torsion_spring"]):
+    for spring in rows(case["torsion_spring"]):
         scene.torsion_springs.append(_torsion_spring(spring, nodes, links, ids, common))
     expansions = [
         sj.ThermalExpansionEngine(program=programs.of(*key), ids=sorted({ids[node] for node in parts}))
         for key, parts in parts_of.items()
     ]
-    radii = [slider["pad_radius_m"] for slider in sliders] + [joint["journal_radius_m"] for joint in joints]
+    radii = [radius for joints in made for radius in joints.radii()]
     O.engines = joint_engines(
         scene.links + carriers + scene.springs, None, sj.Law2_JointGeom_JointPhys_HertzMindlin(),
         dem["contact_damping_ratio"], verletDist=0.1 * min(radii, default=1.0), recorders=recorders,
@@ -260,43 +211,6 @@ def _velocity_now(body: int) -> Vector3:
     return state.vel + Vector3(*(0.0 if axis in held else moved[k] for k, axis in enumerate("xyz")))
 
 
-def _contact(one: int, other: int):
-    if not O.interactions.has(one, other):
-        return None
-    found = O.interactions[one, other]
-    return found if found.isReal else None
-
-
-def _slider(slider: dict[str, Any], body: int, faces: tuple[int, list[int]], origin: Vector3) -> tuple:
-    axis = Vector3(slider["axis"])
-    floor = _contact(body, faces[0])
-    if floor is None:
-        raise SceneFailure(f"slider {slider['names']!r} has left its floor: the contact is lost", slider["names"])
-    # Forces of a contact act on the face: along the axis they are against the slider's.
-    force = floor.phys.shearForce.dot(axis)
-    at_stop = False
-    for face in faces[1]:
-        stop = _contact(body, face)
-        if stop is not None and stop.phys.normalForce.squaredNorm() > 0:
-            force += stop.phys.normalForce.dot(axis)
-            at_stop = True
-    state = AT_STOP if at_stop else SLIP if floor.phys.slipping else STICK
-    return (O.bodies[body].state.pos - origin).dot(axis), force, state
-
-
-def _revolute(joint: dict[str, Any], journal: int, bearing: int) -> tuple:
-    offset = O.bodies[journal].state.pos - O.bodies[bearing].state.pos
-    axis = Vector3(joint["axis"])
-    offset -= offset.dot(axis) * axis
-    contact = _contact(journal, bearing)
-    if contact is None or contact.geom.penetrationDepth <= 0:
-        return offset, 0.0, 0.0, SEPARATED
-    normal = contact.geom.normal
-    # On the journal against the positive slide, which is anticlockwise: shearForce acts on the bearing.
-    friction = contact.phys.shearForce.dot(axis.cross(normal))
-    return offset, contact.phys.normalForce.dot(normal), friction, SLIP if contact.phys.slipping else STICK
-
-
 def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
     """Return one row: the state of the current step, see :func:`columns`."""
     energy = {name: O.energy[name] for name in O.energy.keys()}
@@ -304,7 +218,7 @@ def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
     def total(*names: str) -> float:
         return sum(energy.get(name, 0.0) for name in names)
 
-    if O.interactions.countReal() > sum(_contact(*pair) is not None for pair in built.pairs):
+    if O.interactions.countReal() > sum(contact(*pair) is not None for pair in built.pairs):
         strangers, joint = _strangers(case, built)
         raise SceneFailure(f"{strangers} touch and are of different joints: the model has no such contact", joint)
     states = [O.bodies[body].state for body in built.nodes]
@@ -330,52 +244,36 @@ def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
                 remedy="'statejump reduced' can run the case",
             )
     row += tensions
-    sliders = [
-        _slider(slider, built.nodes[slider["nodes"][0]], faces, Vector3(case["node"]["position_m"][slider["nodes"][0]]))
-        for slider, faces in zip(_rows(case["slider"]), built.faces)
-    ]
-    row += [values[k] for k in range(3) for values in sliders]
-    joints = [
-        _revolute(joint, built.nodes[joint["journal_node"]], built.nodes[joint["bearing_node"]])
-        for joint in _rows(case["revolute"])
-    ]
-    for offset, *_ in joints:
-        row += list(offset)
-    row += [values[k] for k in range(1, 4) for values in joints]
+    for joints in built.joints:
+        states = joints.states()
+        for place, (_, vector) in enumerate(joints.columns):
+            for values in states:
+                row += list(values[place]) if vector else [values[place]]
     return row
 
 
 def _bodies(case: dict[str, Any], built: TrussScene) -> dict[int, str]:
     """Return the words for all bodies that may touch."""
     found = {body: f"node {name!r}" for body, name in zip(built.nodes, case["node"]["names"])}
-    for slider, (floor, stops) in zip(_rows(case["slider"]), built.faces):
-        found[floor] = f"the floor of slider {slider['names']!r}"
-        sides = [side for side in ("minus", "plus") if slider[f"clearance_{side}_m"] is not None]
-        for side, stop in zip(sides, stops):
-            found[stop] = f"stop_{side} of slider {slider['names']!r}"
+    found.update({face: words for joints in built.joints for face, (_, words) in joints.faces().items()})
     return found
 
 
 def _strangers(case: dict[str, Any], built: TrussScene) -> tuple[str, str]:
-    """Return the words for two bodies that touch and may not, and the slider whose face one of them is."""
+    """Return the words for two bodies that touch and may not, and the joint whose face one of them is."""
     words, allowed = _bodies(case, built), {pair(*bodies) for bodies in built.pairs}
-    sliders = {face: name for name, (floor, stops) in zip(case["slider"]["names"], built.faces)
-               for face in (floor, *stops)}
-    found = ((contact.id1, contact.id2) for contact in O.interactions if contact.isReal)
+    owner = {face: name for joints in built.joints for face, (name, _) in joints.faces().items()}
+    found = ((one.id1, one.id2) for one in O.interactions if one.isReal)
     one, other = next(bodies for bodies in found if pair(*bodies) not in allowed)
-    return f"{words[one]} and {words[other]}", sliders.get(one, sliders.get(other, ""))
+    return f"{words[one]} and {words[other]}", owner.get(one, owner.get(other, ""))
 
 
 def names(case: dict[str, Any], built: TrussScene) -> Names:
     """Return what the case calls joints, links, springs and bodies."""
     words = _bodies(case, built)
     found = Names(bodies=words)
-    for slider, (floor, stops) in zip(_rows(case["slider"]), built.faces):
-        for face in (floor, *stops):
-            found.joints[pair(built.nodes[slider["nodes"][0]], face)] = (slider["names"], words[face])
-    for joint in _rows(case["revolute"]):
-        bodies = pair(built.nodes[joint["journal_node"]], built.nodes[joint["bearing_node"]])
-        found.joints[bodies] = (joint["names"], f"revolute {joint['names']!r}")
+    for joints in built.joints:
+        joints.name(found)
     for section, made in (("link", built.links), ("spring", built.springs)):
         for name, link in zip(case[section]["names"], made):
             found.add_link(link, f"{section} {name!r}")
@@ -392,4 +290,4 @@ def step_remedy(case: dict[str, Any], stable_s: float) -> str:
 
 def summary(case: dict[str, Any], built: TrussScene) -> dict[str, Any]:
     """Return what else the run has to say, as plain values."""
-    return {"joints": len(built.faces) + len(case["revolute"]["names"]), "nodes": len(built.nodes)}
+    return {"joints": sum(len(joints.rows) for joints in built.joints), "nodes": len(built.nodes)}

@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Joints of a truss in YADE: one file per type that the DEM has, asked by ``scene_truss``.
+
+``statejump.kinds.truss.joints`` has the types of all models and refuses what the DEM does not have.
+"""
+from truss_joints.parts import Joints
+from truss_joints.revolute import Revolutes
+from truss_joints.slider import Sliders
+
+# In the order in which statejump.kinds.truss.joints lists them: that of the contacts of a result.
+JOINTS: tuple[type[Joints], ...] = (Sliders, Revolutes)

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What joints of a truss in YADE share: their interface, rows of a section, material and contact of bodies."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from math import atan
+from typing import Any
+
+import statejump_yade as sj
+from failures import Names
+from scene import O
+from yade import wrapper
+
+GROUND = -1
+STICK, SLIP, AT_STOP, SEPARATED = 1, 2, 3, 0  # as statejump.results.contents has them
+
+Row = dict[str, Any]
+
+
+def rows(section: dict[str, Any]) -> list[Row]:
+    """Return a section of columns as one dict per item."""
+    count = len(section["names"])
+    whole = {key: values for key, values in section.items() if isinstance(values, list) and len(values) == count}
+    return [{key: values[place] for key, values in whole.items()} for place in range(count)]
+
+
+def material(part: Row, expansion: float = 0.0) -> sj.ThermalFrictMat:
+    """Return the material of a contact part."""
+    return sj.ThermalFrictMat(
+        young=part["young_modulus_Pa"], poisson=part["poisson_ratio"],
+        frictionAngle=atan(part["friction_coefficient"]), thermalExpansion=expansion,
+    )
+
+
+def give(body: wrapper.Body, shape, made, group: int) -> None:
+    """Give a body shape and material; it meets the bodies of its group only."""
+    body.shape, body.material, body.bound = shape, made, wrapper.Aabb()
+    body.mask = 1 << group
+
+
+def contact(one: int, other: int):
+    """Return the contact of two bodies, None where they do not touch."""
+    if not O.interactions.has(one, other):
+        return None
+    found = O.interactions[one, other]
+    return found if found.isReal else None
+
+
+class Joints:
+    """The joints of one type. ``ids`` are the bodies of the nodes, known from :meth:`append` on.
+
+    :param case: what ``statejump.kinds.truss.dem.resolved`` returns
+    """
+
+    section: str  # of the case
+    columns: tuple[tuple[str, bool], ...]  # of every joint; whether it is a vector
+
+    def __init__(self, case: dict[str, Any]) -> None:
+        self.rows = rows(case[self.section])
+        self.nodes: list[Row] = rows(case["node"])
+        self.ids: list[int] = []
+
+    def furnish(self, bodies: list[wrapper.Body], turn: Callable[[int, int], None],
+                expand: Callable[[int, Row], None]) -> None:
+        """Give the bodies of nodes their contact parts.
+
+        :param turn: takes a link and a node whose body turns with it
+        :param expand: takes a node whose part expands, and the joint that has its temperature
+        """
+        raise NotImplementedError
+
+    def append(self, ids: list[int]) -> Iterator[tuple[int, int]]:
+        """Append bodies of its own; yield the pairs of bodies that may touch."""
+        raise NotImplementedError
+
+    def radii(self) -> list[float]:
+        """Return the radii of what is looked for contacts of."""
+        raise NotImplementedError
+
+    def states(self) -> list[tuple[Any, ...]]:
+        """Return what every joint has of each of the columns."""
+        raise NotImplementedError
+
+    def faces(self) -> dict[int, tuple[str, str]]:
+        """Return joint and words of bodies of its own."""
+        return {}
+
+    def name(self, found: Names) -> None:
+        """Tell what the case calls its contacts."""
+        raise NotImplementedError
