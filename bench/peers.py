@@ -206,13 +206,14 @@ def main() -> None:
                 rows.append(dict(zip(COLUMNS, (scene, size, repetition, STEPS[size],
                                                round(cost(options.build.resolve(), scene, size), 2)))))
         print(f"repetition {repetition} of {options.repetitions} done", flush=True)
+    load, processors = os.getloadavg()[2], os.cpu_count()
     publish(options.output, "peers", COLUMNS, rows, f"""# Cost of a contact and step beside other programs
 
 n contacts with Hertz's normal force and Mindlin's spring under Coulomb's limit, the same material, load, step and
 search for neighbours in each program; {options.repetitions} repetitions in turn, one thread, medians. LAMMPS and
 LIGGGHTS are Debian's. In a bore LAMMPS knows one wall for all spheres, and one contact of a sphere with it.
-Load average of the machine at the end of the measurement: {os.getloadavg()[2]:.0f} on {os.cpu_count()} processors. A
-load above their number shares caches and cores: then the ratios say more than the nanoseconds.
+Load average of the machine at the end of the measurement: {load:.0f} on {processors} processors. Where it is above
+their number, caches and cores are shared, and the ratios say more than the nanoseconds.
 
 {table(rows, scenes)}
 {left_out}
