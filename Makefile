@@ -9,7 +9,7 @@ configure = { test -e $(BUILD)/build.ninja || cmake --preset demo -B $(BUILD); }
             cmake $(foreach part,$(1),-DSTATEJUMP_BUILD_$(part)=ON) $(BUILD) >/dev/null
 compile = cmake --build $(BUILD) --parallel $(JOBS)
 
-.PHONY: demo build test quick bench package docs sanitize sanitize-threads format clean
+.PHONY: demo build test quick bench package docs sanitize sanitize-threads sanitize-yade format clean
 demo:
 	./scripts/setup.sh run build
 	$(call configure)
@@ -57,7 +57,7 @@ sanitize:
 	cmake --build build-sanitize --parallel $(JOBS)
 	ctest --test-dir build-sanitize --output-on-failure --parallel $(JOBS)
 
-sanitize-threads:
+sanitize-threads sanitize-yade:
 	./scripts/setup.sh run build test
 	cmake --preset $@
 	cmake --build --preset $@ --parallel $(JOBS)
@@ -67,4 +67,4 @@ format:
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i
 
 clean:
-	rm -rf build build-debug build-sanitize build-sanitize-threads
+	rm -rf build build-debug build-sanitize build-sanitize-threads build-sanitize-yade

@@ -14,7 +14,7 @@ import pytest
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[1]
 PLUGIN_DIR = os.environ.get("STATEJUMP_PYTHON_DIR") or str(REPOSITORY / "build" / "python")
-TIMEOUT_S = 120
+TIMEOUT_S = float(os.environ.get("STATEJUMP_YADE_TIMEOUT_S", "120"))
 EPS = 2.0**-52
 
 
