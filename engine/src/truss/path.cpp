@@ -145,10 +145,11 @@ struct Walker {
   [[noreturn]] void refuse_undetermined(FailureKind kind, FoundModes found) const;
   void refuse_buckled(double when) const;
   StepEnd step_to(double target, double tolerance);
-  bool slide_at_stake(int joint, JointStatus before, double target) const;
+  bool slide_at_stake(int joint, JointStatus before, double target,
+                      const detail::Rounding& rounding) const;
   double first_turn(const Ends& ends) const;
-  double turn_of_slip(int joint, const Ends& ends) const;
-  double turn_of_stick(int joint, const Ends& ends) const;
+  double turn_of_slip(int joint, const Ends& ends, const detail::Rounding& rounding) const;
+  double turn_of_stick(int joint, const Ends& ends, const detail::Rounding& rounding) const;
 
   /// What the type of a joint says.
   template <class Ask>
@@ -286,9 +287,10 @@ void Walker::open_clearances() {
 /// Whether a joint that stopped sliding before `target` may have slid by more than rounding until
 /// it did: slides of a step are lost when it ends in a stick. One that comes to rest smoothly
 /// slides so little at last that no shorter step would tell.
-bool Walker::slide_at_stake(int i, JointStatus before, double target) const {
+bool Walker::slide_at_stake(int i, JointStatus before, double target,
+                            const detail::Rounding& rounding) const {
   if (before == JointStatus::open) return true;
-  double least = 1e3 * system.slide_rounding(i, z, time, origin);
+  double least = 1e3 * system.slide_rounding(i, z, time, origin, rounding);
   if (!options.locate_events) {
     least += options.event_tolerance * joint(i, [](const auto& one) { return one.least_slide(); });
   }
@@ -300,18 +302,19 @@ bool Walker::slide_at_stake(int i, JointStatus before, double target) const {
 /// slides are cubics through both ends of the step and their rates.
 double Walker::first_turn(const Ends& ends) const {
   double first = 1.0;
+  const detail::Rounding rounding = system.rounding(ends.to);
   for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
     const JointStatus status = ends.statuses[index(i)];
     if (is_slip(status)) {
-      first = std::min(first, turn_of_slip(i, ends));
+      first = std::min(first, turn_of_slip(i, ends, rounding));
     } else if (status == ends.start.statuses[index(i)]) {
-      first = std::min(first, turn_of_stick(i, ends));
+      first = std::min(first, turn_of_stick(i, ends, rounding));
     }
   }
   return first;
 }
 
-double Walker::turn_of_slip(int i, const Ends& ends) const {
+double Walker::turn_of_slip(int i, const Ends& ends, const detail::Rounding& by) const {
   const JointStatus status = ends.statuses[index(i)];
   const bool matters =
       joint(i, [&](const auto& one) { return one.remembers_when(status, JointStatus::stick); });
@@ -322,14 +325,14 @@ double Walker::turn_of_slip(int i, const Ends& ends) const {
   const Cubic slide{0.0, sense * ends.slips[i],
                     slipped ? std::max(0.0, sense * step * ends.from_slide_rate[i]) : 0.0,
                     sense * step * ends.to_slide_rate[i]};
-  const double rounding = system.slide_rounding(i, ends.to, ends.to_time, ends.start);
+  const double rounding = system.slide_rounding(i, ends.to, ends.to_time, ends.start, by);
   if (slide.last_rate < -rounding) return slipped ? slide.turn(1.0) : 0.5;
   const auto slowest = slide.slowest();
   if (slipped && slowest && slide.rate(*slowest) < -rounding) return slide.turn(*slowest);
   return 1.0;
 }
 
-double Walker::turn_of_stick(int i, const Ends& ends) const {
+double Walker::turn_of_stick(int i, const Ends& ends, const detail::Rounding& rounding) const {
   const JointStatus status = ends.statuses[index(i)];
   const double step = ends.to_time - ends.from_time;
   const Trial first =
@@ -339,7 +342,6 @@ double Walker::turn_of_stick(int i, const Ends& ends) const {
       system.trial(i, ends.from_rate, ends.from_time, ends.start, JointModel::friction, 1.0);
   const Trial last_rate =
       system.trial(i, ends.to_rate, ends.to_time, ends.start, JointModel::friction, 1.0);
-  const detail::Rounding rounding = system.rounding(ends.to);
   const auto leaves = [&](double share) {
     Trial at = last;
     at.length_rounding = rounding.length;
@@ -410,6 +412,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
   }
   std::vector<Event> events;
   std::vector<FailureJoint> opened;
+  const detail::Rounding rounding = system.rounding(z);
   const int joints = static_cast<int>(model.joints.size());
   for (int i = 0; i < joints; ++i) {
     const JointStatus before = origin.statuses[index(i)];
@@ -417,7 +420,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
     if (before == after) continue;
     const bool remembers =
         joint(i, [&](const auto& one) { return one.remembers_when(before, after); });
-    const bool matters = remembers ? slide_at_stake(i, before, target) : options.locate_events;
+    const bool matters =
+        remembers ? slide_at_stake(i, before, target, rounding) : options.locate_events;
     if (!is_short && matters) {
       ++path.solves;
       return StepEnd::event_inside;

@@ -132,9 +132,8 @@ Rounding System::rounding(const VectorXd& z) const {
   return {length, 16.0 * stiffness_scale_ * length};
 }
 
-double System::slide_rounding(int joint, const VectorXd& z, double time,
-                              const StepStart& start) const {
-  const Rounding by = rounding(z);
+double System::slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start,
+                              const Rounding& by) const {
   const Trial at = trial(joint, z, time, start, JointModel::friction, 1.0);
   return std::visit([&](const auto& one) { return one.slide_rounding(at, by.length, by.force); },
                     model_->joints[index(joint)]);

@@ -106,7 +106,9 @@ class System {
   /// Rounding of a displacement at z, and of the forces that come of it.
   Rounding rounding(const VectorXd& z) const;
   /// Rounding of a joint's slide less what friction bends [m].
-  double slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start) const;
+  /// @param by rounding(z), which reads all of z and so is asked for once for many joints
+  double slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start,
+                        const Rounding& by) const;
   /// Node of a free displacement.
   int node_of(int displacement) const;
   /// First unknown of a joint's forces.
