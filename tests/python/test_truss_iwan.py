@@ -15,7 +15,7 @@ from conftest import Outcome
 import statejump as sj
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import parse_case
-from statejump.kinds.truss import solve
+from statejump.kinds.truss import generate, solve
 from statejump.kinds.truss.generate.document import document, finished, node, to_toml
 
 JOINT = {"tangent_stiffness_N_per_m": 2e7, "slip_force_N": 120.0, "exponent": -0.4, "stiffness_ratio": 0.7}
@@ -50,6 +50,18 @@ def test_jump_and_heat_are_of_the_loop() -> None:
     # The loop of the second cycle closes; states at 200 points of a branch, corners of the polygon between them.
     assert heat == pytest.approx(area, rel=1e-4)
     assert abs(found.energy_residue_J) < 1e-4 * found.states["iwan_joint_dissipation_J"][-1, 0]
+
+
+@pytest.mark.parametrize("located", [True, False])
+def test_joints_in_a_row_do_not_depend_on_increments(located: bool) -> None:
+    made = generate.chain(5)
+    made["iwan_joint"] = [{"name": one["name"], "nodes": one["nodes"], "axis": one["axis"], **JOINT,
+                           "slip_force_N": (0.5 + place) * 60.0} for place, one in enumerate(made.pop("slider"))]
+    few, many = (solve.path(parse_case(made).resolve(), increments_per_branch=increments, locate_events=located)
+                 for increments in (50, 171))
+    jumps = [found.cycle_ends["displacement_m"][-1] for found in (few, many)]
+    # Elements are exact whatever the step: what is left is rounding of displacements of 1 mm.
+    assert jumps[0] == pytest.approx(jumps[1], rel=0, abs=1e-9 * np.abs(jumps[1]).max())
 
 
 def test_between_two_nodes_it_holds_across_its_axis() -> None:
