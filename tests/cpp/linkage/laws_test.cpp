@@ -218,6 +218,7 @@ TEST(LinkageAdaptive, RefusesFrictionThatRemembers) {
   const State start = initial_state(model, Start::rest, 0.0);
   EXPECT_THROW(simulate_adaptive(model, heating(), start), std::invalid_argument);
   EXPECT_THROW(simulate_adaptive(umbrella(), heating(), start, {1e-20, 0}), std::invalid_argument);
+  EXPECT_THROW(simulate_adaptive(umbrella(), heating(), start, {1e-9, -1}), std::invalid_argument);
 }
 
 TEST(Start, RefusesPenetration) {

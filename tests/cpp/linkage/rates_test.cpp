@@ -34,7 +34,7 @@ std::vector<State> states(const Linkage& model) {
 
 Linkage sprung() {
   Linkage model = umbrella();
-  model.torsion_stiffness = 3.0;
+  model.torsion_stiffness = 0.3;
   model.torsion_free_angle = 1.5;
   return model;
 }
