@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from pathlib import Path
 from typing import Any, Callable
 
 import numpy as np
@@ -91,6 +92,20 @@ def test_events_and_jump_of_table_1_agree_within_a_thousandth(statejump: Callabl
     # Sticking that gives way by 1/STICK, stops by 1/PUSH of what the bar does.
     assert all(row.difference < 1e-4 for row in rows.values())
     assert rows["state_jump"].values["fe"] == pytest.approx(30.0 * 0.5 / (70e9 * 9e-6), rel=1e-6)
+
+
+@with_calculix
+def test_finite_elements_are_a_third_column(statejump: Callable[..., Outcome], tmp_path: Path) -> None:
+    told = statejump("compare", "--fe", "cases/table1.toml")
+    assert told.status == 0, told.errors
+    assert "CalculiX" in told.output
+    rows = {row.name: row for row in sj.read(tmp_path / "results/table1/comparison.h5").rows}
+    jump = rows["state_jump, finite elements"]
+    assert list(jump.values) == ["reduced", "fe"] and jump.passed
+    assert jump.values["reduced"] == rows["state_jump"].values["reduced"]
+    assert jump.difference == pytest.approx(abs(jump.values["fe"] - jump.values["reduced"]), rel=1e-6)
+    page = statejump("report", "results/table1")
+    assert page.status == 0 and "CalculiX" in (tmp_path / "results/table1/report.html").read_text()
 
 
 def test_kinks_are_where_straight_pieces_meet() -> None:

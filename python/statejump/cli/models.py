@@ -129,9 +129,10 @@ def dem_command(case_file: Path, results: Results, quiet: bool) -> None:
 @click.command("compare")
 @click.argument("files", metavar="CASE|FILE FILE", nargs=-1, required=True, type=CaseFile())
 @DYNAMIC
+@click.option("--fe", "finite", is_flag=True, help="With finite elements in CalculiX as a third column.")
 @RESULTS
 @QUIET
-def compare_command(files: tuple[Path, ...], dynamic: bool, results: Results, quiet: bool) -> None:
+def compare_command(files: tuple[Path, ...], dynamic: bool, finite: bool, results: Results, quiet: bool) -> None:
     """Both models of CASE side by side, or two result files of the same case. The exit status is 1 when a
     tolerance is missed, 2 when the files are of different cases.
 
@@ -139,6 +140,7 @@ def compare_command(files: tuple[Path, ...], dynamic: bool, results: Results, qu
     Examples:
       statejump compare cases/table1.toml
       statejump compare --dynamic cases/trusses/chain_10.toml
+      statejump compare --fe cases/table1.toml
       statejump compare results/table1/reduced.h5 results/table1/dem.h5
     """
     from statejump.results.read import is_result_file
@@ -147,24 +149,30 @@ def compare_command(files: tuple[Path, ...], dynamic: bool, results: Results, qu
     if len(files) > 1 or is_result_file(files[0]):
         from statejump.cli.results import compare_files
 
-        if dynamic:
-            raise click.UsageError("'--dynamic' is for a case, result files say themselves what ran.")
+        if dynamic or finite:
+            option = "--dynamic" if dynamic else "--fe"
+            raise click.UsageError(f"'{option}' is for a case, result files say themselves what ran.")
         compare_files(files, console)
     else:
-        _compare_case(files[0], dynamic, results, console)
+        _compare_case(files[0], dynamic, finite, results, console)
 
 
-def _compare_case(case_file: Path, dynamic: bool, results: Results, console: Console) -> None:
+def _compare_case(case_file: Path, dynamic: bool, finite: bool, results: Results, console: Console) -> None:
     from statejump.core.figures import save as save_figure
     from statejump.results.record import save
 
-    case = Case(loaded(case_file, "compare", "dem_input", *(["dynamic"] if dynamic else [])))
+    case = Case(loaded(case_file, "compare", "dem_input", *(["dynamic"] if dynamic else []),
+                       *(["fe"] if finite else [])))
     with results.folder(_folder_name(case, dynamic)) as folder:
         _check(case, folder, "reduced", "dem")
         with progress(console, "reduced model") as tell:
             reduced = case.reduced(tell, dynamic=dynamic)
+        # What it refuses is refused before YADE runs.
+        elements = case.definition.behaviour.ability("fe", case.definition)(case.definition) if finite else None
         dem = _dem("compare", case, {"reduced": reduced}, folder, console)
         comparison = api.compare(reduced, dem)
+        if elements is not None:
+            comparison = comparison.with_fe(elements.rows, elements.notes)
         runs = dict(comparison.models)
         files = comparison.write(folder.staged)
         figures = save_figure(comparison.plot(), folder.staged, case.name)

@@ -128,6 +128,19 @@ class Comparison:
         """Names of the quantities that are not."""
         return [row.name for row in self.rows if not row.passed]
 
+    def with_fe(self, rows: Iterable[Quantity], notes: Iterable[str] = ()) -> Comparison:
+        """Return the comparison with finite elements as another column.
+
+        :param rows: of the reduced model and finite elements, their differences and tolerances relative to the former
+        """
+        more = []
+        for row in rows:
+            own = row.values[REDUCED]
+            scale = abs(own) if own else 1.0
+            more.append(replace(row, name=f"{row.name}, finite elements", tolerance=row.tolerance * scale,
+                                difference=None if row.difference is None else row.difference * scale))
+        return replace(self, rows=(*self.rows, *more), notes=(*self.notes, *notes))
+
     def frame(self) -> pandas.DataFrame:
         """Return a row per compared quantity."""
         import pandas

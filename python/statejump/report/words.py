@@ -10,7 +10,8 @@ from statejump.core.errors import StatejumpError
 from statejump.core.units import split_unit, text
 
 MODELS = {"reduced": "Reduced model", "dem": "DEM (YADE)"}
-SIDES = {"closed_form": "Closed form", "reduced": "Reduced", "dem": "DEM", "first": "First", "second": "Second"}
+SIDES = {"closed_form": "Closed form", "reduced": "Reduced", "dem": "DEM", "fe": "CalculiX",
+         "first": "First", "second": "Second"}
 STATES = {"separated": "gap", "stick": "stick", "slip": "slip", "at_stop": "at the stop"}
 NAMES = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}
 EVENTS = {

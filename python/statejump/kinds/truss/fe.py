@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from statejump.core.comparison import Quantity
 from statejump.core.errors import NotAllowed
-from statejump.core.thermal import Thermal
 from statejump.fe import ccx
 from statejump.fe.ccx import number
 from statejump.kinds.truss.case import TrussCase, TrussThermal
@@ -101,7 +100,7 @@ def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:
     found = []
     for step in (STEP, -STEP):
         count = len(truss.links.names)
-        program = TrussThermal(**Thermal(shape="triangle", temperature_change_max_K=1.0).to_dict(), period_s=1.0)
+        program = TrussThermal(shape="triangle", temperature_change_max_K=1.0, period_s=1.0)
         scaled = replace(
             truss, programs=(program,), program_names=("thermal",),
             nodes=replace(truss.nodes, force_N=step * truss.nodes.force_N),
