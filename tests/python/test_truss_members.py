@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Warnings about links of a truss: Euler's load, yield strength."""
+"""Warnings about a run of a truss: Euler's load and yield strength of links, changes that are taken together."""
 from __future__ import annotations
 
 from typing import Any
@@ -79,3 +79,11 @@ def test_keys_of_a_section_are_for_links_only() -> None:
         sj.load(data)
     with pytest.raises(sj.StatejumpError, match="ends = 'welded' is not allowed"):
         bar(ends="welded")
+
+
+def test_changes_that_are_taken_together_are_told() -> None:
+    chain = sj.truss.chain(5)
+    coarse = chain.changed({"reduced.locate_events": False, "reduced.increments_per_branch": 1})
+    assert [warning.split(":")[0] for warning in told(coarse, "locate_events")] == [
+        "in 5 increments several joints changed their status"]
+    assert not told(chain, "locate_events")

@@ -209,10 +209,28 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
     beyond = members.warnings(path.truss.links, at, states["temperature_change_K"], states["axial_force_N"])
     if len(at) == len(path.cycle_ends["time_s"]):
         beyond = (*beyond, "of this long path the ends of cycles are kept: loads of links between them are not checked")
+    beyond = (*beyond, *_taken_together(case, path))
     run = _run(case, "reduced", plain, energy, items, _events(case, path), summary, native=path, warnings=beyond,
                sampler=lambda times: reduced_run(case, path, times))
     heat_of_joints = Column(sampled(_heat(states)), "J", "contacts", note="heat of friction since the start")
     return replace(run, contacts={**run.contacts, "dissipation_J": heat_of_joints})
+
+
+def _taken_together(case: TrussCase, path: TrussPath) -> tuple[str, ...]:
+    """What a path without location of events may have missed: of two joints that change within one increment it is not
+    known which came first, nor whether a third slid to and fro between them."""
+    # Changes that are located all the same are so within 1.5 tolerances of a branch.
+    located = 2 * case.reduced.event_tolerance * float(path.states["time_s"][-1])
+    joints: dict[float, set[tuple[str, str]]] = {}
+    for event in path.events:
+        if event.interval_s > located:
+            joints.setdefault(event.time_s, set()).add((event.joint_kind, event.name))
+    together = sum(len(changed) > 1 for changed in joints.values())
+    if not together:
+        return ()
+    increments = "1 increment" if together == 1 else f"{together} increments"
+    return (f"in {increments} several joints changed their status: slip that turned round between two of these changes "
+            "is not seen; reduced.locate_events = true locates them",)
 
 
 def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
