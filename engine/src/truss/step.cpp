@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "walker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "condense.hpp"
+
+namespace statejump::truss::detail {
+
+/// Whether a joint that stopped sliding before `target` may have slid by more than rounding until
+/// it did: slides of a step are lost when it ends in a stick. One that comes to rest smoothly
+/// slides so little at last that no shorter step would tell.
+bool Walker::slide_at_stake(int i, JointStatus before, double target,
+                            const Rounding& rounding) const {
+  if (before == JointStatus::open) return true;
+  double least = 1e3 * system.slide_rounding(i, z, time, origin, rounding);
+  if (!options.locate_events) {
+    least += options.event_tolerance * joint(i, [](const auto& one) { return one.least_slide(); });
+  }
+  return std::abs(slide_rate[i]) * (target - time) > least;
+}
+
+/// One step, if it is converged and exact or no longer than `tolerance`; else nothing happens.
+StepEnd Walker::step_to(double target, double tolerance) {
+  // The sum time + tolerance is rounded.
+  const bool is_short = target - time <= 1.5 * tolerance;
+  VectorXd trial = z;
+  Statuses trial_statuses = origin.statuses;
+  const StepStart& begin = origin;
+  // The first change ahead: passed where it need not be located, or no location is asked.
+  const Ahead ahead{time, tolerance / (target - time), options.locate_events};
+  const SolveReport report =
+      newton.solve(target, begin, JointModel::friction, 1.0, options.most_iterations, trial,
+                   trial_statuses, is_short ? std::optional<Ahead>() : ahead);
+  event_share = report.first_change;
+  if (report.end == SolveEnd::event_ahead) {
+    ++path.solves;
+    return StepEnd::event_inside;
+  }
+  if (report.end == SolveEnd::stopped) return StepEnd::stopped;
+  if (report.end != SolveEnd::converged) {
+    ++path.solves;
+    if (!is_short) return StepEnd::not_converged;
+    origin.statuses = trial_statuses;
+    fail(report, JointModel::friction, target, "no equilibrium");
+  }
+  std::vector<Event> events;
+  std::vector<FailureJoint> opened;
+  const Rounding rounding = system.rounding(z);
+  const int joints = static_cast<int>(model.joints.size());
+  for (int i = 0; i < joints; ++i) {
+    const JointStatus before = origin.statuses[index(i)];
+    const JointStatus after = trial_statuses[index(i)];
+    if (before == after) continue;
+    const bool remembers =
+        joint(i, [&](const auto& one) { return one.remembers_when(before, after); });
+    const bool matters =
+        remembers ? slide_at_stake(i, before, target, rounding) : options.locate_events;
+    if (!is_short && matters) {
+      ++path.solves;
+      return StepEnd::event_inside;
+    }
+    events.push_back(
+        {target, target - time, model.temperature_change(0, 1.0, target), i, before, after});
+    if (after == JointStatus::open) opened.push_back(named(model, i));
+  }
+  for (int i = 0; i < joints; ++i) {
+    const Trial at = system.trial(i, trial, target, begin, JointModel::friction, 1.0);
+    const JointStatus status = trial_statuses[index(i)];
+    if (!joint(i, [&](const auto& one) { return one.jumps(at, status); })) continue;
+    if (!is_short) {
+      ++path.solves;
+      return StepEnd::event_inside;
+    }
+    fail_joint(failure_at(FailureKind::jump_across_play, model, target), named(model, i));
+  }
+  if (!opened.empty()) {
+    if (FoundModes modes = mechanism(system, trial, target, trial_statuses, JointModel::friction)) {
+      FailureFields fields = failure_at(FailureKind::opened_mechanism, model, target);
+      fields.joints = std::move(opened);
+      fail_modes(std::move(fields), std::move(modes));
+    }
+  }
+  // The rates on this side of a corner that may be at `target`.
+  std::vector<double> program_rates;
+  for (const thermal::Program& program : model.programs) {
+    const double near = std::min(Model::same_time * program.duration(), 0.5 * (target - time));
+    program_rates.push_back(program.temperature_rate(target - near));
+  }
+  VectorXd rate_after;
+  VectorXd slide_rate_after = VectorXd::Zero(joints);
+  if (const auto found =
+          newton.rate(system.heating(trial, target, begin, trial_statuses, program_rates))) {
+    rate_after = *found;
+    slide_rate_after =
+        system.slide_rates(trial, target, begin, trial_statuses, rate_after, program_rates);
+  }
+  const StepStart after = system.commit(trial, target, trial_statuses, begin);
+  const VectorXd slips = system.slips(trial, target, begin, after);
+  const Ends ends{time, target,     begin,      trial_statuses,   z,    trial,
+                  rate, rate_after, slide_rate, slide_rate_after, slips};
+  if (!is_short && rate.size() > 0 && rate_after.size() > 0) {
+    event_share = first_turn(ends);
+    if (event_share < 1.0) {
+      ++path.solves;
+      return StepEnd::event_inside;
+    }
+  }
+  note(report);
+  const std::vector<double>& asked = options.problem_times;
+  if (path.problems.size() < asked.size() && target >= asked[path.problems.size()]) {
+    path.problems.push_back(local_problem(system, trial, target, begin, trial_statuses));
+  }
+  const bool smooth = trial_statuses == origin.statuses && !is_short;
+  system.account(z, time, trial, target, begin, after, slips, state, smooth ? rate : VectorXd(),
+                 smooth ? rate_after : VectorXd());
+  rate = rate_after;
+  slide_rate = slide_rate_after;
+  z = trial;
+  origin = after;
+  time = target;
+  system.describe(z, time, origin, state);
+  path.events.insert(path.events.end(), events.begin(), events.end());
+  if (!events.empty() && options.locate_events && !options.cycle_ends_only) {
+    path.states.push_back(state);
+  }
+  return StepEnd::done;
+}
+
+}  // namespace statejump::truss::detail

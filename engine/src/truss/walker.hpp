@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+#include <variant>
+
+#include "newton.hpp"
+#include "statejump/failure.hpp"
+#include "statejump/truss/path.hpp"
+#include "system.hpp"
+
+namespace statejump::truss::detail {
+
+FailureJoint named(const Model& model, int joint);
+
+/// Fields of a failure at an instant.
+FailureFields failure_at(FailureKind kind, const Model& model, double time);
+
+[[noreturn]] void fail_modes(FailureFields fields, FoundModes found);
+[[noreturn]] void fail_joint(FailureFields fields, FailureJoint joint);
+
+/// How a step ended: with the state moved on, or back at its start.
+enum class StepEnd : unsigned char { done, event_inside, not_converged, stopped };
+
+/// Both ends of a step that has converged.
+struct Ends {
+  double from_time;
+  double to_time;
+  const StepStart& start;
+  const Statuses& statuses;  ///< At its end.
+  const VectorXd& from;
+  const VectorXd& to;
+  const VectorXd& from_rate;
+  const VectorXd& to_rate;
+  const VectorXd& from_slide_rate;
+  const VectorXd& to_slide_rate;
+  const VectorXd& slips;
+};
+
+/// Equilibrium being followed.
+struct Walker {
+  const Model& model;
+  const System& system;
+  const Options& options;
+  Newton newton;
+  Path path;
+  VectorXd z;
+  StepStart origin;  ///< The state as the start of the next step.
+  State state;
+  double time = 0.0;
+  /// Share of the last step that was tried after which its first event comes; 1: unknown.
+  double event_share = 1.0;
+  /// Rates of the unknowns at `time`; empty where they are not known.
+  VectorXd rate;
+  /// How fast every joint that slips slides at `time` [m/s].
+  VectorXd slide_rate;
+
+  [[noreturn]] void fail(const SolveReport& report, JointModel joints, double when,
+                         const char* sought) const;
+  void note(const SolveReport& report);
+  void start();
+  void open_clearances();
+  [[noreturn]] void refuse_undetermined(FailureKind kind, FoundModes found) const;
+  void refuse_buckled(double when) const;
+  StepEnd step_to(double target, double tolerance);
+  bool slide_at_stake(int joint, JointStatus before, double target, const Rounding& rounding) const;
+  double first_turn(const Ends& ends) const;
+  double turn_of_slip(int joint, const Ends& ends, const Rounding& rounding) const;
+  double turn_of_stick(int joint, const Ends& ends, const Rounding& rounding) const;
+
+  /// What the type of a joint says.
+  template <class Ask>
+  auto joint(int i, Ask&& ask) const {
+    return std::visit(ask, model.joints[index(i)]);
+  }
+};
+
+}  // namespace statejump::truss::detail
