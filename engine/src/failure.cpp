@@ -59,6 +59,15 @@ std::string joint(const FailureFields& fields) {
   return fields.joints.front().kind + " '" + fields.joints.front().name + "'";
 }
 
+/// "slider 'A', revolute 'B'".
+std::string joints(const FailureFields& fields) {
+  std::string text;
+  for (const FailureJoint& one : fields.joints) {
+    text += (text.empty() ? "" : ", ") + one.kind + " '" + one.name + "'";
+  }
+  return text.empty() ? "a joint" : text;
+}
+
 }  // namespace
 
 const char* to_string(FailureKind kind) {
@@ -81,6 +90,10 @@ const char* to_string(FailureKind kind) {
       return "singular";
     case FailureKind::not_converged:
       return "not_converged";
+    case FailureKind::no_continuation:
+      return "no_continuation";
+    case FailureKind::several_continuations:
+      return "several_continuations";
     case FailureKind::unsettled_joint:
       return "unsettled_joint";
     case FailureKind::law_left_range:
@@ -118,6 +131,11 @@ std::string cause(const FailureFields& fields) {
                         ? std::string(", after all joints had settled")
                         : ", while the status of " + joint(fields) + " still changed");
     }
+    case FailureKind::no_continuation:
+      return "the more " + joints(fields) + (fields.joints.size() == 1 ? " slips" : " slip") +
+             ", the more the truss pushes";
+    case FailureKind::several_continuations:
+      return "statics does not choose between the ways in which " + joints(fields) + " may go on";
     case FailureKind::unsettled_joint:
       return "its status changed from " + fields.before + " to " + fields.after +
              " again and again";
@@ -133,6 +151,8 @@ std::string remedy(const FailureFields& fields) {
   switch (fields.kind) {
     case FailureKind::unloaded_joint:
       return "load it by a spring, a cable or a force";
+    case FailureKind::no_continuation:
+      return "reduced --dynamic follows the jump";
     case FailureKind::not_finite:
       return "take more steps";
     default:
@@ -162,6 +182,10 @@ std::string sentence(const FailureFields& fields) {
     case FailureKind::singular:
     case FailureKind::not_converged:
       return fields.sought + where + ": " + why;
+    case FailureKind::no_continuation:
+      return "slip runs away" + where + ": " + why + "; " + remedy(fields);
+    case FailureKind::several_continuations:
+      return "the path parts" + where + ": " + why;
     case FailureKind::unsettled_joint:
       return joint(fields) + " does not settle" + where + ": " + why;
     case FailureKind::law_left_range:

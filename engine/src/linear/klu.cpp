@@ -9,6 +9,23 @@
 
 namespace statejump::linear {
 
+namespace {
+
+/// Whether a permutation is an odd one: a cycle of n takes n - 1 exchanges.
+bool odd(const int* permutation, int size) {
+  std::vector<bool> seen(static_cast<std::size_t>(size), false);
+  bool is_odd = false;
+  for (int start = 0; start < size; ++start) {
+    for (int k = start; !seen[static_cast<std::size_t>(k)]; k = permutation[k]) {
+      seen[static_cast<std::size_t>(k)] = true;
+      if (k != start) is_odd = !is_odd;
+    }
+  }
+  return is_odd;
+}
+
+}  // namespace
+
 struct SparseFactor::Factors {
   Factors() {
     klu_defaults(&common);
@@ -83,6 +100,15 @@ Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {
   klu_solve(factors_->symbolic, factors_->numeric, factors_->size, 1, result.data(),
             &factors_->common);
   return result;
+}
+
+int SparseFactor::determinant_sign() const {
+  const Factors& f = *factors_;
+  // Rows are divided by positive numbers; both permutations make the matrix block triangular.
+  bool negative = odd(f.numeric->Pnum, f.size) != odd(f.symbolic->Q, f.size);
+  const double* pivots = static_cast<const double*>(f.numeric->Udiag);
+  for (int k = 0; k < f.size; ++k) negative = negative != (pivots[k] < 0.0);
+  return negative ? -1 : 1;
 }
 
 const char* SparseFactor::library() {

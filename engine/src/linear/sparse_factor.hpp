@@ -26,6 +26,8 @@ class SparseFactor {
   bool factorize(const Eigen::SparseMatrix<double>& matrix);
   /// Solution of the factored system.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
+  /// Sign of the determinant of the factored matrix, 1 or -1.
+  int determinant_sign() const;
   /// "KLU" or "SparseLU".
   static const char* library();
 

@@ -50,6 +50,10 @@ Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {
   return factors_->lu.solve(right_side);
 }
 
+int SparseFactor::determinant_sign() const {
+  return factors_->lu.signDeterminant() < 0.0 ? -1 : 1;
+}
+
 const char* SparseFactor::library() {
   return "SparseLU";
 }

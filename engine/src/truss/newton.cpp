@@ -9,6 +9,8 @@
 #include <unordered_set>
 #include <utility>
 
+#include "rate_problem.hpp"
+
 namespace statejump::truss::detail {
 
 namespace {
@@ -106,6 +108,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
                           int most_iterations, VectorXd& z, Statuses& statuses,
                           const std::optional<Ahead>& ahead) {
   SolveReport report;
+  current_ = false;
   const VectorXd origin = ahead ? z : VectorXd();
   bool looking = ahead.has_value();
   const int displacements = system_->displacements();
@@ -159,6 +162,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       next = take();
     }
     statuses = next;
+    current_ = false;
     report.joints = found.joints;
     lengths.clear();
     halvings = 0;
@@ -207,6 +211,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       report.end = SolveEnd::singular;
       return report;
     }
+    current_ = true;
     const VectorXd next = factor_.solve(-at_.residual);
     if (!next.allFinite()) {
       report.end = SolveEnd::singular;
@@ -235,6 +240,9 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         if (share > ahead->now) {
           looking = false;
           report.first_change = share;
+          for (const int joint : found.joints) {
+            report.leaving.emplace_back(joint, found.corrected[index(joint)]);
+          }
           report.joints = found.joints;
           if (ahead->stop) {
             report.end = SolveEnd::event_ahead;
@@ -256,11 +264,23 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   return report;
 }
 
+int Newton::stability_index() {
+  if (!current_) {
+    ++factorizations_;
+    current_ = factor_.factorize(at_.jacobian);
+  }
+  return current_ ? index_of(factor_.determinant_sign(), at_) : 0;
+}
+
 std::optional<VectorXd> Newton::rate(const VectorXd& by_time) {
   // The factors are those of the state before the last step: what that leaves is refined away, and
   // where it is not (the branches have changed since), there are new factors.
   for (const bool fresh : {false, true}) {
-    if (fresh && (++factorizations_, !factor_.factorize(at_.jacobian))) return std::nullopt;
+    if (fresh) {
+      ++factorizations_;
+      current_ = factor_.factorize(at_.jacobian);
+      if (!current_) return std::nullopt;
+    }
     VectorXd found = factor_.solve(-by_time);
     double last = found.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(last)) continue;

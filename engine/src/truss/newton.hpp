@@ -23,6 +23,8 @@ struct SolveReport {
   /// Share of the step after which the first joint leaves its branch, as the tangents see it; 1:
   /// none does.
   double first_change = 1.0;
+  /// The joints that do so, and the branch that each of them leaves it for.
+  std::vector<std::pair<int, JointStatus>> leaving;
 };
 
 /// From where to where a step goes, for the question when within it the first joint changes.
@@ -77,6 +79,9 @@ class Newton {
   /// @returns nothing where the equations are singular
   std::optional<VectorXd> rate(const VectorXd& by_time);
 
+  /// Index of the equations where the last solve converged, see RateProblem; 0: singular.
+  int stability_index();
+
   long factorizations() const { return factorizations_; }
 
  private:
@@ -90,6 +95,7 @@ class Newton {
   Assembly at_;
   linear::SparseFactor factor_;
   long factorizations_ = 0;
+  bool current_ = false;  ///< Whether the factors are those of the last set of branches.
 };
 
 /// Modes of a truss that nothing resists.

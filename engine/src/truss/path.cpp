@@ -99,9 +99,19 @@ Path solve(const Model& model, const Options& options) {
   const double duration = model.programs.front().duration();
   double now = 0.0;
   const auto going_on = [&] { return !options.progress || options.progress(now / duration); };
-  Walker walker{model, system, options, Newton(system, options.locate_events, going_on),
-                {},    {},     {},      {},
-                0.0,   1.0,    {},      {}};
+  Walker walker{model,
+                system,
+                options,
+                Newton(system, options.locate_events, going_on),
+                detail::RateProblem(system),
+                {},
+                {},
+                {},
+                {},
+                0.0,
+                1.0,
+                {},
+                {}};
   const auto joints = static_cast<Eigen::Index>(model.joints.size());
   walker.slide_rate = VectorXd::Zero(joints);
   walker.path.unknowns = system.unknowns();

@@ -33,9 +33,7 @@ void fail_joint(FailureFields fields, FailureJoint joint) {
 
 void Walker::fail(const SolveReport& report, JointModel joints, double when,
                   const char* sought) const {
-  if (FoundModes modes = mechanism(system, z, when, origin.statuses, joints)) {
-    fail_modes(failure_at(FailureKind::mechanism, model, when), std::move(modes));
-  }
+  refuse_mechanism(when, origin.statuses, joints);
   refuse_buckled(when);
   const FailureKind kind =
       report.end == SolveEnd::singular ? FailureKind::singular : FailureKind::not_converged;
@@ -71,6 +69,13 @@ void Walker::start() {
   }
   refuse_buckled(0.0);
   open_clearances();
+}
+
+/// Throws if the truss has free modes with its joints as the statuses say.
+void Walker::refuse_mechanism(double when, const Statuses& statuses, JointModel joints) const {
+  if (FoundModes modes = mechanism(system, z, when, statuses, joints)) {
+    fail_modes(failure_at(FailureKind::mechanism, model, when), std::move(modes));
+  }
 }
 
 /// Throws if the state is unstable whatever the joints do.

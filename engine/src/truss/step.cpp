@@ -32,7 +32,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
   const StepStart& begin = origin;
   // The first change ahead: passed where it need not be located, or no location is asked.
   const Ahead ahead{time, tolerance / (target - time), options.locate_events};
-  const SolveReport report =
+  SolveReport report =
       newton.solve(target, begin, JointModel::friction, 1.0, options.most_iterations, trial,
                    trial_statuses, is_short ? std::optional<Ahead>() : ahead);
   event_share = report.first_change;
@@ -40,12 +40,26 @@ StepEnd Walker::step_to(double target, double tolerance) {
     ++path.solves;
     return StepEnd::event_inside;
   }
+  if (is_short) report = continue_from_event(target, trial, trial_statuses, report);
   if (report.end == SolveEnd::stopped) return StepEnd::stopped;
   if (report.end != SolveEnd::converged) {
     ++path.solves;
     if (!is_short) return StepEnd::not_converged;
     origin.statuses = trial_statuses;
     fail(report, JointModel::friction, target, "no equilibrium");
+  }
+  if (!is_short && passes_instability(trial_statuses)) {
+    ++path.solves;
+    return StepEnd::event_inside;
+  }
+  // One that begins to slip and is found on another branch has slid in between.
+  const auto slid_between = [&](const std::pair<int, JointStatus>& left) {
+    return is_slip(left.second) && left.second != trial_statuses[index(left.first)] &&
+           system.remembers_when(left.first, left.second, trial_statuses[index(left.first)]);
+  };
+  if (!is_short && std::any_of(report.leaving.begin(), report.leaving.end(), slid_between)) {
+    ++path.solves;
+    return StepEnd::event_inside;
   }
   std::vector<Event> events;
   std::vector<FailureJoint> opened;
@@ -104,7 +118,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
                   rate, rate_after, slide_rate, slide_rate_after, slips};
   if (!is_short && rate.size() > 0 && rate_after.size() > 0) {
     event_share = first_turn(ends);
-    if (event_share < 1.0) {
+    if (event_share < 1.0 || !follows_its_rates(ends)) {
       ++path.solves;
       return StepEnd::event_inside;
     }

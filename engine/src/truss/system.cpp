@@ -139,6 +139,11 @@ double System::slide_rounding(int joint, const VectorXd& z, double time, const S
                     model_->joints[index(joint)]);
 }
 
+bool System::remembers_when(int joint, JointStatus before, JointStatus after) const {
+  return std::visit([&](const auto& one) { return one.remembers_when(before, after); },
+                    model_->joints[index(joint)]);
+}
+
 void System::apply(int joint, const Seat& seat, VectorXd& z) const {
   const JointFrame& frame = frames_[index(joint)];
   const Node& part = model_->nodes[index(frame.nodes[0])];

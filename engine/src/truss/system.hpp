@@ -113,6 +113,9 @@ class System {
   int node_of(int displacement) const;
   /// First unknown of a joint's forces.
   int force_row(int joint) const { return force_row_[index(joint)]; }
+  int force_count(int joint) const { return frames_[index(joint)].forces; }
+  /// Whether the state depends on when in a step a joint changed its status.
+  bool remembers_when(int joint, JointStatus before, JointStatus after) const;
   double stiffness_scale() const { return stiffness_scale_; }
   double size() const { return size_; }  ///< Largest extent of the drawn shape [m].
 

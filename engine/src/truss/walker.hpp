@@ -4,8 +4,10 @@
 #include <Eigen/Core>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "newton.hpp"
+#include "rate_problem.hpp"
 #include "statejump/failure.hpp"
 #include "statejump/truss/path.hpp"
 #include "system.hpp"
@@ -44,6 +46,7 @@ struct Walker {
   const System& system;
   const Options& options;
   Newton newton;
+  RateProblem rates;
   Path path;
   VectorXd z;
   StepStart origin;  ///< The state as the start of the next step.
@@ -62,9 +65,16 @@ struct Walker {
   void start();
   void open_clearances();
   [[noreturn]] void refuse_undetermined(FailureKind kind, FoundModes found) const;
+  void refuse_mechanism(double when, const Statuses& statuses, JointModel joints) const;
   void refuse_buckled(double when) const;
   StepEnd step_to(double target, double tolerance);
-  bool slide_at_stake(int joint, JointStatus before, double target, const Rounding& rounding) const;
+  SolveReport continue_from_event(double target, VectorXd& to, Statuses& statuses,
+                                  SolveReport first);
+  [[noreturn]] void fail_continuation(FailureKind kind, double when, std::vector<int> joints) const;
+  bool follows_its_rates(const Ends& ends) const;
+  bool passes_instability(const Statuses& statuses);
+  bool slide_at_stake(int joint, JointStatus before, double target,
+                      const Rounding& rounding) const;
   double first_turn(const Ends& ends) const;
   double turn_of_slip(int joint, const Ends& ends, const Rounding& rounding) const;
   double turn_of_stick(int joint, const Ends& ends, const Rounding& rounding) const;

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+
 namespace statejump::linear {
 namespace {
 
@@ -32,6 +36,20 @@ TEST(SparseFactor, NamesAMatrixThatIsSingularToRounding) {
   dense << k, -k, 0.0, -k, k + 0.7, -0.7, 0.0, -0.7, 0.7;
   SparseFactor chain;
   EXPECT_FALSE(chain.factorize(sparse(dense)));
+}
+
+TEST(SparseFactor, TellsTheSignOfTheDeterminant) {
+  // Blocks, so that KLU finds a triangular form; every order of the rows once.
+  Eigen::Matrix4d dense;
+  dense << 2.0, 1.0, 0.3, 0.0, 1.0, -3.0, 0.0, 0.2, 0.0, 0.0, 0.5, 4.0, 0.0, 0.0, 1.0, 0.25;
+  std::array<int, 4> order{0, 1, 2, 3};
+  do {
+    Eigen::Matrix4d rows;
+    for (int i = 0; i < 4; ++i) rows.row(i) = dense.row(order[static_cast<std::size_t>(i)]);
+    SparseFactor factor;
+    ASSERT_TRUE(factor.factorize(sparse(rows)));
+    EXPECT_EQ(factor.determinant_sign(), rows.determinant() < 0.0 ? -1 : 1);
+  } while (std::next_permutation(order.begin(), order.end()));
 }
 
 TEST(SparseFactor, TakesColumnsOfDifferentUnits) {

@@ -103,6 +103,12 @@ struct Path {
 /// within the step, which is then shortened to that place. The temperature's work is integrated
 /// along the same cubic, with an error of fourth order in the increment where no status changes.
 ///
+/// **Where a path ends.** A step as short as they get, within which something changes, is decided
+/// by the rates of all joints at a bound together (truss/rate_problem.hpp). Where no slow
+/// continuation is left, slip runs away; where more than one is, statics does not choose. After
+/// every step the index of the equations is asked, and whether the rates at both ends explain the
+/// step. Without `locate_events` an increment may step over a limit point.
+///
 /// **Start.** The drawn shape need not be in equilibrium: it is first relaxed at ΔT = 0 with
 /// bilateral pins in place of clearance revolutes; their pin forces say where each journal touches;
 /// then the clearances open with frictionless contacts. There friction begins, without force. A
@@ -113,8 +119,8 @@ struct Path {
 /// names joint or nodes and the temperature: for a mechanism (with its free modes), also one that a
 /// joint makes that opens, or that is open at the start; for an equilibrium of the start or at a
 /// corner of the programs that is unstable though every closed joint is held (buckled, with the
-/// modes); for a revolute that jumps across its play; where equilibrium is not found; and for a
-/// joint whose status changes without end.
+/// modes); for a revolute that jumps across its play; where slip runs away or the path parts; where
+/// equilibrium is not found; and for a joint whose status changes without end.
 Path solve(const Model& model, const Options& options = {});
 
 }  // namespace statejump::truss

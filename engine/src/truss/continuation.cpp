@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "walker.hpp"
+
+namespace statejump::truss::detail {
+
+namespace {
+
+/// Joints that a failure names, of those that slide unstably the fastest.
+constexpr std::size_t most_named = 3;
+/// Share of the truss' size below which a jump is not told from what Newton's method leaves of its
+/// equations: the mean, in decades, of rounding and the size itself.
+const double jump_share = std::sqrt(std::numeric_limits<double>::epsilon());
+/// Along its tangent a path is past a limit point as far away as the step is long after twice the
+/// tangent's step, if it turns there like a parabola; where it turns less, a little later.
+constexpr double tangent_steps[] = {1.0, 2.0, 4.0};
+
+/// Whether a joint slips. Where none does, an index below zero is buckling, which corners of the
+/// programs look for.
+bool any_slips(const Statuses& statuses) {
+  return std::any_of(statuses.begin(), statuses.end(), is_slip);
+}
+
+}  // namespace
+
+void Walker::fail_continuation(FailureKind kind, double when, std::vector<int> joints) const {
+  if (joints.empty()) {
+    for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
+      if (slide_rate[i] != 0.0) joints.push_back(i);
+    }
+    std::stable_sort(joints.begin(), joints.end(), [&](int a, int b) {
+      return std::abs(slide_rate[a]) > std::abs(slide_rate[b]);
+    });
+    if (joints.size() > most_named) joints.resize(most_named);
+  }
+  FailureFields fields = failure_at(kind, model, when);
+  for (const int one : joints) fields.joints.push_back(named(model, one));
+  throw Failure(std::move(fields));
+}
+
+/// Decides a step within which something happens and which is as short as they get.
+/// @param first how the solve over it ended, @param to, statuses where
+/// @returns how it ended at last, with `to` and `statuses`
+/// @throws Failure if the path ends or parts there
+SolveReport Walker::continue_from_event(double target, VectorXd& to, Statuses& statuses,
+                                        SolveReport first) {
+  if (first.end == SolveEnd::stopped) return first;
+  const bool converged = first.end == SolveEnd::converged;
+  if (converged && statuses == origin.statuses) {
+    if (any_slips(statuses) && newton.stability_index() < 0) {
+      fail_continuation(FailureKind::no_continuation, target, {});
+    }
+    return first;
+  }
+  const RateAnswer answer =
+      rates.solve(z, target, origin, converged ? statuses : Statuses(), first.joints);
+  const bool undecided =
+      answer.count == Continuation::none || answer.count == Continuation::several;
+  // A contact that opens may leave a mechanism or jump across its play: the step itself says so.
+  if (undecided && answer.opens) return first;
+  if (undecided && !answer.singular.empty()) {
+    refuse_mechanism(target, answer.singular, JointModel::friction);
+  }
+  if (answer.count == Continuation::none) {
+    fail_continuation(FailureKind::no_continuation, target, answer.joints);
+  }
+  if (answer.count == Continuation::several) {
+    fail_continuation(FailureKind::several_continuations, target, answer.joints);
+  }
+  if (!converged && answer.count == Continuation::one) {
+    note(first);
+    to = z;
+    statuses = answer.statuses;
+    SolveReport second = newton.solve(target, origin, JointModel::friction, 1.0,
+                                      options.most_iterations, to, statuses);
+    if (second.end == SolveEnd::stopped) return second;
+    if (second.end != SolveEnd::converged) {
+      for (const double steps : tangent_steps) {
+        if (any_slips(answer.statuses) &&
+            rates.index_at(z + steps * answer.step, target, origin, answer.statuses) < 0) {
+          fail_continuation(FailureKind::no_continuation, target, {});
+        }
+      }
+      return second;
+    }
+    first = second;
+  }
+  if (first.end == SolveEnd::converged && any_slips(statuses) && newton.stability_index() < 0) {
+    fail_continuation(FailureKind::no_continuation, target, answer.joints);
+  }
+  return first;
+}
+
+/// Whether a step that has converged passes an instability by slip: what slips at its end is
+/// unstable there, or would be at its start.
+bool Walker::passes_instability(const Statuses& statuses) {
+  if (!any_slips(statuses)) return false;
+  if (newton.stability_index() < 0) return true;
+  if (statuses == origin.statuses) return false;
+  return rates.index_at(z, time, origin, statuses) < 0;
+}
+
+/// Whether the rates at the ends of a step without events explain where it leads. A path that jumps
+/// from a limit point to another equilibrium goes farther; a step that is bent as much as that is
+/// too long to tell.
+bool Walker::follows_its_rates(const Ends& ends) const {
+  if (ends.start.statuses != ends.statuses) return true;
+  const Eigen::Index n = system.displacements();
+  if (n == 0) return true;
+  const double half = 0.5 * (ends.to_time - ends.from_time);
+  const auto before = half * ends.from_rate.head(n);
+  const auto after = half * ends.to_rate.head(n);
+  const double apart =
+      (ends.to.head(n) - ends.from.head(n) - before - after).lpNorm<Eigen::Infinity>();
+  return apart <= std::max(before.lpNorm<Eigen::Infinity>(), after.lpNorm<Eigen::Infinity>()) +
+                      jump_share * system.size();
+}
+
+}  // namespace statejump::truss::detail
