@@ -73,10 +73,20 @@ class Batches {
   void load(ContactLanes& batch, std::size_t lane);
 
   template <bool tracks_energy, class One>
-  [[gnu::target("avx2")]] bool with_avx2(const One& one) {
+#ifdef __x86_64__
+  [[gnu::target("avx2")]]
+#endif
+  bool
+  with_avx2(const One& one) {
     return step_all<tracks_energy>(one);
   }
-  [[gnu::target("avx2")]] bool move_with_avx2() { return move_all(); }
+#ifdef __x86_64__
+  [[gnu::target("avx2")]]
+#endif
+  bool
+  move_with_avx2() {
+    return move_all();
+  }
 
   template <bool tracks_energy, class One>
   [[gnu::always_inline]] inline bool step_all(const One& one);

@@ -26,9 +26,13 @@ using Mask
     [[gnu::vector_size(lanes * sizeof(std::int64_t)), gnu::aligned(lanes * sizeof(std::int64_t))]] =
         std::int64_t;
 
-/// Whether the processor has instructions for them.
+/// Whether the processor has instructions for them; other families than x86 are not asked.
 inline bool has_avx2() {
+#ifdef __x86_64__
   return __builtin_cpu_supports("avx2") != 0;
+#else
+  return false;
+#endif
 }
 
 /// Vectors, one in each lane.
