@@ -25,7 +25,7 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 PYTHON = "/usr/bin/python3"
 # As the plugin is compiled, without optimisation at link time.
 FLAGS = ("-std=c++17", "-O3", "-DNDEBUG", "-ffp-contract=off", "-fno-math-errno", "-DEIGEN_DONT_ALIGN",
-         "-DEIGEN_DONT_VECTORIZE", "-isystem", "/usr/include/eigen3")
+         "-DEIGEN_DONT_VECTORIZE", "-Wno-psabi", "-isystem", "/usr/include/eigen3")
 NUMBERS = "statejump/stepper/numbers.hpp"
 QUESTIONS = ("inline bool is_plain(const Vector3& v)", "inline bool is_plain_strain(", "bool is_plain_stiffness(",
              "inline bool is_plain(const LinkStep& step")  # of every step
@@ -73,8 +73,8 @@ def steps(compiler: str) -> None:
         for which, include in (("with", headers), ("without", folder / "without")):
             subprocess.run(
                 [compiler, *FLAGS, f"-I{include}", f"-I{REPOSITORY}/contact_laws/kernel/include",
-                 f"-I{REPOSITORY}/thermal/include", str(Path(__file__).with_suffix(".cpp")),
-                 "-o", str(folder / f"{which}.program")], check=True)
+                 f"-I{REPOSITORY}/thermal/include", f"-I{REPOSITORY}/tests/cpp/stepper",
+                 str(Path(__file__).with_suffix(".cpp")), "-o", str(folder / f"{which}.program")], check=True)
         print("| joints | without checks | with | more |\n|---:|---:|---:|---:|")
         for joints, count in STEPS.items():
             each = []

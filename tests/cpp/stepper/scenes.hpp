@@ -60,9 +60,15 @@ inline thermal::Program rising() {
   return program;
 }
 
+/// Distance of a journal from the centre of its bearing at which the contact carries the load [m].
+inline double pressed() {
+  return clearance + depth(radius * (radius + clearance) / clearance);
+}
+
 /// Joints beside each other: a journal pressed into a fixed bearing, both expanding. Not prepared.
 /// @param spread how much the directions of the loads differ from joint to joint [rad]
-inline Scene crowd(std::size_t joints, double spread = 0) {
+/// @param offset where journals start [m]
+inline Scene crowd(std::size_t joints, double spread = 0, double offset = pressed()) {
   Scene scene;
   scene.time_step = time_step;
   scene.newton.damping = 0.2;
@@ -70,7 +76,6 @@ inline Scene crowd(std::size_t joints, double spread = 0) {
   scene.programs = {rising()};
   scene.strains.resize(2);
   scene.heaters = {{0, {{0, expansion_journal}, {1, expansion_bearing}}}};
-  const double offset = clearance + depth(radius * (radius + clearance) / clearance);
   for (std::size_t i = 0; i < joints; ++i) {
     const double angle = spread * static_cast<double>(i);
     const Vector3 side(std::cos(angle), std::sin(angle), 0), across(-side[1], side[0], 0);
@@ -91,6 +96,26 @@ inline Scene crowd(std::size_t joints, double spread = 0) {
     contact.axis = Vector3::Zero();
     scene.contacts.push_back(contact);
   }
+  return scene;
+}
+
+/// A crowd, each journal held to a fixed point by a link that heats up. Not prepared.
+inline Scene held_crowd(std::size_t joints, double offset = pressed()) {
+  Scene scene = crowd(joints, 1, offset);
+  Links links;
+  for (const Contact& contact : scene.contacts) {
+    const Vector3 journal = scene.bodies[static_cast<std::size_t>(contact.body_1)].motion.position;
+    const Vector3 bearing = scene.bodies[static_cast<std::size_t>(contact.body_2)].motion.position;
+    Link link;
+    link.id1 = add_body(scene, bearing - 0.5 * (journal - bearing).normalized(), everything);
+    link.id2 = contact.body_1;
+    link.youngModulus = young;
+    link.crossSectionArea = 9e-8;
+    link.stressFreeLength = 0.5;
+    link.thermalExpansion = expansion_journal;
+    links.places.push_back({link, 0});
+  }
+  scene.stages = {links};
   return scene;
 }
 
@@ -147,7 +172,7 @@ inline Scene rib() {
   law.law.friction = kernel::laws::friction_law("mindlin");
   law.law.friction_parameters = {friction, 1e-5, 1e-4};
   scene.law = law;
-  const double offset = clearance + depth(radius * (radius + clearance) / clearance);
+  const double offset = pressed();
   const Vector3 pins[2] = {{0, 0, 0}, {0.12, 0, 0}};
   const Vector3 tips[2] = {{0.03, 0.04, 0}, {0.03 + offset, 0.04, 0}};
   const double masses[2] = {0.5 / 3, 1.0 / 3};
