@@ -176,6 +176,18 @@ def test_blocks_that_come_to_rest_smoothly_do_not_stall_the_path() -> None:
     assert jump_m(found)[-1, 0] == pytest.approx(jump_m(path(generate.chain(20)))[-1, 0], rel=CLOSED_FORM)
 
 
+def test_joints_that_slip_one_after_another_within_an_increment_cost_no_further_steps() -> None:
+    """Without location an increment is a step or two, however many joints change in it. The start, and in each of the
+    two branches the short first step and ten increments are 23 solves; 900 changes would be hundreds."""
+    document = generate.umbrella(300, cable_preload_N=1.0)
+    scatter = np.random.default_rng(1)
+    for joint in document["revolute"]:
+        joint["friction_coefficient"] = 0.1 + 0.1 * float(scatter.random())
+    found = path(document, locate_events=False, increments_per_branch=10)
+    assert found.solves <= 2 * 23
+    assert len(found.events) > 2 * 300
+
+
 @pytest.mark.parametrize("bays, most_changes", [(20, 12), (40, 16)])
 def test_tall_masts_pass_with_every_event_located(bays: int, most_changes: int) -> None:
     """Both joints of a level slide at once near the top, one of them with a force that rounding could take for one

@@ -72,11 +72,11 @@ enum class Pivoting : unsigned char { strict, rounded, single };
 
 /// Smallest share of the way at which one of the joints violates its inequality: each violates it
 /// at the end.
-double Newton::first_violation(const std::vector<int>& joints, const VectorXd& from,
-                               const VectorXd& to, double from_time, double time,
-                               const StepStart& start, JointModel model,
-                               const Statuses& statuses) const {
-  double first = 1.0;
+Newton::Violation Newton::first_violation(const std::vector<int>& joints, const VectorXd& from,
+                                          const VectorXd& to, double from_time, double time,
+                                          const StepStart& start, JointModel model,
+                                          const Statuses& statuses) const {
+  Violation first{1.0, joints.front()};
   // Of one joint only: what it is asked about is linear between both states.
   const auto violates = [&](int joint, double share) {
     Trial at = system_->trial(joint, from, from_time, start, model, 1.0);
@@ -94,11 +94,12 @@ double Newton::first_violation(const std::vector<int>& joints, const VectorXd& f
   };
   for (const int joint : joints) {
     // One that is later than the first so far need not be known.
-    if (first < 1.0 && !violates(joint, first)) continue;
+    if (first.share < 1.0 && !violates(joint, first.share)) continue;
+    first.joint = joint;
     double before = 0.0;
     for (int halving = 0; halving < share_halvings; ++halving) {
-      const double middle = 0.5 * (before + first);
-      (violates(joint, middle) ? first : before) = middle;
+      const double middle = 0.5 * (before + first.share);
+      (violates(joint, middle) ? first.share : before) = middle;
     }
   }
   return first;
@@ -235,14 +236,12 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     if (!damped && pivoting != Pivoting::single) {
       const Violations found = violations();
       if (looking && !found.joints.empty()) {
-        const double share = first_violation(found.joints, origin, z, ahead->from_time, time, start,
-                                             joints, statuses);
-        if (share > ahead->now) {
+        const Violation first = first_violation(found.joints, origin, z, ahead->from_time, time,
+                                                start, joints, statuses);
+        if (first.share > ahead->now) {
           looking = false;
-          report.first_change = share;
-          for (const int joint : found.joints) {
-            report.leaving.emplace_back(joint, found.corrected[index(joint)]);
-          }
+          report.first_change = first.share;
+          report.leaving.emplace(first.joint, found.corrected[index(first.joint)]);
           report.joints = found.joints;
           if (ahead->stop) {
             report.end = SolveEnd::event_ahead;

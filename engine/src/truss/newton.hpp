@@ -23,8 +23,9 @@ struct SolveReport {
   /// Share of the step after which the first joint leaves its branch, as the tangents see it; 1:
   /// none does.
   double first_change = 1.0;
-  /// The joints that do so, and the branch that each of them leaves it for.
-  std::vector<std::pair<int, JointStatus>> leaving;
+  /// That joint, and the branch for which it leaves its own. Which of those behind it follow is not
+  /// known: it may spare them that.
+  std::optional<std::pair<int, JointStatus>> leaving;
 };
 
 /// From where to where a step goes, for the question when within it the first joint changes.
@@ -85,9 +86,15 @@ class Newton {
   long factorizations() const { return factorizations_; }
 
  private:
-  double first_violation(const std::vector<int>& joints, const VectorXd& from, const VectorXd& to,
-                         double from_time, double time, const StepStart& start, JointModel model,
-                         const Statuses& statuses) const;
+  struct Violation {
+    double share = 1.0;  ///< Of the way.
+    int joint = -1;
+  };
+
+  Violation first_violation(const std::vector<int>& joints, const VectorXd& from,
+                            const VectorXd& to, double from_time, double time,
+                            const StepStart& start, JointModel model,
+                            const Statuses& statuses) const;
 
   const System* system_;
   bool strict_;

@@ -57,7 +57,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
     return is_slip(left.second) && left.second != trial_statuses[index(left.first)] &&
            system.remembers_when(left.first, left.second, trial_statuses[index(left.first)]);
   };
-  if (!is_short && std::any_of(report.leaving.begin(), report.leaving.end(), slid_between)) {
+  if (!is_short && report.leaving && slid_between(*report.leaving)) {
     ++path.solves;
     return StepEnd::event_inside;
   }
