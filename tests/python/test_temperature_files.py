@@ -161,6 +161,17 @@ def test_the_way_from_the_stress_free_temperature_is_said(chain: tuple[Path, lis
     assert not members.temperature_change_K[-1].any()
 
 
+def test_both_ends_of_a_link_give_its_mean(chain: tuple[Path, list[str], np.ndarray]) -> None:
+    path, names, given = chain
+    file = path.with_name("members.csv")
+    apart = np.array([0.0, 8.0, -30.0, 4.0, 0.0])
+    ends = np.c_[given[:, :1] - apart[:, None], given[:, 1:], given[:, 0] + apart]
+    write(file, ",".join(["time_s", "L1@b_K", *(f"{name}_K" for name in names[1:]), "L1@a_K"]), np.c_[TIMES, ends])
+    found = sj.load(path).thermal.members
+    assert found.names == tuple(names)
+    assert found.temperature_change_K == pytest.approx(given - REFERENCE_K, abs=1e-12 * 300)
+
+
 # What is wrong, how the file is changed, and what is said.
 WRONG: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
     "missing member": (lambda rows: [row.rpartition(",")[0] for row in rows],
@@ -169,6 +180,12 @@ WRONG: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
                                      .replace("time_s", "time_s,strange_K"),
                                      *(row.replace(",", ",293.15,", 1) for row in rows[1:])],
                        "its column 'strange' is of no link and no revolute"),
+    "one end": (lambda rows: [rows[0].replace("L2_K", "L2@a_K"), *rows[1:]],
+                "members.csv: has the column 'L2@a' without 'L2@b': a link has one temperature, or one at either end"),
+    "end and mean": (lambda rows: [rows[0].replace("L2_K", "L1@b_K"), *rows[1:]],
+                     "members.csv: has the column 'L1@b' beside 'L1'"),
+    "ends of two units": (lambda rows: [rows[0].replace("L2_K", "L1@b_degC").replace("L1_K", "L1@a_K"), *rows[1:]],
+                          "members.csv: columns 'L1@a' and 'L1@b': one is in kelvin, the other in °C"),
     "NaN": (lambda rows: [*rows[:2], rows[2].rpartition(",")[0] + ",nan", *rows[3:]],
             "members.csv: line 3, column 'L10_K': 'nan' is not a finite number"),
     "empty cell": (lambda rows: [*rows[:2], rows[2].rpartition(",")[0] + ",", *rows[3:]],

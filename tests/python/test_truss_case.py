@@ -397,7 +397,7 @@ def test_arrays_of_a_planar_truss() -> None:
     # A program that does not say so takes cycles and period of the common one.
     assert [(each.shape, each.cycles, each.period_s) for each in truss.programs] == [
         ("triangle", 2, 1.0), ("sine", 2, 1.0)]
-    assert parsed(frame()).temperature_ranges_K == [(0.0, 100.0), (-50.0, 50.0)]
+    assert truss.temperature_ranges_K.tolist() == [[0.0, 100.0], [-50.0, 50.0]]
     assert truss.sliders.nodes.tolist() == [[3, GROUND]]
     assert truss.sliders.axis.tolist() == [[1, 0, 0]]
     assert (truss.sliders.clearance_minus_m[0], truss.sliders.clearance_plus_m[0]) == (inf, 1e-3)

@@ -14,6 +14,7 @@ from typing import ClassVar
 from statejump.core import thermal as core_thermal
 from statejump.core import yade_process
 from statejump.core.case import Case
+from statejump.core.expansion import Expansion
 from statejump.core.temperature_files import Histories, MemberProgram
 from statejump.core.thermal import Thermal
 from statejump.kinds.truss import checks
@@ -57,7 +58,8 @@ class Link(Item):
     nodes: list[str] = texts(..., "its two nodes")
     young_modulus_Pa: float = parameter(..., "Pa", 0, 1e13, USER, above=True)
     cross_section_area_m2: float = parameter(..., "m2", 0, 1e2, USER, above=True)
-    thermal_expansion_per_K: float = parameter(..., "1/K", -1e-3, 1e-3, USER)
+    thermal_expansion_per_K: float | None = parameter(None, "1/K", -1e-3, 1e-3, "this or expansion")
+    expansion: str | None = text(None, "name of an [[expansion]]: a coefficient that follows the temperature")
     stress_free_length_m: float | None = parameter(
         None, "m", 0, LARGEST_LENGTH_M, "at ΔT = 0; the distance of its nodes", above=True
     )
@@ -71,6 +73,11 @@ class Link(Item):
     yield_strength_Pa: float | None = parameter(None, "Pa", 0, 1e12, "stress is not checked", above=True)
     temperature_fraction: float = parameter(1.0, "-", -10, 10, "of its program's ΔT; fully sunlit")
     program: str | None = text(None, "name of a [[program]]; the common [thermal]")
+
+
+@definition
+class TrussExpansion(Item, Expansion):
+    """A coefficient of thermal expansion that follows the temperature, for links that name it."""
 
 
 @definition
@@ -201,6 +208,7 @@ class TrussCase(Case):
     node: list[Node] = tables(Node, "sections [[node]]", required=True)
     link: list[Link] = tables(Link, "sections [[link]]", required=True)
     program: list[Program] = tables(Program, "sections [[program]]")
+    expansion: list[TrussExpansion] = tables(TrussExpansion, "sections [[expansion]]")
     slider: list[Slider] = tables(Slider, "sections [[slider]]")
     revolute: list[Revolute] = tables(Revolute, "sections [[revolute]]")
     spring: list[Spring] = tables(Spring, "sections [[spring]]")
@@ -226,11 +234,6 @@ class TrussCase(Case):
         members = self.thermal.members
         of_members = [] if members is None else members.programs(self.thermal.cycles)
         return [self.thermal, *(program.completed(self.thermal) for program in self.program), *of_members]
-
-    @property
-    def temperature_ranges_K(self) -> list[tuple[float, float]]:
-        """Smallest and largest ΔT [K] of every program."""
-        return [core_thermal.range_K(program) for program in self.programs]
 
     @cached_property
     def _resolved(self) -> ResolvedTruss:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def check_geometry(case: TrussCase) -> None:
     """Raise StatejumpError for the first thing that is wrong with the shape of a truss whose names are right."""
     truss = case.resolve()
-    ranges_K = np.array(case.temperature_ranges_K)
+    ranges_K = truss.temperature_ranges_K
     _lengths(truss)
     _expansions(truss, ranges_K)
     for joint in JOINTS:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from typing import TYPE_CHECKING, Any
 
-from statejump.core.errors import ABSENT, NotAllowed
+from statejump.core.errors import ABSENT, MissingKey, NotAllowed
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.references import known_links, known_name, known_nodes
@@ -25,6 +25,7 @@ def check_references(case: TrussCase) -> None:
     for tie in case.spring:
         known_nodes(tie.nodes, 2, nodes, {"item": f"spring {tie.name!r}"})
     _programs(case)
+    _expansions(case)
     _members(case)
     _alternatives(case)
     for joint in JOINTS:
@@ -51,6 +52,19 @@ def _programs(case: TrussCase) -> None:
     for item, where, _ in _followers(case):
         if item.program is not None and item.program not in programs:
             known_name("program", item.program, item.program, programs, "program", **where)
+
+
+def _expansions(case: TrussCase) -> None:
+    """Every link has a coefficient or names one that follows the temperature."""
+    expansions = {expansion.name: expansion for expansion in case.expansion}
+    for link in case.link:
+        where = {"item": f"link {link.name!r}"}
+        if link.expansion is not None and link.thermal_expansion_per_K is not None:
+            raise NotAllowed("thermal_expansion_per_K", link.thermal_expansion_per_K, "only without expansion", **where)
+        if link.expansion is not None:
+            known_name("expansion", link.expansion, link.expansion, expansions, "expansion", **where)
+        elif link.thermal_expansion_per_K is None:
+            raise MissingKey("thermal_expansion_per_K", "a number [1/K], or an expansion, is needed", **where)
 
 
 def _members(case: TrussCase) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from statejump.core import thermal
+from statejump.core import expansion, thermal
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.kinds.truss.check_geometry import check_geometry
 from statejump.kinds.truss.check_references import check_references
@@ -19,12 +19,13 @@ from statejump.kinds.truss.references import axis_of_rotation, vector
 if TYPE_CHECKING:
     from statejump.kinds.truss.case import TrussCase
 
-SECTIONS = ("node", "link", "program", *(joint.section for joint in JOINTS), "spring", "torsion_spring")
+SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in JOINTS), "spring", "torsion_spring")
 
 
 def check(case: TrussCase) -> None:
     """Raise StatejumpError for the first thing that is wrong with a truss as a whole, without the file's name."""
     _programs(case)
+    _expansions(case)
     _names(case)
     _vectors(case)
     check_references(case)
@@ -46,6 +47,15 @@ def _programs(case: TrussCase) -> None:
                 f"{program.cycles} cycles of it last {lasts:.10g} s and must last {case.duration_s:.10g} s, as "
                 "thermal.cycles of thermal.period_s do", item=f"program {item.name!r}",
             )
+
+
+def _expansions(case: TrussCase) -> None:
+    for item in case.expansion:
+        try:
+            expansion.check(item, section="")
+        except StatejumpError as refused:
+            refused.item = f"expansion {item.name!r}"
+            raise
 
 
 def _names(case: TrussCase) -> None:

@@ -72,7 +72,7 @@ def stable_time_step(case: TrussCase, path: TrussPath) -> float:
 
     links, springs, torsion = truss.links, truss.springs, truss.torsion_springs
     ratio, contact = case.dem.link_damping_ratio, case.dem.contact_damping_ratio
-    ranges = np.array(case.temperature_ranges_K)[links.program] * links.temperature_fraction[:, None]
+    ranges = path.truss.temperature_ranges_K[links.program] * links.temperature_fraction[:, None]
     shortest = links.stress_free_length_m * (1 + links.thermal_expansion_per_K[:, None] * ranges).T.min(axis=0)
     axial = physics.axial_stiffness_N_per_m(links.young_modulus_Pa, links.cross_section_area_m2, shortest)
     touch(links.nodes, axial, ratio, case.dem.pin_damping_N_m_s_per_rad / shortest**2)

@@ -56,7 +56,7 @@ def symbol_size(gap_pt: float) -> float:
 
 
 def link_colours(truss: ResolvedTruss) -> tuple[Any, ScalarMappable | None]:
-    fraction = truss.links.temperature_fraction
+    fraction = truss.links.shown_fraction
     if np.ptp(fraction) < 1e-9:
         return LINK, None
     scale = ScalarMappable(Normalize(min(0.0, fraction.min()), fraction.max()), COLOURS)
@@ -70,7 +70,7 @@ def legend(truss: ResolvedTruss) -> list[Line2D]:
         return Line2D([], [], **{"linestyle": "none", "markersize": 9, **style}, label=label)
 
     springs = truss.springs
-    fraction = truss.links.temperature_fraction
+    fraction = truss.links.shown_fraction
     uniform = np.ptp(fraction) < 1e-9
     text = "link" if (fraction == 1).all() else f"link, {scaled(fraction, 1.0, 'of ΔT')}"
     if not uniform:

@@ -69,7 +69,7 @@ def _refuse(truss: ResolvedTruss) -> None:
 
 def _hottest(case: TrussCase, truss: ResolvedTruss) -> Numbers:
     """Return the ΔT [K] of every link that is the largest of its program."""
-    ranges = np.array(case.temperature_ranges_K)[truss.links.program]
+    ranges = truss.temperature_ranges_K[truss.links.program]
     largest = np.where(np.abs(ranges[:, 0]) > np.abs(ranges[:, 1]), ranges[:, 0], ranges[:, 1])
     return np.asarray(largest * truss.links.temperature_fraction)
 

@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from statejump.core.thermal import range_K
 from statejump.kinds.truss.arrays import (
     GROUND, References, column, columns, distances, names, numbering, pairs, unit, vectors,
 )
+from statejump.kinds.truss.expansions import link_temperatures
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.joints.revolute import Revolutes
@@ -50,12 +52,14 @@ class Links:
     nodes: np.ndarray  # (m, 2) int
     young_modulus_Pa: np.ndarray
     cross_section_area_m2: np.ndarray
-    thermal_expansion_per_K: np.ndarray
+    thermal_expansion_per_K: np.ndarray  # with an [[expansion]] its largest |α|, the program then has ε/α
     stress_free_length_m: np.ndarray  # at ΔT = 0
     mass_kg: np.ndarray  # from the density: density · area · stress-free length; NaN: neither is given
     poisson_ratio: np.ndarray
     temperature_fraction: np.ndarray  # of the program's ΔT
     program: np.ndarray  # int, index into ResolvedTruss.programs
+    shown_program: np.ndarray  # of the temperature itself, where that of an [[expansion]] has the strain
+    shown_fraction: np.ndarray
     second_moment_of_area_m4: np.ndarray  # smallest one of the section
     ends: tuple[str, ...]  # keys of FIXITY
     yield_strength_Pa: np.ndarray  # inf: none is given
@@ -103,7 +107,7 @@ class ReflectorSurface:
 @dataclass(frozen=True)
 class ResolvedTruss:
     """A whole truss. ``programs[0]`` is the common [thermal], then those that have names, then the histories of
-    members; all of them last equally long."""
+    members, then those of links with an [[expansion]]; all of them last equally long."""
 
     name: str
     dimension: int
@@ -113,9 +117,14 @@ class ResolvedTruss:
     springs: Springs
     torsion_springs: TorsionSprings
     programs: tuple[TrussThermal | MemberProgram, ...]
-    program_names: tuple[str, ...]  # "thermal", those of the file, those of members
+    program_names: tuple[str, ...]  # "thermal", those of the file, those of members, "EXPANSION of PROGRAM"
     reflector: ReflectorSurface | None
     sticking: str  # "rigid" or "elastic": contacts of the reduced model
+
+    @property
+    def temperature_ranges_K(self) -> np.ndarray:
+        """Smallest and largest ΔT [K] (programs, 2) of every program."""
+        return np.array([range_K(program) for program in self.programs])
 
     @property
     def sliders(self) -> Sliders:
@@ -184,14 +193,18 @@ def resolve(case: TrussCase) -> ResolvedTruss:
     length = np.where(np.isnan(length), distances(positions, link_nodes), length)
     link = columns(
         case.link, "young_modulus_Pa", "cross_section_area_m2", "thermal_expansion_per_K", "poisson_ratio",
-        "temperature_fraction",
     )
+    program_names = ("thermal", *names(case.program), *(() if members is None else members.names))
+    warmed = link_temperatures(case, known.programs_of(case.link), program_names)
+    link["thermal_expansion_per_K"] = np.where(warmed.expanding, warmed.largest_per_K, link["thermal_expansion_per_K"])
     moment, strength = column(case.link, "second_moment_of_area_m4"), column(case.link, "yield_strength_Pa")
     mass = column(case.link, "mass_kg")
     weighed = column(case.link, "density_kg_per_m3") * link["cross_section_area_m2"] * length
     links = Links(
         names=names(case.link), nodes=link_nodes, stress_free_length_m=length,
-        mass_kg=np.where(np.isnan(mass), weighed, mass), program=known.programs_of(case.link), **link,
+        mass_kg=np.where(np.isnan(mass), weighed, mass), program=warmed.program,
+        temperature_fraction=warmed.temperature_fraction, shown_program=warmed.shown_program,
+        shown_fraction=warmed.shown_fraction, **link,
         second_moment_of_area_m4=np.where(np.isnan(moment), link["cross_section_area_m2"] ** 2 / 12, moment),
         ends=tuple(one.ends for one in case.link), yield_strength_Pa=np.where(np.isnan(strength), inf, strength),
     )
@@ -221,8 +234,8 @@ def resolve(case: TrussCase) -> ResolvedTruss:
     return ResolvedTruss(
         name=case.name, dimension=dimension, nodes=nodes, links=links,
         joints={joint.section: joint.resolve(listed_joints(case, joint), known) for joint in JOINTS},
-        springs=springs, torsion_springs=torsion_springs, programs=tuple(case.programs),
-        program_names=("thermal", *names(case.program), *(() if members is None else members.names)),
+        springs=springs, torsion_springs=torsion_springs, programs=warmed.programs,
+        program_names=warmed.program_names,
         reflector=reflector,
         sticking=case.reduced.sticking,
     )

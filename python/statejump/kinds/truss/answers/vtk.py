@@ -20,7 +20,7 @@ LINK, SPRING, SLIDER, REVOLUTE = range(4)  # "kind" of a cell
 def link_temperatures(truss: ResolvedTruss, times_s: np.ndarray) -> np.ndarray:
     """Return ΔT [K] (times, links) of every link."""
     common = np.stack([engine_program(program).temperature_change(times_s) for program in truss.programs], axis=1)
-    return common[:, truss.links.program] * truss.links.temperature_fraction
+    return common[:, truss.links.shown_program] * truss.links.shown_fraction
 
 
 def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,

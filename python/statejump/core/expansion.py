@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Thermal expansion that follows the temperature: a table of the coefficient α.
+
+Between the rows of the table α is straight, so the strain ε(ΔT) = ∫ α dΔT from 0 is a parabola there. All models know
+one coefficient and a temperature program of straight pieces. They get α₀, the largest |α| of the table, and the program
+of ε/α₀: the temperature change that gives the same strain where the coefficient is α₀.
+"""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from statejump.core.errors import NotAllowed
+from statejump.core.temperature_files import MemberProgram
+from statejump.core.thermal import LARGEST_CHANGE_K, Thermal
+from statejump.schema.fields import Section, definition, numbers
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Numbers = NDArray[np.float64]
+
+# A straight piece leaves at most this share of the range of the strain: a tenth of the smallest tolerance that
+# `compare` has by default (that of the energy balance).
+CHORD = 1e-4
+
+
+@definition
+class Expansion(Section):
+    """A coefficient of thermal expansion that follows the temperature, straight between its rows."""
+
+    temperature_change_K: list[float] = numbers(
+        ..., "K", -LARGEST_CHANGE_K, LARGEST_CHANGE_K, "from the stress-free temperature; rising, 0 within"
+    )
+    thermal_expansion_per_K: list[float] = numbers(..., "1/K", -1e-3, 1e-3, "one for every temperature change")
+
+    @property
+    def largest_per_K(self) -> float:
+        """The largest |α| [1/K] of the table."""
+        return max(abs(alpha) for alpha in self.thermal_expansion_per_K)
+
+    def strain(self, temperature_change_K: Numbers) -> Numbers:
+        """Return the free strain [-], ∫ α dΔT from 0 to temperature changes [K] within the table; of their shape."""
+        rows, alpha = np.array(self.temperature_change_K), np.array(self.thermal_expansion_per_K)
+        steps = np.diff(rows)
+        at_rows = np.concatenate(([0.0], np.cumsum(0.5 * (alpha[1:] + alpha[:-1]) * steps)))
+
+        def from_first_row(change: Numbers) -> Numbers:
+            piece = np.clip(np.searchsorted(rows, change, side="right") - 1, 0, len(steps) - 1)
+            way = change - rows[piece]
+            slope = (alpha[piece + 1] - alpha[piece]) / steps[piece]
+            return np.asarray(at_rows[piece] + (alpha[piece] + 0.5 * slope * way) * way)
+
+        return from_first_row(np.asarray(temperature_change_K, dtype=float)) - from_first_row(np.zeros(1))
+
+
+def check(expansion: Expansion, section: str) -> None:
+    """Raise NotAllowed for what is wrong with a table as a whole.
+
+    :param section: how its keys begin, "" in a table of its own
+    """
+    rows, alpha = expansion.temperature_change_K, expansion.thermal_expansion_per_K
+    if len(rows) < 2 or any(b <= a for a, b in zip(rows, rows[1:])) or not rows[0] <= 0 <= rows[-1]:
+        raise NotAllowed(f"{section}temperature_change_K", rows,
+                         "must be at least two temperature changes [K] that rise, 0 among or between them")
+    if len(alpha) != len(rows) or not any(alpha):
+        raise NotAllowed(f"{section}thermal_expansion_per_K", alpha,
+                         f"must be {len(rows)} coefficients [1/K], one for every temperature change, not all of them 0")
+
+
+def followed(
+    expansion: Expansion, program: Thermal | MemberProgram, period_s: float, fraction: float = 1.0
+) -> MemberProgram:
+    """Return the program of ε/α₀ of a part.
+
+    The strain is exact at the rows of the program. Between those of a triangle or table it is exact where a row of the
+    expansion is passed and between at as many times as keep the rest below CHORD of its range; between those of a
+    member's history it is straight.
+
+    :param program: of the temperature change
+    :param fraction: of its temperature change
+    :raises NotAllowed: the program leaves the table or has no straight pieces
+    """
+    times, changes = _rows(program, period_s)
+    changes = fraction * changes
+    rows = np.array(expansion.temperature_change_K)
+    for change in (changes.min(), changes.max()):
+        if not rows[0] <= change <= rows[-1]:
+            raise NotAllowed("temperature_change_K", rows.tolist(),
+                             f"it must hold the temperature change of {change:g} K that the program reaches")
+    if isinstance(program, Thermal):
+        times, changes = _divided(expansion, times, changes)
+    return MemberProgram(times, expansion.strain(changes) / expansion.largest_per_K, program.cycles)
+
+
+def _rows(program: Thermal | MemberProgram, period_s: float) -> tuple[Numbers, Numbers]:
+    """Return times and temperature changes between which a cycle is straight."""
+    if program.shape == "table":
+        return np.array(program.table_time_s), np.array(program.table_temperature_change_K)
+    assert isinstance(program, Thermal) and program.temperature_change_max_K is not None
+    if program.shape != "triangle":
+        raise NotAllowed("thermal.shape", program.shape, "must be 'triangle' or 'table' where an expansion follows the "
+                         "temperature, which needs straight pieces")
+    return np.array([0.0, 0.5, 1.0]) * period_s, np.array([0.0, program.temperature_change_max_K, 0.0])
+
+
+def _divided(expansion: Expansion, times: Numbers, changes: Numbers) -> tuple[Numbers, Numbers]:
+    """Return the rows of a program with further ones, so that the strain is nearly straight between them."""
+    rows = np.array(expansion.temperature_change_K)
+    strains = expansion.strain(np.concatenate((changes, rows[(rows > changes.min()) & (rows < changes.max())])))
+    allowed = CHORD * (np.ptp(strains) or 1.0)
+    found_times, found = [times[:1]], [changes[:1]]
+    for start, end, first, last in zip(times, times[1:], changes, changes[1:]):
+        between = rows[(rows > min(first, last)) & (rows < max(first, last))]
+        marks = np.concatenate(([first], between if last > first else between[::-1], [last]))
+        for one, other in zip(marks, marks[1:]):
+            alpha = np.interp([one, other], rows, expansion.thermal_expansion_per_K)
+            left_out = abs((alpha[1] - alpha[0]) * (other - one)) / 8  # of a parabola by its chord
+            pieces = max(1, int(np.ceil(np.sqrt(left_out / allowed))))
+            passed = np.linspace(one, other, pieces + 1)[1:]
+            found.append(passed)
+            share = (passed - first) / (last - first) if last != first else np.ones(1)
+            found_times.append(np.where(share < 1, start + share * (end - start), end))
+    return np.concatenate(found_times), np.concatenate(found)

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What warms the links of a truss: programs of a case, and for links with an [[expansion]] those of their strain."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from statejump.core.errors import NotAllowed
+from statejump.core.expansion import followed
+from statejump.kinds.truss.arrays import column
+
+if TYPE_CHECKING:
+    from statejump.core.temperature_files import MemberProgram
+    from statejump.kinds.truss.case import TrussCase, TrussThermal
+
+
+@dataclass(frozen=True)
+class LinkTemperatures:
+    """Programs of a truss and which one a link follows (m); see :mod:`statejump.core.expansion`."""
+
+    programs: tuple[TrussThermal | MemberProgram, ...]
+    program_names: tuple[str, ...]
+    program: np.ndarray
+    temperature_fraction: np.ndarray
+    expanding: np.ndarray  # bool: it has an [[expansion]]
+    largest_per_K: np.ndarray  # of the [[expansion]], else 0
+    shown_program: np.ndarray  # of the temperature itself
+    shown_fraction: np.ndarray
+
+
+def link_temperatures(case: TrussCase, shown: np.ndarray, names: tuple[str, ...]) -> LinkTemperatures:
+    """Return what warms the links. References must be right: ``checks`` sees to it when a case is read.
+
+    :param shown: the program of the temperature of every link
+    :param names: of the programs of the case
+    :raises NotAllowed: a program leaves the table of an expansion or has no straight pieces
+    """
+    programs, named = case.programs, list(names)
+    expansions = {expansion.name: expansion for expansion in case.expansion}
+    fraction = column(case.link, "temperature_fraction")
+    program, own_fraction, largest = shown.copy(), fraction.copy(), np.zeros(len(case.link))
+    made: dict[tuple[int, float, str], int] = {}
+    for index, link in enumerate(case.link):
+        if link.expansion is None:
+            continue
+        expansion, number = expansions[link.expansion], int(shown[index])
+        key = number, link.temperature_fraction, link.expansion
+        if key not in made:
+            followed_program = programs[number]
+            try:
+                strain = followed(expansion, followed_program, followed_program.period_s, link.temperature_fraction)
+            except NotAllowed as refused:
+                refused.item = f"expansion {expansion.name!r}, link {link.name!r}"
+                raise
+            made[key] = len(programs)
+            programs.append(strain)
+            named.append(f"{expansion.name} of {names[number]}")
+        program[index], own_fraction[index], largest[index] = made[key], 1.0, expansion.largest_per_K
+    return LinkTemperatures(tuple(programs), tuple(named), program, own_fraction, program != shown, largest, shown,
+                            fraction)

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Coefficients of expansion that follow the temperature: the strain is their integral, in solver and DEM alike."""
+from __future__ import annotations
+
+from copy import deepcopy
+from typing import Any, Callable
+
+import numpy as np
+import pytest
+from conftest import Outcome
+from scipy.integrate import quad
+
+import statejump as sj
+from statejump.core.expansion import CHORD
+from statejump.kinds.truss.generate.document import to_toml
+
+ROWS_K, ALPHA_PER_K = [-120.0, 0.0, 40.0, 150.0], [17e-6, 23e-6, 24e-6, 29e-6]
+LENGTH_M, RIGIDITY_N, FRICTION_N = 1.0, 70e9 * 1e-5, 200.0
+BAR = {"young_modulus_Pa": 70e9, "cross_section_area_m2": 1e-5, "density_kg_per_m3": 2700.0}
+
+
+def bar(friction_N: float | None = None, **thermal: Any) -> dict[str, Any]:
+    """Return a bar along x from a fixed node to one that is free, or slides with friction."""
+    data: dict[str, Any] = {
+        "case": {"name": "bar", "kind": "truss"}, "truss": {"dimension": 2},
+        "node": [{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
+                 {"name": "B", "position_m": [LENGTH_M, 0.0], "fixed": ["y"]}],
+        "link": [{"name": "AB", "nodes": ["A", "B"], **BAR, "expansion": "alloy"}],
+        "expansion": [{"name": "alloy", "temperature_change_K": ROWS_K, "thermal_expansion_per_K": ALPHA_PER_K}],
+        "thermal": {"shape": "triangle", "temperature_change_max_K": 130.0, **thermal},
+    }
+    if friction_N is not None:
+        data["slider"] = [{"name": "S", "nodes": ["B"], "axis": [1.0, 0.0], "friction_coefficient": 0.5,
+                           "normal_force_N": 2 * friction_N}]
+    return data
+
+
+def integral(change_K: float) -> float:
+    """Return ∫ α dΔT from 0 by a quadrature that knows the corners of α."""
+    corners = [row for row in ROWS_K if min(change_K, 0.0) < row < max(change_K, 0.0)]
+    return quad(lambda at: np.interp(at, ROWS_K, ALPHA_PER_K), 0.0, change_K, points=corners or None)[0]
+
+
+@pytest.mark.parametrize("peak_K", [130.0, -110.0])
+def test_a_free_bar_is_as_long_as_the_integral_of_the_coefficient_says(peak_K: float) -> None:
+    run = sj.load(bar(temperature_change_max_K=peak_K)).reduced()
+    times = np.linspace(0.0, 1.0, 61)
+    at = run.at(times)
+    wanted = np.array([integral(change) for change in at.history["temperature_change_K"].values])
+    # The chord of a parabola: CHORD of the range; the solver's 1e-9 of it is far below.
+    assert np.abs(at.links["thermal_strain"].values[:, 0] - wanted).max() < CHORD * np.ptp(wanted)
+    assert at.history["displacement_m"].values[-31, 1, 0] == pytest.approx(LENGTH_M * integral(peak_K), rel=1e-9)
+
+
+def test_a_table_of_one_value_is_that_coefficient() -> None:
+    table, plain = bar(FRICTION_N), bar(FRICTION_N)
+    table["expansion"][0]["thermal_expansion_per_K"] = 4 * [23e-6]
+    del plain["link"][0]["expansion"], plain["expansion"]
+    plain["link"][0]["thermal_expansion_per_K"] = 23e-6
+    ours, theirs = (sj.load(data).reduced().at([0.1, 0.5, 0.9, 1.0]) for data in (table, plain))
+    assert ours.history["displacement_m"].values == pytest.approx(theirs.history["displacement_m"].values, abs=1e-15)
+
+
+def test_the_block_slips_where_the_integral_reaches_its_strain() -> None:
+    run = sj.load(bar(FRICTION_N)).reduced()
+    first = next(event for event in run.events if event.joint == "S")
+    # Stuck at its drawn length l the bar of the free length l (1 + e) is compressed by E A e/(1 + e) = f.
+    strain = FRICTION_N / (RIGIDITY_N - FRICTION_N)
+    slope = (ALPHA_PER_K[2] - ALPHA_PER_K[1]) / ROWS_K[2]
+    change = (-ALPHA_PER_K[1] + np.sqrt(ALPHA_PER_K[1]**2 + 2 * slope * strain)) / slope  # the root of the parabola
+    # A chord moves an event by its share of the range of the strain over the coefficient.
+    assert first.temperature_change_K == pytest.approx(change, abs=CHORD * integral(130.0) / ALPHA_PER_K[1])
+    assert run.summary["largest_jump_m"] == pytest.approx(FRICTION_N * LENGTH_M / RIGIDITY_N, rel=1e-9)
+
+
+def test_the_dem_interpolates_the_same_strain() -> None:
+    case = sj.load(bar(FRICTION_N)).definition
+    values, truss = case.behaviour.dem_input(case), case.resolve()
+    number = values["link"]["program"][0]
+    assert number == truss.links.program[0] == 1 and values["link"]["temperature_fraction"] == [1.0]
+    program = values["programs"][number]
+    assert program["table_time_s"] == truss.programs[1].table_time_s.tolist()
+    strains = values["link"]["thermal_expansion_per_K"][0] * np.array(program["table_temperature_change_K"])
+    changes = np.interp(program["table_time_s"], [0.0, 0.5, 1.0], [0.0, 130.0, 0.0])
+    assert strains == pytest.approx([integral(change) for change in changes], rel=1e-12, abs=1e-18)
+
+
+def test_histories_of_members_are_exact_at_their_rows(tmp_path: Any) -> None:
+    data = bar(shape="table", members_file="members.csv")
+    del data["thermal"]["temperature_change_max_K"]
+    (tmp_path / "members.csv").write_text("time_s,AB_K\n0,0\n10,90\n30,-100\n40,0\n", encoding="utf-8")
+    (tmp_path / "bar.toml").write_text(to_toml(data), encoding="utf-8")
+    case = sj.load(tmp_path / "bar.toml")
+    strain = case.reduced().at([0.0, 10.0, 20.0, 30.0, 40.0]).links["thermal_strain"].values[:, 0]
+    wanted = [0.0, integral(90.0), 0.5 * (integral(90.0) + integral(-100.0)), integral(-100.0), 0.0]
+    assert strain == pytest.approx(wanted, rel=1e-12, abs=1e-18)
+
+
+def put(section: str, **values: Any) -> Callable[[dict[str, Any]], None]:
+    """Return what changes the first item of a section, or the section."""
+    def change(data: dict[str, Any]) -> None:
+        item = data[section][0] if isinstance(data[section], list) else data[section]
+        item.update(values)
+    return change
+
+
+WRONG: dict[str, tuple[Callable[[dict[str, Any]], None], str]] = {
+    "both": (put("link", thermal_expansion_per_K=2e-5),
+             "link 'AB': thermal_expansion_per_K = 2e-05 is not allowed: only without expansion"),
+    "neither": (lambda data: data["link"][0].pop("expansion"),
+                "link 'AB': thermal_expansion_per_K is missing: a number [1/K], or an expansion, is needed"),
+    "unknown": (put("link", expansion="aloy"), "there is no expansion 'aloy'; did you mean 'alloy'?"),
+    "rows fall": (put("expansion", temperature_change_K=[150.0, 40.0, 0.0, -120.0]),
+                  "must be at least two temperature changes [K] that rise"),
+    "without 0": (put("expansion", temperature_change_K=[10.0, 20.0, 40.0, 150.0]), "0 among or between them"),
+    "too few": (put("expansion", thermal_expansion_per_K=[1e-6]), "must be 4 coefficients [1/K]"),
+    "all zero": (put("expansion", thermal_expansion_per_K=4 * [0.0]), "not all of them 0"),
+    "program beyond the table": (put("thermal", temperature_change_max_K=151.0),
+                                 "it must hold the temperature change of 151 K that the program reaches"),
+    "sine": (put("thermal", shape="half_sine"), "thermal.shape = 'half_sine' is not allowed: must be 'triangle' or 'table'"),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_what_is_wrong_is_one_sentence(what: str, tmp_path: Any, statejump: Callable[..., Outcome]) -> None:
+    data = deepcopy(bar())
+    change, sentence = WRONG[what]
+    change(data)
+    (tmp_path / "bar.toml").write_text(to_toml(data), encoding="utf-8")
+    told = statejump("reduced", tmp_path / "bar.toml")
+    assert told.status == 2 and told.errors.count("\n") == 1
+    assert sentence in told.errors
