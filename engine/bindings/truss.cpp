@@ -462,9 +462,12 @@ void bind_truss(py::module_& module) {
         const truss::Model model =
             make_model(nodes, links, springs, torsion_springs, joints, std::move(programs));
         const auto numbers = [&](const char* key) { return inertia[key].cast<Eigen::VectorXd>(); };
-        const truss::Inertia masses{
-            numbers("link_mass_kg"), numbers("node_mass_kg"), numbers("link_damping_N_s_per_m"),
-            numbers("pin_damping_N_m_s_per_rad"), numbers("spring_damping_N_s_per_m")};
+        const truss::Inertia masses{numbers("link_mass_kg"),
+                                    numbers("node_mass_kg"),
+                                    numbers("link_damping_N_s_per_m"),
+                                    numbers("pin_damping_N_m_s_per_rad"),
+                                    numbers("spring_damping_N_s_per_m"),
+                                    numbers("joint_damping_sqrt_kg")};
         truss::MotionOptions options;
         options.steps = steps;
         options.sample_every = sample_every;
@@ -486,7 +489,8 @@ void bind_truss(py::module_& module) {
       "Motion of a truss from the equilibrium in which its quasi-static path begins.\n\n"
       "Items as of truss_path(). inertia: link_mass_kg, link_damping_N_s_per_m,\n"
       "pin_damping_N_m_s_per_rad (a number for each link), node_mass_kg,\n"
-      "spring_damping_N_s_per_m. steps: of the whole program.\n\n"
+      "spring_damping_N_s_per_m, joint_damping_sqrt_kg (2 ζ √m of each joint, kind by kind as of\n"
+      "truss_joints()). steps: of the whole program.\n\n"
       "Returns states as truss_path() with velocities and energies, events with the heat of their\n"
       "step, the watched node's velocity at every step. Raises ValueError for items out of range,\n"
       "RuntimeError that names joint and temperature for a step without solution.");

@@ -22,6 +22,9 @@ struct Inertia {
   /// c_p of each link's moment −c_p θ' against turning [N m s/rad], >= 0.
   Eigen::VectorXd pin_damping;
   Eigen::VectorXd spring_damping;  ///< c of each spring's dashpot, c L' [N s/m], >= 0.
+  /// 2 ζ √m of each joint's contacts [kg^1/2], >= 0: dashpots c = 2 ζ √(m k) beside the elastic
+  /// laws across and along the surface, k the tangent stiffness. Rigid laws have none.
+  Eigen::VectorXd joint_damping = {};
 };
 
 /// Places and velocities of all nodes from which a motion begins.
@@ -96,7 +99,8 @@ struct Motion {
 /// gap + (λ/K)^(2/3) >= 0 ⟂ λ >= 0 at the end of the step (implicit Euler in the contact, so steps
 /// may be longer than its period; then its impact is without rebound), one with Mindlin's stiffness
 /// gives way tangentially by the truss' rule. A slider's friction has a given bound; its stops are
-/// rigid contacts.
+/// rigid contacts. Dashpots stand beside the elastic laws: λ = K δ^1.5 − c u >= 0 across, and along
+/// the surface c_t u as long as the spring sticks, together within Coulomb's bound of the whole λ.
 ///
 /// **Energies.** Impulses work by the mean velocity of the step, so thermal_work + work of loads −
 /// changes of kinetic and elastic energy − dissipation closes to the error of the scheme in the

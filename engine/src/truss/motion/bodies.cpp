@@ -29,13 +29,15 @@ void check(const VectorXd& values, std::size_t count, const char* name, const ch
 
 }  // namespace
 
-Bodies::Bodies(const System& system, const Inertia& inertia) : system_(&system) {
+Bodies::Bodies(const System& system, const Inertia& inertia)
+    : system_(&system), joint_damping_(inertia.joint_damping) {
   const Model& model = system.model();
   check(inertia.link_mass, model.links.size(), "link mass", "kg");
   check(inertia.node_mass, model.nodes.size(), "node mass", "kg");
   check(inertia.link_damping, model.links.size(), "link damping", "N s/m");
   check(inertia.pin_damping, model.links.size(), "pin damping", "N m s/rad");
   check(inertia.spring_damping, model.springs.size(), "spring damping", "N s/m");
+  check(inertia.joint_damping, model.joints.size(), "joint damping", "kg^1/2");
   int rows = 0;
   for (const Node& node : model.nodes) {
     row_.push_back(rows);

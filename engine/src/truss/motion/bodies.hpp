@@ -17,6 +17,7 @@ class Bodies {
 
   const Eigen::SparseMatrix<double>& mass() const { return mass_; }
   bool damped() const { return damped_; }
+  const VectorXd& joint_damping() const { return joint_damping_; }
 
   /// What the dashpots do in a step [s].
   struct Step {
@@ -65,6 +66,7 @@ class Bodies {
   std::vector<Strut> struts_;
   Eigen::SparseMatrix<double> mass_;
   bool damped_ = false;
+  VectorXd joint_damping_;
 };
 
 }  // namespace statejump::truss::detail

@@ -147,7 +147,7 @@ bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& 
   for (int k = 0;; ++k) {
     const VectorXd residual = move(step);
     if (!residual.allFinite()) return false;
-    if (k > 0 && balanced(step, residual, held, local)) break;
+    if (k > 0 && balanced(step, residual, held, local, true)) break;
     if (k == most_iterations) return false;
     VectorXd right(size);
     right.head(n) = -residual + local.directions * given;
@@ -166,14 +166,15 @@ bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& 
         const Tangent law = tangent(step, local, row.contact, speed);
         compliance = law.compliance;
         offset = law.gap / h;
-        normal_force = law.force;
+        normal_force = law.elastic;
         normal_of = row.contact;
       } else if (row.normal) {
         offset = leaving(step, local, row.contact);
       } else {
-        compliance = contact.tangential_compliance(normal_of == row.contact ? normal_force
-                                                                            : contact.given_force);
-        offset = contact.kept_bend(compliance) / h;
+        const Contact::Along friction =
+            contact.along(normal_of == row.contact ? normal_force : contact.given_force, h);
+        compliance = friction.compliance;
+        offset = friction.bend / h;
       }
       entries.emplace_back(at, at, scale * scale * compliance / (h * h));
       right[at] = -scale * (speed + offset);
@@ -205,8 +206,10 @@ Stepper::Branch Stepper::asked(const Trial& step, const Local& local, Eigen::Ind
   const double bound = contact.friction_coefficient * normal;
   if (branch == Branch::open) {
     if (contact.normal_column < 0) return branch;
-    const double end = contact.gap + h * local.directions.col(2 * i).dot(step.v - 0.5 * v_);
-    return end < 0.0 ? Branch::stick : branch;
+    const double speed = local.directions.col(2 * i).dot(step.v);
+    const bool closes = contact.is_elastic() ? tangent(step, local, i, speed).force > 0.0
+                                             : depth(step, local, i, speed) > 0.0;
+    return closes ? Branch::stick : branch;
   }
   if (!(normal > 0.0)) return Branch::open;
   if (contact.tangential_column < 0 || bound == 0.0) {
@@ -216,9 +219,9 @@ Stepper::Branch Stepper::asked(const Trial& step, const Local& local, Eigen::Ind
     if (std::abs(tangential) <= bound * (1.0 - allowance)) return branch;
     return tangential < 0.0 ? Branch::slip_plus : Branch::slip_minus;
   }
-  const double compliance = contact.tangential_compliance(normal / h);
+  const Contact::Along friction = contact.along(elastic_normal(step, local, i), h);
   const double slide = local.directions.col(2 * i + 1).dot(step.v) +
-                       (compliance * tangential / h + contact.kept_bend(compliance)) / h;
+                       (friction.compliance * tangential / h + friction.bend) / h;
   return tangential * slide <= 0.0 ? branch : Branch::stick;
 }
 

@@ -41,15 +41,41 @@ double Contact::tangential_compliance(double normal) const {
   return 1.0 / (mindlin_stiffness * std::sqrt(std::max(depth(normal), least_depth)));
 }
 
+Contact::Across Contact::across(double depth, double speed, double h) const {
+  // Below the least depth both are linear: the spring on and on, so that an iterate that parts
+  // finds its way, the dashpot to nothing where the surfaces part.
+  const double at = std::max(depth, least_depth);
+  const double stiffness = 1.5 * hertz_stiffness * std::sqrt(at);
+  const double elastic = force_at(at) + stiffness * (depth - at);
+  const double share = std::clamp(depth / least_depth, 0.0, 1.0);
+  const double dashpot = share * damping * std::sqrt(stiffness);
+  const double force = elastic - dashpot * speed;
+  // The dashpot follows the fourth root of the depth; where the force is above 0 that leaves the
+  // slope above 0.
+  const double follows = share == 1.0 ? 0.25 : 1.0;
+  const double changes = depth > 0.0 && force > 0.0 ? follows * h * speed / depth : 0.0;
+  return {elastic, force, h * stiffness + dashpot * (1.0 - changes)};
+}
+
+Contact::Along Contact::along(double normal, double h) const {
+  const double now = tangential_compliance(normal);
+  if (now == 0.0) return {0.0, 0.0};
+  const double kept = std::min(compliance, now) * elastic_friction;
+  if (damping == 0.0) return {now, kept};
+  const double share = 1.0 / (1.0 + damping * std::sqrt(now) / h);
+  return {share * now, share * kept};
+}
+
+double Contact::spring_friction(double normal, double slide, double limit) const {
+  const double now = tangential_compliance(normal);
+  return std::clamp((std::min(compliance, now) * elastic_friction + slide) / now, -limit, limit);
+}
+
 bool Contact::sticks(double normal, double tangential) const {
   return tangential_column >= 0 && std::abs(tangential) < at_bound * friction_coefficient * normal;
 }
 
-double Contact::kept_bend(double compliance_now) const {
-  return std::min(compliance, compliance_now) * friction_force;
-}
-
-Contacts::Contacts(const System& system) : system_(&system) {
+Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&system) {
   int column = system.displacements();
   const Model& model = system.model();
   for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
@@ -59,6 +85,11 @@ Contacts::Contacts(const System& system) : system_(&system) {
     for (int k = frame.forces - held; k < frame.forces; ++k) holds_.push_back(column + k);
     std::visit([&](const auto& one) { add(i, column, one); }, model.joints[index(i)]);
     column += frame.forces;
+  }
+  if (damping.size() == 0) return;
+  for (Contact& contact : all_) {
+    contact.damping = damping[contact.joint];
+    damped_ = damped_ || contact.damping > 0.0;
   }
 }
 
@@ -111,6 +142,7 @@ void Contacts::begin(const State& state) {
   for (Contact& contact : all_) {
     if (contact.normal_column < 0 || contact.stop != JointStatus::open) continue;
     contact.normal_force = output(system_->model(), state, contact.joint, "normal_force_N")[0];
+    contact.elastic_normal = contact.normal_force;
   }
 }
 
@@ -143,20 +175,30 @@ void Contacts::write(VectorXd& z, Statuses& statuses) const {
   for (const Contact& contact : all_) {
     JointStatus& status = statuses[index(contact.joint)];
     if (contact.normal_column < 0) {
-      z[contact.tangential_column] += contact.friction_force;
+      z[contact.tangential_column] += contact.elastic_friction;
       status = sliding(contact.friction_force, contact.given_force);
     } else if (contact.stop != JointStatus::open) {
       z[contact.normal_column] -= contact.normal_sign * contact.normal_force;
       if (contact.normal_force > 0.0) status = contact.stop;
     } else {
-      z[contact.normal_column] = contact.normal_force;
-      z[contact.tangential_column] = contact.friction_force;
+      z[contact.normal_column] = contact.elastic_normal;
+      z[contact.tangential_column] = contact.elastic_friction;
       status =
           contact.normal_force > 0.0
               ? sliding(contact.friction_force, contact.friction_coefficient * contact.normal_force)
               : JointStatus::open;
     }
   }
+}
+
+VectorXd Contacts::with_dashpots(VectorXd z) const {
+  for (const Contact& contact : all_) {
+    if (contact.tangential_column >= 0) {
+      z[contact.tangential_column] += contact.friction_force - contact.elastic_friction;
+    }
+    if (contact.is_elastic()) z[contact.normal_column] = contact.normal_force;
+  }
+  return z;
 }
 
 }  // namespace statejump::truss::detail

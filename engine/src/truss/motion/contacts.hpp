@@ -27,13 +27,16 @@ struct Contact {
   double hertz_stiffness = infinite;       ///< K [N/m^1.5]
   double mindlin_stiffness = infinite;     ///< 8 G* √R [N/m^1.5]
   double tangential_stiffness = infinite;  ///< Of a slider [N/m].
+  double damping = 0.0;                    ///< 2 ζ √m of its dashpots c = 2 ζ √(m k) [√kg].
   double least_depth = 0.0;                ///< Below which the elastic laws are taken as there [m].
 
   // Remembered from step to step.
-  double normal_force = 0.0;    ///< λ_n [N]
-  double friction_force = 0.0;  ///< λ_t [N], against the slide.
-  double compliance = 0.0;      ///< Tangential, at `friction_force` [m/N]; 0: rigid or open.
-  double clearance = 0.0;       ///< Free gap of its joint at the end of the last step [m].
+  double normal_force = 0.0;      ///< λ_n [N]
+  double friction_force = 0.0;    ///< λ_t [N], against the slide.
+  double elastic_normal = 0.0;    ///< λ_n without the dashpot [N].
+  double elastic_friction = 0.0;  ///< λ_t without the dashpot [N].
+  double compliance = 0.0;        ///< Tangential, at `elastic_friction` [m/N]; 0: rigid or open.
+  double clearance = 0.0;         ///< Free gap of its joint at the end of the last step [m].
 
   // Of the current step.
   double gap = 0.0;  ///< At the middle, radii of the end [m].
@@ -43,23 +46,43 @@ struct Contact {
   bool is_elastic() const { return hertz_stiffness < infinite; }
   double depth(double force) const;
   double force_at(double depth) const;
-  /// 1/k_t under a normal force [m/N]; 0: rigid.
+
+  /// The law across the surface at the end of a step: force and its slope.
+  struct Across {
+    double elastic;  ///< Without the dashpot [N].
+    double force;    ///< [N]; below 0 where the contact would pull, which it does not.
+    double slope;    ///< −∂force/∂speed [N s/m]
+  };
+  /// @param depth at the end of the step of length h [m]; @param speed at which it opens [m/s]
+  Across across(double depth, double speed, double h) const;
+
+  /// 1/k_t under an elastic normal force [m/N]; 0: rigid.
   double tangential_compliance(double normal) const;
-  /// Bend [m] that friction has kept of the last step, now that the compliance is another one:
-  /// what loads a contact keeps the force, what unloads it the bend.
-  double kept_bend(double compliance_now) const;
+  /// Friction that sticks over a step h: f = (bend + h u)/compliance at the speed u of the slide.
+  struct Along {
+    double compliance;  ///< [m/N], 1/(k_t + c_t/h); 0: rigid.
+    double bend;        ///< Of the force that is kept of the last step [m].
+  };
+  /// What loads a contact keeps the force, what unloads it the bend.
+  /// @param normal elastic [N]
+  Along along(double normal, double h) const;
+  /// Friction of its spring after a slide of h u within a limit [N]. @param normal elastic [N]
+  double spring_friction(double normal, double slide, double limit) const;
   /// Whether friction holds it at these impulses.
   bool sticks(double normal, double tangential) const;
   /// Stored across and along its surface [J].
-  double normal_energy() const { return 0.4 * normal_force * depth(normal_force); }
-  double tangential_energy() const { return 0.5 * compliance * friction_force * friction_force; }
+  double normal_energy() const { return 0.4 * elastic_normal * depth(elastic_normal); }
+  double tangential_energy() const {
+    return 0.5 * compliance * elastic_friction * elastic_friction;
+  }
 };
 
 /// All contacts of a truss.
 class Contacts {
  public:
   /// The system must outlive it.
-  explicit Contacts(const System& system);
+  /// @param damping 2 ζ √m of the dashpots of every joint [√kg]; empty: none
+  Contacts(const System& system, const VectorXd& damping);
 
   std::vector<Contact>& all() { return all_; }
   const std::vector<Contact>& all() const { return all_; }
@@ -78,8 +101,12 @@ class Contacts {
   /// Takes what was measured as the end of a step.
   void remember_clearances();
 
-  /// Forces of the joints and statuses that follow from the contacts' forces.
+  bool damped() const { return damped_; }
+
+  /// Elastic forces of the joints, of which the truss remembers and stores energy, and statuses.
   void write(VectorXd& z, Statuses& statuses) const;
+  /// The same forces with those of the dashpots.
+  VectorXd with_dashpots(VectorXd z) const;
 
  private:
   void add(int joint, int first_column, const Slider& slider);
@@ -94,6 +121,7 @@ class Contacts {
   const System* system_;
   std::vector<Contact> all_;
   std::vector<int> holds_;
+  bool damped_ = false;
 };
 
 }  // namespace statejump::truss::detail

@@ -28,7 +28,7 @@ Stepper::Stepper(const System& system, const Bodies& bodies, const MotionOptions
     : system_(&system),
       bodies_(&bodies),
       options_(&options),
-      contacts_(system),
+      contacts_(system, bodies.joint_damping()),
       at_(system.assembly()) {
   account_.friction = VectorXd::Zero(static_cast<Eigen::Index>(system.model().joints.size()));
 }
@@ -160,15 +160,26 @@ void Stepper::complete(const Trial& step, Local& local) {
   }
 }
 
+double Stepper::depth(const Trial& step, const Local& local, Eigen::Index i, double speed) const {
+  // From the gap at the middle of the step on by the velocity that comes.
+  const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+  return -(contact.gap + step.h * (speed - 0.5 * local.directions.col(2 * i).dot(v_)));
+}
+
 Stepper::Tangent Stepper::tangent(const Trial& step, const Local& local, Eigen::Index i,
                                   double speed) const {
   const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
-  // Gap at the end of the step: from the middle on by the velocity that comes.
-  const double toward = contact.gap - 0.5 * step.h * local.directions.col(2 * i).dot(v_);
-  const double depth = std::max(-(toward + step.h * speed), contact.least_depth);
-  const double force = contact.force_at(depth);
-  const double compliance = depth / (1.5 * force);
-  return {force, compliance, toward + depth - compliance * force};
+  const Contact::Across law = contact.across(depth(step, local, i, speed), speed, step.h);
+  const double compliance = step.h / law.slope;
+  return {std::max(law.elastic, 0.0), law.force, compliance,
+          -(step.h * speed + compliance * law.force)};
+}
+
+double Stepper::elastic_normal(const Trial& step, const Local& local, Eigen::Index i) const {
+  const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+  const double normal = local.impulses[2 * i] / step.h;
+  if (!contact.is_elastic() || contact.damping == 0.0) return normal;
+  return contact.force_at(depth(step, local, i, local.directions.col(2 * i).dot(step.v)));
 }
 
 double Stepper::leaving(const Trial& step, const Local& local, Eigen::Index i) const {
@@ -203,15 +214,15 @@ void Stepper::solve_contacts(const Trial& step, const VectorXd& free, bool first
           first ? local.directions.col(n).dot(v_)
                 : local.directions.col(n).dot(free) + local.delassus.row(n) * local.impulses;
       const Tangent law = tangent(step, local, i, speed);
-      normal = law.force;
+      normal = law.elastic;
       w(n, n) += law.compliance / (h * h);
       problem.q[n] += law.gap / h;
     } else {
       problem.q[n] += leaving(step, local, i);
     }
-    const double compliance = contact.tangential_compliance(normal);
-    w(t, t) += compliance / (h * h);
-    problem.q[t] += contact.kept_bend(compliance) / h;
+    const Contact::Along friction = contact.along(normal, h);
+    w(t, t) += friction.compliance / (h * h);
+    problem.q[t] += friction.bend / h;
   }
   ++iterations_;
   if (problem.q.isZero(0.0)) {
@@ -249,7 +260,7 @@ const Contact* Stepper::worst(const Problem& problem, const VectorXd& impulses,
 }
 
 bool Stepper::balanced(const Trial& step, const VectorXd& residual, const VectorXd& held,
-                       const Local& local) const {
+                       const Local& local, bool by_branches) const {
   VectorXd left = residual;
   double largest = step.h * at_.largest_force + (bodies_->mass() * step.v).cwiseAbs().maxCoeff();
   if (local.impulses.size() > 0) {
@@ -267,11 +278,13 @@ bool Stepper::balanced(const Trial& step, const VectorXd& residual, const Vector
     const Contact& contact = *local.contacts[i];
     if (!contact.is_elastic()) continue;
     const auto n = static_cast<Eigen::Index>(2 * i);
-    const auto direction = local.directions.col(n);
-    const double gap = contact.gap + step.h * direction.dot(step.v - 0.5 * v_);
-    const double force = contact.force_at(-gap);
+    if (by_branches && local.impulses[n] == 0.0) continue;  // open; whether it may is asked next
+    const double speed = local.directions.col(n).dot(step.v);
+    const Contact::Across law = contact.across(depth(step, local, n / 2, speed), speed, step.h);
+    const double force = by_branches ? law.force : std::max(law.force, 0.0);
+    const double size = std::max(std::abs(law.elastic), std::abs(law.force - law.elastic));
     const double least = contact.force_at(contact.least_depth);
-    if (std::abs(local.impulses[n] - step.h * force) > step.h * (on_law * force + least)) {
+    if (std::abs(local.impulses[n] - step.h * force) > step.h * (on_law * size + least)) {
       return false;
     }
   }
@@ -305,7 +318,7 @@ void Stepper::solve(Trial& step, Local& local) {
   for (int k = 0;; ++k) {
     const VectorXd residual = move(step);
     if (!residual.allFinite()) fail(FailureKind::not_finite, step.to, nullptr);
-    if (k > 0 && balanced(step, residual, held, local)) return;
+    if (k > 0 && balanced(step, residual, held, local, false)) return;
     if (k == options_->most_iterations) fail(FailureKind::not_converged, step.to, nullptr);
     VectorXd right(n + holds_.cols());
     right.head(n) = -residual;
@@ -341,7 +354,7 @@ void Stepper::check_determined(const Trial& step, const Local& local) {
       key.push_back(contact.normal_column);
     }
     if (contact.sticks(normal, local.impulses[n + 1]) &&
-        contact.tangential_compliance(normal / step.h) == 0.0) {
+        contact.tangential_compliance(elastic_normal(step, local, n / 2)) == 0.0) {
       rows.push_back(n + 1);
       key.push_back(contact.tangential_column);
       if (contact.normal_column < 0) sticking_slider = contact.joint;
@@ -370,6 +383,7 @@ void Stepper::book(const Trial& step, const Local& local) {
   for (Contact& contact : contacts_.all()) {
     if (contact.active) continue;
     contact.normal_force = contact.friction_force = contact.compliance = 0.0;
+    contact.elastic_normal = contact.elastic_friction = 0.0;
   }
   const VectorXd mean =
       0.5 * (local.before + local.directions.transpose() * step.v);  // normals: less the growth
@@ -380,17 +394,30 @@ void Stepper::book(const Trial& step, const Local& local) {
     const double normal = local.impulses[n] / h;
     if (contact.normal_column >= 0) contact.normal_force = normal;
     contact.friction_force = normal > 0.0 ? -local.impulses[n + 1] / h : 0.0;
-    contact.compliance = normal > 0.0 ? contact.tangential_compliance(normal) : 0.0;
+    const double elastic = elastic_normal(step, local, n / 2);
+    const double compliance = normal > 0.0 ? contact.tangential_compliance(elastic) : 0.0;
+    contact.elastic_friction =
+        contact.damping > 0.0 && compliance > 0.0
+            ? contact.spring_friction(elastic, h * local.directions.col(n + 1).dot(step.v),
+                                      contact.friction_coefficient * normal)
+            : contact.friction_force;
+    contact.compliance = compliance;
+    if (contact.normal_column >= 0) contact.elastic_normal = elastic;
     if (contact.tangential_column >= 0) {
-      const double heat = contact.friction_force * h * mean[n + 1] -
+      const double dashpot = (contact.friction_force - contact.elastic_friction) * h * mean[n + 1];
+      account_.damping += dashpot;
+      const double heat = contact.friction_force * h * mean[n + 1] - dashpot -
                           (contact.tangential_energy() - stored_before[1]);
       account_.friction[contact.joint] += heat;
       account_.negative += std::min(heat, 0.0);
     }
     if (contact.normal_column >= 0) {
       const double growth = contact.clearance_after - contact.clearance;
-      const double heat = -local.impulses[n] * (mean[n] + 0.5 * growth / h) -
-                          (contact.normal_energy() - stored_before[0]);
+      const double moved = mean[n] + 0.5 * growth / h;
+      const double dashpot = -h * (contact.normal_force - contact.elastic_normal) * moved;
+      account_.damping += dashpot;
+      const double heat =
+          -local.impulses[n] * moved - dashpot - (contact.normal_energy() - stored_before[0]);
       account_.impact += heat;
       if (!contact.is_elastic()) account_.negative += std::min(heat, 0.0);
       account_.thermal_work -= contact.normal_force * growth;
@@ -423,6 +450,11 @@ void Stepper::book(const Trial& step, const Local& local) {
 
 void Stepper::describe(State& state) const {
   system_->describe(z_, time_, origin_, state);
+  if (contacts_.damped()) {
+    State whole;
+    system_->describe(contacts_.with_dashpots(z_), time_, origin_, whole);
+    state.joint_output = std::move(whole.joint_output);
+  }
   state.thermal_work = account_.thermal_work;
   state.joint_dissipation = account_.friction;
 }

@@ -65,13 +65,18 @@ class Stepper {
     VectorXd v;
   };
 
-  /// The normal law of an elastic contact as its tangent at a gap that comes.
+  /// Depth of an elastic contact at the end of the step, opening at this speed [m].
+  double depth(const Trial& step, const Local& local, Eigen::Index contact, double speed) const;
+  /// The normal law of an elastic contact as its tangent at a speed.
   struct Tangent {
+    double elastic;     ///< Without the dashpot [N].
     double force;       ///< [N]
     double compliance;  ///< [m/N]
-    double gap;         ///< At the end of the step by the velocity alone, less that at `force` [m].
+    double gap;         ///< speed h + compliance force + gap = 0 is the tangent [m].
   };
   Tangent tangent(const Trial& step, const Local& local, Eigen::Index contact, double speed) const;
+  /// Normal force without the dashpot, at the end of the step [N].
+  double elastic_normal(const Trial& step, const Local& local, Eigen::Index contact) const;
 
   /// Speed with which a rigid contact opens after an impact, with its sign turned [m/s].
   double leaving(const Trial& step, const Local& local, Eigen::Index contact) const;
@@ -100,8 +105,10 @@ class Stepper {
   void evaluate(const VectorXd& q, double time);
   /// Goes to the places of the step's velocities; what their momentum lacks without impulses [N s].
   VectorXd move(Trial& step);
+  /// @param by_branches a contact may pull, or be open where it closes: its branch is asked for
+  /// next
   bool balanced(const Trial& step, const VectorXd& residual, const VectorXd& held,
-                const Local& local) const;
+                const Local& local, bool by_branches) const;
   /// Notes the first step whose reactions are not unique.
   void check_determined(const Trial& step, const Local& local);
   void book(const Trial& step, const Local& local);

@@ -158,8 +158,8 @@ class TrussReduced(Section):
 
 @definition
 class TrussMotion(Section):
-    """How a truss in motion is stepped: ``statejump reduced --dynamic``. Its dashpots are those of the links and pins
-    in [dem]."""
+    """How a truss in motion is stepped: ``statejump reduced --dynamic``. Its dashpots are those of links, pins and
+    contacts in [dem]."""
 
     steps_per_cycle: int = whole(10_000, 10, 1_000_000_000, CHOICE)
     theta: float = parameter(0.5, "-", 0.5, 1, "second order, no numerical damping; 1: implicit Euler")

@@ -62,6 +62,23 @@ def dashpots_N_s_per_m(nodes: np.ndarray, stiffness_N_per_m: np.ndarray, ratio: 
     return made
 
 
+def joint_dashpots_sqrt_kg(truss: ResolvedTruss, ratio: float, mass_kg: np.ndarray) -> np.ndarray:
+    """Return 2 ζ sqrt(m) of the contacts of all joints, type by type; m the mass of both bodies in series, as the DEM
+    has them, 0 where neither moves.
+
+    :param mass_kg: of every node; 0 for one that does not move
+    """
+    inverse = np.divide(1, mass_kg, out=np.zeros_like(mass_kg), where=mass_kg > 0)
+    found = []
+    for kind in _engine.truss_joints():
+        joint = next(one for one in JOINTS if one.section == kind)
+        joints = truss.joints[kind]
+        nodes = joint.contact_nodes(joints) if joint.has_contacts else np.zeros((len(joints.names), 0), dtype=int)
+        pair = inverse[nodes].sum(axis=1)
+        found.append(2 * ratio * np.sqrt(np.divide(1, pair, out=np.zeros_like(pair), where=pair > 0)))
+    return np.concatenate(found)
+
+
 def inertia(case: TrussCase) -> dict[str, Any]:
     """Return masses and dashpots of a case as the engine takes them."""
     truss, links, springs = case.resolve(), case.resolve().links, case.resolve().springs
@@ -74,6 +91,7 @@ def inertia(case: TrussCase) -> dict[str, Any]:
         "node_mass_kg": lumped if is_lumped else np.zeros(len(truss.nodes.names)),
         "link_damping_N_s_per_m": dashpots_N_s_per_m(links.nodes, axial, ratio, lumped),
         "pin_damping_N_m_s_per_rad": np.full(len(links.names), case.dem.pin_damping_N_m_s_per_rad),
+        "joint_damping_sqrt_kg": joint_dashpots_sqrt_kg(truss, case.dem.contact_damping_ratio, lumped),
         "spring_damping_N_s_per_m": dashpots_N_s_per_m(springs.nodes, springs.stiffness_N_per_m, ratio, lumped),
     }
 

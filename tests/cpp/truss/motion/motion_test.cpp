@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "scenes.hpp"
 #include "statejump/linkage/run.hpp"
 
 namespace statejump::truss {
@@ -18,38 +19,7 @@ using Eigen::Matrix2d;
 using Eigen::Matrix3Xd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-thermal::Program lasting(double seconds, double largest = 0.0) {
-  thermal::Program program;
-  program.shape = thermal::Shape::triangle;
-  program.temperature_change_max = largest;
-  program.period = seconds;
-  return program;
-}
-
-Node node(const std::string& name, double x, double y, int freedoms) {
-  Node made;
-  made.name = name;
-  made.position = {x, y, 0.0};
-  made.freedoms = freedoms;
-  return made;
-}
-
-MotionStart at_rest(const Model& model) {
-  const auto nodes = static_cast<Eigen::Index>(model.nodes.size());
-  return {Matrix3Xd::Zero(3, nodes), Matrix3Xd::Zero(3, nodes)};
-}
-
-/// Energy that came in less what is stored and what became heat, since the start [J].
-double residue(const Motion& motion) {
-  const auto sum = [](const State& state, const MovingState& moving) {
-    return state.thermal_work - state.load_potential - state.elastic_energy -
-           moving.kinetic_energy - state.joint_dissipation.sum() - moving.damping_dissipation -
-           moving.impact_dissipation;
-  };
-  return sum(motion.states.back(), motion.moving.back()) -
-         sum(motion.states.front(), motion.moving.front());
-}
+using namespace scenes;
 
 constexpr double stiffness = 5e3;  // E A [N]
 constexpr double rod_mass = 0.3;   // [kg]
@@ -158,22 +128,6 @@ TEST(Motion, FreeChainKeepsItsMomenta) {
   }
   EXPECT_NEAR(lost(coarse)[2] / lost(fine)[2], 4.0, 0.5);
   EXPECT_NEAR(residue(coarse) / residue(fine), 4.0, 0.5);
-}
-
-/// A journal that falls within its bearing, both rigid.
-Model falling_journal() {
-  Model model;
-  model.programs = {lasting(0.1)};
-  model.nodes = {node("bearing", 0, 0, 0), node("journal", 0, 0, 2)};
-  model.nodes[1].load = {0.0, -9.81, 0.0};
-  ClearanceRevolute joint;
-  joint.name = "joint";
-  joint.bearing_node = 0;
-  joint.journal_node = 1;
-  joint.journal_radius = 5e-3;
-  joint.radial_clearance = 1e-3;
-  model.joints = {joint};
-  return model;
 }
 
 TEST(Motion, JournalBouncesAtItsAnalyticTimes) {
