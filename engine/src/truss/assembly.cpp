@@ -189,7 +189,8 @@ VectorXd System::slide_rates(const VectorXd& z, double time, const StepStart& st
   Assembly heated(unknowns_);
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     if (!is_slip(statuses[i])) continue;
-    const Trial at = trial(static_cast<int>(i), z, time, start, JointModel::friction, 1.0);
+    Trial at = trial(static_cast<int>(i), z, time, start, JointModel::friction, 1.0);
+    at.unslipped = true;
     const JointFrame& frame = frames_[i];
     const double warming =
         frame.program < 0 ? 0.0 : frame.temperature_fraction * program_rates[index(frame.program)];

@@ -20,13 +20,13 @@ const double jump_share = std::sqrt(std::numeric_limits<double>::epsilon());
 /// tangent's step, if it turns there like a parabola; where it turns less, a little later.
 constexpr double tangent_steps[] = {1.0, 2.0, 4.0};
 
+}  // namespace
+
 /// Whether a joint slips. Where none does, an index below zero is buckling, which corners of the
 /// programs look for.
-bool any_slips(const Statuses& statuses) {
-  return std::any_of(statuses.begin(), statuses.end(), is_slip);
+bool Walker::any_slips(const Statuses& statuses) const {
+  return system.slips_smoothly() || std::any_of(statuses.begin(), statuses.end(), is_slip);
 }
-
-}  // namespace
 
 void Walker::fail_continuation(FailureKind kind, double when, std::vector<int> joints) const {
   if (joints.empty()) {
@@ -53,6 +53,13 @@ SolveReport Walker::continue_from_event(double target, VectorXd& to, Statuses& s
   const bool converged = first.end == SolveEnd::converged;
   if (converged && statuses == origin.statuses) {
     if (any_slips(statuses) && newton.stability_index() < 0) {
+      fail_continuation(FailureKind::no_continuation, target, {});
+    }
+    return first;
+  }
+  // Rates of a law that slips smoothly depend on the way: no set of branches is linear there.
+  if (system.slips_smoothly()) {
+    if (converged && newton.stability_index() < 0) {
       fail_continuation(FailureKind::no_continuation, target, {});
     }
     return first;

@@ -74,6 +74,10 @@ void check_joint(const Type& joint, const Model& model) {
         check(allows(parameter.allowed, value), item, parameter.words, value,
               range(parameter.allowed, parameter.unit).c_str());
       } else if constexpr (std::is_same_v<Value, int>) {
+        if (parameter.allowed == Allowed::flag) {
+          check(value == 0 || value == 1, item, parameter.words, value, "0 or 1");
+          return;
+        }
         if (parameter.allowed == Allowed::count) {
           check(value >= 1, item, parameter.words, value, ">= 1");
           return;

@@ -45,6 +45,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
   if (report.end != SolveEnd::converged) {
     ++path.solves;
     if (!is_short) return StepEnd::not_converged;
+    system.settle(trial, target, begin, trial_statuses);
     origin.statuses = trial_statuses;
     fail(report, JointModel::friction, target, "no equilibrium");
   }
@@ -97,6 +98,16 @@ StepEnd Walker::step_to(double target, double tolerance) {
       fields.joints = std::move(opened);
       fail_modes(std::move(fields), std::move(modes));
     }
+  }
+  // A smooth law has no event: what has begun or ceased to slide as a whole is told where it is
+  // found, somewhere in the step.
+  const Statuses decided = trial_statuses;
+  system.settle(trial, target, begin, trial_statuses);
+  for (int i = 0; i < joints; ++i) {
+    const JointStatus status = trial_statuses[index(i)];
+    if (status == decided[index(i)]) continue;
+    events.push_back({target, target - time, model.temperature_change(0, 1.0, target), i,
+                      decided[index(i)], status});
   }
   // The rates on this side of a corner that may be at `target`.
   std::vector<double> program_rates;

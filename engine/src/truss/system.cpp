@@ -22,6 +22,7 @@ System::System(const Model& model) : model_(&model) {
           frames_.push_back(one.frame(model));
           history_begin_.push_back(history_);
           history_ += one.history();
+          slips_smoothly_ = slips_smoothly_ || one.slips_smoothly();
         },
         joint);
     output_begin_.push_back(outputs_);
@@ -124,6 +125,18 @@ VectorXd System::slips(const VectorXd& z, double time, const StepStart& start,
                           model_->joints[index(i)]);
   }
   return found;
+}
+
+void System::settle(const VectorXd& z, double time, const StepStart& start,
+                    Statuses& statuses) const {
+  const Rounding by = rounding(z);
+  for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
+    Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
+    at.length_rounding = by.length;
+    JointStatus& status = statuses[index(i)];
+    status = std::visit([&](const auto& one) { return one.settled(at, status); },
+                        model_->joints[index(i)]);
+  }
 }
 
 Rounding System::rounding(const VectorXd& z) const {

@@ -64,6 +64,10 @@ class System {
                      JointModel joints, double opening, JointStatus status,
                      const Rounding& rounding) const;
 
+  /// Gives joints whose law has one row for stick and slip the status that they have at the end of
+  /// a step.
+  void settle(const VectorXd& z, double time, const StepStart& start, Statuses& statuses) const;
+
   /// The state as the start of the first step, where nothing is remembered.
   StepStart begin(const VectorXd& z, double time, const Statuses& statuses, double opening) const;
   /// The state as the start of the next step, @param last that of the step that led here.
@@ -116,6 +120,8 @@ class System {
   int force_count(int joint) const { return frames_[index(joint)].forces; }
   /// Whether the state depends on when in a step a joint changed its status.
   bool remembers_when(int joint, JointStatus before, JointStatus after) const;
+  /// Whether a joint slips at its rim while it sticks.
+  bool slips_smoothly() const { return slips_smoothly_; }
   double stiffness_scale() const { return stiffness_scale_; }
   double size() const { return size_; }  ///< Largest extent of the drawn shape [m].
 
@@ -140,6 +146,7 @@ class System {
   int displacements_ = 0;
   int history_ = 0;
   int outputs_ = 0;
+  bool slips_smoothly_ = false;
   double stiffness_scale_ = 0.0;
   double size_ = 0.0;
   std::vector<int> node_row_;  // first free displacement of each node

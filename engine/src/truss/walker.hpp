@@ -72,9 +72,9 @@ struct Walker {
                                   SolveReport first);
   [[noreturn]] void fail_continuation(FailureKind kind, double when, std::vector<int> joints) const;
   bool follows_its_rates(const Ends& ends) const;
+  bool any_slips(const Statuses& statuses) const;
   bool passes_instability(const Statuses& statuses);
-  bool slide_at_stake(int joint, JointStatus before, double target,
-                      const Rounding& rounding) const;
+  bool slide_at_stake(int joint, JointStatus before, double target, const Rounding& rounding) const;
   double first_turn(const Ends& ends) const;
   double turn_of_slip(int joint, const Ends& ends, const Rounding& rounding) const;
   double turn_of_stick(int joint, const Ends& ends, const Rounding& rounding) const;

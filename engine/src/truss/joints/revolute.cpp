@@ -6,6 +6,7 @@
 
 #include "statejump/kernel/require.hpp"
 #include "statejump/truss/model.hpp"
+#include "truss/joints/partial_slip.hpp"
 #include "truss/joints/writer.hpp"
 #include "truss/parts.hpp"
 
@@ -33,7 +34,8 @@ constexpr std::size_t bearing = 1;
 constexpr std::size_t journal_far = 2;
 constexpr std::size_t bearing_far = 3;
 
-/// What a revolute remembers. In-plane vectors are components along its two plane directions.
+/// What a revolute remembers; with partial slip the contact's memory follows. In-plane vectors are
+/// components along its two plane directions.
 struct Memory {
   Vector2d eccentricity;       ///< [m]
   Vector2d journal_direction;  ///< Journal link, journal minus far node; zero without [m].
@@ -44,7 +46,7 @@ struct Memory {
   double friction;             ///< On the journal against the slide [N].
   double compliance;           ///< 1/k_t [m/N]; 0: rigid or open.
 
-  static constexpr int size = ClearanceRevolute::history();
+  static constexpr int size = 11;
   static Memory of(const double* numbers) {
     return {{numbers[0], numbers[1]},
             {numbers[2], numbers[3]},
@@ -203,6 +205,33 @@ double rim_slip(double friction_before, double compliance_before, double frictio
          (compliance_before - compliance);
 }
 
+/// Friction's law with partial slip after a slide, and its derivative by the normal force.
+struct Rubbing {
+  kernel::PartialSlipLine line;
+  double by_normal;
+};
+
+Rubbing rubbing(const ClearanceRevolute& joint, const Trial& trial, double slide) {
+  const double normal = trial.force[0];
+  const double mu = joint.friction_coefficient;
+  const double stiffness = 1.0 / tangential_compliance(joint, normal);
+  const kernel::PartialSlipLine line = kernel::partial_slip_line(
+      stiffness, mu * normal, slide, detail::read_partial_slip(trial.history + Memory::size));
+  // k_t grows as the cube root of the force.
+  const double stiffens = normal > least_force(joint) ? stiffness / (3.0 * normal) : 0.0;
+  return {line, line.by_limit * mu + line.by_stiffness * stiffens};
+}
+
+/// The step of that law. @param memory at its start; that at its end
+kernel::PartialSlipResponse rub(const ClearanceRevolute& joint, const Trial& trial, bool open,
+                                kernel::PartialSlipMemory& memory) {
+  const double slide = motion_of(geometry_of(joint, trial), Memory::of(trial.history)).slide;
+  const double normal = trial.force[0];
+  const double stiffness = open ? 0.0 : 1.0 / tangential_compliance(joint, normal);
+  return kernel::partial_slip_step(stiffness, joint.friction_coefficient * normal, {slide, 0.0},
+                                   memory);
+}
+
 /// Gradients of the two forces' work, of the slide, and what bends them.
 struct Gradients {
   std::array<Vector3d, 4> normal;
@@ -305,6 +334,7 @@ std::span<const Parameter<ClearanceRevolute>> ClearanceRevolute::parameters() {
        "Hertz: 4/3 E* sqrt(R)", &R::hertz_stiffness},
       {"mindlin_stiffness_N_per_m15", "mindlin_stiffness", "N/m^1.5", Allowed::positive_or_infinite,
        "Mindlin: 8 G* sqrt(R)", &R::mindlin_stiffness},
+      {"partial_slip", "partial_slip", "-", Allowed::flag, "the case", &R::partial_slip},
       {"axis", "axis", "-", Allowed::direction, "the case", &R::axis},
   };
   return table;
@@ -332,11 +362,17 @@ void ClearanceRevolute::validate(const Model& model) const {
   check_link(bearing_link, bearing_node, "bearing link");
   check(std::isinf(mindlin_stiffness) || std::isfinite(hertz_stiffness), "mindlin_stiffness",
         mindlin_stiffness, "infinite, because hertz_stiffness is");
+  check(!partial_slip || (friction_coefficient > 0.0 && std::isfinite(mindlin_stiffness)),
+        "partial_slip", partial_slip, "0 without friction or with a rigid contact");
   const double growth = bearing_thermal_expansion * (journal_radius + radial_clearance) -
                         journal_thermal_expansion * journal_radius;
   const double least =
       radial_clearance + model.lowest_strain(program, growth * temperature_fraction);
   check(least > 0, "clearance at the program's worst temperature", least, "> 0 m");
+}
+
+int ClearanceRevolute::history() const {
+  return partial_slip ? Memory::size + detail::partial_slip_history : Memory::size;
 }
 
 JointFrame ClearanceRevolute::frame(const Model& model) const {
@@ -367,7 +403,7 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
   writer.carries(friction);
   double corner[2][2] = {{0.0, 0.0}, {0.0, 0.0}};  // by λ_n and λ_t
   bool holds_normal = false;
-  bool holds_slide = false;
+  double slides = 0.0;  // derivative of the second row by the slide
   Gradients of;
   if (status == JointStatus::open) {
     // Without forces; the journal may be in the middle, where no normal is defined.
@@ -378,7 +414,8 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     of = pinned(trial);
     writer.closure(0, g.eccentricity.x());
     writer.closure(1, g.eccentricity.y());
-    holds_normal = holds_slide = true;
+    holds_normal = true;
+    slides = 1.0;
   } else {
     const Memory start = Memory::of(trial.history);
     const Motion motion = motion_of(g, start);
@@ -388,8 +425,20 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     writer.closure(0, g.eccentricity.norm() - g.clearance - depth.value);
     corner[0][0] = -depth.slope;
     const double mu = trial.model == JointModel::friction ? friction_coefficient : 0.0;
-    if (status == JointStatus::stick && trial.model == JointModel::friction) {
-      holds_slide = true;
+    if (partial_slip && trial.model == JointModel::friction) {
+      // In metres: the slide of a spring with the stiffness of a contact that sticks.
+      const Rubbing law = rubbing(*this, trial, motion.slide);
+      const double compliance = tangential_compliance(*this, normal);
+      const double softens = normal > least_force(*this) ? -compliance / (3.0 * normal) : 0.0;
+      slides = trial.unslipped ? 1.0 : compliance * law.line.by_slide;
+      writer.piece(detail::piece_of(law.line));
+      writer.closure(1, compliance * (law.line.force - friction));
+      corner[1][0] = trial.unslipped
+                         ? 0.0
+                         : compliance * law.by_normal + softens * (law.line.force - friction);
+      corner[1][1] = -compliance;
+    } else if (status == JointStatus::stick && trial.model == JointModel::friction) {
+      slides = 1.0;
       const ElasticSlide elastic = elastic_slide(*this, trial, start);
       writer.closure(1, motion.slide - elastic.slide);
       corner[1][0] = -elastic.by_normal;
@@ -406,7 +455,7 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     writer.column(a, 0, of.normal[a]);
     writer.column(a, 1, of.friction[a]);
     writer.row(0, a, (holds_normal ? 1.0 : 0.0) * of.normal[a]);
-    writer.row(1, a, (holds_slide ? 1.0 : 0.0) * of.slide[a]);
+    writer.row(1, a, slides * of.slide[a]);
     for (std::size_t b = 0; b < 4; ++b) writer.block(a, b, of.hessian[a][b]);
   }
   for (int i = 0; i < 2; ++i) {
@@ -429,9 +478,17 @@ void ClearanceRevolute::warm(const Trial& trial, JointStatus status, double temp
   const double by_journal = of_journal - 0.5 * depth;
   const double by_bearing = of_bore + 0.5 * depth;
   writer.closure(0, -clearance);
-  if (status == JointStatus::stick && trial.model == JointModel::friction) {
-    writer.closure(
-        1, 0.5 * by_journal * motion.journal_turned - 0.5 * by_bearing * motion.bearing_turned);
+  const double slide =
+      0.5 * by_journal * motion.journal_turned - 0.5 * by_bearing * motion.bearing_turned;
+  if (trial.model == JointModel::friction) {
+    if (partial_slip) {
+      const double gives = trial.unslipped ? 1.0
+                                           : tangential_compliance(*this, trial.force[0]) *
+                                                 rubbing(*this, trial, motion.slide).line.by_slide;
+      writer.closure(1, gives * slide);
+    } else if (status == JointStatus::stick) {
+      writer.closure(1, slide);
+    }
   }
   const double friction = trial.force[1];
   const auto turn = [&](std::size_t at, std::size_t far, const Vector2d& direction,
@@ -455,7 +512,7 @@ JointStatus ClearanceRevolute::decide(const Trial& trial, JointStatus status) co
     return mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
   }
   if (normal < -trial.force_rounding) return JointStatus::open;
-  if (mu == 0.0) return status;  // slips freely either way
+  if (mu == 0.0 || partial_slip) return status;  // slips freely, or one row for stick and slip
   if (status == JointStatus::stick) {
     const double bound = mu * normal + trial.force_rounding;
     return friction > bound    ? JointStatus::slip_plus
@@ -473,6 +530,11 @@ void ClearanceRevolute::begin(const Trial& trial, JointStatus status, double* no
   const Geometry g = geometry_of(*this, trial);
   const bool open = status == JointStatus::open;
   const auto [normal, friction, axial] = trial.force;
+  if (partial_slip) {
+    const double stiffness = open ? 0.0 : 1.0 / tangential_compliance(*this, normal);
+    detail::write_partial_slip(detail::pressed(stiffness, friction_coefficient * normal),
+                               now + Memory::size);
+  }
   Memory{g.eccentricity,        g.journal_direction,
          g.bearing_direction,   g.journal_radius,
          g.bearing_radius,      normal,
@@ -482,10 +544,19 @@ void ClearanceRevolute::begin(const Trial& trial, JointStatus status, double* no
 
 void ClearanceRevolute::commit(const Trial& trial, JointStatus status, double* after) const {
   begin(trial, status, after);
+  if (!partial_slip) return;
+  kernel::PartialSlipMemory memory = detail::read_partial_slip(trial.history + Memory::size);
+  rub(*this, trial, status == JointStatus::open, memory);
+  detail::write_partial_slip(memory, after + Memory::size);
 }
 
-double ClearanceRevolute::slip(const Trial& trial, const double*) const {
+double ClearanceRevolute::slip(const Trial& trial, const double* after_) const {
   const Memory start = Memory::of(trial.history);
+  if (partial_slip) {
+    const Memory after = Memory::of(after_);
+    return motion_of(geometry_of(*this, trial), start).slide -
+           (after.compliance * after.friction - start.compliance * start.friction);
+  }
   return motion_of(geometry_of(*this, trial), start).slide -
          elastic_slide(*this, trial, start).slide;
 }
@@ -493,6 +564,10 @@ double ClearanceRevolute::slip(const Trial& trial, const double*) const {
 double ClearanceRevolute::dissipation(const Trial& trial, const double* after_, double slip) const {
   const Memory start = Memory::of(trial.history);
   const Memory after = Memory::of(after_);
+  if (partial_slip) {
+    kernel::PartialSlipMemory memory = detail::read_partial_slip(trial.history + Memory::size);
+    return rub(*this, trial, after.compliance == 0.0, memory).dissipation;
+  }
   return friction_coefficient * 0.5 * (start.normal + after.normal) * std::abs(slip) +
          rim_slip(start.friction, start.compliance, after.friction, after.compliance);
 }
@@ -500,7 +575,9 @@ double ClearanceRevolute::dissipation(const Trial& trial, const double* after_, 
 double ClearanceRevolute::elastic_energy(const Trial& trial, const double* now_) const {
   const Memory now = Memory::of(now_);
   const double normal = trial.force[0];
-  const double bent = 0.5 * now.compliance * now.friction * now.friction;
+  const double bent = partial_slip
+                          ? kernel::elastic_energy(detail::read_partial_slip(now_ + Memory::size))
+                          : 0.5 * now.compliance * now.friction * now.friction;
   if (std::isinf(hertz_stiffness)) return bent;
   const double least = least_force(*this);
   const double linear = std::min(normal, least);
@@ -520,11 +597,18 @@ double ClearanceRevolute::slide_rounding(const Trial& trial, double length, doub
 
 bool ClearanceRevolute::remembers_when(JointStatus before, JointStatus after) const {
   if (friction_coefficient == 0.0) return false;
-  return before == JointStatus::open ||
-         (is_slip(before) && (after == JointStatus::stick || is_slip(after)));
+  if (before == JointStatus::open) return true;
+  return !partial_slip && is_slip(before) && (after == JointStatus::stick || is_slip(after));
+}
+
+JointStatus ClearanceRevolute::settled(const Trial& trial, JointStatus status) const {
+  if (!partial_slip || status == JointStatus::open) return status;
+  const double slide = motion_of(geometry_of(*this, trial), Memory::of(trial.history)).slide;
+  return detail::sliding(rubbing(*this, trial, slide).line, trial.before, trial.length_rounding);
 }
 
 std::optional<LocalContact> ClearanceRevolute::contact(const Trial& trial, JointStatus) const {
+  if (partial_slip) return {};  // its friction is no cone: as a contact it is held
   // In the middle of its play no direction is normal.
   if (trial.between(bearing, journal).isZero(0.0)) return {};
   return LocalContact{1, 0, friction_coefficient, 0.0};

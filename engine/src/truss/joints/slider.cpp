@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "statejump/kernel/require.hpp"
+#include "truss/joints/partial_slip.hpp"
 #include "truss/joints/prismatic.hpp"
 
 namespace statejump::truss {
@@ -32,22 +34,46 @@ double slide_of(const Slider& slider, const Trial& trial) {
   return slider.axis.dot(trial.moved[0] - trial.moved[1]);
 }
 
-/// Friction of a contact that is bent by so much [N]; only if it is not rigid.
-double bent_friction(const Slider& slider, double bend) {
-  const double f = slider.friction_force;
-  return std::clamp(slider.tangential_stiffness * bend, -f, f);
+/// With partial slip: the slide at the start of the step, then the contact's memory.
+kernel::PartialSlipMemory memory_of(const double* history) {
+  return detail::read_partial_slip(history + 1);
 }
 
-/// What of the slide has slipped [m]. @param before the same at the start of the step
-double slipped(const Slider& slider, const Trial& trial, JointStatus status, double before) {
-  const bool plus_stop = status == JointStatus::stop_plus;
-  if (!plus_stop && status != JointStatus::stop_minus) {
-    return slide_of(slider, trial) - trial.force[0] / slider.tangential_stiffness;
+/// Friction's law with partial slip, where the slide is s.
+kernel::PartialSlipLine rubbing(const Slider& slider, const double* history, double s) {
+  return kernel::partial_slip_line(slider.tangential_stiffness, slider.friction_force,
+                                   s - history[0], memory_of(history));
+}
+
+/// The step to where the slide is s. @param memory at its start; that at its end
+kernel::PartialSlipResponse rub(const Slider& slider, const double* history, double s,
+                                kernel::PartialSlipMemory& memory) {
+  return kernel::partial_slip_step(slider.tangential_stiffness, slider.friction_force,
+                                   {s - history[0], 0.0}, memory);
+}
+
+/// Friction where the slide is s [N]; only if the contact is not rigid.
+double friction_at(const Slider& slider, const double* history, double s) {
+  if (slider.partial_slip) return rubbing(slider, history, s).force;
+  const double f = slider.friction_force;
+  return std::clamp(slider.tangential_stiffness * (s - history[0]), -f, f);
+}
+
+/// Slide of a state [m]: at a stop the clearance itself, rounding must not add up.
+double slide_of(const Slider& slider, const Trial& trial, JointStatus status) {
+  return status == JointStatus::stop_plus    ? slider.clearance_plus
+         : status == JointStatus::stop_minus ? -slider.clearance_minus
+                                             : slide_of(slider, trial);
+}
+
+/// What of the slide has slipped [m]; not with partial slip. @param before at the start of the step
+double slipped(const Slider& slider, const Trial& trial, JointStatus status, const double* before) {
+  const double s = slide_of(slider, trial, status);
+  if (status != JointStatus::stop_plus && status != JointStatus::stop_minus) {
+    return s - trial.force[0] / slider.tangential_stiffness;
   }
-  // At a stop the slide is the clearance itself: rounding must not add up.
-  const double s = plus_stop ? slider.clearance_plus : -slider.clearance_minus;
   if (std::isinf(slider.tangential_stiffness)) return s;
-  return s - bent_friction(slider, s - before) / slider.tangential_stiffness;
+  return s - friction_at(slider, before, s) / slider.tangential_stiffness;
 }
 
 /// Branch in which a slider that slips one way should be.
@@ -69,8 +95,8 @@ JointStatus after_stop(const Slider& slider, const Trial& trial, const Sense& wa
   const double f = slider.friction_force;
   const double pushed = way.sign * trial.force[0];
   if (std::isfinite(slider.tangential_stiffness)) {
-    const double bend = way.sign * way.clearance(slider) - trial.history[0];
-    const bool leaves = pushed < way.sign * bent_friction(slider, bend) - trial.force_rounding;
+    const double rubs = friction_at(slider, trial.history, way.sign * way.clearance(slider));
+    const bool leaves = pushed < way.sign * rubs - trial.force_rounding;
     return leaves ? JointStatus::stick : way.stop;
   }
   // Rested there already: friction helps to stay. Arrived in this step: friction pushes back.
@@ -81,15 +107,16 @@ JointStatus after_stop(const Slider& slider, const Trial& trial, const Sense& wa
 }
 
 /// Branch in which a slider that sticks should be.
-JointStatus after_stick(const Slider& slider, const Trial& trial) {
+JointStatus after_stick(const Slider& slider, const Trial& trial, JointStatus status) {
   const bool elastic = std::isfinite(slider.tangential_stiffness);
   for (const Sense& way : {plus, minus}) {
     // It may get to a stop while it bends.
     const double s = way.sign * slide_of(slider, trial);
     if (elastic && s > way.clearance(slider) + trial.length_rounding) return way.stop;
+    if (slider.partial_slip) continue;  // one row for stick and slip
     if (way.sign * trial.force[0] > slider.friction_force + trial.force_rounding) return way.slip;
   }
-  return JointStatus::stick;
+  return status;
 }
 
 }  // namespace
@@ -108,6 +135,7 @@ std::span<const Parameter<Slider>> Slider::parameters() {
        &Slider::clearance_plus},
       {"tangential_stiffness_N_per_m", "tangential_stiffness", "N/m", Allowed::positive_or_infinite,
        "Mindlin, of the pad under its normal force", &Slider::tangential_stiffness},
+      {"partial_slip", "partial_slip", "-", Allowed::flag, "the case", &Slider::partial_slip},
   };
   return table;
 }
@@ -123,6 +151,14 @@ void Slider::validate(const Model&) const {
     throw kernel::OutOfRange("slider '" + name + "'", "second node", second,
                              "another than the first");
   }
+  if (partial_slip && !(friction_force > 0.0 && std::isfinite(tangential_stiffness))) {
+    throw kernel::OutOfRange("slider '" + name + "'", "partial_slip", partial_slip,
+                             "0 without friction or with a rigid contact");
+  }
+}
+
+int Slider::history() const {
+  return partial_slip ? 1 + detail::partial_slip_history : 1;
 }
 
 JointFrame Slider::frame(const Model& model) const {
@@ -133,6 +169,18 @@ void Slider::evaluate(const Trial& trial, JointStatus status, JointWriter& write
   const double s = slide_of(*this, trial);
   const double force = trial.force[0];
   detail::push_along(trial, axis, writer);
+  if (partial_slip && status != JointStatus::stop_plus && status != JointStatus::stop_minus) {
+    // In metres: the slide of a spring with the stiffness of a contact that sticks.
+    const kernel::PartialSlipLine law = rubbing(*this, trial.history, s);
+    const double gives = trial.unslipped ? 1.0 : law.by_slide / tangential_stiffness;
+    writer.piece(detail::piece_of(law));
+    writer.closure(0, (law.force - force) / tangential_stiffness);
+    writer.corner(0, 0, -1.0 / tangential_stiffness);
+    writer.row(0, 0, gives * axis);
+    writer.row(0, 1, -gives * axis);
+    detail::hold_across(trial, writer);
+    return;
+  }
   double corner = 0.0;
   switch (status) {
     case JointStatus::stop_plus:
@@ -161,6 +209,7 @@ void Slider::evaluate(const Trial& trial, JointStatus status, JointWriter& write
 }
 
 JointStatus Slider::decide(const Trial& trial, JointStatus status) const {
+  if (partial_slip && is_slip(status)) return after_stick(*this, trial, status);
   switch (status) {
     case JointStatus::slip_plus:
       return after_slip(*this, trial, plus);
@@ -171,29 +220,52 @@ JointStatus Slider::decide(const Trial& trial, JointStatus status) const {
     case JointStatus::stop_minus:
       return after_stop(*this, trial, minus);
     default:
-      return after_stick(*this, trial);
+      return after_stick(*this, trial, status);
   }
 }
 
 void Slider::begin(const Trial& trial, JointStatus status, double* now) const {
   // The start was found from the drawn shape, where nothing had slipped.
-  now[0] = slipped(*this, trial, status, 0.0);
+  std::vector<double> drawn(detail::index(history()), 0.0);
+  Trial from = trial;
+  from.history = drawn.data();
+  if (partial_slip) {
+    detail::write_partial_slip(detail::pressed(tangential_stiffness, friction_force), &drawn[1]);
+  }
+  commit(from, status, now);
 }
 
 void Slider::commit(const Trial& trial, JointStatus status, double* after) const {
-  after[0] = slipped(*this, trial, status, trial.history[0]);
+  if (!partial_slip) {
+    after[0] = slipped(*this, trial, status, trial.history);
+    return;
+  }
+  const double s = slide_of(*this, trial, status);
+  kernel::PartialSlipMemory memory = memory_of(trial.history);
+  rub(*this, trial.history, s, memory);
+  after[0] = s;
+  detail::write_partial_slip(memory, after + 1);
 }
 
 double Slider::slip(const Trial& trial, const double* after) const {
-  return after[0] - trial.history[0];
+  const double moved = after[0] - trial.history[0];
+  if (!partial_slip) return moved;
+  const double rubs = rubbing(*this, after, after[0]).force;
+  const double rubbed = rubbing(*this, trial.history, trial.history[0]).force;
+  return moved - (rubs - rubbed) / tangential_stiffness;
 }
 
-double Slider::dissipation(const Trial&, const double*, double slip) const {
+double Slider::dissipation(const Trial& trial, const double* after, double slip) const {
+  if (partial_slip) {
+    kernel::PartialSlipMemory memory = memory_of(trial.history);
+    return rub(*this, trial.history, after[0], memory).dissipation;
+  }
   // Whenever it slides, friction is f; a stop takes no heat.
   return friction_force * std::abs(slip);
 }
 
 double Slider::elastic_energy(const Trial& trial, const double* now) const {
+  if (partial_slip) return kernel::elastic_energy(memory_of(now));
   if (std::isinf(tangential_stiffness)) return 0.0;
   const double bend = slide_of(*this, trial) - now[0];
   return 0.5 * tangential_stiffness * bend * bend;
@@ -209,10 +281,18 @@ double Slider::slide_rounding(const Trial&, double length, double force) const {
 }
 
 bool Slider::remembers_when(JointStatus before, JointStatus after) const {
-  return friction_force > 0.0 && is_slip(before) && (after == JointStatus::stick || is_slip(after));
+  return friction_force > 0.0 && !partial_slip && is_slip(before) &&
+         (after == JointStatus::stick || is_slip(after));
+}
+
+JointStatus Slider::settled(const Trial& trial, JointStatus status) const {
+  if (!partial_slip || !(status == JointStatus::stick || is_slip(status))) return status;
+  return detail::sliding(rubbing(*this, trial.history, slide_of(*this, trial)), trial.before,
+                         trial.length_rounding);
 }
 
 std::optional<LocalContact> Slider::contact(const Trial&, JointStatus status) const {
+  if (partial_slip) return {};  // its friction is no cone: as a contact it is held
   // Wall and friction share a force that is not told apart: at a stop it is held.
   if (status == JointStatus::stop_plus || status == JointStatus::stop_minus) return {};
   return LocalContact{0, -1, 1.0, friction_force};

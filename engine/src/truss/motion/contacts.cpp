@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include "statejump/kernel/require.hpp"
 
 namespace statejump::truss::detail {
 
@@ -16,6 +19,13 @@ Vector3d eccentricity(const Trial& at) {
   const Vector3d apart = at.between(1, 0);
   const Vector3d axis = at.frame.axes.col(2);
   return apart - axis.dot(apart) * axis;
+}
+
+template <class Joint>
+void refuse_partial_slip(const Joint& joint) {
+  if (!joint.partial_slip) return;
+  throw kernel::OutOfRange(std::string(Joint::kind) + " '" + joint.name + "'", "partial_slip",
+                           joint.partial_slip, "0 in motion");
 }
 
 JointStatus sliding(double friction, double bound) {
@@ -94,6 +104,7 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
 }
 
 void Contacts::add(int joint, int first_column, const Slider& slider) {
+  refuse_partial_slip(slider);
   Contact rubbing;
   rubbing.joint = joint;
   rubbing.tangential_column = first_column;
@@ -117,6 +128,7 @@ void Contacts::add(int joint, int first_column, const Slider& slider) {
 }
 
 void Contacts::add(int joint, int first_column, const ClearanceRevolute& revolute) {
+  refuse_partial_slip(revolute);
   Contact contact;
   contact.joint = joint;
   contact.normal_column = first_column;

@@ -23,7 +23,7 @@ from statejump.kinds.truss.joints.latch_hinge import LatchHinge
 from statejump.kinds.truss.joints.revolute import Revolute
 from statejump.kinds.truss.joints.slider import Slider
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER
-from statejump.kinds.truss.resolved import FIXITY, ResolvedTruss, resolve
+from statejump.kinds.truss.resolved import FIXITY, STICKING, ResolvedTruss, resolve
 from statejump.schema.fields import (
     CHOICE, Section, attached, choice, definition, evolved, numbers, optional_section, parameter, section, switch,
     tables, text, texts, whole,
@@ -152,7 +152,8 @@ class TrussReduced(Section):
 
     increments_per_branch: int = whole(50, 1, 1_000_000, CHOICE)
     locate_events: bool = switch(True, "whether events are located between increments")
-    sticking: str = choice("rigid", ("rigid", "elastic"), "Coulomb's law; elastic: gives way by k_t, as in the DEM")
+    sticking: str = choice("rigid", STICKING, "Coulomb's law; elastic: gives way by k_t, as in the DEM; partial_slip: "
+                           "slides at its rim first, in the DEM as well")
     event_tolerance: float = parameter(1e-9, "-", 0, 0.1, CHOICE + "; of a branch", above=True)
 
 

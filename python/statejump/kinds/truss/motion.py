@@ -113,6 +113,10 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         for name in truss.joints[joint.section].names[:1] if joint.not_in_motion else ():
             raise StatejumpError(cause=f"{joint.section} {name!r} {joint.not_in_motion}", case=case.name,
                                  remedy="'statejump reduced' without --dynamic can run the case", joint=name)
+    if truss.sticking == "partial_slip":
+        raise StatejumpError(cause='joints in motion have no partial slip (reduced.sticking = "partial_slip")',
+                             case=case.name, remedy='set reduced.sticking to "elastic" or "rigid", or run '
+                             "'statejump reduced' without --dynamic")
     steps_per_sample = ceil(case.motion.steps_per_cycle / samples)
     try:
         found = _engine.truss_motion(

@@ -32,6 +32,9 @@ FIXITY = {
     "pinned_pinned": 1.0, "clamped_pinned": (4.493409457909064 / np.pi) ** 2, "clamped_clamped": 4.0, "guided": inf,
 }
 
+# How contacts stick: not at all giving way, as springs, as springs that slide at their rim first.
+STICKING = ("rigid", "elastic", "partial_slip")
+
 
 @dataclass(frozen=True)
 class Nodes:
@@ -119,7 +122,7 @@ class ResolvedTruss:
     programs: tuple[TrussThermal | MemberProgram, ...]
     program_names: tuple[str, ...]  # "thermal", those of the file, those of members, "EXPANSION of PROGRAM"
     reflector: ReflectorSurface | None
-    sticking: str  # "rigid" or "elastic": contacts of the reduced model
+    sticking: str  # one of STICKING: contacts of the reduced model
 
     @property
     def temperature_ranges_K(self) -> np.ndarray:

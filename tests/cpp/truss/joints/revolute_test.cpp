@@ -41,24 +41,27 @@ Model rib() {
 }
 
 TEST(Revolute, GradientsAreThoseOfItsForces) {
-  const Model model = rib();
-  const detail::System system(model);
-  Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(system.unknowns(), 1e-5, 6e-5);
-  z[6] += 9e-5;  // in contact
-  z[8] = 5.0;    // normal force, friction
-  z[9] = 0.4;
-  Eigen::VectorXd before = z;
-  before[0] -= 3e-6;
-  before[3] += 4e-6;
-  before[7] += 2e-6;
-  before[9] = 0.3;
-  // Loaded and unloaded: the elastic slide has a branch for each.
-  for (const double normal : {4.0, 7.0}) {
-    before[8] = normal;
-    check_gradients(
-        model, z, before,
-        {JointStatus::stick, JointStatus::slip_plus, JointStatus::slip_minus, JointStatus::open},
-        1e-8, 1e-4);
+  for (const int partial_slip : {0, 1}) {
+    Model model = rib();
+    std::get<ClearanceRevolute>(model.joints[0]).partial_slip = partial_slip;
+    const detail::System system(model);
+    Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(system.unknowns(), 1e-5, 6e-5);
+    z[6] += 9e-5;  // in contact
+    z[8] = 5.0;    // normal force, friction
+    z[9] = 0.4;
+    Eigen::VectorXd before = z;
+    before[0] -= 3e-6;
+    before[3] += 4e-6;
+    before[7] += 2e-6;
+    before[9] = 0.3;
+    // Loaded and unloaded: the elastic slide has a branch for each.
+    for (const double normal : {4.0, 7.0}) {
+      before[8] = normal;
+      check_gradients(
+          model, z, before,
+          {JointStatus::stick, JointStatus::slip_plus, JointStatus::slip_minus, JointStatus::open},
+          1e-8, 1e-4);
+    }
   }
 }
 

@@ -26,8 +26,13 @@ TEST(Slider, GradientsAreThoseOfItsForces) {
   slider.friction_force = 30.0;
   slider.clearance_minus = 1e-4;
   slider.clearance_plus = 2e-4;
-  for (const double stiffness : {1e7, std::numeric_limits<double>::infinity()}) {
+  const double rigid = std::numeric_limits<double>::infinity();
+  // With partial slip z is a gross slip of 30 N/(1e7 N/m) times 1.5 beyond `before`, or a part of
+  // it.
+  const std::tuple<double, int> laws[] = {{1e7, 0}, {rigid, 0}, {1e7, 1}, {3e6, 1}};
+  for (const auto& [stiffness, partial_slip] : laws) {
     slider.tangential_stiffness = stiffness;
+    slider.partial_slip = partial_slip;
     model.joints = {slider};
     const detail::System system(model);
     Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(system.unknowns(), 1e-5, 6e-5);

@@ -49,6 +49,7 @@ enum class Allowed : unsigned char {
   link_or_none,          ///< Index of a link, −1: none.
   link,                  ///< Index of a link.
   program,               ///< Index of a temperature program.
+  flag,                  ///< 0: no, 1: yes.
   count                  ///< Whole number >= 1.
 };
 
@@ -106,6 +107,8 @@ struct Trial {
   double temperature_change;                            ///< [K]
   JointModel model = JointModel::friction;
   double opening = 1.0;  ///< Share of the clearances that is open (start).
+  /// Asked how fast it slides: the row of the slide is that of a contact of which nothing slips.
+  bool unslipped = false;
   /// What rounding may make of a length [m] and of a force [N]; 0 where inequalities are strict.
   double length_rounding = 0.0;
   double force_rounding = 0.0;
@@ -144,6 +147,9 @@ struct Seat {
 //   describe()            outputs in their order
 //   slide_rounding()      of the slide less what friction bends [m]
 //   remembers_when()      whether the state depends on when in a step the status changed
+//   slips_smoothly()      whether its law has one row for stick and slip
+//   settled()             status at the end of a step: of such a law told here, not decided; of
+//                         others what was decided
 //   contact()             which rows are those of a frictional contact, none on a branch that is
 //   not one rest()                status with which the path begins seat(), jumps()       joints
 //   with play: how the start finds contact, and whether a step was a

@@ -74,8 +74,10 @@ struct IwanJoint {
   void describe(const Trial& trial, double* outputs) const;
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
+  JointStatus settled(const Trial&, JointStatus status) const { return status; }
   /// Its friction is no cone: as a contact it is held.
   std::optional<LocalContact> contact(const Trial&, JointStatus) const { return {}; }
+  bool slips_smoothly() const { return false; }
   double least_slide() const { return 0.0; }
   JointStatus rest() const { return JointStatus::stick; }
   bool has_play() const { return false; }

@@ -48,7 +48,9 @@ struct LatchHinge {
   void describe(const Trial& trial, double* outputs) const;
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
+  JointStatus settled(const Trial&, JointStatus status) const { return status; }
   std::optional<LocalContact> contact(const Trial& trial, JointStatus status) const;
+  bool slips_smoothly() const { return false; }
   double least_slide() const { return 0.0; }
   JointStatus rest() const { return JointStatus::stick; }
   bool has_play() const { return false; }

@@ -24,6 +24,10 @@ namespace statejump::truss {
 /// DEM do: Δσ is then the slide less what friction bends, ∫ dλ_t/k_t. k_t follows the depth
 /// (Mindlin, k_t = 8 G* √(R δ)): what loads the contact keeps λ_t, what unloads it keeps λ_t/k_t;
 /// energy lost either way is heat at the contact's rim.
+///
+/// With partial slip λ_t is the force of kernel::partial_slip_step() for the slide Δσ, the
+/// stiffness k_t of the depth and the limit μ λ_n, one step of it from state to state: one row for
+/// stick and slip. `slip±` then says that the whole contact slides.
 struct ClearanceRevolute {
   std::string name;
   int journal_node = 0;
@@ -40,12 +44,14 @@ struct ClearanceRevolute {
   /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ), by which the contact gives way while it sticks
   /// [N/m^1.5]; infinity: rigid. Finite only if `hertz_stiffness` is.
   double mindlin_stiffness = std::numeric_limits<double>::infinity();
+  /// 1: slides at the rim of its contact first. Needs friction and finite stiffnesses.
+  int partial_slip = 0;
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   int program = 0;
   double temperature_fraction = 1;
 
   static constexpr const char* kind = "revolute";
-  static constexpr int history() { return 11; }
+  int history() const;
   static constexpr int slide_row = 1;
   static std::span<const Parameter<ClearanceRevolute>> parameters();
   static std::span<const Output> outputs();
@@ -63,7 +69,9 @@ struct ClearanceRevolute {
   void describe(const Trial& trial, double* outputs) const;
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
+  JointStatus settled(const Trial& trial, JointStatus status) const;
   std::optional<LocalContact> contact(const Trial& trial, JointStatus status) const;
+  bool slips_smoothly() const { return partial_slip != 0; }
   double least_slide() const { return radial_clearance; }
   JointStatus rest() const {
     return friction_coefficient > 0.0 ? JointStatus::stick : JointStatus::slip_plus;

@@ -21,6 +21,10 @@ namespace statejump::truss {
 /// One unknown does for friction and stop together: how a rigid wall and rigid friction share a
 /// force is not determined. With a finite k_t what slides is p = s − λ_f/k_t, friction is
 /// λ_f = clamp(k_t (s − p_k); ±f), and the stop takes what is beyond it.
+///
+/// With partial slip λ_f is the force of kernel::partial_slip_step() under the constant limit f,
+/// one step of it from state to state: one row for stick and slip. `slip±` then says that the whole
+/// contact slides.
 struct Slider {
   std::string name;
   int first = 0;
@@ -31,9 +35,11 @@ struct Slider {
   double clearance_plus = std::numeric_limits<double>::infinity();   ///< [m], >= 0.
   /// k_t of the contact while it sticks [N/m], > 0; infinity: rigid.
   double tangential_stiffness = std::numeric_limits<double>::infinity();
+  /// 1: slides at the rim of its contact first. Needs friction and a finite k_t.
+  int partial_slip = 0;
 
   static constexpr const char* kind = "slider";
-  static constexpr int history() { return 1; }
+  int history() const;
   static constexpr int slide_row = 0;
   static std::span<const Parameter<Slider>> parameters();
   static std::span<const Output> outputs();
@@ -50,7 +56,9 @@ struct Slider {
   void describe(const Trial& trial, double* outputs) const;
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
+  JointStatus settled(const Trial& trial, JointStatus status) const;
   std::optional<LocalContact> contact(const Trial& trial, JointStatus status) const;
+  bool slips_smoothly() const { return partial_slip != 0; }
   double least_slide() const { return 0.0; }
   JointStatus rest() const { return JointStatus::stick; }
   bool has_play() const { return false; }

@@ -154,6 +154,10 @@ class RevoluteType(JointType[Revolute, Revolutes]):
         )
 
     def check_geometry(self, truss: ResolvedTruss, joints: Revolutes, ranges_K: np.ndarray) -> None:
+        slips = (truss.sticking == "partial_slip") & (joints.friction_coefficient > 0)
+        for index in np.flatnonzero(joints.rigid & slips)[:1]:
+            raise NotAllowed("contact", "rigid", 'must be "hertz" with reduced.sticking = "partial_slip": a rigid '
+                             "contact has no area of which a part slips", **self.where(joints.names[index]))
         for side in (0, 1):
             changes = joints.temperature_fraction * ranges_K[joints.program, side]
             for part in ("journal", "bearing"):
@@ -193,10 +197,11 @@ class RevoluteType(JointType[Revolute, Revolutes]):
         return np.stack((joints.bearing_node, joints.journal_node), axis=1)
 
     def engine_arrays(self, truss: ResolvedTruss, joints: Revolutes) -> dict[str, Any]:
-        elastic = truss.sticking == "elastic"
+        gives_way = truss.sticking != "rigid"
         return {
             "hertz_stiffness_N_per_m15": np.where(joints.rigid, inf, hertz_stiffness(joints)),
-            "mindlin_stiffness_N_per_m15": np.where(joints.rigid | (not elastic), inf, mindlin_stiffness(joints)),
+            "mindlin_stiffness_N_per_m15": np.where(joints.rigid | (not gives_way), inf, mindlin_stiffness(joints)),
+            "partial_slip": (truss.sticking == "partial_slip") & (joints.friction_coefficient > 0),
         }
 
     def contacts(self, run: Sampled, joints: Revolutes) -> Contacts:

@@ -42,9 +42,9 @@ class Slider(Item):
     normal_force_N: float = parameter(..., "N", 0, 1e9, USER)
     clearance_minus_m: float | None = parameter(None, "m", 0, 1e2, "against the axis; no stop", above=True)
     clearance_plus_m: float | None = parameter(None, "m", 0, 1e2, "along the axis; no stop", above=True)
-    pad_radius_m: float = parameter(0.05, "m", 0, 1e2, CHOICE + "; DEM and elastic sticking only", above=True)
-    young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM + "; DEM and elastic sticking only", above=True)
-    poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM + "; DEM and elastic sticking only")
+    pad_radius_m: float = parameter(0.05, "m", 0, 1e2, CHOICE + "; if not rigid, and in the DEM", above=True)
+    young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM + "; if not rigid, and in the DEM", above=True)
+    poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM + "; if not rigid, and in the DEM")
 
 
 @dataclass(frozen=True)
@@ -125,11 +125,13 @@ class SliderType(AlongAxis[Slider, Sliders]):
         )
 
     def engine_arrays(self, truss: ResolvedTruss, joints: Sliders) -> dict[str, Any]:
-        loaded = (truss.sticking == "elastic") & (joints.normal_force_N > 0)
+        loaded = (truss.sticking != "rigid") & (joints.normal_force_N > 0)
+        friction_force_N = joints.friction_coefficient * joints.normal_force_N
         return {
             **super().engine_arrays(truss, joints),
-            "friction_force_N": joints.friction_coefficient * joints.normal_force_N,
+            "friction_force_N": friction_force_N,
             "tangential_stiffness_N_per_m": np.where(loaded, pads(joints).tangential_N_per_m, inf),
+            "partial_slip": (truss.sticking == "partial_slip") & (friction_force_N > 0),
         }
 
     def contacts(self, run: Sampled, joints: Sliders) -> Contacts:

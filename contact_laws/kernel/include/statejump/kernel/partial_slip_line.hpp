@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "statejump/kernel/partial_slip.hpp"
+
+namespace statejump::kernel {
+
+/// Force of a step of partial_slip_step() in one direction, with its derivatives: for implicit
+/// solvers, which ask for many ends of a step before they take one.
+struct PartialSlipLine {
+  double force = 0.0;         ///< of the contact, positive along the slide that causes it [N]
+  double by_slide = 0.0;      ///< [N/m], from 0 (all rings slip) to the stiffness (none does)
+  double by_stiffness = 0.0;  ///< by 8 G* a at a fixed limit [m]
+  double by_limit = 0.0;      ///< by mu F_N at a fixed stiffness [-]
+  double centre = 0.0;        ///< U of the innermost ring if it stuck [m]
+  double bound = 0.0;         ///< on it: it is the last to slip, along the sign of `centre` [m]
+  /// Pieces of rings that stick and that slip either way: the law is smooth while they stay as
+  /// many.
+  int stuck = 0, plus = 0, minus = 0;
+};
+
+namespace detail {
+
+/// Both ends of a piece over which everything is straight over x^2.
+struct LineKnot {
+  double x;
+  double trial;      ///< U if the ring sticks [m]
+  double bound;      ///< on |U| [m]
+  double share;      ///< of the slide that the ring takes part in
+  double by_growth;  ///< of that share by the edge of the contact [m/N]
+
+  LineKnot towards(const LineKnot& b, double s) const {
+    const auto mix = [s](double from, double to) { return from + s * (to - from); };
+    return {std::sqrt(mix(x * x, b.x * b.x)), mix(trial, b.trial), mix(bound, b.bound),
+            mix(share, b.share), mix(by_growth, b.by_growth)};
+  }
+};
+
+/// Adds up the pieces of a line.
+class LineSum {
+ public:
+  LineSum(double edge, double slope, double slide)
+      : edge_(edge), slope_(slope), slide_(slide), smallest_(1e-15 * slope * edge * edge) {}
+
+  void piece(const LineKnot& a, const LineKnot& b) {
+    if (!(b.x > a.x)) return;
+    if (sticks(a) && sticks(b)) {
+      add(a, b, 0.0);
+      return;
+    }
+    // where the trial meets either bound
+    std::array<double, 4> cut{0.0, 1.0, 1.0, 1.0};
+    std::size_t cuts = 1;
+    for (const double sign : {1.0, -1.0}) {
+      const double at_a = a.trial - sign * a.bound;
+      const double at_b = b.trial - sign * b.bound;
+      if (at_a * at_b < 0.0) cut[cuts++] = at_a / (at_a - at_b);
+    }
+    std::sort(cut.begin(), cut.end());
+    for (std::size_t i = 0; i < cuts; ++i) {
+      const LineKnot from = a.towards(b, cut[i]);
+      const LineKnot to = a.towards(b, cut[i + 1]);
+      const LineKnot middle = a.towards(b, 0.5 * (cut[i] + cut[i + 1]));
+      add(from, to, sticks(middle) ? 0.0 : std::copysign(1.0, middle.trial));
+    }
+  }
+
+  void finish(PartialSlipLine& line) const {
+    line.force = force_;
+    line.stuck = stuck_;
+    line.plus = plus_;
+    line.minus = minus_;
+    line.by_slide = by_slide_;
+    line.by_limit = by_slope_ * 1.5 / (edge_ * edge_ * edge_);
+    line.by_stiffness = by_edge_ - 3.0 * slope_ / edge_ * by_slope_;
+  }
+
+ private:
+  bool sticks(const LineKnot& k) const { return std::abs(k.trial) <= k.bound + smallest_; }
+
+  /// @param sense in which the piece slips; 0: it sticks
+  void add(const LineKnot& a, const LineKnot& b, double sense) {
+    const Piece w(a.x, b.x);
+    const auto integral = [&](double at_a, double at_b) {
+      return (w.both_at_a + w.one_each) * at_a + (w.both_at_b + w.one_each) * at_b;
+    };
+    if (sense == 0.0) {
+      ++stuck_;
+      force_ += integral(a.trial, b.trial);
+      by_slide_ += integral(a.share, b.share);
+      by_edge_ += slide_ * integral(a.by_growth, b.by_growth);
+      return;
+    }
+    ++(sense > 0.0 ? plus_ : minus_);
+    const double slips = sense * integral(a.bound, b.bound);
+    force_ += slips;
+    by_slope_ += slips / slope_;
+    by_edge_ += sense * slope_ * 2.0 * edge_ * (b.x - a.x);
+  }
+
+  double edge_, slope_, slide_, smallest_;
+  double force_ = 0.0, by_slide_ = 0.0, by_slope_ = 0.0, by_edge_ = 0.0;
+  int stuck_ = 0, plus_ = 0, minus_ = 0;
+};
+
+}  // namespace detail
+
+/// Force and derivatives at the end of a step along one direction; see partial_slip_step(), of
+/// which it is the force to rounding, less what that merges. At a bound that was just met the
+/// derivatives are those of the ring that sticks. Where the contact neither grows nor shrinks they
+/// are those of a contact that shrinks.
+///
+/// Derivation. T = integral of U dx over the rings, U = start + slide where a ring sticks and the
+/// bound, 3/2 limit/k^3 (k^2 - x^2), where it slips. U is continuous and 0 at the edge, so that
+/// only U itself changes, not the places where pieces meet. Rings by which the contact grows from
+/// an edge e take part in (k^2 - x^2)/(k^2 - e^2) of the slide.
+///
+/// @param stiffness 8 G* a at the end of the step [N/m]; <= 0: no contact, all is 0
+/// @param limit mu F_N there [N]; <= 0: likewise
+/// @param slide of body 1 against body 2 in the step, along the first tangent [m]
+/// @param memory at its start; slides across are not looked at
+inline PartialSlipLine partial_slip_line(double stiffness, double limit, double slide,
+                                         const PartialSlipMemory& memory) {
+  PartialSlipLine line;
+  if (!(stiffness > 0.0 && limit > 0.0)) return line;
+  const double edge = stiffness;
+  const double slope = 1.5 * limit / (edge * edge * edge);
+  const double old_edge = memory.edge();
+  const auto knot = [&](double x, double start, double share, double by_growth) {
+    return detail::LineKnot{x, start + share * slide, slope * (edge - x) * (edge + x), share,
+                            by_growth};
+  };
+  detail::LineSum sum(edge, slope, slide);
+  detail::LineKnot last = knot(0.0, memory.size() > 0 ? memory[0].u.a : 0.0, 1.0, 0.0);
+  line.centre = last.trial;
+  line.bound = last.bound;
+  for (int i = 1; i < memory.size(); ++i) {
+    const detail::LineKnot next = knot(memory[i].x, memory[i].u.a, 1.0, 0.0);
+    if (next.x >= edge) {
+      const double share =
+          (edge - last.x) * (edge + last.x) / ((next.x - last.x) * (next.x + last.x));
+      detail::LineKnot end = last.towards(next, share);
+      end.x = edge;
+      end.bound = 0.0;
+      sum.piece(last, end);
+      break;
+    }
+    sum.piece(last, next);
+    last = next;
+  }
+  if (edge > old_edge) {
+    const double grown = (edge - old_edge) * (edge + old_edge);
+    sum.piece(last, knot(edge, 0.0, 0.0, 2.0 * edge / grown));
+  }
+  sum.finish(line);
+  return line;
+}
+
+}  // namespace statejump::kernel

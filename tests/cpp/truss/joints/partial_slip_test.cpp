@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sliders that slide at the rim of their contact first, in a truss.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "statejump/thermal/program.hpp"
+#include "statejump/truss/motion.hpp"
+#include "statejump/truss/path.hpp"
+
+namespace statejump::truss {
+namespace {
+
+constexpr double friction = 100.0, stiffness = 2e7;
+/// Slide at which a contact slides as a whole.
+constexpr double gross = 1.5 * friction / stiffness;
+/// Closures are solved to 1e-13 of the largest displacement, forces to 1e-12 of the largest force.
+constexpr double rounding = 1e-11 * friction;
+
+Slider rubbing() {
+  Slider made;
+  made.name = std::string("S");
+  made.first = 1;
+  made.friction_force = friction;
+  made.tangential_stiffness = stiffness;
+  made.partial_slip = 1;
+  return made;
+}
+
+/// A bar that heating pushes against the slider: 1.26e6 N/m, 11.7 um/K, gross slip at 7.4 K.
+Model bar(const Slider& slider, double largest, int cycles) {
+  Model model;
+  thermal::Program program;
+  program.shape = thermal::Shape::triangle;
+  program.temperature_change_max = largest;
+  program.period = 1.0;
+  program.cycles = cycles;
+  model.programs = {program};
+  Node held;
+  held.name = std::string("held");
+  held.freedoms = 0;
+  Node moved;
+  moved.name = std::string("moved");
+  moved.position = {0.5, 0.0, 0.0};
+  moved.freedoms = 1;
+  model.nodes = {held, moved};
+  model.links = {{"AB", 0, 1, 70e9 * 9e-6, 0.5, 23.4e-6, 0, 1.0}};
+  model.joints = {slider};
+  return model;
+}
+
+double slide(const Model& model, const State& state) {
+  return output(model, state, 0, "slide_m")[0];
+}
+double force(const Model& model, const State& state) {
+  return output(model, state, 0, "slider_force_N")[0];
+}
+
+/// Cattaneo and Mindlin: force of a first loading.
+double first_loading(double slide) {
+  return friction * (1.0 - std::pow(1.0 - std::min(slide / gross, 1.0), 1.5));
+}
+
+/// Heat of a steady cycle between forces +-T (Mindlin and Deresiewicz 1953), t = T/f, 8 G* a = k_t.
+double heat_of_cycle(double t) {
+  return 7.2 * friction * friction / stiffness *
+         (1.0 - std::pow(1.0 - t, 5.0 / 3.0) -
+          5.0 * t / 6.0 * (1.0 + std::pow(1.0 - t, 2.0 / 3.0)));
+}
+
+double residue(const State& state) {
+  return state.thermal_work - state.elastic_energy - state.joint_dissipation.sum();
+}
+
+TEST(TrussPartialSlip, LoadingUnloadingReloadingAreTheClosedForms) {
+  for (const double largest : {0.5, 5.0, 20.0}) {
+    const Model model = bar(rubbing(), largest, 3);
+    for (const int increments : {1, 7, 50}) {
+      Options options;
+      options.increments_per_branch = increments;
+      const Path path = solve(model, options);
+      double slides[2] = {0.0, 0.0};  // of the last turns: cold, hot
+      double forces[2] = {0.0, 0.0};
+      int half = 0;
+      const auto which = [](int branch) { return static_cast<std::size_t>(branch % 2); };
+      for (std::size_t i = 0; i < path.states.size(); ++i) {
+        const State& state = path.states[i];
+        const double s = slide(model, state);
+        const int now = std::min(5, static_cast<int>(2.0 * state.time - 1e-12));
+        if (now != half) {
+          slides[which(now)] = slide(model, path.states[i - 1]);
+          forces[which(now)] = force(model, path.states[i - 1]);
+          half = now;
+        }
+        const bool cools = half % 2 == 1;
+        const double way = cools ? 1.0 : -1.0;
+        const double back = 0.5 * way * (slides[which(half)] - s);
+        // Masing's rule; inside the loop until it closes on the one before.
+        const double expected =
+            half == 0 ? first_loading(s) : forces[which(half)] - 2.0 * way * first_loading(back);
+        EXPECT_NEAR(force(model, state), expected, rounding)
+            << largest << " K, " << increments << " increments, t = " << state.time;
+      }
+      EXPECT_EQ(half, 5);
+      const bool slides_all = largest > 7.4;
+      const auto slipped = [](const State& state) { return is_slip(state.joint_status[0]); };
+      EXPECT_EQ(std::any_of(path.states.begin(), path.states.end(), slipped), slides_all);
+      // Below gross slip it has no event; else the contact begins to slide once in every branch.
+      EXPECT_EQ(path.events.empty(), !slides_all);
+    }
+  }
+}
+
+TEST(TrussPartialSlip, HeatOfACycleIsThatOfMindlinAndDeresiewicz) {
+  double before = 0.0;
+  for (const double largest : {8.0, 4.0, 2.0, 1.0, 0.5, 0.25}) {
+    const Model model = bar(rubbing(), largest, 3);
+    const Path path = solve(model);
+    double low = 0.0;
+    double high = 0.0;
+    for (const State& state : path.states) {
+      if (state.time < 1.4) continue;
+      low = std::min(low, force(model, state));
+      high = std::max(high, force(model, state));
+    }
+    const double t = 0.5 * (high - low) / friction;
+    const double heat =
+        path.cycle_ends[3].joint_dissipation[0] - path.cycle_ends[2].joint_dissipation[0];
+    // The formula is a difference of numbers of 1 that leaves t³/36.
+    EXPECT_NEAR(heat, heat_of_cycle(t), (1e-10 + 1e-14 / (t * t * t)) * heat) << largest;
+    // 2 T³/(9 k_t f) in the limit; what follows is of the next power of t.
+    EXPECT_NEAR(heat, 2.0 / 9.0 * std::pow(t, 3) * friction * friction / stiffness, t * heat);
+    if (before > 0.0 && t < 0.1) {
+      EXPECT_NEAR(before / heat, 8.0, 8.0 * t);
+    }
+    before = heat;
+  }
+}
+
+TEST(TrussPartialSlip, EnergyIsKeptToSecondOrderInTheIncrement) {
+  const Model model = bar(rubbing(), 20.0, 2);
+  for (const int increments : {25, 50, 100, 200}) {
+    Options options;
+    options.increments_per_branch = increments;
+    const State end = solve(model, options).states.back();
+    const double left = std::abs(residue(end)) / end.joint_dissipation.sum();
+    // Where the contact begins to slide as a whole the rates bend within a step: 0.6/n² to 0.8/n².
+    EXPECT_LT(left, 1.0 / increments / increments) << increments;
+  }
+}
+
+TEST(TrussPartialSlip, ManyTimesTheFrictionIsTheSpring) {
+  // s = T/k (1 + t/6 + ...), t = T/f: what is more than the spring's halves as f doubles.
+  Slider spring = rubbing();
+  spring.partial_slip = 0;
+  double before = 0.0;
+  for (const double times : {10.0, 20.0, 40.0}) {
+    Slider slider = rubbing();
+    slider.friction_force = spring.friction_force = times * friction;
+    const Model slips = bar(slider, 5.0, 1);
+    const Model bends = bar(spring, 5.0, 1);
+    const auto top = [&](const Model& model) {
+      double most = 0.0;
+      for (const State& state : solve(model).states) {
+        most = std::max(most, slide(model, state));
+      }
+      return most;
+    };
+    const double bent = top(bends);
+    const double more = top(slips) / bent - 1.0;
+    const double t = stiffness * bent / slider.friction_force;
+    // The bar gives way as well, by its share of the compliance: 1.26e6 of 2.126e7 N/m.
+    EXPECT_NEAR(more, t / 6.0 * 2e7 / 2.126e7, t * t) << times;
+    if (before > 0.0) {
+      EXPECT_NEAR(before / more, 2.0, 2.0 * t);
+    }
+    before = more;
+  }
+}
+
+TEST(TrussPartialSlip, StiffContactsAndSlidesToTheEndAreCoulombs) {
+  Slider coulomb = rubbing();
+  coulomb.partial_slip = 0;
+  coulomb.tangential_stiffness = std::numeric_limits<double>::infinity();
+  const auto jump = [](const Slider& slider, double largest) {
+    const Model model = bar(slider, largest, 1);
+    return slide(model, solve(model).states.back());
+  };
+  // It slides as a whole at the end: how it stuck does not matter.
+  EXPECT_NEAR(jump(rubbing(), 40.0), jump(coulomb, 40.0), 1e-10 * jump(coulomb, 40.0));
+  // It comes to rest on the way back: that is as far off as it creeps, which falls with 1/k_t.
+  double before = 0.0;
+  for (const double k : {2e8, 2e9, 2e10}) {
+    Slider slider = rubbing();
+    slider.tangential_stiffness = k;
+    const double off = std::abs(jump(slider, 10.0) - jump(coulomb, 10.0));
+    EXPECT_LT(off, 3.0 * friction / k);
+    if (before > 0.0) {
+      EXPECT_NEAR(before / off, 10.0, 1.0);
+    }
+    before = off;
+  }
+}
+
+TEST(TrussPartialSlip, AStopTakesWhatIsBeyondFriction) {
+  Slider slider = rubbing();
+  slider.clearance_plus = 4e-5;
+  const Model model = bar(slider, 20.0, 2);
+  Options options;
+  options.increments_per_branch = 200;
+  const Path path = solve(model, options);
+  bool stopped = false;
+  for (const State& state : path.states) {
+    const double s = slide(model, state);
+    EXPECT_LE(s, slider.clearance_plus + 1e-18);
+    if (state.joint_status[0] != JointStatus::stop_plus) {
+      EXPECT_LE(std::abs(force(model, state)), friction + rounding);
+      continue;
+    }
+    stopped = true;
+    // It arrives slid as a whole, rests and leaves with that friction.
+    EXPECT_GE(force(model, state), friction - rounding);
+  }
+  EXPECT_TRUE(stopped);
+  const State& end = path.states.back();
+  EXPECT_LT(std::abs(residue(end)), 2.0 / 200.0 / 200.0 * end.joint_dissipation.sum());
+}
+
+TEST(TrussPartialSlip, WithoutFrictionOrStiffnessItIsRefused) {
+  for (const bool of_friction : {true, false}) {
+    Slider slider = rubbing();
+    if (of_friction) {
+      slider.friction_force = 0.0;
+    } else {
+      slider.tangential_stiffness = std::numeric_limits<double>::infinity();
+    }
+    EXPECT_THROW(bar(slider, 5.0, 1).validate(), std::invalid_argument);
+  }
+  Slider twice = rubbing();
+  twice.partial_slip = 2;
+  EXPECT_THROW(bar(twice, 5.0, 1).validate(), std::invalid_argument);
+  Inertia inertia;
+  inertia.node_mass = Eigen::VectorXd::Ones(2);
+  EXPECT_THROW(simulate(bar(rubbing(), 5.0, 1), inertia), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace statejump::truss
