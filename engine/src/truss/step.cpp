@@ -127,7 +127,10 @@ StepEnd Walker::step_to(double target, double tolerance) {
   const VectorXd slips = system.slips(trial, target, begin, after);
   const Ends ends{time, target,     begin,      trial_statuses,   z,    trial,
                   rate, rate_after, slide_rate, slide_rate_after, slips};
-  if (!is_short && rate.size() > 0 && rate_after.size() > 0) {
+  // The cubics through both ends know of a joint's own change at most, and without location there
+  // may be many.
+  const bool told = options.locate_events || events.size() <= 1;
+  if (!is_short && told && rate.size() > 0 && rate_after.size() > 0) {
     event_share = first_turn(ends);
     if (event_share < 1.0 || !follows_its_rates(ends)) {
       ++path.solves;
