@@ -70,15 +70,16 @@ MAKERS: dict[str, Callable[..., Case]] = {
 }
 
 
-def draw(case: Case, axes: Axes | None = None) -> Figure:
+def draw(case: Case, axes: Axes | None = None, names: bool = False) -> Figure:
     """Draw a truss before anything is solved: nodes, links by temperature, supports, joints, springs, loads.
 
     :param case: a case of kind ``truss``
     :param axes: axes to draw into, of a spatial truss with projection ``3d``; None: a new figure
+    :param names: whether all nodes are named, however many there are
     :raises StatejumpError: the case is of another kind, or the axes are not those of three dimensions
     """
     asked = case.definition
-    figure: Figure = asked.behaviour.ability("draw", asked)(asked, axes)
+    figure: Figure = asked.behaviour.ability("draw", asked)(asked, axes, names)
     return figure
 
 

@@ -201,6 +201,9 @@ def test_several_runs(statejump: Callable[..., Outcome], results: Path) -> None:
     assert [run["id"] for run in found.data["runs"]] == ["run1", "run2"]
     assert len(set(found.identifiers)) == len(found.identifiers)
     assert {"#run1", "#run2"} <= set(found.addresses) and "2 runs" in found.words
+    for case in ("table1", "umbrella_damped"):  # two runs of one title are told apart
+        assert f"{case}/comparison.h5" in found.words and f"{case}," in found.words
+    assert "statejump compare" in found.words
     assert size < 5 * MEGABYTE
 
 
@@ -218,6 +221,18 @@ def test_events_of_both_models_stand_in_one_row() -> None:
     assert omitted == 0 and [len(row["at"]) for row in rows] == [2, 1, 2, 2, 2]
     assert [row["time_s"] for row in rows] == [0.1, 0.2, 0.3, 0.5, 0.5]
     assert rows[3]["at"]["dem"]["time"] == "540\u202fms" and rows[3]["at"]["dem"]["uncertainty"] == "250\u202fµs"
+
+
+def test_an_event_has_the_error_of_its_samples_and_the_reason_why_one_model_has_it(results: Path) -> None:
+    rows, _ = Document(read(results / "table1" / "comparison.h5"), "x.h5", "run1", 1e6).events()
+    found = {row["kind"]: row for row in rows}
+    first = found["first slip"]["at"]
+    # Half a sample of half a sine of 100 K near its start: 0.25 ms · 100 K · π/s.
+    assert first["dem"]["uncertainty_K"] == "0.079\u202fK" and not first["reduced"]["uncertainty_K"]
+    for kind_of_event in ("stick", "slip"):
+        assert set(found[kind_of_event]["at"]) == {"dem"} and "the stop carries" in found[kind_of_event]["reason"]
+    assert "a stage of the reduced model" in found["axial force changes sign"]["reason"]
+    assert all(row["reason"] == "" for row in rows if len(row["at"]) == 2)
 
 
 @pytest.mark.parametrize(

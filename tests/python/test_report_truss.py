@@ -85,7 +85,24 @@ def test_the_drawing_gets_the_jumps_of_each_cycle(results: Path) -> None:
     case = result.case
     assert [truss["nodes"][joint["node"]] for joint in truss["joints"]] == [item.bearing_node for item in case.revolute]
     assert [[truss["nodes"][node] for node in line["nodes"]] for line in truss["lines"]] == [
-        *(item.nodes for item in case.link), *(item.nodes for item in case.spring)]
+        *(item.nodes for item in case.link), *(item.nodes for item in case.spring),
+        *([item.bearing_node, item.journal_node] for item in case.revolute)]
+
+
+def test_a_loop_that_looks_like_a_line_is_shown_without_it(results: Path) -> None:
+    document = Document(read(results / "ring_12" / "reduced.h5"), "x.h5", "run1", 1e6)
+    shown = {chart["title"]: chart for chart in document.payload()["charts"]}
+    thin = next(chart for title, chart in shown.items() if title.endswith(", less its straight part"))
+    whole = shown[thin["title"].partition(",")[0]]
+    change = document.result.models["reduced"]["temperature_change_K"]
+    loop, left = (document._columns["reduced"][chart["y"]["column"]] for chart in (whole, thin))
+    # A straight line less: the same jump, on a scale on which it is seen.
+    assert left[-1] - left[0] == pytest.approx(loop[-1] - loop[0], rel=1e-9)
+    assert np.ptp(left) < 0.01 * np.ptp(loop) and abs(left[-1] - left[0]) > 0.3 * np.ptp(left)
+    assert np.polyfit(change, loop - left, 1, full=True)[1] < (1e-12 * np.ptp(loop)) ** 2 * len(loop)
+    assert thin["marks"][-1]["value"] == whole["marks"][-1]["value"]
+    chain = Document(read(results / "chain_10" / "reduced.h5"), "x.h5", "run1", 1e6).payload()["charts"]
+    assert not any("straight part" in chart["title"] for chart in chain)
 
 
 def test_page_of_a_reflector(statejump: Callable[..., Outcome], results: Path) -> None:

@@ -19,6 +19,7 @@ from statejump.core.errors import StatejumpError
 from statejump.core.figures import save
 from statejump.kinds.loading import load_case, parse_case
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.draw_symbols import COLOURS
 from statejump.kinds.truss.generate import GENERATORS
 from statejump.kinds.truss.generate.document import to_toml, write
 from statejump.kinds.truss.resolved import GROUND, ResolvedTruss, distances
@@ -724,6 +725,25 @@ def test_draw_every_symbol_and_many_bays(tmp_path: Path) -> None:
         each["case"]["name"] = f"drawn{number}"
         written = save(sj.truss.draw(sj.load(each)), tmp_path, each["case"]["name"])
         assert [path.suffix for path in written] == [".png", ".svg"] and all(path.is_file() for path in written)
+
+
+def test_nothing_of_a_slender_truss_is_under_the_legend_and_hot_is_red() -> None:
+    feet = {"A": [0.0, 0.0, 0.0], "B": [0.5, 0.0, 0.0], "C": [0.2, 0.4, 0.0]}
+    data = {
+        "case": {"name": "tripod", "kind": "truss"}, "truss": {"dimension": 3},
+        "node": [*({"name": name, "position_m": place, "fixed": ["x", "y", "z"]} for name, place in feet.items()),
+                 {"name": "top", "position_m": [0.2, 0.1, 6.0]}],
+        "link": [{"name": name, "nodes": [name, "top"], **BAR} for name in feet],
+        "thermal": {"shape": "triangle", "temperature_change_max_K": 100.0},
+    }
+    drawing = sj.truss.draw(sj.load(data), names=True)
+    axes, legend = drawing.axes[0], drawing.legends[0]
+    drawing.canvas.draw()
+    renderer = drawing.canvas.get_renderer()
+    assert axes.get_tightbbox(renderer).y0 >= legend.get_window_extent(renderer).y1 - 1
+    assert {text.get_text() for text in axes.texts} >= {node["name"] for node in data["node"]}
+    cold, hot = COLOURS([0.0, 1.0])
+    assert hot[0] > 2 * hot[1:3].max() and cold[:3] @ [0.2126, 0.7152, 0.0722] > 2 * hot[:3] @ [0.2126, 0.7152, 0.0722]
 
 
 def test_generators_do_not_overwrite(tmp_path: Path, statejump: Callable[..., Any]) -> None:

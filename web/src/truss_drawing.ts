@@ -208,6 +208,7 @@ export class TrussDrawing {
         d: data.guided.length > MOST_GUIDED ? "" : data.guided.map((node) => square(from[node]!, 3)).join(""),
       }),
       shape("path", { class: "moved tied", d: linesOf(data, moved, "spring") }),
+      shape("path", { class: "moved journal", d: linesOf(data, moved, "journal") }),
       shape("path", { class: "moved", d: linesOf(data, moved, "link") }),
       ...this.nodes(moved),
       ...this.joints(moved, [width / 2, (drawn + beside) / 2]),
@@ -395,6 +396,9 @@ function legend(data: TrussData): HTMLElement {
     key('<path class="moved" d="M2,7H24"/>', "after the cycle"),
     ...(data.lines.some((line) => line.kind === "spring")
       ? [key('<path class="moved tied" d="M2,7H24"/>', "spring or cable")]
+      : []),
+    ...(data.lines.some((line) => line.kind === "journal")
+      ? [key('<path class="moved journal" d="M2,7H24"/>', "journal to its bearing")]
       : []),
     key('<path class="jump-shaft" d="M2,7H16"/><path class="jump-head" d="M24,7L16,3.5V10.5Z"/>', "jump of a node"),
     key('<path class="held" d="M9,3h8v8h-8Z"/>', "held"),

@@ -71,7 +71,7 @@ def _distributions(campaign: Plan, table: Table) -> Figure:
         panel.set_axis_off()
     for panel, (name, values) in zip(panels.flat, table.outcomes.items()):
         there = np.sort(values[np.isfinite(values)])
-        panel.set_xlabel(_label(name, campaign.units[name]))
+        panel.set_xlabel(_wrapped(_label(name, campaign.units[name]), 40), fontsize=8)
         _small(panel)
         lost = len(values) - int(np.count_nonzero(table.failed)) - len(there)
         panel.set_title(f"in {len(there):,} of {len(there) + lost:,} samples", fontsize=8)

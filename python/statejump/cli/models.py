@@ -182,6 +182,8 @@ def _compare_case(case_file: Path, dynamic: bool, finite: bool, results: Results
     print_comparison(case.title, comparison.rows, console)
     for note in comparison.notes:
         console.print(note)
+    for reason in comparison.reasons:
+        console.print(f"may be why: {reason}")
     _warn(runs, console)
     console.print(f"results: {', '.join(str(name) for name in written)}")
     if not comparison.passed:

@@ -41,6 +41,11 @@ def _target(output: Path | None, runs: tuple[Path, ...], files: list[Path]) -> P
     return files[0].parent / PAGE if len(files) == 1 else Path(PAGE)
 
 
+def _source(file: Path, files: list[Path]) -> str:
+    """Return what the page calls a file: by its name, one of several by its folder too."""
+    return file.name if len(files) == 1 else f"{file.absolute().parent.name}/{file.name}"
+
+
 @click.command("report")
 @click.argument("runs", metavar="RUN...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option(
@@ -64,8 +69,8 @@ def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> 
     console = make_console(quiet)
     files = list(dict.fromkeys(path for run in runs for path in result_files(run)))
     documents: list[Document | CampaignDocument] = [
-        CampaignDocument(path, f"run{place}") if is_campaign(path)
-        else Document(read(path), path.name, f"run{place}", BUDGET_BYTES / len(files))
+        CampaignDocument(path, f"run{place}", _source(path, files)) if is_campaign(path)
+        else Document(read(path), _source(path, files), f"run{place}", BUDGET_BYTES / len(files))
         for place, path in enumerate(files, start=1)
     ]
     target = _target(output, runs, files)

@@ -117,9 +117,10 @@ for _kind, _function in MAKERS.items():
 
 @truss_command.command("draw")
 @CASE
+@click.option("--names", is_flag=True, help="Name all nodes; without it those of a truss of at most 24 places.")
 @RESULTS
 @QUIET
-def draw_command(case_file: Path, results: Results, quiet: bool) -> None:
+def draw_command(case_file: Path, names: bool, results: Results, quiet: bool) -> None:
     """Draw CASE: nodes, links by temperature, supports, joints, springs, loads.
 
     \b
@@ -131,7 +132,8 @@ def draw_command(case_file: Path, results: Results, quiet: bool) -> None:
     console = make_console(quiet)
     case = loaded(case_file, "draw")
     with results.folder(case.name) as folder:
-        written = folder.publish(save(case.behaviour.ability("draw", case)(case), folder.staged, f"{case.name}_truss"))
+        drawn = case.behaviour.ability("draw", case)(case, names=names)
+        written = folder.publish(save(drawn, folder.staged, f"{case.name}_truss"))
     console.print(f"drawing: {', '.join(str(path) for path in written)}")
 
 

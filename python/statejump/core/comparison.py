@@ -110,13 +110,17 @@ def table(rows: Sequence[Quantity]) -> list[dict[str, Any]]:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two models of a case beside each other."""
+    """Two models of a case beside each other.
+
+    :param reasons: why a tolerance may have been missed, and what to set; none where all are kept
+    """
 
     case: Case
     models: Mapping[str, Run]
     rows: tuple[Quantity, ...]
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = field(default=())
+    reasons: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -155,7 +159,8 @@ class Comparison:
 
     def write(self, folder: Path) -> list[Path]:
         """Write ``comparison.json`` and ``comparison.csv``."""
-        document = {"case": self.case.name, "pass": self.passed, "quantities": [row.to_dict() for row in self.rows]}
+        document = {"case": self.case.name, "pass": self.passed, "quantities": [row.to_dict() for row in self.rows],
+                    "reasons": list(self.reasons)}
         return [write_json(folder / "comparison.json", document), write_comparison_csv(self.rows, folder)]
 
     def __repr__(self) -> str:

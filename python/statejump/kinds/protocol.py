@@ -17,6 +17,7 @@ ability that it lacks is not there, and what needs it refuses the case with one 
 ``names``           ``(case) -> dict``: names of the items of columns
 ``describe``        ``(case) -> list[str]``: the case in sentences
 ``charts``          ``(case) -> list[Chart]``: curves on the page of ``statejump report``
+``event_reason``    ``(case, event, model, runs) -> str``: why only that model has an event; "": it is not known
 ``page``            ``(result, case) -> Part | None``: a part of that page that only this kind has
 ``outcomes``        ``(case, run) -> dict[str, float]``: what a campaign records of a run, by the names of ``OUTCOMES``
 ``quick``           ``(case) -> Run``: the reduced model with as few samples as ``outcomes`` needs; else ``reduced``

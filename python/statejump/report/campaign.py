@@ -67,13 +67,13 @@ class CampaignDocument:
 
     template = "campaign.html"
 
-    def __init__(self, path: Path, identifier: str) -> None:
+    def __init__(self, path: Path, identifier: str, source: str) -> None:
         # What computes campaigns takes a while to load: a page of runs does without.
         from statejump.campaign import outputs
         from statejump.campaign.plan import MONTECARLO, SWEEP
         from statejump.campaign.summary import statistics
 
-        self.source, self.identifier = path.name, identifier
+        self.source, self.identifier = source, identifier
         try:
             with opened(path) as file:
                 objects(file, path)
@@ -115,6 +115,16 @@ class CampaignDocument:
             found.append(Variable(name, _one(f"{dataset.name}@unit", dataset.attrs["unit"]), dataset[()].astype(float),
                                   self._words.parameter(name)))
         return found
+
+    @property
+    def case_name(self) -> str:
+        """Name of the case."""
+        return self.case
+
+    @property
+    def command_line(self) -> str:
+        """The command that made the file, without its campaign."""
+        return f"statejump {self.command}"
 
     @property
     def kind(self) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from statejump.core import units
 from statejump.core.case import Case
 from statejump.core.charts import TEMPERATURE, Axis, Chart
 from statejump.core.run import Run
+from statejump.core.thin_loops import straight_part
 from statejump.report.words import Words
 
 # What tells of a model, not of the structure.
@@ -41,6 +43,30 @@ def _plain_columns(run: Run) -> list[str]:
 
 
 Columns = Mapping[str, Mapping[str, np.ndarray]]
+LEFT = " less its straight part"  # ends the name of a column
+
+
+def with_thin_loops(
+    given: Sequence[Chart], columns: Mapping[str, dict[str, np.ndarray]], units_of: dict[str, str], words: Words
+) -> list[Chart]:
+    """Return charts, behind each loop that is thin beside its straight part one without it. Its column is put into
+    ``columns`` and ``units_of``; the line is that of the first model."""
+    found = []
+    for chart in given:
+        found.append(chart)
+        x, y = chart.x.column, chart.y.column
+        having = [values for values in columns.values() if {x, y} <= set(values)]
+        line = straight_part(having[0][x], having[0][y]) if having and chart.marks and x == TEMPERATURE.column else None
+        if line is None:
+            continue
+        for values in having:
+            values[y + LEFT] = line.taken_off(values[x], values[y])
+        units_of[y + LEFT] = unit = units_of.get(y, "-")
+        scale, written = units.scale_of(unit, abs(line.slope))
+        label = chart.y.label or words.plain(y)
+        found.append(replace(chart, y=Axis(y + LEFT, f"{label}, less {line.slope * scale:.5g} {written}/K".strip()),
+                             title=f"{chart.title},{LEFT}"))
+    return found
 
 
 def _shown_axis(axis: Axis, columns: Columns, unit_of: Mapping[str, str], words: Words) -> dict[str, Any]:

@@ -69,12 +69,16 @@ class Document:
         }
         self._drawing = Drawing(result, self._words)
         self.sentences = [] if case is None else words.described(case)
+        self._case = case
         self._cycles = 1 if case is None else case.thermal.cycles
         self.part: Part | None = None
         if case is not None and case.behaviour.can("page"):
             self.part = case.behaviour.ability("page", case)(result, case)
         self._charts = charts.charts_of(case, self._run, self._words) if self.part is None else self.part.charts()
         self._columns = {model: self._full_columns(model, run) for model, run in result.models.items()}
+        self._units = {name: column.unit for name, column in self._run.history.items()}
+        self._units |= dict(self.part.units if self.part else {})
+        self._charts = charts.with_thin_loops(self._charts, self._columns, self._units, self._words)
         self.kept: list[Kept] = []
         self._thin: dict[str, dict[str, np.ndarray]] = {}
         for model in result.models:
@@ -89,6 +93,16 @@ class Document:
     def kind(self) -> str:
         """Kind of the case."""
         return self.result.kind
+
+    @property
+    def case_name(self) -> str:
+        """Name of the case."""
+        return self.result.name
+
+    @property
+    def command_line(self) -> str:
+        """The command that made the file, without its case."""
+        return f"statejump {self.result.command}"
 
     @property
     def verdict(self) -> tuple[str, str]:
@@ -201,9 +215,12 @@ class Document:
                     open_rows.remove(row)
                 row["at"][model] = {
                     "temperature": text(event.temperature_change_K, "K"), "time": text(event.time_s, "s"),
-                    "uncertainty": text(event.time_uncertainty_s, "s", 2) if event.time_uncertainty_s else "",
+                    **_uncertainty(event, run),
                 }
+                row["event"] = event
         rows.sort(key=lambda row: row["time_s"])
+        for row in rows[:MOST_EVENTS]:
+            row["reason"] = self._reason(row["event"], set(row["at"]))
         return rows[:MOST_EVENTS], max(0, len(rows) - MOST_EVENTS)
 
     def _event_row(self, event: Event) -> dict[str, Any]:
@@ -211,6 +228,14 @@ class Document:
             "key": (event.kind, event.joint), "kind": words.EVENTS.get(event.kind, self._words.plain(event.kind)),
             "joint": self._words.plain(event.joint) if event.joint else "", "time_s": event.time_s, "at": {},
         }
+
+    def _reason(self, event: Event, having: set[str]) -> str:
+        """Return why only some of the models have an event, where the kind knows it."""
+        case, models = self._case, self.result.models
+        if case is None or having == set(models) or not case.behaviour.can("event_reason"):
+            return ""
+        reason: str = case.behaviour.ability("event_reason", case)(case, event, next(iter(having)), models)
+        return reason
 
     @property
     def _cycle_s(self) -> float:
@@ -242,12 +267,11 @@ class Document:
     def provenance(self) -> list[tuple[str, str]]:
         """What computed the result."""
         rows = [(self._words.plain(key), str(value)) for key, value in self.result.provenance.items() if value != ""]
-        return [("Result file", self.source), ("Command", f"statejump {self.result.command}"), *rows]
+        return [("Result file", self.source), ("Command", self.command_line), *rows]
 
     def payload(self) -> dict[str, Any]:
         """Data for the page's script."""
         run, part = self._run, self.part
-        units = {name: column.unit for name, column in run.history.items()} | dict(part.units if part else {})
         marks = [
             {"time_s": event.time_s, "label": words.EVENTS[kind], "value": text(event.temperature_change_K, "K", 4),
              "role": "event"}
@@ -258,7 +282,7 @@ class Document:
             marks.append({"time_s": float(run.time_s[-1]), "label": "state jump", "role": "jump", "value": ""})
         shown = [
             made for chart in self._charts
-            if (made := charts.shown(chart, self._columns, units, marks, self._words)) is not None
+            if (made := charts.shown(chart, self._columns, self._units, marks, self._words)) is not None
         ]
         return {
             "id": self.identifier,
@@ -330,10 +354,21 @@ class Document:
     @staticmethod
     def _readouts(shown: list[dict[str, Any]]) -> list[dict[str, Any]]:
         """Numbers beside the replay: what the charts show over temperature and time."""
-        axes = {chart["y"]["column"]: chart["y"] for chart in shown if not chart["equal"]}
+        axes = {chart["y"]["column"]: chart["y"] for chart in shown
+                if not chart["equal"] and not chart["y"]["column"].endswith(charts.LEFT)}
         return [
             {**axis, "label": axis["label"].partition(" [")[0]} for axis in axes.values()
         ]
+
+
+def _uncertainty(event: Event, run: Run) -> dict[str, str]:
+    """Return how far time and temperature of an event between two samples may be off; "" for one that is located."""
+    if not event.time_uncertainty_s:
+        return {"uncertainty": "", "uncertainty_K": ""}
+    around = event.time_s + event.time_uncertainty_s * np.array([-1, 1])
+    change = np.interp(around, run.time_s, run["temperature_change_K"])
+    return {"uncertainty": text(event.time_uncertainty_s, "s", 2),
+            "uncertainty_K": text(float(np.ptp(change) / 2), "K", 2)}
 
 
 def _case_of(result: Result) -> Case | None:

@@ -78,6 +78,7 @@ class Result:
     scene: dict[str, Any]  # see scene.py
     models: dict[str, Run]
     rows: tuple[Quantity, ...] | None = None  # of a comparison; None: nothing was compared
+    reasons: list[str] = field(default_factory=list)  # why the comparison may have missed a tolerance
     warnings: list[str] = field(default_factory=list)
     meshes: dict[str, Mesh] = field(default_factory=dict)
     answers: Answers | None = None
@@ -106,7 +107,8 @@ class Result:
         """The models beside each other; None: nothing was compared."""
         if self.rows is None:
             return None
-        return Comparison(self.definition, self.models, self.rows, warnings=tuple(self.warnings))
+        return Comparison(self.definition, self.models, self.rows, warnings=tuple(self.warnings),
+                          reasons=tuple(self.reasons))
 
     @property
     def passed(self) -> bool | None:

@@ -154,6 +154,8 @@ ENTRIES = (
     Entry("/comparison/difference", _array("float64", "rows"), "DEM less reduced; NaN: one is missing", required=False),
     Entry("/comparison/tolerance", _array("float64", "rows"), "allowed size of the difference", required=False),
     Entry("/comparison/passed", _array("bool", "rows"), "whether it is kept", required=False),
+    Entry("/comparison/reasons", _array("text", "sentences"), "why a tolerance may have been missed, and what to set",
+          required=False),
     Entry("/answers", GROUP, "what a designer asks of a truss; only in files of truss answers", required=False),
     Entry("/answers@output", TEXT, "what is traced to the joints: node:NAME, rms or tilt", required=False),
     Entry("/answers@text", TEXT, "the same in words", required=False),

@@ -72,6 +72,7 @@ def _result(file: h5py.File) -> Result:
         scene=_parsed("/scene", _text(file["scene"])),
         models=runs,
         rows=_comparison(file["comparison"]) if "comparison" in file else None,
+        reasons=_texts(file["comparison/reasons"]) if "comparison/reasons" in file else [],
         warnings=_texts(file["warnings"]),
         meshes={
             name: _mesh(mesh) for name, mesh in file.get("meshes", {}).items()

@@ -46,6 +46,7 @@ def result_of(
         scene=kind.ability("scene", case)(case),
         models=dict(runs),
         rows=None if comparison is None else comparison.rows,
+        reasons=[] if comparison is None else list(comparison.reasons),
         warnings=list(dict.fromkeys(warnings)),
         answers=answers,
         members=getattr(case.thermal, "members", None),

@@ -83,6 +83,8 @@ def _comparison(group: h5py.Group, result: Result) -> None:
     if known != ["reduced", "dem"]:
         _texts(group, "compared", [" ".join(row.values) for row in rows])
     group.create_dataset("passed", data=np.array([row.passed for row in rows], dtype=bool), track_times=False)
+    if result.reasons:
+        _texts(group, "reasons", result.reasons)
 
 
 def _answers(group: h5py.Group, answers: Answers) -> None:

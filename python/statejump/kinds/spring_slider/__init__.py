@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from statejump.core.comparison import Comparison, Quantity
 from statejump.core.progress import Tell
-from statejump.core.run import Columns, Run
+from statejump.core.run import Columns, Event, Run
 from statejump.core.tables import Shown
 from statejump.kinds.protocol import Kind
 from statejump.kinds.spring_slider.case import SpringSliderCase
@@ -129,6 +129,11 @@ class SpringSlider(Kind[SpringSliderCase]):
         from statejump.kinds.spring_slider import charts
 
         return charts.charts(case)
+
+    def event_reason(self, case: SpringSliderCase, event: Event, model: str, runs: Mapping[str, Run]) -> str:
+        from statejump.kinds.spring_slider import words
+
+        return words.event_reason(event, model, runs)
 
     def quick(self, case: SpringSliderCase) -> Run:
         from statejump.kinds.spring_slider import reduced

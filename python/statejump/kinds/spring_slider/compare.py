@@ -2,11 +2,14 @@
 """Comparison of the DEM run of a ``spring_slider`` case with the reduced model."""
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from statejump.core.comparison import Comparison, Quantity, models, share
 from statejump.core.run import Run, change, energy_residue_J
 from statejump.kinds.spring_slider.case import SpringSliderCase
+from statejump.kinds.spring_slider.why_missed import why_missed
 
 COMPARED_EVENTS = ("first_slip", "stop_reached", "stop_left")
 
@@ -105,7 +108,8 @@ def compare(case: SpringSliderCase, reduced: Run, dem: Run) -> Comparison:
         drift = loop_drift(dem, samples, case.thermal.cycles)
         rows.append(models("loop_drift_over_largest_displacement", "-", 0.0, share(drift, largest),
                            tolerance.drift_relative))
-    return Comparison(case, {"reduced": exact, "dem": dem}, tuple(rows), warnings=reduced.warnings)
+    found = Comparison(case, {"reduced": exact, "dem": dem}, tuple(rows), warnings=reduced.warnings)
+    return found if found.passed else replace(found, reasons=tuple(why_missed(case, exact, dem, rows)))
 
 
 def difference(case: SpringSliderCase, first: Run, second: Run) -> list[Quantity]:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from statejump.core.run import Run
+import numpy as np
+
+from statejump.core.run import AT_STOP, Event, Run
 from statejump.core.tables import Shown
 from statejump.core.units import text
 from statejump.kinds.spring_slider.case import SpringSliderCase
@@ -58,3 +60,16 @@ def told(case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown | str]:
             found.append(Shown(f"{case.title}: events of the first cycle", headings, rows, left=("event", "stage")))
         found.append(f"state jump: {run.summary['state_jump_m']:.6e} m after {case.thermal.cycles} cycle(s)")
     return found
+
+
+def event_reason(event: Event, model: str, runs: Mapping[str, Run]) -> str:
+    """Return why only one of both models has an event; "" where it is not known."""
+    if event.kind in ("stop_unloaded", "force_sign_change", "cycle_end") and model == "reduced":
+        return "a stage of the reduced model; no contact of the DEM changes its state"
+    if model != "dem" or event.kind not in ("stick", "slip") or event.joint != "floor":
+        return ""
+    run = runs[model]
+    nearest = int(np.argmin(np.abs(run.time_s - event.time_s)))
+    if AT_STOP not in run.contacts["state"].values[nearest]:
+        return ""
+    return "the stop carries: a rigid one holds the block still, that of the DEM gives and lets it creep on the floor"

@@ -131,11 +131,11 @@ class Truss(Kind[TrussCase]):
 
         return outcomes.outcomes(case, run)
 
-    def draw(self, case: TrussCase, axes: Axes | None = None) -> Figure:
+    def draw(self, case: TrussCase, axes: Axes | None = None, names: bool = False) -> Figure:
         """Draw what the case says, before anything is solved."""
         from statejump.kinds.truss import draw
 
-        return draw.draw(case, axes)
+        return draw.draw(case, axes, names)
 
     def contact_problems(self, case: TrussCase, number: int, tell: Tell) -> list[ContactProblem]:
         """Return frictional contact problems of steps of the path."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from statejump.core.comparison import Comparison, Quantity, models, share
 from statejump.core.run import Column, Run, change, energy_residue_J
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.why_missed import why_missed
 
 
 def energy_residual(energy: Mapping[str, Column]) -> float:
@@ -110,7 +112,9 @@ def compare(case: TrussCase, reduced: Run, dem: Run) -> Comparison:
         rows.append(_relative("loop_drift_over_largest_displacement", loop_drift_m(case, dem),
                               float(np.linalg.norm(exact["displacement_m"], axis=2).max()),
                               case.tolerance.displacement_relative))
-    return Comparison(case, {"reduced": exact, "dem": dem}, tuple(rows), warnings=reduced.warnings)
+    found = Comparison(case, {"reduced": exact, "dem": dem}, tuple(rows), warnings=reduced.warnings)
+    return found if found.passed else replace(
+        found, reasons=tuple(why_missed(case, exact, dem, jump_scale_m(case, exact))))
 
 
 def jump_table(case: TrussCase, run: Run, most: int = 8) -> list[tuple[Any, ...]]:

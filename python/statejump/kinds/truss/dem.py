@@ -146,7 +146,7 @@ def check(case: TrussCase) -> None:
         if refused is not None:
             name, why = refused
             raise refuse(case, f"{joint.section} {name!r} {why}", joint=name)
-    free = ~_blocked(truss).all(axis=1)
+    free = ~blocked_directions(truss).all(axis=1)
     for index in np.flatnonzero(free & (mass <= 0))[:1]:
         raise refuse(case, f"node {nodes.names[index]!r} has no mass because no link ends there, the DEM needs one",
                      nodes=(nodes.names[index],))
@@ -184,7 +184,7 @@ def _refuse_tilted_springs(case: TrussCase, truss: ResolvedTruss) -> None:
                                    "not across its axis, the DEM has torsion springs in a plane only")
 
 
-def _blocked(truss: ResolvedTruss) -> np.ndarray:
+def blocked_directions(truss: ResolvedTruss) -> np.ndarray:
     """Return along which axes (n, 3) a node does not move: supports, and guides along an axis."""
     return truss.nodes.fixed | (np.abs(truss.nodes.guide_normal) >= 1 - SAME_DIRECTION)
 
@@ -222,7 +222,8 @@ def resolved(case: TrussCase, path: TrussPath) -> dict[str, Any]:
         **{key: values[key] for key in ("case", "dem", "number_of_samples")},
         "dimension": truss.dimension,
         "programs": _programs(truss),
-        "node": _lists(truss.nodes, blocked=_blocked(truss), mass_kg=mass, start_m=truss.nodes.position_m + start),
+        "node": _lists(truss.nodes, blocked=blocked_directions(truss), mass_kg=mass,
+                       start_m=truss.nodes.position_m + start),
         "link": _lists(truss.links),
         **{joint.section: _lists(truss.joints[joint.section], **joint.scene(path, truss.joints[joint.section]),
                                  group=group) for joint, group in zip(JOINTS, groups)},

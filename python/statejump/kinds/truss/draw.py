@@ -15,24 +15,27 @@ from statejump.core.figures import style
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.draw_planar import draw_planar, planar
 from statejump.kinds.truss.draw_spatial import draw_spatial, spatial
+from statejump.kinds.truss.draw_symbols import MOST_NAMED
 
 
-def draw(case: TrussCase, axes: Axes | None = None) -> Figure:
+def draw(case: TrussCase, axes: Axes | None = None, names: bool = False) -> Figure:
     """Return the drawing of a truss.
 
+    :param names: whether all nodes are named, also where their names cover the drawing
     :param axes: axes to draw into, of a spatial truss with projection ``3d``; None: a new figure
     :raises StatejumpError: the axes are not those of three dimensions
     """
     truss = case.resolve()
+    most_named = len(truss.nodes.names) if names else MOST_NAMED
     if axes is None:
         with style():
-            drawing = (planar if truss.dimension == 2 else spatial)(truss)
+            drawing = (planar if truss.dimension == 2 else spatial)(truss, most_named)
             drawing.suptitle(case.title, fontsize=11)
         return drawing
     if truss.dimension == 2:
-        draw_planar(truss, axes)
+        draw_planar(truss, axes, most_named)
     elif isinstance(axes, Axes3D):
-        draw_spatial(truss, axes)
+        draw_spatial(truss, axes, most_named)
     else:
         raise StatejumpError("not drawn", cause="a spatial truss needs axes with projection='3d'", key="axes")
     figure = axes.figure

@@ -55,8 +55,11 @@ def _zigzag(a: np.ndarray, b: np.ndarray, height: float) -> np.ndarray:
     return a + t[:, None] * along + side[:, None] * across
 
 
-def planar(truss: ResolvedTruss) -> Figure:
-    """Return the drawing of a planar truss as a new figure, its legend below."""
+def planar(truss: ResolvedTruss, most_named: int = MOST_NAMED) -> Figure:
+    """Return the drawing of a planar truss as a new figure, its legend below.
+
+    :param most_named: nodes that are named; of more none is
+    """
     lines = _bowed(truss)
     low, high = _corners(truss, lines)
     scale = min(WIDTH_IN / (high - low)[0], HEIGHT_IN / (high - low)[1])
@@ -78,13 +81,13 @@ def planar(truss: ResolvedTruss) -> Figure:
     grid = drawing.add_gridspec(len(rows_in) + 1, len(columns_in), height_ratios=[*rows_in, below_in],
                                 width_ratios=columns_in)
     panels = [drawing.add_subplot(grid[0, 0])]
-    _draw(panels[0], truss, lines, colours, size, scale)
+    _draw(panels[0], truss, lines, colours, size, scale, most_named)
     _frame(panels[0], (low + high) / 2, np.array([wide, tall]) / scale)
     if detail:
         panels.append(drawing.add_subplot(grid[0, 1] if beside else grid[1, 0]))
         window = np.array([columns_in[-1], tall])
         closer = (min(window) if beside else max(window) / 2) / (DETAIL_GAPS * gap)
-        _draw(panels[1], truss, lines, colours, symbol_size(gap * closer * 72), closer)
+        _draw(panels[1], truss, lines, colours, symbol_size(gap * closer * 72), closer, most_named)
         middle, reach = _first_joint(truss)[:2], window / closer / 2
         _frame(panels[1], np.maximum(np.minimum(middle, high - reach), low + reach), 2 * reach)
         panels[1].set_title("detail", fontsize=9)
@@ -96,14 +99,14 @@ def planar(truss: ResolvedTruss) -> Figure:
     return drawing
 
 
-def draw_planar(truss: ResolvedTruss, axes: Axes) -> None:
+def draw_planar(truss: ResolvedTruss, axes: Axes, most_named: int = MOST_NAMED) -> None:
     """Draw a planar truss into axes; the size of its symbols is that which the axes leave."""
     lines = _bowed(truss)
     low, high = _corners(truss, lines)
     box = axes.get_window_extent()
     scale = min(np.array([box.width, box.height]) / axes.figure.dpi / (high - low))
     colours, _ = link_colours(truss)
-    _draw(axes, truss, lines, colours, symbol_size(gap_m(truss) * scale * 72), scale)
+    _draw(axes, truss, lines, colours, symbol_size(gap_m(truss) * scale * 72), scale, most_named)
     _frame(axes, (low + high) / 2, high - low)
     axes.legend(handles=legend(truss), loc="best", fontsize=8)
 
@@ -131,7 +134,7 @@ def _frame(panel: Axes, middle: np.ndarray, extent: np.ndarray) -> None:
 
 
 def _draw(panel: Axes, truss: ResolvedTruss, lines: list[np.ndarray], colours: Any, size: float,
-          scale: float) -> None:
+          scale: float, most_named: int) -> None:
     """Draw a planar truss with symbols of that size [pt] on a panel of that scale [inch/m]."""
     nodes = truss.nodes
     panel.add_collection(LineCollection(lines, colors=colours, linewidths=float(np.clip(size / 5, 0.8, 2.4)), zorder=2,
@@ -147,10 +150,10 @@ def _draw(panel: Axes, truss: ResolvedTruss, lines: list[np.ndarray], colours: A
     if truss.reflector is not None:
         panel.plot(*nodes.position_m[truss.reflector.nodes, :2].T, "D", color=SURFACE, markerfacecolor="none",
                    markersize=1.2 * size, zorder=6)
-    if len(nodes.names) > MOST_NAMED * 2:
+    if len(nodes.names) > most_named * 2:
         return
     named = names(truss)
-    if len(named) <= MOST_NAMED:
+    if len(named) <= most_named:
         for place, text, way in named:
             panel.annotate(text, tuple(place[:2]), xytext=tuple(way * (1.15 * size + 3)), textcoords="offset points",
                            fontsize=8, ha="center" if abs(way[0]) < 0.5 else ("left" if way[0] > 0 else "right"),

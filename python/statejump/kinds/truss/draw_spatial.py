@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
@@ -15,9 +16,14 @@ from statejump.kinds.truss.draw_symbols import (
 from statejump.kinds.truss.joints.protocol import Symbol
 from statejump.kinds.truss.resolved import ResolvedTruss
 
+MOST_TICKS = 8  # of the longest axis
 
-def spatial(truss: ResolvedTruss) -> Figure:
-    """Return the drawing of a spatial truss as a new figure, its legend below."""
+
+def spatial(truss: ResolvedTruss, most_named: int = MOST_NAMED) -> Figure:
+    """Return the drawing of a spatial truss as a new figure, its legend below.
+
+    :param most_named: nodes that are named; of more none is
+    """
     handles = legend(truss)
     below_in = 0.3 + 0.22 * -(-len(handles) // 2)
     drawing = Drawing(figsize=(7.4, 6.2 + below_in))
@@ -26,12 +32,27 @@ def spatial(truss: ResolvedTruss) -> Figure:
     colours, colour_scale = link_colours(truss)
     if colour_scale is not None:
         drawing.colorbar(colour_scale, ax=axes, label=FRACTION, shrink=0.6, pad=0.1)
-    draw_spatial(truss, axes)
+    draw_spatial(truss, axes, most_named)
+    _fit(drawing, axes, below)
     drawing.legend(handles=handles, loc="lower center", ncol=2, fontsize=8, framealpha=1)
     return drawing
 
 
-def draw_spatial(truss: ResolvedTruss, axes: Axes3D) -> None:
+def _fit(drawing: Figure, axes: Axes3D, below: float) -> None:
+    """Make what is drawn as large as the room above the legend allows, and centre it there: labels and edges in three
+    dimensions know no limits of their axes."""
+    room = axes.get_position()
+    for _ in range(2):  # sizes of labels do not grow with the axes: the second time for what is left
+        drawing.canvas.draw()  # only then the axes know where things are
+        drawn = axes.get_tightbbox(drawing.canvas.get_renderer()).transformed(drawing.transFigure.inverted())
+        share = min(room.width / drawn.width, room.height / drawn.height)
+        place = axes.get_position()
+        axes.set_position((0.5 * (room.x0 + room.x1) - share * (0.5 * (drawn.x0 + drawn.x1) - place.x0),
+                           0.5 * (room.y0 + room.y1) - share * (0.5 * (drawn.y0 + drawn.y1) - place.y0),
+                           share * place.width, share * place.height))
+
+
+def draw_spatial(truss: ResolvedTruss, axes: Axes3D, most_named: int = MOST_NAMED) -> None:
     """Draw a spatial truss into axes of projection ``3d``."""
     positions = truss.nodes.position_m
     low, high = positions.min(axis=0), positions.max(axis=0)
@@ -40,10 +61,12 @@ def draw_spatial(truss: ResolvedTruss, axes: Axes3D) -> None:
     size = symbol_size(gap_m(truss) / span * 250.0)
     _lines(axes, truss, size, span)
     _points(axes, truss, size, span)
-    _name(axes, truss, (low + high) / 2, span)
+    _name(axes, truss, (low + high) / 2, span, most_named)
     shape = np.maximum((high - low) / span, 0.25)
     for setter, centre, part in zip((axes.set_xlim, axes.set_ylim, axes.set_zlim), (low + high) / 2, shape):
         setter(centre - 0.54 * span * part, centre + 0.54 * span * part)
+    for axis, part in zip((axes.xaxis, axes.yaxis, axes.zaxis), shape):
+        axis.set_major_locator(MaxNLocator(nbins=max(2, round(MOST_TICKS * part))))
     axes.set_box_aspect(tuple(shape), zoom=1.1)
     axes.view_init(elev=22, azim=-55)
     axes.set_xlabel("x [m]", labelpad=8)
@@ -106,9 +129,9 @@ def _draw_symbol(axes: Axes3D, symbol: Symbol, size: float, span: float) -> None
             linewidths=1, zorder=3))
 
 
-def _name(axes: Axes3D, truss: ResolvedTruss, middle: np.ndarray, span: float) -> None:
+def _name(axes: Axes3D, truss: ResolvedTruss, middle: np.ndarray, span: float, most_named: int) -> None:
     named = names(truss)
-    if len(named) <= MOST_NAMED:
+    if len(named) <= most_named:
         for place, text, _ in named:
             # Many ribs end at one place: one name stands for all.
             short = text if text.count(",") < 2 else text.split(",")[0] + ", ..."

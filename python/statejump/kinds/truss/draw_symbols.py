@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.lines import Line2D
 from matplotlib.markers import MarkerStyle
 from matplotlib.path import Path as Outline
@@ -21,12 +21,13 @@ from statejump.kinds.truss.joints.protocol import Strokes, Symbol
 from statejump.kinds.truss.joints.words import scaled
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-COLOURS = colormaps["cividis_r"]  # cold light, hot dark: reads in grey and for colour-blind eyes
+# Cold is pale, hot is red, and ever darker: reads in grey and for colour-blind eyes. The palest are lost on white.
+COLOURS = ListedColormap(colormaps["YlOrRd"](np.linspace(0.2, 1.0, 256)))
 LINK, SPRING, CABLE, LOAD, TORSION, SURFACE = (
     "#0072B2", "#009E73", "#D55E00", "#D55E00", "#CC79A7", "#E69F00",
 )
 FRACTION = "Temperature fraction of a link [-]"
-MOST_NAMED = 24  # nodes; of more the names would cover the drawing
+MOST_NAMED = 24  # nodes that are named unasked; of more the names would cover the drawing
 
 
 def _outline(*strokes: Sequence[tuple[float, float]]) -> Outline:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figure of a comparison of a ``truss`` case: loops of the nodes that move and jump most, joint forces."""
+"""Figure of a comparison of a ``truss`` case: loops of the nodes that move and jump most, joint forces. A loop that is
+thin beside its reversible part is drawn again without it."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -9,6 +10,8 @@ from matplotlib.axes import Axes
 
 from statejump.core.figures import DEM, REDUCED, Panel, Sheet
 from statejump.core.run import Run
+from statejump.core.thin_loops import straight_part
+from statejump.core.units import scale_of, text
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.compare import jumps_m
 
@@ -47,9 +50,25 @@ def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
                 axes.plot(run["temperature_change_K"], run["displacement_m"][:, node, axis] * scale, **style)
             axes.set_xlabel("Temperature change [K]")
             axes.set_ylabel(f"Displacement of node {case.node[node].name} along {'xyz'[axis]} [{unit}]")
-            _mark_jump(axes, first, node, axis, scale, unit)
+            _mark_jump(axes, first, node, axis, scale)
 
         return draw
+
+    node, axis = shown[0]
+    line = straight_part(first["temperature_change_K"], first["displacement_m"][:, node, axis])
+
+    def without_line(axes: Axes) -> None:
+        assert line is not None
+        left = [line.taken_off(run["temperature_change_K"], run["displacement_m"][:, node, axis]) for run in runs]
+        own_scale, own_unit = scale_of("m", float(np.abs(left[0]).max()))
+        for (run, style), values in zip(styled, left):
+            axes.plot(run["temperature_change_K"], values * own_scale, **style)
+        axes.set_xlabel("Temperature change [K]")
+        slope_scale, slope_unit = scale_of("m", abs(line.slope))
+        axes.set_ylabel(f"The same less {line.slope * slope_scale:.5g} {slope_unit}/K [{own_unit}]")
+        axes.plot(first["temperature_change_K"][-1], left[0][-1] * own_scale, "s", color="#D55E00", markersize=5,
+                  zorder=6, label=f"state jump {text(float(left[0][-1] - left[0][0]), 'm', 4)}")
+        axes.legend(loc="best", framealpha=1)
 
     def force(axes: Axes) -> None:
         for run, style in styled:
@@ -64,12 +83,13 @@ def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
         axes.set_xlabel("Time [s]")
         axes.set_ylabel("Work of friction [mJ]")
 
-    second = loop(*shown[1]) if len(shown) > 1 else None
+    second = without_line if line is not None else loop(*shown[1]) if len(shown) > 1 else None
     return Sheet([loop(*shown[0]), second, force, friction], 2, (9.5, 7.0), case.title)
 
 
-def _mark_jump(axes: Axes, run: Run, node: int, axis: int, scale: float, unit: str) -> None:
+def _mark_jump(axes: Axes, run: Run, node: int, axis: int, scale: float) -> None:
     values = run["displacement_m"][:, node, axis] * scale
+    jump = run["displacement_m"][-1, node, axis] - run["displacement_m"][0, node, axis]
     axes.plot(run["temperature_change_K"][-1], values[-1], "s", color="#D55E00", markersize=5, zorder=6,
-              label=f"state jump {values[-1] - values[0]:.4g} {unit}")
+              label=f"state jump {text(float(jump), 'm', 4)}")
     axes.legend(loc="best", framealpha=1)

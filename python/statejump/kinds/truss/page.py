@@ -336,6 +336,9 @@ class TrussPart:
         between: dict[str, Sequence[Link | Spring]] = {"link": self.case.link, "spring": self.case.spring}
         lines = [{"nodes": [self._number[name] for name in item.nodes], "kind": kind, "name": item.name}
                  for kind, items in between.items() for item in items]
+        # The drawing magnifies jumps until journals leave their bearings: a line says which belong together.
+        lines += [{"nodes": [self._number[item.bearing_node], self._number[item.journal_node]], "kind": "journal",
+                   "name": item.name} for item in self.case.revolute]
         return {
             "dimension": self.case.truss.dimension,
             "nodes": self.nodes,

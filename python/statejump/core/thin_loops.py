@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Loops that are thin beside their reversible part: what is left without it."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Numbers = NDArray[np.float64]
+
+THIN = 0.05  # of its range: what a loop may be off a straight line and look like one
+ROUNDING = 1e-9  # of its range: below is no loop
+
+
+@dataclass(frozen=True)
+class StraightPart:
+    """The straight line that a loop follows."""
+
+    slope: float
+    offset: float
+
+    def taken_off(self, x: Numbers, y: Numbers) -> Numbers:
+        """Return what is left of values at x."""
+        return np.asarray(y - (self.offset + self.slope * x))
+
+
+def straight_part(x: Numbers, y: Numbers) -> StraightPart | None:
+    """Return the straight line (least squares) that a loop hides behind; None: it is wide, or there is no loop."""
+    size = float(np.ptp(y))
+    if not size > 0 or not np.ptp(x) > 0:
+        return None
+    slope, offset = np.polyfit(x, y, 1)
+    line = StraightPart(float(slope), float(offset))
+    largest = float(np.abs(line.taken_off(x, y)).max())
+    return line if ROUNDING * size < largest < THIN * size else None

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Why two models may have missed a tolerance, in sentences that say what to set."""
+from __future__ import annotations
+
+from math import ceil, floor, inf, isinf, log10, pi, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from statejump.core.thermal import Thermal, range_K
+from statejump.core.units import text
+
+if TYPE_CHECKING:
+    from statejump import _engine
+    from statejump.core.run import Run
+
+LOOKED_AT = 4000  # places of a cycle at which the rate of the temperature is asked for
+# Of what a tolerance allows: an oscillation above it is told. The other causes have the rest.
+SHARE_TOLD = 0.1
+
+
+def kink(program: _engine.ThermalProgram) -> float:
+    """Return the largest change at once of dΔT/dt over the range of ΔT and the length of a cycle [-]: 4 of a triangle,
+    π of half a sine. It is the speed, in ranges a cycle, that a part would have to have at once."""
+    times = np.linspace(-1.5 / LOOKED_AT, 1, LOOKED_AT) * program.period_s
+    rates = program.temperature_rate(times) * (times >= 0)
+    size = float(np.ptp(program.temperature_change(times)))
+    return float(np.abs(np.diff(rates)).max()) * program.period_s / size if size else 0.0
+
+
+def heated_too_fast(
+    natural_period_s: float, thermal: Thermal, program: _engine.ThermalProgram, moved_m: float, allowed_m: float
+) -> list[str]:
+    """Return the sentence about oscillations that corners of the temperature leave, where they are worth one.
+
+    A part that follows the temperature quasi-statically would change its speed at once; an oscillator of the period T
+    swings by speed · T/2π instead.
+
+    :param moved_m: how far parts move over the range of the temperature [m]
+    :param allowed_m: what the tolerances allow [m]
+    """
+    if isinf(natural_period_s):
+        return ["a motion that only friction holds has no natural period; the reduced model has no inertia: "
+                "'statejump compare --dynamic' gives it one"]
+    swing = moved_m * kink(program) / program.period_s * natural_period_s / (2 * pi)
+    if swing < SHARE_TOLD * allowed_m or range_K(thermal)[0] == range_K(thermal)[1]:
+        return []
+    enough = rounded_up(program.period_s * max(swing / (SHARE_TOLD * allowed_m), 1.0))
+    which = f"a table that lasts {enough:g} s" if thermal.shape == "table" else f"thermal.period_s = {enough:g}"
+    return [f"the slowest natural period, {text(natural_period_s, 's', 3)}, is "
+            f"{natural_period_s / program.period_s:.2g} of the thermal one; undamped, corners of the temperature leave "
+            f"oscillations of {text(swing, 'm', 2)}, and the tolerance allows {text(allowed_m, 'm', 2)}: {which} is "
+            "long enough even so; or raise the damping ratios in [dem]"]
+
+
+def still_moving(dem: Run, mass_kg: float, natural_period_s: float, allowed_m: float) -> list[str]:
+    """Return the sentence about the kinetic energy that a run of the DEM has at its end, where it is worth one."""
+    kinetic = float(dem["kinetic_energy_J"][-1])
+    swing = inf if isinf(natural_period_s) else sqrt(2 * max(kinetic, 0.0) / mass_kg) * natural_period_s / (2 * pi)
+    if not kinetic > 0 or not swing > SHARE_TOLD * allowed_m:
+        return []
+    return [f"the DEM still moves at the end, with {text(kinetic, 'J', 2)} of kinetic energy: raise the damping ratios "
+            "in [dem], or set a longer thermal.period_s"]
+
+
+def rounded_up(value: float) -> float:
+    """Return the next larger number of one digit."""
+    power = 10.0 ** floor(log10(value))
+    return float(f"{ceil(value / power * (1 - 1e-9)) * power:.1g}")

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Why both models of a truss may have missed a tolerance; its slowest natural period."""
+from __future__ import annotations
+
+from math import inf, pi, sqrt
+from typing import Any
+
+import numpy as np
+from scipy.sparse import coo_matrix, diags
+from scipy.sparse.linalg import ArpackError, eigsh
+
+from statejump.core import physics
+from statejump.core.run import Run
+from statejump.core.why_missed import heated_too_fast, still_moving
+from statejump.kinds.truss.arrays import GROUND
+from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.dem import blocked_directions, lumped_mass_kg
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.solve import TrussPath, engine_program, solve
+
+# Of the stiffest part: a motion that is held by less is held by nothing but rounding.
+LEAST_STIFFNESS = 1e-12
+
+
+def why_missed(case: TrussCase, exact: Run, dem: Run, jump_scale_m: float) -> list[str]:
+    """Return sentences.
+
+    :param jump_scale_m: what differences of jumps are measured by
+    """
+    if "kinetic_energy_J" in exact.energy:  # in motion, as the DEM
+        return []
+    path = solve(case)
+    mass, period = lumped_mass_kg(path.truss), slowest_natural_period_s(path)
+    moved = float(np.linalg.norm(np.ptp(exact["displacement_m"], axis=0), axis=1).max())
+    tolerance = case.tolerance
+    allowed = min(tolerance.displacement_relative * moved, tolerance.jump_relative * jump_scale_m)
+    found = heated_too_fast(period, case.thermal, engine_program(case.thermal), moved, allowed)
+    found += still_moving(dem, float(mass.sum()), period, allowed)
+    if case.reduced.sticking == "rigid" and path.truss.number_of_joints():
+        found.append("joints of the reduced model stick rigidly, those of the DEM give before they slip: set "
+                     "reduced.sticking to 'elastic'")
+    return found
+
+
+def slowest_natural_period_s(path: TrussPath) -> float:
+    """Return the longest natural period [s] of a truss whose joints all stick, at the start of its path.
+
+    Masses are lumped as in the DEM; links, springs, torsion springs and contacts are springs, and what is tensioned
+    holds sideways. inf: something is held by nothing.
+    """
+    truss = path.truss
+    mass = np.repeat(lumped_mass_kg(truss), 3)
+    free = np.flatnonzero((mass > 0) & ~blocked_directions(truss).ravel())
+    if not len(free):
+        return 0.0
+    stiffness = _stiffness(path)[free][:, free]
+    largest = float(abs(stiffness).max())
+    # An eigenvalue that rounding made negative is above the shift.
+    shift = -LEAST_STIFFNESS * largest / float(mass[free].max())
+    if len(free) <= 2:  # too few for Lanczos
+        scaled = diags(mass[free] ** -0.5)
+        least = float(np.linalg.eigvalsh((scaled @ stiffness @ scaled).toarray())[0])
+    else:
+        try:
+            least = float(eigsh(stiffness.tocsc(), k=1, M=diags(mass[free]).tocsc(), sigma=shift,
+                                return_eigenvectors=False)[0])
+        except (ArpackError, RuntimeError):
+            return inf
+    return inf if least <= -10 * shift else 2 * pi / sqrt(least)
+
+
+def _stiffness(path: TrussPath) -> Any:
+    """Return the stiffness matrix (3n, 3n) [N/m] of the truss at the start of its path."""
+    truss, count = path.truss, len(path.truss.nodes.names)
+    position = truss.nodes.position_m + path.states["displacement_m"][0]
+    found = coo_matrix((3 * count, 3 * count)).tocsr()
+
+    def along(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        way = position[nodes[:, 1]] - position[nodes[:, 0]]
+        length = np.linalg.norm(way, axis=1)
+        return way / length[:, None], length
+
+    def between(nodes: np.ndarray, blocks: np.ndarray) -> Any:
+        """Springs of the stiffnesses (k, 3, 3) between pairs of nodes; of one node: to ground."""
+        sides = [(one, other, 1.0 if one == other else -1.0)
+                 for one in range(nodes.shape[1]) for other in range(nodes.shape[1])]
+        rows, columns, values = [], [], []
+        for one, other, sign in sides:
+            row, column = np.meshgrid(np.arange(3), np.arange(3), indexing="ij")
+            rows.append(3 * nodes[:, one, None, None] + row)
+            columns.append(3 * nodes[:, other, None, None] + column)
+            values.append(sign * blocks)
+        return coo_matrix((np.ravel(values), (np.ravel(rows), np.ravel(columns))), shape=found.shape).tocsr()
+
+    links, springs, torsion = truss.links, truss.springs, truss.torsion_springs
+    axial = physics.axial_stiffness_N_per_m(links.young_modulus_Pa, links.cross_section_area_m2,
+                                            links.stress_free_length_m)
+    for nodes, k, tension in ((links.nodes, axial, -path.states["axial_force_N"][0]),
+                              (springs.nodes, springs.stiffness_N_per_m, path.states["tension_N"][0])):
+        if len(nodes):
+            way, length = along(nodes)
+            outer = way[:, :, None] * way[:, None, :]
+            found = found + between(nodes, k[:, None, None] * outer
+                                    + (tension / length)[:, None, None] * (np.eye(3) - outer))
+    for joint in JOINTS:
+        if len(truss.joints[joint.section].names) and not joint.not_in_dem:
+            nodes, k = joint.contact_stiffness(path, truss.joints[joint.section])
+            found = found + between(nodes, k[:, None, None] * np.eye(3))
+    for ends, axis, moment in zip(torsion.links, torsion.axis, torsion.stiffness_N_m_per_rad):
+        gradient = np.zeros(3 * count)
+        for sign, link in zip((-1.0, 1.0), ends if ends[1] != GROUND else ends[::-1]):
+            if link == GROUND:
+                continue
+            way, length = along(links.nodes[[link]])
+            turn = np.cross(axis, way[0]) / length[0]
+            for node, side in zip(links.nodes[link], (-1.0, 1.0)):
+                gradient[3 * node:3 * node + 3] += sign * side * turn
+        column = coo_matrix(gradient[:, None])
+        found = found + moment * (column @ column.T).tocsr()
+    return found

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A comparison that misses a tolerance says why it may, and what to set; setting it helps."""
+from __future__ import annotations
+
+import re
+from math import pi, sqrt
+from typing import Any
+
+import pytest
+
+import statejump as sj
+from statejump import _engine
+from statejump.core.why_missed import kink, rounded_up
+from statejump.kinds.spring_slider.why_missed import natural_period_s
+from statejump.kinds.truss.solve import solve
+from statejump.kinds.truss.why_missed import slowest_natural_period_s
+
+LINK = {"young_modulus_Pa": 70e9, "cross_section_area_m2": 1e-5, "thermal_expansion_per_K": 2e-5, "mass_kg": 3.0}
+
+
+def planar(**more: Any) -> dict[str, Any]:
+    return {"case": {"name": "beam", "kind": "truss"}, "truss": {"dimension": 2},
+            "thermal": {"shape": "triangle", "temperature_change_max_K": 1.0}, **more}
+
+
+def test_slowest_natural_period_of_bars_in_a_row() -> None:
+    """Two masses m on two bars k: ω² = k/m (3 - √5)/2."""
+    data = planar(
+        node=[{"name": name, "position_m": [x, 0.0], "fixed": fixed}
+              for name, x, fixed in (("A", 0.0, ["x", "y"]), ("B", 1.0, ["y"]), ("C", 2.0, ["y"]))],
+        link=[{"name": "AB", "nodes": ["A", "B"], **LINK},
+              {"name": "BC", "nodes": ["B", "C"], **LINK, "mass_kg": 4.0}])
+    # A bar on a fixed node gives a third of its mass to the other one, else half to each: 1 + 2 and 2 kg.
+    k, (first, second) = 7e5, (3.0, 2.0)
+    middle = k * (2 / first + 1 / second) / 2
+    least = middle - sqrt(middle**2 - k**2 / (first * second))
+    found = slowest_natural_period_s(solve(sj.load(data).definition))
+    assert found == pytest.approx(2 * pi / sqrt(least), rel=1e-9)
+
+
+def test_a_torsion_spring_holds_what_links_do_not() -> None:
+    """A link of length l on a pin and a torsion spring K: ω² = K/(m/3 l²)."""
+    data = planar(
+        node=[{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]}, {"name": "B", "position_m": [0.0, 2.0]}],
+        link=[{"name": "AB", "nodes": ["A", "B"], **LINK}],
+        torsion_spring=[{"name": "T", "links": ["AB"], "stiffness_N_m_per_rad": 50.0}])
+    assert slowest_natural_period_s(solve(sj.load(data).definition)) == pytest.approx(2 * pi * sqrt(4.0 / 50.0), rel=1e-9)
+
+
+@pytest.mark.parametrize(("shape", "size"), [("triangle", 4.0), ("half_sine", pi), ("sine", pi)])
+def test_corners_of_temperatures(shape: str, size: float) -> None:
+    program = _engine.ThermalProgram(shape=shape, temperature_change_max_K=-30.0, period_s=7.0)
+    # Half a sine begins with π ranges a cycle; a sine, whose range is twice its peak, too.
+    assert kink(program) == pytest.approx(size, rel=2e-3)
+
+
+@pytest.mark.parametrize(("value", "wanted"), [(0.011, 0.02), (0.02, 0.02), (1.0, 1.0), (9.3, 10.0), (640.0, 700.0)])
+def test_rounding_up(value: float, wanted: float) -> None:
+    assert rounded_up(value) == wanted
+
+
+def test_what_is_said_helps() -> None:
+    """Table 1 within three natural periods of the block, hardly damped."""
+    case = sj.load("table1").definition
+    period = natural_period_s(case)
+    fast = sj.load("table1").changed({"thermal.period_s": 3 * period, "dem.link_damping_ratio": 0.01,
+                                      "dem.contact_damping_ratio": 0.01})
+    missed = sj.compare(fast.reduced(), fast.dem())
+    assert not missed.passed
+    said = next(reason for reason in missed.reasons if "slowest natural period" in reason)
+    assert "356" in said  # 2π sqrt(4.05 g / 1.26 MN/m) in µs
+    longer = float(re.search(r"thermal.period_s = ([0-9.e-]+)", said).group(1))  # type: ignore[union-attr]
+    slow = fast.changed({"thermal.period_s": longer})
+    again = sj.compare(slow.reduced(), slow.dem())
+    assert "displacement_rms_over_largest" in missed.missed and "displacement_rms_over_largest" not in again.missed
