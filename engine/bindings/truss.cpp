@@ -309,6 +309,8 @@ py::dict motion_dict(const truss::Model& model, const truss::Motion& motion) {
   states["kinetic_energy_J"] = scalars(motion.moving, &MovingState::kinetic_energy);
   states["damping_dissipation_J"] = scalars(motion.moving, &MovingState::damping_dissipation);
   states["impact_dissipation_J"] = scalars(motion.moving, &MovingState::impact_dissipation);
+  states["drive_work_J"] = scalars(motion.moving, &MovingState::drive_work);
+  states["drive_moment_N_m"] = stacked(motion.moving, &MovingState::drive_moment, 1);
   result["states"] = states;
   result["events"] = event_list(model, motion.events);
   result["event_heat_J"] = py::array_t<double>(static_cast<py::ssize_t>(motion.event_heat.size()),
@@ -458,7 +460,7 @@ void bind_truss(py::module_& module) {
          const py::dict& torsion_springs, const py::dict& joints,
          std::vector<thermal::Program> programs, const py::dict& inertia, long steps,
          long sample_every, double theta, double restitution, int watched_node,
-         const py::object& progress) {
+         const py::list& drives, bool start_drawn, const py::object& progress) {
         const truss::Model model =
             make_model(nodes, links, springs, torsion_springs, joints, std::move(programs));
         const auto numbers = [&](const char* key) { return inertia[key].cast<Eigen::VectorXd>(); };
@@ -467,8 +469,20 @@ void bind_truss(py::module_& module) {
                                     numbers("link_damping_N_s_per_m"),
                                     numbers("pin_damping_N_m_s_per_rad"),
                                     numbers("spring_damping_N_s_per_m"),
-                                    numbers("joint_damping_sqrt_kg")};
+                                    numbers("joint_damping_sqrt_kg"),
+                                    inertia["link_centre"].cast<Eigen::MatrixX2d>().transpose(),
+                                    numbers("link_moment_kg_m2")};
         truss::MotionOptions options;
+        for (const py::handle& one : drives) {
+          options.drives.push_back({one["name"].cast<std::string>(), one["link"].cast<int>(),
+                                    one["time_s"].cast<Eigen::VectorXd>(),
+                                    one["angular_velocity_rad_per_s"].cast<Eigen::VectorXd>()});
+        }
+        if (start_drawn) {
+          const auto count = static_cast<Eigen::Index>(model.nodes.size());
+          options.start = truss::MotionStart{Eigen::Matrix3Xd::Zero(3, count),
+                                             Eigen::Matrix3Xd::Zero(3, count)};
+        }
         options.steps = steps;
         options.sample_every = sample_every;
         options.theta = theta;
@@ -485,12 +499,16 @@ void bind_truss(py::module_& module) {
       py::arg("nodes"), py::arg("links"), py::arg("springs"), py::arg("torsion_springs"),
       py::arg("joints"), py::arg("programs"), py::arg("inertia"), py::kw_only(), py::arg("steps"),
       py::arg("sample_every"), py::arg("theta") = 0.5, py::arg("restitution") = 0.0,
-      py::arg("watched_node") = -1, py::arg("progress") = py::none(),
-      "Motion of a truss from the equilibrium in which its quasi-static path begins.\n\n"
+      py::arg("watched_node") = -1, py::arg("drives") = py::list(), py::arg("start_drawn") = false,
+      py::arg("progress") = py::none(),
+      "Motion of a truss from the equilibrium in which its quasi-static path begins, or from the\n"
+      "drawn shape, at rest.\n\n"
       "Items as of truss_path(). inertia: link_mass_kg, link_damping_N_s_per_m,\n"
       "pin_damping_N_m_s_per_rad (a number for each link), node_mass_kg,\n"
       "spring_damping_N_s_per_m, joint_damping_sqrt_kg (2 ζ √m of each joint, kind by kind as of\n"
-      "truss_joints()). steps: of the whole program.\n\n"
+      "truss_joints()), link_centre (m, 2) shares along and to the left, link_moment_kg_m2.\n"
+      "steps: of the whole program. drives: dicts with name, link, time_s,\n"
+      "angular_velocity_rad_per_s; their moments and work are among the states.\n\n"
       "Returns states as truss_path() with velocities and energies, events with the heat of their\n"
       "step, the watched node's velocity at every step. Raises ValueError for items out of range,\n"
       "RuntimeError that names joint and temperature for a step without solution.");

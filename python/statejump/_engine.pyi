@@ -389,6 +389,8 @@ def truss_motion(
     theta: float = ...,
     restitution: float = ...,
     watched_node: int = ...,
+    drives: list[dict[str, Any]] = ...,
+    start_drawn: bool = ...,
     progress: Callable[[float], bool | None] | None = ...,
 ) -> _Fields: ...
 

@@ -37,6 +37,7 @@ class System {
 
   int unknowns() const { return unknowns_; }
   int displacements() const { return displacements_; }
+  int first_displacement(int node) const { return node_row_[index(node)]; }
   const Model& model() const { return *model_; }
 
   /// Place for residual and Jacobian, whose pattern never changes.

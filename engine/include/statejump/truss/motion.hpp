@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "statejump/truss/path.hpp"
@@ -13,8 +14,8 @@ namespace statejump::truss {
 /// What a truss needs beside its Model to move. A vector has one number for each item; an empty one
 /// stands for zeros.
 struct Inertia {
-  /// Of each link [kg], >= 0: a straight rod whose velocity is linear along it. Its mass matrix
-  /// m/6 [2 1; 1 2] is exact for rods that stay straight, and constant.
+  /// Of each link [kg], >= 0: a body that is carried by its two nodes. Its mass matrix is constant
+  /// and exact for a body that stays as it is; that of a straight rod is m/6 [2 1; 1 2].
   Eigen::VectorXd link_mass;
   Eigen::VectorXd node_mass;  ///< Of each node besides, a point [kg], >= 0.
   /// c of each link's dashpot on its strain rate, c (L' − l_T') [N s/m], >= 0.
@@ -25,6 +26,23 @@ struct Inertia {
   /// 2 ζ √m of each joint's contacts [kg^1/2], >= 0: dashpots c = 2 ζ √(m k) beside the elastic
   /// laws across and along the surface, k the tangent stiffness. Rigid laws have none.
   Eigen::VectorXd joint_damping = {};
+  /// Of each link, where its centre of mass is: shares of the way from its first to its second node
+  /// along it, and to the left of it (in the plane; in space it is on the way). Empty: (1/2, 0).
+  Eigen::Matrix2Xd link_centre = {};
+  /// Moment of inertia of each link about its centre of mass [kg m²], >= 0. Empty: rods, m l0²/12.
+  Eigen::VectorXd link_moment = {};
+};
+
+/// A link whose turning is prescribed: its angular velocity about z, linear between rows, the first
+/// and last row beyond them. It begins at the drawn angle; a couple on its two nodes turns it.
+struct Drive {
+  std::string name;  ///< For messages.
+  int link = 0;
+  Eigen::VectorXd time;   ///< [s], increasing, one row or more.
+  Eigen::VectorXd speed;  ///< [rad/s]
+
+  double speed_at(double t) const;   ///< [rad/s]
+  double turned_at(double t) const;  ///< Angle since t = 0 [rad].
 };
 
 /// Places and velocities of all nodes from which a motion begins.
@@ -41,6 +59,7 @@ struct MotionOptions {
   int most_iterations = 50;
   /// Without: the equilibrium in which the quasi-static path begins, at rest.
   std::optional<MotionStart> start = {};
+  std::vector<Drive> drives = {};  ///< In planar trusses.
   /// Node whose velocity is kept at every step; −1: none.
   int watched_node = -1;
   /// Called with the share that is done (0 to 1); returning false ends the motion there, with
@@ -54,6 +73,8 @@ struct MovingState {
   double kinetic_energy = 0.0;
   double damping_dissipation = 0.0;  ///< Heat of the dashpots since the start [J].
   double impact_dissipation = 0.0;   ///< What contacts took across their surfaces since then [J].
+  double drive_work = 0.0;           ///< Of all drives since the start [J].
+  Eigen::VectorXd drive_moment;      ///< Of each drive on its link, mean of the last step [N m].
 };
 
 /// A step in which the laws of rigid contacts leave their reactions open: one of several is given,
@@ -108,6 +129,9 @@ struct Motion {
 /// slide reverses friction's may come out below zero by O(h²), which `negative_dissipation` adds up
 /// with that of rigid impacts. Across its surface an elastic contact is conservative: what it took
 /// there is the scheme's, of either sign in a step.
+///
+/// **Drives.** The angular velocity of a driven link at the end of the step is prescribed, where
+/// its program puts it; angles follow to second order.
 ///
 /// Planar and spatial trusses; three-dimensional joints slide as the quasi-static ones do.
 ///

@@ -34,6 +34,13 @@ Bodies::Bodies(const System& system, const Inertia& inertia)
   const Model& model = system.model();
   check(inertia.link_mass, model.links.size(), "link mass", "kg");
   check(inertia.node_mass, model.nodes.size(), "node mass", "kg");
+  check(inertia.link_moment, model.links.size(), "moment of inertia of links", "kg m2");
+  if (inertia.link_centre.size() != 0) {
+    kernel::require(inertia.link_centre.allFinite() &&
+                        static_cast<std::size_t>(inertia.link_centre.cols()) == model.links.size(),
+                    "count of link centres", static_cast<double>(inertia.link_centre.cols()),
+                    "one of each link, finite");
+  }
   check(inertia.link_damping, model.links.size(), "link damping", "N s/m");
   check(inertia.pin_damping, model.links.size(), "pin damping", "N m s/rad");
   check(inertia.spring_damping, model.springs.size(), "spring damping", "N s/m");
@@ -47,11 +54,27 @@ Bodies::Bodies(const System& system, const Inertia& inertia)
   const auto add = [&](int i, int j, double value) { entries.emplace_back(i, j, value); };
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const Link& link = model.links[i];
-    const Matrix3d sixth = of(inertia.link_mass, i) / 6.0 * Matrix3d::Identity();
-    spread(link.first, link.first, 2.0 * sixth, add);
-    spread(link.second, link.second, 2.0 * sixth, add);
-    spread(link.first, link.second, sixth, add);
-    spread(link.second, link.first, sixth, add);
+    const double mass = of(inertia.link_mass, i);
+    const double turning_inertia =
+        inertia.link_moment.size() == 0
+            ? mass / 12.0
+            : of(inertia.link_moment, i) / std::pow(link.stress_free_length, 2);
+    // The centre of mass moves by (1 − G) v1 + G v2 with G a turn and stretch of the plane, the
+    // body turns by what is left of v2 − v1.
+    Matrix3d to_second = 0.5 * Matrix3d::Identity();
+    if (inertia.link_centre.size() != 0) {
+      const auto centre = inertia.link_centre.col(static_cast<Eigen::Index>(i));
+      to_second = centre[0] * Matrix3d::Identity();
+      to_second(1, 0) = centre[1];
+      to_second(0, 1) = -centre[1];
+    }
+    const Matrix3d to_first = Matrix3d::Identity() - to_second;
+    const Matrix3d turned = turning_inertia * Matrix3d::Identity();
+    const Matrix3d across = mass * to_first.transpose() * to_second - turned;
+    spread(link.first, link.first, mass * to_first.transpose() * to_first + turned, add);
+    spread(link.second, link.second, mass * to_second.transpose() * to_second + turned, add);
+    spread(link.first, link.second, across, add);
+    spread(link.second, link.first, across.transpose(), add);
     const double axial = of(inertia.link_damping, i);
     const double turning = of(inertia.pin_damping, i);
     if (axial > 0.0 || turning > 0.0) {

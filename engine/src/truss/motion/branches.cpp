@@ -82,7 +82,6 @@ bool Stepper::on_branches(Trial& step, Local& local) {
 bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& local) {
   const double h = step.h;
   const Eigen::Index n = q_.size();
-  const Eigen::Index bodies = n + static_cast<Eigen::Index>(contacts_.holds().size());
   // What a contact asks for: that it moves as its law says along one of its directions.
   struct Row {
     Eigen::Index contact;
@@ -111,6 +110,7 @@ bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& 
   }
 
   const Eigen::SparseMatrix<double> matrix = iteration_matrix(step);
+  const Eigen::Index bodies = matrix.rows();
   const double scale = matrix.diagonal().head(n).maxCoeff();
   const auto size = bodies + static_cast<Eigen::Index>(rows.size());
   std::vector<Eigen::Triplet<double>> fixed;
@@ -143,7 +143,7 @@ bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& 
     factored_ = branches;
   }
   Eigen::SparseMatrix<double> bordered(size, size);
-  VectorXd held;
+  VectorXd& held = step.held;
   for (int k = 0;; ++k) {
     const VectorXd residual = move(step);
     if (!residual.allFinite()) return false;
@@ -151,7 +151,9 @@ bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& 
     if (k == most_iterations) return false;
     VectorXd right(size);
     right.head(n) = -residual + local.directions * given;
-    if (holds_.cols() > 0) right.segment(n, holds_.cols()) = -(holds_.transpose() * step.v);
+    if (holds_.cols() > 0) {
+      right.segment(n, holds_.cols()) = held_speed_ - holds_.transpose() * step.v;
+    }
     std::vector<Eigen::Triplet<double>> entries = fixed;
     double normal_force = 0.0;
     Eigen::Index normal_of = -1;

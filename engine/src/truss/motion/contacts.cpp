@@ -52,19 +52,14 @@ double Contact::tangential_compliance(double normal) const {
 }
 
 Contact::Across Contact::across(double depth, double speed, double h) const {
-  // Below the least depth both are linear: the spring on and on, so that an iterate that parts
-  // finds its way, the dashpot to nothing where the surfaces part.
+  // Linear below the least depth, so that an iterate that parts finds its way.
   const double at = std::max(depth, least_depth);
   const double stiffness = 1.5 * hertz_stiffness * std::sqrt(at);
   const double elastic = force_at(at) + stiffness * (depth - at);
-  const double share = std::clamp(depth / least_depth, 0.0, 1.0);
-  const double dashpot = share * damping * std::sqrt(stiffness);
-  const double force = elastic - dashpot * speed;
-  // The dashpot follows the fourth root of the depth; where the force is above 0 that leaves the
-  // slope above 0.
-  const double follows = share == 1.0 ? 0.25 : 1.0;
-  const double changes = depth > 0.0 && force > 0.0 ? follows * h * speed / depth : 0.0;
-  return {elastic, force, h * stiffness + dashpot * (1.0 - changes)};
+  // The dashpot goes with the fourth root of a depth, which no iteration likes: that of the middle.
+  const double dashpot =
+      damping * std::sqrt(1.5 * hertz_stiffness * std::sqrt(std::max(-gap, 0.0)));
+  return {elastic, elastic - dashpot * speed, h * stiffness + dashpot};
 }
 
 Contact::Along Contact::along(double normal, double h) const {

@@ -75,7 +75,8 @@ Motion simulate(const Model& model, const Inertia& inertia, const MotionOptions&
     stepper.describe(state);
     motion.states.push_back(std::move(state));
     motion.moving.push_back({bodies.of_nodes(stepper.velocity()), stepper.kinetic_energy(),
-                             stepper.account().damping, stepper.account().impact});
+                             stepper.account().damping, stepper.account().impact,
+                             stepper.account().drives, stepper.drive_moment()});
   };
   const auto watch = [&](long step) {
     if (options.watched_node < 0) return;

@@ -29,7 +29,9 @@ Stepper::Stepper(const System& system, const Bodies& bodies, const MotionOptions
       bodies_(&bodies),
       options_(&options),
       contacts_(system, bodies.joint_damping()),
-      at_(system.assembly()) {
+      at_(system.assembly()),
+      drives_(system, options.drives),
+      drive_moment_(VectorXd::Zero(drives_.count())) {
   account_.friction = VectorXd::Zero(static_cast<Eigen::Index>(system.model().joints.size()));
 }
 
@@ -74,11 +76,13 @@ Eigen::SparseMatrix<double> Stepper::iteration_matrix(const Trial& step) {
   Eigen::SparseMatrix<double> matrix =
       bodies_->mass() + (h * theta * h * theta) * at_.jacobian.block(0, 0, n, n);
   if (bodies_->damped()) matrix += (h * theta) * bodies_->damping(step.q_middle);
-  const auto held = static_cast<Eigen::Index>(contacts_.holds().size());
+  const auto holding = static_cast<Eigen::Index>(contacts_.holds().size());
+  const Eigen::Index held = holding + drives_.count();
   holds_.resize(n, held);
+  held_speed_ = VectorXd::Zero(held);
   if (held > 0) {
     // Of the size of the rest, so that pivots compare.
-    const double scale = matrix.diagonal().maxCoeff();
+    const double scale = hold_scale_ = matrix.diagonal().maxCoeff();
     std::vector<Eigen::Triplet<double>> entries;
     for (Eigen::Index j = 0; j < matrix.outerSize(); ++j) {
       for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it) {
@@ -86,15 +90,21 @@ Eigen::SparseMatrix<double> Stepper::iteration_matrix(const Trial& step) {
       }
     }
     std::vector<Eigen::Triplet<double>> columns;
-    for (Eigen::Index k = 0; k < held; ++k) {
+    const auto hold = [&](Eigen::Index row, Eigen::Index k, double value) {
+      columns.emplace_back(row, k, scale * value);
+      entries.emplace_back(row, n + k, scale * value);
+      entries.emplace_back(n + k, row, scale * value);
+    };
+    for (Eigen::Index k = 0; k < holding; ++k) {
       const int column = contacts_.holds()[static_cast<std::size_t>(k)];
       for (Eigen::SparseMatrix<double>::InnerIterator it(at_.jacobian, column); it; ++it) {
-        if (it.row() >= n) continue;
-        columns.emplace_back(it.row(), k, scale * it.value());
-        entries.emplace_back(it.row(), n + k, scale * it.value());
-        entries.emplace_back(n + k, it.row(), scale * it.value());
+        if (it.row() < n) hold(it.row(), k, it.value());
       }
     }
+    for (const auto& one : drives_.directions(step.q_middle, step.to)) {
+      hold(one.row(), holding + one.col(), one.value());
+    }
+    held_speed_.tail(drives_.count()) = scale * drives_.targets(q_, time_, step.to);
     holds_.setFromTriplets(columns.begin(), columns.end());
     matrix.resize(n + held, n + held);
     matrix.setFromTriplets(entries.begin(), entries.end());
@@ -314,7 +324,7 @@ void Stepper::advance(double to) {
 void Stepper::solve(Trial& step, Local& local) {
   complete(step, local);
   const Eigen::Index n = q_.size();
-  VectorXd held;
+  VectorXd& held = step.held;
   for (int k = 0;; ++k) {
     const VectorXd residual = move(step);
     if (!residual.allFinite()) fail(FailureKind::not_finite, step.to, nullptr);
@@ -322,7 +332,7 @@ void Stepper::solve(Trial& step, Local& local) {
     if (k == options_->most_iterations) fail(FailureKind::not_converged, step.to, nullptr);
     VectorXd right(n + holds_.cols());
     right.head(n) = -residual;
-    if (holds_.cols() > 0) right.tail(holds_.cols()) = -(holds_.transpose() * step.v);
+    if (holds_.cols() > 0) right.tail(holds_.cols()) = held_speed_ - holds_.transpose() * step.v;
     const VectorXd correction = factor_.solve(right);
     const VectorXd free = step.v + correction.head(n);
     held = correction.tail(holds_.cols());
@@ -422,6 +432,11 @@ void Stepper::book(const Trial& step, const Local& local) {
       if (!contact.is_elastic()) account_.negative += std::min(heat, 0.0);
       account_.thermal_work -= contact.normal_force * growth;
     }
+  }
+  for (Eigen::Index k = 0; k < drives_.count(); ++k) {
+    const Eigen::Index column = holds_.cols() - drives_.count() + k;
+    drive_moment_[k] = -hold_scale_ * step.held[column] / h;
+    account_.drives -= step.held[column] * holds_.col(column).dot(0.5 * (v_ + step.v));
   }
   if (bodies_->damped()) {
     const Bodies::Work work = bodies_->work(q_, v_, step.q, step.v, span, options_->theta);

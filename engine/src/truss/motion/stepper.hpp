@@ -8,6 +8,7 @@
 
 #include "bodies.hpp"
 #include "contacts.hpp"
+#include "drives.hpp"
 #include "linear/sparse_factor.hpp"
 #include "statejump/complementarity/solve.hpp"
 #include "statejump/failure.hpp"
@@ -21,6 +22,7 @@ struct Account {
   double impact = 0.0;    ///< Of all contacts, across their surfaces.
   VectorXd friction;      ///< Of every joint.
   double negative = 0.0;  ///< Sum of what a contact gave below zero in a step.
+  double drives = 0.0;    ///< Work of the drives.
 };
 
 /// A truss in motion, one step of Moreau and Jean's scheme after the other; see simulate().
@@ -37,6 +39,7 @@ class Stepper {
   double time() const { return time_; }
   const Statuses& statuses() const { return origin_.statuses; }
   const Account& account() const { return account_; }
+  const VectorXd& drive_moment() const { return drive_moment_; }
   double kinetic_energy() const { return 0.5 * v_.dot(bodies_->mass() * v_); }
   void describe(State& state) const;
   const std::optional<Undetermined>& undetermined() const { return undetermined_; }
@@ -63,6 +66,7 @@ class Stepper {
     VectorXd force_before;  ///< f0 [N]
     VectorXd q;
     VectorXd v;
+    VectorXd held = {};  ///< Impulses of what holds or drives, against its scaled columns.
   };
 
   /// Depth of an elastic contact at the end of the step, opening at this speed [m].
@@ -126,7 +130,12 @@ class Stepper {
   std::vector<int> active_;       ///< Places of the contacts that were active in it.
   std::vector<Branch> factored_;  ///< Of the active contacts, whose pattern the factors have.
   std::unique_ptr<linear::SparseFactor> branch_factor_;
-  Eigen::SparseMatrix<double> holds_;  ///< Columns that hold, scaled, of the current factors.
+  Drives drives_;
+  /// Columns that hold, and then those that drive, scaled; of the current factors.
+  Eigen::SparseMatrix<double> holds_;
+  VectorXd held_speed_;  ///< Along them at the end of the step.
+  double hold_scale_ = 1.0;
+  VectorXd drive_moment_;  ///< Of each drive in the last step [N m].
   StepStart origin_;
   VectorXd q_;
   VectorXd v_;

@@ -41,7 +41,7 @@ class Truss(Kind[TrussCase]):
         "damping_dissipation_J",  # of links, pins and contacts
         "impact_dissipation_J",  # of contacts across their surfaces, in motion
         "thermal_work_J",
-        "external_work_J",  # of the dead loads
+        "external_work_J",  # of the dead loads and drives
     )
     OUTCOMES = (
         "largest_node_jump_m",

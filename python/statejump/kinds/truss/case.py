@@ -23,6 +23,7 @@ from statejump.kinds.truss.joints.latch_hinge import LatchHinge
 from statejump.kinds.truss.joints.revolute import Revolute
 from statejump.kinds.truss.joints.slider import Slider
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER
+from statejump.kinds.truss.mechanism import Drive
 from statejump.kinds.truss.resolved import FIXITY, STICKING, ResolvedTruss, resolve
 from statejump.schema.fields import (
     CHOICE, Section, attached, choice, definition, evolved, numbers, optional_section, parameter, section, switch,
@@ -39,6 +40,7 @@ class Truss(Section):
     """What holds for the truss as a whole."""
 
     dimension: int = whole(..., 2, 3, "2: x and y; 3: x, y and z")
+    gravity_m_per_s2: list[float] | None = numbers(None, "m/s2", -1e6, 1e6, "on all masses; none")
 
 
 @definition
@@ -49,6 +51,7 @@ class Node(Item):
     fixed: list[str] = texts([], "directions without motion", AXES)
     guide_normal: list[float] | None = numbers(None, "-", -1e9, 1e9, "no motion along it; of any length")
     force_N: list[float] | None = numbers(None, "N", -1e12, 1e12, "dead load; none")
+    mass_kg: float = parameter(0.0, "kg", 0, 1e6, "of a body at it, as a piston, beside those of links; DEM and motion")
 
 
 @definition
@@ -65,6 +68,11 @@ class Link(Item):
     )
     density_kg_per_m3: float | None = parameter(None, "kg/m3", 0, 1e5, "this or mass_kg; DEM and motion", above=True)
     mass_kg: float | None = parameter(None, "kg", 0, 1e6, "this or density_kg_per_m3; DEM and motion", above=True)
+    centre_of_mass_m: list[float] | None = numbers(
+        None, "m", -LARGEST_LENGTH_M, LARGEST_LENGTH_M,
+        "of its mass_kg, from the first node along it and to its left; a rod's", length=2,
+    )
+    moment_of_inertia_kg_m2: float | None = parameter(None, "kg m2", 0, 1e12, "about its centre of mass; a rod's")
     poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM)
     ends: str = choice("pinned_pinned", tuple(FIXITY), "axial force only; for the warning of buckling")
     second_moment_of_area_m4: float | None = parameter(
@@ -165,7 +173,10 @@ class TrussMotion(Section):
     steps_per_cycle: int = whole(10_000, 10, 1_000_000_000, CHOICE)
     theta: float = parameter(0.5, "-", 0.5, 1, "second order, no numerical damping; 1: implicit Euler")
     restitution: float = parameter(0.0, "-", 0, 1, CHOICE + "; Newton's, of stops and of revolutes with rigid contact")
-    masses: str = choice("consistent", ("consistent", "lumped"), "exact for straight rods; lumped: as in the DEM")
+    masses: str = choice("consistent", ("consistent", "lumped"), "exact for bodies on links; lumped: as in the DEM")
+    start: str = choice(
+        "equilibrium", ("equilibrium", "drawn"), "at rest where the quasi-static path begins, or as drawn"
+    )
 
 
 @definition
@@ -216,6 +227,7 @@ class TrussCase(Case):
     torsion_spring: list[TrussTorsionSpring] = tables(TrussTorsionSpring, "sections [[torsion_spring]]")
     latch_hinge: list[LatchHinge] = tables(LatchHinge, "sections [[latch_hinge]]")
     iwan_joint: list[IwanJoint] = tables(IwanJoint, "sections [[iwan_joint]]")
+    drive: list[Drive] = tables(Drive, "sections [[drive]]")
     thermal: TrussThermal = section(TrussThermal, required=True)
     output: Output = section(Output)
     reduced: TrussReduced = section(TrussReduced)

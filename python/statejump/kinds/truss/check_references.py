@@ -6,6 +6,7 @@ import difflib
 from typing import TYPE_CHECKING, Any
 
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
+from statejump.kinds.truss import mechanism
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.references import known_links, known_name, known_nodes
@@ -33,6 +34,7 @@ def check_references(case: TrussCase) -> None:
             joint.check_references(item, nodes, links)
     for spring in case.torsion_spring:
         known_links(spring.links, links, {"item": f"torsion_spring {spring.name!r}"})
+    mechanism.check(case, links)
     if case.reflector is not None:
         if not case.reflector.nodes:
             raise NotAllowed("reflector.nodes", [], "must be one or more nodes")

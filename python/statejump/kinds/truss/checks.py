@@ -19,7 +19,8 @@ from statejump.kinds.truss.references import axis_of_rotation, vector
 if TYPE_CHECKING:
     from statejump.kinds.truss.case import TrussCase
 
-SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in JOINTS), "spring", "torsion_spring")
+SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in JOINTS), "spring", "torsion_spring",
+            "drive")
 
 
 def check(case: TrussCase) -> None:

@@ -23,6 +23,7 @@ from statejump.core.run import Run
 from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.mechanism import refused_at_rest
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, solve
 
@@ -42,7 +43,7 @@ def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
         if np.isnan(link):
             raise MissingKey("mass_kg", "what moves has one of them", section="density_kg_per_m3 or mass_kg",
                              item=f"link {name!r}", case=truss.name)
-    mass = np.zeros(len(truss.nodes.names))
+    mass = truss.nodes.mass_kg.copy()
     held = np.asarray(truss.nodes.fixed.all(axis=1))
     for ends, link in zip(truss.links.nodes, truss.links.mass_kg):
         share = link / 3 if held[ends].any() else link / 2
@@ -136,15 +137,20 @@ def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) 
 def check(case: TrussCase) -> None:
     """Raise StatejumpError if the DEM cannot represent an item, before anything is solved."""
     truss = case.resolve()
+    refused = refused_at_rest(truss)
+    if refused is not None:
+        raise StatejumpError(cause=refused, case=case.name)
+    for index in np.flatnonzero(truss.bodies.own)[:1]:
+        raise refuse(case, f"link {truss.links.names[index]!r} is a body of its own, the DEM has rods")
     mass = lumped_mass_kg(truss)
     nodes, springs = truss.nodes, truss.springs
     for joint in JOINTS:
         joints = truss.joints[joint.section]
-        refused = joint.dem_refuses(joints)
+        unable = joint.dem_refuses(joints)
         if joint.not_in_dem and joints.names:
-            refused = joints.names[0], joint.not_in_dem
-        if refused is not None:
-            name, why = refused
+            unable = joints.names[0], joint.not_in_dem
+        if unable is not None:
+            name, why = unable
             raise refuse(case, f"{joint.section} {name!r} {why}", joint=name)
     free = ~blocked_directions(truss).all(axis=1)
     for index in np.flatnonzero(free & (mass <= 0))[:1]:

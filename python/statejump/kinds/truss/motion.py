@@ -88,7 +88,9 @@ def inertia(case: TrussCase) -> dict[str, Any]:
     ratio, is_lumped = case.dem.link_damping_ratio, case.motion.masses == "lumped"
     return {
         "link_mass_kg": np.zeros(len(links.names)) if is_lumped else links.mass_kg,
-        "node_mass_kg": lumped if is_lumped else np.zeros(len(truss.nodes.names)),
+        "node_mass_kg": lumped if is_lumped else truss.nodes.mass_kg,
+        "link_centre": truss.bodies.centre,
+        "link_moment_kg_m2": np.zeros(len(links.names)) if is_lumped else truss.bodies.moment_kg_m2,
         "link_damping_N_s_per_m": dashpots_N_s_per_m(links.nodes, axial, ratio, lumped),
         "pin_damping_N_m_s_per_rad": np.full(len(links.names), case.dem.pin_damping_N_m_s_per_rad),
         "joint_damping_sqrt_kg": joint_dashpots_sqrt_kg(truss, case.dem.contact_damping_ratio, lumped),
@@ -122,7 +124,8 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         found = _engine.truss_motion(
             **engine_items(truss), inertia=inertia(case), steps=steps_per_sample * samples * case.thermal.cycles,
             sample_every=steps_per_sample, theta=case.motion.theta, restitution=case.motion.restitution,
-            watched_node=watched_node, progress=going_on,
+            watched_node=watched_node, drives=_drives(truss), start_drawn=case.motion.start == "drawn",
+            progress=going_on,
         )
     except _engine.EngineFailure as failure:
         raise EngineFailed(failure, remedy=_remedy(failure), case=truss.name, place=truss.name) from None
@@ -132,6 +135,15 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
     return TrussMotion(truss=truss, events=tuple(events), **found)
 
 
+def _drives(truss: ResolvedTruss) -> list[dict[str, Any]]:
+    drives = truss.drives
+    return [{"name": name, "link": int(link), "time_s": time, "angular_velocity_rad_per_s": speed}
+            for name, link, time, speed in zip(drives.names, drives.link, drives.time_s,
+                                               drives.angular_velocity_rad_per_s)]
+
+
 def _remedy(failure: _engine.EngineFailure) -> str | None:
+    if str(failure.kind).endswith("mechanism"):
+        return "a mechanism moves from where it is drawn with motion.start = 'drawn'"
     stepped = failure.kind in ("not_converged", "singular") and "no step" in str(failure.message)
     return "set motion.steps_per_cycle to more" if stepped else None

@@ -22,6 +22,7 @@ from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.joints.revolute import Revolutes
 from statejump.kinds.truss.joints.slider import Sliders
+from statejump.kinds.truss.mechanism import Bodies, Drives, resolve_bodies, resolve_drives, weights_N
 
 if TYPE_CHECKING:
     from statejump.core.temperature_files import MemberProgram
@@ -44,7 +45,8 @@ class Nodes:
     position_m: np.ndarray  # (n, 3), assembled shape at ΔT = 0
     fixed: np.ndarray  # (n, 3) bool: no motion along x, y, z; planar trusses: z everywhere
     guide_normal: np.ndarray  # (n, 3) unit, no motion along it; zero: none
-    force_N: np.ndarray  # (n, 3) dead load
+    force_N: np.ndarray  # (n, 3) dead load, weights included
+    mass_kg: np.ndarray  # (n,) of bodies at nodes, beside those of links
 
 
 @dataclass(frozen=True)
@@ -116,9 +118,11 @@ class ResolvedTruss:
     dimension: int
     nodes: Nodes
     links: Links
+    bodies: Bodies  # shapes of the links
     joints: Mapping[str, Any]  # by section: the arrays of every type of joint
     springs: Springs
     torsion_springs: TorsionSprings
+    drives: Drives
     programs: tuple[TrussThermal | MemberProgram, ...]
     program_names: tuple[str, ...]  # "thermal", those of the file, those of members, "EXPANSION of PROGRAM"
     reflector: ReflectorSurface | None
@@ -189,6 +193,7 @@ def resolve(case: TrussCase) -> ResolvedTruss:
         fixed=fixed,
         guide_normal=unit(vectors([node.guide_normal for node in case.node], dimension)),
         force_N=vectors([node.force_N for node in case.node], dimension),
+        mass_kg=column(case.node, "mass_kg"),
     )
 
     link_nodes = pairs(case.link, "nodes", node_number)
@@ -203,9 +208,12 @@ def resolve(case: TrussCase) -> ResolvedTruss:
     moment, strength = column(case.link, "second_moment_of_area_m4"), column(case.link, "yield_strength_Pa")
     mass = column(case.link, "mass_kg")
     weighed = column(case.link, "density_kg_per_m3") * link["cross_section_area_m2"] * length
+    mass = np.where(np.isnan(mass), weighed, mass)
+    bodies = resolve_bodies(case.link, length, mass)
+    gravity = vectors([case.truss.gravity_m_per_s2], dimension)[0]
+    nodes = replace(nodes, force_N=nodes.force_N + weights_N(gravity, link_nodes, mass, bodies, nodes.mass_kg))
     links = Links(
-        names=names(case.link), nodes=link_nodes, stress_free_length_m=length,
-        mass_kg=np.where(np.isnan(mass), weighed, mass), program=warmed.program,
+        names=names(case.link), nodes=link_nodes, stress_free_length_m=length, mass_kg=mass, program=warmed.program,
         temperature_fraction=warmed.temperature_fraction, shown_program=warmed.shown_program,
         shown_fraction=warmed.shown_fraction, **link,
         second_moment_of_area_m4=np.where(np.isnan(moment), link["cross_section_area_m2"] ** 2 / 12, moment),
@@ -235,9 +243,10 @@ def resolve(case: TrussCase) -> ResolvedTruss:
             focal_length_m=case.reflector.focal_length_m,
         )
     return ResolvedTruss(
-        name=case.name, dimension=dimension, nodes=nodes, links=links,
+        name=case.name, dimension=dimension, nodes=nodes, links=links, bodies=bodies,
         joints={joint.section: joint.resolve(listed_joints(case, joint), known) for joint in JOINTS},
-        springs=springs, torsion_springs=torsion_springs, programs=warmed.programs,
+        springs=springs, torsion_springs=torsion_springs, drives=resolve_drives(case.drive, known),
+        programs=warmed.programs,
         program_names=warmed.program_names,
         reflector=reflector,
         sticking=case.reduced.sticking,

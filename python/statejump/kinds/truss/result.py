@@ -64,6 +64,7 @@ def names(case: TrussCase) -> dict[str, list[str]]:
     of = {key: list(getattr(truss, key).names) for key in ("nodes", "links", "springs")}
     of |= {joint.items: list(truss.joints[joint.section].names) for joint in JOINTS
            if joint.has_contacts or truss.joints[joint.section].names}
+    of |= {"drives": list(truss.drives.names)} if truss.drives.names else {}
     return {**of, "contacts": _joints(truss)}
 
 
@@ -243,7 +244,7 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
             "time_s", "temperature_change_K", "elastic_energy_J", "kinetic_energy_J", "damping_dissipation_J",
             "impact_dissipation_J", "thermal_work_J")},
         "friction_dissipation_J": of_joints.sum(axis=1),
-        "external_work_J": states["load_potential_J"][0] - states["load_potential_J"],
+        "external_work_J": states["load_potential_J"][0] - states["load_potential_J"] + states["drive_work_J"],
     })
     summary = {
         "energy_residue_J": compare.energy_residual(energy), "time_step_s": motion.time_step_s,
@@ -254,7 +255,9 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
                warnings=(*motion.warnings, *_beyond(case, plain, items)))
     velocity = Column(states["velocity_m_per_s"], "m/s", "nodes")
     heat = Column(of_joints, "J", "contacts", note="heat of friction since the start")
-    return replace(run, history={**run.history, "velocity_m_per_s": velocity},
+    moments = {} if not case.drive else {
+        "drive_moment_N_m": Column(states["drive_moment_N_m"], "N m", "drives", note="on the link, anticlockwise")}
+    return replace(run, history={**run.history, "velocity_m_per_s": velocity, **moments},
                    contacts={**run.contacts, "dissipation_J": heat})
 
 

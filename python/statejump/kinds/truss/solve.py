@@ -11,12 +11,13 @@ import numpy as np
 from statejump import _engine
 from statejump.core import thermal
 from statejump.core.engine_failures import EngineFailed
-from statejump.core.errors import Interrupted
+from statejump.core.errors import Interrupted, StatejumpError
 from statejump.core.progress import Tell
 from statejump.core.temperature_files import MemberProgram
 from statejump.kinds.truss.case import TrussCase, TrussThermal
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import JointType
+from statejump.kinds.truss.mechanism import refused_at_rest
 from statejump.kinds.truss.resolved import ResolvedTruss
 
 # Bytes of the states of a whole path beyond which only the ends of cycles are kept.
@@ -117,7 +118,11 @@ def path(
     :param problem_times: when the frictional contact problem of a step is kept, in order [s]
     :param progress: called with the share that is done; returning False ends the path
     :raises FailedRun: for a mechanism, an unloaded joint, no equilibrium: with names and temperature
+    :raises StatejumpError: a link is driven
     """
+    refused = refused_at_rest(truss)
+    if refused is not None:
+        raise StatejumpError(cause=refused, case=truss.name)
     try:
         found = _engine.truss_path(
             **engine_items(truss), increments_per_branch=increments_per_branch, locate_events=locate_events,

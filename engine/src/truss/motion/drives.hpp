@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "statejump/truss/motion.hpp"
+#include "truss/system.hpp"
+
+namespace statejump::truss::detail {
+
+/// Links whose turning is prescribed, as conditions on the velocities at the end of a step.
+class Drives {
+ public:
+  /// All arguments must outlive it. @throws kernel::OutOfRange, std::invalid_argument with the
+  /// drive's name
+  Drives(const System& system, const std::vector<Drive>& drives);
+
+  Eigen::Index count() const { return static_cast<Eigen::Index>(drives_->size()); }
+  /// Derivative of each link's angle by the free displacements [1/m], where its program puts it at
+  /// the end of the step, at the length that it has at q.
+  std::vector<Eigen::Triplet<double>> directions(const VectorXd& q, double to) const;
+  /// Angular velocities at the end of the step [rad/s]: those of the program and half of what the
+  /// angles at its start (q) lack, over the step. Both halves come in two steps, as positions
+  /// follow the mean velocity of a step.
+  VectorXd targets(const VectorXd& q, double from, double to) const;
+
+ private:
+  Vector2d along(const Drive& drive, const VectorXd& q) const;
+  double drawn_angle(const Drive& drive) const;
+
+  const System* system_;
+  const std::vector<Drive>* drives_;
+};
+
+}  // namespace statejump::truss::detail

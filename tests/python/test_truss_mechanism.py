@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Mechanisms as trusses in motion: weight, bodies of their own, driven links."""
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import REPOSITORY
+
+import statejump as sj
+from statejump.kinds.truss.generate.document import write
+
+CRANK, ROD, SPEED, RAMP = 0.05, 0.12, 523.6, 0.012
+MASSES = {"crank": 0.3, "rod": 0.21, "piston": 0.14}
+MOMENTS = {"crank": 1e-4, "rod": 2.5e-4}
+
+
+def without_play() -> dict[str, Any]:
+    """The shipped slider-crank with a pin that fits, in links a hundred times as stiff."""
+    made = tomllib.loads((REPOSITORY / "cases" / "trusses" / "slider_crank.toml").read_text())
+    del made["revolute"]
+    made["node"] = [node for node in made["node"] if node["name"] != "J"]
+    made["link"][1]["nodes"] = ["A", "P"]
+    for link in made["link"]:
+        link["cross_section_area_m2"] = 1e-2
+    made["truss"].pop("gravity_m_per_s2")
+    return made
+
+
+def piston(angle: np.ndarray) -> np.ndarray:
+    return CRANK * np.cos(angle) + np.sqrt(ROD**2 - (CRANK * np.sin(angle)) ** 2)
+
+
+def reduced_inertia(angle: np.ndarray) -> np.ndarray:
+    """2 T/ω² of rigid bodies [kg m²], by differences of places."""
+    step = 1e-5
+
+    def places(at: np.ndarray) -> np.ndarray:
+        lean = -np.arcsin(CRANK * np.sin(at) / ROD)
+        return np.stack((CRANK * np.cos(at) + 0.5 * ROD * np.cos(lean), CRANK * np.sin(at) + 0.5 * ROD * np.sin(lean), lean,
+                         piston(at)))
+
+    rates = (places(angle + step) - places(angle - step)) / (2 * step)
+    weights = np.array([MASSES["rod"], MASSES["rod"], MOMENTS["rod"], MASSES["piston"]])
+    crank = MOMENTS["crank"] + MASSES["crank"] * (CRANK / 2) ** 2
+    return crank + (weights[:, None] * rates**2).sum(axis=0)
+
+
+def test_slider_crank_without_play_moves_and_is_driven_as_rigid_bodies_are() -> None:
+    run = sj.load(without_play()).reduced(dynamic=True)
+    time = run.time_s
+    angle = np.where(time < RAMP, SPEED * time**2 / (2 * RAMP), SPEED * (time - RAMP / 2))
+    # Rods of 1e-2 m² stretch by m ω² r l/(E A) = 5e3 N 0.17 m/2e9 N, and the errors of the steps, (ω h)²/12 of the crank.
+    assert np.abs(run["position_m"][:, 2, 0] - piston(angle)).max() < 2e-6
+    # Power of the drive: d/dt of I ω²/2.
+    speed, rate = np.minimum(SPEED * time / RAMP, SPEED), np.where(time < RAMP, SPEED / RAMP, 0.0)
+    step = 1e-4
+    slope = (reduced_inertia(angle + step) - reduced_inertia(angle - step)) / (2 * step)
+    exact = reduced_inertia(angle) * rate + 0.5 * slope * speed**2
+    found = run.history["drive_moment_N_m"].values[:, 0]
+    settled = (time > 2e-4) & (np.abs(time - RAMP) > 2e-4)  # a corner of the program rings in the links
+    # A moment is the mean of its step, 0.6 µs before: ω h/2 times its own slope.
+    assert np.abs(found - exact)[settled].max() < 5e-3 * np.abs(exact).max()
+    assert abs(run.summary["energy_residue_J"]) < 1e-4 * run["kinetic_energy_J"].max()
+    assert run["external_work_J"][-1] == pytest.approx(
+        run["kinetic_energy_J"][-1] + run["elastic_energy_J"][-1] + run["damping_dissipation_J"][-1], rel=1e-3)
+
+
+def test_shipped_slider_crank_knocks_in_its_play(statejump, tmp_path: Path) -> None:
+    outcome = statejump("reduced", "--dynamic", "slider_crank")
+    assert outcome.status == 0, outcome.output + outcome.errors
+    run = sj.read(tmp_path / "results" / "slider_crank_dynamic" / "reduced.h5").models["reduced"]
+    off = np.linalg.norm(run.history["eccentricity_m"].values[:, 0], axis=1)
+    assert off.max() < 1.1 * 5e-4 and off.min() < 0.9 * 5e-4  # held by the bearing; it crosses the play
+    assert sum(event.kind == "contact" for event in run.events) > 5 or len(run.events) > 10
+    assert run.history["drive_moment_N_m"].values.shape == (len(run.time_s), 1)
+
+
+def test_weight_hangs_on_bars_as_statics_says() -> None:
+    # A bar of 2 kg that hangs from its first node and carries 3 kg: half of it and the load pull.
+    made = {
+        "case": {"name": "hanging", "kind": "truss"}, "truss": {"dimension": 2, "gravity_m_per_s2": [0.0, -9.81]},
+        "node": [{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
+                 {"name": "B", "position_m": [0.0, -1.0], "fixed": ["x"], "mass_kg": 3.0}],
+        "link": [{"name": "L", "nodes": ["A", "B"], "young_modulus_Pa": 70e9, "cross_section_area_m2": 1e-4,
+                  "thermal_expansion_per_K": 2e-5, "mass_kg": 2.0}],
+        "thermal": {"shape": "triangle", "temperature_change_max_K": 10.0, "cycles": 1, "period_s": 0.1},
+    }
+    run = sj.load(made).reduced()
+    assert run.links["axial_force_N"].values == pytest.approx(-(3.0 + 1.0) * 9.81, rel=1e-9)
+    assert sj.load(made).reduced(dynamic=True).links["axial_force_N"].values[0] == pytest.approx(-4 * 9.81, rel=1e-9)
+    made["link"][0]["centre_of_mass_m"] = [0.25, 0.0]  # a quarter of the way down
+    assert sj.load(made).reduced().links["axial_force_N"].values == pytest.approx(-(3.0 + 0.5) * 9.81, rel=1e-9)
+
+
+@pytest.mark.parametrize("command", ["reduced", "dem"])
+def test_models_without_drives_refuse_them(statejump, command: str) -> None:
+    outcome = statejump(command, "slider_crank")
+    assert outcome.status == 2
+    assert "drive 'motor'" in outcome.errors and "--dynamic" in outcome.errors and len(outcome.errors.splitlines()) == 1
+
+
+def test_a_mechanism_that_starts_from_an_equilibrium_is_told_of_the_drawn_shape(statejump, tmp_path: Path) -> None:
+    made = without_play()
+    made["motion"]["start"] = "equilibrium"
+    write(made, tmp_path / "stuck.toml", [])
+    outcome = statejump("reduced", "--dynamic", tmp_path / "stuck.toml")
+    assert outcome.status != 0 and "mechanism" in outcome.errors and "motion.start = 'drawn'" in outcome.errors
+
+
+def _set(made: dict[str, Any], place: tuple[Any, ...], value: Any) -> None:
+    for key in place[:-1]:
+        made = made[key]
+    made[place[-1]] = value
+
+
+@pytest.mark.parametrize(("place", "value", "said"), [
+    (("truss", "gravity_m_per_s2"), [9.81], ("gravity_m_per_s2", "2 numbers")),
+    (("link", 0, "moment_of_inertia_kg_m2"), -1.0, ("moment_of_inertia_kg_m2", "-1")),
+    (("link", 0, "centre_of_mass_m"), [0.1], ("centre_of_mass_m", "2")),
+    (("link", 0, "mass_kg"), None, ("link 'crank'", "mass_kg")),
+    (("drive", 0, "link"), "crnk", ("drive 'motor'", "did you mean 'crank'")),
+    (("drive", 0, "angular_velocity_rad_per_s"), None, ("drive 'motor'", "angular_velocity_rad_per_s")),
+    (("drive", 0, "table_time_s"), [0.0], ("drive 'motor'", "table_angular_velocity_rad_per_s")),
+    (("motion", "masses"), "lumped", ("motion.masses", "link 'crank'", "consistent")),
+    (("motion", "start"), "moving", ("start", "drawn")),
+])
+def test_bad_input_is_one_sentence(statejump, tmp_path: Path, place: tuple[Any, ...], value: Any, said: tuple[str, ...]) -> None:
+    made = without_play()
+    _set(made, place, value)
+    if value is None:
+        parent = made[place[0]][place[1]]
+        del parent[place[2]]
+    write(made, tmp_path / "bad.toml", [])
+    outcome = statejump("reduced", "--dynamic", tmp_path / "bad.toml")
+    assert outcome.status == 2 and len(outcome.errors.splitlines()) == 1, outcome.errors
+    for part in said:
+        assert part in outcome.errors
+    assert not (tmp_path / "results").exists()
