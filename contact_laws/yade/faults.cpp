@@ -202,16 +202,21 @@ std::optional<MaterialFault> fault_of(const ThermalFrictMat& material) {
 }
 
 Fault fault_of_spring(const yade::Scene& scene, const TorsionSpring& spring) {
-  const auto fault = [&](const char* name, Real value, const char* unit, const char* allowed) {
+  const auto fault = [&](const char* name, Real value, const std::string& unit,
+                         const char* allowed) {
     return failure(scene, Part::torsion_spring, spring.link1->id2, spring.link2->id2,
                    std::string(TorsionSpring::class_name) + "." + name + " of ",
                    wrong(value, unit, allowed));
   };
-  if (!allows(Allowed::not_negative, spring.stiffness)) {
-    return fault("stiffness", spring.stiffness, " N m/rad", words(Allowed::not_negative));
+  const stepper::Torsion& values = spring;
+  if (const auto* wrong_one =
+          stepper::first_wrong<stepper::Torsion>(stepper::torsion_quantities, values)) {
+    return fault(wrong_one->name, values.*wrong_one->value, std::string(" ") + wrong_one->unit,
+                 words(wrong_one->allowed));
   }
-  if (!allows(Allowed::finite, spring.freeAngle)) {
-    return fault("freeAngle", spring.freeAngle, " rad", words(Allowed::finite));
+  if (stepper::has_friction_without_stiffness(values)) {
+    return fault("frictionStiffness", values.frictionStiffness, " N m/rad",
+                 "above 0 with a frictionLimit");
   }
   if (!stepper::is_finite(spring.axis)) {
     return fault("axis (its length)", spring.axis.norm(), "", "1");

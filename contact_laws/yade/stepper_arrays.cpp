@@ -28,13 +28,14 @@ struct EnergyEntry {
   const char* name;
   Real stepper::Energies::*value;
 };
-constexpr std::array<EnergyEntry, 8> energy_entries = {
+constexpr std::array<EnergyEntry, 9> energy_entries = {
     {{"jointFriction", &stepper::Energies::joint_friction},
      {"jointDamping", &stepper::Energies::joint_damping},
      {"jointThermalWork", &stepper::Energies::joint_thermal_work},
      {"linkDamping", &stepper::Energies::link_damping},
      {"pinDamping", &stepper::Energies::pin_damping},
      {"linkThermalWork", &stepper::Energies::link_thermal_work},
+     {"torsionFriction", &stepper::Energies::torsion_friction},
      {"nonviscDamp", &stepper::Energies::numerical_damping},
      {"gravWork", &stepper::Energies::gravity_work}}};
 

@@ -317,8 +317,8 @@ double stable_time_step(const yade::Scene& scene) {
         }
         for (int i = 0; i < 2; ++i) {
           const ThermalLink& link = i == 0 ? *spring->link1 : *spring->link2;
-          const Real k =
-              0.5 * moving * spring->stiffness / (links[i].span.length * links[i].span.length);
+          const Real k = 0.5 * moving * stepper::largest_stiffness(*spring) /
+                         (links[i].span.length * links[i].span.length);
           touch(link.id1, inverse_mass(links[i].root), k, 0);
           touch(link.id2, inverse_mass(links[i].tip), k, 0);
         }

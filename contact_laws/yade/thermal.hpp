@@ -130,6 +130,9 @@ struct ThermalLink : Registered<ThermalLink, yade::Serializable>, stepper::Link 
                   "becomes a couple of forces on the two ends. Its rotations must be blocked "
                   "(blockedDOFs containing XYZ). Torsion about the link's axis is held by the "
                   "root. [-]"),
+        attribute("tensionOnly", &ThermalLink::tensionOnly,
+                  "Whether the link is a cable: it goes slack where it is shorter than its "
+                  "stress-free length, and never pushes [-]"),
         attribute("program", &ThermalLink::program, "Temperature program of the link"),
         read_only("axialForce", &ThermalLink::axialForce,
                   "Axial force of the last step, compression positive [N]"),

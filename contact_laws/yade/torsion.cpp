@@ -12,11 +12,13 @@
 #include "faults.hpp"
 #include "ranges.hpp"
 #include "statejump/kernel/stable_step.hpp"
+#include "statejump/stepper/numbers.hpp"
 
 namespace statejump::dem {
 namespace {
 
 const std::string torsion_elastic = "torsionElastic";
+const std::string torsion_friction = "torsionFriction";
 constexpr Real pi = 3.14159265358979323846;
 
 // Throws where it is a number of the spring that is none.
@@ -40,7 +42,7 @@ void require_planar(const yade::Scene& scene, const ThermalLink& link, const ste
 }  // namespace
 
 void TorsionSpring::check() const {
-  require_not_negative(class_name, "stiffness", stiffness, "[N m/rad]");
+  require_settable<stepper::Torsion>(class_name, stepper::torsion_quantities, *this);
   if (!(freeAngle > -pi && freeAngle <= pi)) {
     refuse(class_name, "freeAngle", freeAngle, "in (-pi, pi] [rad]");
   }
@@ -63,11 +65,12 @@ void TorsionSprings::act(TorsionSpring& spring) {
   require_planar(*scene, *spring.link1, first.span, spring.axis);
   require_planar(*scene, *spring.link2, second.span, spring.axis);
 
-  const Real stretch = stepper::torsion_step(spring, first.span, second.span);
+  if (stepper::has_friction_without_stiffness(spring)) throw_fault(*scene, spring);
+  const stepper::TorsionEnergy energy = stepper::torsion_step(spring, first.span, second.span);
   const Real inverse = stepper::inverse_inertia(first.span, first.inverse_mass()) +
                        stepper::inverse_inertia(second.span, second.inverse_mass());
   if (inverse > 0) {
-    const Real stable = kernel::critical_time_step(1 / inverse, spring.stiffness);
+    const Real stable = kernel::critical_time_step(1 / inverse, stepper::largest_stiffness(spring));
     if (!(scene->dt <= stable)) {
       throw_fault(*scene, spring);
       std::ostringstream before, after;
@@ -95,7 +98,10 @@ void TorsionSprings::act(TorsionSpring& spring) {
   add_couple(*spring.link2, second, -spring.moment);
 
   if (scene->trackEnergy) {
-    scene->energy->add(0.5 * spring.moment * stretch, torsion_elastic, energy_id_, true);
+    scene->energy->add(energy.elastic, torsion_elastic, elastic_id_, true);
+    if (spring.frictionLimit > 0) {
+      scene->energy->add(energy.friction, torsion_friction, friction_id_, false);
+    }
   }
 }
 

@@ -43,7 +43,7 @@ def test_saved_memory_of_partial_slip(written):
 def test_saved_state_of_the_new_classes(written):
     saved, straight = written["by_name"]["saved"], written["by_name"]["straight"]
     assert "hertz_paper" in saved["law"] and "hunt_crossley" in saved["law"]
-    for name in ("pinDamping", "torsionElastic", "jointDamping"):
+    for name in ("pinDamping", "torsionElastic", "torsionFriction", "jointDamping"):
         assert straight["energy"][name] > 0, name
     assert straight["energy"]["pinDamping"] > saved["energy"]["pinDamping"]
     assert straight["law"] != saved["law"]  # contacts have begun meanwhile

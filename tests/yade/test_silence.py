@@ -36,6 +36,13 @@ SENTENCES = {
                "allowed is 0 or above", [1, 4]),
     "spring's angle": ("TorsionSpring.freeAngle of the torsion spring between the links of bodies 1 and 4 is nan rad, "
                        "allowed is finite", [1, 4]),
+    "spring's friction": ("TorsionSpring.frictionStiffness of the torsion spring between the links of bodies 1 and 4 is "
+                          "nan N m/rad, allowed is 0 or above", [1, 4]),
+    "spring's friction without stiffness": (
+        "TorsionSpring.frictionStiffness of the torsion spring between the links of bodies 1 and 4 is 0 N m/rad, allowed "
+        "is above 0 with a frictionLimit", [1, 4]),
+    "spring's slip": ("TorsionSpring.slipAngle of the torsion spring between the links of bodies 1 and 4 is nan rad, "
+                      "allowed is finite", [1, 4]),
     "young": ("ThermalFrictMat.young of body 1 is nan, allowed is (0, inf] Pa", [1]),
     "poisson": ("ThermalFrictMat.poisson of body 1 is nan, allowed is (-1, 0.5]", [1]),
     "friction angle": ("ThermalFrictMat.frictionAngle of body 1 is nan, allowed is [0, pi/2) rad", [1]),

@@ -55,7 +55,7 @@ def test_scenes_have_what_is_compared(scenes):
     assert scenes["crowd"]["touching"] == 45 and scenes["mixed"]["touching"] == 4
     energy = {**scenes["mixed_by_name"]["energy"], **scenes["joint_damped"]["energy"]}
     for name in ("jointFriction", "jointDamping", "jointThermalWork", "linkDamping", "linkThermalWork", "pinDamping",
-                 "nonviscDamp"):
+                 "torsionFriction", "nonviscDamp"):
         assert energy[name] != 0, name
     assert scenes["joint_in_gravity"]["energy"]["gravWork"] != 0
 

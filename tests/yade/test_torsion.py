@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Torsion springs between two links and viscous pins, against closed forms."""
-from math import pi
+from math import pi, sqrt
 
 import pytest
 
@@ -74,6 +74,46 @@ def test_stable_up_to_the_limit_and_refused_beyond(seen):
     assert "stable one of the torsion spring between the links of bodies 2 and 3" in beyond["error"][1]
     assert beyond["error"][1].endswith(" s (time 0 s, temperature change 0 K)")
     # One end of four moves: the promise is the limit itself, less the soft axial spring.
+    assert 0.99 * inside["true"] < inside["promised"] <= inside["true"]
+
+
+def test_play_and_friction_have_the_loop_of_their_law(seen):
+    run = seen["latch"]
+    top, limit, soft = run["amplitude"], run["frictionLimit"], run["frictionStiffness"]
+    # Three ways: up, down, up. Friction after Masing: twice the law of the first way, from where it turns.
+    count = round((len(run["rows"]) - 1) / 5)
+    for place, (stretch, moment, friction, elastic, _) in enumerate(run["rows"]):
+        first, down = place <= count, place <= 3 * count
+        expected = (min(soft * stretch, limit) if first else max(limit - soft * (top - stretch), -limit) if down
+                    else min(soft * (top + stretch) - limit, limit))
+        beyond = stretch - max(min(stretch, run["deadband"]), -run["deadband"])
+        # Roundings of angles of order 1, times stiffnesses of 6 N m/rad.
+        assert friction == pytest.approx(expected, abs=100 * EPS), place
+        assert moment == pytest.approx(run["preload"] + 2.0 * beyond + expected, abs=200 * EPS), place
+        stored = run["preload"] * stretch + beyond**2 + expected**2 / (2 * soft)
+        assert elastic == pytest.approx(stored, abs=100 * EPS), place
+    # Slipped: each way less what friction bends by. The step in which it begins to slip has the mean moment.
+    step, bend = top / count, limit / soft
+    heat = limit * ((top - bend) + 2 * (2 * top - 2 * bend))
+    assert run["rows"][-1][-1] == pytest.approx(heat, abs=3 * soft * step**2 / 2)
+    assert all(b[-1] >= a[-1] for a, b in zip(run["rows"], run["rows"][1:]))
+
+
+def test_energy_of_a_swing_through_the_play_closes_to_second_order(seen):
+    runs = seen["latch_swing"]
+    inertia = 1 / (1 / (0.02 * 0.4**2) + 1 / (0.04 * 0.5**2))
+    for run in runs:
+        # 0.3 rad at the start; friction takes most of it.
+        assert run["friction"] > 0.5 * (run["first"] - 0.3 * 0.3)
+        # The trapezoidal rule misses dK ds^2 / 8 at most where the slope changes by dK within a step of ds.
+        turn = sqrt(2 * run["first"] / inertia) * run["dt"]
+        assert run["worst"] < run["corners"] * (2.0 + 4.0) * turn**2 / 8
+
+
+def test_friction_that_sticks_counts_in_the_stable_step(seen):
+    inside, beyond = seen["latch_limit"]["0.95"], seen["latch_limit"]["1.05"]
+    assert inside["error"][0] == "none"
+    assert beyond["error"][0] == "RuntimeError" and "above the stable one" in beyond["error"][1]
     assert 0.99 * inside["true"] < inside["promised"] <= inside["true"]
 
 

@@ -31,7 +31,8 @@ class Names:
 
     joints: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)  # joint, words for the sentence
     links: dict[frozenset[int], str] = field(default_factory=dict)
-    torsion_springs: dict[frozenset[int], str] = field(default_factory=dict)  # by the tips of their links
+    # As joints, by the tips of their links.
+    torsion_springs: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)
     bodies: dict[int, str] = field(default_factory=dict)
 
     def add_link(self, link: Any, words: str) -> None:
@@ -44,9 +45,14 @@ class Names:
         found = {joint for bodies, (joint, _) in self.joints.items() if body in bodies}
         return found.pop() if len(found) == 1 else ""
 
-    def add_torsion_spring(self, spring: Any, words: str) -> None:
-        """Add a torsion spring."""
-        self.torsion_springs[pair(spring.link1.id2, spring.link2.id2)] = words
+    def add_torsion_spring(self, spring: Any, words: str, joint: str = "") -> None:
+        """Add a torsion spring; several of them may be between the same links.
+
+        :param joint: name of the joint that it is, if it is one
+        """
+        tips = pair(spring.link1.id2, spring.link2.id2)
+        before = self.torsion_springs.get(tips)
+        self.torsion_springs[tips] = ("", f"{before[1]} or {words}") if before else (joint, words)
 
 
 def rounded_down(value: float) -> float:
@@ -86,9 +92,11 @@ def described(
             joint, words = names.joints.get(pair(*taken["bodies"]), ("", "bodies {} and {}".format(*taken["bodies"])))
         else:
             bodies = pair(*taken["bodies"])
-            known = names.links if taken["part"] == "link" else names.torsion_springs
+            is_link = taken["part"] == "link"
             unknown = f"the {taken['part'].replace('_', ' ')} of bodies {' and '.join(map(str, taken['bodies']))}"
-            cause = taken["before"] + known.get(bodies, unknown) + taken["after"]
+            joint, named = ("", names.links.get(bodies, unknown)) if is_link else (
+                names.torsion_springs.get(bodies, ("", unknown)))
+            cause = taken["before"] + named + taken["after"]
         if taken["stable_time_step"] is not None:
             # One contact or link alone allows more than all that pull at one body.
             whole = stable_time_step()

@@ -7,14 +7,14 @@ masses are lumped.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import atan2, cos, pi, sin
 from typing import Any
 
 import statejump_yade as sj
 from failures import Names, SceneFailure, pair, rounded_down
-from scene import O, fixed_point, joint_engines
+from scene import O, joint_engines
 from truss_joints import JOINTS
-from truss_joints.parts import GROUND, Joints, Row, contact, rows
+from truss_joints.parts import Joints, Row, contact, rows
+from truss_joints.torsion import torsion_spring
 from yade import wrapper
 from yade.minieigenHP import Vector3
 
@@ -149,7 +149,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
         if spring["cable"]:
             scene.cables.append(place)
     for spring in rows(case["torsion_spring"]):
-        scene.torsion_springs.append(_torsion_spring(spring, nodes, links, ids, common))
+        scene.torsion_springs.append(torsion_spring(spring, spring["bias_rad"], nodes, links, ids))
     expansions = [
         sj.ThermalExpansionEngine(program=programs.of(*key), ids=sorted({ids[node] for node in parts}))
         for key, parts in parts_of.items()
@@ -158,7 +158,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
     O.engines = joint_engines(
         scene.links + carriers + scene.springs, None, sj.Law2_JointGeom_JointPhys_HertzMindlin(),
         dem["contact_damping_ratio"], verletDist=0.1 * min(radii, default=1.0), recorders=recorders,
-        springs=tuple(scene.torsion_springs),
+        springs=(*scene.torsion_springs, *(spring for joints in made for spring in joints.torsion_springs())),
         expansions=expansions,
         guides={
             ids[place]: node["guide_normal"] for place, node in enumerate(nodes)
@@ -168,39 +168,6 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
     O.trackEnergy = True
     O.dt = dem["time_step_s"]
     return scene
-
-
-def _torsion_spring(spring: dict[str, Any], nodes, links, ids, program) -> sj.TorsionSpring:
-    """Return a spring on its own pair of links, which point so that the angle is far from its jump
-    at half a turn; ground is a link between two points that do not move."""
-    first, second = spring["links"]
-    axis = Vector3(spring["axis"])
-
-    def direction(link: int) -> Vector3:
-        start, end = (Vector3(nodes[node]["position_m"]) for node in links[link]["nodes"])
-        return end - start
-
-    one = direction(first)
-    if second == GROUND:
-        ends = [fixed_point((0, 0, 0)), fixed_point(one)]
-        pair = [(*ends, one), (*[ids[node] for node in links[first]["nodes"]], one)]
-    else:
-        pair = [(*[ids[node] for node in links[link]["nodes"]], direction(link)) for link in (first, second)]
-    angle = _angle(pair[0][2], pair[1][2], axis)
-    if abs(angle) > pi / 2:
-        pair[1] = (pair[1][1], pair[1][0], -pair[1][2])
-        angle = _angle(pair[0][2], pair[1][2], axis)
-    # These links carry no force: the engine of links does not know them.
-    carried = [sj.ThermalLink(id1=root, id2=tip, stressFreeLength=1, program=program) for root, tip, _ in pair]
-    free = angle + spring["bias_rad"]
-    return sj.TorsionSpring(
-        link1=carried[0], link2=carried[1], stiffness=spring["stiffness_N_m_per_rad"],
-        freeAngle=atan2(sin(free), cos(free)), axis=axis,
-    )
-
-
-def _angle(one: Vector3, other: Vector3, axis: Vector3) -> float:
-    return atan2(one.cross(other).dot(axis), one.dot(other))
 
 
 def _velocity_now(body: int) -> Vector3:
@@ -230,7 +197,7 @@ def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
     )
     row = [
         O.time, built.program.temperatureChange(O.time), total("linkElastic", "torsionElastic", "jointElastic"),
-        kinetic, total("jointFriction"), total("linkDamping", "pinDamping", "jointDamping"),
+        kinetic, total("jointFriction", "torsionFriction"), total("linkDamping", "pinDamping", "jointDamping"),
         total("linkThermalWork", "jointThermalWork"), work,
     ]
     for place, state in enumerate(states):

@@ -51,7 +51,10 @@ def scene(by_name, partial_slip=False):
             smallestImpactSpeed=1e-4, label="law",
         )
         more["springs"] = [
-            sj.TorsionSpring(link1=links[1], link2=links[0], stiffness=0.05, freeAngle=-2.0)
+            sj.TorsionSpring(link1=links[1], link2=links[0], stiffness=0.05, freeAngle=-2.0),
+            # Through its play and back, slipping both ways.
+            sj.TorsionSpring(link1=links[1], link2=links[0], stiffness=0.4, freeAngle=-1.2, deadband=1e-5,
+                             preload=-1e-4, frictionLimit=1e-5, frictionStiffness=2.0),
         ]
     engines(
         **more,
@@ -83,7 +86,7 @@ def state():
             out["memory"].append([list(point) for point in i.phys.slipMemory])
     for engine in O.engines:
         for spring in getattr(engine, "springs", []):
-            out["contacts"].append([spring.angle, spring.moment])
+            out["contacts"].append([spring.angle, spring.moment, spring.frictionMoment, spring.slipAngle])
             # One and the same object as in ThermalLinks, not a copy.
             out["contacts"].append([spring.link2.axialForce, spring.link2.pinDamping])
         for functor in getattr(getattr(engine, "lawDispatcher", None), "functors", []):

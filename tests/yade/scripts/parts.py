@@ -147,6 +147,7 @@ def stored_minus_supplied() -> float:
         sum(e.get(name, 0.0) for name in ("jointElastic", "jointFriction", "jointDamping"))
         + sum(e.get(name, 0.0) for name in ("linkElastic", "linkDamping", "pinDamping"))
         + e.get("torsionElastic", 0.0)
+        + e.get("torsionFriction", 0.0)
         - e.get("jointThermalWork", 0.0)
         - e.get("linkThermalWork", 0.0)
     )

@@ -121,6 +121,10 @@ CHANGES = {
     "link's stiffness": put_past(lambda: MAIN.links[0].updateAttrs({"youngModulus": NAN})),
     "spring": put_past(lambda: MAIN.spring.updateAttrs({"stiffness": NAN})),
     "spring's angle": put_past(lambda: MAIN.spring.updateAttrs({"freeAngle": NAN})),
+    "spring's friction": put_past(lambda: MAIN.spring.updateAttrs({"frictionLimit": 1.0, "frictionStiffness": NAN})),
+    "spring's friction without stiffness": lambda: setattr(MAIN.spring, "frictionLimit", 1.0),
+    "spring's slip": put_past(lambda: MAIN.spring.updateAttrs(
+        {"frictionLimit": 1.0, "frictionStiffness": 0.01, "slipAngle": NAN})),
 }
 # Of a material when the contact is made, of a contact once it is there.
 MATERIALS = {

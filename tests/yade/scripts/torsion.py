@@ -118,6 +118,56 @@ def oscillation(time_step, steps):
     }
 
 
+LATCH = dict(stiffness=2.0, freeAngle=1.2, deadband=0.05, preload=0.3, frictionLimit=0.08, frictionStiffness=4.0)
+
+
+def latch_loop(steps, amplitude=0.2):
+    """Law of a spring with play and friction: its stretch goes to the amplitude, its opposite and back."""
+    roots, tips, links = two_links(0.3, 1.5, blocked="xyzXYZ")
+    spring = sj.TorsionSpring(link1=links[0], link2=links[1], **LATCH)
+    engines(links=[], springs=[spring])
+    O.dt = 1e-9
+    rows = []
+    way = [k * amplitude / steps for k in [*range(steps + 1), *range(steps - 1, -steps, -1), *range(-steps, steps + 1)]]
+    for stretch in way:
+        angle = 0.3 + 1.2 + stretch
+        O.bodies[tips[1]].state.pos = (0.7 + L2 * cos(angle), 0.1 + L2 * sin(angle), 0)
+        O.step()
+        rows.append([stretch, spring.moment, spring.frictionMoment, O.energy["torsionElastic"], O.energy["torsionFriction"]])
+    return {"rows": rows, "amplitude": amplitude, **LATCH}
+
+
+def latch_swing(time_step, steps):
+    """Both links swing against each other through the play, until friction holds them."""
+    roots, tips, links = two_links(0.3, 1.8)
+    spring = sj.TorsionSpring(link1=links[0], link2=links[1], **LATCH)
+    engines(links=links, springs=[spring], reader="read()")
+    account, pieces = Balance(tips), []
+
+    def read():
+        account.read()
+        stretch, slips = spring.angle - spring.freeAngle, abs(spring.frictionMoment) == spring.frictionLimit
+        pieces.append((stretch > spring.deadband, stretch < -spring.deadband, slips))
+
+    __import__("__main__").read = read
+    O.dt = time_step
+    O.run(steps, True)
+    return {"worst": max(abs(v - account.values[0]) for v in account.values), "first": account.values[0],
+            "friction": O.energy["torsionFriction"], "dt": time_step,
+            "corners": sum(one != other for one, other in zip(pieces, pieces[1:]))}
+
+
+def latch_limit(factor):
+    """As limit(), of a spring in its play whose friction sticks."""
+    roots, tips, links = two_links(0.3, 1.5, blocked1="xyzXYZ", area=1e-12)
+    spring = sj.TorsionSpring(link1=links[0], link2=links[1], stiffness=20.0, freeAngle=1.2, deadband=0.1,
+                              frictionLimit=1.0, frictionStiffness=30.0)
+    engines(links=links, springs=[spring])
+    true = 2 * sqrt(2 * MASS * L2**2 / 50.0)
+    O.dt = factor * true
+    return {"error": sentence_of(lambda: one_by_one(3)), "true": true, "promised": sj.stable_time_step()}
+
+
 def limit(factor):
     """One tip on a spring that is stiffer than the links; dt = factor times the true limit."""
     roots, tips, links = two_links(0.3, 1.5 + 1e-6, blocked1="xyzXYZ", area=1e-12)
@@ -195,6 +245,9 @@ finish(
         "balance": balance(),
         "oscillation": [oscillation(4e-5 / 2**k, 5000 * 2**k) for k in range(3)],
         "limit": {str(f): limit(f) for f in (0.95, 1.05)},
+        "latch": latch_loop(50),
+        "latch_swing": [latch_swing(4e-5 / 2**k, 5000 * 2**k) for k in range(3)],
+        "latch_limit": {str(f): latch_limit(f) for f in (0.95, 1.05)},
         "decay": [[decay(both, 2e-5 / 2**k) for k in range(2)] for both in (False, True)],
         "pin_limit": {str(f): pin_limit(f) for f in (0.95, 1.05)},
         "wrong": {

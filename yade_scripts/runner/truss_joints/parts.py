@@ -77,6 +77,10 @@ class Joints:
         """Return the radii of what is looked for contacts of."""
         raise NotImplementedError
 
+    def torsion_springs(self) -> list[sj.TorsionSpring]:
+        """Return those that stand for joints, known from :meth:`append` on."""
+        return []
+
     def states(self) -> list[tuple[Any, ...]]:
         """Return what every joint has of each of the columns."""
         raise NotImplementedError

@@ -61,6 +61,16 @@ double radius_of(const Trial& trial) {
   return (trial.drawn[1] - trial.drawn[0]).norm();
 }
 
+/// How much of the rotation friction takes while it sticks [rad].
+double bend(const LatchHinge& hinge, const Trial& trial) {
+  return radius_of(trial) * trial.force[0] / hinge.friction_stiffness;
+}
+
+/// What of the rotation has slipped [rad].
+double slipped(const LatchHinge& hinge, const Trial& trial) {
+  return rotation_of(hinge, trial) - bend(hinge, trial);
+}
+
 /// Rotation beyond the play [rad].
 double beyond_play(const LatchHinge& hinge, double rotation) {
   return rotation - std::clamp(rotation, -hinge.deadband, hinge.deadband);
@@ -79,6 +89,8 @@ std::span<const Parameter<LatchHinge>> LatchHinge::parameters() {
        &H::stiffness},
       {"friction_moment_N_m", "friction_moment", "N m", Allowed::not_negative, "the case",
        &H::friction_moment},
+      {"friction_stiffness_N_m_per_rad", "friction_stiffness", "N m/rad",
+       Allowed::positive_or_infinite, "the case", &H::friction_stiffness},
       {"preload_moment_N_m", "preload_moment", "N m", Allowed::finite, "the case",
        &H::preload_moment},
       {"axis", "axis", "-", Allowed::direction, "the case", &H::axis},
@@ -137,7 +149,8 @@ void LatchHinge::evaluate(const Trial& trial, JointStatus status, JointWriter& w
       break;
     }
     default:
-      writer.closure(0, radius * (rotation - trial.history[0]));
+      writer.closure(0, radius * (slipped(*this, trial) - trial.history[0]));
+      corner = -radius * radius / friction_stiffness;
       sticks = radius;
   }
   writer.corner(0, 0, corner);
@@ -173,13 +186,13 @@ JointStatus LatchHinge::decide(const Trial& trial, JointStatus status) const {
                             : status;
   }
   const double sense = status == JointStatus::slip_plus ? 1.0 : -1.0;
-  const double slid = radius_of(trial) * (rotation_of(*this, trial) - trial.history[0]);
+  const double slid = radius_of(trial) * (slipped(*this, trial) - trial.history[0]);
   const double rounding = slide_rounding(trial, trial.length_rounding, trial.force_rounding);
   return sense * slid < -rounding ? JointStatus::stick : status;
 }
 
 void LatchHinge::begin(const Trial& trial, JointStatus, double* now) const {
-  now[0] = rotation_of(*this, trial);
+  now[0] = slipped(*this, trial);
 }
 
 void LatchHinge::commit(const Trial& trial, JointStatus status, double* after) const {
@@ -195,9 +208,12 @@ double LatchHinge::dissipation(const Trial& trial, const double*, double slip) c
 }
 
 double LatchHinge::elastic_energy(const Trial& trial, const double* now) const {
-  static_cast<void>(trial);
-  const double beyond = beyond_play(*this, now[0]);
-  return 0.5 * stiffness * beyond * beyond + preload_moment * now[0];
+  const double rotation = rotation_of(*this, trial);
+  const double beyond = beyond_play(*this, rotation);
+  const double bent = std::isinf(friction_stiffness)
+                          ? 0.0
+                          : 0.5 * friction_stiffness * std::pow(rotation - now[0], 2);
+  return 0.5 * stiffness * beyond * beyond + preload_moment * rotation + bent;
 }
 
 void LatchHinge::describe(const Trial& trial, double* outputs) const {
@@ -207,13 +223,13 @@ void LatchHinge::describe(const Trial& trial, double* outputs) const {
       preload_moment + stiffness * beyond_play(*this, rotation) + radius_of(trial) * trial.force[0];
 }
 
-double LatchHinge::slide_rounding(const Trial& trial, double length, double) const {
+double LatchHinge::slide_rounding(const Trial& trial, double length, double force) const {
   // Displacements of the ends of a shorter link turn it further.
   double turned = length;
   if (second_link >= 0) {
     turned *= std::max(1.0, radius_of(trial) / (trial.drawn[3] - trial.drawn[2]).norm());
   }
-  return turned;
+  return turned + std::pow(radius_of(trial), 2) * force / friction_stiffness;
 }
 
 bool LatchHinge::remembers_when(JointStatus before, JointStatus after) const {

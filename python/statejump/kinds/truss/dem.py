@@ -24,6 +24,7 @@ from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.mechanism import refused_at_rest
+from statejump.kinds.truss.joints.protocol import Torsion
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, solve
 
@@ -71,7 +72,7 @@ def stable_time_step(case: TrussCase, path: TrussPath) -> float:
             np.add.at(stiffness, nodes[:, side], moving * k * inverse[nodes[:, side]])
             np.add.at(damping, nodes[:, side], moving * dashpot * inverse[nodes[:, side]])
 
-    links, springs, torsion = truss.links, truss.springs, truss.torsion_springs
+    links, springs, torsion = truss.links, truss.springs, _torsion(truss)
     ratio, contact = case.dem.link_damping_ratio, case.dem.contact_damping_ratio
     ranges = path.truss.temperature_ranges_K[links.program] * links.temperature_fraction[:, None]
     shortest = links.stress_free_length_m * (1 + links.thermal_expansion_per_K[:, None] * ranges).T.min(axis=0)
@@ -169,7 +170,7 @@ def check(case: TrussCase) -> None:
         raise refuse(case, f"spring {springs.names[index]!r} has the free length {springs.free_length_m[index]:.6g} m, "
                            "the DEM needs one above 0")
     if truss.dimension == 3:
-        _refuse_tilted_springs(case, truss)
+        _refuse_tilted_torsion(case, truss)
 
 
 def _refuse_slack(case: TrussCase, path: TrussPath) -> None:
@@ -179,15 +180,40 @@ def _refuse_slack(case: TrussCase, path: TrussPath) -> None:
         raise refuse(case, f"cable {springs.names[index]!r} goes slack, the DEM has no element that only pulls")
 
 
-def _refuse_tilted_springs(case: TrussCase, truss: ResolvedTruss) -> None:
+def _torsion(truss: ResolvedTruss) -> Torsion:
+    """Return torsion springs and what joints have of the kind; names with their sections."""
+    springs = truss.torsion_springs
+    parts = [("torsion_spring", Torsion(springs.names, springs.links, springs.axis, springs.stiffness_N_m_per_rad))]
+    parts += [(joint.section, joint.torsion(truss.joints[joint.section])) for joint in JOINTS]
+    return Torsion(
+        tuple(f"{section} {name!r}" for section, part in parts for name in part.names),
+        *(np.concatenate([getattr(part, key) for _, part in parts])
+          for key in ("links", "axis", "stiffness_N_m_per_rad")),
+    )
+
+
+def _refuse_tilted_torsion(case: TrussCase, truss: ResolvedTruss) -> None:
     """A torsion spring of the DEM acts in the plane across its axis, of the solver on views of links."""
-    springs, links, position = truss.torsion_springs, truss.links, truss.nodes.position_m
-    for index, (ends, axis) in enumerate(zip(springs.links, springs.axis)):
+    torsion, links, position = _torsion(truss), truss.links, truss.nodes.position_m
+    for name, ends, axis in zip(torsion.names, torsion.links, torsion.axis):
         for link in ends[ends != GROUND]:
             start, end = position[links.nodes[link]]
             if abs((end - start) @ axis) > SAME_DIRECTION * np.linalg.norm(end - start):
-                raise refuse(case, f"torsion_spring {springs.names[index]!r} has link {links.names[link]!r} that is "
+                raise refuse(case, f"{name} has link {links.names[link]!r} that is "
                                    "not across its axis, the DEM has torsion springs in a plane only")
+
+
+def _refuse_far_turns(case: TrussCase, path: TrussPath) -> None:
+    """Beyond a quarter of a turn the DEM cannot tell an angle from its opposite."""
+    torsion = path.truss.torsion_springs
+    if len(torsion.links) and np.abs(torsion.bias_rad).max() > pi / 2:
+        raise refuse(case, "a torsion spring has a bias above π/2, beyond what the DEM can tell from its opposite")
+    for joint in JOINTS:
+        joints = path.truss.joints[joint.section]
+        turned = joint.largest_turn_rad(path, joints) if joints.names else np.zeros(0)
+        for index in np.flatnonzero(turned > pi / 2)[:1]:
+            raise refuse(case, f"{joint.section} {joints.names[index]!r} turns by {turned[index]:.3g} rad, more than "
+                               "π/2 is beyond what the DEM can tell from its opposite", joint=joints.names[index])
 
 
 def blocked_directions(truss: ResolvedTruss) -> np.ndarray:
@@ -219,9 +245,7 @@ def resolved(case: TrussCase, path: TrussPath) -> dict[str, Any]:
     _refuse_slack(case, path)
     reach = [joint.reach_m(path, truss.joints[joint.section]) for joint in JOINTS]
     groups = np.split(_contact_groups(truss, case, np.concatenate(reach)), np.cumsum([len(own) for own in reach]))
-    torsion = truss.torsion_springs
-    if len(torsion.links) and np.abs(torsion.bias_rad).max() > pi / 2:
-        raise refuse(case, "a torsion spring has a bias above π/2, beyond what the DEM can tell from its opposite")
+    _refuse_far_turns(case, path)
     start = path.states["displacement_m"][0]
     values = yade_process.common_values(case, number_of_steps(case, path))
     return {
@@ -234,7 +258,7 @@ def resolved(case: TrussCase, path: TrussPath) -> dict[str, Any]:
         **{joint.section: _lists(truss.joints[joint.section], **joint.scene(path, truss.joints[joint.section]),
                                  group=group) for joint, group in zip(JOINTS, groups)},
         "spring": _lists(truss.springs),
-        "torsion_spring": _lists(torsion),
+        "torsion_spring": _lists(truss.torsion_springs),
     }
 
 

@@ -30,6 +30,8 @@ STATE_OF = {"stick": STICK, "slip_plus": SLIP, "slip_minus": SLIP, "stop_plus": 
 ITEMS = {"displacement_m": ("nodes", True), "axial_force_N": ("links", False), "tension_N": ("springs", False)} | {
     column.name: (joint.items, column.vector) for joint in JOINTS for column in joint.columns}
 TOUCHING = [joint for joint in JOINTS if joint.has_contacts]
+# Of these the DEM samples states; those of contacts are among the contacts of a result.
+STICKING = [joint for joint in JOINTS if joint.has_contacts or not joint.not_in_dem]
 LOCATED = 1e-6  # of a cycle: an event within less has no uncertainty worth telling
 NOTES = {"displacement_m": "from the drawn shape", "axial_force_N": "compression positive"} | {
     column.name: column.note for joint in JOINTS for column in joint.columns}
@@ -132,7 +134,10 @@ def _run(
     contacts = _contacts(truss, time, position, items)
     change = plain["temperature_change_K"].values
     if events is None:
-        events = from_states(time, change, contacts["state"].values, _joints(truss)) if len(time) else []
+        called = _all_names(truss)
+        states = np.concatenate([items[joint.state_column] for joint in STICKING], axis=1)
+        events = from_states(time, change, states, [called[joint.section, name] for joint in STICKING
+                                                    for name in truss.joints[joint.section].names])
     jumps = np.linalg.norm(items["displacement_m"][-1] - items["displacement_m"][0], axis=1)
     return Run(model, history, energy, links, contacts, Events(events),
                {"largest_jump_m": float(jumps.max()), **summary}, names(case), lambda: case, **more)
@@ -282,7 +287,7 @@ def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
     """Return a DEM run: events between samples."""
     samples = len(columns["time_s"])
     items, listed = {}, names(case)
-    states = {joint.state_column: (joint.items, False) for joint in TOUCHING}
+    states = {joint.state_column: (joint.items, False) for joint in STICKING}
     for key, (of, vector) in {**ITEMS, **states}.items():
         ends = (".x", ".y", ".z") if vector else ("",)
         found = [columns[f"{key}[{name}]{end}"] for name in listed.get(of, ()) for end in ends]

@@ -79,6 +79,7 @@ using Stage = std::variant<Links, std::vector<TorsionPlace>, std::vector<Guide>>
 struct Energies {
   double joint_friction = 0, joint_damping = 0, joint_thermal_work = 0;
   double link_damping = 0, pin_damping = 0, link_thermal_work = 0;
+  double torsion_friction = 0;
   double numerical_damping = 0, gravity_work = 0;
 };
 

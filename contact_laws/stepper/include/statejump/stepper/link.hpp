@@ -27,6 +27,7 @@ struct Link {
   double dampingRatio = 0;      ///< [-]
   double pinDamping = 0;        ///< [N m s/rad]
   bool tipTurnsWithLink = false;
+  bool tensionOnly = false;             ///< a cable: it never pushes
   double axialForce = 0;                ///< [N], compression positive
   double temperatureChange = 0;         ///< [K]
   double previousTension = 0;           ///< [N]
@@ -61,7 +62,9 @@ inline double damping_coefficient(const Link& link, double inverse_mass) {
 /// The forces of a link in one step. With extension e = L - l_T the tension is
 /// N = k_T e + c (L' - l_T'), k_T = E A / l_T, and
 ///   N L' = d(k_T e^2 / 2)/dt + c (L' - l_T')^2 + [N + k_T e^2 / (2 l_T)] l_T',
-/// so the thermal work on the link is -integral of [N + k_T e^2 / (2 l_T)] dl_T.
+/// so the thermal work on the link is -integral of [N + k_T e^2 / (2 l_T)] dl_T. A cable that is
+/// shorter than l_T has e = 0 and no force; the dashpot of one that shortens takes away no more
+/// than its spring pulls.
 struct LinkStep {
   Span span;
   Vector3 relative_velocity;  ///< tip against root [m/s]
@@ -70,8 +73,9 @@ struct LinkStep {
   double stiffness;           ///< k_T [N/m]
   double damping;             ///< c [N s/m]
   double damping_across;      ///< [N s/m]
-  double extension;           ///< e [m]
+  double extension;           ///< e [m]; of a slack cable 0
   double extension_rate;      ///< [m/s]
+  double viscous_force;       ///< the dashpot's part of N [N]
   double tension;             ///< N [N]
 };
 
@@ -99,7 +103,13 @@ LinkStep link_step(Link& link, const Span& span, const Vector3& root_velocity,
   step.damping = damping;
   step.extension = span.length - step.stress_free_length;
   step.extension_rate = length_rate - stress_free_rate;
-  step.tension = step.stiffness * step.extension + damping * step.extension_rate;
+  step.viscous_force = damping * step.extension_rate;
+  if (link.tensionOnly && step.extension <= 0) step.extension = step.viscous_force = 0;
+  step.tension = step.stiffness * step.extension + step.viscous_force;
+  if (link.tensionOnly && step.tension < 0) {
+    step.viscous_force -= step.tension;
+    step.tension = 0;
+  }
   link.axialForce = -step.tension;
   // A moment on the link as a force across its tip, and the opposite at its root.
   step.damping_across = link.pinDamping / (span.length * span.length);
@@ -145,7 +155,7 @@ struct LinkEnergy {
 
 inline LinkEnergy energy(const Link& link, const LinkStep& step, double time_step) {
   LinkEnergy energy{0.5 * step.stiffness * step.extension * step.extension,
-                    step.damping * step.extension_rate * step.extension_rate * time_step,
+                    step.viscous_force * step.extension_rate * time_step,
                     step.damping_across * step.velocity_across.squaredNorm() * time_step, 0, false};
   if (link.previousStressFreeLength > 0) {
     const double previous_elastic = 0.5 * link.youngModulus * link.crossSectionArea /
@@ -169,13 +179,21 @@ inline void keep(Link& link, const LinkStep& step, double time) {
   link.previousTime = time;
 }
 
-/// A torsion spring; the attributes of TorsionSpring.
+/// A torsion spring; the attributes of TorsionSpring. With the stretch s, the angle less the free
+/// one, its moment is M0 + K_M (s - clamp(s; -a, a)) + M_f, where friction M_f is that of a spring
+/// k_f behind a slider: M_f = clamp(k_f (s - s_f); -M_c, M_c), and s_f follows where it slips.
 struct Torsion {
   double stiffness = 0;  ///< K_M [N m/rad]
   double freeAngle = 0;  ///< [rad]
   Vector3 axis = Vector3::UnitZ();
-  double angle = 0;   ///< [rad]
-  double moment = 0;  ///< [N m]
+  double deadband = 0;           ///< a [rad]
+  double preload = 0;            ///< M0 [N m]
+  double frictionLimit = 0;      ///< M_c [N m]
+  double frictionStiffness = 0;  ///< k_f [N m/rad]
+  double angle = 0;              ///< [rad]
+  double moment = 0;             ///< [N m]
+  double frictionMoment = 0;     ///< M_f [N m]
+  double slipAngle = 0;          ///< s_f [rad]
 };
 
 /// Largest component of a link's direction along the axis: rounding of a scene laid out in a turned
@@ -186,13 +204,41 @@ inline bool is_planar(const Span& span, const Vector3& axis) {
   return std::abs(span.direction.dot(axis)) <= largest_tilt;
 }
 
-/// Angle and moment of this step; returns the stretch [rad].
-inline double torsion_step(Torsion& spring, const Span& first, const Span& second) {
+/// Largest stiffness that a spring can have [N m/rad].
+inline double largest_stiffness(const Torsion& spring) {
+  return spring.frictionLimit > 0 ? spring.stiffness + spring.frictionStiffness : spring.stiffness;
+}
+
+/// Energies of one spring and one step [J]; elastic is what is stored now.
+struct TorsionEnergy {
+  double elastic;
+  double friction;
+};
+
+/// Angle and moment of this step.
+inline TorsionEnergy torsion_step(Torsion& spring, const Span& first, const Span& second) {
   const Vector3 turn = first.direction.cross(second.direction);
   spring.angle = std::atan2(turn.dot(spring.axis), first.direction.dot(second.direction));
   const double stretch = spring.angle - spring.freeAngle;
-  spring.moment = spring.stiffness * stretch;
-  return stretch;
+  const double beyond = stretch - std::clamp(stretch, -spring.deadband, spring.deadband);
+  const double elastic_moment = spring.stiffness * beyond;
+  TorsionEnergy energy{0.5 * elastic_moment * beyond, 0};
+  spring.moment = elastic_moment + spring.preload;
+  energy.elastic += spring.preload * stretch;
+  if (!(spring.frictionLimit > 0)) return energy;
+
+  double friction = spring.frictionStiffness * (stretch - spring.slipAngle);
+  if (std::abs(friction) > spring.frictionLimit) {
+    friction = std::copysign(spring.frictionLimit, friction);
+    const double slid_to = stretch - friction / spring.frictionStiffness;
+    // Leapfrog does its work with the mean of the moments of two steps.
+    energy.friction = 0.5 * (friction + spring.frictionMoment) * (slid_to - spring.slipAngle);
+    spring.slipAngle = slid_to;
+  }
+  energy.elastic += 0.5 * friction * (stretch - spring.slipAngle);
+  spring.frictionMoment = friction;
+  spring.moment += friction;
+  return energy;
 }
 
 /// 1/I of turning a link by a couple on its two ends [1/(kg m2)].

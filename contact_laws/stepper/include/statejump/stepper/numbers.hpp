@@ -64,6 +64,21 @@ constexpr Quantities<Link, 6> link_quantities = {
      {"dampingRatio", &Link::dampingRatio, Allowed::not_negative, "-"},
      {"pinDamping", &Link::pinDamping, Allowed::not_negative, "N m s/rad"}}};
 
+/// Of a torsion spring that acts. Where friction has a limit, its stiffness has to be above 0.
+constexpr Quantities<Torsion, 8> torsion_quantities = {
+    {{"stiffness", &Torsion::stiffness, Allowed::not_negative, "N m/rad"},
+     {"freeAngle", &Torsion::freeAngle, Allowed::finite, "rad"},
+     {"deadband", &Torsion::deadband, Allowed::not_negative, "rad"},
+     {"preload", &Torsion::preload, Allowed::finite, "N m"},
+     {"frictionLimit", &Torsion::frictionLimit, Allowed::not_negative, "N m"},
+     {"frictionStiffness", &Torsion::frictionStiffness, Allowed::not_negative, "N m/rad"},
+     {"slipAngle", &Torsion::slipAngle, Allowed::finite, "rad"},
+     {"frictionMoment", &Torsion::frictionMoment, Allowed::finite, "N m"}}};
+
+inline bool has_friction_without_stiffness(const Torsion& spring) {
+  return spring.frictionLimit > 0 && !(spring.frictionStiffness > 0);
+}
+
 /// Of a contact that touches: ContactPhysics or JointPhys.
 template <class Physics>
 constexpr Quantities<Physics, 6> contact_quantities = {

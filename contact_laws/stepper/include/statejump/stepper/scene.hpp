@@ -353,13 +353,14 @@ inline bool Scene::act(std::vector<TorsionPlace>& springs) {
     const Span second = span(place.second);
     Torsion& spring = place.spring;
     if (!first.is_proper() || !second.is_proper() || !is_planar(first, spring.axis) ||
-        !is_planar(second, spring.axis)) {
+        !is_planar(second, spring.axis) || has_friction_without_stiffness(spring)) {
       return false;
     }
-    torsion_step(spring, first, second);
+    const TorsionEnergy energy = torsion_step(spring, first, second);
     const double inverse = inverse_inertia(first, mobility(place.first)) +
                            inverse_inertia(second, mobility(place.second));
-    if (inverse > 0 && !(time_step <= kernel::critical_time_step(1 / inverse, spring.stiffness))) {
+    if (inverse > 0 &&
+        !(time_step <= kernel::critical_time_step(1 / inverse, largest_stiffness(spring)))) {
       return false;
     }
     if (!std::isfinite(spring.moment)) return false;
@@ -369,6 +370,7 @@ inline bool Scene::act(std::vector<TorsionPlace>& springs) {
     };
     add(place.first, couple(first, spring.axis, spring.moment));
     add(place.second, couple(second, spring.axis, -spring.moment));
+    if (tracks_energy) energies.torsion_friction += energy.friction;
   }
   return true;
 }

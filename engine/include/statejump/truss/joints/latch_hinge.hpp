@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <limits>
+
 #include "statejump/truss/joints/interface.hpp"
 
 namespace statejump::truss {
@@ -18,8 +20,9 @@ namespace statejump::truss {
 ///
 ///     stick   φ = φ_k, |M_f| <= M_c      slip±   M_f = ±M_c, ±(φ − φ_k) >= 0
 ///
-/// Play and stiffness have a potential and no memory: only friction has branches. The unknown is
-/// M_f over the drawn length of the first link, a force, and its row a path on that radius.
+/// With a finite k_f friction sticks as a spring, M_f = k_f (φ − p): what is remembered and slips
+/// is p. Play and stiffness have a potential and no memory: only friction has branches. The unknown
+/// is M_f over the drawn length of the first link, a force, and its row a path on that radius.
 struct LatchHinge {
   std::string name;
   int first_link = 0;
@@ -27,7 +30,9 @@ struct LatchHinge {
   double deadband = 0.0;         ///< a [rad], >= 0: free play to either side.
   double stiffness = 0.0;        ///< K beyond the play [N m/rad], >= 0.
   double friction_moment = 0.0;  ///< M_c [N m], >= 0.
-  double preload_moment = 0.0;   ///< M0 against the rotation [N m].
+  /// k_f of friction that sticks [N m/rad], > 0; infinity: rigid.
+  double friction_stiffness = std::numeric_limits<double>::infinity();
+  double preload_moment = 0.0;  ///< M0 against the rotation [N m].
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
 
   static constexpr const char* kind = "latch_hinge";

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import pi
+from math import inf, pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from statejump.kinds.truss.arrays import References, columns, names, pairs
-from statejump.kinds.truss.joints.protocol import JointColumn, JointType, Symbol
+from statejump.kinds.truss.joints.protocol import JointColumn, JointType, Symbol, Torsion
 from statejump.kinds.truss.joints.words import USER, count, scaled, spread
 from statejump.kinds.truss.references import axis_of_rotation, known_links, turned_links
 from statejump.schema.fields import definition, numbers, parameter, texts
@@ -18,6 +18,7 @@ from statejump.schema.items import Item
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.resolved import ResolvedTruss
+    from statejump.kinds.truss.solve import TrussPath
 
 
 @definition
@@ -33,6 +34,9 @@ class LatchHinge(Item):
     deadband_rad: float = parameter(..., "rad", 0, pi, USER + "; free play to either side")
     stiffness_N_m_per_rad: float = parameter(..., "N m/rad", 0, 1e12, USER + "; beyond the play", above=True)
     friction_moment_N_m: float = parameter(0.0, "N m", 0, 1e9, "no friction")
+    friction_stiffness_N_m_per_rad: float | None = parameter(
+        None, "N m/rad", 0, 1e12, "of friction that sticks; as beyond the play; DEM and elastic sticking only",
+        above=True)
     preload_moment_N_m: float = parameter(0.0, "N m", -1e9, 1e9, "against the rotation; none")
     axis: list[float] | None = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
 
@@ -46,12 +50,13 @@ class LatchHinges:
     deadband_rad: np.ndarray
     stiffness_N_m_per_rad: np.ndarray
     friction_moment_N_m: np.ndarray
+    friction_stiffness_N_m_per_rad: np.ndarray
     preload_moment_N_m: np.ndarray
     axis: np.ndarray  # (h, 3) unit; z in planar trusses
 
 
 class LatchHingeType(JointType[LatchHinge, LatchHinges]):
-    """Latch hinges, in the solver."""
+    """Latch hinges, in the solver and in the DEM."""
 
     section = "latch_hinge"
     Item = LatchHinge
@@ -60,7 +65,6 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
         JointColumn("hinge_moment_N_m", "against the rotation: preload, stiffness beyond the play, friction"),
     )
     varied = ("deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m", "preload_moment_N_m")
-    not_in_dem = "is a joint of the quasi-static solver only, the DEM has none"
     not_in_motion = "is a joint of quasi-static paths only"
 
     def check_vectors(self, item: LatchHinge, dimension: int) -> None:
@@ -70,16 +74,24 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
         known_links(item.links, links, self.where(item.name))
 
     def resolve(self, items: Sequence[LatchHinge], known: References) -> LatchHinges:
+        found = columns(items, "deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m",
+                        "friction_stiffness_N_m_per_rad", "preload_moment_N_m")
+        sticking, beyond = found.pop("friction_stiffness_N_m_per_rad"), found["stiffness_N_m_per_rad"]
         return LatchHinges(
             names=names(items), links=pairs(items, "links", known.link), axis=known.axes(items),
-            **columns(items, "deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m", "preload_moment_N_m"),
+            friction_stiffness_N_m_per_rad=np.where(np.isnan(sticking), beyond, sticking), **found,
         )
 
     def check_geometry(self, truss: ResolvedTruss, joints: LatchHinges, ranges_K: np.ndarray) -> None:
         turned_links(truss, self.section, joints)
 
     def engine_arrays(self, truss: ResolvedTruss, joints: LatchHinges) -> dict[str, Any]:
-        return {"first_link": joints.links[:, 0], "second_link": joints.links[:, 1]}
+        elastic = truss.sticking != "rigid"
+        return {
+            "first_link": joints.links[:, 0], "second_link": joints.links[:, 1],
+            "friction_stiffness_N_m_per_rad": joints.friction_stiffness_N_m_per_rad if elastic else (
+                np.full(len(joints.names), inf)),
+        }
 
     def symbols(self, truss: ResolvedTruss, joints: LatchHinges) -> list[Symbol]:
         return [Symbol(truss.turning_places(joints.links), "D", 0.9, 0.7, order=4.6)]
@@ -98,6 +110,19 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
     def no_load(self, joints: LatchHinges) -> str:
         return ("the friction of a latch hinge is a moment that turns with links, no load on nodes"
                 if joints.friction_moment_N_m.any() else "")
+
+    def torsion(self, joints: LatchHinges) -> Torsion:
+        sticking = np.where(joints.friction_moment_N_m > 0, joints.friction_stiffness_N_m_per_rad, 0.0)
+        return Torsion(joints.names, joints.links, joints.axis, joints.stiffness_N_m_per_rad + sticking)
+
+    def largest_turn_rad(self, path: TrussPath, joints: LatchHinges) -> np.ndarray:
+        return np.asarray(np.abs(path.states["hinge_rotation_rad"]).max(axis=0))
+
+    def scene(self, path: TrussPath, joints: LatchHinges) -> dict[str, Any]:
+        rotation, moment = path.states["hinge_rotation_rad"][0], path.states["hinge_moment_N_m"][0]
+        beyond = rotation - np.clip(rotation, -joints.deadband_rad, joints.deadband_rad)
+        without_friction = joints.preload_moment_N_m + joints.stiffness_N_m_per_rad * beyond
+        return {"start_rotation_rad": rotation, "start_friction_N_m": moment - without_friction}
 
 
 LATCH_HINGE = LatchHingeType()

@@ -93,6 +93,16 @@ class ContactPart:
     shared: bool = True  # whether several joints may have one part
 
 
+@dataclass(frozen=True)
+class Torsion:
+    """Moments between two links, or one and the ground, as the DEM has them of torsion springs."""
+
+    names: tuple[str, ...]
+    links: np.ndarray  # (k, 2) int; (link, GROUND)
+    axis: np.ndarray  # (k, 3) unit
+    stiffness_N_m_per_rad: np.ndarray  # (k,) the greatest
+
+
 class JointType(Generic[ItemType, ArraysType]):
     """A type of joint. ``section`` is its list in a case file, its kind in the engine and its name in messages."""
 
@@ -222,6 +232,14 @@ class JointType(Generic[ItemType, ArraysType]):
     def contact_stiffness(self, path: TrussPath, joints: ArraysType) -> tuple[np.ndarray, np.ndarray]:
         """Return the nodes (joints, k) that a contact pushes and its greatest stiffness [N/m] on the path."""
         return np.zeros((0, 1), dtype=int), np.zeros(0)
+
+    def torsion(self, joints: ArraysType) -> Torsion:
+        """Return what turns links against each other by a moment."""
+        return Torsion((), np.zeros((0, 2), dtype=int), np.zeros((0, 3)), np.zeros(0))
+
+    def largest_turn_rad(self, path: TrussPath, joints: ArraysType) -> np.ndarray:
+        """Return how far :meth:`torsion` turns from the drawn shape on the path (joints,)."""
+        return np.zeros(0)
 
     def scene(self, path: TrussPath, joints: ArraysType) -> dict[str, Any]:
         """Return what the YADE script gets beside the arrays."""

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Latch hinges of a truss in YADE: torsion springs with free play and friction."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import statejump_yade as sj
+from failures import Names
+from truss_joints.parts import SLIP, STICK, Joints, Row, rows
+from truss_joints.torsion import torsion_spring
+from yade import wrapper
+
+
+class LatchHinges(Joints):
+    """Latch hinges. They touch nothing: the engine of torsion springs has their moments."""
+
+    section = "latch_hinge"
+    columns = (("hinge_rotation_rad", False), ("hinge_moment_N_m", False), ("latch_hinge_state", False))
+
+    def __init__(self, case: dict[str, Any]) -> None:
+        super().__init__(case)
+        self._links = rows(case["link"])
+        self._springs: list[sj.TorsionSpring] = []
+
+    def furnish(self, bodies: list[wrapper.Body], turn: Callable[[int, int], None],
+                expand: Callable[[int, Row], None]) -> None:
+        """Nodes need no part for them."""
+
+    def append(self, ids: list[int]) -> Iterator[tuple[int, int]]:
+        self.ids = ids
+        for hinge in self.rows:
+            friction = hinge["friction_stiffness_N_m_per_rad"]
+            self._springs.append(torsion_spring(
+                hinge, 0.0, self.nodes, self._links, ids, deadband=hinge["deadband_rad"],
+                preload=hinge["preload_moment_N_m"], frictionLimit=hinge["friction_moment_N_m"],
+                frictionStiffness=friction, frictionMoment=hinge["start_friction_N_m"],
+                slipAngle=hinge["start_rotation_rad"] - hinge["start_friction_N_m"] / friction,
+            ))
+        yield from ()
+
+    def radii(self) -> list[float]:
+        return []
+
+    def torsion_springs(self) -> list[sj.TorsionSpring]:
+        return self._springs
+
+    def states(self) -> list[tuple[Any, ...]]:
+        return [(spring.angle - spring.freeAngle, spring.moment,
+                 SLIP if abs(spring.frictionMoment) >= spring.frictionLimit else STICK) for spring in self._springs]
+
+    def name(self, found: Names) -> None:
+        for hinge, spring in zip(self.rows, self._springs):
+            found.add_torsion_spring(spring, f"latch_hinge {hinge['names']!r}", hinge["names"])
