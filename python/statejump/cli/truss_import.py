@@ -22,6 +22,13 @@ def _joint(text: str) -> dict[str, str]:
     return found
 
 
+def _held(text: str) -> tuple[str, str]:
+    name, equal, directions = text.rpartition("=")
+    if not equal or not name or not directions or set(directions) - set("xyz"):
+        raise NotAllowed("--fixed", text, "must be NODE=DIRECTIONS, of the letters x, y and z")
+    return name, directions
+
+
 def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) -> dict[str, dict[str, object]]:
     """Return the sections that members' histories need."""
     for option, value in given.items():
@@ -40,7 +47,7 @@ def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) ->
 @click.argument("file", metavar="FILE", type=click.Path(path_type=Path))
 @click.option("-o", "--output", required=True, metavar="CASE", type=click.Path(path_type=Path),
               help="Case file to write; its name is that of the case.")
-@click.option("--format", "form", type=click.Choice(["abaqus", "nastran", "tables"]),
+@click.option("--format", "form", type=click.Choice(["abaqus", "nastran", "tables", "mesh"]),
               help="What FILE is; by its suffix where nothing is said.")
 @click.option("--bars", metavar="FILE", type=click.Path(path_type=Path), help="Table of bars beside a table of nodes.")
 @click.option("--length-unit", type=click.FloatRange(min=0, min_open=True), default=1.0, show_default=True,
@@ -48,6 +55,14 @@ def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) ->
 @click.option("--force-unit", type=click.FloatRange(min=0, min_open=True), default=1.0, show_default=True,
               metavar="NEWTON", help="Force of one unit of a deck.")
 @click.option("--temperature-change", type=float, metavar="KELVIN", help="Of all links, where the deck says nothing.")
+@click.option("--young-modulus", "young_modulus_Pa", type=float, metavar="PA",
+              help="Of links, where the deck says nothing.")
+@click.option("--area", "cross_section_area_m2", type=float, metavar="M2",
+              help="Of links, where the deck says nothing.")
+@click.option("--thermal-expansion", "thermal_expansion_per_K", type=float, metavar="1/K",
+              help="Of links, where the deck says nothing.")
+@click.option("--fixed", multiple=True, metavar="NODE=xyz",
+              help="Hold a node, or nodes by a pattern, in these directions too.")
 @click.option("--density", type=float, metavar="KG/M3", help="Of links whose density the deck does not say.")
 @click.option("--members-file", metavar="FILE", type=click.Path(path_type=Path),
               help="Temperatures of every link over time (CSV, HDF5) instead of the deck's.")
@@ -67,11 +82,13 @@ def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) ->
 @QUIET
 def import_command(
     file: Path, output: Path, form: str | None, bars: Path | None, length_unit: float, force_unit: float,
-    temperature_change: float | None, density: float | None, members_file: Path | None,
+    temperature_change: float | None, fixed: tuple[str, ...], density: float | None, members_file: Path | None,
     reference_temperature: float | None, lead_in: float | None, lead_out: float | None, joints: tuple[str, ...],
     reflector: str | None, reflector_axis: tuple[float, float, float], force: bool, quiet: bool,
+    **links: float | None,
 ) -> None:
-    """A truss of another program as a case file: decks of CalculiX and Abaqus, Nastran bulk data, CSV tables.
+    """A truss of another program as a case file: decks of CalculiX and Abaqus, Nastran bulk data, CSV tables,
+    meshes (.vtk, .vtu, .msh, .med, .mesh; by meshio).
 
     Prints what was taken, what was left out and why.
 
@@ -92,7 +109,9 @@ def import_command(
     deck = read(file, form, bars)
     document = case_document(
         deck, output.stem, length_unit_m=length_unit, force_unit_N=force_unit,
-        temperature_change_K=temperature_change, density_kg_per_m3=density, joints=[_joint(text) for text in joints],
+        temperature_change_K=temperature_change, density_kg_per_m3=density,
+        links={key: value for key, value in links.items() if value is not None}, fixed=[_held(text) for text in fixed],
+        joints=[_joint(text) for text in joints],
         sections=_thermal(output, members_file, {"--reference-temperature": reference_temperature,
                                                  "--lead-in": lead_in, "--lead-out": lead_out}),
         reflector=None if reflector is None else (reflector.split(","), reflector_axis),

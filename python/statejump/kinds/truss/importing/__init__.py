@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trusses of other programs: CSV tables, decks of CalculiX and Abaqus, bulk data of Nastran."""
+"""Trusses of other programs: CSV tables, decks of CalculiX and Abaqus, bulk data of Nastran, meshes."""
 from statejump.kinds.truss.importing.model import Deck, read
 from statejump.kinds.truss.importing.to_case import case_document
 

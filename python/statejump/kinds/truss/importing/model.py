@@ -11,7 +11,8 @@ from statejump.core.tables import Shown
 
 LARGEST_BYTES = 1 << 26
 MOST_ITEMS = 1_000_000  # of a deck: nodes, bars, members of sets
-SUFFIXES = {".inp": "abaqus", ".bdf": "nastran", ".dat": "nastran", ".nas": "nastran", ".csv": "tables"}
+SUFFIXES = {".inp": "abaqus", ".bdf": "nastran", ".dat": "nastran", ".nas": "nastran", ".csv": "tables",
+            ".vtk": "mesh", ".vtu": "mesh", ".msh": "mesh", ".med": "mesh", ".mesh": "mesh"}
 
 
 @dataclass
@@ -126,21 +127,23 @@ def text_of(path: Path) -> list[str]:
 def read(path: Path, form: str | None = None, bars: Path | None = None) -> Deck:
     """Return what a deck says.
 
-    :param form: ``abaqus`` (CalculiX too), ``nastran`` or ``tables``; None: by the suffix
+    :param form: ``abaqus`` (CalculiX too), ``nastran``, ``tables`` or ``mesh``; None: by the suffix
     :param bars: of ``tables`` the second table
     :raises StatejumpError: one sentence with file and line
     """
-    from statejump.kinds.truss.importing import abaqus, nastran, tables
+    from statejump.kinds.truss.importing import abaqus, mesh, nastran, tables
 
     form = form or SUFFIXES.get(path.suffix.lower())
     if form is None:
         raise NotAllowed("FILE", path.name, f"must end with {', '.join(SUFFIXES)}", remedy="--format says what it is")
+    if form == "mesh" and path.suffix.lower() not in mesh.FORMATS:
+        raise NotAllowed("FILE", path.name, f"a mesh must end with {', '.join(mesh.FORMATS)}")
     if form == "tables":
         if bars is None:
             raise NotAllowed("FILE", path.name, "a table of nodes needs a table of bars", remedy="--bars names it")
         deck = tables.read(path, bars)
     else:
-        deck = {"abaqus": abaqus.read, "nastran": nastran.read}[form](path)
+        deck = {"abaqus": abaqus.read, "nastran": nastran.read, "mesh": mesh.read}[form](path)
     if not deck.bars:
         raise Unreadable("holds no bars", file=path, remedy=", ".join(
             f"{card}: {why}" for card, _, _, why in deck.left_rows()[:3]) or None)

@@ -12,13 +12,17 @@ from statejump.kinds.truss.importing.model import Bar, Deck
 
 # A coordinate that differs by less, over the size of the truss, is the same: decks have eight digits.
 FLAT = 1e-9
+# What gives all links a number that the deck does not say.
+OPTIONS = {"young_modulus_Pa": "--young-modulus", "cross_section_area_m2": "--area",
+           "thermal_expansion_per_K": "--thermal-expansion"}
 
 
 def case_document(
     deck: Deck, name: str, *, length_unit_m: float = 1.0, force_unit_N: float = 1.0,
     temperature_change_K: float | None = None, density_kg_per_m3: float | None = None,
     joints: Sequence[Mapping[str, str]] = (), sections: Mapping[str, Mapping[str, Any]] | None = None,
-    reflector: tuple[Sequence[str], Sequence[float]] | None = None,
+    reflector: tuple[Sequence[str], Sequence[float]] | None = None, links: Mapping[str, float] | None = None,
+    fixed: Sequence[tuple[str, str]] = (),
 ) -> Document:
     """Return the case of a deck; what becomes of it is noted in the deck's account.
 
@@ -29,6 +33,8 @@ def case_document(
     :param joints: what ``--joint`` says, see :mod:`~statejump.kinds.truss.importing.joints`
     :param sections: sections that the deck does not have; ``thermal`` stands for its temperatures
     :param reflector: nodes of a reflecting surface, names or patterns, and its axis
+    :param links: keys of links whose number the deck does not say
+    :param fixed: names or patterns of nodes, and the directions in which they are held too
     :raises StatejumpError: a link lacks a number, there is no such node
     """
     used = {end for bar in deck.bars for end in bar.nodes}
@@ -42,19 +48,29 @@ def case_document(
         "case": {"name": name, "kind": "truss", "title": "", "source": f"imported from {deck.path.name}"},
         "truss": {"dimension": dimension},
         "node": [_node(deck, node, dimension, length_unit_m, force_unit_N) for node in deck.nodes if node in used],
-        "link": [_link(deck, bar, change, peak, length_unit_m, force_unit_N, density_kg_per_m3)
+        "link": [_link(deck, bar, change, peak, length_unit_m, force_unit_N, density_kg_per_m3, links or {})
                  for bar, change in zip(deck.bars, changes)],
         "slider": [], "revolute": [],
         "thermal": {"shape": "triangle", "temperature_change_max_K": float(peak)}, **more,
     }
     if "thermal" in more and (deck.temperature or any(bar.temperature_change is not None for bar in deck.bars)):
         deck.leave("temperatures", "those of the members' histories are taken", 0)
+    _hold(made, fixed, dimension)
     put_in(made, joints, dimension)
     if reflector is not None:
         of_deck = [f"N{node}" if node.isdecimal() else node for node in deck.nodes if node in used]
         made["reflector"] = {"axis": [float(part) for part in reflector[1][:dimension]], "nodes": list(dict.fromkeys(
             name for pattern in reflector[0] for name in matching("--reflector", pattern.strip(), of_deck)))}
     return finished(made)
+
+
+def _hold(made: Document, fixed: Sequence[tuple[str, str]], dimension: int) -> None:
+    """Hold nodes by name in further directions."""
+    nodes = {node["name"]: node for node in made["node"]}
+    for pattern, directions in fixed:
+        for name in matching("--fixed", pattern, list(nodes)):
+            held = {*nodes[name].get("fixed", ()), *directions}
+            nodes[name]["fixed"] = [axis for axis in "xyz"[:dimension] if axis in held]
 
 
 def _dimension(deck: Deck, used: set[str]) -> int:
@@ -97,19 +113,26 @@ def _node(deck: Deck, name: str, dimension: int, length: float, force: float) ->
 
 
 def _link(deck: Deck, bar: Bar, change: float, peak: float, length: float, force: float,
-          density: float | None) -> dict[str, Any]:
+          density: float | None, given: Mapping[str, float]) -> dict[str, Any]:
     stress = force / length**2
-    for key, value in (("Young's modulus", bar.young_modulus), ("cross-section area", bar.area)):
-        if not value:
-            raise StatejumpError(f"{bar.kind} {bar.name!r} has no {key}", file=deck.path)
-    assert bar.young_modulus is not None and bar.area is not None
+    numbers: dict[str, float] = {}
+    for key, words, value, unit in (("young_modulus_Pa", "Young's modulus", bar.young_modulus, stress),
+                                    ("cross_section_area_m2", "cross-section area", bar.area, length**2)):
+        if value:
+            numbers[key] = value * unit
+        elif key in given:
+            numbers[key] = given[key]
+        else:
+            raise StatejumpError(f"{bar.kind} {bar.name!r} has no {words}", file=deck.path,
+                                 remedy=f"{OPTIONS[key]} gives all of them one")
     made: dict[str, Any] = {
         "name": f"L{bar.name}" if bar.name.isdecimal() else bar.name,
         "nodes": [f"N{end}" if end.isdecimal() else end for end in bar.nodes],
-        "young_modulus_Pa": bar.young_modulus * stress, "cross_section_area_m2": bar.area * length**2,
-        "thermal_expansion_per_K": bar.expansion or 0.0,
+        **numbers,
+        "thermal_expansion_per_K": (given.get("thermal_expansion_per_K", 0.0) if bar.expansion is None
+                                    else bar.expansion),
     }
-    if bar.expansion is None:
+    if bar.expansion is None and "thermal_expansion_per_K" not in given:
         deck.leave(bar.kind, "no thermal expansion: 0 is taken", 0)
     if bar.density:
         made["density_kg_per_m3"] = bar.density * force / length**4  # mass is force by length, times seconds squared

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Nodes and bars of a mesh, in any of the formats below, by meshio.
+
+Meshes know no sections and no supports: what a bar is comes from its data, where they have the names of our keys, or
+from options; a mesh in SI units is taken as it is.
+"""
+from __future__ import annotations
+
+import contextlib
+import io
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from statejump.core.errors import StatejumpError, Unreadable, size
+from statejump.core.reading import is_file
+from statejump.kinds.truss.importing.model import LARGEST_BYTES, Bar, Deck, quoted
+
+FORMATS = {".vtk": "vtk", ".vtu": "vtu", ".msh": "gmsh", ".med": "med", ".mesh": "medit"}
+LINES = ("line", "line3")  # of two nodes, or with one between them that is left out
+# Data of cells that are taken, and the number of a bar that they are.
+DATA = {"young_modulus_Pa": "young_modulus", "cross_section_area_m2": "area", "thermal_expansion_per_K": "expansion",
+        "density_kg_per_m3": "density", "poisson_ratio": "poisson_ratio", "temperature_change_K": "temperature_change"}
+
+
+def read(path: Path) -> Deck:
+    """Return what a mesh says; its nodes and bars are called by their numbers from 1.
+
+    :raises StatejumpError: one sentence with the file; there is no meshio
+    """
+    mesh = _read(path)
+    deck = Deck(path)
+    points = np.asarray(mesh.points, dtype=float)
+    if points.ndim != 2 or points.shape[1] not in (2, 3) or not np.isfinite(points).all():
+        raise deck.fail(0, "the points are not two or three finite numbers each")
+    deck.room(0, len(points))
+    for number, point in enumerate(points, start=1):
+        x, y, z = (*map(float, point), 0.0)[:3]
+        deck.add_node(0, str(number), (x, y, z))
+    deck.take("point", "node", len(points))
+    for block, cells in enumerate(mesh.cells):
+        if cells.type in LINES:
+            _add(deck, mesh, block, cells.type, np.asarray(cells.data))
+        else:
+            deck.leave(f"cells {cells.type}", "no part of a truss", 0)
+    for what, names in (("point data", mesh.point_data), ("cell data", set(mesh.cell_data) - set(DATA))):
+        for name in sorted(names):
+            deck.leave(f"{what} {quoted(name)}", "is not read", 0)
+    return deck
+
+
+def _add(deck: Deck, mesh: Any, block: int, kind: str, ends: np.ndarray) -> None:
+    """Add the bars of a block of lines."""
+    deck.room(0, len(deck.bars) + len(ends))
+    if len(ends) and not (0 <= ends.min() and ends.max() < len(deck.nodes)):
+        raise deck.fail(0, f"cells {kind} name points that are not there")
+    known = {}
+    for name, key in DATA.items():
+        values = mesh.cell_data[name][block] if name in mesh.cell_data else None
+        if values is not None:
+            known[key] = np.asarray(values, dtype=float).ravel()
+            if len(known[key]) != len(ends) or not np.isfinite(known[key]).all():
+                raise deck.fail(0, f"cell data {quoted(name)} are not one finite number for each line")
+            deck.take(f"cell data {quoted(name)}", "number of its link", len(ends))
+    for place, nodes in enumerate(ends):
+        first, second = (str(int(node) + 1) for node in nodes[:2])
+        numbers = {key: float(values[place]) for key, values in known.items()}
+        deck.bars.append(Bar(str(len(deck.bars) + 1), (first, second), "line", **numbers))
+    deck.take(f"cells {kind}", "link", len(ends))
+    if kind == "line3" and len(ends):
+        deck.leave("cells line3", "the node in the middle: a link is straight", 0)
+
+
+def _read(path: Path) -> Any:
+    try:
+        import meshio
+    except ImportError:
+        raise StatejumpError("meshes are read by meshio, which is not installed", file=path,
+                             remedy="install the Debian package python3-meshio") from None
+    if not is_file(path):
+        raise Unreadable("no such file", file=path)
+    if path.stat().st_size > LARGEST_BYTES:
+        raise Unreadable("cannot be read", cause=f"it is larger than {size(LARGEST_BYTES)}", file=path)
+    form = FORMATS[path.suffix.lower()]
+    try:
+        # meshio prints what it thinks of a file, and for some faults it wants to end the program.
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()), \
+                warnings.catch_warnings():
+            warnings.filterwarnings("error", message="string or file could not be read")  # numpy's, of a short file
+            if form == "med":
+                _check_hdf5(path)
+            return meshio.read(path, form)
+    except StatejumpError:
+        raise
+    except (Exception, SystemExit) as failure:  # what a parser of other people raises for a damaged file is anything
+        cause = " ".join(str(failure).split()) or type(failure).__name__
+        raise Unreadable(f"not a mesh that meshio reads as {form}", cause=cause[:200], file=path) from None
+
+
+def _check_hdf5(path: Path) -> None:
+    """Raise Unreadable for a file of HDF5 whose parts are in other files."""
+    import h5py
+
+    from statejump.core.hdf5 import objects
+
+    with h5py.File(path, "r") as file:
+        objects(file, path)

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Trusses from meshes: what comes back from a solve is that of the truss written by hand."""
+from __future__ import annotations
+
+import contextlib
+import io
+import random
+from pathlib import Path
+from typing import Any, Callable
+
+import numpy as np
+import pytest
+from conftest import Outcome
+
+import statejump as sj
+from statejump.core.errors import StatejumpError
+from statejump.kinds.truss.importing import read
+from statejump.kinds.truss.importing.mesh import FORMATS
+
+meshio = pytest.importorskip("meshio")
+
+BAR = {"young_modulus_Pa": 7e10, "cross_section_area_m2": 1e-4, "thermal_expansion_per_K": 2.3e-5}
+POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.3, 0.2, 0.0]])
+ENDS = np.array([[0, 1], [0, 2], [1, 2]])
+ARGUMENTS = ("--young-modulus", 7e10, "--area", 1e-4, "--thermal-expansion", 2.3e-5, "--temperature-change", 80,
+             "--fixed", "N1=xy", "--fixed", "N2=y")
+
+
+def write(path: Path, **data: Any) -> Path:
+    """Write a mesh of a triangle of bars, with a surface in it that is no part of a truss."""
+    mesh = meshio.Mesh(POINTS, [("line", ENDS), ("triangle", np.array([[0, 1, 3]]))], **data)
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+        # meshio's writer of Gmsh 4 wants to know more of a mesh of two types of cells.
+        meshio.write(path, mesh, {**FORMATS, ".msh": "gmsh22"}[path.suffix])
+    return path
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_a_mesh_gives_the_numbers_of_the_truss_by_hand(
+    suffix: str, tmp_path: Path, statejump: Callable[..., Outcome]
+) -> None:
+    write(tmp_path / f"deck{suffix}")
+    told = statejump("truss", "import", f"deck{suffix}", "-o", "deck.toml", *ARGUMENTS)
+    assert told.status == 0, told.errors
+    assert "cells triangle" in told.output and "no part of a truss" in told.output
+    by_hand = sj.load({
+        "case": {"name": "deck", "kind": "truss"}, "truss": {"dimension": 2},
+        "node": [{"name": "N1", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
+                 {"name": "N2", "position_m": [1.0, 0.0], "fixed": ["y"]}, {"name": "N3", "position_m": [0.0, 1.0]}],
+        "link": [{"name": f"L{place}", "nodes": [f"N{end + 1}" for end in ends], **BAR}
+                 for place, ends in enumerate(ENDS, start=1)],
+        "thermal": {"shape": "triangle", "temperature_change_max_K": 80.0}})
+    ours, theirs = (case.reduced().history["displacement_m"].values for case in (sj.load(tmp_path / "deck.toml"), by_hand))
+    assert np.array_equal(ours, theirs)
+
+
+@pytest.mark.parametrize("suffix", [".vtk", ".vtu"])
+def test_data_of_cells_that_have_our_names_are_those_of_links(suffix: str, tmp_path: Path) -> None:
+    areas = np.array([1e-4, 2e-4, 3e-4])
+    path = write(tmp_path / f"deck{suffix}", point_data={"heat": np.zeros(4)}, cell_data={
+        "cross_section_area_m2": [areas, np.zeros(1)], "colour": [np.zeros(3), np.zeros(1)]})
+    deck = read(path)
+    assert [bar.area for bar in deck.bars] == areas.tolist() and deck.bars[0].young_modulus is None
+    assert {card for card, _, _, _ in deck.left_rows()} == {"cells triangle", "point data 'heat'", "cell data 'colour'"}
+
+
+WRONG: dict[str, tuple[tuple[Any, ...], str]] = {
+    "no area": (ARGUMENTS[:2] + ARGUMENTS[4:], "line '1' has no cross-section area: --area gives all of them one"),
+    "no modulus": (ARGUMENTS[2:], "line '1' has no Young's modulus: --young-modulus gives all of them one"),
+    "negative": (("--young-modulus", -1, *ARGUMENTS[2:]), "link 'L1': young_modulus_Pa = -1.0 is not allowed"),
+    "no such node": ((*ARGUMENTS, "--fixed", "M1=x"), "--fixed = 'M1' is unknown"),
+    "no direction": ((*ARGUMENTS, "--fixed", "N1=w"), "--fixed = 'N1=w' is not allowed: must be NODE=DIRECTIONS"),
+    "no support": (ARGUMENTS[:8], "no node has a support"),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_what_is_wrong_is_one_sentence(what: str, tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
+    write(tmp_path / "deck.vtk")
+    arguments, sentence = WRONG[what]
+    told = statejump("truss", "import", "deck.vtk", "-o", "deck.toml", *arguments)
+    assert told.status == 2 and told.errors.count("\n") == 1 and sentence in told.errors, told.errors
+    assert not (tmp_path / "deck.toml").exists()
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_damaged_meshes_are_refused_or_read(suffix: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    whole = write(tmp_path / f"deck{suffix}").read_bytes()
+    chance, refused = random.Random(1), 0
+    for number in range(60):
+        damaged = bytearray(whole[:chance.randrange(len(whole))] if number % 2 else whole)
+        for _ in range(3):
+            if damaged:
+                damaged[chance.randrange(len(damaged))] = chance.randrange(256)
+        path = tmp_path / f"damaged{suffix}"
+        path.write_bytes(damaged)
+        try:
+            assert read(path).bars
+        except StatejumpError as failure:
+            refused += 1
+            assert path.name in str(failure) and "\n" not in str(failure)
+    assert refused > 20 and capfd.readouterr() == ("", "")
