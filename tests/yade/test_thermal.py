@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Temperature programs, expansion of bodies, thermal links against closed forms."""
-from math import asin, hypot, pi, sin
+from math import asin, hypot, pi, sin, sqrt
 
 import pytest
 
@@ -167,3 +167,18 @@ def test_tip_turns_with_its_link(seen, case):
         assert spin == pytest.approx(rate, rel=2e-4, abs=2 * kick)
         turned = max(turned, abs(s))
     assert turned > 0.9
+
+
+def test_cables_pull_by_turns_and_never_push(seen):
+    for run in (*seen["cables"], *seen["damped cables"]):
+        assert run["least"] == 0 and min(run["most"]) > 100
+        assert not run["both"] and run["neither"] > 0.2 and run["corners"] >= 6
+    for run in seen["cables"]:
+        # Kinetic energy in flight is that of the spring at its longest.
+        assert run["most"] == pytest.approx([sqrt(2 * run["first"] * run["stiffness"])] * 2, rel=1e-3)
+        # Where a cable becomes taut or slack within a step of ds, the trapezoidal rule misses k ds^2 / 8 at most.
+        assert run["worst"] <= run["corners"] * run["stiffness"] * (5 * run["dt"]) ** 2 / 8
+    coarse, fine = seen["damped cables"]
+    assert fine["damped"] > 0.05 * fine["first"]
+    # First order: a dashpot does its work with the velocity half a step late.
+    assert fine["worst"] < 0.7 * coarse["worst"] < 0.02 * coarse["first"]

@@ -46,6 +46,9 @@ def scene(by_name, partial_slip=False):
         more["law"] = sj.Law2_JointGeom_JointPhys_JointLaw(frictionLaw="mindlin_deresiewicz")
     if by_name:
         links[0].pinDamping = 1e-4
+        # Slack until the one has moved away from the other.
+        links.append(sj.ThermalLink(id1=slider, id2=gliding, stressFreeLength=1.00003, program=program, tensionOnly=True,
+                                    dampingRatio=0.1, **common))
         more["law"] = sj.Law2_JointGeom_JointPhys_JointLaw(
             normalLaw="hertz_paper", dissipationLaw="hunt_crossley", restitution=0.95,
             smallestImpactSpeed=1e-4, label="law",

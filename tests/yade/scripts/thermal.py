@@ -149,6 +149,33 @@ def free_expansion():
             "m": 0.01, "expansion": L0 * ALPHA * 100, "omega": pi / 0.2}
 
 
+def between_cables(time_step, damping=0.0, heat=0.0):
+    """A body that flies to and fro between two cables, each slack while the other is taut."""
+    reset()
+    ends, tip = [body((-1, 0, 0)), body((1, 0, 0))], body((1e-4, 0, 0), mass=0.01, blocked="yzXYZ", velocity=(-5, 0, 0))
+    program = sj.ThermalProgram(shape="half_sine", temperatureChangeMax=heat, period=4e-3) if heat else constant()
+    cables = [link_of(end, tip, stressFreeLength=1.002, tensionOnly=True, dampingRatio=damping, program=program)
+              for end in ends]
+    engines(links=cables, program=program, reader="read()")
+    account, pulls = Balance([tip]), []
+
+    def read():
+        account.read()
+        pulls.append([-cable.axialForce for cable in cables])
+
+    __import__("__main__").read = read
+    O.dt = time_step
+    O.run(round(6e-3 / time_step), True)
+    taut = [tuple(force > 0 for force in row) for row in pulls]
+    return {
+        "least": min(min(row) for row in pulls), "most": [max(row[i] for row in pulls) for i in (0, 1)],
+        "both": any(all(row) for row in taut), "neither": sum(not any(row) for row in taut) / len(taut),
+        "corners": sum(one != other for one, other in zip(taut, taut[1:])), "dt": time_step,
+        "stiffness": E * A / 1.002, "worst": max(abs(v - account.values[0]) for v in account.values),
+        "first": 0.5 * 0.01 * 25, "damped": O.energy["linkDamping"],
+    }
+
+
 def hanging():
     """A load on the tip, damped: static elongation."""
     reset()
@@ -291,6 +318,8 @@ finish(
         "force": {str(c): link_force(c) for c in (0.0, 80.0, -80.0)},
         "free": free_expansion(),
         "hanging": hanging(),
+        "cables": [between_cables(2e-6 / 2**k) for k in range(2)],
+        "damped cables": [between_cables(2e-6 / 2**k, 0.1, 60.0) for k in range(2)],
         "oscillation": [oscillation(False), oscillation(True)],
         "couple": couple(),
         "joint_on_link": joint_on_link(),

@@ -173,13 +173,6 @@ def check(case: TrussCase) -> None:
         _refuse_tilted_torsion(case, truss)
 
 
-def _refuse_slack(case: TrussCase, path: TrussPath) -> None:
-    """A cable that never goes slack is a spring; the run itself watches that it does not."""
-    springs, tension = path.truss.springs, path.states["tension_N"]
-    for index in np.flatnonzero(springs.cable & (tension.min(axis=0, initial=inf) <= 0))[:1]:
-        raise refuse(case, f"cable {springs.names[index]!r} goes slack, the DEM has no element that only pulls")
-
-
 def _torsion(truss: ResolvedTruss) -> Torsion:
     """Return torsion springs and what joints have of the kind; names with their sections."""
     springs = truss.torsion_springs
@@ -242,7 +235,6 @@ def resolved(case: TrussCase, path: TrussPath) -> dict[str, Any]:
     truss, mass = path.truss, lumped_mass_kg(path.truss)
     if path.cycle_ends and len(path.states["time_s"]) <= len(path.cycle_ends["time_s"]):
         raise refuse(case, "the path is too large to be kept as a whole")
-    _refuse_slack(case, path)
     reach = [joint.reach_m(path, truss.joints[joint.section]) for joint in JOINTS]
     groups = np.split(_contact_groups(truss, case, np.concatenate(reach)), np.cumsum([len(own) for own in reach]))
     _refuse_far_turns(case, path)

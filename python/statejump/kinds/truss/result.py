@@ -138,9 +138,26 @@ def _run(
         states = np.concatenate([items[joint.state_column] for joint in STICKING], axis=1)
         events = from_states(time, change, states, [called[joint.section, name] for joint in STICKING
                                                     for name in truss.joints[joint.section].names])
+    events = sorted([*events, *_cable_events(truss, time, change, items["tension_N"])],
+                    key=lambda event: event.time_s)
     jumps = np.linalg.norm(items["displacement_m"][-1] - items["displacement_m"][0], axis=1)
     return Run(model, history, energy, links, contacts, Events(events),
                {"largest_jump_m": float(jumps.max()), **summary}, names(case), lambda: case, **more)
+
+
+def _cable_events(truss: ResolvedTruss, time: np.ndarray, change: np.ndarray, tension_N: np.ndarray) -> list[Event]:
+    """Return when cables go slack and become taut, each half-way between two samples."""
+    cables = np.flatnonzero(truss.springs.cable)
+    others = set(_all_names(truss).values())
+    found = []
+    for cable in cables:
+        name, pulls = truss.springs.names[cable], tension_N[:, cable] > 0
+        for after in np.flatnonzero(pulls[1:] != pulls[:-1]) + 1:
+            between = slice(after - 1, after + 1)
+            found.append(Event("taut" if pulls[after] else "slack", float(time[between].mean()),
+                               float(change[between].mean()), f"spring {name}" if name in others else name,
+                               float(np.ptp(time[between]) / 2)))
+    return found
 
 
 def _contacts(
