@@ -301,6 +301,19 @@ std::function<bool(double)> going_on(const py::object& progress) {
   };
 }
 
+/// The same, where Ctrl-C ends a run that is worth what it has.
+std::function<bool(double)> until_interrupted(const py::object& progress) {
+  return [go_on = going_on(progress)](double done) {
+    try {
+      return go_on(done);
+    } catch (py::error_already_set& stopped) {
+      py::gil_scoped_acquire lock;
+      if (!stopped.matches(PyExc_KeyboardInterrupt)) throw;
+      return false;
+    }
+  };
+}
+
 py::dict motion_dict(const truss::Model& model, const truss::Motion& motion) {
   using truss::MovingState;
   py::dict result;
@@ -488,7 +501,7 @@ void bind_truss(py::module_& module) {
         options.theta = theta;
         options.restitution = restitution;
         options.watched_node = watched_node;
-        options.progress = going_on(progress);
+        options.progress = until_interrupted(progress);
         truss::Motion motion;
         {
           py::gil_scoped_release unlocked;
@@ -510,7 +523,9 @@ void bind_truss(py::module_& module) {
       "steps: of the whole program. drives: dicts with name, link, time_s,\n"
       "angular_velocity_rad_per_s; their moments and work are among the states.\n\n"
       "Returns states as truss_path() with velocities and energies, events with the heat of their\n"
-      "step, the watched node's velocity at every step. Raises ValueError for items out of range,\n"
+      "step, the watched node's velocity at every step. Ctrl-C, or progress(share) that returns\n"
+      "False, ends it with what it has, complete is then False. Raises ValueError for items out of "
+      "range,\n"
       "RuntimeError that names joint and temperature for a step without solution.");
 }
 

@@ -2,13 +2,17 @@
 """Mechanisms as trusses in motion: weight, bodies of their own, driven links."""
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
+import time
 import tomllib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import REPOSITORY
+from conftest import COMMAND, REPOSITORY
 
 import statejump as sj
 from statejump.kinds.truss.generate.document import write
@@ -140,3 +144,37 @@ def test_bad_input_is_one_sentence(statejump, tmp_path: Path, place: tuple[Any, 
     for part in said:
         assert part in outcome.errors
     assert not (tmp_path / "results").exists()
+
+
+def test_interrupt_keeps_the_samples_so_far(tmp_path: Path) -> None:
+    made = without_play()
+    made["motion"]["steps_per_cycle"] = 100_000_000
+    made["output"] = {"samples_per_cycle": 100_000}
+    write(made, tmp_path / "long.toml", [])
+    process = subprocess.Popen(
+        [COMMAND, "reduced", "--dynamic", "long.toml"], cwd=tmp_path, text=True, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE, env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    )
+    assert process.stdout is not None and "0 %" in process.stdout.readline()
+    time.sleep(3)  # a sample takes a few hundredths of a second
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    folder = tmp_path / "results" / "slider_crank_dynamic"
+    assert process.returncode == 130, errors
+    said = errors.splitlines()[-1]
+    assert said.startswith("interrupted; the ") and said.endswith("reduced.interrupted.h5"), errors
+    kept = sj.read(folder / "reduced.interrupted.h5").models["reduced"]
+    assert 1 < len(kept.time_s) < 100_001 and f"the {len(kept)} samples" in said
+    assert sorted(entry.name for entry in folder.iterdir()) == [
+        "reduced.interrupted.h5", "reduced_history.interrupted.csv"]
+
+
+def test_a_step_without_solution_is_told_with_its_time_and_what_helps(statejump, tmp_path: Path) -> None:
+    made = without_play()
+    made["motion"]["steps_per_cycle"] = 10  # the crank turns by 2.5 rad in a step
+    made["output"] = {"samples_per_cycle": 10}
+    write(made, tmp_path / "coarse.toml", [])
+    outcome = statejump("reduced", "--dynamic", tmp_path / "coarse.toml")
+    assert outcome.status == 2 and "no step of the motion" in outcome.errors, outcome.errors
+    assert "not converged" in outcome.errors and "motion.steps_per_cycle" in outcome.errors
+    assert "t = " in outcome.errors and not list((tmp_path / "results").rglob("*.h5"))

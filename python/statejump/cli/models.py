@@ -79,8 +79,11 @@ def reduced_command(case_file: Path, dynamic: bool, slow: bool, results: Results
     case = Case(loaded(case_file, "dynamic" if dynamic else "reduced"))
     with results.folder(_folder_name(case, dynamic)) as folder:
         _check(case, folder, "reduced")
-        with progress(console, "reduced model") as tell:
-            run = case.reduced(tell, dynamic=dynamic)
+        try:
+            with progress(console, "reduced model") as tell:
+                run = case.reduced(tell, dynamic=dynamic)
+        except Interrupted as stopped:
+            raise _kept("reduced", "reduced", case, {}, folder, stopped) from None
         _finish("reduced", case, run, folder, console)
 
 
@@ -96,16 +99,22 @@ def _quasi_static(case: Case, results: Results, console: Console) -> None:
 
 def _dem(command: str, case: Case, before: dict[str, Run], folder: ResultsFolder, console: Console) -> Run:
     """Run the DEM; what an interrupted one has is written, with the runs before it."""
-    from statejump.results.record import save
-
     try:
         with progress(console, "DEM") as tell:
             return case.dem(tell)
     except Interrupted as stopped:
-        if isinstance(stopped.run, Run):
-            kept = folder.publish([save(command, case.definition, {**before, "dem": stopped.run}, folder.staged)])
-            raise Interrupted(f"interrupted; the {len(stopped.run)} samples so far are in {kept[0]}") from None
-        raise
+        raise _kept(command, "dem", case, before, folder, stopped) from None
+
+
+def _kept(command: str, model: str, case: Case, before: dict[str, Run], folder: ResultsFolder,
+          stopped: Interrupted) -> Interrupted:
+    """Write what an interrupted run has; return what to tell of it."""
+    from statejump.results.record import save
+
+    if not isinstance(stopped.run, Run):
+        return stopped
+    written = folder.publish([save(command, case.definition, {**before, model: stopped.run}, folder.staged)])
+    return Interrupted(f"interrupted; the {len(stopped.run)} samples so far are in {written[0]}")
 
 
 @click.command("dem")

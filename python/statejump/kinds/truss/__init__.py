@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from statejump.core.comparison import Comparison, Quantity
+from statejump.core.errors import Interrupted
 from statejump.core.progress import Tell
 from statejump.core.run import Columns, Run
 from statejump.core.tables import Shown
@@ -64,7 +66,12 @@ class Truss(Kind[TrussCase]):
     def dynamic(self, case: TrussCase, tell: Tell) -> Run:
         from statejump.kinds.truss import motion, result
 
-        return result.motion_run(case, motion.simulate(case, tell))
+        try:
+            return result.motion_run(case, motion.simulate(case, tell))
+        except Interrupted as stopped:
+            if stopped.run is not None:
+                stopped.run = replace(result.motion_run(case, stopped.run), complete=False)
+            raise stopped from None
 
     def dem_input(self, case: TrussCase) -> dict[str, Any]:
         from statejump.kinds.truss import dem

@@ -104,7 +104,7 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
     :param tell: takes the finished share, 0 to 1
     :param watched_node: number of a node whose velocity is kept at every step
     :raises FailedRun: no start, or a step without solution: with joint and temperature
-    :raises Interrupted: Ctrl-C
+    :raises Interrupted: Ctrl-C; its ``run`` is the motion so far, None if there is no sample beside the start
     """
     def going_on(share: float) -> bool:
         tell(share)
@@ -129,10 +129,13 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         )
     except _engine.EngineFailure as failure:
         raise EngineFailed(failure, remedy=_remedy(failure), case=truss.name, place=truss.name) from None
-    if not found["complete"]:
-        raise Interrupted()
     events: Sequence[TrussEvent] = [TrussEvent(**event) for event in found.pop("events")]
-    return TrussMotion(truss=truss, events=tuple(events), **found)
+    if not found["complete"] and len(found["states"].get("time_s", ())) < 2:
+        raise Interrupted("interrupted before a whole sample; nothing was written")
+    made = TrussMotion(truss=truss, events=tuple(events), **found)
+    if not made.complete:
+        raise Interrupted(run=made)
+    return made
 
 
 def _drives(truss: ResolvedTruss) -> list[dict[str, Any]]:
