@@ -169,6 +169,27 @@ def test_what_the_dem_cannot_turn_is_refused() -> None:
         dem.resolved(case, found)
 
 
+def test_vtk_files_have_it_as_a_point(tmp_path: Path) -> None:
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+    from statejump.kinds.truss.answers import vtk
+
+    found = path(lever())
+    vtk.series(found, tmp_path, "path", 0)
+    hot = int(np.argmax(found.states["temperature_change_K"]))
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(sorted(tmp_path.glob("*.vtu"))[hot]))
+    reader.Update()
+    grid, cells = reader.GetOutput(), reader.GetOutput().GetCellData()
+    # Two links, then the hinge, at A.
+    assert grid.GetNumberOfCells() == 3 and grid.GetCell(2).GetPointId(0) == 0
+    assert [cells.GetAbstractArray("name").GetValue(k) for k in range(3)] == ["AB", "CB", "latch"]
+    for name in ("hinge_rotation_rad", "hinge_moment_N_m"):
+        values = [cells.GetArray(name).GetValue(k) for k in range(3)]
+        assert np.isnan(values[:2]).all() and values[2] == found.states[name][hot, 0] != 0
+    assert cells.GetArray("status").GetValue(2) == found.states["latch_hinge_status"][hot, 0]
+
+
 @needs_page
 @pytest.mark.parametrize("command", [("reduced",), ("truss", "answers")])
 def test_page(statejump: Callable[..., Outcome], tmp_path: Path, command: tuple[str, ...]) -> None:

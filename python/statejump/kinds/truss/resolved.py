@@ -158,17 +158,21 @@ class ResolvedTruss:
         return sum(len(joints.names) for joints in self.joints.values())
 
     def turning_places(self, links: np.ndarray) -> np.ndarray:
-        """Return where what turns links (k, 2) against each other is (k, 3): the nearest ends of both, else the first
-        node of the one."""
-        positions, places = self.nodes.position_m, []
+        """Return where what turns links (k, 2) against each other is (k, 3)."""
+        return self.nodes.position_m[self.turning_nodes(links)]
+
+    def turning_nodes(self, links: np.ndarray) -> np.ndarray:
+        """Return at which node what turns links (k, 2) against each other is (k,): the nearest end of both, else the
+        first node of the one."""
+        positions, nodes = self.nodes.position_m, []
         for one, two in links:
             first = self.links.nodes[one]
             if two == GROUND:
-                places.append(positions[first[0]])
+                nodes.append(first[0])
                 continue
             apart = [(np.linalg.norm(positions[a] - positions[b]), a) for a in first for b in self.links.nodes[two]]
-            places.append(positions[min(apart)[1]])
-        return np.array(places).reshape(-1, 3)
+            nodes.append(min(apart)[1])
+        return np.array(nodes, dtype=int)
 
 
 def resolve(case: TrussCase) -> ResolvedTruss:

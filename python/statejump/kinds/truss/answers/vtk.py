@@ -11,10 +11,13 @@ from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_VERTEX, vtkUnstructuredG
 
 from statejump.core.progress import Tell
 from statejump.results.vtk_data import add_array, cells, file_time, frames_of, points, write, write_series
+from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, engine_program
 
-LINK, SPRING, SLIDER, REVOLUTE = range(4)  # "kind" of a cell
+LINK, SPRING, FIRST_JOINT = range(3)  # "kind" of a cell; joints in the order of JOINTS
+# Columns that have one name in files for all types.
+SHARED = {"slider_force_N": "friction_force_N"}
 
 
 def link_temperatures(truss: ResolvedTruss, times_s: np.ndarray) -> np.ndarray:
@@ -36,18 +39,18 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
     frames = frames_of(len(states["time_s"]), wanted_frames)
     temperatures = link_temperatures(truss, states["time_s"])
     links, springs = len(truss.links.names), len(truss.springs.names)
-    sliders, revolutes = len(truss.sliders.names), len(truss.revolutes.names)
+    sizes = [links, springs, *(len(truss.joints[joint.section].names) for joint in JOINTS)]
     lines = np.concatenate((truss.links.nodes, truss.springs.nodes)).ravel()
-    places = np.concatenate((truss.sliders.nodes[:, 0], truss.revolutes.bearing_node))
-    drawn = cells([2] * (links + springs) + [1] * (sliders + revolutes), np.concatenate((lines, places)))
-    kinds = np.repeat([LINK, SPRING, SLIDER, REVOLUTE], [links, springs, sliders, revolutes]).astype(np.int32)
-    names = [*truss.links.names, *truss.springs.names, *truss.sliders.names, *truss.revolutes.names]
-    types = np.where(kinds < SLIDER, VTK_LINE, VTK_VERTEX).astype(np.uint8)
+    places = [joint.place_nodes(truss, truss.joints[joint.section]) for joint in JOINTS]
+    drawn = cells([2] * (links + springs) + [1] * sum(sizes[2:]), np.concatenate((lines, *places)))
+    kinds = np.repeat(np.arange(FIRST_JOINT + len(JOINTS)), sizes).astype(np.int32)
+    names = [*truss.links.names, *truss.springs.names,
+             *(own for joint in JOINTS for own in truss.joints[joint.section].names)]
+    types = np.where(kinds < FIRST_JOINT, VTK_LINE, VTK_VERTEX).astype(np.uint8)
 
-    def column(*parts: Any) -> np.ndarray:
-        sizes = (links, springs, sliders, revolutes)
-        return np.concatenate([np.full(size, np.nan) if part is None else np.asarray(part, float)
-                               for part, size in zip(parts, sizes)])
+    def column(parts: dict[int, Any]) -> np.ndarray:
+        return np.concatenate([np.asarray(parts[kind], float) if kind in parts else np.full(size, np.nan)
+                               for kind, size in enumerate(sizes)])
 
     entries = []
     for number, frame in enumerate(frames):
@@ -58,18 +61,20 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
         add_array(data.GetPointData(), "displacement_m", states["displacement_m"][frame])
         add_array(data.GetPointData(), "since_start_m", states["displacement_m"][frame] - states["displacement_m"][0])
         at = {key: values[frame] for key, values in states.items()}
-        eccentricity = np.linalg.norm(at["eccentricity_m"], axis=1)
-        for name_of, values in {
-            "axial_force_N": column(at["axial_force_N"], -at["tension_N"], None, None),
-            "temperature_change_K": column(temperatures[frame], None, None, None),
-            "slide_m": column(None, None, at["slide_m"], None),
-            "eccentricity_m": column(None, None, None, eccentricity),
-            "normal_force_N": column(None, None, None, at["normal_force_N"]),
-            "friction_force_N": column(None, None, at["slider_force_N"], at["friction_force_N"]),
-            "dissipation_J": column(None, None, at["slider_dissipation_J"], at["revolute_dissipation_J"]),
-        }.items():
-            add_array(data.GetCellData(), name_of, values)
-        status = np.concatenate((np.full(links + springs, 255), at["slider_status"], at["revolute_status"]))
+        arrays: dict[str, dict[int, Any]] = {
+            "axial_force_N": {LINK: at["axial_force_N"], SPRING: -at["tension_N"]},
+            "temperature_change_K": {LINK: temperatures[frame]},
+        }
+        for kind, joint in enumerate(JOINTS, FIRST_JOINT):
+            if not sizes[kind] and not joint.has_contacts:
+                continue
+            for of in joint.columns:
+                values = np.linalg.norm(at[of.name], axis=1) if of.vector else at[of.name]
+                arrays.setdefault(SHARED.get(of.name, of.name), {})[kind] = values
+            arrays.setdefault("dissipation_J", {})[kind] = at[f"{joint.section}_dissipation_J"]
+        for name_of, parts in arrays.items():
+            add_array(data.GetCellData(), name_of, column(parts))
+        status = np.concatenate((np.full(links + springs, 255), *(at[f"{joint.section}_status"] for joint in JOINTS)))
         add_array(data.GetCellData(), "status", status.astype(np.uint8))
         add_array(data.GetCellData(), "kind", kinds)
         add_array(data.GetCellData(), "name", names)

@@ -73,6 +73,9 @@ class AlongAxis(JointType[ItemType, ArraysType]):
     def engine_arrays(self, truss: ResolvedTruss, joints: ArraysType) -> dict[str, Any]:
         return {"first_node": joints.nodes[:, 0], "second_node": joints.nodes[:, 1]}
 
+    def place_nodes(self, truss: ResolvedTruss, joints: ArraysType) -> np.ndarray:
+        return joints.nodes[:, 0]
+
     def places(self, truss: ResolvedTruss, joints: ArraysType) -> tuple[np.ndarray, np.ndarray]:
         """Return where its symbols are (s, 3), and what is up there in the plane (s, 3)."""
         along = joints.axis

@@ -93,6 +93,9 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
                 np.full(len(joints.names), inf)),
         }
 
+    def place_nodes(self, truss: ResolvedTruss, joints: LatchHinges) -> np.ndarray:
+        return truss.turning_nodes(joints.links)
+
     def symbols(self, truss: ResolvedTruss, joints: LatchHinges) -> list[Symbol]:
         return [Symbol(truss.turning_places(joints.links), "D", 0.9, 0.7, order=4.6)]
 

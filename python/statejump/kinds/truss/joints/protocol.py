@@ -177,6 +177,10 @@ class JointType(Generic[ItemType, ArraysType]):
 
     # ---------------------------------------------------------------- drawing and words
 
+    def place_nodes(self, truss: ResolvedTruss, joints: ArraysType) -> np.ndarray:
+        """Return the node (joints,) at which a point stands for a joint."""
+        raise NotImplementedError
+
     def symbols(self, truss: ResolvedTruss, joints: ArraysType) -> list[Symbol]:
         """Return its symbols, the first of them for the legend."""
         raise NotImplementedError

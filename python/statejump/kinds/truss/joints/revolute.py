@@ -242,6 +242,9 @@ class RevoluteType(JointType[Revolute, Revolutes]):
             contacts.append((name, pair[0], pair[1]))
         return Drawn(parts, contacts, joints.radial_clearance_m)
 
+    def place_nodes(self, truss: ResolvedTruss, joints: Revolutes) -> np.ndarray:
+        return joints.bearing_node
+
     def symbols(self, truss: ResolvedTruss, joints: Revolutes) -> list[Symbol]:
         centres = truss.nodes.position_m[joints.bearing_node]
         return [Symbol(centres, "o", 0.8, 0.7, order=5), Symbol(centres, "o", 0.42, 0.35, order=6, face=BLACK)]
