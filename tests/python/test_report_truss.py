@@ -154,6 +154,15 @@ def test_replay_without_clearance_magnifies_the_way(results: Path) -> None:
     assert scene["magnification"] > scene["magnification_of_deformation"] >= 10
 
 
+def test_a_page_of_a_truss_before_it_is_solved(statejump: Callable[..., Outcome]) -> None:
+    found, size = written(statejump, TRUSSES / "mast_6.toml")
+    assert "30 nodes and 24 links" in found.words and "Nothing is solved yet." in found.words
+    assert [address[:22] for address in found.addresses if address.startswith("data:image")] == ["data:image/png;base64,"]
+    assert "increments_per_branch" in found.words and size < 2.5e6
+    refused = statejump("report", TRUSSES.parent / "table1.toml")
+    assert refused.status == 2 and "a page of a case that is not solved is for 'truss'" in refused.errors
+
+
 def test_answers_stand_beside_a_comparison(tmp_path: Path) -> None:
     for name in ("answers", "comparison", "reduced", "dem"):
         (tmp_path / f"{name}.h5").touch()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from statejump.cli.terminal import QUIET, make_console
+from statejump.cli.terminal import QUIET, loaded, make_console
 from statejump.core.errors import Unreadable
 from statejump.results.layout import SUFFIX
 from statejump.results.read import read
@@ -55,8 +55,8 @@ def _source(file: Path, files: list[Path]) -> str:
 @QUIET
 def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> None:
     """One HTML page of RUN...: comparison, loops, events, energies, 3-D replay; of a campaign its
-    distributions. A RUN is a result file, a campaign's samples.h5 or a results folder; the page
-    needs nothing beside it, no network either.
+    distributions. A RUN is a result file, a campaign's samples.h5 or a results folder, or the case file
+    of a truss that is not solved yet; the page needs nothing beside it, no network either.
 
     \b
     Example:
@@ -65,17 +65,21 @@ def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> 
     from statejump.report import page  # the template engine takes a while to load: only here
     from statejump.report.campaign import CampaignDocument, is_campaign
     from statejump.report.document import Document
+    from statejump.report.unsolved import UnsolvedDocument, is_case
 
     console = make_console(quiet)
     files = list(dict.fromkeys(path for run in runs for path in result_files(run)))
-    documents: list[Document | CampaignDocument] = [
-        CampaignDocument(path, f"run{place}", _source(path, files)) if is_campaign(path)
+    documents: list[Document | CampaignDocument | UnsolvedDocument] = [
+        UnsolvedDocument(loaded(path), _source(path, files), f"run{place}") if is_case(path)
+        else CampaignDocument(path, f"run{place}", _source(path, files)) if is_campaign(path)
         else Document(read(path), _source(path, files), f"run{place}", BUDGET_BYTES / len(files))
         for place, path in enumerate(files, start=1)
     ]
     target = _target(output, runs, files)
     page.write(documents, target)
     for document in documents:
+        if isinstance(document, UnsolvedDocument):
+            continue
         if isinstance(document, CampaignDocument):
             console.print(f"{document.title}: {document.samples:,} samples, {len(document.failed):,} failed")
             continue

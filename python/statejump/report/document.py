@@ -25,6 +25,7 @@ from statejump.report import charts, words
 from statejump.report.decimation import errors, kept_samples
 from statejump.report.drawing import Drawing
 from statejump.report.energy import Account, account
+from statejump.report.inputs import sections_of
 from statejump.results.contents import Result
 
 TOLERANCE = 2e-4  # of a column's range, what decimation may cost
@@ -152,28 +153,7 @@ class Document:
 
     def inputs(self) -> list[tuple[str, list[tuple[str, str]]]]:
         """Sections of the case file with all defaults: key, value."""
-        sections = []
-        for section, keys in self._values.items():
-            if isinstance(keys, list) and keys and all(isinstance(item, dict) for item in keys):
-                sections.append((f"[{section}]", _summed_up(keys)))
-                continue
-            if not isinstance(keys, dict):
-                if keys is None or keys == []:
-                    continue
-                sections.append((section, [("", f"{len(keys)} entries" if isinstance(keys, list) else str(keys))]))
-                continue
-            rows = [(key, self._shown(value)) for key, value in keys.items() if value is not None]
-            if rows and section != "case":
-                sections.append((section, rows))
-        return sections
-
-    @staticmethod
-    def _shown(value: Any) -> str:
-        if isinstance(value, bool):
-            return str(value).lower()
-        if isinstance(value, list):
-            return f"{len(value)} values" if len(value) > 8 else ", ".join(str(item) for item in value)
-        return f"{value:g}" if isinstance(value, float) else str(value)
+        return sections_of(self._values)
 
     @property
     def sides(self) -> list[str]:
@@ -387,17 +367,6 @@ def _encoded(values: np.ndarray) -> Any:
     if np.ptp(values) == 0:
         return float(values[0])
     return {"f": base64.b64encode(values.tobytes()).decode("ascii")}
-
-
-def _summed_up(items: list[dict[str, Any]]) -> list[tuple[str, str]]:
-    """Return the items of a list of a case, as nodes or links, in a few rows: where their numbers go from and to."""
-    rows = [("", f"{len(items)} {'entry' if len(items) == 1 else 'entries'}")]
-    for key in items[0]:
-        values = [item[key] for item in items if item.get(key) is not None]
-        if values and all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
-            low, high = min(values), max(values)
-            rows.append((key, f"{low:g}" if low == high else f"{low:g} to {high:g}"))
-    return rows
 
 
 def _packed(part: dict[str, Any]) -> dict[str, Any]:

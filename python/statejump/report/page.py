@@ -17,6 +17,7 @@ from statejump.core.output import write_atomically
 from statejump.report import words
 from statejump.report.campaign import CampaignDocument
 from statejump.report.document import Document
+from statejump.report.unsolved import UnsolvedDocument
 
 HERE = Path(__file__).resolve().parent
 SCRIPT, STYLE, NOTICES = "page.js", "page.css", "notices.txt"
@@ -46,7 +47,7 @@ def embedded_code(source: str, element: str) -> Markup:
     return Markup(source)
 
 
-def render(documents: Sequence[Document | CampaignDocument]) -> str:
+def render(documents: Sequence[Document | CampaignDocument | UnsolvedDocument]) -> str:
     """Return the page."""
     script, style, notices = _asset(SCRIPT), _asset(STYLE), _asset(NOTICES)
     parts = {
@@ -73,7 +74,7 @@ def render(documents: Sequence[Document | CampaignDocument]) -> str:
     )
 
 
-def write(documents: Sequence[Document | CampaignDocument], path: Path) -> None:
+def write(documents: Sequence[Document | CampaignDocument | UnsolvedDocument], path: Path) -> None:
     """Write the page; StatejumpError if it cannot be written."""
     text = render(documents)
     try:

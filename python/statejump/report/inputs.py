@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The values of a case as a page lists them."""
+from __future__ import annotations
+
+from typing import Any
+
+
+def sections_of(values: dict[str, Any]) -> list[tuple[str, list[tuple[str, str]]]]:
+    """Return the sections of a case with all defaults: key, value; lists of items are summed up."""
+    sections = []
+    for section, keys in values.items():
+        if isinstance(keys, list) and keys and all(isinstance(item, dict) for item in keys):
+            sections.append((f"[{section}]", _summed_up(keys)))
+            continue
+        if not isinstance(keys, dict):
+            if keys is None or keys == []:
+                continue
+            sections.append((section, [("", f"{len(keys)} entries" if isinstance(keys, list) else str(keys))]))
+            continue
+        rows = [(key, _shown(value)) for key, value in keys.items() if value is not None]
+        if rows and section != "case":
+            sections.append((section, rows))
+    return sections
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, list):
+        return f"{len(value)} values" if len(value) > 8 else ", ".join(str(item) for item in value)
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _summed_up(items: list[dict[str, Any]]) -> list[tuple[str, str]]:
+    """Return the items of a list of a case, as nodes or links, in a few rows: where their numbers go from and to."""
+    rows = [("", f"{len(items)} {'entry' if len(items) == 1 else 'entries'}")]
+    for key in items[0]:
+        values = [item[key] for item in items if item.get(key) is not None]
+        if values and all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
+            low, high = min(values), max(values)
+            rows.append((key, f"{low:g}" if low == high else f"{low:g} to {high:g}"))
+    return rows

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a page says of a case before anything is solved: in words, drawn, with all its inputs."""
+from __future__ import annotations
+
+import base64
+import json
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from statejump.core.case import Case
+from statejump.core.errors import NotAllowed
+from statejump.core.figures import style
+from statejump.report import words
+from statejump.report.inputs import sections_of
+from statejump.schema.fields import attached_to_json
+
+
+class UnsolvedDocument:
+    """A case as it stands on a page; arguments as of :class:`~.document.Document`.
+
+    :param case: of a kind that can be drawn
+    :raises NotAllowed: it is of another kind
+    """
+
+    template = "unsolved.html"
+    kind = "unsolved"
+    command_line = ""
+    verdict = ("none", "Nothing is solved yet.")
+
+    def __init__(self, case: Case, source: str, identifier: str) -> None:
+        if not case.behaviour.can("draw"):
+            raise NotAllowed("case.kind", case.kind, "a page of a case that is not solved is for 'truss'",
+                             file=case.origin.file, remedy=f"'statejump compare {source}' solves it")
+        self._case, self.source, self.identifier = case, source, identifier
+        self.title, self.case_name, self.text = case.title, case.name, case.origin.text
+        self.sentences = words.described(case)
+
+    def cards(self) -> list[dict[str, Any]]:
+        """No number is known yet."""
+        return []
+
+    @property
+    def picture(self) -> str:
+        """The drawing as an address that holds it."""
+        stream = BytesIO()
+        with style():
+            self._case.behaviour.ability("draw", self._case)(self._case).savefig(stream, format="png", dpi=160)
+        return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode("ascii")
+
+    def inputs(self) -> list[tuple[str, list[tuple[str, str]]]]:
+        """Sections of the case with all defaults: key, value."""
+        return sections_of(json.loads(json.dumps(self._case.to_dict(), default=attached_to_json)))
+
+
+def is_case(path: Path) -> bool:
+    """Whether an argument is a case file."""
+    return path.suffix.lower() == ".toml" and path.is_file()
