@@ -90,8 +90,14 @@ def test_rigid_contacts_have_no_part_that_slips() -> None:
     parse_case(generate.umbrella(1, contact="rigid", sticking="partial_slip", friction_coefficient=0.0))
 
 
-def test_motion_refuses_it(statejump, tmp_path: Path) -> None:
+@pytest.mark.parametrize("command, option, sentence", [
+    (("reduced",), ("--dynamic",), "joints in motion have no partial slip"),
+    (("fclib", "write"), (), "contacts that slip in part"),
+])
+def test_motion_and_contact_problems_refuse_it(
+    statejump, tmp_path: Path, command: tuple[str, ...], option: tuple[str, ...], sentence: str,
+) -> None:
     assert statejump("truss", "ring", "3", "--sticking", "partial_slip", "-o", tmp_path / "ring.toml").status == 0
-    outcome = statejump("reduced", tmp_path / "ring.toml", "--dynamic")
-    assert outcome.status == 2 and "joints in motion have no partial slip" in outcome.errors
-    assert "Traceback" not in outcome.errors
+    outcome = statejump(*command, tmp_path / "ring.toml", *option)
+    assert outcome.status == 2 and sentence in outcome.errors, outcome.errors
+    assert "Traceback" not in outcome.errors and not any(path.is_file() for path in tmp_path.rglob("results/**/*"))

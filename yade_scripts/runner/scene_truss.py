@@ -153,8 +153,11 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
         for key, parts in parts_of.items()
     ]
     radii = [radius for joints in made for radius in joints.radii()]
+    named = dem["friction_law"] != "mindlin"  # the default law is compiled as one piece
+    law = (sj.Law2_JointGeom_JointPhys_JointLaw(frictionLaw=dem["friction_law"]) if named
+           else sj.Law2_JointGeom_JointPhys_HertzMindlin())
     O.engines = joint_engines(
-        scene.links + carriers + scene.springs, None, sj.Law2_JointGeom_JointPhys_HertzMindlin(),
+        scene.links + carriers + scene.springs, None, law,
         dem["contact_damping_ratio"], verletDist=0.1 * min(radii, default=1.0), recorders=recorders,
         springs=(*scene.torsion_springs, *(spring for joints in made for spring in joints.torsion_springs())),
         expansions=expansions,

@@ -161,7 +161,7 @@ class TrussReduced(Section):
     increments_per_branch: int = whole(50, 1, 1_000_000, CHOICE)
     locate_events: bool = switch(True, "whether events are located between increments")
     sticking: str = choice("rigid", STICKING, "Coulomb's law; elastic: gives way by k_t, as in the DEM; partial_slip: "
-                           "slides at its rim first, in the DEM as well")
+                           "slides at its rim first, as in the DEM with dem.friction_law = 'mindlin_deresiewicz'")
     event_tolerance: float = parameter(1e-9, "-", 0, 0.1, CHOICE + "; of a branch", above=True)
 
 
@@ -186,6 +186,7 @@ class TrussDem(Section):
     time_step_fraction: float = parameter(0.1, "-", 0, 1.0, "of the stable step", above=True)
     link_damping_ratio: float = parameter(0.1, "-", 0, 10, CHOICE)
     contact_damping_ratio: float = parameter(0.1, "-", 0, 10, CHOICE)
+    friction_law: str = choice("mindlin", ("mindlin", "mindlin_deresiewicz"), "a spring; it slides at its rim first")
     pin_damping_N_m_s_per_rad: float = parameter(0.0, "N m s/rad", 0, 1e9, CHOICE)
     threads: int = whole(1, 1, 1024, CHOICE)
     stepper: str = yade_process.stepper()

@@ -41,11 +41,14 @@ def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: No
     """Return the problems of so many steps, evenly spread over the path; fewer where the path has fewer steps.
 
     :raises NotAllowed: the number is out of its range
-    :raises StatejumpError: the truss has no joints, or too many for a dense W
+    :raises StatejumpError: the truss has no joints, or too many for a dense W; its joints slip in part
     :raises FailedRun: the solver finds no path
     """
     NUMBER.check("number", number)
     truss = case.resolve()
+    if truss.sticking == "partial_slip":
+        raise StatejumpError(cause='contacts that slip in part (reduced.sticking = "partial_slip") have no cone of '
+                             "Coulomb's", case=case.name, remedy='set reduced.sticking to "elastic" or "rigid"')
     joints = truss.number_of_joints()
     if not 1 <= joints <= MOST_JOINTS:
         raise StatejumpError(f"the truss has {joints} joints", case=case.name,

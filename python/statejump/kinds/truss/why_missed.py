@@ -39,6 +39,10 @@ def why_missed(case: TrussCase, exact: Run, dem: Run, jump_scale_m: float) -> li
     if case.reduced.sticking == "rigid" and path.truss.number_of_joints():
         found.append("joints of the reduced model stick rigidly, those of the DEM give before they slip: set "
                      "reduced.sticking to 'elastic'")
+    slips = {"elastic": "mindlin", "partial_slip": "mindlin_deresiewicz"}.get(case.reduced.sticking)
+    if slips is not None and slips != case.dem.friction_law and path.truss.number_of_joints():
+        found.append(f"contacts of the reduced model and of the DEM slip by different laws: set dem.friction_law to "
+                     f"{slips!r}, as reduced.sticking is {case.reduced.sticking!r}")
     return found
 
 

@@ -56,7 +56,8 @@ def _joints(case: TrussCase) -> list[str]:
     if case.reduced.sticking == "elastic":
         sentences.append("Joints of the reduced model stick elastically, as those of the DEM.")
     if case.reduced.sticking == "partial_slip":
-        sentences.append("Sliders and revolutes slide at the rim of their contacts before they slide as a whole.")
+        sentences.append("Sliders and revolutes of the reduced model slide at the rim of their contacts before they "
+                         "slide as a whole.")
     return sentences
 
 

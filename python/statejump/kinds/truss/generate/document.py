@@ -37,6 +37,7 @@ def document(
             "period_s": float(period_s),
         },
         "reduced": {"sticking": sticking} if sticking != "rigid" else {},
+        **({"dem": {"friction_law": "mindlin_deresiewicz"}} if sticking == "partial_slip" else {}),
     }
 
 

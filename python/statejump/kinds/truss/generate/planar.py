@@ -182,7 +182,8 @@ def umbrella(
                 "preload_N": cable_preload_N, "cable": True,
             })
     made["output"] = {"samples_per_cycle": 2000}
-    made["dem"] = {"link_damping_ratio": 0.1, "contact_damping_ratio": 0.0, "pin_damping_N_m_s_per_rad": 0.01}
+    made.setdefault("dem", {}).update(
+        link_damping_ratio=0.1, contact_damping_ratio=0.0, pin_damping_N_m_s_per_rad=0.01)
     if n >= 3:
         made["reflector"] = {"nodes": [f"B{k}" for k in range(1, n + 1)], "axis": [1.0, 0.0, 0.0]}
     return finished(made)
