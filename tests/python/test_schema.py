@@ -14,7 +14,7 @@ from conftest import REPOSITORY
 from statejump import _paths, kinds
 from statejump.campaign.campaign_file import load_campaign
 from statejump.core.errors import StatejumpError
-from statejump.kinds.loading import load_case
+from statejump.kinds.loading import load_case, parse_case
 from statejump.schema import json_schema as schema
 from statejump.schema.fields import fields_of, rule_of, section_of, tables_of
 from statejump.schema.rules import ATTACHED
@@ -166,6 +166,13 @@ def test_mistakes_of_the_other_files(mistake: str, tmp_path: Path) -> None:
             load_campaign(tmp_path / "wrong.toml", name)
         else:
             load_case(tmp_path / "wrong.toml")
+
+
+def test_a_title_may_hold_what_is_no_control_character() -> None:
+    """A space that does not break is not printable to Python, and harmless."""
+    document = tomllib.loads((REPOSITORY / "cases" / "table1.toml").read_text(encoding="utf-8"))
+    document["case"]["title"] = "0.1\N{NO-BREAK SPACE}mm of play"
+    assert parse_case(document).case.title == document["case"]["title"]
 
 
 def test_unknown_kind_is_wrong() -> None:

@@ -55,6 +55,30 @@ TEST(BoreChecks, TubeAndRingAreAccepted) {
   }
 }
 
+TEST(BoreChecks, ShapesOutsideTheirRangeAreRefused) {
+  const auto refused = [](auto set) {
+    BoreShape shape = round_bore();
+    set(shape);
+    return refusal([&] { bore_triangles(shape, 12, 2); });
+  };
+  EXPECT_EQ(refused([](BoreShape& s) { s.radius = 0.0; }), "radius = 0, allowed is (0, inf) m");
+  EXPECT_EQ(refused([](BoreShape& s) { s.length = 0.0; }), "length = 0, allowed is (0, inf) m");
+  EXPECT_EQ(refused([](BoreShape& s) { s.wear_width = 0.0; }),
+            "wear_width = 0, allowed is (0, inf) rad");
+  EXPECT_EQ(refused([](BoreShape& s) {
+              s.lobes = {{0, 1e-6, 0.0}};
+            }),
+            "harmonic = 0, allowed is 1, 2, 3, ...");
+  EXPECT_EQ(refused([](BoreShape& s) { s.crown = 0.5 * s.radius; }),
+            "crown = 0.00255, allowed is (-radius/2, radius/2) m");
+  EXPECT_EQ(refused([](BoreShape& s) {
+              s.lobes = {{2, 0.5 * s.radius, 0.0}};
+            }),
+            "sum of the lobes' amplitudes = 0.00255, allowed is [0, radius/2) m");
+  EXPECT_EQ(refused([](BoreShape& s) { s.wear_depth = s.wall_thickness = 0.0; }),
+            "nothing was refused");
+}
+
 TEST(BoreChecks, BadArrays) {
   EXPECT_EQ(refusal(Triangles{}), "mesh: the mesh has no faces");
   Triangles mesh = tube();
