@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stepper.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 namespace statejump::truss::detail {
-
-using complementarity::Problem;
 
 namespace {
 
@@ -16,11 +13,6 @@ constexpr double balance = 1e-10;
 /// An elastic contact is on its law to this share of its force: its problem is solved to 1e-10 of
 /// the largest velocity in it, which a stiff contact turns into much more of a force.
 constexpr double on_law = 1e-6;
-/// Share of the largest pivot of W below which a reaction follows from others. W comes of solves
-/// whose matrix has a condition of 1e4 at most: h²K is about as large as M.
-constexpr double dependent = 1e-10;
-/// Share of the largest reaction in a trade of reactions from which a joint is named.
-constexpr double takes_part = 1e-3;
 
 }  // namespace
 
@@ -146,30 +138,6 @@ Stepper::Local Stepper::local_problem(const Trial& step) {
   return local;
 }
 
-/// What impulses do to the velocities.
-void Stepper::complete(const Trial& step, Local& local) {
-  ++factorizations_;
-  if (!factor_.factorize(iteration_matrix(step))) fail(FailureKind::singular, step.to, nullptr);
-  const Eigen::Index n = q_.size();
-  const Eigen::Index rows = local.directions.cols();
-  local.answers = Eigen::MatrixXd::Zero(n + holds_.cols(), rows);
-  VectorXd right = VectorXd::Zero(n + holds_.cols());
-  for (Eigen::Index k = 0; k < rows; ++k) {
-    if (local.directions.col(k).nonZeros() == 0) continue;
-    right.head(n) = local.directions.col(k);
-    local.answers.col(k) = factor_.solve(right);
-  }
-  local.delassus = local.directions.transpose() * local.answers.topRows(n);
-  // Rows that touch nothing else are of the size of the others.
-  const auto real = (local.delassus.diagonal().array() > 0.0).count();
-  const double size = real > 0 ? local.delassus.trace() / static_cast<double>(real) : 1.0;
-  for (Eigen::Index k = 0; k < rows; ++k) {
-    const Contact& contact = *local.contacts[static_cast<std::size_t>(k / 2)];
-    const int column = k % 2 == 0 ? contact.normal_column : contact.tangential_column;
-    if (column < 0) local.delassus(k, k) = size;
-  }
-}
-
 double Stepper::depth(const Trial& step, const Local& local, Eigen::Index i, double speed) const {
   // From the gap at the middle of the step on by the velocity that comes.
   const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
@@ -204,69 +172,6 @@ VectorXd Stepper::move(Trial& step) {
   const VectorXd now = force(step.q, step.v, step.to, {time_, step.to});
   return bodies_->mass() * (step.v - v_) -
          step.h * (theta * now + (1.0 - theta) * step.force_before);
-}
-
-void Stepper::solve_contacts(const Trial& step, const VectorXd& free, bool first, Local& local) {
-  const double h = step.h;
-  Problem problem{2, local.delassus, local.directions.transpose() * free,
-                  VectorXd::Zero(static_cast<Eigen::Index>(local.contacts.size()))};
-  Eigen::MatrixXd& w = std::get<Eigen::MatrixXd>(problem.delassus);
-  for (Eigen::Index i = 0; i < problem.mu.size(); ++i) {
-    const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
-    const Eigen::Index n = 2 * i;
-    const Eigen::Index t = n + 1;
-    problem.mu[i] = contact.friction_coefficient;
-    double normal = contact.given_force;
-    if (contact.normal_column < 0) {
-      problem.q[n] = -w(n, n) * h * contact.given_force;
-    } else if (contact.is_elastic()) {
-      const double speed =
-          first ? local.directions.col(n).dot(v_)
-                : local.directions.col(n).dot(free) + local.delassus.row(n) * local.impulses;
-      const Tangent law = tangent(step, local, i, speed);
-      normal = law.elastic;
-      w(n, n) += law.compliance / (h * h);
-      problem.q[n] += law.gap / h;
-    } else {
-      problem.q[n] += leaving(step, local, i);
-    }
-    const Contact::Along friction = contact.along(normal, h);
-    w(t, t) += friction.compliance / (h * h);
-    problem.q[t] += friction.bend / h;
-  }
-  ++iterations_;
-  if (problem.q.isZero(0.0)) {
-    local.impulses.setZero();
-    return;
-  }
-  complementarity::Options options;
-  options.guess = local.impulses;
-  const complementarity::Solution solution = complementarity::solve(problem, options);
-  if (solution.status != complementarity::Status::solved) {
-    fail(FailureKind::not_converged, step.to, worst(problem, solution.reactions, local));
-  }
-  largest_merit_ = std::max(largest_merit_, solution.merit.largest());
-  local.impulses = solution.reactions;
-}
-
-/// The contact whose law is violated most.
-const Contact* Stepper::worst(const Problem& problem, const VectorXd& impulses,
-                              const Local& local) const {
-  const VectorXd u = complementarity::velocities(problem, impulses);
-  const Contact* found = nullptr;
-  double most = -1.0;
-  for (Eigen::Index i = 0; i < problem.mu.size(); ++i) {
-    const double weight = std::get<Eigen::MatrixXd>(problem.delassus)(2 * i, 2 * i);
-    const double normal = std::abs(std::min(u[2 * i], weight * impulses[2 * i]));
-    const double bound = problem.mu[i] * std::max(impulses[2 * i], 0.0);
-    const double pulled = impulses[2 * i + 1] - u[2 * i + 1] / weight;
-    const double along = weight * std::abs(impulses[2 * i + 1] - std::clamp(pulled, -bound, bound));
-    if (normal + along > most) {
-      most = normal + along;
-      found = local.contacts[static_cast<std::size_t>(i)];
-    }
-  }
-  return found;
 }
 
 bool Stepper::balanced(const Trial& step, const VectorXd& residual, const VectorXd& held,
@@ -319,71 +224,6 @@ void Stepper::advance(double to) {
     check_determined(step, local);
   }
   book(step, local);
-}
-
-void Stepper::solve(Trial& step, Local& local) {
-  complete(step, local);
-  const Eigen::Index n = q_.size();
-  VectorXd& held = step.held;
-  for (int k = 0;; ++k) {
-    const VectorXd residual = move(step);
-    if (!residual.allFinite()) fail(FailureKind::not_finite, step.to, nullptr);
-    if (k > 0 && balanced(step, residual, held, local, false)) return;
-    if (k == options_->most_iterations) fail(FailureKind::not_converged, step.to, nullptr);
-    VectorXd right(n + holds_.cols());
-    right.head(n) = -residual;
-    if (holds_.cols() > 0) right.tail(holds_.cols()) = held_speed_ - holds_.transpose() * step.v;
-    const VectorXd correction = factor_.solve(right);
-    const VectorXd free = step.v + correction.head(n);
-    held = correction.tail(holds_.cols());
-    step.v = free;
-    if (!local.contacts.empty()) {
-      solve_contacts(step, free, k == 0, local);
-      const VectorXd answer = local.answers * local.impulses;
-      step.v += answer.head(n);
-      held += answer.tail(holds_.cols());
-    }
-  }
-}
-
-void Stepper::check_determined(const Trial& step, const Local& local) {
-  if (undetermined_) return;
-  // Rows of W that hold. How a slider's friction and its stop share a force is never determined:
-  // it is one force there.
-  std::vector<Eigen::Index> rows;
-  std::vector<Eigen::Index> key;
-  int sticking_slider = -1;
-  for (std::size_t i = 0; i < local.contacts.size(); ++i) {
-    const Contact& contact = *local.contacts[i];
-    const auto n = static_cast<Eigen::Index>(2 * i);
-    const double normal = local.impulses[n];
-    if (!(normal > 0.0)) continue;
-    const bool stops = contact.stop != JointStatus::open && contact.joint == sticking_slider;
-    if (contact.normal_column >= 0 && !contact.is_elastic() && !stops) {
-      rows.push_back(n);
-      key.push_back(contact.normal_column);
-    }
-    if (contact.sticks(normal, local.impulses[n + 1]) &&
-        contact.tangential_compliance(elastic_normal(step, local, n / 2)) == 0.0) {
-      rows.push_back(n + 1);
-      key.push_back(contact.tangential_column);
-      if (contact.normal_column < 0) sticking_slider = contact.joint;
-    }
-  }
-  if (key == holding_) return;
-  holding_ = key;
-  if (rows.size() < 2) return;
-  Eigen::FullPivLU<Eigen::MatrixXd> factors(Eigen::MatrixXd(local.delassus(rows, rows)));
-  factors.setThreshold(dependent);
-  if (factors.dimensionOfKernel() == 0) return;
-  const VectorXd trade = factors.kernel().col(0).cwiseAbs();
-  undetermined_ = Undetermined{step.to, {}};
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (trade[static_cast<Eigen::Index>(k)] < takes_part * trade.maxCoeff()) continue;
-    const int joint = local.contacts[static_cast<std::size_t>(rows[k] / 2)]->joint;
-    std::vector<int>& joints = undetermined_->joints;
-    if (std::find(joints.begin(), joints.end(), joint) == joints.end()) joints.push_back(joint);
-  }
 }
 
 /// Takes the step: memories, energies, statuses.
