@@ -8,9 +8,9 @@ from functools import lru_cache
 # Unit by the ending of a name, the longest first: _N_m is not _m.
 ENDINGS = {
     "_N_m_s_per_rad": "N m s/rad", "_N_m_per_rad": "N m/rad", "_kg_per_m3": "kg/m3", "_rad_per_s": "rad/s",
-    "_N_per_m": "N/m", "_m_per_s": "m/s", "_N_per_K": "N/K", "_per_K": "1/K", "_N_m": "N m", "_rad": "rad",
-    "_kg": "kg", "_Pa": "Pa", "_m2": "m2", "_m4": "m4", "_m": "m", "_K": "K", "_N": "N", "_J": "J", "_s": "s",
-    "_W": "W",
+    "_kg_m2": "kg m2", "_m_per_s2": "m/s2", "_N_per_m": "N/m", "_m_per_s": "m/s", "_N_per_K": "N/K", "_per_K": "1/K",
+    "_N_m": "N m", "_rad": "rad", "_kg": "kg", "_Pa": "Pa", "_m2": "m2", "_m4": "m4", "_m": "m", "_K": "K", "_N": "N",
+    "_J": "J", "_s": "s", "_W": "W",
 }
 
 
@@ -33,7 +33,8 @@ PREFIXED = {
     "N m": (-6, 6),
 }
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-WRITTEN = {"m2": "m²", "kg/m3": "kg/m³", "N m": "N·m", "N m/rad": "N·m/rad", "N m s/rad": "N·m·s/rad"}
+WRITTEN = {"m2": "m²", "kg/m3": "kg/m³", "kg m2": "kg·m²", "m/s2": "m/s²", "N m": "N·m",
+           "N m/rad": "N·m/rad", "N m s/rad": "N·m·s/rad"}
 
 
 def scale_of(unit: str, size: float) -> tuple[float, str]:
