@@ -147,7 +147,7 @@ TEST(TrussPartialSlip, EnergyIsKeptToSecondOrderInTheIncrement) {
     options.increments_per_branch = increments;
     const State end = solve(model, options).states.back();
     const double left = std::abs(residue(end)) / end.joint_dissipation.sum();
-    // Where the contact begins to slide as a whole the rates bend within a step: 0.6/n² to 0.8/n².
+    // Where the contact begins to slide as a whole the rates bend within a step: 0.4/n² to 0.8/n².
     EXPECT_LT(left, 1.0 / increments / increments) << increments;
   }
 }
