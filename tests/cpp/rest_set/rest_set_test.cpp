@@ -9,6 +9,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace statejump::rest_set {
 namespace {
@@ -37,6 +38,8 @@ TEST(RestInSlot, SegmentOrStop) {
       c, {{1.0, 0.0, -10.0}, {5.0, 0.0, -10.0}, {-5.0, 3.0, 4.0}, {3.0, -6.0, 8.0}}, 0.3);
   EXPECT_DOUBLE_EQ(study.each[0].length, 2.0 * c);
   EXPECT_DOUBLE_EQ(study.each[0].diameter, 2.0 * c);
+  EXPECT_EQ(study.each[0].parts[0].points,
+            (std::vector<Vector3d>{Vector3d(-c, 0, 0), Vector3d(c, 0, 0)}));
   ASSERT_EQ(study.each[1].parts.size(), 1u);
   EXPECT_EQ(study.each[1].length, 0.0);
   EXPECT_EQ(study.each[1].parts[0].representative, Vector3d(c, 0, 0));
@@ -208,6 +211,19 @@ TEST(RestInBore, Band) {
   const RestSet across = rest_in_bore(c, b, {{1.0, 0.0, 0.0}}, mu).any;
   EXPECT_NEAR(across.parts[0].area, 4.0 * b * c * std::atan(mu), 1e-20);
   EXPECT_GE(across.diameter, std::hypot(2.0 * c * std::sin(std::atan(mu)), 2.0 * b));
+  ASSERT_EQ(across.parts[0].rims.size(), 2u);
+  for (const auto& rim : across.parts[0].rims) {
+    ASSERT_GE(rim.size(), 2u);
+    const double height = rim.front().z();
+    EXPECT_EQ(std::abs(height), b);
+    for (const Vector3d& point : rim) {
+      EXPECT_EQ(point.z(), height);
+      EXPECT_NEAR(point.head<2>().norm(), c, 1e-19);
+    }
+    // As wide as the arc of the wall at least.
+    EXPECT_GE((rim.back() - rim.front()).norm(), 2.0 * c * std::sin(std::atan(mu)) - 1e-19);
+  }
+  EXPECT_EQ(across.parts[0].rims[0][0].z(), -across.parts[0].rims[1][0].z());
 }
 
 /// Whether F is a sum of forces from two friction cones, tried one by one.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -223,6 +224,31 @@ TEST(RestOnMesh, TorusHasTwoParts) {
   // Along x: the outermost and the innermost place both have their normal against it.
   const RestSet two = rest_on_mesh(mesh, {Vector3d(1, 0, 0)}, 0.3).study.any;
   EXPECT_EQ(two.parts.size(), 2u);
+}
+
+TEST(RestOnMesh, ErrorOfTheDiameterIsTwiceASagitta) {
+  // Of the longest edge L on a sphere of half the box' diagonal D: 2 L²/(8 D/2).
+  const Mesh mesh = clearance_sphere(c, 1);
+  double longest = 0.0;
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& vertex : mesh.vertices) box.extend(vertex);
+  for (const auto& t : mesh.triangles) {
+    for (const int i : {0, 1, 2}) {
+      const Vector3d edge = mesh.vertices[std::size_t(t[std::size_t(i)])] -
+                            mesh.vertices[std::size_t(t[std::size_t((i + 1) % 3)])];
+      longest = std::max(longest, edge.norm());
+    }
+  }
+  EXPECT_DOUBLE_EQ(rest_on_mesh(mesh, {Vector3d::UnitX()}, 0.3).study.any.diameter_error,
+                   longest * longest / (2.0 * box.diagonal().norm()));
+}
+
+TEST(RestOnMesh, VertexOfNoTriangleNeedsNoNormal) {
+  Mesh mesh = clearance_sphere(c, 1);
+  const double area = rest_on_mesh(mesh, {Vector3d::UnitX()}, 0.3).study.any.area;
+  mesh.vertices.push_back(Vector3d::Zero());
+  if (!mesh.normals.empty()) mesh.normals.push_back(Vector3d::Zero());
+  EXPECT_EQ(rest_on_mesh(mesh, {Vector3d::UnitX()}, 0.3).study.any.area, area);
 }
 
 TEST(RestOnMesh, Refusals) {
