@@ -13,6 +13,7 @@ import pytest
 
 import statejump as sj
 from statejump.core.errors import StatejumpError
+from test_report import pytestmark as needs_page
 
 TRUSS = "cases/trusses/chain_10.toml"
 
@@ -127,9 +128,18 @@ outputs = ["max:axial_force_N"]
     assert done.status == 0, done.errors
     ours, theirs = ((tmp_path / "results" / name / "samples.csv").read_text() for name in ("table1_montecarlo", "same"))
     assert ours == theirs
-    # A page of it needs no campaign file.
-    done = statejump("report", "results/table1_montecarlo")
-    assert done.status == 0, done.errors
+
+
+@needs_page
+def test_a_page_of_a_campaign_needs_no_campaign_file(
+    statejump: Callable[..., Any], tmp_path: Path, cases: Path
+) -> None:
+    (tmp_path / "vary.toml").write_text(
+        '[[vary]]\nkey = "joint.friction_coefficient"\ndistribution = "normal"\nrelative = 0.1\n')
+    for command in (["montecarlo", f"{cases}/table1.toml", "--vary", "vary.toml", "--samples", 2],
+                    ["report", "results/table1_montecarlo"]):
+        done = statejump(*command)
+        assert done.status == 0, done.errors
 
 
 @pytest.mark.parametrize("arguments, sentence", [
