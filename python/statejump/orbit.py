@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from statejump.core.errors import NotAllowed, Range, StatejumpError, Unreadable
-from statejump.core.reading import is_file
+from statejump.core.reading import is_file, open_csv
 from statejump.core.tables import write_columns
 from statejump.schema.rules import NUMBER, Rule
 
@@ -222,26 +222,19 @@ def read_members(path: str | Path) -> list[Member]:
     path = Path(path)
     if not is_file(path):
         raise Unreadable("no such file of members", file=path)
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            rows = csv.DictReader(stream, restkey="", restval=None)
-            missing = [name for name in COLUMNS if name not in (rows.fieldnames or ())]
-            if missing:
-                raise Unreadable(f"line 1: column {missing[0]} is missing", cause="needed are " + ", ".join(COLUMNS),
-                                 file=path)
-            found: list[Member] = []
-            for row in rows:
-                if "" in row or None in row.values():
-                    raise Unreadable(f"line {rows.line_num} has not as many cells as the header", file=path)
-                if len(found) == MOST_MEMBERS:
-                    raise Unreadable(f"has more than {MOST_MEMBERS} members", file=path)
-                found.append(_member(path, rows.line_num, row))
-    except UnicodeDecodeError:
-        raise Unreadable("not CSV", cause="the file is not UTF-8 text", file=path) from None
-    except csv.Error as failure:
-        raise Unreadable("not CSV", cause=str(failure), file=path) from None
-    except OSError as failure:
-        raise Unreadable("cannot be read", cause=failure.strerror, file=path) from None
+    with open_csv(path) as stream:
+        rows = csv.DictReader(stream, restkey="", restval=None)
+        missing = [name for name in COLUMNS if name not in (rows.fieldnames or ())]
+        if missing:
+            raise Unreadable(f"line 1: column {missing[0]} is missing", cause="needed are " + ", ".join(COLUMNS),
+                             file=path)
+        found: list[Member] = []
+        for row in rows:
+            if "" in row or None in row.values():
+                raise Unreadable(f"line {rows.line_num} has not as many cells as the header", file=path)
+            if len(found) == MOST_MEMBERS:
+                raise Unreadable(f"has more than {MOST_MEMBERS} members", file=path)
+            found.append(_member(path, rows.line_num, row))
     return found
 
 

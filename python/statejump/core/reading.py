@@ -2,8 +2,12 @@
 """What is asked of a path before it is read."""
 from __future__ import annotations
 
+import csv
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TextIO
 
 from statejump.core.errors import Unreadable
 
@@ -19,3 +23,20 @@ def is_file(path: Path) -> bool:
         return False
     except OSError as error:
         raise Unreadable("cannot be read", cause=error.strerror, file=path) from None
+
+
+@contextmanager
+def open_csv(path: Path) -> Iterator[TextIO]:
+    """Open a CSV file for one of the readers of ``csv``; what is wrong with it while it is read is one sentence.
+
+    :raises Unreadable: it may not be read, is not UTF-8 text or not CSV
+    """
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as stream:
+            yield stream
+    except UnicodeDecodeError:
+        raise Unreadable("not CSV", cause="the file is not UTF-8 text", file=path) from None
+    except csv.Error as failure:
+        raise Unreadable("not CSV", cause=str(failure), file=path) from None
+    except OSError as failure:
+        raise Unreadable("cannot be read", cause=failure.strerror, file=path) from None

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from statejump.core.errors import NotAllowed, Unreadable, printable, size
-from statejump.core.reading import is_file
+from statejump.core.reading import is_file, open_csv
 from statejump.schema.toml import LARGEST_BYTES
 
 if TYPE_CHECKING:
@@ -117,17 +117,10 @@ def _check_names(path: Path, names: tuple[str, ...]) -> None:
 
 
 def _csv(path: Path) -> Read:
-    try:
+    with open_csv(path) as stream:
         if path.stat().st_size > LARGEST_BYTES:
             raise Unreadable("cannot be read", cause=f"it is larger than {size(LARGEST_BYTES)}", file=path)
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            return _rows(path, csv.reader(stream))
-    except UnicodeDecodeError:
-        raise Unreadable("not CSV", cause="the file is not UTF-8 text", file=path) from None
-    except csv.Error as failure:
-        raise Unreadable("not CSV", cause=str(failure), file=path) from None
-    except OSError as failure:
-        raise Unreadable("cannot be read", cause=failure.strerror, file=path) from None
+        return _rows(path, csv.reader(stream))
 
 
 def _rows(path: Path, reader: Iterator[list[str]]) -> Read:

@@ -4,11 +4,13 @@
 #include <string>
 
 #include "gradients.hpp"
-#include "statejump/thermal/program.hpp"
+#include "heated_bar.hpp"
 #include "statejump/truss/path.hpp"
 
 namespace statejump::truss {
 namespace {
+
+using testing::heated_bar;
 
 IwanJoint joint() {
   IwanJoint made;
@@ -39,28 +41,6 @@ double polygon(const IwanJoint& of, double slide) {
   return force;
 }
 
-/// A bar that heating pushes against the joint.
-Model bar(const IwanJoint& joint, double largest, int cycles) {
-  Model model;
-  thermal::Program program;
-  program.shape = thermal::Shape::triangle;
-  program.temperature_change_max = largest;
-  program.period = 1.0;
-  program.cycles = cycles;
-  model.programs = {program};
-  Node held;
-  held.name = std::string("held");
-  held.freedoms = 0;
-  Node moved;
-  moved.name = std::string("moved");
-  moved.position = {0.5, 0.0, 0.0};
-  moved.freedoms = 1;
-  model.nodes = {held, moved};
-  model.links = {{"AB", 0, 1, 70e9 * 9e-6, 0.5, 23.4e-6, 0, 1.0}};
-  model.joints = {joint};
-  return model;
-}
-
 double slide(const Model& model, const State& state) {
   return output(model, state, 0, "iwan_slide_m")[0];
 }
@@ -74,7 +54,7 @@ double rounding(const IwanJoint& of) {
 }
 
 TEST(IwanJoint, GradientsAreThoseOfItsForces) {
-  Model model = bar(joint(), 100.0, 1);
+  Model model = heated_bar(joint(), 100.0, 1);
   model.nodes[0].freedoms = model.nodes[1].freedoms = 3;
   model.nodes[1].position = {0.1, 0.0, 0.0};
   model.links[0].axial_stiffness = 1e2;
@@ -127,7 +107,7 @@ TEST(IwanJoint, ElementsHaveStiffnessSlipForceAndBackboneOfTheClosedForm) {
 TEST(IwanJoint, PathFollowsMasingsRule) {
   // Two cycles of a bar that pushes it into macroslip; cooling pulls it back.
   const IwanJoint one = joint();
-  const Model model = bar(one, 100.0, 2);
+  const Model model = heated_bar(one, 100.0, 2);
   const Path path = solve(model);
   double top_slide = 0.0;
   double top_force = 0.0;
@@ -159,7 +139,7 @@ TEST(IwanJoint, PathFollowsMasingsRule) {
 
 TEST(IwanJoint, IncrementsDoNotMatterAndEnergyIsKept) {
   const IwanJoint one = joint();
-  const Model model = bar(one, 60.0, 2);
+  const Model model = heated_bar(one, 60.0, 2);
   std::vector<State> ends;
   std::vector<double> residues;
   for (const int increments : {3, 50, 100, 200}) {
@@ -190,7 +170,7 @@ TEST(IwanJoint, HeatOfSmallCyclesGoesWithTheForceToThreePlusChi) {
   std::vector<double> heats;
   double share = 0.0;
   for (const double largest : {0.01, 0.02, 0.04}) {
-    const Model model = bar(one, largest, 2);
+    const Model model = heated_bar(one, largest, 2);
     const Path path = solve(model);
     const State& start = path.cycle_ends[1];
     const State& end = path.cycle_ends[2];
@@ -217,7 +197,7 @@ TEST(IwanJoint, HeatOfSmallCyclesGoesWithTheForceToThreePlusChi) {
 
 TEST(IwanJoint, ItemsOutOfRangeAreNamed) {
   const auto refused = [](auto change) {
-    Model model = bar(joint(), 100.0, 1);
+    Model model = heated_bar(joint(), 100.0, 1);
     change(std::get<IwanJoint>(model.joints[0]));
     EXPECT_THROW(model.validate(), std::invalid_argument);
   };

@@ -7,12 +7,14 @@
 #include <stdexcept>
 #include <string>
 
-#include "statejump/thermal/program.hpp"
+#include "heated_bar.hpp"
 #include "statejump/truss/motion.hpp"
 #include "statejump/truss/path.hpp"
 
 namespace statejump::truss {
 namespace {
+
+using testing::heated_bar;
 
 constexpr double friction = 100.0, stiffness = 2e7;
 /// Slide at which a contact slides as a whole.
@@ -28,28 +30,6 @@ Slider rubbing() {
   made.tangential_stiffness = stiffness;
   made.partial_slip = 1;
   return made;
-}
-
-/// A bar that heating pushes against the slider: 1.26e6 N/m, 11.7 um/K, gross slip at 7.4 K.
-Model bar(const Slider& slider, double largest, int cycles) {
-  Model model;
-  thermal::Program program;
-  program.shape = thermal::Shape::triangle;
-  program.temperature_change_max = largest;
-  program.period = 1.0;
-  program.cycles = cycles;
-  model.programs = {program};
-  Node held;
-  held.name = std::string("held");
-  held.freedoms = 0;
-  Node moved;
-  moved.name = std::string("moved");
-  moved.position = {0.5, 0.0, 0.0};
-  moved.freedoms = 1;
-  model.nodes = {held, moved};
-  model.links = {{"AB", 0, 1, 70e9 * 9e-6, 0.5, 23.4e-6, 0, 1.0}};
-  model.joints = {slider};
-  return model;
 }
 
 double slide(const Model& model, const State& state) {
@@ -77,7 +57,7 @@ double residue(const State& state) {
 
 TEST(TrussPartialSlip, LoadingUnloadingReloadingAreTheClosedForms) {
   for (const double largest : {0.5, 5.0, 20.0}) {
-    const Model model = bar(rubbing(), largest, 3);
+    const Model model = heated_bar(rubbing(), largest, 3);
     for (const int increments : {1, 7, 50}) {
       Options options;
       options.increments_per_branch = increments;
@@ -117,7 +97,7 @@ TEST(TrussPartialSlip, LoadingUnloadingReloadingAreTheClosedForms) {
 TEST(TrussPartialSlip, HeatOfACycleIsThatOfMindlinAndDeresiewicz) {
   double before = 0.0;
   for (const double largest : {8.0, 4.0, 2.0, 1.0, 0.5, 0.25}) {
-    const Model model = bar(rubbing(), largest, 3);
+    const Model model = heated_bar(rubbing(), largest, 3);
     const Path path = solve(model);
     double low = 0.0;
     double high = 0.0;
@@ -141,7 +121,7 @@ TEST(TrussPartialSlip, HeatOfACycleIsThatOfMindlinAndDeresiewicz) {
 }
 
 TEST(TrussPartialSlip, EnergyIsKeptToSecondOrderInTheIncrement) {
-  const Model model = bar(rubbing(), 20.0, 2);
+  const Model model = heated_bar(rubbing(), 20.0, 2);
   for (const int increments : {25, 50, 100, 200}) {
     Options options;
     options.increments_per_branch = increments;
@@ -160,8 +140,8 @@ TEST(TrussPartialSlip, ManyTimesTheFrictionIsTheSpring) {
   for (const double times : {10.0, 20.0, 40.0}) {
     Slider slider = rubbing();
     slider.friction_force = spring.friction_force = times * friction;
-    const Model slips = bar(slider, 5.0, 1);
-    const Model bends = bar(spring, 5.0, 1);
+    const Model slips = heated_bar(slider, 5.0, 1);
+    const Model bends = heated_bar(spring, 5.0, 1);
     const auto top = [&](const Model& model) {
       double most = 0.0;
       for (const State& state : solve(model).states) {
@@ -186,7 +166,7 @@ TEST(TrussPartialSlip, StiffContactsAndSlidesToTheEndAreCoulombs) {
   coulomb.partial_slip = 0;
   coulomb.tangential_stiffness = std::numeric_limits<double>::infinity();
   const auto jump = [](const Slider& slider, double largest) {
-    const Model model = bar(slider, largest, 1);
+    const Model model = heated_bar(slider, largest, 1);
     return slide(model, solve(model).states.back());
   };
   // It slides as a whole at the end: how it stuck does not matter.
@@ -208,7 +188,7 @@ TEST(TrussPartialSlip, StiffContactsAndSlidesToTheEndAreCoulombs) {
 TEST(TrussPartialSlip, AStopTakesWhatIsBeyondFriction) {
   Slider slider = rubbing();
   slider.clearance_plus = 4e-5;
-  const Model model = bar(slider, 20.0, 2);
+  const Model model = heated_bar(slider, 20.0, 2);
   Options options;
   options.increments_per_branch = 200;
   const Path path = solve(model, options);
@@ -237,14 +217,14 @@ TEST(TrussPartialSlip, WithoutFrictionOrStiffnessItIsRefused) {
     } else {
       slider.tangential_stiffness = std::numeric_limits<double>::infinity();
     }
-    EXPECT_THROW(bar(slider, 5.0, 1).validate(), std::invalid_argument);
+    EXPECT_THROW(heated_bar(slider, 5.0, 1).validate(), std::invalid_argument);
   }
   Slider twice = rubbing();
   twice.partial_slip = 2;
-  EXPECT_THROW(bar(twice, 5.0, 1).validate(), std::invalid_argument);
+  EXPECT_THROW(heated_bar(twice, 5.0, 1).validate(), std::invalid_argument);
   Inertia inertia;
   inertia.node_mass = Eigen::VectorXd::Ones(2);
-  EXPECT_THROW(simulate(bar(rubbing(), 5.0, 1), inertia), std::invalid_argument);
+  EXPECT_THROW(simulate(heated_bar(rubbing(), 5.0, 1), inertia), std::invalid_argument);
 }
 
 }  // namespace
