@@ -63,9 +63,7 @@ class NodeWriter {
 
 }  // namespace
 
-void System::assemble(const VectorXd& z, double time, const StepStart& start,
-                      const Statuses& statuses, JointModel joints, double opening,
-                      Assembly& to) const {
+void System::assemble_bars(const VectorXd& z, double time, Assembly& to) const {
   const Model& model = *model_;
   NodeWriter nodes(model, node_row_, to);
   std::vector<double> changes;
@@ -78,16 +76,17 @@ void System::assemble(const VectorXd& z, double time, const StepStart& start,
 
   const auto bar = [&](int first, int second, const Vector3d& direction, double length,
                        const Axial& axial) {
+    nodes.force(first, -axial.tension * direction);
+    nodes.force(second, axial.tension * direction);
+    to.largest_force = std::max(to.largest_force, std::abs(axial.tension));
+    if (to.residual_only()) return;
     const Matrix3d along = direction * direction.transpose();
     const Matrix3d stiffness =
         axial.stiffness * along + axial.tension / length * (Matrix3d::Identity() - along);
-    nodes.force(first, -axial.tension * direction);
-    nodes.force(second, axial.tension * direction);
     nodes.block(first, first, stiffness);
     nodes.block(second, second, stiffness);
     nodes.block(first, second, -stiffness);
     nodes.block(second, first, -stiffness);
-    to.largest_force = std::max(to.largest_force, std::abs(axial.tension));
   };
   for (const Link& link : model.links) {
     const Lengths length = lengths_between(link.first, link.second, z);
@@ -128,6 +127,7 @@ void System::assemble(const VectorXd& z, double time, const StepStart& start,
       nodes.force(link.second, force);
       nodes.force(link.first, -force);
       to.largest_force = std::max(to.largest_force, force.norm());
+      if (to.residual_only()) continue;
       for (std::size_t m = 0; m < 2; ++m) {
         if (links[m] < 0) continue;
         const Link& other = model.links[index(links[m])];
@@ -141,7 +141,12 @@ void System::assemble(const VectorXd& z, double time, const StepStart& start,
       }
     }
   }
+}
 
+void System::assemble_joints(const VectorXd& z, double time, const StepStart& start,
+                             const Statuses& statuses, JointModel joints, double opening,
+                             Assembly& to) const {
+  const Model& model = *model_;
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     JointWriter to_joint = writer(static_cast<int>(i), to);
     const Trial at = trial(static_cast<int>(i), z, time, start, joints, opening);
@@ -228,14 +233,29 @@ void System::evaluate(const VectorXd& z, double time, const StepStart& start,
                       const Statuses& statuses, JointModel joints, double opening,
                       Assembly& to) const {
   to.clear();
-  assemble(z, time, start, statuses, joints, opening, to);
+  assemble_bars(z, time, to);
+  assemble_joints(z, time, start, statuses, joints, opening, to);
 }
 
-Assembly System::assembly() const {
+void System::evaluate_bars(const VectorXd& z, double time, Assembly& to) const {
+  to.clear();
+  assemble_bars(z, time, to);
+}
+
+void System::evaluate_joints(const VectorXd& z, double time, const StepStart& start,
+                             const Statuses& statuses, Assembly& to) const {
+  to.clear();
+  assemble_joints(z, time, start, statuses, JointModel::friction, 1.0, to);
+}
+
+Assembly System::assembly(Parts parts) const {
   Assembly made(unknowns_);
   const VectorXd z = VectorXd::Zero(unknowns_);
   const Statuses statuses = all_stick();
-  assemble(z, 0.0, begin(z, 0.0, statuses, 1.0), statuses, JointModel::pins, 1.0, made);
+  if (parts != Parts::joints) assemble_bars(z, 0.0, made);
+  if (parts != Parts::bars) {
+    assemble_joints(z, 0.0, begin(z, 0.0, statuses, 1.0), statuses, JointModel::pins, 1.0, made);
+  }
   made.record();
   return made;
 }

@@ -40,13 +40,21 @@ class System {
   int first_displacement(int node) const { return node_row_[index(node)]; }
   const Model& model() const { return *model_; }
 
-  /// Place for residual and Jacobian, whose pattern never changes.
-  Assembly assembly() const;
+  /// Which parts of a truss an evaluation asks.
+  enum class Parts : unsigned char { all, bars, joints };
+
+  /// Place for residual and Jacobian of these parts, whose pattern never changes.
+  Assembly assembly(Parts parts = Parts::all) const;
 
   /// Residual and Jacobian at z, the rows of the joints on the branches of `statuses`.
   /// @param opening share of the clearances that is open (start)
   void evaluate(const VectorXd& z, double time, const StepStart& start, const Statuses& statuses,
                 JointModel joints, double opening, Assembly& to) const;
+  /// The same of links, springs, torsion springs and loads alone.
+  void evaluate_bars(const VectorXd& z, double time, Assembly& to) const;
+  /// The same of the joints alone, as they are with friction.
+  void evaluate_joints(const VectorXd& z, double time, const StepStart& start,
+                       const Statuses& statuses, Assembly& to) const;
 
   /// Derivative of the residual by time where nothing moves, from the rates of the programs [K/s].
   VectorXd heating(const VectorXd& z, double time, const StepStart& start, const Statuses& statuses,
@@ -127,8 +135,10 @@ class System {
   double size() const { return size_; }  ///< Largest extent of the drawn shape [m].
 
  private:
-  void assemble(const VectorXd& z, double time, const StepStart& start, const Statuses& statuses,
-                JointModel joints, double opening, Assembly& to) const;
+  void assemble_bars(const VectorXd& z, double time, Assembly& to) const;
+  void assemble_joints(const VectorXd& z, double time, const StepStart& start,
+                       const Statuses& statuses, JointModel joints, double opening,
+                       Assembly& to) const;
   Lengths lengths_between(int from, int to, const VectorXd& z) const;
   Axial axial(const Link& link, const VectorXd& z, double time) const;
   JointWriter writer(int joint, Assembly& to) const;

@@ -28,6 +28,14 @@ class Assembly {
     product = residual = Eigen::VectorXd::Zero(along.size());
   }
 
+  /// Adds up residuals only, for who needs no Jacobian.
+  static Assembly without_jacobian(Eigen::Index unknowns) {
+    Assembly made(unknowns);
+    made.residual_only_ = true;
+    return made;
+  }
+  bool residual_only() const { return residual_only_; }
+
   /// Begins an evaluation.
   void clear() {
     residual.setZero();
@@ -57,6 +65,7 @@ class Assembly {
 
  private:
   bool recorded_ = false;
+  bool residual_only_ = false;
   const Eigen::VectorXd* along_ = nullptr;
   std::size_t next_ = 0;
   std::vector<std::pair<int, int>> places_;

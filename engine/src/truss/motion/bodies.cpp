@@ -108,18 +108,24 @@ void Bodies::spread(int row_node, int column_node, const Matrix3d& value, Add&& 
   }
 }
 
-double Bodies::growth_rate(const Strut& strut, const Step& step) const {
-  if (strut.link == nullptr) return 0.0;
-  const Link& link = *strut.link;
-  const Model& model = system_->model();
-  const double change =
-      model.temperature_change(link.program, link.temperature_fraction, step.to) -
-      model.temperature_change(link.program, link.temperature_fraction, step.from);
-  return link.stress_free_length * link.thermal_expansion * change / (step.to - step.from);
+Bodies::Step Bodies::step(double from, double to) const {
+  Step made{from, to, std::vector<double>(struts_.size(), 0.0)};
+  std::vector<double> rates;  // of the programs [K/s]
+  for (const thermal::Program& program : system_->model().programs) {
+    rates.push_back((program.temperature_change(to) - program.temperature_change(from)) /
+                    (to - from));
+  }
+  for (std::size_t i = 0; i < struts_.size(); ++i) {
+    const Link* link = struts_[i].link;
+    if (link == nullptr) continue;
+    made.growth_rate[i] = link->stress_free_length * link->thermal_expansion *
+                          link->temperature_fraction * rates[index(link->program)];
+  }
+  return made;
 }
 
 Bodies::Rate Bodies::rate(const Strut& strut, const VectorXd& q, const VectorXd& v,
-                          const Step& step) const {
+                          double growth_rate) const {
   const Model& model = system_->model();
   const Vector3d along =
       (model.nodes[index(strut.second)].position - model.nodes[index(strut.first)].position) +
@@ -129,7 +135,7 @@ Bodies::Rate Bodies::rate(const Strut& strut, const VectorXd& q, const VectorXd&
   found.direction = along / found.length;
   const Vector3d relative = at(strut.second, v) - at(strut.first, v);
   const double length_rate = relative.dot(found.direction);
-  found.strain_rate = length_rate - growth_rate(strut, step);
+  found.strain_rate = length_rate - growth_rate;
   found.across = relative - length_rate * found.direction;
   return found;
 }
@@ -137,8 +143,9 @@ Bodies::Rate Bodies::rate(const Strut& strut, const VectorXd& q, const VectorXd&
 VectorXd Bodies::force(const VectorXd& q, const VectorXd& v, const Step& step) const {
   VectorXd found = VectorXd::Zero(mass_.rows());
   const Model& model = system_->model();
-  for (const Strut& strut : struts_) {
-    const Rate now = rate(strut, q, v, step);
+  for (std::size_t k = 0; k < struts_.size(); ++k) {
+    const Strut& strut = struts_[k];
+    const Rate now = rate(strut, q, v, step.growth_rate[k]);
     const Vector3d pull = strut.axial * now.strain_rate * now.direction +
                           strut.turning / (now.length * now.length) * now.across;
     for (const auto& [node, sign] : {std::pair{strut.first, 1.0}, std::pair{strut.second, -1.0}}) {
@@ -156,7 +163,7 @@ Eigen::SparseMatrix<double> Bodies::damping(const VectorXd& q) const {
   const auto add = [&](int i, int j, double value) { entries.emplace_back(i, j, value); };
   const VectorXd none = VectorXd::Zero(q.size());
   for (const Strut& strut : struts_) {
-    const Rate now = rate(strut, q, none, {0.0, 1.0});
+    const Rate now = rate(strut, q, none, 0.0);
     const Matrix3d along = now.direction * now.direction.transpose();
     const Matrix3d block = strut.axial * along + strut.turning / (now.length * now.length) *
                                                      (Matrix3d::Identity() - along);
@@ -174,13 +181,15 @@ Bodies::Work Bodies::work(const VectorXd& q0, const VectorXd& v0, const VectorXd
                           const VectorXd& v1, const Step& step, double theta) const {
   Work sum;
   const double h = step.to - step.from;
-  for (const Strut& strut : struts_) {
-    const Rate before = rate(strut, q0, v0, step);
-    const Rate after = rate(strut, q1, v1, step);
+  for (std::size_t k = 0; k < struts_.size(); ++k) {
+    const Strut& strut = struts_[k];
+    const double growth = step.growth_rate[k];
+    const Rate before = rate(strut, q0, v0, growth);
+    const Rate after = rate(strut, q1, v1, growth);
     const double force =
         strut.axial * (theta * after.strain_rate + (1.0 - theta) * before.strain_rate);
     sum.heat += h * force * 0.5 * (before.strain_rate + after.strain_rate);
-    sum.thermal -= h * force * growth_rate(strut, step);
+    sum.thermal -= h * force * growth;
     const Vector3d turned =
         strut.turning * (theta / (after.length * after.length) * after.across +
                          (1.0 - theta) / (before.length * before.length) * before.across);

@@ -19,11 +19,13 @@ class Bodies {
   bool damped() const { return damped_; }
   const VectorXd& joint_damping() const { return joint_damping_; }
 
-  /// What the dashpots do in a step [s].
+  /// What the dashpots know of a step [s].
   struct Step {
     double from;
     double to;
+    std::vector<double> growth_rate = {};  ///< Of the stress-free length of every strut [m/s].
   };
+  Step step(double from, double to) const;
   /// Forces of the dashpots on the free displacements [N]; stress-free lengths grow evenly over
   /// the step, as a corner of a program within it would make a jump of an instant's rate.
   VectorXd force(const VectorXd& q, const VectorXd& v, const Step& step) const;
@@ -55,8 +57,7 @@ class Bodies {
     double strain_rate;  // L' − l_T' [m/s]
     Vector3d across;     // [m/s]
   };
-  Rate rate(const Strut& strut, const VectorXd& q, const VectorXd& v, const Step& step) const;
-  double growth_rate(const Strut& strut, const Step& step) const;
+  Rate rate(const Strut& strut, const VectorXd& q, const VectorXd& v, double growth_rate) const;
   Vector3d at(int node, const VectorXd& free) const { return system_->displacement(node, free); }
   template <class Add>
   void spread(int row_node, int column_node, const Matrix3d& value, Add&& add) const;

@@ -16,6 +16,12 @@ constexpr int most_iterations = 8;
 /// Share of a contact's own force by which it may miss an inequality, as the contact problem's
 /// tolerance allows.
 constexpr double allowance = 1e-10;
+/// Kept factors that take more iterations than this are made again for the next step.
+constexpr int few_iterations = 3;
+/// With kept factors, corrections that do not fall to this share of the one before give them up.
+constexpr double falls_to = 0.3;
+/// Factors kept, of other branches or lengths of steps.
+constexpr std::size_t most_kept = 8;
 
 }  // namespace
 
@@ -44,9 +50,7 @@ bool Stepper::on_branches(Trial& step, Local& local) {
     branches.push_back(closes ? Branch::stick : branches_[place]);
     active.push_back(static_cast<int>(place));
   }
-  if (active != active_) branch_factor_.reset();
   active_ = std::move(active);
-  const Eigen::SparseMatrix<double> middle = at_.jacobian;
   // Block pivoting with single pivots as a safeguard (Judice and Pires 1994): all contacts that ask
   // for another branch change, unless that has been tried; then only the first of them does, until
   // fewer ask than ever before. Most changes are of one contact, found at the second try.
@@ -54,7 +58,6 @@ bool Stepper::on_branches(Trial& step, Local& local) {
   std::size_t fewest = branches.size() + 1;
   bool one_by_one = false;
   for (;;) {
-    step.v = v_;
     if (!solve_on(branches, step, local)) return false;
     std::vector<Branch> next = branches;
     std::vector<std::size_t> wrong;
@@ -75,128 +78,191 @@ bool Stepper::on_branches(Trial& step, Local& local) {
     }
     if (!tried.insert(next).second) return false;
     branches = std::move(next);
-    at_.jacobian = middle;
   }
 }
 
-bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& local) {
-  const double h = step.h;
-  const Eigen::Index n = q_.size();
-  // What a contact asks for: that it moves as its law says along one of its directions.
-  struct Row {
-    Eigen::Index contact;
-    bool normal;
-    double slide;  ///< Tangential force over that of the normal one.
-  };
-  std::vector<Row> rows;
-  VectorXd given = VectorXd::Zero(local.impulses.size());
-  for (std::size_t k = 0; k < branches.size(); ++k) {
-    const Contact& contact = *local.contacts[k];
-    const Branch now = branches[k];
-    if (now == Branch::open) continue;
-    const auto i = static_cast<Eigen::Index>(k);
-    // Friction on the body is against the slide.
-    const double slide = (now == Branch::slip_plus    ? -1.0
-                          : now == Branch::slip_minus ? 1.0
-                                                      : 0.0) *
-                         contact.friction_coefficient;
-    if (contact.normal_column < 0) {
-      given[2 * i] = h * contact.given_force;
-      given[2 * i + 1] = slide * given[2 * i];
-    } else {
-      rows.push_back({i, true, slide});
-    }
-    if (now == Branch::stick && contact.tangential_column >= 0) rows.push_back({i, false, 0.0});
+Stepper::OnBranches& Stepper::factors_for(double h, const std::vector<Branch>& branches) {
+  // Steps of one length differ by the rounding of times.
+  const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const auto& one) {
+    return std::abs(one->h - h) <= 1e-6 * h && one->branches == branches && one->active == active_;
+  });
+  if (found != kept_.end()) {
+    std::rotate(kept_.begin(), found, found + 1);
+    return *kept_.front();
   }
+  // The pattern goes with the contacts that are active, not with their branches: the oldest factors
+  // of the same pattern need no new order.
+  const auto same = std::find_if(kept_.rbegin(), kept_.rend(),
+                                 [&](const auto& one) { return one->active == active_; });
+  if (kept_.size() < most_kept || same == kept_.rend()) {
+    if (kept_.size() == most_kept) kept_.pop_back();
+    kept_.insert(kept_.begin(), std::make_unique<OnBranches>());
+  } else {
+    std::rotate(kept_.begin(), same.base() - 1, same.base());
+  }
+  OnBranches& made = *kept_.front();
+  made.h = h;
+  made.active = active_;
+  made.branches = branches;
+  made.outdated = true;
+  return made;
+}
 
+Stepper::Law Stepper::normal_law(const Trial& step, const Local& local, Eigen::Index i) const {
+  if (!local.contacts[static_cast<std::size_t>(i)]->is_elastic()) return {leaving(step, local, i)};
+  const Tangent law = tangent(step, local, i, local.directions.col(2 * i).dot(step.v));
+  return {law.gap / step.h, law.compliance / (step.h * step.h)};
+}
+
+Stepper::Law Stepper::stick_law(const Trial& step, const Local& local, Eigen::Index i) const {
+  const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+  double normal = contact.given_force;
+  if (contact.normal_column >= 0 && contact.is_elastic()) {
+    normal = tangent(step, local, i, local.directions.col(2 * i).dot(step.v)).elastic;
+  } else if (contact.normal_column >= 0) {
+    normal = local.impulses[2 * i] / step.h;
+  }
+  const Contact::Along friction = contact.along(normal, step.h);
+  return {friction.bend / step.h, friction.compliance / (step.h * step.h)};
+}
+
+/// Rows: balance, what holds, then two of each active contact. A contact's impulses are unknowns on
+/// every branch, so that the pattern is the same on all of them.
+bool Stepper::factorize(OnBranches& on, const Trial& step, const Local& local) {
   const Eigen::SparseMatrix<double> matrix = iteration_matrix(step);
   const Eigen::Index bodies = matrix.rows();
-  const double scale = matrix.diagonal().head(n).maxCoeff();
-  const auto size = bodies + static_cast<Eigen::Index>(rows.size());
-  std::vector<Eigen::Triplet<double>> fixed;
+  on.scale = hold_scale_;
+  const double scale = on.scale;
+  std::vector<Eigen::Triplet<double>> entries;
   for (Eigen::Index j = 0; j < matrix.outerSize(); ++j) {
     for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it) {
-      fixed.emplace_back(it.row(), it.col(), it.value());
+      entries.emplace_back(it.row(), it.col(), it.value());
     }
   }
-  const auto along = [&](Eigen::Index column, auto&& use) {
-    for (Eigen::SparseMatrix<double>::InnerIterator it(local.directions, column); it; ++it) {
-      use(it.row(), it.value());
-    }
-  };
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const Row& row = rows[k];
-    const auto to = bodies + static_cast<Eigen::Index>(k);
-    const Eigen::Index column = 2 * row.contact + (row.normal ? 0 : 1);
-    along(column, [&](Eigen::Index at, double value) {
-      fixed.emplace_back(to, at, scale * value);
-      fixed.emplace_back(at, to, -scale * value);
-    });
-    if (row.slide != 0.0) {
-      along(column + 1, [&](Eigen::Index at, double value) {
-        fixed.emplace_back(at, to, -scale * row.slide * value);
-      });
-    }
-  }
-  if (!branch_factor_ || factored_ != branches) {
-    branch_factor_ = std::make_unique<linear::SparseFactor>();
-    factored_ = branches;
-  }
-  Eigen::SparseMatrix<double> bordered(size, size);
-  VectorXd& held = step.held;
-  for (int k = 0;; ++k) {
-    const VectorXd residual = move(step);
-    if (!residual.allFinite()) return false;
-    if (k > 0 && balanced(step, residual, held, local, true)) break;
-    if (k == most_iterations) return false;
-    VectorXd right(size);
-    right.head(n) = -residual + local.directions * given;
-    if (holds_.cols() > 0) {
-      right.segment(n, holds_.cols()) = held_speed_ - holds_.transpose() * step.v;
-    }
-    std::vector<Eigen::Triplet<double>> entries = fixed;
-    double normal_force = 0.0;
-    Eigen::Index normal_of = -1;
-    for (std::size_t j = 0; j < rows.size(); ++j) {
-      const Row& row = rows[j];
-      const Contact& contact = *local.contacts[static_cast<std::size_t>(row.contact)];
-      const auto at = bodies + static_cast<Eigen::Index>(j);
-      const double speed = local.directions.col(2 * row.contact + (row.normal ? 0 : 1)).dot(step.v);
-      double compliance = 0.0;
-      double offset = 0.0;
-      if (row.normal && contact.is_elastic()) {
-        const Tangent law = tangent(step, local, row.contact, speed);
-        compliance = law.compliance;
-        offset = law.gap / h;
-        normal_force = law.elastic;
-        normal_of = row.contact;
-      } else if (row.normal) {
-        offset = leaving(step, local, row.contact);
-      } else {
-        const Contact::Along friction =
-            contact.along(normal_of == row.contact ? normal_force : contact.given_force, h);
-        compliance = friction.compliance;
-        offset = friction.bend / h;
+  for (std::size_t k = 0; k < on.branches.size(); ++k) {
+    const Contact& contact = *local.contacts[k];
+    const auto i = static_cast<Eigen::Index>(k);
+    const Branch now = on.branches[k];
+    const Eigen::Index n = bodies + 2 * i;
+    const Eigen::Index t = n + 1;
+    // A row that is not asked says that its impulse is what it is.
+    const auto row = [&](Eigen::Index at, bool asked, const Law& law) {
+      for (Eigen::SparseMatrix<double>::InnerIterator it(local.directions, at - bodies); it; ++it) {
+        entries.emplace_back(at, it.row(), asked ? scale * it.value() : 0.0);
+        entries.emplace_back(it.row(), at, -scale * it.value());
       }
-      entries.emplace_back(at, at, scale * scale * compliance / (h * h));
-      right[at] = -scale * (speed + offset);
-    }
-    bordered.setFromTriplets(entries.begin(), entries.end());
-    bordered.makeCompressed();
-    ++factorizations_;
-    if (!branch_factor_->factorize(bordered)) return false;
-    const VectorXd found = branch_factor_->solve(right);
-    step.v += found.head(n);
-    held = found.segment(n, holds_.cols());
-    local.impulses = given;
-    for (std::size_t j = 0; j < rows.size(); ++j) {
-      const Row& row = rows[j];
-      const double impulse = scale * found[bodies + static_cast<Eigen::Index>(j)];
-      local.impulses[2 * row.contact + (row.normal ? 0 : 1)] = impulse;
-      if (row.slide != 0.0) local.impulses[2 * row.contact + 1] = row.slide * impulse;
+      entries.emplace_back(at, at, asked ? scale * scale * law.compliance : scale);
+    };
+    const bool touches = now != Branch::open && contact.normal_column >= 0;
+    const bool sticks = now == Branch::stick && contact.tangential_column >= 0;
+    row(n, touches, touches ? normal_law(step, local, i) : Law{});
+    row(t, sticks, sticks ? stick_law(step, local, i) : Law{});
+    entries.emplace_back(t, n, touches && !sticks ? -scale * slide(contact, now) : 0.0);
+  }
+  const Eigen::Index size = bodies + local.impulses.size();
+  Eigen::SparseMatrix<double> bordered(size, size);
+  bordered.setFromTriplets(entries.begin(), entries.end());
+  bordered.makeCompressed();
+  ++factorizations_;
+  return on.factor.factorize(bordered);
+}
+
+bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& local) {
+  VectorXd begun = local.impulses;
+  for (std::size_t k = 0; k < branches.size(); ++k) {
+    const Contact& contact = *local.contacts[k];
+    const auto n = static_cast<Eigen::Index>(2 * k);
+    if (branches[k] == Branch::open) begun.segment<2>(n).setZero();
+    if (contact.normal_column < 0) begun[n] = step.h * contact.given_force;
+    if (branches[k] != Branch::stick || contact.tangential_column < 0) {
+      begun[n + 1] = slide(contact, branches[k]) * begun[n];
     }
   }
-  return true;
+  OnBranches& on = factors_for(step.h, branches);
+  for (bool kept : {true, false}) {
+    if (kept && on.outdated) continue;
+    on.outdated = true;
+    step.v = v_;
+    local.impulses = begun;
+    if (kept) {
+      hold_directions(step, on.scale);
+    } else if (!factorize(on, step, local)) {
+      return false;
+    }
+    const int iterations = iterate(on, step, local, kept);
+    if (iterations <= most_iterations) {
+      on.outdated = iterations > few_iterations;
+      return true;
+    }
+  }
+  return false;
+}
+
+int Stepper::iterate(const OnBranches& on, Trial& step, Local& local, bool kept) {
+  const Eigen::Index n = q_.size();
+  const Eigen::Index held = holds_.cols();
+  VectorXd z = z_;
+  z.head(n) = step.q_middle;
+  const double drift = system_->rounding(z).length / step.h;
+  const double before = v_.size() == 0 ? 0.0 : v_.cwiseAbs().maxCoeff();
+  VectorXd right(n + held + local.impulses.size());
+  step.held = VectorXd::Zero(held);
+  double last = 0.0;
+  for (int k = 0; k <= most_iterations; ++k) {
+    const VectorXd residual = move(step);
+    if (!residual.allFinite()) break;
+    right.head(n) = local.directions * local.impulses - residual;
+    const double speed = std::max(step.v.cwiseAbs().maxCoeff(), before);
+    const double bound = allowance * speed + drift;
+    bool on_laws = true;
+    if (held > 0) {
+      right.head(n) -= holds_ * step.held;
+      right.segment(n, held) = held_speed_ - holds_.transpose() * step.v;
+      const VectorXd sizes = holds_.cwiseAbs().transpose() * step.v.cwiseAbs();
+      on_laws = ((right.segment(n, held).array().abs() <=
+                  allowance * (sizes.array() + held_speed_.array().abs()) + on.scale * drift))
+                    .all();
+    }
+    for (std::size_t j = 0; j < on.branches.size(); ++j) {
+      const auto i = static_cast<Eigen::Index>(j);
+      const Contact& contact = *local.contacts[j];
+      const double normal = local.impulses[2 * i];
+      for (const bool across : {true, false}) {
+        const Eigen::Index row = 2 * i + (across ? 0 : 1);
+        double& to = right[n + held + row];
+        to = 0.0;
+        if (on.branches[j] == Branch::open ||
+            (across ? contact.normal_column < 0
+                    : on.branches[j] != Branch::stick || contact.tangential_column < 0)) {
+          continue;
+        }
+        const Law law = across ? normal_law(step, local, i) : stick_law(step, local, i);
+        const double lacks = local.directions.col(row).dot(step.v) + law.offset +
+                             law.compliance * local.impulses[row];
+        to = -on.scale * lacks;
+        // An elastic normal law is for balanced() to judge.
+        if (across && contact.is_elastic()) continue;
+        const double friction = on_law * contact.friction_coefficient * std::abs(normal);
+        on_laws = on_laws && std::abs(lacks) <= bound + law.compliance * friction;
+      }
+    }
+    if (k > 0 && on_laws && balanced(step, residual, step.held, local, true)) return k;
+    const VectorXd found = on.factor.solve(right);
+    const double length = found.head(n).cwiseAbs().maxCoeff();
+    if (kept && k > 1 && length > falls_to * last) break;
+    last = length;
+    step.v += found.head(n);
+    step.held += found.segment(n, held);
+    local.impulses += on.scale * found.tail(local.impulses.size());
+  }
+  return most_iterations + 1;
+}
+
+double Stepper::slide(const Contact& contact, Branch branch) {
+  // Friction on the body is against the slide.
+  return branch == Branch::slip_plus    ? -contact.friction_coefficient
+         : branch == Branch::slip_minus ? contact.friction_coefficient
+                                        : 0.0;
 }
 
 Stepper::Branch Stepper::asked(const Trial& step, const Local& local, Eigen::Index i,

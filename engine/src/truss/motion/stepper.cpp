@@ -10,10 +10,6 @@ namespace {
 
 /// Momentum and forces balance to this share of the largest of either.
 constexpr double balance = 1e-10;
-/// An elastic contact is on its law to this share of its force: its problem is solved to 1e-10 of
-/// the largest velocity in it, which a stiff contact turns into much more of a force.
-constexpr double on_law = 1e-6;
-
 }  // namespace
 
 Stepper::Stepper(const System& system, const Bodies& bodies, const MotionOptions& options)
@@ -21,7 +17,9 @@ Stepper::Stepper(const System& system, const Bodies& bodies, const MotionOptions
       bodies_(&bodies),
       options_(&options),
       contacts_(system, bodies.joint_damping()),
-      at_(system.assembly()),
+      joints_(system.assembly(System::Parts::joints)),
+      bars_(system.assembly(System::Parts::bars)),
+      forces_(Assembly::without_jacobian(system.unknowns())),
       drives_(system, options.drives),
       drive_moment_(VectorXd::Zero(drives_.count())) {
   account_.friction = VectorXd::Zero(static_cast<Eigen::Index>(system.model().joints.size()));
@@ -37,26 +35,28 @@ void Stepper::begin(const VectorXd& q, const VectorXd& v, const State* equilibri
   origin_ = system_->begin(z_, 0.0, statuses, 1.0);
   if (equilibrium != nullptr) contacts_.begin(*equilibrium);
   contacts_.write(z_, statuses);
-  evaluate(q_, 0.0);
-  contacts_.measure(z_, 0.0, origin_, at_.residual, 0.0);
+  evaluate_contacts(q_, 0.0);
+  contacts_.measure(z_, 0.0, origin_, joints_.residual, 0.0);
   note_branches();
   contacts_.remember_clearances();
-  internal_ = -at_.residual.head(q_.size());
+  VectorXd places = VectorXd::Zero(system_->unknowns());
+  places.head(q.size()) = q;
+  system_->evaluate_bars(places, 0.0, forces_);
+  internal_ = -forces_.residual.head(q_.size());
   origin_ = system_->begin(z_, 0.0, statuses, 1.0);
 }
 
-/// Residual, stiffness and directions with all joints closed and free of force.
-void Stepper::evaluate(const VectorXd& q, double time) {
+void Stepper::evaluate_contacts(const VectorXd& q, double time) {
   VectorXd z = VectorXd::Zero(system_->unknowns());
   z.head(q.size()) = q;
-  system_->evaluate(z, time, origin_, contacts_.closed(z, time, origin_), JointModel::friction, 1.0,
-                    at_);
+  system_->evaluate_joints(z, time, origin_, contacts_.closed(z, time, origin_), joints_);
 }
 
-VectorXd Stepper::force(const VectorXd& q, const VectorXd& v, double time,
-                        const Bodies::Step& step) {
-  evaluate(q, time);
-  VectorXd found = -at_.residual.head(q.size());
+VectorXd Stepper::force(const VectorXd& q, const VectorXd& v, const Bodies::Step& step) {
+  VectorXd z = VectorXd::Zero(system_->unknowns());
+  z.head(q.size()) = q;
+  system_->evaluate_bars(z, step.to, forces_);  // joints are free of force: r has all of it
+  VectorXd found = -forces_.residual.head(q.size());
   if (bodies_->damped()) found += bodies_->force(q, v, step);
   return found;
 }
@@ -65,44 +65,54 @@ Eigen::SparseMatrix<double> Stepper::iteration_matrix(const Trial& step) {
   const Eigen::Index n = q_.size();
   const double theta = options_->theta;
   const double h = step.h;
+  VectorXd middle = VectorXd::Zero(system_->unknowns());
+  middle.head(n) = step.q_middle;
+  system_->evaluate_bars(middle, step.to, bars_);
   Eigen::SparseMatrix<double> matrix =
-      bodies_->mass() + (h * theta * h * theta) * at_.jacobian.block(0, 0, n, n);
+      bodies_->mass() + (h * theta * h * theta) * bars_.jacobian.block(0, 0, n, n);
   if (bodies_->damped()) matrix += (h * theta) * bodies_->damping(step.q_middle);
-  const auto holding = static_cast<Eigen::Index>(contacts_.holds().size());
-  const Eigen::Index held = holding + drives_.count();
-  holds_.resize(n, held);
-  held_speed_ = VectorXd::Zero(held);
+  // Of the size of the rest, so that pivots compare.
+  hold_directions(step, matrix.diagonal().maxCoeff());
+  const Eigen::Index held = holds_.cols();
   if (held > 0) {
-    // Of the size of the rest, so that pivots compare.
-    const double scale = hold_scale_ = matrix.diagonal().maxCoeff();
     std::vector<Eigen::Triplet<double>> entries;
     for (Eigen::Index j = 0; j < matrix.outerSize(); ++j) {
       for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it) {
         entries.emplace_back(it.row(), it.col(), it.value());
       }
     }
-    std::vector<Eigen::Triplet<double>> columns;
-    const auto hold = [&](Eigen::Index row, Eigen::Index k, double value) {
-      columns.emplace_back(row, k, scale * value);
-      entries.emplace_back(row, n + k, scale * value);
-      entries.emplace_back(n + k, row, scale * value);
-    };
-    for (Eigen::Index k = 0; k < holding; ++k) {
-      const int column = contacts_.holds()[static_cast<std::size_t>(k)];
-      for (Eigen::SparseMatrix<double>::InnerIterator it(at_.jacobian, column); it; ++it) {
-        if (it.row() < n) hold(it.row(), k, it.value());
+    for (Eigen::Index k = 0; k < held; ++k) {
+      for (Eigen::SparseMatrix<double>::InnerIterator it(holds_, k); it; ++it) {
+        entries.emplace_back(it.row(), n + k, it.value());
+        entries.emplace_back(n + k, it.row(), it.value());
       }
     }
-    for (const auto& one : drives_.directions(step.q_middle, step.to)) {
-      hold(one.row(), holding + one.col(), one.value());
-    }
-    held_speed_.tail(drives_.count()) = scale * drives_.targets(q_, time_, step.to);
-    holds_.setFromTriplets(columns.begin(), columns.end());
     matrix.resize(n + held, n + held);
     matrix.setFromTriplets(entries.begin(), entries.end());
   }
   matrix.makeCompressed();
   return matrix;
+}
+
+void Stepper::hold_directions(const Trial& step, double scale) {
+  const Eigen::Index n = q_.size();
+  const auto holding = static_cast<Eigen::Index>(contacts_.holds().size());
+  hold_scale_ = scale;
+  holds_.resize(n, holding + drives_.count());
+  held_speed_ = VectorXd::Zero(holds_.cols());
+  if (holds_.cols() == 0) return;
+  std::vector<Eigen::Triplet<double>> columns;
+  for (Eigen::Index k = 0; k < holding; ++k) {
+    const int column = contacts_.holds()[static_cast<std::size_t>(k)];
+    for (Eigen::SparseMatrix<double>::InnerIterator it(joints_.jacobian, column); it; ++it) {
+      if (it.row() < n) columns.emplace_back(it.row(), k, scale * it.value());
+    }
+  }
+  for (const auto& one : drives_.directions(step.q_middle, step.to)) {
+    columns.emplace_back(one.row(), holding + one.col(), scale * one.value());
+  }
+  held_speed_.tail(drives_.count()) = scale * drives_.targets(q_, time_, step.to);
+  holds_.setFromTriplets(columns.begin(), columns.end());
 }
 
 Stepper::Local Stepper::local_problem(const Trial& step) {
@@ -115,7 +125,7 @@ Stepper::Local Stepper::local_problem(const Trial& step) {
   std::vector<Eigen::Triplet<double>> entries;
   const auto take = [&](int column, double sign, Eigen::Index to) {
     if (column < 0) return;
-    for (Eigen::SparseMatrix<double>::InnerIterator it(at_.jacobian, column); it; ++it) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(joints_.jacobian, column); it; ++it) {
       if (it.row() < n) entries.emplace_back(it.row(), to, sign * it.value());
     }
   };
@@ -169,7 +179,7 @@ double Stepper::leaving(const Trial& step, const Local& local, Eigen::Index i) c
 VectorXd Stepper::move(Trial& step) {
   const double theta = options_->theta;
   step.q = q_ + step.h * (theta * step.v + (1.0 - theta) * v_);
-  const VectorXd now = force(step.q, step.v, step.to, {time_, step.to});
+  const VectorXd now = force(step.q, step.v, step.span);
   return bodies_->mass() * (step.v - v_) -
          step.h * (theta * now + (1.0 - theta) * step.force_before);
 }
@@ -177,7 +187,8 @@ VectorXd Stepper::move(Trial& step) {
 bool Stepper::balanced(const Trial& step, const VectorXd& residual, const VectorXd& held,
                        const Local& local, bool by_branches) const {
   VectorXd left = residual;
-  double largest = step.h * at_.largest_force + (bodies_->mass() * step.v).cwiseAbs().maxCoeff();
+  double largest =
+      step.h * forces_.largest_force + (bodies_->mass() * step.v).cwiseAbs().maxCoeff();
   if (local.impulses.size() > 0) {
     const VectorXd pushed = local.directions * local.impulses;
     largest = std::max(largest, pushed.cwiseAbs().maxCoeff());
@@ -207,18 +218,17 @@ bool Stepper::balanced(const Trial& step, const VectorXd& residual, const Vector
 }
 
 void Stepper::advance(double to) {
-  Trial step{to - time_, to, q_ + 0.5 * (to - time_) * v_, {}, {}, v_};
+  Trial step{to - time_, to, bodies_->step(time_, to), q_ + 0.5 * (to - time_) * v_, {}, {}, v_};
   step.force_before = internal_;
-  if (bodies_->damped()) step.force_before += bodies_->force(q_, v_, {time_, to});
+  if (bodies_->damped()) step.force_before += bodies_->force(q_, v_, step.span);
 
-  evaluate(step.q_middle, to);
+  evaluate_contacts(step.q_middle, to);
   VectorXd middle = z_;
   middle.head(q_.size()) = step.q_middle;
-  contacts_.measure(middle, to, origin_, at_.residual, system_->rounding(middle).length);
+  contacts_.measure(middle, to, origin_, joints_.residual, system_->rounding(middle).length);
   Local local = local_problem(step);
   if (!on_branches(step, local)) {
     step.v = v_;
-    evaluate(step.q_middle, to);
     local = local_problem(step);
     solve(step, local);
     check_determined(step, local);
@@ -228,7 +238,6 @@ void Stepper::advance(double to) {
 
 /// Takes the step: memories, energies, statuses.
 void Stepper::book(const Trial& step, const Local& local) {
-  const Bodies::Step span{time_, step.to};
   const double h = step.h;
   for (Contact& contact : contacts_.all()) {
     if (contact.active) continue;
@@ -279,7 +288,7 @@ void Stepper::book(const Trial& step, const Local& local) {
     account_.drives -= step.held[column] * holds_.col(column).dot(0.5 * (v_ + step.v));
   }
   if (bodies_->damped()) {
-    const Bodies::Work work = bodies_->work(q_, v_, step.q, step.v, span, options_->theta);
+    const Bodies::Work work = bodies_->work(q_, v_, step.q, step.v, step.span, options_->theta);
     account_.damping += work.heat;
     account_.thermal_work += work.thermal;
   }
@@ -295,7 +304,7 @@ void Stepper::book(const Trial& step, const Local& local) {
   account_.thermal_work += worked.thermal_work;
   note_branches();
   contacts_.remember_clearances();
-  internal_ = -at_.residual.head(step.q.size());
+  internal_ = -forces_.residual.head(step.q.size());
   q_ = step.q;
   v_ = step.v;
   z_ = std::move(z);

@@ -25,6 +25,10 @@ struct Account {
   double drives = 0.0;    ///< Work of the drives.
 };
 
+/// An elastic contact is on its law to this share of its force: its problem is solved to 1e-10 of
+/// the largest velocity in it, which a stiff contact turns into much more of a force.
+constexpr double on_law = 1e-6;
+
 /// A truss in motion, one step of Moreau and Jean's scheme after the other; see simulate().
 class Stepper {
  public:
@@ -62,6 +66,7 @@ class Stepper {
   struct Trial {
     double h;
     double to;
+    Bodies::Step span;
     VectorXd q_middle;
     VectorXd force_before;  ///< f0 [N]
     VectorXd q;
@@ -87,16 +92,42 @@ class Stepper {
 
   Eigen::SparseMatrix<double> iteration_matrix(const Trial& step);
   Local local_problem(const Trial& step);
+  /// Directions of what holds or drives, and the speeds along them, of the size of a matrix.
+  void hold_directions(const Trial& step, double scale);
   /// Seeks the branches of all contacts from those of the step before, by block pivoting; each try
-  /// is one sparse system. False if single pivots come back to branches that were not right, or a
-  /// try does not converge: step and `at_` are then spoilt.
+  /// is one sparse system, whose factors are kept. False if single pivots come back to branches
+  /// that were not right, or a try does not converge: the step is then spoilt.
   bool on_branches(Trial& step, Local& local);
   /// Of a contact: open, or in touch and held along its surface, or sliding on it.
   enum class Branch : unsigned char { open, stick, slip_plus, slip_minus };
   Branch branch(const Contact& contact) const;
   void note_branches();
+  /// Factors of the equations of a step with every active contact on a branch, of this step or an
+  /// earlier one of the same length.
+  struct OnBranches {
+    double h = 0.0;
+    std::vector<int> active;
+    std::vector<Branch> branches;
+    double scale = 1.0;
+    bool outdated = true;  ///< Not yet made, or to be made again: they converge slowly.
+    linear::SparseFactor factor;
+  };
+  OnBranches& factors_for(double h, const std::vector<Branch>& branches);
+  bool factorize(OnBranches& on, const Trial& step, const Local& local);
   /// Solves the step with every active contact on a branch. False if it does not converge.
   bool solve_on(const std::vector<Branch>& branches, Trial& step, Local& local);
+  /// Newton's method with these factors; its iterations, more than allowed if it did not converge.
+  /// @param kept the factors are of an earlier step
+  int iterate(const OnBranches& on, Trial& step, Local& local, bool kept);
+  /// Tangential over normal impulse of a contact that slides.
+  static double slide(const Contact& contact, Branch branch);
+  /// What a contact's law on its branch says of its two rows: speed + offset + compliance r = 0.
+  struct Law {
+    double offset = 0.0;      ///< [m/s]
+    double compliance = 0.0;  ///< [1/kg]
+  };
+  Law normal_law(const Trial& step, const Local& local, Eigen::Index i) const;
+  Law stick_law(const Trial& step, const Local& local, Eigen::Index i) const;
   /// The branch that a contact's inequalities ask for, from the one whose equations hold.
   Branch asked(const Trial& step, const Local& local, Eigen::Index i, Branch branch) const;
   /// Solves the step with its contact problem.
@@ -104,9 +135,10 @@ class Stepper {
   void complete(const Trial& step, Local& local);
   /// Solves the contact problem of an iterate. @param free velocities without impulses
   void solve_contacts(const Trial& step, const VectorXd& free, bool first, Local& local);
-  /// f [N] at places and velocities; also leaves the largest force in `at_`.
-  VectorXd force(const VectorXd& q, const VectorXd& v, double time, const Bodies::Step& step);
-  void evaluate(const VectorXd& q, double time);
+  /// f [N] at places and velocities; also leaves the forces without dashpots in `forces_`.
+  VectorXd force(const VectorXd& q, const VectorXd& v, const Bodies::Step& step);
+  /// Gaps and directions of the contacts, all of them closed and free of force.
+  void evaluate_contacts(const VectorXd& q, double time);
   /// Goes to the places of the step's velocities; what their momentum lacks without impulses [N s].
   VectorXd move(Trial& step);
   /// @param by_branches a contact may pull, or be open where it closes: its branch is asked for
@@ -124,12 +156,13 @@ class Stepper {
   const Bodies* bodies_;
   const MotionOptions* options_;
   Contacts contacts_;
-  Assembly at_;
+  Assembly joints_;  ///< Gaps and directions at the middle of the step.
+  Assembly bars_;    ///< Stiffness there.
+  Assembly forces_;  ///< Forces where the step is; no Jacobian.
   linear::SparseFactor factor_;
   std::vector<Branch> branches_;  ///< Of all contacts in the last step, at first where they rest.
-  std::vector<int> active_;       ///< Places of the contacts that were active in it.
-  std::vector<Branch> factored_;  ///< Of the active contacts, whose pattern the factors have.
-  std::unique_ptr<linear::SparseFactor> branch_factor_;
+  std::vector<int> active_;       ///< Places of the contacts that are active in this one.
+  std::vector<std::unique_ptr<OnBranches>> kept_;  ///< The last ones used, the latest first.
   Drives drives_;
   /// Columns that hold, and then those that drive, scaled; of the current factors.
   Eigen::SparseMatrix<double> holds_;
