@@ -140,7 +140,7 @@ def sample(case: dict[str, Any], built: SpringSliderScene) -> tuple:
     if floor is None:
         raise SceneFailure("the slider has left the floor of its slot: the contact is lost", "floor")
     stops = [contacts[face] for face in (built.stop_minus, built.stop_plus) if face in contacts]
-    energy = {name: O.energy[name] for name in O.energy.keys()}
+    energy = dict(O.energy.items())
     bar = built.link
     stiffness = bar.youngModulus * bar.crossSectionArea / bar.previousStressFreeLength
     elastic = 0.5 * stiffness * bar.previousExtension**2

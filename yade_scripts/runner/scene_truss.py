@@ -181,7 +181,7 @@ def _velocity_now(body: int) -> Vector3:
 
 def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
     """Return one row: the state of the current step, see :func:`columns`."""
-    energy = {name: O.energy[name] for name in O.energy.keys()}
+    energy = dict(O.energy.items())
 
     def total(*names: str) -> float:
         return sum(energy.get(name, 0.0) for name in names)

@@ -154,7 +154,7 @@ def sample(case: dict[str, Any], built: UmbrellaScene) -> tuple:
             normal_force = contact.phys.normalForce.dot(normal)
             tangential_force = -contact.phys.shearForce.dot(Vector3(-normal[1], normal[0], 0))
             slipping = int(contact.phys.slipping)
-    energy = {name: O.energy[name] for name in O.energy.keys()}
+    energy = dict(O.energy.items())
     kinetic = sum(
         0.5 * O.bodies[body].state.mass * velocity_now(body).squaredNorm()
         for body in (built.bearing, built.journal)
