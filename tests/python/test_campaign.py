@@ -324,6 +324,9 @@ def test_unforeseen_error_of_one_sample(write: Callable[..., Path], monkeypatch:
 def test_sample_that_kills_its_worker(
     tmp_path: Path, write: Callable[..., Path], fake_yade: Callable[[str], str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    # However long it takes until a new worker is there.
+    monkeypatch.setattr(distribute, "NO_WORKERS_S", 0.0)
+    monkeypatch.setattr(distribute, "LOOK_S", 0.05)
     monkeypatch.setenv("STATEJUMP_YADE", fake_yade("kill -9 $PPID\n"))
     campaign = load_campaign(write(model="dem", samples=1), MONTECARLO)
     finish(campaign, tmp_path / "trial")

@@ -298,8 +298,15 @@ def test_duration_and_program_of_a_table() -> None:
 def test_limits_are_allowed() -> None:
     data = minimal(torsion_spring={"stiffness_N_m_per_rad": 1.0, "bias_rad": 0.05},
                    start={"mode": "loaded", "contact_angle_rad": atan(0.3)})
-    parse_case(data)
-    parse_case(minimal(start={"mode": "rest", "eccentricity_m": 1e-4, "eccentricity_angle_rad": pi}))
+    loaded = parse_case(data)
+    assert (loaded.torsion_spring.bias_rad, loaded.start.contact_angle_rad) == (0.05, atan(0.3))
+    start = parse_case(minimal(start={"mode": "rest", "eccentricity_m": 1e-4, "eccentricity_angle_rad": pi})).start
+    assert (start.eccentricity_m, start.eccentricity_angle_rad) == (1e-4, pi)
+    for table, key, most in ((data["start"], "contact_angle_rad", atan(0.3)),
+                             ({"mode": "rest"}, "eccentricity_m", 1e-4)):
+        beyond = data | {"start": table | {key: most * (1 + 1e-9)}}
+        with pytest.raises(StatejumpError, match=f"start.{key} = "):
+            parse_case(beyond)
 
 
 @pytest.mark.parametrize("name, command, wanted", [("umbrella", "convergence", "spring_slider")])

@@ -20,10 +20,13 @@ _QUIET = {
     "logging": {name: "critical" for name in ("distributed", "distributed.client", "bokeh", "tornado", "asyncio")},
     "distributed.comm.timeouts.connect": "5s",
     "distributed.scheduler.allowed-failures": 1,  # a task whose worker dies is tried once more
+    # A cluster on this machine would give up a worker whose process is not back by then, and start no other: its nanny
+    # starts it again however long that takes.
+    "distributed.deploy.lost-worker-timeout": "365 days",
 }
 dask.config.set(_QUIET)
 
-from distributed import Client, LocalCluster  # noqa: E402
+from distributed import Client, LocalCluster, Status  # noqa: E402
 
 from statejump import __version__  # noqa: E402
 from statejump.core.errors import NotAllowed, StatejumpError, shown  # noqa: E402
@@ -92,6 +95,13 @@ def _local(workers: int) -> Iterator[Client]:
                 client = stack.enter_context(Client(cluster))
             client.run(_version)  # imports the package everywhere
             yield client
+
+
+def restarts_workers(client: Client) -> bool:
+    """Is a worker whose process ended being started again by a cluster of our own?"""
+    nannies = client.cluster.workers.values() if client.cluster is not None else ()
+    over = (Status.closing, Status.closed, Status.closing_gracefully, Status.failed)
+    return any(nanny.status not in over for nanny in nannies)
 
 
 def kill_workers(cluster: LocalCluster) -> None:

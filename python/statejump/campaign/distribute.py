@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from statejump.campaign.batches import Batches
-from statejump.campaign.cluster import open_client
+from statejump.campaign.cluster import open_client, restarts_workers
 from statejump.campaign.plan import Recipe
 from statejump.campaign.work import Batch, Sample, batch_of, run_samples
 from statejump.core.errors import StatejumpError
@@ -20,6 +20,7 @@ from distributed import Client, Future, KilledWorker, wait  # noqa: E402, after 
 QUEUED = 2  # tasks per worker, so that none waits for the next
 LOOK_S = 5.0  # how often workers are counted while none of them has finished a task
 NO_WORKERS_S = 60.0  # how long a cluster whose workers are all gone is waited for
+RESTART_S = 900.0  # the same where they are being started again here: on a busy machine that takes more than a minute
 KEPT = "finished samples are kept, the same command goes on with the others"
 
 
@@ -103,8 +104,9 @@ def _patiently(client: Client, ask: Callable[[], Given]) -> Given:
         except TimeoutError:
             now = time.monotonic()
             alone_since = None if client.scheduler_info()["workers"] else alone_since or now
-            if alone_since is not None and now - alone_since >= NO_WORKERS_S:
-                raise StatejumpError(f"the dask scheduler has had no workers for {NO_WORKERS_S:g} s; {KEPT}") from None
+            patience = RESTART_S if restarts_workers(client) else NO_WORKERS_S
+            if alone_since is not None and now - alone_since >= patience:
+                raise StatejumpError(f"the dask scheduler has had no workers for {patience:g} s; {KEPT}") from None
         except (CancelledError, OSError) as problem:
             lost = f"the connection to the dask scheduler was lost ({type(problem).__name__})"
             raise StatejumpError(f"{lost}; {KEPT}") from None
