@@ -39,7 +39,7 @@ class BenchError(Exception):
     """One sentence for the user."""
 
 
-def run_yade(build: Path, variant: str, size: int, threads: int, **settings: int) -> dict[str, Any]:
+def run_yade(build: Path, variant: str, size: int, threads: int, **settings: int | str) -> dict[str, Any]:
     """Run one measurement in its own YADE and return what it reports."""
     environment = {
         name: value for name, value in os.environ.items() if not name.startswith("STATEJUMP_BENCH_")

@@ -17,7 +17,8 @@ friction limit, so that both laws carry a normal and a tangential force. Rotatio
 a sphere would roll off. It starts at the depth at which the contact carries the load.
 
 Environment: STATEJUMP_BENCH_VARIANT, _SIZE (n), _STEPS, _SUBSTEPS, _WARM_UP (steps), _TIMING (1: share of each
-engine by O.timingEnabled, which slows the run itself down), _ENERGY (1: O.trackEnergy).
+engine by O.timingEnabled, which slows the run itself down), _ENERGY (1: O.trackEnergy), _FRICTION_LAW (of the joints,
+by name; without it they have Law2_JointGeom_JointPhys_HertzMindlin).
 """
 import contextlib
 import io
@@ -45,6 +46,7 @@ size = setting("SIZE", 1)
 steps = setting("STEPS", 1000)
 warm_up = setting("WARM_UP", 300)
 timing = bool(setting("TIMING", 0))
+friction_law = setting("FRICTION_LAW", "")
 bystanders = setting("BYSTANDERS", 0)  # 0 to 3 for each pair of spheres
 
 
@@ -95,7 +97,9 @@ def joints(is_thermal):
         [sj.Bo1_Journal_Aabb(), sj.Bo1_Bearing_Aabb()],
         sj.Ig2_Journal_Bearing_JointGeom(),
         sj.Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys(),
-        sj.Law2_JointGeom_JointPhys_HertzMindlin(),
+        sj.Law2_JointGeom_JointPhys_JointLaw(frictionLaw=friction_law)
+        if friction_law
+        else sj.Law2_JointGeom_JointPhys_HertzMindlin(),
         thermal,
     )
 
@@ -153,6 +157,8 @@ def measure():
     result = {
         "steps": count, "cpu_time_s": elapsed, "wall_time_s": elapsed_wall, "contacts": size
     }
+    if friction_law:
+        result["memory_points"] = sum(len(contact.phys.slipMemory) for contact in O.interactions) / size
     if timing:
         result["engines_ns_per_step"] = {
             type(engine).__name__: (engine.execTime - old[0]) / count

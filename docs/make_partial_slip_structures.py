@@ -3,12 +3,13 @@
 
     PYTHONPATH=build/python /usr/bin/python3 docs/make_partial_slip_structures.py [--dem]
 
-With --dem the bar runs in YADE as well, a few minutes; without, its marks are left out.
+With --dem bar, rib and ring run in YADE as well, some twenty minutes; without, the bar's marks and the tables of the
+other two are left out.
 """
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,8 @@ STYLES = {
     "elastic": {"color": "#D55E00", "linestyle": "--", "linewidth": 1.8},
     "partial_slip": {"color": "#0072B2", "linestyle": "-", "linewidth": 1.8},
 }
+MISSED = {"jump_of_node_J": "jump", "jump_of_node_J0": "jump", "energy_residual_over_friction_work": "energy",
+          "jump_largest_difference_over_largest_jump_or_loop": "largest jump"}
 LABELS = {"rigid": "Coulomb", "elastic": "spring under Coulomb's limit", "partial_slip": "partial slip"}
 
 
@@ -95,6 +98,33 @@ def dem_m(change_K: float) -> float:
     return float(history[-1, 1, 0] - history[0, 1, 0])
 
 
+def beside_the_dem(name: str, runs: Sequence[dict[str, Any]]) -> None:
+    """Print what `statejump compare` finds of a structure, a row per run."""
+    print(f"\n| {name}: period [s] | time step over the stable one | jumps: largest difference over the largest "
+          "| energy residue over friction | missed |\n|---:|---:|---:|---:|---|")
+    for made in runs:
+        made = made | {"reduced": {"sticking": "partial_slip"},
+                       "dem": made.get("dem", {}) | {"friction_law": "mindlin_deresiewicz"}}
+        case = sj.load(made)
+        result = sj.compare(case.reduced(), case.dem())
+        values = {row.name: row.difference for row in result.rows}
+        jumps = values["jump_largest_difference_over_largest_jump_or_loop"]
+        print(f"| {made['thermal']['period_s']:g} | {made['dem'].get('time_step_fraction', 0.1):g} "
+              f"| {jumps:.2e} "
+              f"| {values['energy_residual_over_friction_work']:.1e} "
+              f"| {', '.join(MISSED.get(one, one) for one in result.missed) or 'none'} |", flush=True)
+
+
+def with_step(document: dict[str, Any], fraction: float) -> dict[str, Any]:
+    """Return a case with another time step of the DEM, as a share of the stable one."""
+    return document | {"dem": document.get("dem", {}) | {"time_step_fraction": fraction}}
+
+
+def rib(change_K: float, **more: Any) -> dict[str, Any]:
+    """Return the rib that rolls by rigid theory."""
+    return generate.umbrella(1, friction_coefficient=0.45, temperature_change_K=change_K, **more)
+
+
 def draw(axes: Any, changes_K: np.ndarray, jumps: dict[str, np.ndarray], unit: float) -> None:
     """Draw the jumps of one structure; what is below rounding is left out."""
     for sticking, style in STYLES.items():
@@ -118,21 +148,23 @@ def main() -> None:
     left.loglog(small, [asymptote_m(change) * 1e6 for change in small], ":", color="black", label="slope 2")
     print("| Table 1's bar, ΔT [K] | Coulomb [nm] | spring [nm] | partial slip [nm] | closed form: off by "
           "| slope 2 [nm] | DEM [nm] |\n|---:|---:|---:|---:|---:|---:|---:|")
+    crosses: list[tuple[float, float]] = []
     for change in (0.5, 2.0, 8.0, 20.0, 24.0, 30.0, 100.0):
         values = [moves_m(path(bar(change), one))[0] * 1e9 for one in STYLES]
         values = [value if value > 1e-9 else 0.0 for value in values]  # rounding of a bar of 0.5 m
         dem = dem_m(change) if "--dem" in sys.argv else np.nan
-        left.loglog(change, dem * 1e6, "x", color="#D55E00", markersize=8)
+        crosses.append((change, dem * 1e6))
         print(f"| {change:g} | {values[0]:.4g} | {values[1]:.4g} | {values[2]:.6g} "
               f"| {values[2] / closed_form_m(change) / 1e9 - 1:+.0e} | {asymptote_m(change) * 1e9:.4g} "
               f"| {dem * 1e9:.6g} |")
+    if "--dem" in sys.argv:
+        left.loglog(*zip(*crosses), "x", color="#D55E00", markersize=8, label="partial slip, DEM")
     left.set_title("bar of Table 1, μF_N = 300 N")
     left.set_ylabel("jump after one cycle [µm]")
     left.legend(fontsize=8)
 
     changes = np.geomspace(1, 200, 34)
-    jumps = {one: np.array([moves_m(path(generate.umbrella(1, friction_coefficient=0.45, temperature_change_K=change),
-                                         one))[0] for change in changes]) for one in STYLES}
+    jumps = {one: np.array([moves_m(path(rib(change), one))[0] for change in changes]) for one in STYLES}
     draw(middle, changes, jumps, 1e6)
     told("rib, μ = 0.45", changes, jumps["partial_slip"])
     middle.set_title("rib that rolls by rigid theory, μ = 0.45")
@@ -144,6 +176,10 @@ def main() -> None:
     told("ring_12", changes, jumps["partial_slip"])
     right.set_title("ring of 12 bays, node that jumps most")
     figure.savefig(PICTURE, metadata={"Software": None})
+    if "--dem" in sys.argv:
+        beside_the_dem("ring_12", [generate.ring(12, period_s=period) for period in (1.0, 2.0, 4.0, 8.0)])
+        slow = [rib(100.0, shape="sine", period_s=period) for period in (4.0, 16.0, 64.0)]
+        beside_the_dem("rib", [*slow, with_step(slow[0], 0.05), with_step(slow[-1], 0.0125)])
 
     print("\n| ring_12, largest move of a node in cycle | 1 [nm] | 2 [nm] | 3 [nm] | 10 [nm] | 30 [nm] "
           "| 30, twice the increments [nm] |\n|---|---:|---:|---:|---:|---:|---:|")

@@ -45,6 +45,16 @@ void fail_closed(const char* inner, Real inner_radius, const char* outer, Real o
   record_failure(text.str(), scene, contact);
 }
 
+void fail_inside(Real distance, Real radius_1, Real radius_2, const yade::Scene& scene,
+                 const yade::Interaction& contact) {
+  std::ostringstream text;
+  text.precision(9);
+  text << "the centre of one ball lies inside the other: the centres are " << distance
+       << " m apart, the radii " << radius_1 << " m and " << radius_2
+       << " m at the current temperature";
+  record_failure(text.str(), scene, contact);
+}
+
 void fail_tilted(const yade::Scene& scene, const yade::Interaction& contact) {
   record_failure(
       "the axes of journal and bearing are tilted by more than maxTilt, and contact "

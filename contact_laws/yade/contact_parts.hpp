@@ -23,6 +23,8 @@ inline yade::Vector3r axis_of(const yade::Quaternionr& q) {
 [[gnu::cold]] void fail_closed(const char* inner, yade::Real inner_radius, const char* outer,
                                yade::Real outer_radius, const yade::Scene& scene,
                                const yade::Interaction& contact);
+[[gnu::cold]] void fail_inside(yade::Real distance, yade::Real radius_1, yade::Real radius_2,
+                               const yade::Scene& scene, const yade::Interaction& contact);
 [[gnu::cold]] void fail_tilted(const yade::Scene& scene, const yade::Interaction& contact);
 [[gnu::cold]] void fail_unstable(yade::Real effective_mass, yade::Real stiffness,
                                  const yade::Scene& scene, const yade::Interaction& contact);

@@ -108,6 +108,31 @@ bool finish(const yade::State& state1, Real radius_1, Real radius_2,
   return finish(state1, part_1.expanded(), part_2.expanded(), *contact);
 }
 
+[[gnu::flatten]] bool Ig2_Ball_Ball_JointGeom::go(
+    const yade::shared_ptr<yade::Shape>& shape1, const yade::shared_ptr<yade::Shape>& shape2,
+    const yade::State& state1, const yade::State& state2, const Vector3r& shift2, const bool& force,
+    const yade::shared_ptr<yade::Interaction>& contact) {
+  const auto& ball_1 = static_cast<const Ball&>(*shape1);
+  const auto& ball_2 = static_cast<const Ball&>(*shape2);
+  const stepper::Part part_1 = part_of(ball_1, ball_1.radius);
+  const stepper::Part part_2 = part_of(ball_2, ball_2.radius);
+  const kernel::BodyMotion motion_2 = shifted(state2, shift2);
+  switch (stepper::find_outer_balls(
+      part_1, part_2, motion(state1), motion_2, force || contact->isReal(), scene->dt,
+      [&](const Vector3r& normal) -> JointGeom& { return geometry_of(contact, normal); })) {
+    case stepper::Found::apart:
+    case stepper::Found::tilted:
+      return false;
+    case stepper::Found::closed:
+      fail_inside((state1.se3.position - motion_2.position).norm(), part_1.expanded(),
+                  part_2.expanded(), *scene, *contact);
+      return false;
+    case stepper::Found::contact:
+      break;
+  }
+  return finish(state1, part_1.expanded(), part_2.expanded(), *contact);
+}
+
 [[gnu::flatten]] bool Ig2_Slider_SlotFace_JointGeom::go(
     const yade::shared_ptr<yade::Shape>& shape1, const yade::shared_ptr<yade::Shape>& shape2,
     const yade::State& state1, const yade::State& state2, const Vector3r& shift2, const bool& force,

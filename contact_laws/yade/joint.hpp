@@ -53,7 +53,7 @@ struct JointGeom : RegisteredIndexable<JointGeom, yade::GenericSpheresContact> {
                   "Radius of the journal (ball, slider's pads) at the current temperature [m]"),
         read_only("bearingRadius", &JointGeom::bearingRadius,
                   "Radius of the bearing (socket) at the current temperature [m]; infinite: a flat "
-                  "SlotFace; negative: a MeshBore that bulges there"));
+                  "SlotFace; negative: a MeshBore that bulges there, or another Ball"));
   }
 };
 
@@ -181,6 +181,23 @@ struct Ig2_Ball_Socket_JointGeom : Registered<Ig2_Ball_Socket_JointGeom, yade::I
   std::string checkOrder() const override { return "Ball Socket"; }
   std::string get2DFunctorType1() const override { return "Ball"; }
   std::string get2DFunctorType2() const override { return "Socket"; }
+  static auto attributes() { return std::make_tuple(); }
+};
+
+struct Ig2_Ball_Ball_JointGeom : Registered<Ig2_Ball_Ball_JointGeom, yade::IGeomFunctor> {
+  static constexpr const char* class_name = "Ig2_Ball_Ball_JointGeom";
+  static constexpr const char* base_name = "IGeomFunctor";
+  static constexpr const char* doc =
+      "External contact of two Balls, both of which may move: effective radius R1 R2/(R1 + R2). "
+      "Hertz needs a contact small against both; the centre of one inside the other stops the "
+      "run.";
+  using yade::IGeomFunctor::go;
+  bool go(const yade::shared_ptr<yade::Shape>& shape1, const yade::shared_ptr<yade::Shape>& shape2,
+          const yade::State& state1, const yade::State& state2, const Vector3r& shift2,
+          const bool& force, const yade::shared_ptr<yade::Interaction>& contact) override;
+  std::string checkOrder() const override { return "Ball Ball"; }
+  std::string get2DFunctorType1() const override { return "Ball"; }
+  std::string get2DFunctorType2() const override { return "Ball"; }
   static auto attributes() { return std::make_tuple(); }
 };
 

@@ -41,7 +41,7 @@ using OurClasses = ClassList<
     Bo1<MeshBore>, Bo1<Journal>, Bo1<Bearing>, Bo1<Ball>, Bo1<Socket>, Bo1<Slider>, Bo1<SlotFace>,
     JointGeom, JointPhys, BoreGeom, BorePhys, Ig2_Journal_MeshBore_BoreGeom,
     Ig2_Ball_MeshBore_BoreGeom, Law2_BoreGeom_BorePhys_JointLaw, Ig2_Journal_Bearing_JointGeom,
-    Ig2_Ball_Socket_JointGeom, Ig2_Slider_SlotFace_JointGeom,
+    Ig2_Ball_Socket_JointGeom, Ig2_Ball_Ball_JointGeom, Ig2_Slider_SlotFace_JointGeom,
     Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys, Law2_JointGeom_JointPhys_HertzMindlin,
     Law2_JointGeom_JointPhys_JointLaw, ThermalProgram, ThermalExpansionEngine, ThermalLink,
     ThermalLinks, TorsionSpring, TorsionSprings, GuidePlanes, JointStepper
@@ -128,6 +128,7 @@ STATEJUMP_EXPORT(Law2_BoreGeom_BorePhys_JointLaw)
 STATEJUMP_EXPORT(JointPhys)
 STATEJUMP_EXPORT(Ig2_Journal_Bearing_JointGeom)
 STATEJUMP_EXPORT(Ig2_Ball_Socket_JointGeom)
+STATEJUMP_EXPORT(Ig2_Ball_Ball_JointGeom)
 STATEJUMP_EXPORT(Ig2_Slider_SlotFace_JointGeom)
 STATEJUMP_EXPORT(Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys)
 STATEJUMP_EXPORT(Law2_JointGeom_JointPhys_HertzMindlin)

@@ -11,6 +11,7 @@
 #include "joint.hpp"
 #include "joint_exchange.hpp"
 #include "ranges.hpp"
+#include "shapes.hpp"
 
 namespace statejump::dem {
 namespace {
@@ -54,13 +55,18 @@ void add_readers(const laws::LawParameter& parameter, std::string& names) {
   }
 }
 
+bool on_a_ball(const yade::Scene& scene, const yade::Interaction& contact) {
+  const auto& body = body_at(scene, static_cast<std::size_t>(contact.id2));
+  return dynamic_cast<const Ball*>(body->shape.get()) != nullptr;
+}
+
 // "a Ball in a MeshBore"
-std::string pair_of(const yade::Scene& scene, const yade::Interaction& contact, bool flat) {
+std::string pair_of(const yade::Scene& scene, const yade::Interaction& contact, bool outside) {
   const auto shape = [&](int id) {
     return body_at(scene, static_cast<std::size_t>(id))->shape->getClassName();
   };
   std::string text = "a ";
-  text.append(shape(contact.id1)).append(flat ? " on a " : " in a ").append(shape(contact.id2));
+  text.append(shape(contact.id1)).append(outside ? " on a " : " in a ").append(shape(contact.id2));
   return text;
 }
 
@@ -128,15 +134,20 @@ bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
                          const yade::Interaction& contact, yade::Scene& scene) {
   switch (stepper::misfit(named_, geometry)) {
     case stepper::Misfit::bulging_wall:
-      record_failure("a wall that bulges needs normalLaw " +
-                         laws::names_with<laws::NormalLaw>(laws::Trait::accepts_bulging_wall) +
-                         ", not '" + normalLaw + "'",
-                     scene, contact);
+      record_failure(
+          (on_a_ball(scene, contact) ? pair_of(scene, contact, true) : "a wall that bulges") +
+              " needs normalLaw " +
+              laws::names_with<laws::NormalLaw>(laws::Trait::accepts_bulging_wall) + ", not '" +
+              normalLaw + "'",
+          scene, contact);
       return true;
     case stepper::Misfit::no_axis:
       record_failure(
-          pair_of(scene, contact, std::isinf(geometry.bearingRadius)) + " needs normalLaw " +
-              laws::names_with<laws::NormalLaw>(laws::Trait::needs_axis, false) +
+          pair_of(scene, contact, std::isinf(geometry.bearingRadius) || on_a_ball(scene, contact)) +
+              " needs normalLaw " +
+              (geometry.bearingRadius < 0
+                   ? laws::names_with<laws::NormalLaw>(laws::Trait::accepts_bulging_wall)
+                   : laws::names_with<laws::NormalLaw>(laws::Trait::needs_axis, false)) +
               " and tangentialVelocity " +
               laws::names_with<laws::TangentialVelocityLaw>(laws::Trait::needs_axis, false) +
               ", not '" + normalLaw + "' and '" + tangentialVelocity + "'",

@@ -91,7 +91,8 @@ struct Ball : RegisteredIndexable<Ball, ThermalShape> {
   static constexpr const char* bound_functor_name = "Bo1_Ball_Aabb";
   static constexpr const char* view_functor_name = "Gl1_Ball";
   static constexpr const char* base_name = "ThermalShape";
-  static constexpr const char* doc = "Ball of a spherical joint, inside a Socket.";
+  static constexpr const char* doc =
+      "Ball: of a spherical joint, inside a Socket, or one that hits another Ball from outside.";
   Real radius = 0;
   Ball() { createIndex(); }
   void check() const;

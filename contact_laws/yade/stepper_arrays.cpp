@@ -225,6 +225,16 @@ bool JointArrays::find_parts(const yade::Body& one, const yade::Body& two,
       return true;
     }
   }
+  if (engines_.outer_balls) {
+    const auto* ball = dynamic_cast<const Ball*>(first);
+    const auto* other = ball ? dynamic_cast<const Ball*>(second) : nullptr;
+    if (other) {
+      contact.joint = stepper::Joint::outer_balls;
+      contact.length_1 = ball->radius;
+      contact.length_2 = other->radius;
+      return true;
+    }
+  }
   if (engines_.plane) {
     const auto* slider = dynamic_cast<const Slider*>(first);
     const auto* face = slider ? dynamic_cast<const SlotFace*>(second) : nullptr;

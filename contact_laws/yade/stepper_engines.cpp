@@ -130,7 +130,8 @@ class Reader {
 
   void read_functors(const py::object& loop) {
     read_functors(loop, "geomDispatcher", [&](const py::object& one) {
-      return take(one, engines_.revolute) || take(one, engines_.ball) || take(one, engines_.plane);
+      return take(one, engines_.revolute) || take(one, engines_.ball) ||
+             take(one, engines_.plane) || take(one, engines_.outer_balls);
     });
     read_functors(loop, "physDispatcher",
                   [&](const py::object& one) { return take(one, engines_.physics); });

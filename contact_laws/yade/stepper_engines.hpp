@@ -15,6 +15,7 @@ struct JointEngines {
   std::vector<yade::Engine*> stages;  // ThermalLinks, TorsionSprings, GuidePlanes, in their order
   Ig2_Journal_Bearing_JointGeom* revolute = nullptr;
   Ig2_Ball_Socket_JointGeom* ball = nullptr;
+  Ig2_Ball_Ball_JointGeom* outer_balls = nullptr;
   Ig2_Slider_SlotFace_JointGeom* plane = nullptr;
   Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys* physics = nullptr;
   Law2_JointGeom_JointPhys_HertzMindlin* hertz_mindlin = nullptr;

@@ -4,7 +4,7 @@ import pytest
 
 SCENES = [
     "joint", "joint_without_energy", "joint_by_name", "joint_damped", "joint_in_gravity",
-    "joint_in_undamped_gravity", "joint_in_damped_gravity", "ball", "guided", "approaching", "mixed",
+    "joint_in_undamped_gravity", "joint_in_damped_gravity", "ball", "balls", "balls_by_name", "balls_saved", "guided", "approaching", "mixed",
     "mixed_by_name", "mixed_partial_slip", "mixed_every_step", "crowd", "crowd_with_energy", "in_pieces", "saved", "erased",
 ]
 
@@ -52,6 +52,7 @@ def test_steps_before_the_collider_looks_again_are_yades(scenes):
 def test_scenes_have_what_is_compared(scenes):
     # Contacts that begin again and again, that stay, that slip; every energy.
     assert scenes["joint_by_name"]["law"][1] > 1
+    assert scenes["balls_by_name"]["law"][1] >= 3  # ball on ball twice, ball on wall
     assert scenes["crowd"]["touching"] == 45 and scenes["mixed"]["touching"] == 4
     energy = {**scenes["mixed_by_name"]["energy"], **scenes["joint_damped"]["energy"]}
     for name in ("jointFriction", "jointDamping", "jointThermalWork", "linkDamping", "linkThermalWork", "pinDamping",

@@ -115,5 +115,76 @@ TEST(Ball, RefusesASocketThatDoesNotHoldTheBall) {
   EXPECT_TRUE(ball_touches(body.position, 5e-3, body.position, 4.9e-3));
 }
 
+constexpr double other_radius = 3e-3;
+
+TEST(OuterBalls, DepthNormalAndOnePoint) {
+  // 2-3-6-7: the centres are 7 mm apart, so delta = 1 mm
+  const BodyMotion one{Vector3(1.0, 2.0, 3.0) * 1e-3, Vector3::Zero(), Vector3::Zero()};
+  const BodyMotion two{Vector3(3.0, 5.0, 9.0) * 1e-3, Vector3::Zero(), Vector3::Zero()};
+  const BallContact contact = outer_ball_contact(one, ball_radius, two, other_radius);
+  EXPECT_NEAR(contact.penetration_depth, 1e-3, 4e-18);
+  EXPECT_NEAR(contact.eccentricity, -7e-3, 2e-18);
+  // depth = eccentricity - clearance, with the other ball as a socket turned inside out
+  EXPECT_NEAR(contact.eccentricity + ball_radius + other_radius, contact.penetration_depth, 1e-18);
+  expect_vector_near(contact.normal, Vector3(2, 3, 6) / 7, 1e-15, "from 1 into 2");
+  expect_vector_near(one.position + contact.arm_1, two.position + contact.arm_2, 2e-18, "point");
+  EXPECT_NEAR(contact.arm_1.norm(), ball_radius - 0.5e-3, 1e-17);
+  EXPECT_NEAR(contact.arm_2.norm(), other_radius - 0.5e-3, 1e-17);
+  EXPECT_NEAR(contact.effective_radius, 15e-6 / 8e-3, 1e-17);
+}
+
+TEST(OuterBalls, SeenFromTheOtherBallItIsTheSameContact) {
+  Random random;
+  for (int i = 0; i < 200; ++i) {
+    const BodyMotion one{random.vector(0.1), random.vector(1.0), random.vector(10.0)};
+    const BodyMotion two{one.position + 7.99e-3 * random.unit(), random.vector(1.0),
+                         random.vector(10.0)};
+    const BallContact a = outer_ball_contact(one, ball_radius, two, other_radius);
+    const BallContact b = outer_ball_contact(two, other_radius, one, ball_radius);
+    EXPECT_EQ(a.penetration_depth, b.penetration_depth);
+    EXPECT_NEAR(a.effective_radius, b.effective_radius, 1e-18);
+    // places of 0.1 m carry 1e-17 m each, of 8 mm
+    expect_vector_near(a.normal, -b.normal, 1e-15, "normal");
+    expect_vector_near(a.arm_1, b.arm_2, 1e-16, "arm");
+    expect_vector_near(a.relative_velocity, -b.relative_velocity, 1e-14, "velocity");
+  }
+}
+
+TEST(OuterBalls, RigidMotionOfBothLeavesNoRelativeVelocity) {
+  Random random;
+  for (int i = 0; i < 100; ++i) {
+    const Vector3 origin = random.vector(0.1);
+    const Vector3 drift = random.vector(1.0);
+    const Vector3 spin = random.vector(10.0);
+    const auto moving = [&](const Vector3& position) {
+      return BodyMotion{position, drift + spin.cross(position - origin), spin};
+    };
+    const BodyMotion one = moving(random.vector(0.1));
+    const BodyMotion two = moving(one.position + 7.99e-3 * random.unit());
+    // velocities up to 5 m/s, a dozen roundings
+    EXPECT_LE(outer_ball_contact(one, ball_radius, two, other_radius).relative_velocity.norm(),
+              1e-14);
+  }
+}
+
+TEST(OuterBalls, TouchesAgreesWithDepth) {
+  Random random;
+  int touching = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const BodyMotion one{random.vector(0.1), Vector3::Zero(), Vector3::Zero()};
+    const BodyMotion two{one.position + random.vector(1e-2), Vector3::Zero(), Vector3::Zero()};
+    const bool touches = outer_balls_touch(one.position, ball_radius, two.position, other_radius);
+    const double depth = outer_ball_contact(one, ball_radius, two, other_radius).penetration_depth;
+    if (std::abs(depth) > 1e-17) {
+      EXPECT_EQ(touches, depth > 0.0);
+    }
+    touching += touches;
+  }
+  EXPECT_GT(touching, 100);
+  EXPECT_LT(touching, 1900);
+  const Vector3 lost = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(outer_balls_touch(lost, ball_radius, Vector3::Zero(), other_radius));
+}
+
 }  // namespace
 }  // namespace statejump::kernel

@@ -92,7 +92,7 @@ def engines(
         wrapper.InteractionLoop(
             [
                 sj.Ig2_Journal_Bearing_JointGeom(), sj.Ig2_Ball_Socket_JointGeom(),
-                sj.Ig2_Slider_SlotFace_JointGeom(),
+                sj.Ig2_Slider_SlotFace_JointGeom(), sj.Ig2_Ball_Ball_JointGeom(),
             ],
             [
                 sj.Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys(

@@ -93,6 +93,20 @@ def ball():
     O.forces.setPermF(free, (0, -30.0, 5.0))
 
 
+def balls(law=None):
+    """A ball that hits two others, all free to turn about all axes and hot; the last one reaches a wall."""
+    reset()
+    metal = material(expansion=2e-5)
+    for x, y, radius, velocity in ((-2.1, 0.3, 1, (2, 0.3, -0.1)), (0, 0, 1, (0, 0, 0)), (1.4, 0, 0.4, (0, 0, 0.2))):
+        body(
+            (x * R1, y * R1, 0), sj.Ball(radius=radius * R1), metal, mass=0.004 * radius**3,
+            inertia=4e-8 * radius**5, blocked="", velocity=velocity, spin=(100, -200, 300),
+        )
+    body((-0.45 * R1, 0, 0), sj.Socket(radius=2.75 * R1), metal)
+    engines(sj.ThermalProgram(shape="triangle", temperatureChangeMax=40, period=1e-3), law=law, normal_damping=0.05)
+    O.dt = 2e-7
+
+
 def guided():
     """Two sliders on a hot link, one of them in a plane that is not an axis' own."""
     reset()
@@ -181,6 +195,10 @@ def scenes():
         "joint_in_damped_gravity": (
             lambda: joint(newton=dict(damping=0.2, gravity=(0, -900, 0)), energy=False), 3000, 250),
         "ball": (ball, 3000, 300),
+        "balls": (balls, 8000, 300),
+        "balls_by_name": (
+            lambda: balls(Law(frictionLaw="mindlin_deresiewicz", dissipationLaw="exact_restitution", restitution=0.6)),
+            8000, 300),
         "guided": (guided, 3000, 300),
         "approaching": (approaching, 4000, 500),
         "mixed": (lambda: mixed.scene(False), 2000, 100),
@@ -193,6 +211,7 @@ def scenes():
     found = {name: run_both(*case) for name, case in cases.items()}
     found["in_pieces"] = run_both(joint, 2000, 130, in_pieces)
     found["saved"] = run_both(lambda: mixed.scene(True), 1500, 130, saved)
+    found["balls_saved"] = run_both(lambda: balls(Law(frictionLaw="mindlin_deresiewicz")), 8000, 300, saved)
     found["erased"] = run_both(crowd, 1500, 250, erased)
     return found
 

@@ -18,7 +18,7 @@ struct BodyMotion {
 };
 
 /// Geometry of one contact point between body 1 (journal, ball, slider) and body 2 (bearing,
-/// socket, slot).
+/// socket, slot, other ball).
 /// Filled for a gap too; then the arms meet in the middle of the gap.
 struct JointContact {
   double penetration_depth;   ///< delta [m]; negative: gap
@@ -165,6 +165,41 @@ inline BallContact ball_contact(const BodyMotion& ball, double ball_radius,
   const Vector3 centres = ball.position - socket.position;
   return detail::round_contact(ball, ball_radius, socket, socket_radius, centres, centres,
                                [] { return Vector3(Vector3::UnitX()); });
+}
+
+/// Whether two balls touch each other from outside, decided on squares as revolute_touches():
+/// positions that are no numbers count as touching.
+/// @param centre_1, centre_2 [m]; @param radius_1 R1, radius_2 R2 [m]
+inline bool outer_balls_touch(const Vector3& centre_1, double radius_1, const Vector3& centre_2,
+                              double radius_2) {
+  const double reach = radius_1 + radius_2;
+  return !((centre_1 - centre_2).squaredNorm() >= reach * reach);
+}
+
+/// Two balls that touch each other from outside. With d = r_1 - r_2
+///
+///     delta = R1 + R2 - |d|;   n = -d/|d|;   P = r_1 + (R1 - delta/2) n.
+///
+/// It is ball_contact() with the socket turned inside out, R2 < 0: the effective radius is
+/// R1 R2/(R1 + R2), the clearance -(R1 + R2) and the eccentricity -|d|. One square root, two
+/// divisions.
+/// @param radius_1 R1 [m], @param radius_2 R2 [m], both > 0; |d| > 0
+/// @throws std::invalid_argument when R1 or R2 is not above 0
+/// Limit: Hertz's contact is small against both balls; a depth near a radius means nothing.
+inline BallContact outer_ball_contact(const BodyMotion& ball_1, double radius_1,
+                                      const BodyMotion& ball_2, double radius_2) {
+  BallContact contact;
+  const Vector3 centres = ball_1.position - ball_2.position;
+  const double distance = centres.norm();
+  contact.eccentricity = -distance;
+  contact.normal = centres * (-1.0 / distance);
+  contact.effective_radius = internal_effective_radius(radius_1, -radius_2);
+  contact.penetration_depth = (radius_1 + radius_2) - distance;
+  contact.arm_1 = (radius_1 - 0.5 * contact.penetration_depth) * contact.normal;
+  contact.arm_2 = centres + contact.arm_1;
+  contact.relative_velocity =
+      material_velocity(ball_1, contact.arm_1) - material_velocity(ball_2, contact.arm_2);
+  return contact;
 }
 
 /// Spherical pad of a slider against a flat end wall of its slot.

@@ -7,105 +7,11 @@
 #include <cstddef>
 #include <utility>
 
+#include "statejump/kernel/partial_slip_memory.hpp"
+
 namespace statejump::kernel {
 
-/// A vector in the tangent plane of a contact.
-struct Tangent {
-  double a, b;
-  friend Tangent operator+(const Tangent& l, const Tangent& r) { return {l.a + r.a, l.b + r.b}; }
-  friend Tangent operator-(const Tangent& l, const Tangent& r) { return {l.a - r.a, l.b - r.b}; }
-  friend Tangent operator*(double s, const Tangent& v) { return {s * v.a, s * v.b}; }
-  double dot(const Tangent& v) const { return a * v.a + b * v.b; }
-  double squared() const { return a * a + b * b; }
-  double norm() const { return std::sqrt(squared()); }
-};
-
-/// What a contact with partial slip remembers: the elastic displacement U of its rings, as a line
-/// of straight pieces over x^2; see partial_slip_step(). Copying it costs what it holds.
-class PartialSlipMemory {
- public:
-  struct Point {
-    double x;   ///< 8 G* r [N/m], r the radius of the ring
-    Tangent u;  ///< elastic displacement of that ring [m]
-  };
-  /// Points at most. A path of straight parts under few nested reversals needs two for each; a
-  /// smooth curve under growing load is approximated by chords, see merged().
-  static constexpr int capacity = 48;
-
-  PartialSlipMemory() {}  // NOLINT(modernize-use-equals-default): the points stay as they are
-  PartialSlipMemory(const PartialSlipMemory& other) { *this = other; }
-  PartialSlipMemory& operator=(const PartialSlipMemory& other) {
-    size_ = other.size_;
-    slope_ = other.slope_;
-    merged_ = other.merged_;
-    std::copy_n(other.points_.begin(), size_, points_.begin());
-    return *this;
-  }
-
-  int size() const { return size_; }  ///< 0: no contact, or a new one
-  const Point& operator[](int i) const { return points_[static_cast<std::size_t>(i)]; }
-  /// Stiffness 8 G* a [N/m] of the contact that left this memory; 0: none.
-  double edge() const { return size_ > 0 ? (*this)[size_ - 1].x : 0.0; }
-  /// Of the bound on |U| over x^2 [m^3/N^2].
-  double slope() const { return slope_; }
-  /// Sum of the changes of force by points that were merged since the contact began, each with its
-  /// sign lost [N]: a bound on the error of the force.
-  double merged() const { return merged_; }
-
-  void clear() {
-    size_ = 0;
-    slope_ = 0.0;
-    merged_ = 0.0;
-  }
-  /// Starts over with values that memory() of another contact gave.
-  void begin(double slope, double merged) {
-    size_ = 0;
-    slope_ = slope;
-    merged_ = merged;
-  }
-  void push(const Point& point) { points_[static_cast<std::size_t>(size_++)] = point; }
-  void add_merged(double force) { merged_ += force; }
-
- private:
-  int size_ = 0;
-  double slope_ = 0.0;
-  double merged_ = 0.0;
-  std::array<Point, static_cast<std::size_t>(capacity)> points_;
-};
-
-/// What one step of the contact with partial slip answers.
-struct PartialSlipResponse {
-  Tangent force;       ///< of the contact, positive along the slide that causes it [N]
-  double elastic;      ///< energy of the tangential traction [J], >= 0
-  double dissipation;  ///< friction loss of this step [J], >= 0
-  bool slipping;       ///< no ring sticks
-};
-
 namespace detail {
-
-/// Integrals over dx of products of two functions that are straight over x^2, from xa to xb.
-struct Piece {
-  double both_at_a, one_each, both_at_b;  ///< weights of f_a g_a, f_a g_b and f_b g_a, f_b g_b
-  Piece(double xa, double xb) {
-    const double d = xb - xa;
-    const double q = d / (xb + xa);
-    const double p = 1.0 - q;
-    both_at_b = d * (p * p / 3.0 + 0.5 * p * q + 0.2 * q * q);
-    one_each = d * (0.5 * p + q / 3.0) - both_at_b;
-    both_at_a = d * q / 3.0 + both_at_b;
-  }
-};
-
-/// Change of the force when the point b between a and c is left out [N].
-inline double left_out(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b,
-                       const PartialSlipMemory::Point& c) {
-  const double share = (b.x - a.x) * (b.x + a.x) / ((c.x - a.x) * (c.x + a.x));
-  const Tangent off = b.u - (a.u + share * (c.u - a.u));
-  // the triangle's height times the mean of its base over x: weights of the two pieces at b
-  const double base = (b.x - a.x) * (2.0 * b.x + a.x) / (3.0 * (b.x + a.x)) +
-                      (c.x - b.x) * (2.0 * c.x + b.x) / (3.0 * (c.x + b.x));
-  return off.norm() * std::abs(base);
-}
 
 /// A ring in a step, along the direction in which it slips.
 struct Ring {
@@ -124,21 +30,6 @@ struct Ring {
     return 0.5 * (met + after) * slip();
   }
 };
-
-/// Force and energy that a memory holds, with what the step adds.
-inline PartialSlipResponse answer(const PartialSlipMemory& memory, double loss, bool slipping) {
-  Tangent force{};
-  double energy = 0.0;
-  for (int i = 1; i < memory.size(); ++i) {
-    const PartialSlipMemory::Point& a = memory[i - 1];
-    const PartialSlipMemory::Point& b = memory[i];
-    const Piece w(a.x, b.x);
-    force = force + (w.both_at_a + w.one_each) * a.u + (w.both_at_b + w.one_each) * b.u;
-    energy += 0.5 * (w.both_at_a * a.u.squared() + 2.0 * w.one_each * a.u.dot(b.u) +
-                     w.both_at_b * b.u.squared());
-  }
-  return {force, energy, loss, slipping};
-}
 
 /// Gauss' three points on [0, 1]: exact to the fifth power.
 inline constexpr std::array<double, 3> gauss_point{0.1127016653792583, 0.5, 0.8872983346207417};
@@ -191,8 +82,9 @@ class PartialSlipStep {
   }
 
   PartialSlipResponse run(PartialSlipMemory& memory) {
+    stuck_ = stuck();
     trial();
-    slipping_ = true;  // all rings but the rim's, which carries nothing
+    slipping_ = stuck_ == 0;  // all rings but the rim's, which carries nothing
     for (int i = 0; i + 1 < knots_; ++i) slipping_ = slipping_ && at(i).outside;
     add(at(0).x, at(0).outside ? bent(at(0)) : at(0).trial, false);
     for (int i = 1; i < knots_; ++i) piece(at(i - 1), at(i));
@@ -210,6 +102,27 @@ class PartialSlipStep {
     double bound;   ///< on |U| now
     bool outside;
   };
+
+  /// Points from the centre on that stick and lie well within what the step changes: they move with
+  /// the slide and nothing else happens to them. Rings slip from the rim inwards, so that these are
+  /// nearly all of a contact that is held; the rest is bent and tidied up by itself, with
+  /// `neighbours` of them.
+  int stuck() const {
+    constexpr int neighbours = 5;
+    const int most = old_.size() - neighbours + 1;
+    if (most <= neighbours || !(old_[most - 1].x < edge_)) return 0;
+    int outside = 0;
+    for (int i = 0; i < most; ++i) {
+      const double outer = bound(old_.x()[i]) + smallest_;
+      const double a = old_.a()[i] + slide_.a;
+      const double b = old_.b()[i] + slide_.b;
+      outside += a * a + b * b > outer * outer ? 1 : 0;
+    }
+    if (outside == 0) return most - neighbours;
+    int inside = 0;
+    while (inside < most && !knot(old_[inside].x, old_[inside].u, 1.0).outside) ++inside;
+    return std::max(0, inside - neighbours);
+  }
 
   const Knot& at(int i) const { return knot_[static_cast<std::size_t>(i)]; }
 
@@ -233,14 +146,12 @@ class PartialSlipStep {
   /// The knots between which everything is straight over x^2; what leaves the contact is lost.
   void trial() {
     if (old_.size() == 0) push(knot(0.0, {}, 1.0));
-    for (int i = 0; i < old_.size() && old_[i].x < edge_; ++i)
-      push(knot(old_[i].x, old_[i].u, 1.0));
+    int i = stuck_;
+    for (; i < old_.size() && old_[i].x < edge_; ++i) push(knot(old_[i].x, old_[i].u, 1.0));
     if (edge_ > old_edge_) {
       push(knot(edge_, {}, 0.0));
       return;
     }
-    int i = 0;
-    while (old_[i].x < edge_) ++i;
     PartialSlipMemory::Point cut = old_[i];
     if (i > 0 && cut.x > edge_) cut = {edge_, between(old_[i - 1], cut, edge_)};
     push(knot(edge_, cut.u, 1.0));
@@ -376,7 +287,7 @@ class PartialSlipStep {
     add(b.x, bent(b), true);
   }
 
-  bool knots_left() const { return size_ + 8 < largest; }
+  bool knots_left() const { return stuck_ + size_ + 8 < largest; }
 
   /// Adds a point of the new profile. @param on_bound the piece that ends here follows the bound
   void add(double x, const Tangent& u, bool on_bound) {
@@ -417,22 +328,33 @@ class PartialSlipStep {
       const Tangent off = b.u - (a.u + share * (c.u - a.u));
       if (off.squared() <= 100.0 * smallest_ * smallest_) drop(i);
     }
-    if (size_ > PartialSlipMemory::capacity) {
-      constexpr int kept = 3 * PartialSlipMemory::capacity / 4;
-      double least = 1e-9 * slope_ * square_ * edge_ / 1.5;  // of the force limit
-      while (size_ > kept) {
-        for (int i = size_ - 2; i > 0 && size_ > kept; i -= 2) {
-          const auto j = static_cast<std::size_t>(i);
-          const double change = left_out(point_[j - 1], point_[j], point_[j + 1]);
-          if (change > least) continue;
-          merged += change;
-          drop(i);
-        }
-        least *= 4.0;
-      }
-    }
-    memory.begin(slope_, merged);
+    if (stuck_ + size_ > PartialSlipMemory::capacity) merged += merge();
+    memory.keep(stuck_, slide_, slope_, merged);
     for (int i = 0; i < size_; ++i) memory.push(point_[static_cast<std::size_t>(i)]);
+  }
+
+  /// Replaces points that say least by chords. @return sum of the changes of force [N]
+  double merge() {
+    std::copy_backward(point_.begin(), point_.begin() + size_, point_.begin() + stuck_ + size_);
+    for (int i = 0; i < stuck_; ++i) {
+      point_[static_cast<std::size_t>(i)] = {old_[i].x, old_[i].u + slide_};
+    }
+    size_ += stuck_;
+    stuck_ = 0;
+    constexpr int kept = 3 * PartialSlipMemory::capacity / 4;
+    double least = 1e-9 * slope_ * square_ * edge_ / 1.5;  // of the force limit
+    double merged = 0.0;
+    while (size_ > kept) {
+      for (int i = size_ - 2; i > 0 && size_ > kept; i -= 2) {
+        const auto j = static_cast<std::size_t>(i);
+        const double change = left_out(point_[j - 1], point_[j], point_[j + 1]);
+        if (change > least) continue;
+        merged += change;
+        drop(i);
+      }
+      least *= 4.0;
+    }
+    return merged;
   }
 
   void drop(int i) {
@@ -454,6 +376,7 @@ class PartialSlipStep {
   double loss_ = 0.0;
   bool slipping_ = false;
   bool follows_ = false;  // the last piece follows the bound
+  int stuck_ = 0;         // points that only move with the slide; the others are below
   int knots_ = 0;
   int size_ = 0;
   std::array<Knot, static_cast<std::size_t>(PartialSlipMemory::capacity) + 2> knot_;
@@ -461,11 +384,6 @@ class PartialSlipStep {
 };
 
 }  // namespace detail
-
-/// Energy [J] of the tangential traction that a memory holds.
-inline double elastic_energy(const PartialSlipMemory& memory) {
-  return detail::answer(memory, 0.0, false).elastic;
-}
 
 /// One step of Hertz's contact with partial slip, along a straight path: the contact that slides at
 /// its rim before it slides (Cattaneo 1938; Mindlin 1949; Mindlin and Deresiewicz 1953).

@@ -29,7 +29,7 @@ struct Heater {
   std::vector<Target> targets;
 };
 
-enum class Joint : unsigned char { revolute, ball, plane };
+enum class Joint : unsigned char { revolute, ball, plane, outer_balls };
 
 /// Two bodies that touch or may touch.
 struct Contact {

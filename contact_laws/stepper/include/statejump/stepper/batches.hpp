@@ -65,7 +65,8 @@ class Batches {
   };
 
   static bool allows(const Contact& contact) {
-    return !contact.turns && contact.physics.slipMemory.empty() &&
+    return !contact.turns && contact.joint != Joint::outer_balls &&
+           contact.physics.slipMemory.empty() &&
            !(contact.joint == Joint::revolute && contact.tilted);
   }
   void fill_bodies(bool nothing_between);

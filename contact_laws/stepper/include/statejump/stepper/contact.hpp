@@ -87,7 +87,7 @@ struct ContactEnergy {
 enum class Found {
   apart,    ///< no contact, and there was none
   contact,  ///< the geometry is that of this step
-  closed,   ///< the clearance is closed: no contact can be computed
+  closed,   ///< the clearance is closed, or a centre inside the other ball: no contact
   tilted    ///< the axes are not parallel
 };
 
@@ -160,6 +160,36 @@ Found find_ball(const Part& ball, const Part& socket, const kernel::BodyMotion& 
   return Found::contact;
 }
 
+/// Two balls, each outside the other; the rest as find_revolute(). The radius of the second counts
+/// as that of a bearing turned inside out, negative. @return closed when the centre of one lies
+/// inside the other, where no contact can be computed
+template <class Make>
+Found find_outer_balls(const Part& ball_1, const Part& ball_2, const kernel::BodyMotion& motion_1,
+                       const kernel::BodyMotion& motion_2, bool keep, double time_step,
+                       Make&& make) {
+  const double radius_1 = ball_1.expanded();
+  const double radius_2 = ball_2.expanded();
+  if (!keep &&
+      !kernel::outer_balls_touch(motion_1.position, radius_1, motion_2.position, radius_2)) {
+    return Found::apart;
+  }
+  const double larger = std::max(radius_1, radius_2);
+  if (!(radius_1 > 0 && radius_2 > 0 &&
+        (motion_1.position - motion_2.position).squaredNorm() > larger * larger)) {
+    return Found::closed;
+  }
+  const kernel::JointContact found =
+      kernel::outer_ball_contact(motion_1, radius_1, motion_2, radius_2);
+  auto& geometry = make(found.normal);
+  geometry.journalRadius = radius_1;
+  geometry.bearingRadius = -radius_2;
+  geometry.axis = Vector3::Zero();
+  geometry.clearanceRate =
+      -(ball_1.length * ball_1.strain_rate + ball_2.length * ball_2.strain_rate);
+  update(found, motion_1, motion_2, time_step, geometry);
+  return Found::contact;
+}
+
 /// Pad of a slider (1) on a face of its slot (2); the rest as find_revolute().
 /// @param normal unit, world, from the slider into the face
 template <class Make>
@@ -200,10 +230,11 @@ kernel::ContactHistory contact_history(const Geometry& geometry, const Physics& 
   if (!physics.slipMemory.empty()) {
     history.tangential_axis = kernel::transport(physics.slipAxis, geometry.previousNormal,
                                                 geometry.normal, geometry.twistAngle);
-    history.memory.begin(physics.slipSlope, physics.slipMerged);
-    for (const Vector3& point : physics.slipMemory) {
-      history.memory.push({point[0], {point[1], point[2]}});
-    }
+    history.memory.fill(static_cast<int>(physics.slipMemory.size()), physics.slipSlope,
+                        physics.slipMerged, [&](int i) -> kernel::PartialSlipMemory::Point {
+                          const Vector3& point = physics.slipMemory[static_cast<std::size_t>(i)];
+                          return {point[0], {point[1], point[2]}};
+                        });
   }
   return history;
 }
@@ -222,10 +253,13 @@ void store(const kernel::ContactResponse& response, const kernel::ContactHistory
   physics.slipAxis = history.tangential_axis;
   physics.slipSlope = memory.slope();
   physics.slipMerged = memory.merged();
-  physics.slipMemory.resize(static_cast<std::size_t>(memory.size()));
-  for (int i = 0; i < memory.size(); ++i) {
-    physics.slipMemory[static_cast<std::size_t>(i)] =
-        Vector3(memory[i].x, memory[i].u.a, memory[i].u.b);
+  const auto points = static_cast<std::size_t>(memory.size());
+  physics.slipMemory.resize(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    Vector3& point = physics.slipMemory[i];
+    point[0] = memory.x()[i];
+    point[1] = memory.a()[i];
+    point[2] = memory.b()[i];
   }
 }
 

@@ -260,6 +260,9 @@ inline Found Scene::find(Contact& contact) {
     }
     case Joint::ball:
       return find_ball(part_1, part_2, one.motion, two.motion, contact.real, time_step, geometry);
+    case Joint::outer_balls:
+      return find_outer_balls(part_1, part_2, one.motion, two.motion, contact.real, time_step,
+                              geometry);
     case Joint::plane:
       break;
   }
