@@ -3,6 +3,7 @@
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
+#include <algorithm>
 
 #include <string>
 #include <type_traits>
@@ -275,20 +276,54 @@ py::dict states_dict(const truss::Model& model, const std::vector<truss::State>&
   return d;
 }
 
-py::list event_list(const truss::Model& model, const std::vector<truss::Event>& found) {
-  py::list events;
-  for (const truss::Event& event : found) {
-    py::dict one;
-    one["time_s"] = event.time;
-    one["interval_s"] = event.interval;
-    one["temperature_change_K"] = event.temperature_change;
-    const truss::Joint& joint = model.joints[static_cast<std::size_t>(event.joint)];
-    one["joint_kind"] = truss::kind_of(joint);
-    one["name"] = truss::name_of(joint);
-    one["before"] = to_string(event.before);
-    one["after"] = to_string(event.after);
-    events.append(one);
+/// A number of every event.
+template <class Number, class Value>
+py::array_t<Number> of_events(const std::vector<truss::Event>& found, Value value) {
+  py::array_t<Number> result(static_cast<py::ssize_t>(found.size()));
+  std::transform(found.begin(), found.end(), result.mutable_data(), value);
+  return result;
+}
+
+/// Events by columns: a truss of a million joints has millions. Joints are numbered among those of
+/// their kind, statuses are codes whose names stand in `statuses`.
+py::dict event_columns(const truss::Model& model, const std::vector<truss::Event>& found) {
+  using truss::Event;
+  std::vector<py::ssize_t> place(model.joints.size());
+  std::vector<unsigned char> kind(model.joints.size());
+  py::list kinds;
+  truss::for_each_joint_type([&]<class Type>(std::type_identity<Type>) {
+    py::ssize_t next = 0;
+    for (const py::ssize_t joint : of_type<Type>(model).joints) {
+      place[static_cast<std::size_t>(joint)] = next++;
+      kind[static_cast<std::size_t>(joint)] = static_cast<unsigned char>(kinds.size());
+    }
+    kinds.append(std::string(Type::kind));
+  });
+  py::dict statuses;
+  for (const Event& event : found) {
+    for (const truss::JointStatus status : {event.before, event.after}) {
+      const py::int_ code(static_cast<int>(status));
+      if (!statuses.contains(code)) statuses[code] = to_string(status);
+    }
   }
+  const auto code = [](truss::JointStatus status) { return static_cast<unsigned char>(status); };
+  const auto joint = [](const Event& event) { return static_cast<std::size_t>(event.joint); };
+  py::dict events;
+  events["time_s"] = of_events<double>(found, [](const Event& event) { return event.time; });
+  events["interval_s"] =
+      of_events<double>(found, [](const Event& event) { return event.interval; });
+  events["temperature_change_K"] =
+      of_events<double>(found, [](const Event& event) { return event.temperature_change; });
+  events["kind"] =
+      of_events<unsigned char>(found, [&](const Event& event) { return kind[joint(event)]; });
+  events["joint"] =
+      of_events<py::ssize_t>(found, [&](const Event& event) { return place[joint(event)]; });
+  events["before"] =
+      of_events<unsigned char>(found, [&](const Event& event) { return code(event.before); });
+  events["after"] =
+      of_events<unsigned char>(found, [&](const Event& event) { return code(event.after); });
+  events["kinds"] = kinds;
+  events["statuses"] = statuses;
   return events;
 }
 
@@ -325,7 +360,7 @@ py::dict motion_dict(const truss::Model& model, const truss::Motion& motion) {
   states["drive_work_J"] = scalars(motion.moving, &MovingState::drive_work);
   states["drive_moment_N_m"] = stacked(motion.moving, &MovingState::drive_moment, 1);
   result["states"] = states;
-  result["events"] = event_list(model, motion.events);
+  result["events"] = event_columns(model, motion.events);
   result["event_heat_J"] = py::array_t<double>(static_cast<py::ssize_t>(motion.event_heat.size()),
                                                motion.event_heat.data());
   result["watched_velocity_m_per_s"] = Eigen::MatrixX3d(motion.watched_velocity.transpose());
@@ -351,7 +386,7 @@ py::dict path_dict(const truss::Model& model, const truss::Path& path) {
   py::dict result;
   result["states"] = states_dict(model, path.states);
   result["cycle_ends"] = states_dict(model, path.cycle_ends);
-  result["events"] = event_list(model, path.events);
+  result["events"] = event_columns(model, path.events);
   py::list problems;
   for (const truss::LocalProblem& problem : path.problems) {
     py::dict one;

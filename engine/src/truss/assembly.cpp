@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "system.hpp"
@@ -9,19 +10,33 @@
 namespace statejump::truss {
 
 void Assembly::record() {
+  // A million joints write some 1e8 places: beside them only their rows are held, column by column.
   const Eigen::Index n = residual.size();
-  std::vector<Eigen::Triplet<double>> triplets;
-  triplets.reserve(places_.size());
-  for (const auto& [row, column] : places_) triplets.emplace_back(row, column, 0.0);
+  std::vector<int> rows(places_.size()), next(static_cast<std::size_t>(n) + 1, 0);
+  for (const auto& place : places_) ++next[static_cast<std::size_t>(place.second) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (const auto& [row, column] : places_) {
+    rows[static_cast<std::size_t>(next[static_cast<std::size_t>(column)]++)] = row;
+  }
   jacobian.resize(n, n);
-  jacobian.setFromTriplets(triplets.begin(), triplets.end());
-  jacobian.makeCompressed();
+  auto kept = rows.begin(), begin = rows.begin();
+  for (Eigen::Index column = 0; column < n; ++column) {
+    const auto end = rows.begin() + next[static_cast<std::size_t>(column)];
+    std::sort(begin, end);
+    kept = std::copy(begin, std::unique(begin, end), kept);
+    jacobian.outerIndexPtr()[column + 1] = static_cast<int>(kept - rows.begin());
+    begin = end;
+  }
+  jacobian.resizeNonZeros(kept - rows.begin());
+  std::copy(rows.begin(), kept, jacobian.innerIndexPtr());
+  std::fill_n(jacobian.valuePtr(), jacobian.nonZeros(), 0.0);
+  rows = {};
   slots_.reserve(places_.size());
   for (const auto& [row, column] : places_) {
-    const int* rows = jacobian.innerIndexPtr();
-    const int* begin = rows + jacobian.outerIndexPtr()[column];
-    const int* end = rows + jacobian.outerIndexPtr()[column + 1];
-    slots_.push_back(static_cast<int>(std::lower_bound(begin, end, row) - rows));
+    const int* inner = jacobian.innerIndexPtr();
+    const int* first = inner + jacobian.outerIndexPtr()[column];
+    const int* last = inner + jacobian.outerIndexPtr()[column + 1];
+    slots_.push_back(static_cast<int>(std::lower_bound(first, last, row) - inner));
   }
   places_ = {};
   recorded_ = true;

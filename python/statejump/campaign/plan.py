@@ -120,7 +120,7 @@ def plan_of(
     :param asked: outputs beside the outcomes of the kind
     """
     return Plan(
-        command=command, model=model, case_data=case.origin.data, vary=vary, seed=seed,
+        command=command, model=model, case_data=case.origin.document, vary=vary, seed=seed,
         outcomes=(*case.behaviour.OUTCOMES, *asked), outputs=asked, kinds=tuple(registered()), name=name,
         title=title or name, case=case, samples=samples, file=file, text=text,
     )

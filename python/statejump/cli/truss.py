@@ -16,6 +16,7 @@ from statejump.case import Case
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown, progress
 from statejump.cli.suggesting import Suggesting
 from statejump.cli.truss_answers import answers_command
+from statejump.cli.truss_files import TABLES, new_files
 from statejump.cli.truss_import import import_command
 from statejump.cli.truss_surface import surface_command
 from statejump.core.errors import NotWritten, StatejumpError
@@ -70,10 +71,9 @@ def _generator_command(kind: str, function: Callable[..., Case]) -> click.Comman
             if key not in ("n", "name")}
     _, described = _summary(function)
 
-    def make(n: int, output: Path, force: bool, quiet: bool, **values: Any) -> None:
+    def make(n: int, output: Path, tables: bool, force: bool, quiet: bool, **values: Any) -> None:
         console = make_console(quiet)
-        if os.path.exists(output) and not force:
-            raise StatejumpError(cause="exists already", file=output, remedy="--force overwrites it")
+        beside = new_files(output, tables, force)
         if not os.path.isdir(output.parent):
             raise NotWritten("cannot be written", file=output, cause=f"there is no folder {output.parent}")
         try:
@@ -85,11 +85,12 @@ def _generator_command(kind: str, function: Callable[..., Case]) -> click.Comman
             else "--no-" + _shown(key)[2:]
             for key, value in values.items() if value != keys[key]
         ]
-        line = " ".join(["statejump truss", kind, str(n), *given, "-o", shlex.quote(output.name)])
+        line = " ".join(["statejump truss", kind, str(n), *given, *["--tables"] * tables, "-o",
+                         shlex.quote(output.name)])
         from statejump.schema.json_schema import head_line
 
         write(case.definition.origin.data, output,
-              [head_line(case.kind, output), f"# Made by: {line}", "# Units are in the names."])
+              [head_line(case.kind, output), f"# Made by: {line}", "# Units are in the names."], beside)
         joints = len(case.slider) + len(case.revolute)
         console.print(f"{output}: nodes {len(case.node)}, links {len(case.link)}, joints {joints}")
 
@@ -98,6 +99,7 @@ def _generator_command(kind: str, function: Callable[..., Case]) -> click.Comman
         click.Argument(["n"], metavar="N", type=click.IntRange(LEAST[kind], LARGEST)),
         click.Option(["-o", "--output", "output"], required=True, metavar="FILE", type=click.Path(path_type=Path),
                      help="Case file to write; its name is that of the case."),
+        click.Option(["--tables"], **TABLES),
         click.Option(["--force"], is_flag=True, help="Overwrite the file."),
     ]
     for key, default in keys.items():

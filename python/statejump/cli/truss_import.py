@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 
 from statejump.cli.terminal import QUIET, make_console, print_table
+from statejump.cli.truss_files import TABLES, new_files
 from statejump.core.errors import NotAllowed, StatejumpError, printable
-from statejump.core.output import check_target
 
 
 def _joint(text: str) -> dict[str, str]:
@@ -78,13 +78,14 @@ def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) ->
               help="Nodes of a reflecting surface: names or patterns, with commas between them.")
 @click.option("--reflector-axis", type=float, nargs=3, default=(0, 0, 1), show_default=True, metavar="X Y Z",
               help="Axis of that surface; of a planar truss Z is left out.")
+@click.option("--tables", **TABLES)
 @click.option("--force", is_flag=True, help="Overwrite the file.")
 @QUIET
 def import_command(
     file: Path, output: Path, form: str | None, bars: Path | None, length_unit: float, force_unit: float,
     temperature_change: float | None, fixed: tuple[str, ...], density: float | None, members_file: Path | None,
     reference_temperature: float | None, lead_in: float | None, lead_out: float | None, joints: tuple[str, ...],
-    reflector: str | None, reflector_axis: tuple[float, float, float], force: bool, quiet: bool,
+    reflector: str | None, reflector_axis: tuple[float, float, float], tables: bool, force: bool, quiet: bool,
     **links: float | None,
 ) -> None:
     """A truss of another program as a case file: decks of CalculiX and Abaqus, Nastran bulk data, CSV tables,
@@ -103,9 +104,7 @@ def import_command(
     from statejump.schema.json_schema import head_line
 
     console = make_console(quiet)
-    if os.path.exists(output) and not force:
-        raise StatejumpError(cause="exists already", file=output, remedy="--force overwrites it")
-    check_target(output)
+    beside = new_files(output, tables, force)
     deck = read(file, form, bars)
     document = case_document(
         deck, output.stem, length_unit_m=length_unit, force_unit_N=force_unit,
@@ -122,7 +121,7 @@ def import_command(
         raise refused.located(file=file) from None
     left = [f"# Left out: {printable(card)} ({count}): {why}" for card, count, _, why in deck.left_rows()]
     write(document, output, [head_line("truss", output), f"# Imported from {printable(file.name)}", *left,
-                             "# Units are in the names."])
+                             "# Units are in the names."], beside)
     for table in deck.account():
         print_table(table, console)
     console.print(f"{output}: nodes {len(document['node'])}, links {len(document['link'])}, joints "

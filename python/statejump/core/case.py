@@ -12,6 +12,7 @@ from statejump.core import thermal as programs
 from statejump.core.errors import NotAllowed
 from statejump.core.thermal import Thermal
 from statejump.schema.fields import CHOICE, Section, definition, evolved, section, text
+from statejump.schema.item_tables import with_rows
 from statejump.schema.paths import set_value
 from statejump.schema.rules import FOLDER_NAME
 
@@ -44,6 +45,11 @@ class Origin:
     data: Mapping[str, Any]
     file: Path | None = None
     text: str = ""
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The sections and keys as a file without tables beside it has them."""
+        return with_rows(self.data)
 
     @property
     def folder(self) -> Path:
@@ -141,7 +147,7 @@ class Case(Section):
         """
         from statejump.kinds.loading import parse_case
 
-        origin, data = self.origin, deepcopy(dict(self.origin.data))
+        origin, data = self.origin, deepcopy(self.origin.document)
         for path, value in changes.items():
             set_value(type(self), data, path, value)
         return parse_case(data, file=origin.file, text="", files_from=origin.folder)

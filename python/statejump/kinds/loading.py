@@ -10,6 +10,7 @@ from typing import Any
 from statejump import _paths
 from statejump.core.case import Case, CaseHeader, Origin
 from statejump.core.errors import StatejumpError
+from statejump.core.item_files import with_tables
 from statejump.core.temperature_files import with_files
 from statejump.kinds import kind, names
 from statejump.schema.fields import Section, definition, fields_of, section, section_of, structure
@@ -43,7 +44,7 @@ def parse_case(
     :param data: sections and keys, as tomllib returns them
     :param file: where it comes from, for messages and for files that it names
     :param text: the file as read
-    :param files_from: folder in which the files of temperatures are that it names; None: it may name none
+    :param files_from: folder in which the files of temperatures and tables are that it names; None: it may name none
     :raises StatejumpError: one failure; of several the first
     """
     try:
@@ -51,6 +52,7 @@ def parse_case(
         data = with_keys_moved(of_kind.Case, data, str(file or ""))
         if files_from is not None:
             data = with_files(data, files_from, section_of(fields_of(of_kind.Case)["thermal"]))
+            data = with_tables(data, files_from, of_kind.Case)
         made = of_kind.case_from(data)
     except StatejumpError as failure:
         raise failure.located(file=file) from None

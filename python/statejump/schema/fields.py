@@ -23,6 +23,7 @@ from statejump.schema.rules import ATTACHED, NUMBER, NUMBERS, SWITCH, TEXT, TEXT
 
 CHOICE = "choice, the paper is silent"
 RULE, SECTION, TABLES, READ = "rule", "section", "tables", "read"
+TABLES_BESIDE = "tables"  # name of the section that names files of lists, where a kind has it
 
 SectionType = TypeVar("SectionType", bound="Section")
 Names = Sequence[str] | Callable[[], Sequence[str]]
@@ -191,7 +192,8 @@ class Section:
 def _plain(value: Any) -> Any:
     if isinstance(value, Section):
         return value.to_dict()
-    return [_plain(item) for item in value] if isinstance(value, list) else value
+    # Items by columns are no list, but a sequence like one.
+    return [_plain(item) for item in value] if isinstance(value, Sequence) and not isinstance(value, str) else value
 
 
 _KNOWN: dict[type[Section], Mapping[str, attrs.Attribute[Any]]] = {}

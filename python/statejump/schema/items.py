@@ -2,11 +2,13 @@
 """Lists of tables in case files, [[node]] and the like: items with a name, checked one by one."""
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf
 from typing import Any, TypeVar
 
 from statejump.core.errors import MissingKey, NotAllowed, UnknownKey
 from statejump.schema.fields import Section, default_of, definition, fields_of, is_required, rule_of, text
+from statejump.schema.item_tables import ItemColumns, ItemTable
 from statejump.schema.rules import NUMBER, suggestion
 
 ItemType = TypeVar("ItemType", bound=Section)
@@ -29,17 +31,19 @@ def where(section: str, table: Any, number: int) -> str:
     return f"{section} {name!r}" if isinstance(name, str) and name else f"{section} {number}"
 
 
-def read_tables(model: type[ItemType], section: str, value: Any) -> list[ItemType]:
-    """Return the items of a list of tables.
+def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[ItemType]:
+    """Return the items of a list of tables, as they are given: one by one, or by columns.
 
     A truss of 10 000 joints has some 100 000 items. A number that is one and in its range is told by a
     comparison, and items are made without going through the checks of their class once more.
 
     :param model: what an item is
     :param section: name of the list
-    :param value: what tomllib returned for it
+    :param value: what tomllib returned for it, or an :class:`~statejump.schema.item_tables.ItemTable`
     :raises StatejumpError: one failure, without the file's name
     """
+    if isinstance(value, ItemTable):
+        return ItemColumns(model, section, value)
     if not isinstance(value, list) or not value or not all(isinstance(table, dict) for table in value):
         needs = f"must be one or more sections [[{section}]]"
         raise NotAllowed(section, cause=needs) if isinstance(value, (list, dict)) else NotAllowed(section, value, needs)

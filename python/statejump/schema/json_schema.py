@@ -19,7 +19,7 @@ from statejump import _paths
 from statejump.core.errors import Range
 from statejump.core.output import write_atomically
 from statejump.schema.fields import (
-    Section, default_of, fields_of, is_required, rule_of, section_of, tables_of,
+    TABLES_BESIDE, Section, default_of, fields_of, is_required, rule_of, section_of, tables_of,
 )
 from statejump.schema.items import Item
 from statejump.schema.rules import ATTACHED, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, check_name
@@ -148,12 +148,15 @@ def _part(attribute: Any) -> Schema:
 
 def _file(model: type[Section], title: str, leave_out: Iterable[str] = ()) -> Schema:
     parts = {name: attribute for name, attribute in fields_of(model).items() if name not in leave_out}
+    # What may stand in a file beside this one is not required in it; reading it says what is missing.
+    tables = section_of(parts[TABLES_BESIDE]) if TABLES_BESIDE in parts else None
+    beside = fields_of(tables) if tables is not None else {}
     return {
         "title": title,
         "description": " ".join((model.__doc__ or "").split()),
         "type": "object",
         "properties": {name: _part(attribute) for name, attribute in parts.items()},
-        "required": [name for name, attribute in parts.items() if is_required(attribute)],
+        "required": [name for name, attribute in parts.items() if is_required(attribute) and name not in beside],
         "additionalProperties": False,
     }
 

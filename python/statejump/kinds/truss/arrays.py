@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
 
 GROUND = -1
@@ -21,7 +22,14 @@ SAME_DIRECTION = 1e-6
 
 def column(items: Sequence[Item], key: str) -> np.ndarray:
     """Return one number of every item; NaN where it is not given."""
+    if isinstance(items, ItemColumns):
+        return items.numbers(key)
     return np.array([getattr(item, key) for item in items], dtype=float)
+
+
+def values(items: Sequence[Any], key: str) -> Iterable[Any]:
+    """Return a key of every item, None where it is not given."""
+    return items.values(key) if isinstance(items, ItemColumns) else (getattr(item, key) for item in items)
 
 
 def columns(items: Sequence[Item], *keys: str) -> dict[str, np.ndarray]:
@@ -31,21 +39,31 @@ def columns(items: Sequence[Item], *keys: str) -> dict[str, np.ndarray]:
 
 def names(items: Sequence[Item]) -> tuple[str, ...]:
     """Return the names of the items."""
-    return tuple(item.name for item in items)
+    return tuple(values(items, "name"))
 
 
-def numbering(items: Iterable[Item]) -> dict[str | None, int]:
+def numbering(items: Sequence[Item]) -> dict[str | None, int]:
     """Return the index of every name; that of no name is GROUND."""
-    return {None: GROUND, **{item.name: index for index, item in enumerate(items)}}
+    return {None: GROUND, **{name: index for index, name in enumerate(values(items, "name"))}}
 
 
-def vectors(values: Sequence[Sequence[float] | None], dimension: int) -> np.ndarray:
-    """Return vectors (n, 3) of 2 or 3 numbers each, zero where there is none."""
+def vectors(items: Sequence[Item], key: str, dimension: int) -> np.ndarray:
+    """Return a vector of every item (n, 3), of 2 or 3 numbers each, zero where there is none."""
+    found = np.zeros((len(items), 3))
+    if isinstance(items, ItemColumns):
+        given = items.numbers(key)
+        if given.ndim == 2:
+            found[:, :dimension] = np.nan_to_num(given)
+        return found
     none = (0.0,) * dimension
-    given = np.array([none if value is None else value for value in values], dtype=float).reshape(-1, dimension)
-    found = np.zeros((len(given), 3))
-    found[:, :dimension] = given
+    given = np.array([none if value is None else value for value in values(items, key)], dtype=float)
+    found[:, :dimension] = given.reshape(-1, dimension)
     return found
+
+
+def in_space(given: Sequence[float] | None, dimension: int) -> np.ndarray:
+    """Return a vector (3,) of 2 or 3 numbers; zero if there is none."""
+    return np.array([*(given or (0.0,) * dimension), *(0.0,) * (3 - dimension)])
 
 
 def unit(given: np.ndarray) -> np.ndarray:
@@ -71,22 +89,22 @@ class References:
 
     def programs_of(self, items: Sequence[Any]) -> np.ndarray:
         """Return the temperature program (items,) of items that may name one."""
-        return np.array([self.member.get(item.name, 0) if item.program is None else self.program[item.program]
-                         for item in items], dtype=int)
+        return np.array([self.member.get(name, 0) if program is None else self.program[program]
+                         for name, program in zip(values(items, "name"), values(items, "program"))], dtype=int)
 
     def axes(self, items: Sequence[Any]) -> np.ndarray:
         """Return unit axes of rotation (items, 3): z in the plane."""
         if self.dimension == 2:
             return np.tile([0.0, 0.0, 1.0], (len(items), 1))
-        return unit(vectors([item.axis for item in items], self.dimension))
+        return unit(vectors(items, "axis", self.dimension))
 
 
 def indices(items: Sequence[Any], key: str, number: dict[str | None, int]) -> np.ndarray:
     """Return what a key of every item names (items,)."""
-    return np.array([number[getattr(item, key)] for item in items], dtype=int)
+    return np.array([number[name] for name in values(items, key)], dtype=int)
 
 
 def pairs(items: Sequence[Any], key: str, number: dict[str | None, int]) -> np.ndarray:
     """Return the one or two that a key of every item names (items, 2), GROUND in place of the second."""
-    found = [[number[name] for name in getattr(item, key)] for item in items]
+    found = ([number[name] for name in given] for given in values(items, key))
     return np.array([(pair + [GROUND])[:2] for pair in found], dtype=int).reshape(-1, 2)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from math import pi
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from statejump.core import thermal as core_thermal
 from statejump.core import yade_process
@@ -26,8 +26,8 @@ from statejump.kinds.truss.joints.words import ALUMINIUM, USER
 from statejump.kinds.truss.mechanism import Drive
 from statejump.kinds.truss.resolved import FIXITY, STICKING, ResolvedTruss, resolve
 from statejump.schema.fields import (
-    CHOICE, Section, attached, choice, definition, evolved, numbers, optional_section, parameter, section, switch,
-    tables, text, texts, whole,
+    CHOICE, Section, attached, choice, definition, evolved, fields_of, numbers, optional_section, parameter, section,
+    switch, tables, text, texts, whole,
 )
 from statejump.schema.items import Item
 
@@ -154,6 +154,29 @@ class Output(Section):
     samples_per_cycle: int = whole(200, 10, 1_000_000, CHOICE)
 
 
+def sections_in_files() -> tuple[str, ...]:
+    """Return the lists that may stand in files beside a case."""
+    return tuple(fields_of(Tables))
+
+
+def _beside(section: str) -> Any:
+    return text(None, f"CSV or HDF5 file, in place of [[{section}]]")
+
+
+@definition
+class Tables(Section):
+    """Files beside the case file with one row an item and one column a key, in place of sections: large trusses."""
+
+    node: str | None = _beside("node")
+    link: str | None = _beside("link")
+    slider: str | None = _beside("slider")
+    revolute: str | None = _beside("revolute")
+    spring: str | None = _beside("spring")
+    torsion_spring: str | None = _beside("torsion_spring")
+    latch_hinge: str | None = _beside("latch_hinge")
+    iwan_joint: str | None = _beside("iwan_joint")
+
+
 @definition
 class TrussReduced(Section):
     """How the quasi-static solver follows the path."""
@@ -236,6 +259,7 @@ class TrussCase(Case):
     dem: TrussDem = section(TrussDem)
     reflector: Reflector | None = optional_section(Reflector)
     tolerance: TrussTolerance = section(TrussTolerance)
+    tables: Tables | None = optional_section(Tables)
 
     @property
     def samples_per_cycle(self) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
@@ -10,6 +11,7 @@ from statejump.kinds.truss import mechanism
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.references import known_links, known_name, known_nodes
+from statejump.schema.item_tables import by_name
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.case import TrussCase
@@ -19,8 +21,7 @@ _WITH_TEMPERATURE = [joint for joint in JOINTS if joint.has_temperature]
 
 def check_references(case: TrussCase) -> None:
     """Raise StatejumpError for the first name that is not there or does not fit."""
-    nodes = {node.name: node for node in case.node}
-    links = {link.name: link for link in case.link}
+    nodes, links = by_name(case.node), by_name(case.link)
     for link in case.link:
         known_nodes(link.nodes, 2, nodes, {"item": f"link {link.name!r}"})
     for tie in case.spring:
@@ -42,15 +43,15 @@ def check_references(case: TrussCase) -> None:
             known_name("reflector.nodes", ABSENT, name, nodes, "node", beside="as it is")
 
 
-def _followers(case: TrussCase) -> list[tuple[Any, dict[str, Any], bool]]:
+def _followers(case: TrussCase) -> Iterator[tuple[Any, dict[str, Any], bool]]:
     """Return what follows a temperature: the item, how failures name it, whether it expands."""
-    return [*((link, {"item": f"link {link.name!r}"}, True) for link in case.link),
-            *((item, joint.where(item.name), joint.expands(item)) for joint in _WITH_TEMPERATURE
-              for item in listed_joints(case, joint))]
+    yield from ((link, {"item": f"link {link.name!r}"}, True) for link in case.link)
+    yield from ((item, joint.where(item.name), joint.expands(item)) for joint in _WITH_TEMPERATURE
+                for item in listed_joints(case, joint))
 
 
 def _programs(case: TrussCase) -> None:
-    programs = {program.name: program for program in case.program}
+    programs = by_name(case.program)
     for item, where, _ in _followers(case):
         if item.program is not None and item.program not in programs:
             known_name("program", item.program, item.program, programs, "program", **where)
@@ -58,7 +59,7 @@ def _programs(case: TrussCase) -> None:
 
 def _expansions(case: TrussCase) -> None:
     """Every link has a coefficient or names one that follows the temperature."""
-    expansions = {expansion.name: expansion for expansion in case.expansion}
+    expansions = by_name(case.expansion)
     for link in case.link:
         where = {"item": f"link {link.name!r}"}
         if link.expansion is not None and link.thermal_expansion_per_K is not None:
@@ -75,8 +76,7 @@ def _members(case: TrussCase) -> None:
     if members is None:
         return
     file, columns = members.source or ABSENT, set(members.names)
-    followers = _followers(case)
-    for item, where, expands in followers:
+    for item, where, expands in _followers(case):
         where = {"item": where["item"]}
         if item.name not in columns:
             if item.program is None and expands:
@@ -89,7 +89,7 @@ def _members(case: TrussCase) -> None:
         if item.temperature_fraction != 1:
             raise NotAllowed("temperature_fraction", item.temperature_fraction,
                              "thermal.members_file has its temperature", **where)
-    known = {item.name for item, _, _ in followers}
+    known = {item.name for item, _, _ in _followers(case)}
     kinds = " and ".join(f"no {section}" for section in ("link", *(joint.section for joint in _WITH_TEMPERATURE)))
     for name in members.names:
         if name not in known:

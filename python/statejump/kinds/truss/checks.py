@@ -25,6 +25,8 @@ SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in
 
 def check(case: TrussCase) -> None:
     """Raise StatejumpError for the first thing that is wrong with a truss as a whole, without the file's name."""
+    if case.tables is not None:
+        raise NotAllowed("section [tables]", cause="only where a case file names files")
     _programs(case)
     _expansions(case)
     _names(case)

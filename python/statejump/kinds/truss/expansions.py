@@ -9,7 +9,7 @@ import numpy as np
 
 from statejump.core.errors import NotAllowed
 from statejump.core.expansion import followed
-from statejump.kinds.truss.arrays import column
+from statejump.kinds.truss.arrays import column, values
 
 if TYPE_CHECKING:
     from statejump.core.temperature_files import MemberProgram
@@ -42,17 +42,17 @@ def link_temperatures(case: TrussCase, shown: np.ndarray, names: tuple[str, ...]
     fraction = column(case.link, "temperature_fraction")
     program, own_fraction, largest = shown.copy(), fraction.copy(), np.zeros(len(case.link))
     made: dict[tuple[int, float, str], int] = {}
-    for index, link in enumerate(case.link):
-        if link.expansion is None:
+    for index, named_expansion in enumerate(values(case.link, "expansion")):
+        if named_expansion is None:
             continue
-        expansion, number = expansions[link.expansion], int(shown[index])
-        key = number, link.temperature_fraction, link.expansion
+        expansion, number = expansions[named_expansion], int(shown[index])
+        key = number, float(fraction[index]), named_expansion
         if key not in made:
             followed_program = programs[number]
             try:
-                strain = followed(expansion, followed_program, followed_program.period_s, link.temperature_fraction)
+                strain = followed(expansion, followed_program, followed_program.period_s, key[1])
             except NotAllowed as refused:
-                refused.item = f"expansion {expansion.name!r}, link {link.name!r}"
+                refused.item = f"expansion {expansion.name!r}, link {case.link[index].name!r}"
                 raise
             made[key] = len(programs)
             programs.append(strain)

@@ -2,14 +2,14 @@
 """What makes a mechanism of a truss in motion: bodies that are no rods, their weight, links that are driven."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed
-from statejump.kinds.truss.arrays import References, column, indices, names, vectors
+from statejump.kinds.truss.arrays import References, column, indices, names, values, vectors
 from statejump.kinds.truss.references import known_name, vector
 from statejump.schema.fields import definition, numbers, parameter, text
 from statejump.schema.items import Item
@@ -64,16 +64,15 @@ def _table(item: Drive) -> tuple[np.ndarray, np.ndarray]:
     return (np.array([0.0, item.ramp_s]), np.array([0.0, speed])) if item.ramp_s else (np.zeros(1), np.array([speed]))
 
 
-def resolve_bodies(links: list[Link], length_m: np.ndarray, mass_kg: np.ndarray) -> Bodies:
+def resolve_bodies(links: Sequence[Link], length_m: np.ndarray, mass_kg: np.ndarray) -> Bodies:
     """Return the shapes of links; those of which nothing is said are rods."""
     moment = column(links, "moment_of_inertia_kg_m2")
-    own = np.array([link.centre_of_mass_m is not None for link in links], dtype=bool) | ~np.isnan(moment)
+    said = np.array([centre is not None for centre in values(links, "centre_of_mass_m")], dtype=bool)
     middle = np.stack((length_m / 2, np.zeros(len(links))), axis=1)
-    given = vectors([link.centre_of_mass_m for link in links], 2)[:, :2]
-    said = np.array([link.centre_of_mass_m is not None for link in links], dtype=bool)
+    given = vectors(links, "centre_of_mass_m", 2)[:, :2]
     return Bodies(
         np.where(said[:, None], given, middle) / length_m[:, None],
-        np.where(np.isnan(moment), mass_kg * length_m**2 / 12, moment), own,
+        np.where(np.isnan(moment), mass_kg * length_m**2 / 12, moment), said | ~np.isnan(moment),
     )
 
 

@@ -2,7 +2,6 @@
 """Motion of a truss case: the reduced model with inertia. Masses and dashpots are those of the DEM."""
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
 from typing import Any
@@ -18,7 +17,7 @@ from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.dem import lumped_mass_kg
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
-from statejump.kinds.truss.solve import TrussEvent, engine_items
+from statejump.kinds.truss.solve import TrussEvents, engine_items
 
 
 @dataclass(frozen=True)
@@ -27,7 +26,7 @@ class TrussMotion:
 
     truss: ResolvedTruss
     states: dict[str, np.ndarray]
-    events: tuple[TrussEvent, ...]
+    events: TrussEvents
     event_heat_J: np.ndarray  # of all joints in the step of each event
     watched_velocity_m_per_s: np.ndarray  # (steps + 1, 3)
     complete: bool
@@ -129,10 +128,10 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         )
     except _engine.EngineFailure as failure:
         raise EngineFailed(failure, remedy=_remedy(failure), case=truss.name, place=truss.name) from None
-    events: Sequence[TrussEvent] = [TrussEvent(**event) for event in found.pop("events")]
+    events = TrussEvents(truss, **found.pop("events"))
     if not found["complete"] and len(found["states"].get("time_s", ())) < 2:
         raise Interrupted("interrupted before a whole sample; nothing was written")
-    made = TrussMotion(truss=truss, events=tuple(events), **found)
+    made = TrussMotion(truss=truss, events=events, **found)
     if not made.complete:
         raise Interrupted(run=made)
     return made

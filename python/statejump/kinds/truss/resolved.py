@@ -15,7 +15,7 @@ import numpy as np
 
 from statejump.core.thermal import range_K
 from statejump.kinds.truss.arrays import (
-    GROUND, References, column, columns, distances, names, numbering, pairs, unit, vectors,
+    GROUND, References, column, columns, distances, in_space, names, numbering, pairs, unit, values, vectors,
 )
 from statejump.kinds.truss.expansions import link_temperatures
 from statejump.kinds.truss.joints import JOINTS
@@ -180,7 +180,7 @@ def resolve(case: TrussCase) -> ResolvedTruss:
     dimension = case.truss.dimension
     node_number, link_number = numbering(case.node), numbering(case.link)
     program_number = {name: index + 1 for name, index in numbering(case.program).items()}
-    positions = vectors([node.position_m for node in case.node], dimension)
+    positions = vectors(case.node, "position_m", dimension)
 
     members = case.thermal.members
     member_number = {} if members is None else {
@@ -189,14 +189,14 @@ def resolve(case: TrussCase) -> ResolvedTruss:
 
     known = References(dimension, node_number, link_number, program_number, member_number)
 
-    fixed = np.array([[axis in node.fixed for axis in "xyz"] for node in case.node], dtype=bool)
+    fixed = np.array([[axis in held for axis in "xyz"] for held in values(case.node, "fixed")], dtype=bool)
     fixed[:, dimension:] = True
     nodes = Nodes(
         names=names(case.node),
         position_m=positions,
         fixed=fixed,
-        guide_normal=unit(vectors([node.guide_normal for node in case.node], dimension)),
-        force_N=vectors([node.force_N for node in case.node], dimension),
+        guide_normal=unit(vectors(case.node, "guide_normal", dimension)),
+        force_N=vectors(case.node, "force_N", dimension),
         mass_kg=column(case.node, "mass_kg"),
     )
 
@@ -214,14 +214,14 @@ def resolve(case: TrussCase) -> ResolvedTruss:
     weighed = column(case.link, "density_kg_per_m3") * link["cross_section_area_m2"] * length
     mass = np.where(np.isnan(mass), weighed, mass)
     bodies = resolve_bodies(case.link, length, mass)
-    gravity = vectors([case.truss.gravity_m_per_s2], dimension)[0]
+    gravity = in_space(case.truss.gravity_m_per_s2, dimension)
     nodes = replace(nodes, force_N=nodes.force_N + weights_N(gravity, link_nodes, mass, bodies, nodes.mass_kg))
     links = Links(
         names=names(case.link), nodes=link_nodes, stress_free_length_m=length, mass_kg=mass, program=warmed.program,
         temperature_fraction=warmed.temperature_fraction, shown_program=warmed.shown_program,
         shown_fraction=warmed.shown_fraction, **link,
         second_moment_of_area_m4=np.where(np.isnan(moment), link["cross_section_area_m2"] ** 2 / 12, moment),
-        ends=tuple(one.ends for one in case.link), yield_strength_Pa=np.where(np.isnan(strength), inf, strength),
+        ends=tuple(values(case.link, "ends")), yield_strength_Pa=np.where(np.isnan(strength), inf, strength),
     )
 
     spring_nodes = pairs(case.spring, "nodes", node_number)
@@ -232,7 +232,7 @@ def resolve(case: TrussCase) -> ResolvedTruss:
     springs = Springs(
         names=names(case.spring), nodes=spring_nodes, stiffness_N_per_m=stiffness,
         free_length_m=np.where(np.isnan(free), drawn - preload / stiffness, free), preload_N=preload,
-        cable=np.array([spring.cable for spring in case.spring], dtype=bool),
+        cable=np.array(list(values(case.spring, "cable")), dtype=bool),
     )
     torsion_springs = TorsionSprings(
         names=names(case.torsion_spring), links=pairs(case.torsion_spring, "links", link_number),
@@ -243,7 +243,7 @@ def resolve(case: TrussCase) -> ResolvedTruss:
     if case.reflector is not None:
         reflector = ReflectorSurface(
             nodes=np.array([node_number[name] for name in case.reflector.nodes], dtype=int),
-            axis=unit(vectors([case.reflector.axis], dimension))[0],
+            axis=unit(in_space(case.reflector.axis, dimension)),
             focal_length_m=case.reflector.focal_length_m,
         )
     return ResolvedTruss(

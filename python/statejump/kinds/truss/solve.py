@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
@@ -37,6 +37,41 @@ class TrussEvent:
     after: str
 
 
+@dataclass(frozen=True, eq=False)
+class TrussEvents(Sequence[TrussEvent]):
+    """The events of a path in the order of their times, kept as columns and made one by one."""
+
+    truss: ResolvedTruss
+    time_s: np.ndarray
+    interval_s: np.ndarray
+    temperature_change_K: np.ndarray
+    kind: np.ndarray  # places in kinds
+    joint: np.ndarray  # numbers among the joints of the kind
+    before: np.ndarray  # keys of statuses
+    after: np.ndarray
+    kinds: Sequence[str]
+    statuses: Mapping[int, str]
+
+    def __len__(self) -> int:
+        return len(self.time_s)
+
+    @overload
+    def __getitem__(self, place: int) -> TrussEvent: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> list[TrussEvent]: ...
+
+    def __getitem__(self, place: int | slice) -> TrussEvent | list[TrussEvent]:
+        if isinstance(place, slice):
+            return [self[index] for index in range(*place.indices(len(self)))]
+        kind = self.kinds[self.kind[place]]
+        return TrussEvent(
+            float(self.time_s[place]), float(self.interval_s[place]), float(self.temperature_change_K[place]), kind,
+            self.truss.joints[kind].names[self.joint[place]], self.statuses[int(self.before[place])],
+            self.statuses[int(self.after[place])],
+        )
+
+
 @dataclass(frozen=True)
 class TrussPath:
     """What the solver found. ``states`` and ``cycle_ends`` map a name with unit to an array whose first
@@ -45,7 +80,7 @@ class TrussPath:
     truss: ResolvedTruss
     states: dict[str, np.ndarray]
     cycle_ends: dict[str, np.ndarray]
-    events: tuple[TrussEvent, ...]
+    events: TrussEvents
     complete: bool
     solves: int
     factorizations: int
@@ -131,7 +166,7 @@ def path(
         )
     except _engine.EngineFailure as failure:
         raise _failed(truss, failure, locate_events) from None
-    events = tuple(TrussEvent(**event) for event in found.pop("events"))
+    events = TrussEvents(truss, **found.pop("events"))
     return TrussPath(truss=truss, events=events, **found)
 
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import tomli_w
 
+from statejump.core.item_files import write_items
 from statejump.core.output import write_atomically
+from statejump.schema.fields import TABLES_BESIDE
 
 Document = dict[str, Any]
 
@@ -72,12 +74,24 @@ def _on_one_line(match: re.Match[str]) -> str:
     return line if len(line) <= 100 else match[0]
 
 
-def write(made: Mapping[str, Any], path: Path, header: Sequence[str]) -> None:
+def table_path(path: Path, section: str) -> Path:
+    """Return where the items of a list stand, if not in the case file."""
+    return path.with_name(f"{path.stem}_{section}.csv")
+
+
+def write(made: Mapping[str, Any], path: Path, header: Sequence[str], tables: Collection[str] = ()) -> None:
     """Write a document to a file.
 
     :param header: comment lines at its head
-    :raises StatejumpError: the file cannot be written
+    :param tables: lists whose items go into CSV files beside it
+    :raises StatejumpError: a file cannot be written
     """
+    beside = {section: table_path(path, section) for section in tables if section in made}
+    for section, table in beside.items():
+        write_items(made[section], table)
+    if beside:
+        made = {**{section: part for section, part in made.items() if section not in beside},
+                TABLES_BESIDE: {section: table.name for section, table in beside.items()}}
     with write_atomically(path) as stream:
         stream.writelines(f"{line}\n" for line in header)
         stream.write(to_toml(made))

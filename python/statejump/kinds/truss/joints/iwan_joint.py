@@ -80,7 +80,7 @@ class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
     def resolve(self, items: Sequence[IwanJoint], known: References) -> IwanJoints:
         return IwanJoints(
             names=names(items), nodes=pairs(items, "nodes", known.node),
-            axis=unit(vectors([item.axis for item in items], known.dimension)),
+            axis=unit(vectors(items, "axis", known.dimension)),
             elements=column(items, "elements").astype(int), **columns(items, *NUMBERS, "spacing"),
         )
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from statejump.core import physics
 from statejump.core.errors import MissingKey, NotAllowed
-from statejump.kinds.truss.arrays import GROUND, References, columns, indices, names
+from statejump.kinds.truss.arrays import GROUND, References, columns, indices, names, values
 from statejump.kinds.truss.joints.protocol import (
     BLACK, IMPACT, ContactPart, Contacts, Drawn, JointColumn, JointType, Sampled, Symbol,
 )
@@ -145,7 +145,7 @@ class RevoluteType(JointType[Revolute, Revolutes]):
             **{key: indices(items, key, known.link) for key in ("bearing_link", "journal_link")},
             axis=known.axes(items),
             program=known.programs_of(items),
-            rigid=np.array([revolute.contact == "rigid" for revolute in items], dtype=bool),
+            rigid=np.array([contact == "rigid" for contact in values(items, "contact")], dtype=bool),
             **columns(
                 items, "journal_radius_m", "radial_clearance_m", "friction_coefficient",
                 "journal_thermal_expansion_per_K", "bearing_thermal_expansion_per_K", "temperature_fraction",

@@ -118,7 +118,7 @@ class SliderType(AlongAxis[Slider, Sliders]):
         stops = columns(items, "clearance_minus_m", "clearance_plus_m")
         return Sliders(
             names=names(items), nodes=pairs(items, "nodes", known.node),
-            axis=unit(vectors([slider.axis for slider in items], known.dimension)),
+            axis=unit(vectors(items, "axis", known.dimension)),
             **columns(items, "friction_coefficient", "normal_force_N", "pad_radius_m", "young_modulus_Pa",
                       "poisson_ratio"),
             **{key: np.where(np.isnan(values), inf, values) for key, values in stops.items()},

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the commands share that write a case file of a truss."""
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from statejump.core.errors import StatejumpError
+from statejump.core.output import check_target
+
+# Of the option --tables.
+TABLES: dict[str, Any] = {
+    "is_flag": True,
+    "help": "Write nodes, links, joints and springs into CSV files beside the case file, one row an item.",
+}
+
+
+def new_files(output: Path, tables: bool, force: bool) -> tuple[str, ...]:
+    """Return the lists that go into files beside the case.
+
+    :param tables: whether any do
+    :param force: whether files may be overwritten
+    :raises StatejumpError: one of the files is there already, or cannot be written
+    """
+    from statejump.kinds.truss.case import sections_in_files
+    from statejump.kinds.truss.generate.document import table_path
+
+    beside = sections_in_files() if tables else ()
+    for path in (output, *(table_path(output, section) for section in beside)):
+        if os.path.exists(path) and not force:
+            raise StatejumpError(cause="exists already", file=path, remedy="--force overwrites it")
+    check_target(output)
+    return beside

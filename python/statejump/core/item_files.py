@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files of items beside a case file, named in its section ``[tables]``: one row an item, one column a key.
+
+CSV: a cell is what the case file would have, lists with blanks between their entries and without brackets; an empty
+cell is a key that is not given. HDF5: a data set of every key, of n numbers, n texts, or n rows of either; numbers
+that are NaN and texts that are empty are not given.
+
+They are read with the case file, and their columns take the place of its lists.
+"""
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+
+from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey, Unreadable, size
+from statejump.core.output import write_atomically
+from statejump.core.reading import is_file, open_csv
+from statejump.core.temperature_columns import quoted
+from statejump.schema.fields import TABLES_BESIDE, Section, fields_of, rule_of, section_of, tables_of
+from statejump.schema.item_tables import BLOCK, ItemTable
+from statejump.schema.rules import NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, suggestion
+from statejump.schema.toml import LARGEST_BYTES
+
+SUFFIXES = (".csv", ".h5", ".hdf5")
+MOST_IN_LIST = 16  # entries of a cell or row: what items list are ends, directions and components
+SWITCHES = {"true": True, "false": False}
+
+
+def with_tables(data: Mapping[str, Any], folder: Path, case: type[Section]) -> Mapping[str, Any]:
+    """Return a parsed case file with an :class:`ItemTable` in place of every file that its section [tables] names;
+    itself, where it has none.
+
+    :param folder: where a relative path begins
+    :raises StatejumpError: a file cannot be read or is not what it should be: one sentence with its name
+    """
+    named, known = data.get(TABLES_BESIDE), fields_of(case)
+    if not isinstance(named, Mapping) or TABLES_BESIDE not in known:
+        return data
+    made = {section: part for section, part in data.items() if section != TABLES_BESIDE}
+    lists = {name: items for name, field in known.items() if (items := tables_of(field)) is not None}
+    for section, file in named.items():
+        key = f"{TABLES_BESIDE}.{section}"
+        if section not in lists or section not in fields_of(_declared(known)):
+            raise UnknownKey(key, **suggestion(section, list(fields_of(_declared(known))), f"{TABLES_BESIDE}.", ""))
+        if not isinstance(file, str):
+            raise NotAllowed(key, file, "must be a text in quotes")
+        if section in made:
+            raise NotAllowed(key, file, f"the case has [[{section}]] as well", remedy="leave one of them out")
+        made[section] = read_items(folder / file, key, lists[section])
+    return made
+
+
+def _declared(known: Mapping[str, attrs.Attribute[Any]]) -> type[Section]:
+    found = section_of(known[TABLES_BESIDE])
+    assert found is not None
+    return found
+
+
+def read_items(path: Path, key: str, model: type[Section]) -> ItemTable:
+    """Return the columns of a file.
+
+    :param model: what an item is
+    :raises StatejumpError: one sentence with the file, and line or column
+    """
+    if path.suffix.lower() not in SUFFIXES:
+        raise NotAllowed(key, path.name, f"must end with {', '.join(SUFFIXES)}")
+    if not is_file(path):
+        raise Unreadable("no such file of tables", file=path)
+    columns = _csv(path, model) if path.suffix.lower() == ".csv" else _hdf5(path, model)
+    try:
+        return ItemTable(**columns)
+    except StatejumpError as failure:
+        raise failure.located(file=path) from None
+
+
+def _keys(path: Path, names: Sequence[str], model: type[Section]) -> dict[str, Rule]:
+    """Return the rules of the keys of a file's columns."""
+    known = fields_of(model)
+    for name in names:
+        if name not in known:
+            said = suggestion(name, list(known))
+            raise Unreadable(f"column {quoted(name)} is unknown", file=path, cause=said.get("cause"),
+                             remedy=said.get("remedy"))
+    if len(set(names)) < len(names):
+        raise Unreadable("two columns have one name", file=path)
+    return {name: rule_of(known[name]) for name in names}
+
+
+def _csv(path: Path, model: type[Section]) -> dict[str, np.ndarray]:
+    blocks: dict[str, list[np.ndarray]] = {}
+    texts: dict[str, str] = {}  # every text once, however often it stands in the file
+    with open_csv(path) as stream:
+        if path.stat().st_size > LARGEST_BYTES:
+            raise Unreadable("cannot be read", cause=f"it is larger than {size(LARGEST_BYTES)}; HDF5 may be larger",
+                             file=path)
+        reader = csv.reader(stream)
+        header = [cell.strip() for cell in next(reader, [])]
+        if not header:
+            raise Unreadable("line 1: there is no column", file=path)
+        rules = _keys(path, header, model)
+        while rows := _block(path, reader, len(header)):
+            for (name, rule), cells in zip(rules.items(), zip(*(row for _, row in rows))):
+                blocks.setdefault(name, []).append(_column(path, name, rule, cells, [line for line, _ in rows], texts))
+    if not blocks:
+        raise Unreadable("has no row below its header", file=path)
+    return {name: _joined(parts) for name, parts in blocks.items()}
+
+
+def _block(path: Path, reader: Any, width: int) -> list[tuple[int, list[str]]]:
+    found = []
+    for row in islice(reader, BLOCK):
+        if len(row) != width and row:
+            raise Unreadable(f"line {reader.line_num} has {len(row)} cells", cause=f"the header has {width}", file=path)
+        if row:
+            found.append((reader.line_num, row))
+    return found
+
+
+def _joined(parts: list[np.ndarray]) -> np.ndarray:
+    """Return blocks of rows as one column; rows of lists are as long as the longest."""
+    if parts[0].ndim == 1:
+        return np.concatenate(parts)
+    width = max(part.shape[1] for part in parts)
+    empty: Any = np.nan if parts[0].dtype.kind == "f" else None
+    return np.concatenate([
+        np.pad(part, ((0, 0), (0, width - part.shape[1])), constant_values=empty) for part in parts
+    ])
+
+
+def _column(
+    path: Path, name: str, rule: Rule, cells: Sequence[str], lines: Sequence[int], texts: dict[str, str]
+) -> np.ndarray:
+    if rule.form == NUMBER:
+        return np.array([_number(path, name, line, cell) for line, cell in zip(lines, cells)])
+    if rule.form == TEXT:
+        found = [texts.setdefault(cell, cell) if cell else None for cell in map(str.strip, cells)]
+        return np.array(found, dtype=object)
+    if rule.form == SWITCH:
+        for line, cell in zip(lines, cells):
+            if cell.strip() and cell.strip() not in SWITCHES:
+                raise Unreadable(f"line {line}, column {quoted(name)}", cause=f"{quoted(cell)} is not true or false",
+                                 file=path)
+        return np.array([SWITCHES.get(cell.strip()) for cell in cells], dtype=object)
+    if rule.form == WHOLE:
+        numbers = [_number(path, name, line, cell) for line, cell in zip(lines, cells)]
+        return np.array([None if value != value else int(value) if value == int(value) else value for value in numbers],
+                        dtype=object)
+    if rule.form not in (NUMBERS, TEXTS):
+        raise Unreadable(f"column {quoted(name)}", cause="a table cannot have this key", file=path)
+    split = [cell.split() for cell in cells]
+    width = max(map(len, split))
+    for line, words in zip(lines, split):
+        if len(words) > MOST_IN_LIST:
+            raise Unreadable(f"line {line}, column {quoted(name)}",
+                             cause=f"{len(words)} entries, a cell has {MOST_IN_LIST} at most", file=path)
+        if rule.form == NUMBERS and words and len(words) != width:
+            raise Unreadable(f"line {line}, column {quoted(name)}",
+                             cause=f"{len(words)} numbers, other rows have {width}", file=path)
+    if rule.form == TEXTS:
+        made = np.full((len(split), width), None, dtype=object)
+        for row, words in zip(made, split):
+            row[:len(words)] = [texts.setdefault(word, word) for word in words]
+        return made
+    return np.array([
+        [_number(path, name, line, word) for word in words] if words else [np.nan] * width
+        for line, words in zip(lines, split)
+    ]).reshape(-1, width)
+
+
+def _number(path: Path, name: str, line: int, cell: str) -> float:
+    """Return the number of a cell, NaN where it is empty."""
+    if not cell.strip():
+        return float("nan")
+    try:
+        value = float(cell)
+        if value - value == 0 and "_" not in cell:  # Python takes 1_000 for a number
+            return value
+    except ValueError:
+        pass
+    raise Unreadable(f"line {line}, column {quoted(name)}", cause=f"{quoted(cell)} is not a finite number", file=path)
+
+
+def _hdf5(path: Path, model: type[Section]) -> dict[str, np.ndarray]:
+    import h5py
+
+    from statejump.core.hdf5 import objects
+
+    try:
+        if not h5py.is_hdf5(path):
+            raise Unreadable("cannot be read", cause="it is not HDF5", file=path)
+        with h5py.File(path, "r") as file:
+            found = {name.removeprefix("/"): part for name, part in objects(file, path).items() if name != "/"}
+            rules = _keys(path, list(found), model)
+            return {name: _of_data_set(path, name, rule, found[name]) for name, rule in rules.items()}
+    except (OSError, RuntimeError, MemoryError) as error:
+        raise Unreadable("cannot be read", cause=" ".join(str(error).split()), file=path) from None
+
+
+def _of_data_set(path: Path, name: str, rule: Rule, data: Any) -> np.ndarray:
+    import h5py
+
+    lists = rule.form in (NUMBERS, TEXTS)
+    if not isinstance(data, h5py.Dataset) or data.ndim != (2 if lists else 1):
+        raise Unreadable(f"{quoted(name)} must be a data set of {'rows' if lists else 'single values'}", file=path)
+    if lists and data.shape[1] > MOST_IN_LIST:
+        raise Unreadable(f"{quoted(name)} has rows of {data.shape[1]}", cause=f"at most {MOST_IN_LIST} are read",
+                         file=path)
+    if rule.form in (NUMBER, NUMBERS, WHOLE, SWITCH):
+        if data.dtype.kind not in "fiub":
+            raise Unreadable(f"{quoted(name)} must be of numbers", file=path)
+        if rule.form in (NUMBER, NUMBERS):
+            return np.asarray(data[()], dtype=float)
+        return np.asarray(data[()].astype(bool if rule.form == SWITCH else int).tolist(), dtype=object)
+    if h5py.check_string_dtype(data.dtype) is None:
+        raise Unreadable(f"{quoted(name)} must be of texts", file=path)
+    texts: dict[str, str] = {}
+    made: np.ndarray = np.asarray(data.asstr()[()], dtype=object)
+    flat = made.reshape(-1)
+    flat[:] = [texts.setdefault(text, text) if text else None for text in flat.tolist()]
+    return made
+
+
+def to_cells(value: Any) -> str:
+    """Return a value of a document as the cell of a table."""
+    if isinstance(value, (list, tuple)):
+        return " ".join(map(to_cells, value))
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def write_items(items: Sequence[Mapping[str, Any]], path: Path) -> None:
+    """Write items of a document as a CSV table.
+
+    :raises StatejumpError: the file cannot be written, or a text of a list holds a blank
+    """
+    keys = list(dict.fromkeys(key for item in items for key in item))
+    with write_atomically(path) as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(keys)
+        writer.writerows(_cells(item, keys) for item in items)
+
+
+def _cells(item: Mapping[str, Any], keys: Sequence[str]) -> Iterator[str]:
+    for key in keys:
+        value = item.get(key, "")
+        if isinstance(value, list) and any(isinstance(word, str) and len(word.split()) != 1 for word in value):
+            raise NotAllowed(key, value, "names in a list of a table must have no blanks", item=f"{item.get('name')!r}")
+        yield to_cells(value)

@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lists of tables by columns: many items as one array a key, from tables of a file or from a program's arrays.
+
+A million items as objects take gigabytes; their arrays do not. :class:`ItemTable` is what is given, in place of a
+list of dicts; :class:`ItemColumns` what a case keeps of it, in place of a list of items.
+"""
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import repeat
+from typing import Any, Generic, TypeVar, overload
+
+import attrs
+import numpy as np
+
+from statejump.core.errors import MissingKey, NotAllowed, UnknownKey
+from statejump.schema.fields import Section, default_of, fields_of, is_required, rule_of
+from statejump.schema.rules import NUMBER, NUMBERS, TEXTS, Rule, suggestion
+
+ItemType = TypeVar("ItemType", bound=Section)
+
+
+BLOCK = 4096  # items that are turned into objects at once
+
+
+def _plain(values: np.ndarray) -> list[Any]:
+    """Return the elements of a column as a document has them; None where one is not given."""
+    found: list[Any] = values.tolist()
+    if values.dtype.kind == "f":
+        none = np.isnan(values)
+        none = none.all(axis=1) if values.ndim == 2 else none
+        return [None if skip else value for skip, value in zip(none.tolist(), found)] if none.any() else found
+    return [[text for text in row if text] for row in found] if values.ndim == 2 else found
+
+
+class ItemTable:
+    """Items as one column a key, all of one length.
+
+    :param columns: by key: numbers (n,), NaN where there is none; vectors (n, k) of numbers; texts (n,), None where
+        there is none; lists of texts (n, k), "" or None behind their end
+    :raises NotAllowed: the columns are of several lengths
+    """
+
+    def __init__(self, **columns: Any) -> None:
+        self.columns = {
+            key: made if made.dtype.kind in "fO" else made.astype(object if made.dtype.kind in "USTb" else float)
+            for key, made in ((key, np.asarray(values)) for key, values in columns.items())
+        }
+        lengths = {key: values.shape[0] if values.ndim else 0 for key, values in self.columns.items()}
+        for key, length in lengths.items():
+            if length != max(lengths.values()) or self.columns[key].ndim not in (1, 2):
+                raise NotAllowed(key, length, f"all columns must have {max(lengths.values())} rows")
+        self.length = max(lengths.values(), default=0)
+
+    def __len__(self) -> int:
+        return self.length
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Return the items one by one, as a case file has them."""
+        listed = [_plain(values) for values in self.columns.values()]
+        return [{key: value for key, value in zip(self.columns, row) if value is not None} for row in zip(*listed)]
+
+    def row(self, place: int) -> dict[str, Any]:
+        """Return one item as a case file has it."""
+        found = {key: _plain(values[place:place + 1])[0] for key, values in self.columns.items()}
+        return {key: value for key, value in found.items() if value is not None}
+
+
+def with_rows(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a document with a list of dicts in place of every :class:`ItemTable`."""
+    return {section: part.rows() if isinstance(part, ItemTable) else part for section, part in data.items()}
+
+
+class ItemColumns(Sequence[ItemType], Generic[ItemType]):
+    """The items of a list, made one by one when they are asked for; immutable.
+
+    :param model: what an item is
+    :param section: name of the list
+    :param table: its columns; what has no column has its default
+    :raises StatejumpError: one failure, without the file's name: of an unknown key, a missing one, or the first value
+        of a column that is not allowed
+    """
+
+    def __init__(self, model: type[ItemType], section: str, table: ItemTable) -> None:
+        self._model, self._length = model, len(table)
+        self._fields = fields_of(model)
+        if not self._length:
+            raise NotAllowed(section, cause=f"must be one or more sections [[{section}]]")
+        for key in table.columns:
+            if key not in self._fields:
+                raise UnknownKey(key, item=f"tables.{section}", **suggestion(key, list(self._fields)))
+        for key, field in self._fields.items():
+            if key not in table.columns and is_required(field):
+                rule = rule_of(field)
+                raise MissingKey(key, rule.needs(), item=f"tables.{section}", allowed=rule.allowed)
+        self._given = {key: _checked(section, table, key, self._fields[key]) for key in table.columns}
+
+    def __len__(self) -> int:
+        return self._length
+
+    @overload
+    def __getitem__(self, place: int) -> ItemType: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> list[ItemType]: ...
+
+    def __getitem__(self, place: int | slice) -> ItemType | list[ItemType]:
+        places = np.atleast_1d(np.arange(self._length)[place])
+        made = list(self._made(places))
+        return made if isinstance(place, slice) else made[0]
+
+    def __iter__(self) -> Iterator[ItemType]:
+        for start in range(0, self._length, BLOCK):
+            yield from self._made(slice(start, start + BLOCK))
+
+    def _made(self, places: Any) -> Iterator[ItemType]:
+        """Make items, their keys always in one order: then they share the names of their keys."""
+        listed = [
+            _plain(self._given[key][places]) if key in self._given else repeat(default_of(field))
+            for key, field in self._fields.items()
+        ]
+        set_value = object.__setattr__
+        for row in zip(*listed):
+            item = self._model.__new__(self._model)
+            for key, value in zip(self._fields, row):
+                set_value(item, key, value)
+            yield item
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sequence) and len(self) == len(other) and all(
+            one == two for one, two in zip(self, other))
+
+    __hash__ = None  # type: ignore[assignment]  # as of a list
+
+    def numbers(self, key: str) -> np.ndarray:
+        """Return a number (n,) or a vector (n, k) of every item; NaN where it is not given."""
+        found = self._given.get(key)
+        if found is None:
+            default = default_of(self._fields[key])
+            return np.full(self._length, np.nan if default is None else default)
+        return found
+
+    def values(self, key: str) -> Iterator[Any]:
+        """Return the values of a key one by one, None where it is not given."""
+        if key not in self._given:
+            return repeat(default_of(self._fields[key]), self._length)
+        return (value for start in range(0, self._length, BLOCK)
+                for value in _plain(self._given[key][start:start + BLOCK]))
+
+
+class Named(Mapping[str, ItemType]):
+    """Items by their names, made when they are asked for."""
+
+    def __init__(self, items: ItemColumns[ItemType]) -> None:
+        self._items, self._place = items, {name: place for place, name in enumerate(items.values("name"))}
+
+    def __getitem__(self, name: str) -> ItemType:
+        return self._items[self._place[name]]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._place
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._place)
+
+    def __len__(self) -> int:
+        return len(self._place)
+
+
+def by_name(items: Sequence[Any]) -> Mapping[str, Any]:
+    """Return the items of a list by their names."""
+    return Named(items) if isinstance(items, ItemColumns) else {item.name: item for item in items}
+
+
+def _checked(section: str, table: ItemTable, key: str, field: attrs.Attribute[Any]) -> np.ndarray:
+    """Return a column with the default of its key where nothing is given, every value held against the rule."""
+    rule, values = rule_of(field), table.columns[key]
+    default = None if is_required(field) else default_of(field)
+    allowed = rule.allowed
+    if rule.form in (NUMBER, NUMBERS) and values.dtype.kind == "f" and allowed is not None:
+        none = np.isnan(values)
+        if rule.form == NUMBERS:
+            none = none.all(axis=-1) if values.ndim == 2 else none
+        elif default is not None:
+            values, none = np.where(none, default, values), np.zeros_like(none)
+        with np.errstate(invalid="ignore"):
+            right = (values <= allowed.high) & ((values > allowed.low) if allowed.above else (values >= allowed.low))
+        right = right.all(axis=-1) if right.ndim == 2 else right
+        wrong = ~right if is_required(field) else ~right & ~none
+        if values.ndim != (2 if rule.form == NUMBERS else 1):
+            wrong[:] = True
+        if wrong.any():
+            _refuse(section, table, key, rule, int(np.argmax(wrong)))
+        return values
+    if rule.form == TEXTS and values.ndim == 1:
+        # One text each, or none.
+        values = values.reshape(-1, 1)
+    seen: set[Any] = set()
+    plain = values.ndim == 1
+    for place, value in enumerate(values):
+        given = value if plain else tuple(value)
+        if given in seen and key != "name":
+            continue
+        seen.add(given)
+        if plain and given is None:
+            if is_required(field):
+                raise MissingKey(key, rule.needs(), item=_where(section, table, place), allowed=rule.allowed)
+            continue
+        try:
+            rule.check(key, given if plain else [text for text in given if text])
+            if key == "name" and not given:
+                raise NotAllowed(key, given, "must be a text in quotes that is not empty")
+        except NotAllowed as refused:
+            refused.item = _where(section, table, place)
+            raise
+    if plain and default is not None:
+        values = np.array([default if value is None else value for value in values], dtype=object)
+    return values
+
+
+def _where(section: str, table: ItemTable, place: int) -> str:
+    from statejump.schema.items import where
+
+    return where(section, table.row(place), place + 1)
+
+
+def _refuse(section: str, table: ItemTable, key: str, rule: Rule, place: int) -> None:
+    given, item = table.row(place).get(key), _where(section, table, place)
+    if given is None:
+        raise MissingKey(key, rule.needs(), item=item, allowed=rule.allowed)
+    try:
+        rule.check(key, given)
+    except NotAllowed as refused:
+        refused.item = item
+        raise
+    raise NotAllowed(key, given, rule.needs(), item=item)

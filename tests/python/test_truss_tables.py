@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Nodes, links and joints of a truss in files beside its case file, by columns instead of one by one."""
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+import statejump as sj
+from statejump.core.errors import StatejumpError
+from statejump.kinds.loading import load_case, parse_case
+from statejump.kinds.truss import generate
+from statejump.kinds.truss.generate.document import write
+from statejump.schema.item_tables import ItemTable
+
+MADE: Mapping[str, Callable[[], dict[str, Any]]] = {
+    "chain": lambda: generate.chain(3), "iwan": lambda: generate.iwan(3), "rib": lambda: generate.umbrella(1),
+    "umbrella": lambda: generate.umbrella(4, cable_preload_N=1.0), "ring": lambda: generate.ring(4),
+    "mast": lambda: generate.mast(2),
+}
+
+
+def same(one: Any, other: Any, where: str = "") -> None:
+    """Hold the arrays of two trusses against each other, to the last bit."""
+    if dataclasses.is_dataclass(one):
+        for field in dataclasses.fields(one):
+            same(getattr(one, field.name), getattr(other, field.name), f"{where}.{field.name}")
+    elif isinstance(one, Mapping):
+        assert one.keys() == other.keys(), where
+        for key in one:
+            same(one[key], other[key], f"{where}.{key}")
+    elif isinstance(one, np.ndarray):
+        assert (one.dtype, one.shape, one.tobytes()) == (other.dtype, other.shape, other.tobytes()), where
+    else:
+        assert one == other, where
+
+
+def beside(document: dict[str, Any], folder: Path) -> Path:
+    """Write a case whose lists all stand in CSV files."""
+    lists = [section for section, part in document.items() if isinstance(part, list)]
+    write(document, folder / "case.toml", [], lists)
+    return folder / "case.toml"
+
+
+def in_hdf5(items: list[dict[str, Any]], path: Path) -> None:
+    """Write items as data sets: texts, rows of texts that end with empty ones, numbers that are NaN where none are."""
+    with h5py.File(path, "w") as file:
+        for key in {key: None for item in items for key in item}:
+            values = [item.get(key) for item in items]
+            first = next(value for value in values if value is not None)
+            if isinstance(first, list) and isinstance(first[0], str):
+                width = max(len(value or ()) for value in values)
+                file[key] = [[*(value or ()), *[""] * (width - len(value or ()))] for value in values]
+            elif isinstance(first, list):
+                file[key] = [[np.nan] * len(first) if value is None else value for value in values]
+            elif isinstance(first, (str, bool)):
+                file[key] = values
+            else:
+                file[key] = [np.nan if value is None else value for value in values]
+
+
+@pytest.mark.parametrize("made", MADE)
+@pytest.mark.parametrize("form", ["csv", "h5"])
+def test_the_same_truss(made: str, form: str, tmp_path: Path) -> None:
+    document = MADE[made]()
+    file = beside(document, tmp_path)
+    if form == "h5":
+        for table in tmp_path.glob("*.csv"):
+            in_hdf5(document[table.stem.removeprefix("case_")], table.with_suffix(".h5"))
+            table.unlink()
+        file.write_text(file.read_text().replace(".csv", ".h5"))
+    one, other = parse_case(document), load_case(file)
+    same(one.resolve(), other.resolve())
+    assert other.to_dict() == one.to_dict() and other.node == one.node
+    changes = {"link.*.young_modulus_Pa": 1e9, "thermal.cycles": 2}
+    assert other.changed(changes).to_dict() == one.changed(changes).to_dict()
+    assert load_case(file).to_dict() == one.to_dict()  # reading changes nothing
+
+
+def test_a_table_of_arrays_is_a_list_of_items() -> None:
+    document = generate.chain(3)
+    place = [node["position_m"] for node in document["node"]]
+    fixed = [[*node.get("fixed", ()), "", ""][:2] for node in document["node"]]
+    names = [node["name"] for node in document["node"]]
+    table = ItemTable(name=names, position_m=np.array(place), fixed=np.array(fixed))
+    same(parse_case({**document, "node": table}).resolve(), parse_case(document).resolve())
+
+
+def test_commands(tmp_path: Path, statejump: Callable[..., Any]) -> None:
+    assert statejump("truss", "ring", 4, "-o", "ring.toml", "--tables").status == 0
+    text = (tmp_path / "ring.toml").read_text()
+    assert 'node = "ring_node.csv"' in text and "[[" not in text and "truss ring 4 --tables -o ring.toml" in text
+    assert statejump("truss", "ring", 4, "-o", "whole.toml").status == 0
+    same_jump = [sj.load(tmp_path / f"{name}.toml").reduced().history["position_m"].values
+                 for name in ("ring", "whole")]
+    assert same_jump[0].tobytes() == same_jump[1].tobytes()
+    assert statejump("reduced", "ring.toml").status == 0  # and the result file keeps the items themselves
+    kept = sj.read(tmp_path / "results" / "ring" / "reduced.h5")
+    assert kept.case.definition.to_dict() == load_case(tmp_path / "ring.toml").to_dict()
+    refused = statejump("truss", "ring", 5, "-o", "ring.toml", "--tables")
+    assert (refused.status, refused.errors) == (2, "error: ring.toml: exists already; --force overwrites it\n")
+    (tmp_path / "ring.toml").unlink()
+    refused = statejump("truss", "ring", 5, "-o", "ring.toml", "--tables")
+    assert (refused.status, refused.errors) == (2, "error: ring_node.csv: exists already; --force overwrites it\n")
+
+
+WRONG = {
+    "node.csv: line 2 has 2 cells: the header has 3": ("name,position_m,fixed\nN0,0 0\n", "node"),
+    "node.csv: column 'positon_m' is unknown: did you mean position_m?": ("name,positon_m\nN0,0 0\n", "node"),
+    "node.csv: two columns have one name": ("name,name\nN0,N0\n", "node"),
+    "node.csv: line 1: there is no column": ("", "node"),
+    "node.csv: has no row below its header": ("name,position_m\n", "node"),
+    "node.csv: line 3, column 'position_m': 'x' is not a finite number": (
+        "name,position_m\nN0,0 0\nN1,1 x\n", "node"),
+    "node.csv: line 3, column 'position_m': 1 numbers, other rows have 2": (
+        "name,position_m\nN0,0 0\nN1,1\n", "node"),
+    "case.toml: node 'N1': position_m = [1.0, 10000000.0] is not allowed: must be between -1e+06 and 1e+06 [m]": (
+        "name,position_m\nN0,0 0\nN1,1 1e7\n", "node"),
+    "case.toml: node 'N1': position_m is missing: a list of numbers [m] is needed": (
+        "name,position_m\nN0,0 0\nN1,\n", "node"),
+    "case.toml: node 'N0': fixed = ['w'] is not allowed: must be 'x' or 'y' or 'z'": (
+        "name,position_m,fixed\nN0,0 0,w\n", "node"),
+    "case.toml: node 2: name = 'N0' is not allowed: another node has it": (
+        "name,position_m\nN0,0 0\nN0,1 0\n", "node"),
+    "case.toml: node 2: name is missing: a text in quotes is needed": ("name,position_m\nN0,0 0\n,1 0\n", "node"),
+    "case.toml: tables.node: position_m is missing: a list of numbers [m] is needed": ("name\nN0\n", "node"),
+    "spring.csv: line 2, column 'cable': 'yes' is not true or false": (
+        "name,nodes,stiffness_N_per_m,cable\nS,N0 N1,1,yes\n", "spring"),
+}
+
+
+@pytest.mark.parametrize("expected", WRONG)
+def test_wrong_tables(expected: str, tmp_path: Path) -> None:
+    text, section = WRONG[expected]
+    document = generate.chain(2)
+    document.pop(section, None)
+    write(document, tmp_path / "case.toml", [])
+    with (tmp_path / "case.toml").open("a") as stream:
+        stream.write(f'\n[tables]\n{section} = "{section}.csv"\n')
+    (tmp_path / f"{section}.csv").write_text(text)
+    with pytest.raises(StatejumpError) as refused:
+        load_case(tmp_path / "case.toml")
+    assert str(refused.value).replace(f"{tmp_path}/", "") == expected
+
+
+@pytest.mark.parametrize("given, expected", [
+    ({"node": "no.csv"}, "no.csv: no such file of tables"),
+    ({"node": "a.txt"}, "case.toml: tables.node = 'a.txt' is not allowed: must end with .csv, .h5, .hdf5"),
+    ({"nodes": "a.csv"}, "case.toml: tables.nodes is unknown: did you mean tables.node?"),
+    ({"link": "a.csv"}, "case.toml: tables.link = 'a.csv' is not allowed: the case has [[link]] as well; leave one of "
+                        "them out"),
+    ({"node": 1}, "case.toml: tables.node = 1 is not allowed: must be a text in quotes"),
+])
+def test_wrong_names_of_tables(given: dict[str, Any], expected: str, tmp_path: Path) -> None:
+    document = generate.chain(2)
+    document.pop("node")
+    write({**document, "tables": given}, tmp_path / "case.toml", [])
+    with pytest.raises(StatejumpError) as refused:
+        load_case(tmp_path / "case.toml")
+    assert str(refused.value).replace(f"{tmp_path}/", "") == expected
+
+
+def test_a_dict_has_no_files_beside_it() -> None:
+    with pytest.raises(StatejumpError, match="only where a case file names files"):
+        parse_case({**generate.chain(2), "tables": {"slider": "a.csv"}})
+
+
+def test_events_are_a_sequence() -> None:
+    found = sj.truss.ring(4).reduced().native.events
+    assert len(found) > 2 and [found[0], found[1]] == found[:2] == list(found)[:2]
+    assert found[-1].time_s >= found[0].time_s and found[0].joint_kind == "revolute"
+    assert {event.before for event in found} <= {"stick", "slip_plus", "slip_minus"}
