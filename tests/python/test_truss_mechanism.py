@@ -83,6 +83,16 @@ def test_shipped_slider_crank_knocks_in_its_play(statejump, tmp_path: Path) -> N
     assert run.history["drive_moment_N_m"].values.shape == (len(run.time_s), 1)
 
 
+def test_energy_of_a_driven_mechanism_closes_the_better_the_more_steps_it_has() -> None:
+    # Second order, until runs part at their impacts. A solve that leaves a rest in every step, as that of what holds and
+    # drives once did (3e-4 J at 160 000 steps beside 1e-5 J), is found by its sum.
+    case = sj.load("slider_crank")
+    coarse, fine = (
+        abs(case.changed({"motion.steps_per_cycle": steps, "output.samples_per_cycle": 100}).reduced(dynamic=True)
+            .summary["energy_residue_J"]) for steps in (40_000, 160_000))
+    assert fine < coarse
+
+
 def test_weight_hangs_on_bars_as_statics_says() -> None:
     # A bar of 2 kg that hangs from its first node and carries 3 kg: half of it and the load pull.
     made = {
