@@ -282,7 +282,7 @@ def test_page_that_cannot_be_written(statejump: Callable[..., Outcome], results:
 
 def test_script_that_was_not_built(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(page, "HERE", tmp_path)
-    with pytest.raises(StatejumpError, match="build with STATEJUMP_BUILD_REPORT=ON"):
+    with pytest.raises(StatejumpError, match="`make build` builds it"):
         page.render([])
 
 

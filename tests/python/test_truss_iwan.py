@@ -16,6 +16,7 @@ import statejump as sj
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import parse_case
 from statejump.kinds.truss import generate, solve
+from statejump.kinds.truss.contact_problems import contact_problems
 from statejump.kinds.truss.generate.document import document, finished, node, to_toml
 
 JOINT = {"tangent_stiffness_N_per_m": 2e7, "slip_force_N": 120.0, "exponent": -0.4, "stiffness_ratio": 0.7}
@@ -62,6 +63,11 @@ def test_joints_in_a_row_do_not_depend_on_increments(located: bool) -> None:
     jumps = [found.cycle_ends["displacement_m"][-1] for found in (few, many)]
     # Elements are exact whatever the step: what is left is rounding of displacements of 1 mm.
     assert jumps[0] == pytest.approx(jumps[1], rel=0, abs=1e-9 * np.abs(jumps[1]).max())
+
+
+def test_alone_it_is_no_contact_problem() -> None:
+    with pytest.raises(StatejumpError, match="no joint of the truss is a contact: Iwan joints have no cone"):
+        contact_problems(parse_case(bolted()), 3)
 
 
 def test_between_two_nodes_it_holds_across_its_axis() -> None:

@@ -30,7 +30,7 @@ def _asset(name: str) -> str:
     except OSError:
         raise StatejumpError(
             f"the page's script is missing ({path})",
-            remedy="build with STATEJUMP_BUILD_REPORT=ON, which needs Node and, once, the npm registry",
+            remedy="`make build` builds it; it needs Node and, once, the npm registry",
         ) from None
 
 

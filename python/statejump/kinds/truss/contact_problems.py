@@ -41,7 +41,7 @@ def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: No
     """Return the problems of so many steps, evenly spread over the path; fewer where the path has fewer steps.
 
     :raises NotAllowed: the number is out of its range
-    :raises StatejumpError: the truss has no joints, or too many for a dense W; its joints slip in part
+    :raises StatejumpError: the truss has no joints that are contacts, or too many for a dense W; they slip in part
     :raises FailedRun: the solver finds no path
     """
     NUMBER.check("number", number)
@@ -59,7 +59,11 @@ def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: No
         locate_events=case.reduced.locate_events, event_tolerance=case.reduced.event_tolerance, cycle_ends_only=True,
         problem_times=wanted,
     )
-    return [_problem(case, problem) for problem in found.problems if problem["joints"]]
+    problems = [_problem(case, problem) for problem in found.problems if problem["joints"]]
+    if not problems:
+        raise StatejumpError("no joint of the truss is a contact", case=case.name,
+                             cause="Iwan joints have no cone of Coulomb's")
+    return problems
 
 
 def _problem(case: TrussCase, found: dict) -> ContactProblem:
