@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parts of a scene in several threads: the same bits as the whole in one.
+//
+// The thread sanitizer says nothing of a race whose first access it no longer remembers. A test for
+// it makes few steps, and two races have to be noticed (docs/reliability.md has the trials).
 #include "statejump/stepper/parts.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <optional>
 #include <vector>
 
@@ -70,6 +74,57 @@ TEST(Parts, AnyNumberOfThreadsGivesTheBitsOfTheWhole) {
     EXPECT_EQ(made, alone);
   }
   omp_set_num_threads(before);
+}
+
+constexpr long few = 20;
+
+/// Every thread's accesses are remembered. @param make as of Scene::run(); called in the first step
+void step_side_by_side(const Scene::Make& make) {
+  omp_set_num_threads(4);
+  for (int i = 0; i < 5; ++i) {
+    Scene scene = scenes::held_crowd(joints);
+    scene.prepare();
+    Parts parts(scene);
+    ASSERT_EQ(parts.run(few, make), few);
+    parts.collect(scene);
+  }
+}
+
+TEST(Parts, FewStepsSideBySide) {
+  step_side_by_side([](std::size_t) { return aluminium(); });
+}
+
+#ifdef __SANITIZE_THREAD__
+constexpr bool looks_for_races = true;
+#elif defined(__has_feature)
+constexpr bool looks_for_races = __has_feature(thread_sanitizer);
+#else
+constexpr bool looks_for_races = false;
+#endif
+
+/// Steps with a race, in a process that the sanitizer ends with its status.
+void race(const Scene::Make& make) {
+  step_side_by_side(make);
+  std::exit(0);
+}
+
+TEST(PartsDeathTest, TheThreadSanitizerSeesARaceOfEveryContact) {
+  if (!looks_for_races) GTEST_SKIP() << "compiled without the thread sanitizer";
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  int made = 0;
+  const auto counts = [&](std::size_t) { return ++made, aluminium(); };
+  EXPECT_EXIT(race(counts), testing::ExitedWithCode(66), "data race");
+}
+
+TEST(PartsDeathTest, TheThreadSanitizerSeesARaceOfOneAccessInEachPart) {
+  if (!looks_for_races) GTEST_SKIP() << "compiled without the thread sanitizer";
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  std::size_t last = 0;
+  const auto writes = [&](std::size_t contact) {
+    if (contact % (joints / 4) == 0) last = contact;
+    return aluminium();
+  };
+  EXPECT_EXIT(race(writes), testing::ExitedWithCode(66), "data race");
 }
 
 TEST(Parts, ShortestWayOfAnyPartIsTold) {
