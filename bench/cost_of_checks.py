@@ -8,6 +8,7 @@
 Instructions are those of callgrind, which no other work of the machine changes. Steps: the difference of two runs, the
 second twice as long; without checks means that numbers.hpp answers every question of every step with yes. What the
 compiler makes of either differs by more than the checks themselves: leaving out a single one may cost instructions.
+Contacts that are stepped four at once are asked in lanes, by a question of their own.
 Start: ``--version`` and ``reduced table1``, with the bytecode that an installation has.
 """
 from __future__ import annotations
@@ -26,9 +27,12 @@ PYTHON = "/usr/bin/python3"
 # As the plugin is compiled, without optimisation at link time.
 FLAGS = ("-std=c++17", "-O3", "-DNDEBUG", "-ffp-contract=off", "-fno-math-errno", "-DEIGEN_DONT_ALIGN",
          "-DEIGEN_DONT_VECTORIZE", "-Wno-psabi", "-isystem", "/usr/include/eigen3")
-NUMBERS = "statejump/stepper/numbers.hpp"
-QUESTIONS = ("inline bool is_plain(const Vector3& v)", "inline bool is_plain_strain(", "bool is_plain_stiffness(",
-             "inline bool is_plain(const LinkStep& step")  # of every step
+QUESTIONS = {  # of every step, by header, with what says yes
+    "numbers.hpp": {"inline bool is_plain(const Vector3& v)": "true", "inline bool is_plain_strain(": "true",
+                    "bool is_plain_stiffness(": "true"},
+    "scene.hpp": {"inline bool has_length(": "true"},
+    "contact_lanes.hpp": {"inline Mask are_below(": "~Mask{}"},
+}
 STEPS = {1: 4000, 100: 400}  # by number of joints
 START = """
 import sys
@@ -53,14 +57,15 @@ def instructions(*command: str, **environment: str) -> int:
 
 def without_checks(headers: Path) -> None:
     """Let the questions of every step be answered with yes. :raises SystemExit: one is not found"""
-    file = headers / NUMBERS
-    text = file.read_text(encoding="utf-8")
-    for question in QUESTIONS:
-        if text.count(question) != 1:
-            sys.exit(f"{NUMBERS} has no {question}")
-        begin = text.index("{", text.index(question))
-        text = text[:begin] + "{ return true; }" + text[text.index("\n}", begin) + 2:]
-    file.write_text(text, encoding="utf-8")
+    for name, questions in QUESTIONS.items():
+        file = headers / "statejump/stepper" / name
+        text = file.read_text(encoding="utf-8")
+        for question, yes in questions.items():
+            if text.count(question) != 1:
+                sys.exit(f"{name} has no {question}")
+            begin = text.index("{", text.index(question))
+            text = text[:begin] + f"{{ return {yes}; }}" + text[text.index("\n}", begin) + 2:]
+        file.write_text(text, encoding="utf-8")
 
 
 def steps(compiler: str) -> None:

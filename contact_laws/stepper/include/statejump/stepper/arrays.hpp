@@ -27,6 +27,7 @@ struct Heater {
   };
   std::size_t program;  ///< place in Scene::programs
   std::vector<Target> targets;
+  double largest_expansion = 0;  ///< in magnitude, of the targets [1/K]
 };
 
 enum class Joint : unsigned char { revolute, ball, plane, outer_balls };

@@ -15,6 +15,20 @@
 
 namespace statejump::stepper {
 
+namespace detail {
+
+/// Of every run: up to which stiffness of the normal law is_plain_stiffness() holds [N/m], less by
+/// more than rounding; NaN, below which is nothing, for numbers that are not allowed.
+inline double plain_stiffness(const ContactPhysics& physics, double time_step) {
+  if (!(time_step > 0) || first_wrong(contact_quantities<ContactPhysics>, physics)) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  constexpr double less = 1 - 8 * std::numeric_limits<double>::epsilon();
+  return less * 4 * physics.effectiveMass / time_step / time_step;
+}
+
+}  // namespace detail
+
 /// Up to four contacts of one kind of joint, and what they keep from step to step. Lanes that are
 /// not used repeat the first.
 struct ContactLanes {
@@ -29,6 +43,7 @@ struct ContactLanes {
   Pack3 axis;               // unit, of the bearing; of a plane its normal
   Pack3 position_2, velocity_2, spin_1, spin_2;
   Pack young, shear, friction, normal_damping, tangential_damping, mass;
+  Pack plain_stiffness;  // [N/m]
   // State of a contact that is real.
   Pack3 normal, tangential_force;  // on body 1 [N]
   Pack stiffness;                  // tangential [N/m]
@@ -36,7 +51,7 @@ struct ContactLanes {
   Pack elastic_force, elastic_energy, clearance, radius;  // of the last step
 
   /// Takes over a contact; the rest of a lane stays what it is from step to step.
-  void load(std::size_t lane, const Contact& contact) {
+  void load(std::size_t lane, const Contact& contact, double time_step) {
     const ContactPhysics& physics = contact.physics;
     real[lane] = contact.real ? -1 : 0;
     young[lane] = physics.effectiveYoungModulus;
@@ -47,6 +62,7 @@ struct ContactLanes {
     damps_normal = any(normal_damping > 0);
     damps_tangential = any(tangential_damping > 0);
     mass[lane] = physics.effectiveMass;
+    plain_stiffness[lane] = detail::plain_stiffness(physics, time_step);
     put(normal, lane, contact.geometry.normal);
     put(tangential_force, lane, -physics.shearForce);
     stiffness[lane] = physics.ks;
@@ -86,6 +102,11 @@ struct MotionLanes {
 };
 
 namespace detail {
+
+/// is_plain_stiffness(), for contacts of a radius above 0.
+[[gnu::always_inline]] inline Mask are_below(const Pack& stiffness, const Pack& largest) {
+  return stiffness < largest;
+}
 
 /// kernel::transport() without twist. @param left gains the lanes where the normals are opposite
 [[gnu::always_inline]] inline Pack3 transport(const Pack3& tangential, const Pack3& n_old,
@@ -142,7 +163,6 @@ template <bool tracks_energy>
     step.left &= at.used;
     return step;
   }
-  step.left |= at.real & ~(depth > 0.0);
   const Pack3 arm_1 = normal * (length_1 - 0.5 * depth);
   const Pack3 arm_2 = centres + arm_1;
   const Pack3 velocity =
@@ -151,9 +171,10 @@ template <bool tracks_energy>
   // hertz() and the normal part of contact_step()
   const Pack contact_radius = root(radius * depth);
   const Pack normal_stiffness = 2.0 * at.young * contact_radius;
+  // Without a depth there is no root. Both moduli are above 0 where any stiffness is plain.
+  step.left |=
+      at.real & ~((contact_radius > 0.0) & detail::are_below(normal_stiffness, at.plain_stiffness));
   const Pack elastic_force = 2.0 / 3.0 * normal_stiffness * depth;
-  const Pack rate = time_step * normal_stiffness;
-  step.left |= at.real & ~((rate > 0.0) & (time_step * rate <= 4.0 * at.mass));
   const Pack approach_speed = dot(velocity, normal);
   Pack normal_force = elastic_force;
   Pack damping_power{};
@@ -171,7 +192,6 @@ template <bool tracks_energy>
   const Pack limit = at.friction * normal_force;
   const Pack3 tangential_velocity = velocity - normal * approach_speed;
   const Pack3 slide = tangential_velocity * time_step;
-  step.left |= at.real & ~(stiffness > 0.0);
   const Mask stored = at.stiffness > 0.0;
   const Pack old_compliance = stored ? 1.0 / at.stiffness : 0.0;
   const Mask free = ~(limit > 0.0);

@@ -22,6 +22,11 @@
 
 namespace statejump::stepper {
 
+/// Of every step of a link.
+inline bool has_length(const LinkStep& step) {
+  return step.stress_free_length > 0;
+}
+
 /// The law of contacts that is not made of laws by name.
 struct HertzMindlin {};
 
@@ -139,6 +144,15 @@ inline void Scene::prepare() {
     if (bodies[i].moves) moving_.push_back(i);
   }
   changes_.assign(programs.size(), 0);
+  for (Heater& heater : heaters) {
+    heater.largest_expansion = 0;
+    for (const Heater::Target& target : heater.targets) {
+      const double expansion = std::abs(target.expansion);
+      heater.largest_expansion = std::isfinite(expansion)
+                                     ? std::max(heater.largest_expansion, expansion)
+                                     : std::numeric_limits<double>::infinity();
+    }
+  }
   for (Contact& contact : contacts) {
     const Body& one = body(contact.body_1);
     const Body& two = body(contact.body_2);
@@ -226,10 +240,15 @@ inline bool Scene::is_sound() const {
 
 inline bool Scene::heat() {
   for (const Heater& heater : heaters) {
+    const double change = changes_[heater.program];
+    if (!is_plain_strain(heater.largest_expansion * change)) {
+      for (const Heater::Target& target : heater.targets) {
+        if (!is_strain(target.expansion * change)) return false;
+      }
+    }
     for (const Heater::Target& target : heater.targets) {
       Strain& now = strains[target.strain];
-      const double strain = target.expansion * changes_[heater.program];
-      if (!is_plain_strain(strain) && !is_strain(strain)) return false;
+      const double strain = target.expansion * change;
       now.rate = (strain - now.strain) / time_step;
       now.strain = strain;
     }
@@ -326,12 +345,17 @@ inline bool Scene::act(Links& group) {
         damping_coefficient(link, inverse), time);
     if (inverse > 0 && !(time_step <= stable_step(now, inverse))) return false;
     Vector3 force = force_on_tip(now);
-    if (!is_plain(now, force)) return false;
+    if (!has_length(now)) return false;
     if (link.tipTurnsWithLink) {
       if ((tip.blocked & all_rotations) != all_rotations) return false;
       force += turn_tip(link, now, kept_[i], tip.orientation, tip.motion.angular_velocity);
     }
-    if (tip.moves) tip.added_force += force;
+    // A force that is no number stays none in what it moves, where is_sound() sees it.
+    if (tip.moves) {
+      tip.added_force += force;
+    } else if (!root.moves && !is_plain(force)) {
+      return false;
+    }
     if (root.moves) root.added_force += -force;
     if (tracks_energy) {
       const LinkEnergy step = energy(link, now, time_step);
