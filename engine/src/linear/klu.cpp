@@ -67,6 +67,25 @@ struct SparseFactor::Factors {
     return true;
   }
 
+  /// Factors a matrix of the same pattern with the pivots that the last one had, which takes a
+  /// fraction of the time. Only where KLU could have chosen them itself: no entry of L is beyond
+  /// what its tolerance lets it take for a pivot.
+  bool keeps_pivots(int* columns, int* rows, double* values) {
+    if (numeric == nullptr) return false;
+    if (klu_refactor(columns, rows, values, symbolic, numeric, &common) == 0) return false;
+    if (common.status != KLU_OK) return false;
+    const auto entries = static_cast<std::size_t>(numeric->lnz);
+    lower_column.resize(static_cast<std::size_t>(size) + 1);
+    lower_row.resize(entries);
+    lower.resize(entries);
+    klu_extract(numeric, symbolic, lower_column.data(), lower_row.data(), lower.data(), nullptr,
+                nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr,
+                &common);
+    const double most = 1.0 / common.tol;
+    return std::all_of(lower.begin(), lower.end(),
+                       [most](double entry) { return std::abs(entry) <= most; });
+  }
+
   // KLU's C interface allocates and frees these itself.
   klu_common common{};
   klu_symbolic* symbolic = nullptr;
@@ -74,6 +93,9 @@ struct SparseFactor::Factors {
   int size = 0;
   Eigen::VectorXd row_size;
   std::vector<int> pivot_of_row;
+  std::vector<int> lower_column;
+  std::vector<int> lower_row;
+  std::vector<double> lower;
 };
 
 SparseFactor::SparseFactor() : factors_(std::make_unique<Factors>()) {}
@@ -90,6 +112,7 @@ bool SparseFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
     f.symbolic = klu_analyze(f.size, columns, rows, &f.common);
     if (f.symbolic == nullptr) return false;
   }
+  if (f.keeps_pivots(columns, rows, values) && f.has_pivots(matrix)) return true;
   klu_free_numeric(&f.numeric, &f.common);
   f.numeric = klu_factor(columns, rows, values, f.symbolic, &f.common);
   return f.numeric != nullptr && f.common.status == KLU_OK && f.has_pivots(matrix);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "system.hpp"
@@ -31,15 +32,16 @@ void Assembly::record() {
   std::copy(rows.begin(), kept, jacobian.innerIndexPtr());
   std::fill_n(jacobian.valuePtr(), jacobian.nonZeros(), 0.0);
   rows = {};
-  slots_.reserve(places_.size());
+  std::vector<int> slots;
+  slots.reserve(places_.size());
   for (const auto& [row, column] : places_) {
     const int* inner = jacobian.innerIndexPtr();
     const int* first = inner + jacobian.outerIndexPtr()[column];
     const int* last = inner + jacobian.outerIndexPtr()[column + 1];
-    slots_.push_back(static_cast<int>(std::lower_bound(first, last, row) - inner));
+    slots.push_back(static_cast<int>(std::lower_bound(first, last, row) - inner));
   }
   places_ = {};
-  recorded_ = true;
+  slots_ = std::make_shared<const std::vector<int>>(std::move(slots));
 }
 
 namespace detail {
@@ -263,7 +265,7 @@ void System::evaluate_joints(const VectorXd& z, double time, const StepStart& st
   assemble_joints(z, time, start, statuses, JointModel::friction, 1.0, to);
 }
 
-Assembly System::assembly(Parts parts) const {
+Assembly System::recorded(Parts parts) const {
   Assembly made(unknowns_);
   const VectorXd z = VectorXd::Zero(unknowns_);
   const Statuses statuses = all_stick();

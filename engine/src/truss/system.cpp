@@ -39,6 +39,7 @@ System::System(const Model& model) : model_(&model) {
   for (const AxialSpring& spring : model.springs) {
     stiffness_scale_ = std::max(stiffness_scale_, spring.stiffness);
   }
+  pattern_ = recorded(Parts::all);
 }
 
 Vector3d System::displacement(int node, const VectorXd& z) const {

@@ -44,7 +44,9 @@ class System {
   enum class Parts : unsigned char { all, bars, joints };
 
   /// Place for residual and Jacobian of these parts, whose pattern never changes.
-  Assembly assembly(Parts parts = Parts::all) const;
+  Assembly assembly(Parts parts = Parts::all) const {
+    return parts == Parts::all ? pattern_ : recorded(parts);
+  }
 
   /// Residual and Jacobian at z, the rows of the joints on the branches of `statuses`.
   /// @param opening share of the clearances that is open (start)
@@ -139,6 +141,7 @@ class System {
   void assemble_joints(const VectorXd& z, double time, const StepStart& start,
                        const Statuses& statuses, JointModel joints, double opening,
                        Assembly& to) const;
+  Assembly recorded(Parts parts) const;
   Lengths lengths_between(int from, int to, const VectorXd& z) const;
   Axial axial(const Link& link, const VectorXd& z, double time) const;
   JointWriter writer(int joint, Assembly& to) const;
@@ -166,6 +169,7 @@ class System {
   std::vector<int> history_begin_;  // of each joint
   std::vector<int> output_begin_;   // of each joint
   std::vector<Matrix32> torsion_plane_;
+  Assembly pattern_{0};  // of all parts, which others copy
 };
 
 }  // namespace statejump::truss::detail

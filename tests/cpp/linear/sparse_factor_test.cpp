@@ -52,6 +52,37 @@ TEST(SparseFactor, TellsTheSignOfTheDeterminant) {
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
+TEST(SparseFactor, ChoosesOtherPivotsWhereThoseOfTheLastMatrixDoNotServe) {
+  // One pattern: the pivots of the first matrix are on the diagonal. Of the second they would be
+  // 1e-14 of the entries beside them, and the solution would have two digits; of the third zero.
+  Eigen::Matrix3d dense;
+  dense << 4.0, 1.0, 0.5, 1.0, 5.0, 1.0, 0.25, 1.0, 3.0;
+  SparseFactor factor;
+  ASSERT_TRUE(factor.factorize(sparse(dense)));
+  const Eigen::Vector3d right(1.0, -2.0, 0.25);
+  for (const double small : {1e-14, 0.0}) {
+    const Eigen::SparseMatrix<double> pattern = sparse(dense);
+    Eigen::SparseMatrix<double> next = pattern;
+    next.coeffRef(0, 0) = small;
+    next.coeffRef(1, 1) = small;
+    next.coeffRef(2, 2) = small;
+    ASSERT_TRUE(factor.factorize(next));
+    EXPECT_LT((next * factor.solve(right) - right).norm(), 1e-14);
+    EXPECT_EQ(factor.determinant_sign(), Eigen::Matrix3d(next).determinant() < 0.0 ? -1 : 1);
+    // And back again.
+    ASSERT_TRUE(factor.factorize(pattern));
+    EXPECT_LT((dense * factor.solve(right) - right).norm(), 1e-14);
+  }
+  // One that is singular is told, and the next one is solved.
+  Eigen::SparseMatrix<double> singular = sparse(dense);
+  for (int column = 0; column < 3; ++column) {
+    singular.coeffRef(2, column) = 2.0 * singular.coeff(0, column);
+  }
+  EXPECT_FALSE(factor.factorize(singular));
+  ASSERT_TRUE(factor.factorize(sparse(dense)));
+  EXPECT_LT((dense * factor.solve(right) - right).norm(), 1e-14);
+}
+
 TEST(SparseFactor, TakesColumnsOfDifferentUnits) {
   // Newtons and metres of a stiff part: the smallest pivot is 1e-18 of the largest.
   Eigen::Matrix2d dense;

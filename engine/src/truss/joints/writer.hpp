@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -39,14 +40,14 @@ class Assembly {
   /// Begins an evaluation.
   void clear() {
     residual.setZero();
-    if (recorded_) std::fill_n(jacobian.valuePtr(), jacobian.nonZeros(), 0.0);
+    if (slots_ != nullptr) std::fill_n(jacobian.valuePtr(), jacobian.nonZeros(), 0.0);
     next_ = 0;
     largest_force = 0.0;
     pieces = 0;
   }
   void add(int row, int column, double value) {
-    if (recorded_) {
-      jacobian.valuePtr()[slots_[next_++]] += value;
+    if (slots_ != nullptr) {
+      jacobian.valuePtr()[(*slots_)[next_++]] += value;
     } else if (along_ != nullptr) {
       product[row] += value * (*along_)[column];
     } else {
@@ -64,12 +65,11 @@ class Assembly {
   std::size_t pieces = 0;      ///< Tells sets of pieces of branches that have several.
 
  private:
-  bool recorded_ = false;
   bool residual_only_ = false;
   const Eigen::VectorXd* along_ = nullptr;
   std::size_t next_ = 0;
   std::vector<std::pair<int, int>> places_;
-  std::vector<int> slots_;
+  std::shared_ptr<const std::vector<int>> slots_;  ///< Once recorded, the same of all copies.
 };
 
 /// Takes what a joint adds, in the places of its own nodes and forces.

@@ -18,7 +18,7 @@ from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import Contacts, Sampled
 from statejump.kinds.truss.motion import TrussMotion
 from statejump.kinds.truss.resolved import ResolvedTruss
-from statejump.kinds.truss.solve import TrussPath, engine_program, heat_of_joints_J
+from statejump.kinds.truss.solve import TrussPath, engine_programs, heat_of_joints_J
 from statejump.results import scene as drawing
 from statejump.results.events import from_states, kind_of
 
@@ -104,7 +104,7 @@ class _Section:
 
 def _changes(truss: ResolvedTruss, time_s: np.ndarray, part: Any) -> np.ndarray:
     """Temperature change [K] of every item (samples, items)."""
-    programs = [engine_program(program) for program in truss.programs]
+    programs = engine_programs(truss)
     used = [int(number) for number in np.unique(part.program)]
     found = {number: programs[number].temperature_change(time_s) for number in used}
     if not len(part.names):

@@ -108,6 +108,15 @@ def engine_program(program: TrussThermal | MemberProgram) -> _engine.ThermalProg
     return thermal.program(program, program.period_s)
 
 
+def engine_programs(truss: ResolvedTruss) -> list[_engine.ThermalProgram]:
+    """Return all programs of a truss, which never changes, so that they are made once."""
+    kept = vars(truss)
+    if "_engine_programs" not in kept:
+        kept["_engine_programs"] = [engine_program(program) for program in truss.programs]
+    found: list[_engine.ThermalProgram] = kept["_engine_programs"]
+    return found
+
+
 def _table(part: Any, *keys: str, **more: Any) -> dict[str, Any]:
     return {"names": list(part.names), **{key: getattr(part, key) for key in keys}, **more}
 
@@ -130,7 +139,7 @@ def engine_items(truss: ResolvedTruss) -> dict[str, Any]:
         "springs": _table(truss.springs, "nodes", "stiffness_N_per_m", "free_length_m", "cable"),
         "torsion_springs": _table(truss.torsion_springs, "links", "stiffness_N_m_per_rad", "bias_rad", "axis"),
         "joints": {joint.section: _joints(truss, joint) for joint in JOINTS},
-        "programs": [engine_program(program) for program in truss.programs],
+        "programs": engine_programs(truss),
     }
 
 

@@ -16,6 +16,8 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 
 # Singular value of the fit, its columns of length 1, below which a parameter is not determined.
 LEAST_SINGULAR_VALUE = 1e-6
+# Square of an angle [rad²] below which two terms of its functions' series are exact: the third is below 1e-16.
+SMALL_SQUARE = 1e-7
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class Surface:
         points = self.drawn_m + displacement_m[self.nodes] @ self.frame.T
         found = _fit(points, self.free, self.held)
         values = {**self.held, **dict(zip(self.free, found.x))}
-        residual = _residual(points, values)
+        residual, _ = _residual(points, values)
         curvature = values["curvature"]
         return Fit(
             residual, float(np.sqrt(np.mean(residual**2))),
@@ -59,22 +61,43 @@ def _names(kind: str, lateral: int) -> list[str]:
     return [f"{kind}{axis}" for axis in range(lateral)]
 
 
-def _residual(points: np.ndarray, values: dict[str, float]) -> np.ndarray:
-    """Distances [m] (n,) along the normal: points are turned by -tilt, then compared."""
+def _residual(points: np.ndarray, values: dict[str, float]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Distances [m] (n,) along the normal, points turned by -tilt and then compared; their derivatives by every
+    parameter."""
     lateral = points.shape[1] - 1
     across, along = points[:, :lateral], points[:, lateral]
     tilt = np.array([values[name] for name in _names("tilt", lateral)])
-    size = float(np.linalg.norm(tilt))
-    if size > 0:
-        way = tilt / size
-        forward = across @ way
-        turned = forward * np.cos(size) - along * np.sin(size)
-        along = forward * np.sin(size) + along * np.cos(size)
-        across = across + np.outer(turned - forward, way)
-    away = across - np.array([values[name] for name in _names("shift", lateral)])
+    # Of the angle's square: its cosine, sin(angle)/angle, (cos(angle) - 1)/angle² and the derivatives of these two.
+    square = float(tilt @ tilt)
+    angle = np.sqrt(square)
+    if square > SMALL_SQUARE:
+        sine, fall = np.sin(angle) / angle, (np.cos(angle) - 1) / square
+        sine_slope, fall_slope = (np.cos(angle) - sine) / (2 * square), (-sine / 2 - fall) / square
+    else:
+        sine, fall, sine_slope, fall_slope = 1 - square / 6, square / 24 - 0.5, square / 60 - 1 / 6, 1 / 24
+    cosine = 1 + square * fall
+    forward = across @ tilt
+    pushed = forward * fall - along * sine
+    turned_along = forward * sine + along * cosine
+    away = across + np.outer(pushed, tilt) - np.array([values[name] for name in _names("shift", lateral)])
     squared = np.sum(away**2, axis=1)
     curvature = values["curvature"]
-    return (along - values["depth"] - curvature * squared) / np.sqrt(1 + 4 * curvature**2 * squared)
+    below = 1 + 4 * curvature**2 * squared
+    found = (turned_along - values["depth"] - curvature * squared) / np.sqrt(below)
+
+    def slope(height: np.ndarray | float, by_squared: np.ndarray | float, by_curvature: float = 0.0) -> np.ndarray:
+        """What a parameter changes that changes height, square of the distance and curvature by that much."""
+        lower = 4 * curvature * (2 * squared * by_curvature + curvature * by_squared)
+        return np.asarray((height - by_curvature * squared - curvature * by_squared) / np.sqrt(below)
+                          - found * lower / (2 * below))
+
+    slopes = {"depth": slope(-1.0, 0.0), "curvature": slope(0.0, 0.0, 1.0)}
+    for axis in range(lateral):
+        height = across[:, axis] * sine + tilt[axis] * (2 * forward * sine_slope - along * sine)
+        push = across[:, axis] * fall + 2 * tilt[axis] * (forward * fall_slope - along * sine_slope)
+        slopes[f"tilt{axis}"] = slope(height, 2 * (push * (away @ tilt) + pushed * away[:, axis]))
+        slopes[f"shift{axis}"] = slope(0.0, -2 * away[:, axis])
+    return found, slopes
 
 
 def _fit(points: np.ndarray, free: tuple[str, ...], held: dict[str, float]):  # type: ignore[no-untyped-def]
@@ -82,22 +105,22 @@ def _fit(points: np.ndarray, free: tuple[str, ...], held: dict[str, float]):  # 
     size = float(np.ptp(points, axis=0).max())
     scale = np.array([{"d": size, "s": size, "c": 1 / size, "t": 1.0}[name[0]] for name in free])
 
-    def residual(x: np.ndarray) -> np.ndarray:
-        return _residual(points, {**held, **dict(zip(free, x * scale))}) / size
+    def values(x: np.ndarray) -> dict[str, float]:
+        return {**held, **dict(zip(free, x * scale))}
 
-    found = least_squares(residual, np.zeros(len(free)), method="lm", jac="2-point", xtol=1e-15, ftol=1e-15, gtol=1e-15)
-    # From there with better derivatives: displacements are a millionth of the surface.
-    for _ in range(3):
-        found = least_squares(residual, found.x, method="lm", jac=lambda x: _central(residual, x), xtol=1e-15,
-                              ftol=1e-15, gtol=1e-15)
-    found.jac = _central(residual, found.x)
+    def residual(x: np.ndarray) -> np.ndarray:
+        return _residual(points, values(x))[0] / size
+
+    def jacobian(x: np.ndarray) -> np.ndarray:
+        slopes = _residual(points, values(x))[1]
+        return np.stack([slopes[name] for name in free], axis=1) * scale / size
+
+    found = least_squares(residual, np.zeros(len(free)), method="lm", jac=jacobian, xtol=1e-15, ftol=1e-15, gtol=1e-15)
+    # It ends where the sum of squares is flat to rounding; one step more ends where its slope is.
+    found.x = found.x - np.linalg.lstsq(jacobian(found.x), residual(found.x), rcond=None)[0]
+    found.jac = jacobian(found.x)
     found.x = found.x * scale
     return found
-
-
-def _central(function, x: np.ndarray, step: float = 1e-5) -> np.ndarray:  # type: ignore[no-untyped-def]
-    return np.stack([(function(x + step * way) - function(x - step * way)) / (2 * step) for way in np.eye(len(x))],
-                    axis=1)
 
 
 def surface(truss: ResolvedTruss) -> Surface | None:

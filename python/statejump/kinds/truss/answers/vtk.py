@@ -13,7 +13,7 @@ from statejump.core.progress import Tell
 from statejump.results.vtk_data import add_array, cells, file_time, frames_of, points, write, write_series
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
-from statejump.kinds.truss.solve import TrussPath, engine_program
+from statejump.kinds.truss.solve import TrussPath, engine_programs
 
 LINK, SPRING, FIRST_JOINT = range(3)  # "kind" of a cell; joints in the order of JOINTS
 # Columns that have one name in files for all types.
@@ -22,7 +22,7 @@ SHARED = {"slider_force_N": "friction_force_N"}
 
 def link_temperatures(truss: ResolvedTruss, times_s: np.ndarray) -> np.ndarray:
     """Return ΔT [K] (times, links) of every link."""
-    common = np.stack([engine_program(program).temperature_change(times_s) for program in truss.programs], axis=1)
+    common = np.stack([program.temperature_change(times_s) for program in engine_programs(truss)], axis=1)
     return common[:, truss.links.shown_program] * truss.links.shown_fraction
 
 
