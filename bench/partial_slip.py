@@ -18,7 +18,7 @@ from run import STEPS, BenchError, row, run_yade
 
 LAWS = ("mindlin", "mindlin_deresiewicz")
 VARIANTS = {"joint": "YADE, heated", "joint_isothermal": "YADE", "joint_stepper": "JointStepper, heated"}
-WARM_UP = 5000  # steps; they ring for some hundred
+WARM_UP = 1500  # steps; they ring for some hundred
 
 
 def main() -> int:

@@ -167,6 +167,35 @@ TEST(PartialSlip, LoadingUnloadingReloadingAtConstantLoad) {
   }
 }
 
+TEST(PartialSlip, NestedReversalsFollowMasingHoweverManyPointsStick) {
+  // Each branch is twice the loading curve from where it turned; deep in the nest most points only
+  // move with the slide. Then back over all of them: a loop that closes is forgotten.
+  const double limit = mu * Contact::normal(usual_depth);
+  const double gross = Contact::gross(usual_depth);
+  constexpr int turns = 14;
+  Contact contact = pressed();
+  std::vector<double> slides{0.9 * gross};
+  std::vector<double> forces{contact.in_steps(usual_depth, {slides[0], 0.0}, 5)};
+  EXPECT_NEAR(forces[0], limit * cattaneo(0.9), 1e-13 * limit);
+  for (int i = 0; i < turns; ++i) {
+    const double next = -0.85 * slides.back();
+    const double sign = next > slides.back() ? 1.0 : -1.0;
+    const double expected =
+        forces.back() +
+        2.0 * sign * limit * cattaneo(std::abs(next - slides.back()) / (2.0 * gross));
+    slides.push_back(next);
+    forces.push_back(contact.in_steps(usual_depth, {next, 0.0}, 5));
+    EXPECT_NEAR(forces.back(), expected, 1e-13 * limit) << i;
+  }
+  EXPECT_EQ(contact.memory.size(), turns + 3);  // one per reversal, centre and rim
+  for (int i = turns; i > 0; i -= 2) {
+    const auto turn = static_cast<std::size_t>(i - 1);
+    EXPECT_NEAR(contact.in_steps(usual_depth, {slides[turn], 0.0}, 5), forces[turn], 1e-13 * limit);
+    if (i > 1) contact.in_steps(usual_depth, {slides[turn - 1], 0.0}, 5);
+    EXPECT_NEAR(contact.response.force.a, i > 1 ? forces[turn - 1] : forces[turn], 1e-13 * limit);
+  }
+}
+
 TEST(PartialSlip, InitialStiffnessIsMindlins) {
   Contact contact = pressed();
   const double slide = 1e-9 * Contact::gross(usual_depth);
