@@ -70,11 +70,14 @@ void scatter_stage(const GuidePlanes&, const stepper::Stage&) {}  // keeps nothi
 }  // namespace
 
 stepper::Energies read_energies(const yade::Scene& scene) {
-  const py::object tracker(scene.energy);
-  const py::object names(tracker.attr("keys")());
+  const py::object items(py::object(scene.energy).attr("items")());
   stepper::Energies energies;
-  for (const EnergyEntry& entry : energy_entries) {
-    if (names.contains(entry.name)) energies.*entry.value = py::extract<Real>(tracker[entry.name]);
+  for (py::ssize_t i = 0; i < py::len(items); ++i) {
+    const py::object item(items[i]);
+    const std::string name = py::extract<std::string>(item[0]);
+    for (const EnergyEntry& entry : energy_entries) {
+      if (name == entry.name) energies.*entry.value = py::extract<Real>(item[1]);
+    }
   }
   return energies;
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stepper_engines.hpp"
 
+#include <array>
 #include <boost/python.hpp>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "guide.hpp"
 #include "stepper.hpp"
@@ -18,13 +20,15 @@ std::string type_of(const py::object& object) {
   return py::extract<std::string>(object.attr("__class__").attr("__name__"));
 }
 
+// Engines of YADE that the stepper knows.
+enum class Known { resetter, collider, loop, newton, onlooker, time_stepper };
+
 // Where an engine stands in a step.
 enum class Place { resetter, stepper, before, loop, behind, motion };
 
 class Reader {
  public:
-  Reader(const yade::Scene& scene, const yade::Engine& self)
-      : scene_(scene), self_(self), wrapper_(py::import("yade.wrapper")) {}
+  Reader(const yade::Scene& scene, const yade::Engine& self) : scene_(scene), self_(self) {}
 
   JointEngines read() {
     for (const auto& engine : scene_.engines) {
@@ -52,42 +56,58 @@ class Reader {
   }
 
   void read_of_yade(const py::object& object, const yade::Engine& engine) {
-    if (is(object, "ForceResetter")) return stand(Place::resetter, "ForceResetter");
-    if (is(object, "InsertionSortCollider")) {
-      engines_.has_collider = true;
-      if (!(py::extract<Real>(object.attr("verletDist"))() > 0)) {
-        refuse_scene(
-            "InsertionSortCollider.verletDist must be above 0 [m]: without it the collider looks "
-            "for contacts in every step");
-      }
-      return stand(Place::before, "InsertionSortCollider");
+    switch (known(object, engine.getClassName())) {
+      case Known::resetter:
+        return stand(Place::resetter, "ForceResetter");
+      case Known::collider:
+        engines_.has_collider = true;
+        if (!(py::extract<Real>(object.attr("verletDist"))() > 0)) {
+          refuse_scene(
+              "InsertionSortCollider.verletDist must be above 0 [m]: without it the collider looks "
+              "for contacts in every step");
+        }
+        return stand(Place::before, "InsertionSortCollider");
+      case Known::loop:
+        if (has_loop_) refuse_scene("there are two InteractionLoops");
+        has_loop_ = true;
+        read_functors(object);
+        return stand(Place::loop, "InteractionLoop");
+      case Known::newton:
+        if (has_newton_) refuse_scene("there are two NewtonIntegrators");
+        has_newton_ = true;
+        read_newton(object);
+        return stand(Place::motion, "NewtonIntegrator");
+      case Known::onlooker:
+        return;
+      case Known::time_stepper:
+        if (PyObject_HasAttrString(object.ptr(), "densityScaling") &&
+            py::extract<bool>(object.attr("densityScaling"))()) {
+          refuse_scene(type_of(object) + ".densityScaling must be off");
+        }
     }
-    if (is(object, "InteractionLoop")) {
-      if (has_loop_) refuse_scene("there are two InteractionLoops");
-      has_loop_ = true;
-      read_functors(object);
-      return stand(Place::loop, "InteractionLoop");
-    }
-    if (is(object, "NewtonIntegrator")) {
-      if (has_newton_) refuse_scene("there are two NewtonIntegrators");
-      has_newton_ = true;
-      read_newton(engine.pyDict());
-      return stand(Place::motion, "NewtonIntegrator");
-    }
-    // These look on, or choose the time step.
-    if (is(object, "PeriodicEngine")) return;
-    if (is(object, "TimeStepper")) {
-      if (PyObject_HasAttrString(object.ptr(), "densityScaling") &&
-          py::extract<bool>(object.attr("densityScaling"))()) {
-        refuse_scene(type_of(object) + ".densityScaling must be off");
-      }
-      return;
-    }
-    refuse_scene("it does not know the engine " + type_of(object));
   }
 
-  bool is(const py::object& object, const char* class_name) const {
-    return PyObject_IsInstance(object.ptr(), py::object(wrapper_.attr(class_name)).ptr()) == 1;
+  // Throws where it is none of them.
+  static Known known(const py::object& object, const std::string& class_name) {
+    static constexpr std::array<std::pair<const char*, Known>, 6> bases = {
+        {{"ForceResetter", Known::resetter},
+         {"InsertionSortCollider", Known::collider},
+         {"InteractionLoop", Known::loop},
+         {"NewtonIntegrator", Known::newton},
+         {"PeriodicEngine", Known::onlooker},
+         {"TimeStepper", Known::time_stepper}}};
+    // This is asked between any two runs of steps: most engines are told by their names alone.
+    if (class_name == "PyRunner") return Known::onlooker;
+    for (const auto& [name, which] : bases) {
+      if (class_name == name) return which;
+    }
+    const py::object wrapper = py::import("yade.wrapper");
+    for (const auto& [name, which] : bases) {
+      if (PyObject_IsInstance(object.ptr(), py::object(wrapper.attr(name)).ptr()) == 1) {
+        return which;
+      }
+    }
+    refuse_scene("it does not know the engine " + type_of(object));
   }
 
   void stand(Place place, const std::string& name) {
@@ -147,14 +167,14 @@ class Reader {
     }
   }
 
-  void read_newton(const py::dict& values) {
-    const auto flag = [&](const char* name) { return py::extract<bool>(values[name])(); };
+  void read_newton(const py::object& integrator) {
+    const auto flag = [&](const char* name) { return py::extract<bool>(integrator.attr(name))(); };
     stepper::Newton& newton = engines_.newton;
-    newton.damping = py::extract<Real>(values["damping"])();
-    newton.gravity = py::extract<Vector3r>(values["gravity"])();
+    newton.damping = py::extract<Real>(integrator.attr("damping"))();
+    newton.gravity = py::extract<Vector3r>(integrator.attr("gravity"))();
     newton.dampGravity = flag("dampGravity");
     engines_.exact_rotation = flag("exactAsphericalRot");
-    if (py::extract<int>(values["mask"])() > 0) {
+    if (py::extract<int>(integrator.attr("mask"))() > 0) {
       refuse_scene("NewtonIntegrator.mask must be -1: every body moves");
     }
     // Versions of YADE differ in whether the work of gravity counts in what damping takes.
@@ -165,7 +185,6 @@ class Reader {
 
   const yade::Scene& scene_;
   const yade::Engine& self_;
-  py::object wrapper_;
   JointEngines engines_;
   bool has_loop_ = false, has_newton_ = false, seen_stepper_ = false;
   bool any_ = false;

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The same scenes with and without the JointStepper; `stepper.py PART` with the parts at the end."""
+import hashlib
 import json
 import sys
 import tempfile
@@ -23,6 +24,11 @@ def counted():
 def bits(state):
     """Return a state as text: floats print so that they read back the same, NaN equals NaN."""
     return json.dumps(state, sort_keys=True, default=list)  # vectors in a list
+
+
+def digest(state):
+    """Return a hash of a state."""
+    return hashlib.sha256(bits(state).encode()).hexdigest()
 
 
 def differences(one, other):
@@ -56,7 +62,7 @@ def run_both(build, steps, substeps, go=in_one_go):
             row[-1] = {key: list(v) if isinstance(v, Vector3) else v for key, v in row[-1].items()}
     ordinary, stepper = found["ordinary"], found["stepper"]
     return {
-        "differences": differences(ordinary, stepper), "steps": O.iter, "made_by_yade": MAIN.ordinary_steps,
+        "differences": differences(ordinary, stepper), "hashes": [digest(ordinary), digest(stepper)], "steps": O.iter, "made_by_yade": MAIN.ordinary_steps,
         "touching": len(ordinary["geometry"]), "energy": ordinary["energy"], "law": ordinary.get("law"),
     }
 

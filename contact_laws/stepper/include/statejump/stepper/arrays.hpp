@@ -50,10 +50,12 @@ struct Contact {
   ContactPhysics physics;
 };
 
-/// A link, with its program and whether it turns its tip.
+/// A link, with its program and what is known of it before the first step.
 struct LinkPlace {
   Link link;
-  std::size_t program;  ///< place in Scene::programs
+  std::size_t program;      ///< place in Scene::programs
+  double inverse_mass = 0;  ///< 1/m1 + 1/m2 [1/kg]
+  double damping = 0;       ///< damping_coefficient() [N s/m]
 };
 
 struct TorsionPlace {

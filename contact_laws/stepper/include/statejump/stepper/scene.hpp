@@ -18,6 +18,7 @@
 #include "statejump/stepper/arrays.hpp"
 #include "statejump/stepper/batches.hpp"
 #include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/stable_link.hpp"
 #include "statejump/thermal/program.hpp"
 
 namespace statejump::stepper {
@@ -130,12 +131,14 @@ inline void Scene::prepare() {
     each.turns = can_turn(each);
     each.moves = !rests(each);
   }
-  for (const Stage& stage : stages) {
-    const auto* links = std::get_if<Links>(&stage);
+  for (Stage& stage : stages) {
+    auto* links = std::get_if<Links>(&stage);
     if (!links) continue;
-    for (const LinkPlace& place : links->places) {
-      if (!place.link.tipTurnsWithLink) continue;
+    for (LinkPlace& place : links->places) {
       Body& tip = body(place.link.id2);
+      place.inverse_mass = body(place.link.id1).inverse_mass + tip.inverse_mass;
+      place.damping = damping_coefficient(place.link, place.inverse_mass);
+      if (!place.link.tipTurnsWithLink) continue;
       tip.turns = tip.moves = true;
     }
   }
@@ -325,25 +328,23 @@ bool Scene::step_contact(const Law& one, std::size_t place, const Make& make) {
 
 inline bool Scene::act(Links& group) {
   auto& links = group.places;
-  kept_.assign(links.size(), Vector3::Zero());
   if (group.needs_moments) {
     sum();
+    kept_.resize(links.size());
     for (std::size_t i = 0; i < links.size(); ++i) {
       if (links[i].link.tipTurnsWithLink) kept_[i] = body(links[i].link.id2).torque;
     }
   }
   for (std::size_t i = 0; i < links.size(); ++i) {
-    auto& [link, program] = links[i];
+    auto& [link, program, inverse, damping] = links[i];
     Body& root = body(link.id1);
     Body& tip = body(link.id2);
     const Span span = span_of(root.motion.position, tip.motion.position);
     if (!span.is_proper()) return false;
-    const double inverse = root.inverse_mass + tip.inverse_mass;
     const LinkStep now = link_step(
         link, span, root.motion.velocity, tip.motion.velocity, changes_[program],
-        [&, place = program] { return programs[place].temperature_rate(time); },
-        damping_coefficient(link, inverse), time);
-    if (inverse > 0 && !(time_step <= stable_step(now, inverse))) return false;
+        [&, place = program] { return programs[place].temperature_rate(time); }, damping, time);
+    if (inverse > 0 && !is_stable(now, inverse, time_step)) return false;
     Vector3 force = force_on_tip(now);
     if (!has_length(now)) return false;
     if (link.tipTurnsWithLink) {
