@@ -192,6 +192,8 @@ WRONG: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
                    "members.csv: line 3, column 'L10_K': the cell is empty"),
     "times go back": (lambda rows: [*rows[:2], rows[3], rows[2], *rows[4:]],
                       "members.csv: line 4: time_s = 1: times must rise, and 2.5 is before it"),
+    "times too close": (lambda rows: [*rows[:2], "1e-320," + rows[2].partition(",")[2], *rows[3:]],
+                        "members.csv: times 0 and 9.99989e-321: they cannot be told apart within"),
     "wrong unit": (lambda rows: [rows[0].replace("L2_K", "L2_degF"), *rows[1:]],
                    "members.csv: line 1: column 'L2_degF': it must be NAME_K or NAME_degC"),
     "unit of time": (lambda rows: [rows[0].replace("time_s", "time_h"), *rows[1:]],

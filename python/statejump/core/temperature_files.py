@@ -226,6 +226,10 @@ def _changes(read: Read, given: Mapping[str, Any], section: str) -> tuple[Number
     if not time_s[-1] <= LONGEST_TABLE_S:
         raise Unreadable("its last time is too late", cause=f"at most {LONGEST_TABLE_S:g} s are allowed",
                          file=read.path)
+    close = np.flatnonzero(~(np.diff(time_s) > np.finfo(float).eps * time_s[-1]))  # rounding of a time near the end
+    if close.size:
+        raise Unreadable(f"times {time_s[close[0]]:g} and {time_s[close[0] + 1]:g}", file=read.path,
+                         cause=f"they cannot be told apart within {time_s[-1]:g} s")
     if _cycles(given) > 1 and changes[-1].any():
         last = int(np.argmax(np.abs(changes[-1])))
         raise NotAllowed(
