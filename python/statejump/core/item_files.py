@@ -18,9 +18,9 @@ from typing import Any
 import attrs
 import numpy as np
 
-from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey, Unreadable, size
+from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey, Unreadable
 from statejump.core.output import write_atomically
-from statejump.core.reading import is_file, open_csv
+from statejump.core.reading import check_size, finite_number, is_file, open_csv
 from statejump.core.temperature_columns import quoted
 from statejump.schema.fields import TABLES_BESIDE, Section, fields_of, rule_of, section_of, tables_of
 from statejump.schema.item_tables import BLOCK, ItemTable
@@ -96,9 +96,7 @@ def _csv(path: Path, model: type[Section]) -> dict[str, np.ndarray]:
     blocks: dict[str, list[np.ndarray]] = {}
     texts: dict[str, str] = {}  # every text once, however often it stands in the file
     with open_csv(path) as stream:
-        if path.stat().st_size > LARGEST_BYTES:
-            raise Unreadable("cannot be read", cause=f"it is larger than {size(LARGEST_BYTES)}; HDF5 may be larger",
-                             file=path)
+        check_size(path, LARGEST_BYTES, "; HDF5 may be larger")
         reader = csv.reader(stream)
         header = [cell.strip() for cell in next(reader, [])]
         if not header:
@@ -177,13 +175,11 @@ def _number(path: Path, name: str, line: int, cell: str) -> float:
     """Return the number of a cell, NaN where it is empty."""
     if not cell.strip():
         return float("nan")
-    try:
-        value = float(cell)
-        if value - value == 0 and "_" not in cell:  # Python takes 1_000 for a number
-            return value
-    except ValueError:
-        pass
-    raise Unreadable(f"line {line}, column {quoted(name)}", cause=f"{quoted(cell)} is not a finite number", file=path)
+    value = finite_number(cell)
+    if value is None:
+        raise Unreadable(f"line {line}, column {quoted(name)}", cause=f"{quoted(cell)} is not a finite number",
+                         file=path)
+    return value
 
 
 def _hdf5(path: Path, model: type[Section]) -> dict[str, np.ndarray]:

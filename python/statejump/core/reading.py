@@ -6,10 +6,11 @@ import csv
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
+from math import isfinite
 from pathlib import Path
 from typing import TextIO
 
-from statejump.core.errors import Unreadable
+from statejump.core.errors import Unreadable, size
 
 
 def is_file(path: Path) -> bool:
@@ -23,6 +24,21 @@ def is_file(path: Path) -> bool:
         return False
     except OSError as error:
         raise Unreadable("cannot be read", cause=error.strerror, file=path) from None
+
+
+def check_size(path: Path, largest_bytes: int, beside: str = "") -> None:
+    """Raise Unreadable for a file that is larger than what is read as a whole; ``beside`` says what else there is."""
+    if path.stat().st_size > largest_bytes:
+        raise Unreadable("cannot be read", cause=f"it is larger than {size(largest_bytes)}{beside}", file=path)
+
+
+def finite_number(text: str) -> float | None:
+    """Return the finite number that a text is; None: it is none. Python takes 1_000 for a number, files do not."""
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if isfinite(value) and "_" not in text else None
 
 
 @contextmanager

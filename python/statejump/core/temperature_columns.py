@@ -5,14 +5,13 @@ from __future__ import annotations
 import csv
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from statejump.core.errors import NotAllowed, Unreadable, printable, size
-from statejump.core.reading import is_file, open_csv
+from statejump.core.errors import NotAllowed, Unreadable, printable
+from statejump.core.reading import check_size, finite_number, is_file, open_csv
 from statejump.schema.toml import LARGEST_BYTES
 
 if TYPE_CHECKING:
@@ -118,8 +117,7 @@ def _check_names(path: Path, names: tuple[str, ...]) -> None:
 
 def _csv(path: Path) -> Read:
     with open_csv(path) as stream:
-        if path.stat().st_size > LARGEST_BYTES:
-            raise Unreadable("cannot be read", cause=f"it is larger than {size(LARGEST_BYTES)}", file=path)
+        check_size(path, LARGEST_BYTES)
         return _rows(path, csv.reader(stream))
 
 
@@ -163,11 +161,7 @@ def _values(path: Path, line: int, header: list[str], row: list[str]) -> Numbers
     except ValueError:
         pass
     for cell, name in zip(row, header):
-        try:
-            wrong = "_" in cell or not isfinite(float(cell))
-        except ValueError:
-            wrong = True
-        if wrong:
+        if finite_number(cell) is None:
             what = f"{quoted(cell)} is not a finite number" if cell.strip() else "the cell is empty"
             raise Unreadable(f"line {line}, column {quoted(name)}", cause=what, file=path)
     raise AssertionError("a row is refused by one of its cells")

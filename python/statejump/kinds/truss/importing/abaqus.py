@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from math import isfinite, pi
+from math import pi
 from pathlib import Path
 
+from statejump.core.reading import finite_number
 from statejump.kinds.truss.importing.model import Bar, Deck, quoted, text_of
 
 BARS = {"T2D2": "bar", "T3D2": "bar", "B31": "beam", "B21": "beam", "B32": "", "B32R": "", "T3D3": ""}
@@ -42,11 +43,8 @@ class _Reader:
 
     def number(self, line: int, text: str) -> float:
         """Return a number of a data line."""
-        try:
-            value = float(text.lower().replace("d", "e"))
-        except ValueError:
-            value = float("nan")
-        if not isfinite(value) or "_" in text:
+        value = finite_number(text.lower().replace("d", "e"))
+        if value is None:
             raise self.deck.fail(line, f"{quoted(text)} is not a finite number")
         return value
 

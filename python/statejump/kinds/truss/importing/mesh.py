@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from statejump.core.errors import StatejumpError, Unreadable, size
-from statejump.core.reading import is_file
+from statejump.core.errors import StatejumpError, Unreadable
+from statejump.core.reading import check_size, is_file
 from statejump.kinds.truss.importing.model import LARGEST_BYTES, Bar, Deck, quoted
 
 FORMATS = {".vtk": "vtk", ".vtu": "vtu", ".msh": "gmsh", ".med": "med", ".mesh": "medit"}
@@ -81,8 +81,7 @@ def _read(path: Path) -> Any:
                              remedy="install the Debian package python3-meshio") from None
     if not is_file(path):
         raise Unreadable("no such file", file=path)
-    if path.stat().st_size > LARGEST_BYTES:
-        raise Unreadable("cannot be read", cause=f"it is larger than {size(LARGEST_BYTES)}", file=path)
+    check_size(path, LARGEST_BYTES)
     form = FORMATS[path.suffix.lower()]
     try:
         # meshio prints what it thinks of a file, and for some faults it wants to end the program.

@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from math import isfinite, pi
+from math import pi
 from pathlib import Path
 
+from statejump.core.reading import finite_number
 from statejump.kinds.truss.importing.model import Bar, Deck, quoted, text_of
 
 SMALL, LARGE = 8, 16
@@ -46,11 +47,8 @@ class _Reader:
         """Return a real number of a field."""
         if not text and default is not None:
             return default
-        try:
-            value = float(BARE_EXPONENT.sub(r"\1e\2", text.lower().replace("d", "e")))
-        except ValueError:
-            value = float("nan")
-        if not isfinite(value) or "_" in text:
+        value = finite_number(BARE_EXPONENT.sub(r"\1e\2", text.lower().replace("d", "e")))
+        if value is None:
             raise self.deck.fail(line, f"{quoted(text)} is not a finite number")
         return value
 

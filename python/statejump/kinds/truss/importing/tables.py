@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Sequence
-from math import isfinite
 from pathlib import Path
 
 from statejump.core.errors import Unreadable
+from statejump.core.reading import finite_number
 from statejump.kinds.truss.importing.model import Bar, Deck, quoted, text_of
 
 NODE = ("name", "x_m", "y_m")
@@ -81,10 +81,7 @@ def _optional(deck: Deck, line: int, row: dict[str, str], key: str) -> float | N
 
 def _number(deck: Deck, line: int, row: dict[str, str], key: str) -> float:
     cell = row[key]
-    try:
-        value = float(cell)
-    except ValueError:
-        value = float("nan")
-    if not isfinite(value) or "_" in cell:
+    value = finite_number(cell)
+    if value is None:
         raise deck.fail(line, f"{key} = {quoted(cell)}", "must be a finite number")
     return value
