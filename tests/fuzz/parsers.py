@@ -5,11 +5,11 @@
     parsers.py --python build/python [--inputs N] [--only NAME ...] [--seed N] [--first N]
 
 Shipped files, and results made of them, are spoiled by chance and given to what reads them: the library for cases,
-campaigns, journals and temperatures, the command itself for result files, files of FCLIB, histories of `laws --drive`
-and decks of other programs. A refusal is a failure of exit status 2 whose sentence is one printable line (or the
-documented status 1 of a command); any other exception, a signal, more than MEMORY_BYTES more memory or more than CPU_S
-seconds are faults. Each input depends on the seed, the reader and its number alone: `--only NAME --first N --inputs 1`
-makes one again.
+campaigns, journals, temperatures and tables of items, the command itself for result files, files of FCLIB, histories
+of `laws --drive` and decks of other programs. A refusal is a failure of exit status 2 whose sentence is one printable
+line (or the documented status 1 of a command); any other exception, a signal, more than MEMORY_BYTES more memory or
+more than CPU_S seconds are faults. Each input depends on the seed, the reader and its number alone: `--only NAME
+--first N --inputs 1` makes one again.
 
 Meshes are another campaign's (fuzz_mesh.cpp). Bytes of HDF5 files of FCLIB, which have no checksum, are not spoiled:
 that would try the HDF5 library.
@@ -303,6 +303,42 @@ def temperatures(folder: Path) -> Reader:
     return Reader("temperatures", spoiled, lambda place, data: load(data).reduced().complete)
 
 
+def tables(folder: Path) -> Reader:
+    """Files of items that a case names, as text and as HDF5; what is taken comes back from its own JSON."""
+    from statejump.core.item_files import write_items
+    from statejump.kinds.loading import load_case, parse_case
+    from statejump.kinds.truss import generate
+
+    truss = generate.umbrella(3, cable_preload_N=1.0)
+    sections = [section for section, part in truss.items() if isinstance(part, list)]
+    for section in sections:
+        write_items(truss[section], folder / f"{section}.csv")
+    seeds = {section: (folder / f"{section}.csv").read_bytes() for section in sections}
+    with h5py.File(folder / "seed.h5", "w") as file:
+        for key in ("name", "nodes", "stiffness_N_per_m", "preload_N", "cable"):
+            file[key] = [item[key] for item in truss["spring"]]
+    image = (folder / "seed.h5").read_bytes()
+
+    def spoiled(place: Path, chance: random.Random) -> Any:
+        if chance.random() < 0.4:
+            section, path = "spring", place / "given.h5"
+            with changed_hdf5(image, chance) as changed:
+                path.write_bytes(changed.getvalue())
+        else:
+            section, path = chance.choice(sections), place / "given.csv"
+            change = mutations.spoiled_bytes if chance.random() < 0.3 else mutations.spoiled_text
+            path.write_bytes(change(seeds[section], list(seeds.values()), chance))
+        return {name: part for name, part in truss.items() if name != section} | {"tables": {section: str(path)}}
+
+    def read(place: Path, given: Any) -> bool:
+        case = load_case(given)
+        if parse_case(json.loads(json.dumps(given_only(case.to_dict())))).to_dict() != case.to_dict():
+            raise Fault("the case is another one after a round through JSON")
+        return True
+
+    return Reader("table", spoiled, read)
+
+
 def decks(folder: Path) -> Reader:
     """Trusses of other programs: `truss import`."""
     seeds = {path.suffix: path.read_bytes() for path in sorted((REPOSITORY / "tests/fuzz/decks").iterdir())}
@@ -322,7 +358,7 @@ def decks(folder: Path) -> Reader:
     return Reader("deck", spoiled, read)
 
 
-READERS = (cases, campaigns, journals, results, fclib_files, drives, temperatures, decks)
+READERS = (cases, campaigns, journals, results, fclib_files, drives, temperatures, tables, decks)
 
 
 class Counts:

@@ -170,6 +170,23 @@ def test_a_dict_has_no_files_beside_it() -> None:
         parse_case({**generate.chain(2), "tables": {"slider": "a.csv"}})
 
 
+def test_rows_behind_blank_lines_and_columns_of_nothing(tmp_path: Path) -> None:
+    document = generate.chain(5000)
+    file = beside(document, tmp_path)
+    table = tmp_path / "case_node.csv"
+    header, *rows = table.read_text().splitlines()
+    rows = [f"{row}," for row in rows]
+    table.write_text("\n".join([f"{header},guide_normal", *rows[:4000], *[""] * 5000, *rows[4000:]]))
+    same(load_case(file).resolve(), parse_case(document).resolve())
+
+
+def test_a_preload_that_no_length_gives_is_refused() -> None:
+    document = generate.umbrella(3, cable_preload_N=1.0)
+    document["spring"][1]["stiffness_N_per_m"] = 1e-310
+    with pytest.raises(StatejumpError, match=r"spring 'cable2': preload_N = 1.0 is not allowed: a stiffness of 1e-310"):
+        parse_case(document)
+
+
 def test_events_are_a_sequence() -> None:
     found = sj.truss.ring(4).reduced().native.events
     assert len(found) > 2 and [found[0], found[1]] == found[:2] == list(found)[:2]

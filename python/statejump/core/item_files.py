@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -102,7 +101,7 @@ def _csv(path: Path, model: type[Section]) -> dict[str, np.ndarray]:
         if not header:
             raise Unreadable("line 1: there is no column", file=path)
         rules = _keys(path, header, model)
-        while rows := _block(path, reader, len(header)):
+        for rows in _blocks(path, reader, len(header)):
             for (name, rule), cells in zip(rules.items(), zip(*(row for _, row in rows))):
                 blocks.setdefault(name, []).append(_column(path, name, rule, cells, [line for line, _ in rows], texts))
     if not blocks:
@@ -110,14 +109,20 @@ def _csv(path: Path, model: type[Section]) -> dict[str, np.ndarray]:
     return {name: _joined(parts) for name, parts in blocks.items()}
 
 
-def _block(path: Path, reader: Any, width: int) -> list[tuple[int, list[str]]]:
+def _blocks(path: Path, reader: Any, width: int) -> Iterator[list[tuple[int, list[str]]]]:
+    """Return rows with their lines, some at a time."""
     found = []
-    for row in islice(reader, BLOCK):
-        if len(row) != width and row:
+    for row in reader:
+        if not row:
+            continue
+        if len(row) != width:
             raise Unreadable(f"line {reader.line_num} has {len(row)} cells", cause=f"the header has {width}", file=path)
-        if row:
-            found.append((reader.line_num, row))
-    return found
+        found.append((reader.line_num, row))
+        if len(found) == BLOCK:
+            yield found
+            found = []
+    if found:
+        yield found
 
 
 def _joined(parts: list[np.ndarray]) -> np.ndarray:
@@ -152,7 +157,7 @@ def _column(
     if rule.form not in (NUMBERS, TEXTS):
         raise Unreadable(f"column {quoted(name)}", cause="a table cannot have this key", file=path)
     split = [cell.split() for cell in cells]
-    width = max(map(len, split))
+    width = max(1, *map(len, split))
     for line, words in zip(lines, split):
         if len(words) > MOST_IN_LIST:
             raise Unreadable(f"line {line}, column {quoted(name)}",

@@ -23,6 +23,7 @@ def check_geometry(case: TrussCase) -> None:
     truss = case.resolve()
     ranges_K = truss.temperature_ranges_K
     _lengths(truss)
+    _stretches(truss.springs)
     _expansions(truss, ranges_K)
     for joint in JOINTS:
         joint.check_geometry(truss, truss.joints[joint.section], ranges_K)
@@ -41,6 +42,15 @@ def _lengths(truss: ResolvedTruss) -> None:
                 cause=f"the {section} has no length", item=f"{section} {items.names[index]!r}", key="nodes", value=ends,
                 nodes=ends,
             )
+
+
+def _stretches(springs: Springs) -> None:
+    for index in np.flatnonzero(~np.isfinite(springs.free_length_m))[:1]:
+        raise NotAllowed(
+            "preload_N", float(springs.preload_N[index]),
+            f"a stiffness of {springs.stiffness_N_per_m[index]:g} N/m gives it at no length that is a number",
+            item=f"spring {springs.names[index]!r}",
+        )
 
 
 def _expansions(truss: ResolvedTruss, ranges_K: np.ndarray) -> None:

@@ -229,9 +229,11 @@ def resolve(case: TrussCase) -> ResolvedTruss:
     stiffness = column(case.spring, "stiffness_N_per_m")
     free, preload = column(case.spring, "free_length_m"), column(case.spring, "preload_N")
     preload = np.where(np.isnan(free), np.nan_to_num(preload), stiffness * (drawn - free))
+    with np.errstate(over="ignore"):  # refused by the checks
+        stretch = preload / stiffness
     springs = Springs(
         names=names(case.spring), nodes=spring_nodes, stiffness_N_per_m=stiffness,
-        free_length_m=np.where(np.isnan(free), drawn - preload / stiffness, free), preload_N=preload,
+        free_length_m=np.where(np.isnan(free), drawn - stretch, free), preload_N=preload,
         cable=np.array(list(values(case.spring, "cable")), dtype=bool),
     )
     torsion_springs = TorsionSprings(
