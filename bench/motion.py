@@ -9,14 +9,12 @@ elastic and with rigid sticking: point by point at the DEM's samples.
 """
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import statejump as sj
-from run import REPOSITORY, publish, start
+from run import parse_cases, publish, start
 from statejump.core.errors import StatejumpError
 from statejump.kinds.truss import compare
 
@@ -128,11 +126,8 @@ PYTHONPATH=build/python /usr/bin/python3 bench/motion.py [--case NAME]
 
 def main() -> None:
     """Measure and write."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--case", action="append", choices=list(CASES), help="one of the cases; all")
-    parser.add_argument("--output", type=Path, default=REPOSITORY / "results" / "motion")
-    arguments = parser.parse_args()
-    rows = measure(arguments.case or list(CASES))
+    arguments = parse_cases(__doc__.splitlines()[0], CASES)
+    rows = measure(arguments.case)
     publish(arguments.output, "models", COLUMNS, rows, report(rows))
 
 

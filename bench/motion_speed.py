@@ -9,15 +9,13 @@ of the stepping, one thread. Chains of 100 to 10 000 blocks tell how the cost of
 """
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable
-from pathlib import Path
 from time import process_time
 from typing import Any
 
 import numpy as np
 import statejump as sj
-from run import REPOSITORY, publish, start
+from run import parse_cases, publish, start
 from statejump.core.errors import StatejumpError
 from statejump.kinds.truss import compare, motion, result
 
@@ -144,12 +142,9 @@ PYTHONPATH=build/python /usr/bin/python3 bench/motion_speed.py [--case NAME]
 
 def main() -> None:
     """Measure and write."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--case", action="append", choices=list(CASES), help="one of the cases; all")
-    parser.add_argument("--output", type=Path, default=REPOSITORY / "results" / "motion")
-    arguments = parser.parse_args()
+    arguments = parse_cases(__doc__.splitlines()[0], CASES)
     grown = scaling()
-    rows = measure(arguments.case or list(CASES))
+    rows = measure(arguments.case)
     publish(arguments.output, "speed", COLUMNS, rows + grown, report(rows, grown))
 
 

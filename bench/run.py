@@ -20,7 +20,7 @@ import subprocess
 import sys
 from pathlib import Path
 from statistics import median
-from typing import Any, Callable, Sequence
+from typing import Any, Callable, Iterable, Sequence
 
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parent
@@ -238,6 +238,17 @@ def parse(parser: argparse.ArgumentParser, repetitions: int) -> argparse.Namespa
     arguments = parser.parse_args()
     if arguments.repetitions < 1:
         raise BenchError(f"--repetitions {arguments.repetitions}: must be 1 or more")
+    return arguments
+
+
+def parse_cases(description: str, cases: Iterable[str]) -> argparse.Namespace:
+    """Return the options of a benchmark of trusses in motion: ``case``, those to run, and the results folder."""
+    known = list(cases)
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--case", action="append", choices=known, help="one of the cases; all")
+    parser.add_argument("--output", type=Path, default=REPOSITORY / "results" / "motion")
+    arguments = parser.parse_args()
+    arguments.case = arguments.case or known
     return arguments
 
 

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 from concurrent.futures import Future, ThreadPoolExecutor
+from math import sqrt
 from pathlib import Path
 from typing import Any, Callable
 
@@ -16,6 +17,9 @@ REPOSITORY = HERE.parents[1]
 PLUGIN_DIR = os.environ.get("STATEJUMP_PYTHON_DIR") or str(REPOSITORY / "build" / "python")
 TIMEOUT_S = float(os.environ.get("STATEJUMP_YADE_TIMEOUT_S", "120"))
 EPS = 2.0**-52
+# Of the metal of the scripts, Table 2 of the paper, on itself [Pa].
+E_STAR = 70e9 / (2 * (1 - 0.3**2))
+G_STAR = 70e9 / (4 * (2 - 0.3) * (1 + 0.3))
 
 
 def yade(
@@ -48,6 +52,18 @@ def result_of(done: subprocess.CompletedProcess[str]) -> dict[str, Any]:
         if "RESULT {" in line:
             return json.loads(line[line.index("RESULT {") + len("RESULT ") :])
     raise AssertionError(f"no RESULT, exit status {done.returncode}:\n{done.stdout}\n{done.stderr}")
+
+
+def check_hertz(row: dict[str, Any], radii: tuple[float, float], radius: float, accuracy: float) -> None:
+    """Check one row of the scripts' ``pressed``: radii, Hertz's force against the direction, both stiffnesses."""
+    assert row["radii"] == pytest.approx(radii, rel=4 * EPS)
+    expected = 4 / 3 * E_STAR * sqrt(radius) * row["depth"] ** 1.5
+    for component, along in zip(row["force"], row["direction"]):
+        assert component == pytest.approx(-expected * along, rel=accuracy, abs=expected * 1e-13)
+    assert row["reaction"] == [-f for f in row["force"]]
+    a = sqrt(radius * row["depth"])
+    assert row["kn"] == pytest.approx(2 * E_STAR * a, rel=accuracy)
+    assert row["ks"] == pytest.approx(8 * G_STAR * a, rel=accuracy)
 
 
 @pytest.fixture(scope="session")

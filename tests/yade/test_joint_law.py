@@ -4,10 +4,8 @@ from math import e, inf, isnan, log, log1p, pi, sqrt
 
 import pytest
 
-from conftest import EPS
+from conftest import E_STAR, EPS
 
-E_STAR = 70e9 / (2 * (1 - 0.3**2))
-G_STAR = 70e9 / (4 * (2 - 0.3) * (1 + 0.3))
 LAWS = ["hertz_paper", "hertz_internal", "johnson", "esdu_78035", "persson"]
 
 

@@ -4,10 +4,8 @@ from math import sqrt
 
 import pytest
 
-from conftest import EPS
+from conftest import E_STAR, EPS, G_STAR
 
-E_STAR = 70e9 / (2 * (1 - 0.3**2))
-G_STAR = 70e9 / (4 * (2 - 0.3) * (1 + 0.3))
 MU = 0.3
 R1, R2 = 5e-3, 5.1e-3
 

@@ -4,8 +4,8 @@ from math import sqrt
 
 import pytest
 
-E_STAR = 70e9 / (2 * (1 - 0.3**2))
-G_STAR = 70e9 / (4 * (2 - 0.3) * (1 + 0.3))
+from conftest import E_STAR, G_STAR
+
 RADIUS = 5e-3 * 5.1e-3 / 1e-4
 
 

@@ -10,6 +10,7 @@ namespace {
 
 using testing::expect_vector_near;
 using testing::Random;
+using testing::rigid_motion;
 
 constexpr double ball_radius = 5e-3;
 constexpr double socket_radius = 5.1e-3;
@@ -77,15 +78,10 @@ TEST(Ball, ConcentricIsAGapWithSomeNormal) {
 TEST(Ball, RigidMotionOfBothBodiesLeavesNoRelativeVelocity) {
   Random random;
   for (int i = 0; i < 100; ++i) {
-    const Vector3 origin = random.vector(0.1);
-    const Vector3 drift = random.vector(1.0);
-    const Vector3 spin = random.vector(10.0);
-    const auto moving = [&](const Vector3& position) {
-      return BodyMotion{position, drift + spin.cross(position - origin), spin};
-    };
+    const auto moving = rigid_motion(random);
     const BodyMotion socket = moving(random.vector(0.1));
     const BodyMotion ball = moving(socket.position + random.vector(2e-4));
-    // velocities up to 5 m/s, a dozen roundings
+    // a dozen roundings of velocities up to 5 m/s
     EXPECT_LE(ball_contact(ball, ball_radius, socket, socket_radius).relative_velocity.norm(),
               1e-14);
   }
@@ -153,15 +149,10 @@ TEST(OuterBalls, SeenFromTheOtherBallItIsTheSameContact) {
 TEST(OuterBalls, RigidMotionOfBothLeavesNoRelativeVelocity) {
   Random random;
   for (int i = 0; i < 100; ++i) {
-    const Vector3 origin = random.vector(0.1);
-    const Vector3 drift = random.vector(1.0);
-    const Vector3 spin = random.vector(10.0);
-    const auto moving = [&](const Vector3& position) {
-      return BodyMotion{position, drift + spin.cross(position - origin), spin};
-    };
+    const auto moving = rigid_motion(random);
     const BodyMotion one = moving(random.vector(0.1));
     const BodyMotion two = moving(one.position + 7.99e-3 * random.unit());
-    // velocities up to 5 m/s, a dozen roundings
+    // a dozen roundings of velocities up to 5 m/s
     EXPECT_LE(outer_ball_contact(one, ball_radius, two, other_radius).relative_velocity.norm(),
               1e-14);
   }

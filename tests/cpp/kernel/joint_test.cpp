@@ -14,6 +14,7 @@ namespace {
 
 using testing::expect_vector_near;
 using testing::Random;
+using testing::rigid_motion;
 
 constexpr double journal_radius = 5e-3;
 constexpr double bearing_radius = 5.1e-3;
@@ -85,16 +86,11 @@ TEST(Revolute, MaterialVelocity) {
 TEST(Joint, RigidMotionOfBothBodiesLeavesNoRelativeVelocity) {
   Random random;
   for (int i = 0; i < 100; ++i) {
-    const Vector3 origin = random.vector(0.1);
-    const Vector3 drift = random.vector(1.0);
-    const Vector3 spin = random.vector(10.0);
-    const auto moving = [&](const Vector3& position) {
-      return at(position, drift + spin.cross(position - origin), spin);
-    };
+    const auto moving = rigid_motion(random);
     const BodyMotion bearing = moving(random.vector(0.1));
     const BodyMotion journal = moving(bearing.position + random.vector(2e-4));
     const Vector3 axis = random.unit();
-    // velocities up to 5 m/s, a dozen roundings
+    // a dozen roundings of velocities up to 5 m/s
     EXPECT_LE(revolute_contact(journal, journal_radius, bearing, bearing_radius, axis)
                   .relative_velocity.norm(),
               1e-14);

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <random>
 
+#include "statejump/kernel/joint_kinematics.hpp"
+
 namespace statejump::kernel::testing {
 
 constexpr double pi = 3.14159265358979323846;
@@ -38,6 +40,17 @@ class Random {
  private:
   std::mt19937 generator_{20210110};
 };
+
+/// How bodies move, by position, that one rigid motion about a random point carries along: at up to
+/// 5 m/s.
+inline auto rigid_motion(Random& random) {
+  const Eigen::Vector3d origin = random.vector(0.1);
+  const Eigen::Vector3d drift = random.vector(1.0);
+  const Eigen::Vector3d spin = random.vector(10.0);
+  return [origin, drift, spin](const Eigen::Vector3d& position) {
+    return BodyMotion{position, drift + spin.cross(position - origin), spin};
+  };
+}
 
 /// |a - b| relative to |b|, for vectors.
 inline void expect_vector_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double tolerance,

@@ -21,25 +21,12 @@ def force_curve(name, change):
     engines(constant(change), law=law_of(name))
     O.dt = 1e-9
     O.step()
-    rows = []
     clearance = R2 * (1 + ALPHA_SOCKET * change) - R1 * (1 + ALPHA_BALL * change)
-    for depth in (1e-7, 3e-6, 1e-5):
-        for direction in ((0, 0, 1), (0.6, 0, -0.8), (2 / 7, 3 / 7, 6 / 7)):
-            O.bodies[ball].state.pos = Vector3(*direction) * (clearance + depth)
-            O.step()
-            found = contact(ball, socket)
-            rows.append(
-                {
-                    "depth": depth, "direction": direction, "force": list(O.forces.f(ball)),
-                    "reaction": list(O.forces.f(socket)), "normal": list(found.geom.normal),
-                    "R": found.geom.effectiveRadius, "kn": found.phys.kn, "ks": found.phys.ks,
-                    "radii": [found.geom.journalRadius, found.geom.bearingRadius],
-                }
-            )
+    rows = pressed(ball, socket, ball, lambda depth: clearance + depth)
     O.bodies[ball].state.pos = (0, 0, 0.5 * clearance)
     O.step()
     gone = contact(ball, socket) is None and O.forces.f(ball).norm() == 0
-    return {"rows": rows, "clearance": clearance, "gone": gone}
+    return {"rows": rows, "gone": gone}
 
 
 def planar(kind, name):
@@ -98,18 +85,7 @@ def held(name, tangential):
 
 def refused(**names):
     """The sentence of a law that needs an axis."""
-    reset()
-    metal = material()
-    body((0, 0, CLEARANCE + 1e-6), sj.Ball(radius=R1), metal)
-    body((0, 0, 0), sj.Socket(radius=R2), metal)
-    engines(law=Law(**names))
-    O.dt = 1e-9
-
-    def run():
-        for _ in range(3):
-            O.step()
-
-    return sentence_of(run)
+    return refusal(sj.Ball(radius=R1), sj.Socket(radius=R2), (0, 0, -CLEARANCE - 1e-6), Law(**names))
 
 
 def closed():
@@ -140,6 +116,5 @@ finish(
             "hertz_paper": refused(normalLaw="hertz_paper"),
         },
         "closed": closed(),
-
     }
 )

@@ -31,17 +31,7 @@ def forces(name, change):
     O.dt = 1e-9
     O.step()
     reach = R1 * (1 + 23.4e-6 * change) + 0.6 * R1 * (1 + 12e-6 * change)
-    rows = []
-    for depth in (1e-7, 3e-6, 1e-5):
-        for direction in ((0, 0, 1), (0.6, 0, -0.8), (2 / 7, 3 / 7, 6 / 7)):
-            O.bodies[two].state.pos = Vector3(*direction) * (reach - depth)
-            O.step()
-            found = contact(one, two)
-            rows.append({
-                "depth": depth, "direction": direction, "force": list(O.forces.f(one)),
-                "reaction": list(O.forces.f(two)), "R": found.geom.effectiveRadius, "kn": found.phys.kn,
-                "ks": found.phys.ks, "radii": [found.geom.journalRadius, found.geom.bearingRadius],
-            })
+    rows = pressed(one, two, two, lambda depth: reach - depth)
     O.bodies[two].state.pos = (0, 0, 1.001 * reach)
     O.step()
     return {"rows": rows, "gone": contact(one, two) is None and O.forces.f(one).norm() == 0}
@@ -189,18 +179,7 @@ def resumed():
 
 def refused(distance=1.999 * R1, **names):
     """The sentence of a law, or of a place, that two balls cannot have."""
-    reset()
-    metal = material()
-    body(shape=sj.Ball(radius=R1), made_of=metal)
-    body((distance, 0, 0), sj.Ball(radius=R1), metal)
-    engines(law=Law(**names))
-    O.dt = 1e-9
-
-    def run():
-        for _ in range(3):
-            O.step()
-
-    return sentence_of(run)
+    return refusal(sj.Ball(radius=R1), sj.Ball(radius=R1), (distance, 0, 0), Law(**names))
 
 
 def main(tangents):

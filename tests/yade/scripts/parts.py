@@ -162,6 +162,39 @@ def sentence_of(call) -> list[str]:
     return ["none", ""]
 
 
+def pressed(one: int, two: int, mover: int, distance) -> list[dict]:
+    """Return what the contact of two bodies shows at three depths in three directions, one of the bodies in the
+    origin; distance: of their centres, by depth [m]."""
+    rows = []
+    for depth in (1e-7, 3e-6, 1e-5):
+        for direction in ((0, 0, 1), (0.6, 0, -0.8), (2 / 7, 3 / 7, 6 / 7)):
+            O.bodies[mover].state.pos = Vector3(*direction) * distance(depth)
+            O.step()
+            found = contact(one, two)
+            rows.append({
+                "depth": depth, "direction": direction, "force": list(O.forces.f(one)),
+                "reaction": list(O.forces.f(two)), "R": found.geom.effectiveRadius, "kn": found.phys.kn,
+                "ks": found.phys.ks, "radii": [found.geom.journalRadius, found.geom.bearingRadius],
+            })
+    return rows
+
+
+def refusal(first, second, offset, law) -> list[str]:
+    """Return class and text of the error when two shapes of one metal, the second at an offset, have this law."""
+    reset()
+    metal = material()
+    body(shape=first, made_of=metal)
+    body(offset, second, metal)
+    engines(law=law)
+    O.dt = 1e-9
+
+    def run():
+        for _ in range(3):
+            O.step()
+
+    return sentence_of(run)
+
+
 class Balance:
     """Energy balance of the scene, read before the motion of each step.
 
