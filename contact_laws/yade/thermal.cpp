@@ -218,7 +218,8 @@ void ThermalLinks::act(ThermalLink& link, const Vector3r& moment) {
   scene->forces.addForce(link.id1, -force_on_tip);
 
   if (scene->trackEnergy) {
-    const stepper::LinkEnergy energy = stepper::energy(link, step, scene->dt);
+    Real softening = stepper::previous_softening(link);
+    const stepper::LinkEnergy energy = stepper::energy(link, step, scene->dt, softening);
     scene->energy->add(energy.elastic, link_elastic, energy_ids_[0], true);
     scene->energy->add(energy.damping, link_damping, energy_ids_[1], false);
     scene->energy->add(energy.pin_damping, pin_damping, energy_ids_[3], false);

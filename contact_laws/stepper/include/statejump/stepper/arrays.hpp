@@ -56,6 +56,7 @@ struct LinkPlace {
   std::size_t program;      ///< place in Scene::programs
   double inverse_mass = 0;  ///< 1/m1 + 1/m2 [1/kg]
   double damping = 0;       ///< damping_coefficient() [N s/m]
+  double softening = 0;     ///< previous_softening() [N]
 };
 
 struct TorsionPlace {

@@ -128,6 +128,20 @@ inline Vector3 force_on_tip(const LinkStep& step) {
   return -step.tension * step.span.direction - step.damping_across * step.velocity_across;
 }
 
+/// The smallest turn from one unit vector to another, as a quaternion of any length.
+inline Quaternion smallest_turn(const Vector3& from, const Vector3& to) {
+  // (1 + cos, sin axis) has half the angle. Opposite vectors have none of it, and what is left of
+  // it next to them is rounding.
+  const double scalar = 1 + from.dot(to);
+  if (!(scalar > Eigen::NumTraits<double>::dummy_precision())) {
+    return Quaternion::FromTwoVectors(from, to);
+  }
+  Quaternion turn;
+  turn.w() = scalar;
+  turn.vec() = from.cross(to);
+  return turn;
+}
+
 /// Turns the tip with its link, and returns the force on the tip [N] that carries a moment on it.
 ///
 /// A couple of forces +-(M x u) / L carries the moment M of the step's contacts, its part along the
@@ -136,11 +150,12 @@ inline Vector3 force_on_tip(const LinkStep& step) {
 inline Vector3 turn_tip(Link& link, const LinkStep& step, const Vector3& moment,
                         Quaternion& orientation, Vector3& spin) {
   const Vector3& direction = step.span.direction;
-  const Vector3 carrying = moment.cross(direction) / step.span.length;
+  const double inverse_length = 1 / step.span.length;
+  const Vector3 carrying = moment.cross(direction) * inverse_length;
   if (link.tipDirection.isZero()) link.tipDirection = orientation.conjugate() * direction;
-  const Vector3 pointing = orientation * link.tipDirection;
-  orientation = (Quaternion::FromTwoVectors(pointing, direction) * orientation).normalized();
-  spin = direction.cross(step.relative_velocity) / step.span.length;
+  orientation = smallest_turn(orientation * link.tipDirection, direction) * orientation;
+  orientation.coeffs() *= 1 / orientation.norm();
+  spin = direction.cross(step.relative_velocity) * inverse_length;
   return carrying;
 }
 
@@ -153,21 +168,34 @@ struct LinkEnergy {
   bool works;  ///< whether there is thermal work: not in the first step
 };
 
-inline LinkEnergy energy(const Link& link, const LinkStep& step, double time_step) {
+/// What its energy loses per stress-free length as that grows [N]: k_T e^2 / (2 l_T).
+inline double softening(double elastic_energy, double stress_free_length) {
+  return elastic_energy / stress_free_length;
+}
+
+/// Of the last step; 0 before the first.
+inline double previous_softening(const Link& link) {
+  if (!(link.previousStressFreeLength > 0)) return 0;
+  const double stiffness =
+      link.youngModulus * link.crossSectionArea / link.previousStressFreeLength;
+  return softening(0.5 * stiffness * link.previousExtension * link.previousExtension,
+                   link.previousStressFreeLength);
+}
+
+/// @param last_softening previous_softening() [N]; out: that of this step
+inline LinkEnergy energy(const Link& link, const LinkStep& step, double time_step,
+                         double& last_softening) {
   LinkEnergy energy{0.5 * step.stiffness * step.extension * step.extension,
                     step.viscous_force * step.extension_rate * time_step,
                     step.damping_across * step.velocity_across.squaredNorm() * time_step, 0, false};
+  const double now = softening(energy.elastic, step.stress_free_length);
   if (link.previousStressFreeLength > 0) {
-    const double previous_elastic = 0.5 * link.youngModulus * link.crossSectionArea /
-                                    link.previousStressFreeLength * link.previousExtension *
-                                    link.previousExtension;
     const double mean_tension = 0.5 * (step.tension + link.previousTension);
-    const double mean_softening = 0.5 * (energy.elastic / step.stress_free_length +
-                                         previous_elastic / link.previousStressFreeLength);
-    energy.thermal_work = -(mean_tension + mean_softening) *
+    energy.thermal_work = -(mean_tension + 0.5 * (now + last_softening)) *
                           (step.stress_free_length - link.previousStressFreeLength);
     energy.works = true;
   }
+  last_softening = now;
   return energy;
 }
 

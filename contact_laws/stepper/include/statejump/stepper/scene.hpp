@@ -138,6 +138,7 @@ inline void Scene::prepare() {
       Body& tip = body(place.link.id2);
       place.inverse_mass = body(place.link.id1).inverse_mass + tip.inverse_mass;
       place.damping = damping_coefficient(place.link, place.inverse_mass);
+      place.softening = previous_softening(place.link);
       if (!place.link.tipTurnsWithLink) continue;
       tip.turns = tip.moves = true;
     }
@@ -336,7 +337,7 @@ inline bool Scene::act(Links& group) {
     }
   }
   for (std::size_t i = 0; i < links.size(); ++i) {
-    auto& [link, program, inverse, damping] = links[i];
+    auto& [link, program, inverse, damping, last_softening] = links[i];
     Body& root = body(link.id1);
     Body& tip = body(link.id2);
     const Span span = span_of(root.motion.position, tip.motion.position);
@@ -359,7 +360,7 @@ inline bool Scene::act(Links& group) {
     }
     if (root.moves) root.added_force += -force;
     if (tracks_energy) {
-      const LinkEnergy step = energy(link, now, time_step);
+      const LinkEnergy step = energy(link, now, time_step, last_softening);
       energies.link_damping += step.damping;
       energies.pin_damping += step.pin_damping;
       if (step.works) energies.link_thermal_work += step.thermal_work;
