@@ -6,8 +6,9 @@ list of dicts; :class:`ItemColumns` what a case keeps of it, in place of a list 
 """
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from itertools import repeat
+from collections import namedtuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import repeat, starmap
 from typing import Any, Generic, TypeVar, overload
 
 import attrs
@@ -105,15 +106,16 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
     def __getitem__(self, place: slice) -> list[ItemType]: ...
 
     def __getitem__(self, place: int | slice) -> ItemType | list[ItemType]:
-        places = np.atleast_1d(np.arange(self._length)[place])
-        made = list(self._made(places))
-        return made if isinstance(place, slice) else made[0]
+        if isinstance(place, slice):
+            return list(self._made(place))
+        place = range(self._length)[place]
+        return next(self._made(slice(place, place + 1)))
 
     def __iter__(self) -> Iterator[ItemType]:
         for start in range(0, self._length, BLOCK):
             yield from self._made(slice(start, start + BLOCK))
 
-    def _made(self, places: Any) -> Iterator[ItemType]:
+    def _made(self, places: slice) -> Iterator[ItemType]:
         """Make items, their keys always in one order: then they share the names of their keys."""
         listed = [
             _plain(self._given[key][places]) if key in self._given else repeat(default_of(field))
@@ -140,6 +142,12 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
             return np.full(self._length, np.nan if default is None else default)
         return found
 
+    def value(self, key: str, place: int) -> Any:
+        """Return the value of one key of one item, None where it is not given."""
+        if key not in self._given:
+            return default_of(self._fields[key])
+        return _plain(self._given[key][place:place + 1])[0]
+
     def values(self, key: str) -> Iterator[Any]:
         """Return the values of a key one by one, None where it is not given."""
         if key not in self._given:
@@ -148,14 +156,27 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
                 for value in _plain(self._given[key][start:start + BLOCK]))
 
 
-class Named(Mapping[str, ItemType]):
-    """Items by their names, made when they are asked for."""
+class _Place:
+    """An item of columns by its place, whose keys are looked up when they are asked for."""
 
-    def __init__(self, items: ItemColumns[ItemType]) -> None:
+    def __init__(self, items: ItemColumns[Any], place: int) -> None:
+        self._items, self._place = items, place
+
+    def __getattr__(self, key: str) -> Any:
+        try:
+            return self._items.value(key, self._place)
+        except KeyError:
+            raise AttributeError(key) from None
+
+
+class Named(Mapping[str, Any]):
+    """Items of columns by their names."""
+
+    def __init__(self, items: ItemColumns[Any]) -> None:
         self._items, self._place = items, {name: place for place, name in enumerate(items.values("name"))}
 
-    def __getitem__(self, name: str) -> ItemType:
-        return self._items[self._place[name]]
+    def __getitem__(self, name: str) -> Any:
+        return _Place(self._items, self._place[name])
 
     def __contains__(self, name: object) -> bool:
         return name in self._place
@@ -165,6 +186,13 @@ class Named(Mapping[str, ItemType]):
 
     def __len__(self) -> int:
         return len(self._place)
+
+
+def each(items: Sequence[Any], *keys: str) -> Iterable[Any]:
+    """Return the items of a list to be asked for these keys alone: of columns no others are made."""
+    if not isinstance(items, ItemColumns):
+        return items
+    return starmap(namedtuple("_Item", keys), zip(*(items.values(key) for key in keys)))  # type: ignore[misc]
 
 
 def by_name(items: Sequence[Any]) -> Mapping[str, Any]:

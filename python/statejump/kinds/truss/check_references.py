@@ -11,7 +11,7 @@ from statejump.kinds.truss import mechanism
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.references import known_links, known_name, known_nodes
-from statejump.schema.item_tables import by_name
+from statejump.schema.item_tables import by_name, each
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.case import TrussCase
@@ -22,9 +22,9 @@ _WITH_TEMPERATURE = [joint for joint in JOINTS if joint.has_temperature]
 def check_references(case: TrussCase) -> None:
     """Raise StatejumpError for the first name that is not there or does not fit."""
     nodes, links = by_name(case.node), by_name(case.link)
-    for link in case.link:
+    for link in each(case.link, "name", "nodes"):
         known_nodes(link.nodes, 2, nodes, {"item": f"link {link.name!r}"})
-    for tie in case.spring:
+    for tie in each(case.spring, "name", "nodes"):
         known_nodes(tie.nodes, 2, nodes, {"item": f"spring {tie.name!r}"})
     _programs(case)
     _expansions(case)
@@ -33,7 +33,7 @@ def check_references(case: TrussCase) -> None:
     for joint in JOINTS:
         for item in listed_joints(case, joint):
             joint.check_references(item, nodes, links)
-    for spring in case.torsion_spring:
+    for spring in each(case.torsion_spring, "name", "links"):
         known_links(spring.links, links, {"item": f"torsion_spring {spring.name!r}"})
     mechanism.check(case, links)
     if case.reflector is not None:
@@ -45,7 +45,8 @@ def check_references(case: TrussCase) -> None:
 
 def _followers(case: TrussCase) -> Iterator[tuple[Any, dict[str, Any], bool]]:
     """Return what follows a temperature: the item, how failures name it, whether it expands."""
-    yield from ((link, {"item": f"link {link.name!r}"}, True) for link in case.link)
+    yield from ((link, {"item": f"link {link.name!r}"}, True)
+                for link in each(case.link, "name", "program", "temperature_fraction"))
     yield from ((item, joint.where(item.name), joint.expands(item)) for joint in _WITH_TEMPERATURE
                 for item in listed_joints(case, joint))
 
@@ -60,7 +61,7 @@ def _programs(case: TrussCase) -> None:
 def _expansions(case: TrussCase) -> None:
     """Every link has a coefficient or names one that follows the temperature."""
     expansions = by_name(case.expansion)
-    for link in case.link:
+    for link in each(case.link, "name", "expansion", "thermal_expansion_per_K"):
         where = {"item": f"link {link.name!r}"}
         if link.expansion is not None and link.thermal_expansion_per_K is not None:
             raise NotAllowed("thermal_expansion_per_K", link.thermal_expansion_per_K, "only without expansion", **where)
@@ -97,10 +98,10 @@ def _members(case: TrussCase) -> None:
 
 
 def _alternatives(case: TrussCase) -> None:
-    for link in case.link:
+    for link in each(case.link, "name", "density_kg_per_m3", "mass_kg"):
         if link.density_kg_per_m3 is not None and link.mass_kg is not None:
             raise NotAllowed("mass_kg", link.mass_kg, "only without density_kg_per_m3", item=f"link {link.name!r}")
-    for spring in case.spring:
+    for spring in each(case.spring, "name", "preload_N", "free_length_m"):
         if spring.preload_N is not None and spring.free_length_m is not None:
             raise NotAllowed("preload_N", spring.preload_N, "only without free_length_m",
                              item=f"spring {spring.name!r}")

@@ -15,6 +15,7 @@ from statejump.kinds.truss.check_references import check_references
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.references import axis_of_rotation, vector
+from statejump.schema.item_tables import each
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.case import TrussCase
@@ -64,7 +65,7 @@ def _expansions(case: TrussCase) -> None:
 def _names(case: TrussCase) -> None:
     for section in SECTIONS:
         seen: set[str] = set()
-        for number, item in enumerate(getattr(case, section), start=1):
+        for number, item in enumerate(each(getattr(case, section), "name"), start=1):
             if item.name in seen:
                 raise NotAllowed("name", item.name, f"another {section} has it", item=f"{section} {number}")
             seen.add(item.name)
@@ -72,7 +73,7 @@ def _names(case: TrussCase) -> None:
 
 def _vectors(case: TrussCase) -> None:
     dimension = case.truss.dimension
-    for node in case.node:
+    for node in each(case.node, "name", "position_m", "guide_normal", "force_N", "fixed"):
         for key, unit, direction in (("position_m", "m", False), ("guide_normal", "-", True), ("force_N", "N", False)):
             vector(key, getattr(node, key), unit, dimension, direction, item=f"node {node.name!r}", nodes=(node.name,))
         if dimension == 2 and "z" in node.fixed:
@@ -81,7 +82,7 @@ def _vectors(case: TrussCase) -> None:
     for joint in JOINTS:
         for item in listed_joints(case, joint):
             joint.check_vectors(item, dimension)
-    for spring in case.torsion_spring:
+    for spring in each(case.torsion_spring, "name", "axis"):
         axis_of_rotation(spring.axis, dimension, {"item": f"torsion_spring {spring.name!r}"})
     if case.reflector is not None:
         axis = case.reflector.axis

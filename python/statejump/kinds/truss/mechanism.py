@@ -12,6 +12,7 @@ from statejump.core.errors import MissingKey, NotAllowed
 from statejump.kinds.truss.arrays import References, column, indices, names, values, vectors
 from statejump.kinds.truss.references import known_name, vector
 from statejump.schema.fields import definition, numbers, parameter, text
+from statejump.schema.item_tables import each
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
@@ -95,7 +96,7 @@ def check(case: TrussCase, links: Mapping[str, Any]) -> None:
     """Raise StatejumpError for gravity, bodies and drives that do not fit."""
     dimension = case.truss.dimension
     vector("truss.gravity_m_per_s2", case.truss.gravity_m_per_s2, "m/s2", dimension, False)
-    for link in case.link:
+    for link in each(case.link, "name", "mass_kg", "density_kg_per_m3", "centre_of_mass_m", "moment_of_inertia_kg_m2"):
         where = {"item": f"link {link.name!r}"}
         weighed = link.mass_kg is not None or link.density_kg_per_m3 is not None
         if not weighed and any(case.truss.gravity_m_per_s2 or ()):

@@ -82,24 +82,34 @@ def turned_links(truss: ResolvedTruss, section: str, items: Any) -> None:
 
     :param items: arrays with names, links (k, 2) and axis (k, 3)
     """
-    if not len(items.links):
+    links, pairs = truss.links, items.links
+    if not len(pairs):
         return
-    links = truss.links
-    together = {frozenset(map(int, pair)) for pair in truss.joined()}
-    for index, (one, two) in enumerate(items.links):
-        where = f"{section} {items.names[index]!r}"
-        if two != GROUND:
-            ends = [(int(a), int(b)) for a in links.nodes[one] for b in links.nodes[two]]
-            if not any(a == b or frozenset((a, b)) in together for a, b in ends):
-                raise NotAllowed(
-                    "links", [links.names[one], links.names[two]],
-                    "the links share no place, neither a node nor a joint between their ends", item=where,
-                )
-        for link in (one, two):
-            if link == GROUND or truss.dimension == 2:
-                continue
-            start, end = truss.nodes.position_m[links.nodes[link]]
-            direction = (end - start) / np.linalg.norm(end - start)
-            if np.linalg.norm(np.cross(direction, items.axis[index])) < SAME_DIRECTION:
-                raise NotAllowed("axis", [float(value) for value in items.axis[index]],
-                                 f"link {links.names[link]!r} lies along it and has no angle about it", item=where)
+    turned = pairs != GROUND
+    ends = links.nodes[pairs]  # (k, 2 links, 2 ends)
+    ones, others = ends[:, 0, :, None], ends[:, 1, None, :]
+    meet = (ones == others) | np.isin(_pair_codes(truss, ones, others), _pair_codes(truss, *truss.joined().T))
+    apart = turned.all(axis=1) & ~meet.any(axis=(1, 2))
+    along = np.zeros_like(turned)
+    if truss.dimension == 3:
+        spans = np.diff(truss.nodes.position_m[ends], axis=2)[:, :, 0]
+        sines = np.linalg.norm(np.cross(spans, items.axis[:, None]), axis=2) / np.linalg.norm(spans, axis=2)
+        along = turned & (sines < SAME_DIRECTION)
+    wrong = apart | along.any(axis=1)
+    if not wrong.any():
+        return
+    index = int(np.argmax(wrong))
+    where = f"{section} {items.names[index]!r}"
+    if apart[index]:
+        raise NotAllowed(
+            "links", [links.names[link] for link in pairs[index]],
+            "the links share no place, neither a node nor a joint between their ends", item=where,
+        )
+    raise NotAllowed("axis", items.axis[index].tolist(),
+                     f"link {links.names[pairs[index, int(np.argmax(along[index]))]]!r} lies along it and has no angle "
+                     "about it", item=where)
+
+
+def _pair_codes(truss: ResolvedTruss, ones: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Return one number for every pair of nodes, whichever comes first."""
+    return np.minimum(ones, others) * len(truss.nodes.names) + np.maximum(ones, others)
