@@ -215,7 +215,7 @@ def test_every_state_keeps_to_coulomb_and_the_play() -> None:
 
 
 def test_energy_residue_is_of_second_order() -> None:
-    """Thermal work is summed by the trapezoidal rule between events: four times the points, a sixteenth."""
+    """A step's rolling is the mean radius times its turn, of second order: four times the points, a sixteenth."""
     coarse, fine = (path(generate.umbrella(1), increments_per_branch=k).energy_residue_J for k in (10, 40))
     assert abs(fine) < abs(coarse) / 8
 

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "hermite.hpp"
 #include "system.hpp"
@@ -87,17 +88,56 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
   }
 }
 
+VectorXd System::beyond_edges(const VectorXd& z, double time, const StepStart& now) const {
+  std::vector<double> found;
+  for (const AxialSpring& spring : model_->springs) {
+    if (!spring.cable) continue;
+    found.push_back(spring_stretch(spring, lengths_between(spring.first, spring.second, z)));
+  }
+  for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires(const Trial& at) { one.beyond_edges(at); }) {
+            const Trial at = trial(i, z, time, now, JointModel::friction, 1.0);
+            for (const double beyond : one.beyond_edges(at)) found.push_back(beyond);
+          }
+        },
+        model_->joints[index(i)]);
+  }
+  return Eigen::Map<const VectorXd>(found.data(), static_cast<Eigen::Index>(found.size()));
+}
+
+VectorXd System::heat(const VectorXd& z, double time, const StepStart& start,
+                      const StepStart& after, const VectorXd& slips) const {
+  VectorXd found(slips.size());
+  for (int i = 0; i < slips.size(); ++i) {
+    const Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
+    found[i] = std::visit(
+        [&](const auto& one) { return one.dissipation(at, history(i, after), slips[i]); },
+        model_->joints[index(i)]);
+  }
+  return found;
+}
+
 void System::account(const VectorXd& z_before, double time_before, const VectorXd& z, double time,
                      const StepStart& start, const StepStart& after, const VectorXd& slips,
                      State& state, const VectorXd& rate_before, const VectorXd& rate) const {
   const Model& model = *model_;
-  for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
-    const Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
-    state.joint_dissipation[i] += std::visit(
-        [&](const auto& one) { return one.dissipation(at, history(i, after), slips[i]); },
-        model.joints[index(i)]);
-  }
   const double step = time - time_before;
+  const bool known = rate_before.size() > 0 && rate.size() > 0;
+  VectorXd dissipated = heat(z, time, start, after, slips);
+  if (known && (dissipated.array() > 0.0).any()) {
+    // By way of the middle of the cubic, and what that and the straight way say of no steps at all.
+    const VectorXd middle = 0.5 * (z_before + z) + 0.125 * step * (rate_before - rate);
+    const double then = time_before + 0.5 * step;
+    const StepStart half = commit(middle, then, after.statuses, start);
+    const StepStart whole = commit(z, time, after.statuses, half);
+    const VectorXd halves =
+        heat(middle, then, start, half, this->slips(middle, then, start, half)) +
+        heat(z, time, half, whole, this->slips(z, time, half, whole));
+    dissipated = halves + (halves - dissipated) / 3.0;
+  }
+  state.joint_dissipation += dissipated;
   const auto growth_rate = [&](const Link& link, const VectorXd& at, const VectorXd& moving) {
     const Lengths length = lengths_between(link.first, link.second, at);
     return step *
@@ -117,7 +157,7 @@ void System::account(const VectorXd& z_before, double time_before, const VectorX
       const double tension = link_axial(link, growth, last.drawn, change).tension;
       return -tension * (1.0 + 0.5 * tension / link.axial_stiffness);
     };
-    if (rate_before.size() == 0 || rate.size() == 0) {
+    if (!known) {
       const double warmed =
           program.temperature_change(time) - program.temperature_change(time_before);
       state.thermal_work += 0.5 *

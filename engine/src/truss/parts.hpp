@@ -62,8 +62,12 @@ inline Lengths lengths(const Vector3d& drawn, const Vector3d& moved) {
 
 /// A stiff spring would make noise of the rounding of its length: what is drawn is fixed, only the
 /// growth moves.
+inline double spring_stretch(const AxialSpring& spring, const Lengths& length) {
+  return (length.drawn - spring.free_length) + length.growth;
+}
+
 inline Axial spring_axial(const AxialSpring& spring, const Lengths& length) {
-  const double stretch = (length.drawn - spring.free_length) + length.growth;
+  const double stretch = spring_stretch(spring, length);
   if (spring.cable && stretch < 0.0) return {0.0, 0.0};
   return {spring.stiffness * stretch, spring.stiffness};
 }

@@ -23,6 +23,21 @@ bool Walker::slide_at_stake(int i, JointStatus before, double target,
   return std::abs(slide_rate[i]) * (target - time) > least;
 }
 
+/// Share of a step to `to` after which a stiffness jumps; 1: none does. A step across such an edge
+/// ends where its straight line crosses it.
+double Walker::first_edge(double target, const VectorXd& to, const StepStart& begin,
+                          const Rounding& rounding) const {
+  const VectorXd before = system.beyond_edges(z, time, origin);
+  const VectorXd after = system.beyond_edges(to, target, begin);
+  double share = 1.0;
+  for (Eigen::Index i = 0; i < before.size(); ++i) {
+    if (!(before[i] * after[i] < 0.0)) continue;
+    if (std::min(std::abs(before[i]), std::abs(after[i])) <= rounding.length) continue;
+    share = std::min(share, before[i] / (before[i] - after[i]));
+  }
+  return share;
+}
+
 /// One step, if it is converged and exact or no longer than `tolerance`; else nothing happens.
 StepEnd Walker::step_to(double target, double tolerance) {
   // The sum time + tolerance is rounded.
@@ -49,9 +64,17 @@ StepEnd Walker::step_to(double target, double tolerance) {
     origin.statuses = trial_statuses;
     fail(report, JointModel::friction, target, "no equilibrium");
   }
+  const Rounding rounding = system.rounding(z);
   if (!is_short && passes_instability(trial_statuses)) {
     ++path.solves;
     return StepEnd::event_inside;
+  }
+  if (!is_short && options.locate_events) {
+    event_share = first_edge(target, trial, begin, rounding);
+    if (event_share < 1.0) {
+      ++path.solves;
+      return StepEnd::event_inside;
+    }
   }
   // One that begins to slip and is found on another branch has slid in between.
   const auto slid_between = [&](const std::pair<int, JointStatus>& left) {
@@ -64,7 +87,6 @@ StepEnd Walker::step_to(double target, double tolerance) {
   }
   std::vector<Event> events;
   std::vector<FailureJoint> opened;
-  const Rounding rounding = system.rounding(z);
   const int joints = static_cast<int>(model.joints.size());
   for (int i = 0; i < joints; ++i) {
     const JointStatus before = origin.statuses[index(i)];

@@ -90,10 +90,13 @@ class System {
   VectorXd slips(const VectorXd& z, double time, const StepStart& start,
                  const StepStart& after) const;
 
+  /// How far cables and joints are beyond the edges at which their stiffness jumps [m].
+  VectorXd beyond_edges(const VectorXd& z, double time, const StepStart& now) const;
+
   /// Friction's heat of a step and the temperature's work, added to the state's.
   /// @param after the state at z as the start of the next step, @param slips see slips()
-  /// @param rate_before, rate rates of the unknowns at both ends, by which the temperature's work
-  /// is of fourth order; without, or where a status changed between them, it is of second
+  /// @param rate_before, rate rates of the unknowns at both ends, by which both are of fourth
+  /// order; without, or where a status changed between them, they are of second
   void account(const VectorXd& z_before, double time_before, const VectorXd& z, double time,
                const StepStart& start, const StepStart& after, const VectorXd& slips, State& state,
                const VectorXd& rate_before = {}, const VectorXd& rate = {}) const;
@@ -137,6 +140,9 @@ class System {
   double size() const { return size_; }  ///< Largest extent of the drawn shape [m].
 
  private:
+  /// Heat of a step of every joint [J], as if all were straight between its ends.
+  VectorXd heat(const VectorXd& z, double time, const StepStart& start, const StepStart& after,
+                const VectorXd& slips) const;
   void assemble_bars(const VectorXd& z, double time, Assembly& to) const;
   void assemble_joints(const VectorXd& z, double time, const StepStart& start,
                        const Statuses& statuses, JointModel joints, double opening,

@@ -75,6 +75,8 @@ struct Walker {
   bool any_slips(const Statuses& statuses) const;
   bool passes_instability(const Statuses& statuses);
   bool slide_at_stake(int joint, JointStatus before, double target, const Rounding& rounding) const;
+  double first_edge(double target, const VectorXd& to, const StepStart& begin,
+                    const Rounding& rounding) const;
   double first_turn(const Ends& ends) const;
   double turn_of_slip(int joint, const Ends& ends, const Rounding& rounding) const;
   double turn_of_stick(int joint, const Ends& ends, const Rounding& rounding) const;

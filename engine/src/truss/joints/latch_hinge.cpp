@@ -216,6 +216,11 @@ double LatchHinge::elastic_energy(const Trial& trial, const double* now) const {
   return 0.5 * stiffness * beyond * beyond + preload_moment * rotation + bent;
 }
 
+std::array<double, 2> LatchHinge::beyond_edges(const Trial& trial) const {
+  const double radius = radius_of(trial), rotation = rotation_of(*this, trial);
+  return {radius * (rotation - deadband), radius * (rotation + deadband)};
+}
+
 void LatchHinge::describe(const Trial& trial, double* outputs) const {
   const double rotation = rotation_of(*this, trial);
   outputs[0] = rotation;

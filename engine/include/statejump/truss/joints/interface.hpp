@@ -144,6 +144,8 @@ struct Seat {
 //   slip()                slide of the step that friction turned into heat [m]
 //   dissipation()         heat of the step [J]
 //   elastic_energy()      stored in it [J]
+//   beyond_edges()        of types with edges at which the stiffness jumps without a change of
+//                         status: how far it is beyond each [m]
 //   describe()            outputs in their order
 //   slide_rounding()      of the slide less what friction bends [m]
 //   remembers_when()      whether the state depends on when in a step the status changed
