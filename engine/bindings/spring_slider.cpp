@@ -182,12 +182,18 @@ void bind_path(py::module_& module) {
   module.def(
       "solve_spring_slider",
       [](const spring_slider::SpringSlider& model, const thermal::Program& program,
-         const std::optional<Eigen::VectorXd>& time_s) {
-        return time_s ? solve(model, program, *time_s) : solve(model, program);
+         const std::optional<Eigen::VectorXd>& time_s,
+         const std::optional<thermal::Program>& told) {
+        spring_slider::Path path = time_s ? solve(model, program, *time_s) : solve(model, program);
+        if (told) tell_temperatures_of(*told, path);
+        return path;
       },
       py::arg("model"), py::arg("program"), py::arg("time_s") = py::none(),
+      py::arg("told") = py::none(),
       "Exact path of a SpringSlider under a ThermalProgram, from rest at x = 0 and dT = 0.\n"
       "With times only the cycles are kept that sample() needs there, the first two and the last.\n"
+      "`told` is a program of the same times whose temperatures events and samples tell, where\n"
+      "`program` has the strain of a link over its coefficient.\n"
       "Raises ValueError if the program takes the link to a length <= 0.");
 }
 

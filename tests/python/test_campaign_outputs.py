@@ -55,10 +55,38 @@ def test_outputs_of_a_surface_are_its_history() -> None:
     assert found[names[1]][0] == wanted["rms_rigid_m"][-1]
 
 
+def test_a_place_repeats_as_well_as_returns_of_the_temperature_agree() -> None:
+    """After heat the block is held f l0/(E A) ahead of its first place, after cold as much behind it."""
+    table = {"thermal.shape": "table", "thermal.temperature_change_max_K": None, "thermal.period_s": None}
+    days = {**table, "thermal.table_time_s": [0, 1, 2, 3, 4, 5, 6],
+            "thermal.table_temperature_change_K": [0, 100, 0, -10, 0, 90, 0]}
+    jump = 50.0 * 0.3 / (70e9 * 9e-6)
+    case = sj.load("table1")
+    for changes, wanted in ((days, 2 * jump), ({"thermal.cycles": 3}, 0.0)):
+        changed = case.changed(changes)
+        found = sj.sweep(changed, {"joint.friction_coefficient": [0.3]}, outputs=["repeat:displacement_m"]).frame()
+        assert found["repeat:displacement_m"][0] == pytest.approx(wanted, rel=1e-9, abs=1e-17)
+
+
+def test_returns_of_a_truss_are_those_of_every_program() -> None:
+    case = sj.load(TRUSS)
+    node = case.node[3].name
+    assert case.changed({"thermal.cycles": 3}).definition.returns_s().tolist() == [1.0, 2.0, 3.0]
+    table = {"thermal.shape": "table", "thermal.temperature_change_max_K": None, "thermal.period_s": None,
+             "thermal.table_time_s": [0, 1, 2, 3, 4], "thermal.table_temperature_change_K": [0, 100, 0, -100, 0]}
+    changed = case.changed(table)
+    assert changed.definition.returns_s().tolist() == [2.0, 4.0]
+    found = sj.sweep(changed, {"thermal.cycles": [1]}, outputs=[f"repeat:displacement_m[{node}]"]).frame()
+    moved = changed.reduced().at(np.array([2.0, 4.0])).history["displacement_m"].values[:, 3]
+    assert found[f"repeat:displacement_m[{node}]"][0] == pytest.approx(np.linalg.norm(moved[1] - moved[0]), rel=1e-6)
+    assert np.linalg.norm(moved[1] - moved[0]) > 1e-6
+
+
 @pytest.mark.parametrize("output, sentence", [
     ("max:surface.rms_rigid_m", "section [reflector] is missing"),
     ("jump", "must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"),
-    ("mean:displacement_m[N1]", "HOW must be one of end, jump, max, min, range"),
+    ("mean:displacement_m[N1]", "HOW must be one of end, jump, max, min, range, repeat"),
+    ("repeat:displacement_m[N1]", "the temperature comes back where it began 1 times, 2 are needed; set thermal.cycles"),
     ("jump:displacment_m[N1]", "did you mean displacement_m?"),
     ("jump:displacement_m", "displacement_m is one of each of the nodes: which one?"),
     ("jump:displacement_m[N1].w", "the axis must be one of x, y, z"),

@@ -15,7 +15,7 @@ from statejump.core.expansion import CHORD
 from statejump.kinds.truss.generate.document import to_toml
 
 ROWS_K, ALPHA_PER_K = [-120.0, 0.0, 40.0, 150.0], [17e-6, 23e-6, 24e-6, 29e-6]
-LENGTH_M, RIGIDITY_N, FRICTION_N = 1.0, 70e9 * 1e-5, 200.0
+LENGTH_M, RIGIDITY_N, FRICTION_N, PLAY_M = 1.0, 70e9 * 1e-5, 200.0, 5e-4
 BAR = {"young_modulus_Pa": 70e9, "cross_section_area_m2": 1e-5, "density_kg_per_m3": 2700.0}
 
 
@@ -33,6 +33,24 @@ def bar(friction_N: float | None = None, **thermal: Any) -> dict[str, Any]:
         data["slider"] = [{"name": "S", "nodes": ["B"], "axis": [1.0, 0.0], "friction_coefficient": 0.5,
                            "normal_force_N": 2 * friction_N}]
     return data
+
+
+def pushed_block(play_m: float = PLAY_M, **thermal: Any) -> dict[str, Any]:
+    """Return the same bar as a ``spring_slider``, its block between two stops."""
+    table = {"temperature_change_K": ROWS_K, "thermal_expansion_per_K": ALPHA_PER_K}
+    return {
+        "case": {"name": "block", "kind": "spring_slider"}, "link": {**BAR, "stress_free_length_m": LENGTH_M},
+        "joint": {"normal_force_N": 2 * FRICTION_N, "friction_coefficient": 0.5, "clearance_minus_m": play_m,
+                  "clearance_plus_m": play_m},
+        "expansion": table, "thermal": {"shape": "triangle", "temperature_change_max_K": 130.0, **thermal},
+    }
+
+
+def slip_K(strain: float, bound_K: float = 0.0) -> float:
+    """Return the ΔT from 0 to 40 K at which the integral of the coefficient has grown by a strain from that at a ΔT."""
+    slope = (ALPHA_PER_K[2] - ALPHA_PER_K[1]) / ROWS_K[2]
+    total = strain + integral(bound_K)
+    return float((-ALPHA_PER_K[1] + np.sqrt(ALPHA_PER_K[1]**2 + 2 * slope * total)) / slope)
 
 
 def integral(change_K: float) -> float:
@@ -65,9 +83,7 @@ def test_the_block_slips_where_the_integral_reaches_its_strain() -> None:
     run = sj.load(bar(FRICTION_N)).reduced()
     first = next(event for event in run.events if event.joint == "S")
     # Stuck at its drawn length l the bar of the free length l (1 + e) is compressed by E A e/(1 + e) = f.
-    strain = FRICTION_N / (RIGIDITY_N - FRICTION_N)
-    slope = (ALPHA_PER_K[2] - ALPHA_PER_K[1]) / ROWS_K[2]
-    change = (-ALPHA_PER_K[1] + np.sqrt(ALPHA_PER_K[1]**2 + 2 * slope * strain)) / slope  # the root of the parabola
+    change = slip_K(FRICTION_N / (RIGIDITY_N - FRICTION_N))
     # A chord moves an event by its share of the range of the strain over the coefficient.
     assert first.temperature_change_K == pytest.approx(change, abs=CHORD * integral(130.0) / ALPHA_PER_K[1])
     assert run.summary["largest_jump_m"] == pytest.approx(FRICTION_N * LENGTH_M / RIGIDITY_N, rel=1e-9)
@@ -83,6 +99,53 @@ def test_the_dem_interpolates_the_same_strain() -> None:
     strains = values["link"]["thermal_expansion_per_K"][0] * np.array(program["table_temperature_change_K"])
     changes = np.interp(program["table_time_s"], [0.0, 0.5, 1.0], [0.0, 130.0, 0.0])
     assert strains == pytest.approx([integral(change) for change in changes], rel=1e-12, abs=1e-18)
+
+
+def test_a_bar_on_a_slider_follows_the_integral_of_the_coefficient() -> None:
+    """Slip, stop and way back at the strains of the closed forms, told at the temperatures of the program."""
+    case = sj.load(pushed_block())
+    run = case.reduced()
+    first = {event.kind: event for event in reversed(run.events)}
+    held = FRICTION_N / RIGIDITY_N
+    assert first["first_slip"].temperature_change_K == pytest.approx(
+        slip_K(held / (1 - held)), abs=CHORD * integral(130.0) / ALPHA_PER_K[1])
+    # At the stop the bar is compressed by f: x = l_T (1 - f/EA) - l0 = c.
+    stop = slip_K((1 + PLAY_M / LENGTH_M) / (1 - held) - 1)
+    assert 0 < stop < ROWS_K[2]
+    assert first["stop_reached"].temperature_change_K == pytest.approx(stop, abs=CHORD * integral(130.0) / ALPHA_PER_K[1])
+    assert run.summary["state_jump_m"] == pytest.approx(FRICTION_N * LENGTH_M / RIGIDITY_N, rel=1e-9)
+    for event in run.events:  # time and temperature are those of one program
+        assert event.temperature_change_K == pytest.approx(130.0 * (1 - abs(2 * event.time_s - 1)), abs=1e-9)
+    times = np.linspace(0.0, 1.0, 61)
+    at = run.at(times)
+    assert at["temperature_change_K"] == pytest.approx(130.0 * (1 - np.abs(2 * times - 1)), abs=1e-12)
+    wanted = np.array([integral(change) for change in at["temperature_change_K"]])
+    assert np.abs(at.links["thermal_strain"].values[:, 0] - wanted).max() < CHORD * np.ptp(wanted)
+    hottest = sj.statics(case).segments[-1]
+    push = RIGIDITY_N / (1 + integral(130.0)) / LENGTH_M
+    assert hottest.zero_force_m == pytest.approx(LENGTH_M * integral(130.0), rel=1e-12)
+    assert hottest.to_m == PLAY_M and hottest.from_m == pytest.approx(
+        min(PLAY_M, LENGTH_M * integral(130.0) - FRICTION_N / push), rel=1e-12)
+
+
+def test_where_the_coefficient_changes_its_sign_the_bar_turns() -> None:
+    """Heated on, a bar whose coefficient falls below 0 shrinks again: the block is pulled back while it is heated."""
+    data = pushed_block(temperature_change_max_K=200.0)
+    data["expansion"] = {"temperature_change_K": [0.0, 100.0, 200.0], "thermal_expansion_per_K": [2e-5, 0.0, -2e-5]}
+    case = sj.load(data)
+    assert case.definition.turning_changes_K == (0.0, 100.0, 200.0)
+    reversal = next(event for event in case.reduced().events if event.kind in ("reversal", "stop_unloaded"))
+    assert 100.0 <= reversal.temperature_change_K < 200.0 and reversal.time_s < 0.5
+    data["link"]["thermal_expansion_per_K"], data["expansion"] = 1e-5, None
+    assert sj.load({key: value for key, value in data.items() if value}).definition.turning_changes_K == (0.0, 200.0)
+
+
+@pytest.mark.parametrize("made", [lambda: bar(FRICTION_N), lambda: pushed_block(play_m=1e-2)],
+                         ids=["truss", "spring_slider"])
+def test_the_dem_agrees_within_the_tolerances(made: Callable[[], dict[str, Any]]) -> None:
+    case = sj.load(made())
+    found = sj.compare(case.reduced(), case.dem())
+    assert found.passed, found.missed
 
 
 def test_histories_of_members_are_exact_at_their_rows(tmp_path: Any) -> None:
@@ -119,6 +182,36 @@ WRONG: dict[str, tuple[Callable[[dict[str, Any]], None], str]] = {
                                  "it must hold the temperature change of 151 K that the program reaches"),
     "sine": (put("thermal", shape="half_sine"), "thermal.shape = 'half_sine' is not allowed: must be 'triangle' or 'table'"),
 }
+
+
+WRONG_BLOCK: dict[str, tuple[Callable[[dict[str, Any]], None], str]] = {
+    "both": (put("link", thermal_expansion_per_K=2e-5),
+             "link.thermal_expansion_per_K = 2e-05 is not allowed: only without [expansion]"),
+    "neither": (lambda data: data.pop("expansion"),
+                "link.thermal_expansion_per_K is missing: a number [1/K], or a section [expansion], is needed"),
+    "rows fall": (put("expansion", temperature_change_K=[150.0, 40.0, 0.0, -120.0]),
+                  "expansion.temperature_change_K = [150.0, 40.0, 0.0, -120.0] is not allowed: must be at least two"),
+    "program beyond the table": (put("thermal", temperature_change_max_K=151.0),
+                                 "expansion.temperature_change_K = [-120.0, 0.0, 40.0, 150.0] is not allowed: it must hold"),
+    "sine": (put("thermal", shape="sine"), "thermal.shape = 'sine' is not allowed: must be 'triangle' or 'table'"),
+    "no length left": (lambda data: (put("thermal", temperature_change_max_K=-1500.0)(data),
+                                     put("expansion", temperature_change_K=[-2000.0, 0.0],
+                                         thermal_expansion_per_K=[1e-3, 1e-3])(data)) and None,
+                       "the link has no length left at a temperature change of -1500 K"),
+}
+
+
+@pytest.mark.parametrize("what", WRONG_BLOCK)
+def test_what_is_wrong_with_a_bar_on_a_slider_is_one_sentence(
+    what: str, tmp_path: Any, statejump: Callable[..., Outcome]
+) -> None:
+    data = deepcopy(pushed_block())
+    change, sentence = WRONG_BLOCK[what]
+    change(data)
+    (tmp_path / "block.toml").write_text(to_toml(data), encoding="utf-8")
+    told = statejump("reduced", tmp_path / "block.toml")
+    assert told.status == 2 and told.errors.count("\n") == 1
+    assert sentence in told.errors
 
 
 @pytest.mark.parametrize("what", WRONG)

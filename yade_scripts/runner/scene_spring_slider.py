@@ -89,7 +89,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
         stressFreeLength=link["stress_free_length_m"],
         thermalExpansion=link["thermal_expansion_per_K"],
         dampingRatio=dem["link_damping_ratio"],
-        program=program,
+        program=thermal_program({**case, "thermal": case["bar_program"]}),
     )
     links, preload = [bar], None
     if joint["preload_stiffness_N_per_m"] > 0:
@@ -146,7 +146,7 @@ def sample(case: dict[str, Any], built: SpringSliderScene) -> tuple:
     elastic = 0.5 * stiffness * bar.previousExtension**2
     return (
         O.time,
-        bar.temperatureChange,
+        built.program.temperatureChange(O.time),
         state.pos[0],
         bar.axialForce,
         -floor.shearForce[0],

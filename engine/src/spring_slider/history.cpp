@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "statejump/kernel/require.hpp"
 
@@ -28,6 +29,14 @@ const Segment& segment_at(const std::vector<Segment>& segments, double time, std
 }
 
 }  // namespace
+
+void tell_temperatures_of(thermal::Program told, Path& path) {
+  told.validate();
+  for (Event& event : path.events) event.temperature_change = told.temperature_change(event.time);
+  path.largest_compression_temperature_change =
+      told.temperature_change(path.largest_compression_time);
+  path.told = std::move(told);
+}
 
 History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times) {
   const SpringSlider& model = path.model;
@@ -57,7 +66,7 @@ History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times)
         segment.motion == Motion::stick ? -load : -segment.direction * model.friction_force;
     const double slid = std::abs(x - segment.start_displacement);
     history.time[i] = time;
-    history.temperature_change[i] = change;
+    history.temperature_change[i] = path.told ? path.told->temperature_change(time) : change;
     history.displacement[i] = x;
     history.axial_force[i] = force;
     history.friction_force[i] = friction;

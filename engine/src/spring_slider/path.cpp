@@ -107,6 +107,7 @@ class Follower {
     if (force > path_.largest_compression) {
       path_.largest_compression = force;
       path_.largest_compression_temperature_change = open_.end_temperature_change;
+      path_.largest_compression_time = open_.end_time;
     }
   }
 
@@ -277,7 +278,8 @@ void follow(const SpringSlider& model, const thermal::Program& program,
   path.events.clear();
   path.cycle_end_displacements.clear();
   path.largest_compression = path.largest_compression_temperature_change = 0.0;
-  path.largest_axial_force = 0.0;
+  path.largest_axial_force = path.largest_compression_time = 0.0;
+  path.told.reset();
   // A cycle that touches both stops has 12 events; more only in a table with many turns.
   path.segments.reserve(12 * kept.size());
   path.events.reserve(12 * kept.size());

@@ -3,7 +3,8 @@
 
 ``HOW:COLUMN[ITEM].AXIS``, as ``jump:displacement_m[P].x`` or ``max:links.axial_force_N[L3]``. Columns are those of the
 CSV files, of links and contacts with that word before; a vector without axis counts by its length. Columns of a
-reflecting surface, as ``max:surface.pointing_error_rad``, are those of :func:`statejump.surface.history`.
+reflecting surface, as ``max:surface.pointing_error_rad``, are those of :func:`statejump.surface.history`. ``repeat`` is
+of the times at which the temperature is back where it began: the largest distance of a later one from the first.
 """
 from __future__ import annotations
 
@@ -26,8 +27,11 @@ ENDS: dict[str, Callable[[np.ndarray], np.ndarray]] = {"end": lambda values: val
 ALL: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "max": lambda values: values.max(axis=0), "min": lambda values: values.min(axis=0),
     "range": lambda values: np.ptp(values, axis=0)}
+REPEAT = "repeat"  # of the times of Case.returns_s
+HOW: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+    **ENDS, **ALL, REPEAT: lambda values: np.linalg.norm((values - values[0]).reshape(len(values), -1), axis=1).max()}
 WORDS = {"end": "{} at the end", "jump": "jump of {}", "max": "largest {}", "min": "smallest {}",
-         "range": "range of {}"}
+         "range": "range of {}", REPEAT: "repeatability of {} from cycle to cycle"}
 SURFACE = "surface"
 # For editors, which know no names of groups.
 PATTERN = re.sub(r"\?P<\w+>", "", FORM.pattern)
@@ -38,14 +42,14 @@ def _parts(name: str) -> re.Match[str]:
     found = FORM.fullmatch(name) if isinstance(name, str) else None
     if found is None:
         raise NotAllowed("outputs", name, LIKE)
-    if found["how"] not in ENDS and found["how"] not in ALL:
-        raise NotAllowed("outputs", name, f"HOW must be one of {', '.join((*ENDS, *ALL))}")
+    if found["how"] not in HOW:
+        raise NotAllowed("outputs", name, f"HOW must be one of {', '.join(HOW)}")
     return found
 
 
 def needs_all_samples(name: str) -> bool:
     """Whether an output needs every sample of a run."""
-    return _parts(name)["how"] in ALL
+    return _parts(name)["how"] not in ENDS
 
 
 def unit(name: str) -> str:
@@ -70,14 +74,28 @@ def values(names: Sequence[str], run: Run) -> dict[str, float]:
 
     :raises NotAllowed: the run has no such column, item or axis; a near one is told
     """
-    columns: dict[str | None, dict[str, Column]] = {}
+    columns: dict[tuple[str | None, bool], dict[str, Column]] = {}
     found = {}
+    returned: Run | None = None
     for name in names:
-        group = _parts(name)["group"]
-        if group not in columns:
-            columns[group] = _surface(run, name) if group == SURFACE else _columns(run, group)
-        found[name] = _value(name, run, columns[group])
+        asked = _parts(name)
+        group, repeats = asked["group"], asked["how"] == REPEAT
+        if repeats and returned is None:
+            returned = _returned(run, name)
+        seen = returned if repeats and returned is not None else run
+        if (group, repeats) not in columns:
+            columns[group, repeats] = _surface(seen, name) if group == SURFACE else _columns(seen, group)
+        found[name] = _value(name, run, columns[group, repeats])
     return found
+
+
+def _returned(run: Run, name: str) -> Run:
+    """Return the run at the times at which the temperature is back where it began."""
+    times = run.definition.returns_s()
+    if len(times) < 2:
+        raise NotAllowed("outputs", name, f"the temperature comes back where it began {len(times)} times, 2 are needed",
+                         remedy="set thermal.cycles")
+    return run.at(times)
 
 
 def _value(name: str, run: Run, columns: dict[str, Column]) -> float:
@@ -104,8 +122,8 @@ def _value(name: str, run: Run, columns: dict[str, Column]) -> float:
         values = values[:, AXES.index(asked["axis"])]
     elif values.ndim > 1 and asked["how"] in ALL:
         values = np.linalg.norm(values, axis=1)
-    return float(np.linalg.norm((ENDS | ALL)[asked["how"]](values)) if values.ndim > 1
-                 else (ENDS | ALL)[asked["how"]](values))
+    found = HOW[asked["how"]](values)
+    return float(np.linalg.norm(found) if values.ndim > 1 else found)
 
 
 def _columns(run: Run, group: str | None) -> dict[str, Column]:

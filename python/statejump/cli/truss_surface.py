@@ -32,7 +32,8 @@ OPTIONS = {"axis": "--axis", "focal_length_m": "--focal-length", "direction": "-
               help="Focal length of NODES.csv [m].  [default: best fit]")
 @click.option("--samples", type=click.Path(path_type=Path), default=None, metavar="SAMPLES.csv",
               help="Campaign whose repeatability is told, with --column.")
-@click.option("--column", default=None, metavar="NAME", help="Change of a length in SAMPLES.csv, ends in _m.")
+@click.option("--column", default=None, metavar="NAME",
+              help="Change of a length in SAMPLES.csv, as repeat:displacement_m[NODE].")
 @click.option("--share", type=float, default=0.99, show_default=True, metavar="P",
               help="Of the samples that stay below.")
 @click.option("--length", type=float, default=None, metavar="M",
@@ -110,13 +111,14 @@ def _shown(title: str, rows: list[tuple[str, str, float]]) -> Shown:
 
 
 def _repeatability(samples: Path, column: str, share: float, length_m: float) -> str:
+    from statejump.campaign.outputs import unit
     from statejump.surface import repeatability
 
     try:
         columns = read_columns(samples)
     except (OSError, UnicodeDecodeError, IndexError):
         raise StatejumpError("cannot be read as a table of samples", file=samples) from None
-    lengths = [name for name in columns if name.endswith("_m") and np.issubdtype(columns[name].dtype, np.number)]
+    lengths = [name for name in columns if unit(name) == "m" and np.issubdtype(columns[name].dtype, np.number)]
     if column not in lengths:
         raise NotAllowed("--column", column, f"must be one of {', '.join(lengths)}" if lengths
                          else "no column of it is a length [m]", file=samples)

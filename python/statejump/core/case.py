@@ -17,6 +17,9 @@ from statejump.schema.paths import set_value
 from statejump.schema.rules import FOLDER_NAME
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from statejump import _engine
     from statejump.kinds.protocol import Kind
 
@@ -134,6 +137,10 @@ class Case(Section):
     def thermal_program(self) -> _engine.ThermalProgram:
         """Return the temperature program as the engine's."""
         return programs.program(self.thermal, self.period_s)
+
+    def returns_s(self) -> NDArray[np.float64]:
+        """Return the times [s] at which all parts have their first temperature again."""
+        return programs.returns_s([self.thermal], self.period_s)
 
     def check(self) -> None:
         """Raise StatejumpError for what is wrong between several keys."""

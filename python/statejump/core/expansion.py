@@ -40,6 +40,14 @@ class Expansion(Section):
         """The largest |α| [1/K] of the table."""
         return max(abs(alpha) for alpha in self.thermal_expansion_per_K)
 
+    @property
+    def zeros_K(self) -> list[float]:
+        """Temperature changes [K] at which α is 0, where the strain may turn."""
+        rows, alpha = self.temperature_change_K, self.thermal_expansion_per_K
+        between = [one + (other - one) * first / (first - last)
+                   for one, other, first, last in zip(rows, rows[1:], alpha, alpha[1:]) if first * last < 0]
+        return [*(row for row, value in zip(rows, alpha) if value == 0), *between]
+
     def strain(self, temperature_change_K: Numbers) -> Numbers:
         """Return the free strain [-], ∫ α dΔT from 0 to temperature changes [K] within the table; of their shape."""
         rows, alpha = np.array(self.temperature_change_K), np.array(self.thermal_expansion_per_K)

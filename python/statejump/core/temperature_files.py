@@ -18,16 +18,13 @@ import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, Unreadable
 from statejump.core.temperature_columns import Read, listed, of_means, quoted, read_columns, refuse
-from statejump.core.thermal import KEYS_OF_FILES, LARGEST_CHANGE_K, LONGEST_TABLE_S, Thermal
+from statejump.core.thermal import KEYS_OF_FILES, LARGEST_CHANGE_K, LONGEST_TABLE_S, SAME_TEMPERATURE_K, Thermal
 from statejump.schema.fields import Attached, Section, fields_of, rule_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Numbers = NDArray[np.float64]
-
-# Below this a difference of two temperatures is the rounding of °C into kelvin.
-SAME_TEMPERATURE_K = 1e-9
 
 
 @dataclass(frozen=True)

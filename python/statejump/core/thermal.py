@@ -6,7 +6,10 @@ long as its last one says.
 """
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
 from statejump.schema.fields import (
@@ -14,12 +17,15 @@ from statejump.schema.fields import (
 )
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from statejump import _engine
     from statejump.core.temperature_files import MemberProgram
 
 SHAPES = ("triangle", "half_sine", "sine", "table")
 PERIOD_s = 1.0  # where nothing says how long a cycle lasts
 SAME_TIME = 1e-9  # two durations that differ by less, relatively, are the same but for rounding
+SAME_TEMPERATURE_K = 1e-9  # below this a difference of two temperatures is the rounding of °C into kelvin
 LONGEST_TABLE_S, LARGEST_CHANGE_K = 1e12, 1e4
 MOST_SHOWN = 20  # values of a list in a sentence
 # Keys that name a file of temperatures or say what is in it; see :mod:`statejump.core.temperature_files`.
@@ -142,6 +148,20 @@ def parameters(thermal: Thermal | MemberProgram, period_s: float) -> dict[str, A
                 "table_temperature_change_K": thermal.table_temperature_change_K}
     return {"shape": thermal.shape, "cycles": thermal.cycles, "period_s": period_s,
             "temperature_change_max_K": thermal.temperature_change_max_K}
+
+
+def returns_s(programs: Sequence[Thermal | MemberProgram], period_s: float) -> NDArray[np.float64]:
+    """Return the times [s] at which all parts have their first temperature again: ends of cycles, rows of a table.
+
+    :param programs: of one case, the common one first; they last equally long
+    """
+    common, own = programs[0], [period_s]
+    if common.shape == "table" and common.table_time_s is not None:
+        own = list(common.table_time_s[1:])
+    times: NDArray[np.float64] = (np.arange(common.cycles)[:, None] * period_s + np.array(own)).ravel()
+    for one in programs:
+        times = times[np.abs(program(one, period_s).temperature_change(times)) < SAME_TEMPERATURE_K]
+    return times
 
 
 def program(thermal: Thermal | MemberProgram, period_s: float) -> _engine.ThermalProgram:

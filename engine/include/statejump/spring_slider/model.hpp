@@ -35,7 +35,8 @@ namespace statejump::spring_slider {
 /// its stiffness; x, F and every energy do not, because the block does not move.
 ///
 /// Limits: no inertia, no buckling (see euler_load), constant f, rigid stops, E and α independent
-/// of temperature. A plain value: validate() once; the functions below do not check.
+/// of temperature (of an α that is not, see tell_temperatures_of). A plain value: validate() once;
+/// the functions below do not check.
 struct SpringSlider {
   /// Young's modulus E of the link [Pa], > 0.
   double young_modulus = 0.0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -91,9 +92,12 @@ struct Path {
   /// Largest compression at the end of a segment of any cycle [N], 0 if there is none, and its ΔT.
   double largest_compression = 0.0;
   double largest_compression_temperature_change = 0.0;  ///< [K]
+  double largest_compression_time = 0.0;                ///< [s]
   /// Largest |F| [N] over all cycles: F is monotonic within a segment, so it stands where one
   /// starts, or at the end. See place_at().
   double largest_axial_force = 0.0;
+  /// Temperatures that are told in place of the program's own, see tell_temperatures_of().
+  std::optional<thermal::Program> told;
 
   /// Displacement at the end minus that at the start [m].
   double state_jump() const { return cycle_end_displacements.back() - start_displacement(model); }
@@ -120,6 +124,12 @@ void solve(const SpringSlider& model, const thermal::Program& program, Path& pat
 /// Throws std::invalid_argument if a time is negative or not finite.
 Path solve(const SpringSlider& model, const thermal::Program& program,
            const Eigen::Ref<const Eigen::VectorXd>& times);
+
+/// Lets events, samples and warnings tell the temperature changes of another program at their
+/// times. A link whose coefficient follows the temperature has a path of its strain: the program
+/// that is solved is then strain over one coefficient, and `told` the temperature itself. Segments
+/// keep what was solved.
+void tell_temperatures_of(thermal::Program told, Path& path);
 
 /// x [m] on the segment at ΔT [K] within the segment: constant in a stick and at a stop, else
 /// sliding_displacement().

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import ClassVar
 
-from statejump.core import yade_process
+import numpy as np
+
+from statejump.core import expansion, yade_process
 from statejump.core.case import Case, no_length_left
-from statejump.core.errors import NotAllowed
+from statejump.core.errors import MissingKey, NotAllowed
+from statejump.core.expansion import Expansion, followed
+from statejump.core.temperature_files import MemberProgram
+from statejump.core.thermal import Thermal
 from statejump.kinds.spring_slider import stable_step
-from statejump.schema.fields import CHOICE, Section, definition, parameter, section, whole
+from statejump.schema.fields import CHOICE, Section, definition, optional_section, parameter, section, whole
 
 PAPER = "Chen et al. (2021), Table 1"
 
@@ -21,7 +27,7 @@ class Link(Section):
     young_modulus_Pa: float = parameter(..., "Pa", 0, 1e13, PAPER, above=True)
     stress_free_length_m: float = parameter(..., "m", 0, 1e3, PAPER, above=True)
     cross_section_area_m2: float = parameter(..., "m2", 0, 1e2, PAPER, above=True)
-    thermal_expansion_per_K: float = parameter(..., "1/K", -1e-3, 1e-3, PAPER)
+    thermal_expansion_per_K: float | None = parameter(None, "1/K", -1e-3, 1e-3, PAPER + "; this or [expansion]")
     density_kg_per_m3: float = parameter(2700.0, "kg/m3", 0, 1e5, CHOICE + ": aluminium", above=True)
     poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, PAPER)
 
@@ -84,6 +90,7 @@ class SpringSliderCase(Case):
 
     link: Link = section(Link, required=True)
     joint: Joint = section(Joint, required=True)
+    expansion: Expansion | None = optional_section(Expansion)
     dem: Dem = section(Dem)
     tolerance: Tolerance = section(Tolerance)
 
@@ -91,6 +98,30 @@ class SpringSliderCase(Case):
     def samples_per_cycle(self) -> int:
         """Samples per cycle of both models."""
         return self.dem.samples_per_cycle
+
+    @property
+    def thermal_expansion_per_K(self) -> float:
+        """The bar's coefficient of thermal expansion [1/K]; of an [expansion] its largest |α|."""
+        constant = self.link.thermal_expansion_per_K
+        return self.expansion.largest_per_K if self.expansion is not None else 0.0 if constant is None else constant
+
+    @cached_property
+    def bar_program(self) -> Thermal | MemberProgram:
+        """What warms the bar: with an [expansion] strain over coefficient, see :mod:`statejump.core.expansion`."""
+        return self.thermal if self.expansion is None else followed(self.expansion, self.thermal, self.period_s)
+
+    @property
+    def turning_changes_K(self) -> tuple[float, ...]:
+        """Temperature changes [K] of the program among which the bar is longest and shortest."""
+        coldest, hottest = self.temperature_range_K
+        zeros = () if self.expansion is None else self.expansion.zeros_K
+        return (coldest, *(change for change in zeros if coldest < change < hottest), hottest)
+
+    def thermal_strain(self, temperature_change_K: float) -> float:
+        """Return the free strain of the bar [-]."""
+        if self.expansion is None:
+            return self.thermal_expansion_per_K * temperature_change_K
+        return float(self.expansion.strain(np.array([temperature_change_K]))[0])
 
     @property
     def friction_force_N(self) -> float:
@@ -106,10 +137,31 @@ class SpringSliderCase(Case):
         pad = joint.pad_thermal_expansion_per_K * joint.pad_radius_m
         return start + (stop - pad) * temperature_change_K
 
+    def _check_expansion(self) -> None:
+        key, constant = "link.thermal_expansion_per_K", self.link.thermal_expansion_per_K
+        if self.expansion is None:
+            if constant is None:
+                raise MissingKey(key, "a number [1/K], or a section [expansion], is needed")
+            no_length_left(key, constant, self)
+            return
+        if constant is not None:
+            raise NotAllowed(key, constant, "only without [expansion]")
+        expansion.check(self.expansion, "expansion.")
+        try:
+            assert self.bar_program is not None
+        except NotAllowed as refused:
+            if refused.key == "temperature_change_K":
+                refused.key = "expansion.temperature_change_K"
+            raise
+        for change in self.turning_changes_K:
+            if 1 + self.thermal_strain(change) <= 0:
+                raise NotAllowed("expansion.thermal_expansion_per_K", self.expansion.thermal_expansion_per_K,
+                                 f"the link has no length left at a temperature change of {change:g} K")
+
     def check(self) -> None:
         """Raise StatejumpError for what is wrong between several keys."""
         link, joint = self.link, self.joint
-        no_length_left("link.thermal_expansion_per_K", link.thermal_expansion_per_K, self)
+        self._check_expansion()
         for side, key in ((-1, "clearance_minus_m"), (1, "clearance_plus_m")):
             for change in self.temperature_range_K:
                 if not self.clearance_m(side, change) > 0:

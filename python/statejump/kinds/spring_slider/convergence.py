@@ -200,7 +200,7 @@ def _what_stays(found: Convergence) -> list[str]:
         physics.effective_young_modulus_Pa(joint.young_modulus_Pa, joint.poisson_ratio), joint.pad_radius_m)
     depth = physics.hertz_depth_m(joint.normal_force_N, hertz)
     lines = ["What stays is elasticity and geometry that the reduced model does not have:", ""]
-    rate = abs(link.thermal_expansion_per_K) * link.stress_free_length_m
+    rate = abs(case.thermal_expansion_per_K) * link.stress_free_length_m
     if case.friction_force_N > 0 and rate > 0:
         slide = case.friction_force_N / stable_step.contact_stiffness(case, joint.normal_force_N)[1]
         late = slowest.first_slip_error_K

@@ -8,6 +8,7 @@ from typing import Any
 from scipy.optimize import brentq
 
 from statejump.core import physics
+from statejump.core.thermal import parameters
 from statejump.core.yade_process import common_values
 from statejump.kinds.spring_slider import reduced, stable_step
 from statejump.kinds.spring_slider.case import SpringSliderCase
@@ -30,6 +31,8 @@ def time_step(case: SpringSliderCase) -> float:
 def dem_input(case: SpringSliderCase) -> dict[str, Any]:
     """Return everything that the YADE script needs, as plain values."""
     values = common_values(case, number_of_steps(case))
+    values["link"]["thermal_expansion_per_K"] = case.thermal_expansion_per_K
+    values["bar_program"] = parameters(case.bar_program, case.period_s)
     values["dem"].update(tip_mass_kg=stable_step.tip_mass(case), start_displacement_m=start_displacement(case))
     return values
 

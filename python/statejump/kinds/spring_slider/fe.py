@@ -35,6 +35,8 @@ def answer(case: SpringSliderCase) -> ccx.Answer:
     :raises StatejumpError: there is no CalculiX, or it failed
     """
     joint = case.joint
+    if case.expansion is not None:
+        raise NotAllowed("expansion", cause="'statejump fe' takes one coefficient of expansion")
     for key in ("preload_stiffness_N_per_m", "preload_force_N", "pad_thermal_expansion_per_K",
                 "slot_thermal_expansion_per_K"):
         if getattr(joint, key):
@@ -57,7 +59,7 @@ def answer(case: SpringSliderCase) -> ccx.Answer:
 
 
 def _slope(case: SpringSliderCase) -> float:
-    return case.link.thermal_expansion_per_K * case.link.stress_free_length_m
+    return case.thermal_expansion_per_K * case.link.stress_free_length_m
 
 
 def _corners(case: SpringSliderCase) -> list[float]:
@@ -156,7 +158,7 @@ def deck(case: SpringSliderCase, corners: Sequence[float]) -> list[str]:
               "*NSET, NSET=FIXED", *(f"{node}," for node in fixed)]
     # The bar carries axial force only: without Poisson's ratio, its sides held.
     lines += ["*MATERIAL, NAME=BAR", "*ELASTIC", f"{number(link.young_modulus_Pa)}, 0.", "*EXPANSION, ZERO=0.",
-              number(link.thermal_expansion_per_K), "*MATERIAL, NAME=BLOCK", "*ELASTIC",
+              number(case.thermal_expansion_per_K), "*MATERIAL, NAME=BLOCK", "*ELASTIC",
               f"{number(joint.young_modulus_Pa)}, {number(max(joint.poisson_ratio, 0.0))}"]
     lines += [f"*SOLID SECTION, ELSET=E{first}, MATERIAL={'BAR' if first == BAR else 'BLOCK'}"
               for first, _, _ in blocks]

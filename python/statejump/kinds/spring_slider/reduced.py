@@ -10,6 +10,7 @@ from statejump import _engine
 from statejump.core.limits import WHOLE_HISTORY
 from statejump.core.progress import Tell
 from statejump.core.run import Events, Run
+from statejump.core.thermal import program
 from statejump.kinds.spring_slider import result
 from statejump.kinds.spring_slider.case import SpringSliderCase
 
@@ -20,7 +21,7 @@ def spring_slider(case: SpringSliderCase) -> _engine.SpringSlider:
         young_modulus_Pa=case.link.young_modulus_Pa,
         cross_section_area_m2=case.link.cross_section_area_m2,
         stress_free_length_m=case.link.stress_free_length_m,
-        thermal_expansion_per_K=case.link.thermal_expansion_per_K,
+        thermal_expansion_per_K=case.thermal_expansion_per_K,
         friction_force_N=case.friction_force_N,
         clearance_minus_m=case.joint.clearance_minus_m,
         clearance_plus_m=case.joint.clearance_plus_m,
@@ -58,7 +59,10 @@ def solve(case: SpringSliderCase, times_s: np.ndarray | None = None) -> _engine.
         two and the last; None: it is kept as a whole
     """
     wanted = None if is_whole(case) else times_s
-    return _engine.solve_spring_slider(spring_slider(case), case.thermal_program(), wanted)
+    if case.expansion is None:
+        return _engine.solve_spring_slider(spring_slider(case), case.thermal_program(), wanted)
+    followed = program(case.bar_program, case.period_s)
+    return _engine.solve_spring_slider(spring_slider(case), followed, wanted, case.thermal_program())
 
 
 def is_whole(case: SpringSliderCase) -> bool:

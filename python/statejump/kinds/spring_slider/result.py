@@ -11,9 +11,11 @@ from statejump import _engine
 from statejump.core.run import (
     AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Columns, Event, Events, Run, columns_of, numbers_of,
 )
+from statejump.core.thermal import program
 from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.results import scene as drawing
 from statejump.results.events import from_states
+from statejump.schema.fields import evolved
 
 CONTACTS = ("floor", "stop_minus", "stop_plus")
 SLIDING_STAGES = ("S2", "S5")
@@ -43,7 +45,8 @@ def scene(case: SpringSliderCase) -> dict[str, Any]:
             "half_height_m": radius, "pad_radius_m": radius,
             "thermal_expansion_per_K": joint.pad_thermal_expansion_per_K,
         },
-        drawing.link("bar", [[root, 0.0, 0.0], [x, 0.0, 0.0]], link),
+        drawing.link("bar", [[root, 0.0, 0.0], [x, 0.0, 0.0]],
+                     evolved(link, thermal_expansion_per_K=case.thermal_expansion_per_K)),
     ]
     if joint.preload_stiffness_N_per_m > 0 or joint.preload_force_N:
         parts.append({
@@ -113,10 +116,12 @@ def _run(
 ) -> Run:
     plain, energy = columns_of(columns)
     contacts = _contacts(case, columns)
-    change = columns["temperature_change_K"]
+    change = warmed = columns["temperature_change_K"]
+    if case.expansion is not None:
+        warmed = program(case.bar_program, case.period_s).temperature_change(columns["time_s"])
     links = {
         "axial_force_N": Column(columns["axial_force_N"][:, None], "N", "links", note="compression positive"),
-        "thermal_strain": Column(case.link.thermal_expansion_per_K * change[:, None], "-", "links"),
+        "thermal_strain": Column(case.thermal_expansion_per_K * warmed[:, None], "-", "links"),
     }
     if events is None:
         events = from_states(columns["time_s"], change, contacts["state"].values, CONTACTS)

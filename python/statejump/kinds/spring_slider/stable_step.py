@@ -34,8 +34,8 @@ def largest_stop_force(case: SpringSliderCase) -> float:
     """Force [N] that would hold the thermal overlap and the preload with a rigid stop."""
     link, stiffness, preload = case.link, link_stiffness(case), case.joint.preload_force_N
     force = 0.0
-    for change in case.temperature_range_K:
-        stroke = link.stress_free_length_m * link.thermal_expansion_per_K * change
+    for change in case.turning_changes_K:
+        stroke = link.stress_free_length_m * case.thermal_strain(change)
         force = max(force, *(stiffness * (side * stroke - case.clearance_m(side, change)) - side * preload
                              for side in (1, -1)))
     return force

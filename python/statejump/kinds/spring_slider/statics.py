@@ -116,10 +116,11 @@ DENSE = 401  # temperatures of the picture
 def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_K: float) -> Segment:
     """Return the rest set at one temperature; clearances are those of the reference temperature."""
     link, joint = case.link, case.joint
-    length = link.stress_free_length_m * (1 + link.thermal_expansion_per_K * temperature_change_K)
+    strain = case.thermal_strain(temperature_change_K)
+    length = link.stress_free_length_m * (1 + strain)
     bar = axial_stiffness_N_per_m(link.young_modulus_Pa, link.cross_section_area_m2, length)
     total = bar + joint.preload_stiffness_N_per_m
-    stroke = link.stress_free_length_m * link.thermal_expansion_per_K * temperature_change_K
+    stroke = link.stress_free_length_m * strain
     zero = (bar * stroke - joint.preload_force_N) / total
     half = friction_force_N / total
     ends = [min(max(place, -joint.clearance_minus_m), joint.clearance_plus_m) for place in (zero - half, zero + half)]

@@ -41,7 +41,7 @@ def _events(case: SpringSliderCase, dem: Run) -> list[str]:
                      f"{text(allowed, 'K', 2)}: raise dem.samples_per_cycle")
     _, tangential = stable_step.contact_stiffness(case, case.joint.normal_force_N)
     give = case.friction_force_N / tangential
-    along = abs(case.link.thermal_expansion_per_K) * case.link.stress_free_length_m
+    along = abs(case.thermal_expansion_per_K) * case.link.stress_free_length_m
     if along and give / along > 0.5 * allowed:
         found.append(f"the reduced model sticks rigidly, the floor of the DEM gives by {text(give, 'm', 2)} before the "
                      f"block slides, {text(give / along, 'K', 2)} of expansion: raise joint.young_modulus_Pa or "

@@ -35,6 +35,10 @@ def describe(case: SpringSliderCase) -> list[str]:
         f"The block is pressed on its floor with {text(joint.normal_force_N, 'N')}; friction with "
         f"μ = {joint.friction_coefficient:g} holds it up to {text(case.friction_force_N, 'N')}. Two stops are {stops}.",
     ]
+    if case.expansion is not None:
+        low, high = (end(case.expansion.thermal_expansion_per_K) for end in (min, max))
+        sentences.append(f"The bar's coefficient of expansion follows the temperature, from {text(low, '1/K')} to "
+                         f"{text(high, '1/K')}.")
     if joint.preload_stiffness_N_per_m:
         sentences.append(f"A spring of {text(joint.preload_stiffness_N_per_m, 'N/m')} ties the block to the ground.")
     if joint.preload_force_N:

@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from functools import cached_property
 from math import pi
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from statejump.core import thermal as core_thermal
 from statejump.core import yade_process
 from statejump.core.case import Case
 from statejump.core.expansion import Expansion
 from statejump.core.temperature_files import Histories, MemberProgram
-from statejump.core.thermal import Thermal
+from statejump.core.thermal import Thermal, returns_s
 from statejump.kinds.truss import checks
 from statejump.kinds.truss.joints.iwan_joint import IwanJoint
 from statejump.kinds.truss.joints.latch_hinge import LatchHinge
@@ -30,6 +30,10 @@ from statejump.schema.fields import (
     switch, tables, text, texts, whole,
 )
 from statejump.schema.items import Item
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 AXES = ("x", "y", "z")
 LARGEST_LENGTH_M = 1e6
@@ -272,6 +276,10 @@ class TrussCase(Case):
         members = self.thermal.members
         of_members = [] if members is None else members.programs(self.thermal.cycles)
         return [self.thermal, *(program.completed(self.thermal) for program in self.program), *of_members]
+
+    def returns_s(self) -> NDArray[np.float64]:
+        """Return the times [s] at which all parts have their first temperature again."""
+        return returns_s(self.programs, self.period_s)
 
     @cached_property
     def _resolved(self) -> ResolvedTruss:
