@@ -27,6 +27,10 @@ CASES: dict[str, tuple[Callable[[], Any], dict[str, Any]]] = {
         lambda: sj.load("cases/trusses/umbrella_rib.toml"), {"thermal.period_s": 0.16}),
     "umbrella_8": (lambda: sj.load("cases/trusses/umbrella_8.toml"), {}),
     "ring_6": (lambda: sj.truss.ring(6), {}),
+    "latch_lever": (lambda: sj.load("cases/trusses/latch_lever.toml"), {}),
+    "latch_lever, twenty times as fast": (
+        lambda: sj.load("cases/trusses/latch_lever.toml"), {"thermal.period_s": 0.05}),
+    "latch_boom": (lambda: sj.load("cases/trusses/latch_boom.toml"), {}),
     "mast_6": (lambda: sj.load("cases/trusses/mast_6.toml"), {}),
     "mast_6, 5 s, pins damped": (
         lambda: sj.load("cases/trusses/mast_6.toml"),

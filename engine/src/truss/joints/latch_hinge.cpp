@@ -133,8 +133,7 @@ void LatchHinge::evaluate(const Trial& trial, JointStatus status, JointWriter& w
   const double rotation = rotation_of(*this, trial);
   const double radius = radius_of(trial);
   const double force = trial.force[0];
-  const double beyond = beyond_play(*this, rotation);
-  const double moment = preload_moment + stiffness * beyond + radius * force;
+  const double moment = elastic_moment(rotation) + radius * force;
   const double tangent = std::abs(rotation) < deadband ? 0.0 : stiffness;
   writer.carries(force);
   writer.carries(moment / radius);
@@ -214,6 +213,10 @@ double LatchHinge::elastic_energy(const Trial& trial, const double* now) const {
                           ? 0.0
                           : 0.5 * friction_stiffness * std::pow(rotation - now[0], 2);
   return 0.5 * stiffness * beyond * beyond + preload_moment * rotation + bent;
+}
+
+double LatchHinge::elastic_moment(double rotation) const {
+  return preload_moment + stiffness * beyond_play(*this, rotation);
 }
 
 std::array<double, 2> LatchHinge::beyond_edges(const Trial& trial) const {

@@ -98,16 +98,38 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   }
 }
 
-void Contacts::add(int joint, int first_column, const Slider& slider) {
-  refuse_partial_slip(slider);
+void Contacts::add_rubbing(int joint, int column, double bound, double stiffness) {
   Contact rubbing;
   rubbing.joint = joint;
-  rubbing.tangential_column = first_column;
+  rubbing.tangential_column = column;
   rubbing.friction_coefficient = 1.0;
-  rubbing.given_force = slider.friction_force;
-  rubbing.tangential_stiffness = slider.tangential_stiffness;
+  rubbing.given_force = bound;
+  rubbing.tangential_stiffness = stiffness;
   rubbing.active = true;
   all_.push_back(rubbing);
+}
+
+void Contacts::add(int joint, int first_column, const LatchHinge& hinge) {
+  const Model& model = system_->model();
+  const Link& link = model.links[index(hinge.first_link)];
+  // On this radius its moment is a force, as in its rows.
+  const double radius =
+      (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position).norm();
+  springs_ = springs_ || hinge.stiffness > 0.0 || hinge.preload_moment != 0.0;
+  if (!(hinge.friction_moment > 0.0)) return;
+  add_rubbing(joint, first_column, hinge.friction_moment / radius,
+              hinge.friction_stiffness / (radius * radius));
+}
+
+void Contacts::add(int joint, int first_column, const IwanJoint& iwan) {
+  for (const auto& [stiffness, reach] : iwan.jenkins()) {
+    if (stiffness > 0.0) add_rubbing(joint, first_column, stiffness * reach, stiffness);
+  }
+}
+
+void Contacts::add(int joint, int first_column, const Slider& slider) {
+  refuse_partial_slip(slider);
+  add_rubbing(joint, first_column, slider.friction_force, slider.tangential_stiffness);
   const auto stop = [&](JointStatus which, double sign, double clearance) {
     if (std::isinf(clearance)) return;
     Contact end;
@@ -145,8 +167,27 @@ Statuses Contacts::closed(const VectorXd& z, double time, const StepStart& start
   return statuses;
 }
 
+double Contacts::friction_at_rest(const Contact& contact, const State& state) const {
+  const Model& model = system_->model();
+  const Joint& joint = model.joints[index(contact.joint)];
+  const auto told = [&](const char* key) { return output(model, state, contact.joint, key)[0]; };
+  double force = 0.0;
+  if (std::holds_alternative<IwanJoint>(joint)) {
+    force = contact.tangential_stiffness * told("iwan_slide_m");
+  } else if (const auto* hinge = std::get_if<LatchHinge>(&joint)) {
+    const double elastic = hinge->elastic_moment(told("hinge_rotation_rad"));
+    const double radius = hinge->friction_moment / contact.given_force;
+    force = (told("hinge_moment_N_m") - elastic) / radius;
+  }
+  return std::clamp(force, -contact.given_force, contact.given_force);
+}
+
 void Contacts::begin(const State& state) {
   for (Contact& contact : all_) {
+    if (contact.normal_column < 0) {
+      contact.friction_force = contact.elastic_friction = friction_at_rest(contact, state);
+      contact.compliance = contact.tangential_compliance(contact.given_force);
+    }
     if (contact.normal_column < 0 || contact.stop != JointStatus::open) continue;
     contact.normal_force = output(system_->model(), state, contact.joint, "normal_force_N")[0];
     contact.elastic_normal = contact.normal_force;
@@ -179,11 +220,15 @@ void Contacts::remember_clearances() {
 
 void Contacts::write(VectorXd& z, Statuses& statuses) const {
   z.tail(z.size() - system_->displacements()).setZero();
+  int last = -1;
   for (const Contact& contact : all_) {
     JointStatus& status = statuses[index(contact.joint)];
     if (contact.normal_column < 0) {
       z[contact.tangential_column] += contact.elastic_friction;
-      status = sliding(contact.friction_force, contact.given_force);
+      // The contacts of a joint follow each other; it slips where any of them does.
+      const JointStatus now = sliding(contact.friction_force, contact.given_force);
+      if (contact.joint != last || now != JointStatus::stick) status = now;
+      last = contact.joint;
     } else if (contact.stop != JointStatus::open) {
       z[contact.normal_column] -= contact.normal_sign * contact.normal_force;
       if (contact.normal_force > 0.0) status = contact.stop;

@@ -102,6 +102,8 @@ class Contacts {
   void remember_clearances();
 
   bool damped() const { return damped_; }
+  /// Whether joints have forces on nodes besides their contacts'.
+  bool have_springs() const { return springs_; }
 
   /// Elastic forces of the joints, of which the truss remembers and stores energy, and statuses.
   void write(VectorXd& z, Statuses& statuses) const;
@@ -111,6 +113,13 @@ class Contacts {
  private:
   void add(int joint, int first_column, const Slider& slider);
   void add(int joint, int first_column, const ClearanceRevolute& revolute);
+  void add(int joint, int first_column, const LatchHinge& hinge);
+  /// One contact for every element, all along one direction.
+  void add(int joint, int first_column, const IwanJoint& iwan);
+  /// Friction that holds a joint of given normal force in a quasi-static state [N].
+  double friction_at_rest(const Contact& contact, const State& state) const;
+  /// Dry friction of a given bound [N] behind a spring [N/m].
+  void add_rubbing(int joint, int column, double bound, double stiffness);
   /// A type of joint whose contacts are not known here. @throws std::invalid_argument with its name
   template <class Type>
   void add(int, int, const Type& other) {
@@ -122,6 +131,7 @@ class Contacts {
   std::vector<Contact> all_;
   std::vector<int> holds_;
   bool damped_ = false;
+  bool springs_ = false;
 };
 
 }  // namespace statejump::truss::detail

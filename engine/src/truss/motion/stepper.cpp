@@ -18,6 +18,7 @@ Stepper::Stepper(const System& system, const Bodies& bodies, const MotionOptions
       options_(&options),
       contacts_(system, bodies.joint_damping()),
       joints_(system.assembly(System::Parts::joints)),
+      springs_(system.assembly(System::Parts::joints)),
       bars_(system.assembly(System::Parts::bars)),
       forces_(Assembly::without_jacobian(system.unknowns())),
       drives_(system, options.drives),
@@ -39,10 +40,7 @@ void Stepper::begin(const VectorXd& q, const VectorXd& v, const State* equilibri
   contacts_.measure(z_, 0.0, origin_, joints_.residual, 0.0);
   note_branches();
   contacts_.remember_clearances();
-  VectorXd places = VectorXd::Zero(system_->unknowns());
-  places.head(q.size()) = q;
-  system_->evaluate_bars(places, 0.0, forces_);
-  internal_ = -forces_.residual.head(q_.size());
+  internal_ = elastic_force(q, 0.0);
   origin_ = system_->begin(z_, 0.0, statuses, 1.0);
 }
 
@@ -52,11 +50,26 @@ void Stepper::evaluate_contacts(const VectorXd& q, double time) {
   system_->evaluate_joints(z, time, origin_, contacts_.closed(z, time, origin_), joints_);
 }
 
-VectorXd Stepper::force(const VectorXd& q, const VectorXd& v, const Bodies::Step& step) {
+VectorXd Stepper::elastic_force(const VectorXd& q, double time) {
   VectorXd z = VectorXd::Zero(system_->unknowns());
   z.head(q.size()) = q;
-  system_->evaluate_bars(z, step.to, forces_);  // joints are free of force: r has all of it
+  // Of joints only what does not come by a contact, of which r has all.
+  system_->evaluate_bars(z, time, forces_);
   VectorXd found = -forces_.residual.head(q.size());
+  if (!contacts_.have_springs()) return found;
+  evaluate_springs(q, time);
+  forces_.largest_force = std::max(forces_.largest_force, springs_.largest_force);
+  return found - springs_.residual.head(q.size());
+}
+
+void Stepper::evaluate_springs(const VectorXd& q, double time) {
+  VectorXd z = VectorXd::Zero(system_->unknowns());
+  z.head(q.size()) = q;
+  system_->evaluate_joints(z, time, origin_, contacts_.closed(z, time, origin_), springs_);
+}
+
+VectorXd Stepper::force(const VectorXd& q, const VectorXd& v, const Bodies::Step& step) {
+  VectorXd found = internal_after_ = elastic_force(q, step.to);
   if (bodies_->damped()) found += bodies_->force(q, v, step);
   return found;
 }
@@ -70,6 +83,10 @@ Eigen::SparseMatrix<double> Stepper::iteration_matrix(const Trial& step) {
   system_->evaluate_bars(middle, step.to, bars_);
   Eigen::SparseMatrix<double> matrix =
       bodies_->mass() + (h * theta * h * theta) * bars_.jacobian.block(0, 0, n, n);
+  if (contacts_.have_springs()) {
+    evaluate_springs(step.q_middle, step.to);
+    matrix += (h * theta * h * theta) * springs_.jacobian.block(0, 0, n, n);
+  }
   if (bodies_->damped()) matrix += (h * theta) * bodies_->damping(step.q_middle);
   // Of the size of the rest, so that pivots compare.
   hold_directions(step, matrix.diagonal().maxCoeff());
@@ -304,7 +321,7 @@ void Stepper::book(const Trial& step, const Local& local) {
   account_.thermal_work += worked.thermal_work;
   note_branches();
   contacts_.remember_clearances();
-  internal_ = -forces_.residual.head(step.q.size());
+  internal_ = internal_after_;
   q_ = step.q;
   v_ = step.v;
   z_ = std::move(z);

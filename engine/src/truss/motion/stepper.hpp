@@ -135,7 +135,10 @@ class Stepper {
   void complete(const Trial& step, Local& local);
   /// Solves the contact problem of an iterate. @param free velocities without impulses
   void solve_contacts(const Trial& step, const VectorXd& free, bool first, Local& local);
-  /// f [N] at places and velocities; also leaves the forces without dashpots in `forces_`.
+  /// Forces of links, springs, loads and of joints beside their contacts [N].
+  VectorXd elastic_force(const VectorXd& q, double time);
+  void evaluate_springs(const VectorXd& q, double time);
+  /// f [N] at places and velocities; also leaves the forces without dashpots in `internal_after_`.
   VectorXd force(const VectorXd& q, const VectorXd& v, const Bodies::Step& step);
   /// Gaps and directions of the contacts, all of them closed and free of force.
   void evaluate_contacts(const VectorXd& q, double time);
@@ -156,9 +159,10 @@ class Stepper {
   const Bodies* bodies_;
   const MotionOptions* options_;
   Contacts contacts_;
-  Assembly joints_;  ///< Gaps and directions at the middle of the step.
-  Assembly bars_;    ///< Stiffness there.
-  Assembly forces_;  ///< Forces where the step is; no Jacobian.
+  Assembly joints_;   ///< Gaps and directions at the middle of the step.
+  Assembly springs_;  ///< Forces of joints beside their contacts.
+  Assembly bars_;     ///< Stiffness there.
+  Assembly forces_;   ///< Forces where the step is; no Jacobian.
   linear::SparseFactor factor_;
   std::vector<Branch> branches_;  ///< Of all contacts in the last step, at first where they rest.
   std::vector<int> active_;       ///< Places of the contacts that are active in this one.
@@ -174,7 +178,8 @@ class Stepper {
   VectorXd v_;
   VectorXd z_;  ///< q and the forces of the joints at the end of the last step.
   double time_ = 0.0;
-  VectorXd internal_;  ///< Forces of links, springs and loads at (q, time) [N].
+  VectorXd internal_;        ///< Forces without dashpots and contacts at (q, time) [N].
+  VectorXd internal_after_;  ///< The same where force() was asked last.
   Account account_;
   std::optional<Undetermined> undetermined_;
   std::vector<Eigen::Index> holding_;  ///< Rows of contacts, see check_determined().

@@ -265,7 +265,7 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
         **{key: states[key] for key in (
             "time_s", "temperature_change_K", "elastic_energy_J", "kinetic_energy_J", "damping_dissipation_J",
             "impact_dissipation_J", "thermal_work_J")},
-        "friction_dissipation_J": of_joints.sum(axis=1),
+        "friction_dissipation_J": heat_of_joints_J(states).sum(axis=1),
         "external_work_J": states["load_potential_J"][0] - states["load_potential_J"] + states["drive_work_J"],
     })
     summary = {

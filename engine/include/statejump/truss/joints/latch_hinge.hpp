@@ -50,6 +50,8 @@ struct LatchHinge {
   double slip(const Trial& trial, const double* after) const;
   double dissipation(const Trial& trial, const double* after, double slip) const;
   double elastic_energy(const Trial& trial, const double* now) const;
+  /// Of preload and stiffness, at a rotation [N m].
+  double elastic_moment(double rotation) const;
   std::array<double, 2> beyond_edges(const Trial& trial) const;
   void describe(const Trial& trial, double* outputs) const;
   double slide_rounding(const Trial& trial, double length, double force) const;

@@ -74,8 +74,7 @@ class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
         JointColumn("iwan_force_N", "on the first node, against the axis"),
     )
     varied = NUMBERS
-    not_in_dem = "is a joint of the quasi-static solver only, the DEM has none"
-    not_in_motion = "is a joint of quasi-static paths only"
+    not_in_dem = "is a joint that the DEM does not have"
 
     def resolve(self, items: Sequence[IwanJoint], known: References) -> IwanJoints:
         return IwanJoints(

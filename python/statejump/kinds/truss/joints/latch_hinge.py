@@ -65,7 +65,6 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
         JointColumn("hinge_moment_N_m", "against the rotation: preload, stiffness beyond the play, friction"),
     )
     varied = ("deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m", "preload_moment_N_m")
-    not_in_motion = "is a joint of quasi-static paths only"
 
     def check_vectors(self, item: LatchHinge, dimension: int) -> None:
         axis_of_rotation(item.axis, dimension, self.where(item.name))

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Latch hinges and Iwan joints in motion: slow heating beside the path, a mass that swings on a bolted joint."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import statejump as sj
+from scipy.integrate import solve_ivp
+
+from conftest import REPOSITORY
+from test_truss_iwan import JOINT, bolted
+
+MASS_KG, LOAD_N = 2.0, 90.0
+
+
+@pytest.mark.parametrize("name", ["latch_lever", "latch_boom"])
+def test_latch_under_slow_heating_is_the_quasi_static_path(name: str) -> None:
+    case = sj.load(REPOSITORY / f"cases/trusses/{name}.toml").changed(
+        {"reduced.sticking": "elastic", "reduced.increments_per_branch": 1000, "thermal.period_s": 10.0,
+         "motion.theta": 1.0})
+    path = case.reduced()
+    heats = []
+    for steps in (1000, 4000):
+        run = case.changed({"motion.steps_per_cycle": steps}).reduced(dynamic=True)
+        # Steps end on the path; what is left is inertia, of the square of a period of 3 ms over 10 s.
+        off = np.abs(run.at(path.time_s)["displacement_m"] - path["displacement_m"])
+        assert off.max() < 1e-6 * np.abs(path["displacement_m"]).max()
+        heats.append(run["friction_dissipation_J"][-1])
+    # Works are those of forces at the ends of steps: first order.
+    heat = path["friction_dissipation_J"][-1]
+    assert abs(heats[1] - heat) < 0.4 * abs(heats[0] - heat) < 0.01 * heat
+
+
+def test_mass_on_an_iwan_joint_swings_as_its_own_equation() -> None:
+    made: dict[str, Any] = bolted(change_K=1e-6, cycles=1, elements=20)
+    # Two of its slowest periods, 2 ms.
+    made["thermal"]["period_s"] = 0.02
+    made["node"][1] |= {"mass_kg": MASS_KG, "force_N": [LOAD_N, 0.0]}
+    made["motion"] = {"start": "drawn", "steps_per_cycle": 40_000, "masses": "consistent"}
+    made["dem"] = {**made.get("dem", {}), "link_damping_ratio": 0.0}
+    made["output"] = {**made.get("output", {}), "samples_per_cycle": 400}
+    run = sj.load(made).reduced(dynamic=True)
+    moved = run["displacement_m"][:, 1, 0]
+
+    chi, beta, stiffness = JOINT["exponent"], JOINT["stiffness_ratio"], JOINT["tangent_stiffness_N_per_m"]
+    last = JOINT["slip_force_N"] * (1 + beta) / (stiffness * (beta + (chi + 1) / (chi + 2)))
+    ends = last * (1.2 ** np.arange(21) - 1) / (1.2**20 - 1)
+    share = np.diff((ends / last) ** (chi + 1))
+    # The sliders of an interval as one: the force of all, when all of them slip, is kept.
+    reach = (chi + 1) / (chi + 2) * last * np.diff((ends / last) ** (chi + 2)) / share
+    springs = stiffness / (1 + beta) * np.append(share, beta)
+    reach = np.append(reach, last)
+    bar, mass = 70e9 * 9e-6 / 0.5, MASS_KG + 2700 * 9e-6 * 0.5 / 3
+
+    def rate(_: float, state: np.ndarray) -> np.ndarray:
+        """Place, speed and the elements' springs, of which those that slip do not bend further."""
+        x, v, bends = state[0], state[1], state[2:]
+        bending = np.where((np.abs(bends) >= reach) & (bends * v > 0), 0.0, v)
+        return np.concatenate([[v, (LOAD_N - bar * x - springs @ bends) / mass], bending])
+
+    found = solve_ivp(rate, (0, 0.02), np.zeros(2 + len(springs)), t_eval=run.time_s, max_step=2e-6, rtol=1e-8, atol=1e-12)
+    # A mass that turns within a step: friction of first order, 40 000 steps of 400 a swing.
+    assert np.abs(moved - found.y[0]).max() < 5e-3 * np.abs(moved).max()
+    heat = run["friction_dissipation_J"]
+    assert heat[-1] > 0.3 * LOAD_N * np.abs(moved).max()  # or nothing slips
+    # Springs bend by the velocity at the end of a step, bodies move by its mean: first order in the step as well.
+    assert abs(run.summary["energy_residue_J"]) < 5e-3 * heat[-1]
