@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Latch hinges and Iwan joints in motion: slow heating beside the path, a mass that swings on a bolted joint."""
+"""Latch hinges and Iwan joints in motion: slow heating beside the path, a mass that swings on a bolted joint. An arch
+that snaps through its play."""
 from __future__ import annotations
 
 from typing import Any
@@ -8,9 +9,12 @@ import numpy as np
 import pytest
 import statejump as sj
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from conftest import REPOSITORY
 from test_truss_iwan import JOINT, bolted
+
+from statejump.core.errors import StatejumpError
 
 MASS_KG, LOAD_N = 2.0, 90.0
 
@@ -67,3 +71,43 @@ def test_mass_on_an_iwan_joint_swings_as_its_own_equation() -> None:
     assert heat[-1] > 0.3 * LOAD_N * np.abs(moved).max()  # or nothing slips
     # Springs bend by the velocity at the end of a step, bodies move by its mean: first order in the step as well.
     assert abs(run.summary["energy_residue_J"]) < 5e-3 * heat[-1]
+
+
+def test_creak_of_a_latch_has_its_slips_and_their_heat() -> None:
+    found = sj.truss.creak(sj.load("latch_lever").changed({"motion.steps_per_cycle": 4000}), "B")
+    assert {slip["joint"] for slip in found.slips} == {"latch"}
+    heat = found.run["friction_dissipation_J"][-1]
+    assert sum(slip["heat_J"] for slip in found.slips) == pytest.approx(heat, rel=1e-2)  # samples between the steps
+    assert heat > 0
+    found.plot()
+
+
+def test_arch_snaps_where_the_path_ends_with_the_speed_of_what_it_sets_free() -> None:
+    case = sj.load("two_bar_snap")
+    with pytest.raises(StatejumpError, match="slip runs away at a temperature change of 3.95") as told:
+        case.reduced()
+    assert "apex" in str(told.value)
+    speeds, at = [], []
+    for period_s in (1.0, 4.0):
+        run = case.changed({"thermal.period_s": period_s, "motion.steps_per_cycle": int(20_000 * period_s)}).reduced(
+            dynamic=True)
+        apex = run.names["nodes"].index("B")
+        speed = np.abs(run["velocity_m_per_s"][:, apex, 1])
+        speeds.append(speed.max())
+        at.append(run["temperature_change_K"][int(np.argmax(speed))])
+        energies = run["elastic_energy_J"] + run["kinetic_energy_J"]
+        assert abs(run.summary["energy_residue_J"]) < 1e-4 * np.ptp(energies)
+    assert 3.95 < at[1] < at[0]
+    # What is set free does not know how fast the arch was heated.
+    assert speeds[0] == pytest.approx(speeds[1], rel=0.02)
+    # Cold again it hangs: bars in tension on the far sides of the play carry the load.
+    half, rise, rigidity, load, play = 0.5, 5e-3, 70e9 * 9e-6, 0.1, 2e-5
+    length = np.hypot(half, rise)
+
+    def lacking(depth: float) -> float:
+        stretched = np.hypot(half - play / 2, depth)
+        return 2 * rigidity * (stretched / length - 1) * depth / stretched - load
+
+    hanging = -brentq(lacking, 5.9e-3, 8e-3)
+    # The pin is not quite beside its bearing: friction holds it within its cone, μ² / 2 of the play's share.
+    assert run["position_m"][-1, apex, 1] == pytest.approx(hanging, rel=0.01)

@@ -81,7 +81,7 @@ class Creak:
             return figure
 
     def _raster(self, axes: Axes) -> None:
-        names = self.run.names["contacts"]
+        names = list(result.every_joint_name(self.case.resolve()).values())
         rows = {name: place for place, name in enumerate(names)}
         most = max((slip["heat_J"] for slip in self.slips), default=0.0)
         for slip in self.slips:
@@ -173,16 +173,18 @@ def _bands(acceleration: np.ndarray, rate: float) -> list[dict[str, float]]:
 
 def _slips(case: TrussCase, found: motion.TrussMotion, run: Run) -> list[dict[str, Any]]:
     """Return the slips of all joints in order of their start."""
-    joints = result.joint_names(found.truss)
-    places = {name: place for place, name in enumerate(joints.values())}
-    heat, duration = run.contacts["dissipation_J"].values, float(run.time_s[-1])
+    joints = result.every_joint_name(found.truss)
+    heats = {
+        name: found.states[f"{kind}_dissipation_J"][:, found.truss.joints[kind].names.index(own)]
+        for (kind, own), name in joints.items()
+    }
+    duration = float(run.time_s[-1])
     begun: dict[str, tuple[float, float]] = {}
     slips = []
 
     def ended(name: str, time: float) -> None:
         start, change = begun.pop(name)
-        of_joint = heat[:, places[name]]
-        spent = float(np.diff(np.interp([start, time], run.time_s, of_joint))[0])
+        spent = float(np.diff(np.interp([start, time], run.time_s, heats[name]))[0])
         slips.append({"joint": name, "start_s": start, "duration_s": time - start, "temperature_change_K": change,
                       "heat_J": spent})
 

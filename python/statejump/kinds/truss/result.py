@@ -49,7 +49,7 @@ def joint_names(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
     return {(kind, name): f"{kind} {name}" if shared else name for kind, name in listed}
 
 
-def _all_names(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
+def every_joint_name(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
     """Name of every joint, those of contacts as there; with the kind where a joint before has the same."""
     found = joint_names(truss)
     taken = set(found.values())
@@ -134,7 +134,7 @@ def _run(
     contacts = _contacts(truss, time, position, items)
     change = plain["temperature_change_K"].values
     if events is None:
-        called = _all_names(truss)
+        called = every_joint_name(truss)
         states = np.concatenate([items[joint.state_column] for joint in STICKING], axis=1)
         events = from_states(time, change, states, [called[joint.section, name] for joint in STICKING
                                                     for name in truss.joints[joint.section].names])
@@ -148,7 +148,7 @@ def _run(
 def _cable_events(truss: ResolvedTruss, time: np.ndarray, change: np.ndarray, tension_N: np.ndarray) -> list[Event]:
     """Return when cables go slack and become taut, each half-way between two samples."""
     cables = np.flatnonzero(truss.springs.cable)
-    others = set(_all_names(truss).values())
+    others = set(every_joint_name(truss).values())
     found = []
     for cable in cables:
         name, pulls = truss.springs.names[cable], tension_N[:, cable] > 0
@@ -285,7 +285,7 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
 
 def _events(case: TrussCase, path: TrussPath | TrussMotion) -> list[Event]:
     truss, at = path.truss, path.states["time_s"]
-    joints, slipped, events = _all_names(truss), set(), []
+    joints, slipped, events = every_joint_name(truss), set(), []
     for event in path.events:
         name = joints[event.joint_kind, event.name]
         before, after = STATE_OF[event.before], STATE_OF[event.after]
