@@ -76,7 +76,7 @@ def report(rows: list[dict[str, Any]]) -> str:
     return f"""# Creak and snap by the rate of heating
 
 Trusses in motion, {CASES['chain_10'][2]:,.0f} steps a second, elastic sticking, dashpots as the cases have them. What
-the node feels; heat of all slips and of the largest one; the largest speed and the temperature change at which it comes.
+the node feels; heat of all slips and of the largest one; the largest speed and the temperature change where it comes.
 A slide so slow that it stops and begins again between two steps counts as many slips.
 
 | {' | '.join(heads)} |
