@@ -15,7 +15,7 @@ from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import load_case, parse_case
 from statejump.kinds.truss import generate, solve
 from statejump.kinds.truss.generate.document import document, finished, node
-from statejump.kinds.truss.joints.revolute import hertz_stiffness
+from statejump.kinds.truss.joints.revolute import REVOLUTE
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.umbrella import reduced as umbrella
 
@@ -209,7 +209,7 @@ def test_every_state_keeps_to_coulomb_and_the_play() -> None:
     assert np.all(np.abs(states["friction_force_N"]) <= bound + 1e-8)
     assert np.all(states["normal_force_N"] >= 0)
     depth = np.linalg.norm(states["eccentricity_m"], axis=2) - joints.radial_clearance_m
-    hertz = (states["normal_force_N"] / hertz_stiffness(found.truss.revolutes)) ** (2 / 3)
+    hertz = (states["normal_force_N"] / REVOLUTE.hertz_stiffness(found.truss.revolutes)) ** (2 / 3)
     assert depth == pytest.approx(hertz, rel=0, abs=1e-14)
     assert found.largest_force_residual < 1e-11
 

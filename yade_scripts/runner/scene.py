@@ -59,13 +59,15 @@ def joint_engines(
         sj.Bo1_Bearing_Aabb(),
         sj.Bo1_Slider_Aabb(),
         sj.Bo1_SlotFace_Aabb(),
+        sj.Bo1_Ball_Aabb(),
+        sj.Bo1_Socket_Aabb(),
     ]
     return [
         wrapper.ForceResetter(),
         *expansions,
         wrapper.InsertionSortCollider(bounds, verletDist=verletDist),
         wrapper.InteractionLoop(
-            [sj.Ig2_Journal_Bearing_JointGeom(), sj.Ig2_Slider_SlotFace_JointGeom()],
+            [sj.Ig2_Journal_Bearing_JointGeom(), sj.Ig2_Slider_SlotFace_JointGeom(), sj.Ig2_Ball_Socket_JointGeom()],
             [
                 sj.Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys(
                     normalDampingRatio=dampingRatio, tangentialDampingRatio=dampingRatio

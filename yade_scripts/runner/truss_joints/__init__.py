@@ -3,10 +3,11 @@
 
 ``statejump.kinds.truss.joints`` has the types of all models and refuses what the DEM does not have.
 """
+from truss_joints.ball_joint import BallJoints
 from truss_joints.latch_hinge import LatchHinges
 from truss_joints.parts import Joints
 from truss_joints.revolute import Revolutes
 from truss_joints.slider import Sliders
 
 # In the order in which statejump.kinds.truss.joints lists them: that of the contacts of a result.
-JOINTS: tuple[type[Joints], ...] = (Sliders, Revolutes, LatchHinges)
+JOINTS: tuple[type[Joints], ...] = (Sliders, Revolutes, LatchHinges, BallJoints)

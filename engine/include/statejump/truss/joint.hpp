@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "statejump/truss/joints/ball_joint.hpp"
 #include "statejump/truss/joints/interface.hpp"
 #include "statejump/truss/joints/iwan_joint.hpp"
 #include "statejump/truss/joints/latch_hinge.hpp"
@@ -14,7 +15,7 @@
 namespace statejump::truss {
 
 /// A joint of any type: what a type has to bring, joints/interface.hpp says.
-using Joint = std::variant<Slider, ClearanceRevolute, LatchHinge, IwanJoint>;
+using Joint = std::variant<Slider, ClearanceRevolute, LatchHinge, IwanJoint, BallJoint>;
 
 inline const std::string& name_of(const Joint& joint) {
   return std::visit([](const auto& one) -> const std::string& { return one.name; }, joint);

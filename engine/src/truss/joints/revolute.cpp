@@ -6,6 +6,7 @@
 
 #include "statejump/kernel/require.hpp"
 #include "statejump/truss/model.hpp"
+#include "truss/joints/hertz_contact.hpp"
 #include "truss/joints/partial_slip.hpp"
 #include "truss/joints/writer.hpp"
 #include "truss/parts.hpp"
@@ -14,7 +15,9 @@ namespace statejump::truss {
 
 using detail::angle_derivatives;
 using detail::AngleDerivatives;
+using detail::ByNormal;
 using detail::cross;
+using detail::HertzContact;
 using detail::index;
 using detail::Matrix32;
 using detail::turned_left;
@@ -77,32 +80,13 @@ Matrix32 plane_of(const Trial& trial) {
   return trial.frame.axes.leftCols<2>();
 }
 
-/// Normal force at which the depth is a millionth of the clearance [N]. Below it the depth is
-/// linear: a contact that just closes would else have an infinite compliance, from which Newton's
-/// method does not find away.
-double least_force(const ClearanceRevolute& joint) {
-  return joint.hertz_stiffness * std::pow(1e-6 * joint.radial_clearance, 1.5);
-}
-
-/// Depth under a normal force, and what it grows by per force.
-struct Depth {
-  double value;  ///< [m]
-  double slope;  ///< [m/N]
-};
-
-Depth depth_of(const ClearanceRevolute& joint, double normal_force) {
-  if (std::isinf(joint.hertz_stiffness)) return {0.0, 0.0};
-  const double least = least_force(joint);
-  const double depth = std::pow(std::max(normal_force, least) / joint.hertz_stiffness, 2.0 / 3.0);
-  if (normal_force < least) return {depth * (normal_force / least), depth / least};
-  return {depth, 2.0 / 3.0 * depth / normal_force};
+HertzContact contact_of(const ClearanceRevolute& joint) {
+  return {joint.hertz_stiffness, joint.mindlin_stiffness, joint.radial_clearance};
 }
 
 /// 1/k_t of a contact that sticks [m/N]; 0: rigid.
 double tangential_compliance(const ClearanceRevolute& joint, double normal_force) {
-  if (std::isinf(joint.mindlin_stiffness)) return 0.0;
-  const double loaded = std::max(normal_force, least_force(joint));
-  return 1.0 / (joint.mindlin_stiffness * std::sqrt(depth_of(joint, loaded).value));
+  return contact_of(joint).tangential_compliance(normal_force).value;
 }
 
 /// Angle from one direction to another [rad]; exact for small ones.
@@ -177,9 +161,7 @@ ElasticSlide elastic_slide(const ClearanceRevolute& joint, const Trial& trial,
                            const Memory& start) {
   if (std::isinf(joint.mindlin_stiffness)) return {0.0, 0.0, 0.0};
   const auto [normal, friction, axial] = trial.force;
-  const double compliance = tangential_compliance(joint, normal);
-  // k_t grows as the cube root of the force.
-  const double slope = normal > least_force(joint) ? -compliance / (3.0 * normal) : 0.0;
+  const auto [compliance, slope] = contact_of(joint).tangential_compliance(normal);
   const double before = start.compliance;
   if (before == 0.0) return {compliance * friction, slope * friction, compliance};
   if (compliance > before) {
@@ -191,20 +173,6 @@ ElasticSlide elastic_slide(const ClearanceRevolute& joint, const Trial& trial,
   return {mean * more, 0.5 * slope * more, mean};
 }
 
-/// Heat of micro-slip at the rim of a contact that sticks [J]: work of friction less the energy
-/// that stays in the bend. Loading, where the force F at compliance C goes to F' at C' along
-/// ΔF (C + C')/2: (F² + F'²) (C − C')/4; unloading, along F' C' − F C: F F' (C' − C)/2.
-double rim_slip(double friction_before, double compliance_before, double friction,
-                double compliance) {
-  if (compliance_before == 0.0) return 0.0;
-  if (compliance == 0.0) return 0.5 * compliance_before * friction_before * friction_before;
-  if (compliance > compliance_before) {
-    return 0.5 * friction_before * friction * (compliance - compliance_before);
-  }
-  return 0.25 * (friction_before * friction_before + friction * friction) *
-         (compliance_before - compliance);
-}
-
 /// Friction's law with partial slip after a slide, and its derivative by the normal force.
 struct Rubbing {
   kernel::PartialSlipLine line;
@@ -214,11 +182,11 @@ struct Rubbing {
 Rubbing rubbing(const ClearanceRevolute& joint, const Trial& trial, double slide) {
   const double normal = trial.force[0];
   const double mu = joint.friction_coefficient;
-  const double stiffness = 1.0 / tangential_compliance(joint, normal);
+  const auto [compliance, softens] = contact_of(joint).tangential_compliance(normal);
+  const double stiffness = 1.0 / compliance;
   const kernel::PartialSlipLine line = kernel::partial_slip_line(
       stiffness, mu * normal, slide, detail::read_partial_slip(trial.history + Memory::size));
-  // k_t grows as the cube root of the force.
-  const double stiffens = normal > least_force(joint) ? stiffness / (3.0 * normal) : 0.0;
+  const double stiffens = -softens * stiffness * stiffness;
   return {line, line.by_limit * mu + line.by_stiffness * stiffens};
 }
 
@@ -421,15 +389,14 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     const Motion motion = motion_of(g, start);
     of = in_contact(*this, trial, g, start, motion);
     holds_normal = true;
-    const Depth depth = depth_of(*this, normal);
+    const ByNormal depth = contact_of(*this).depth(normal);
     writer.closure(0, g.eccentricity.norm() - g.clearance - depth.value);
     corner[0][0] = -depth.slope;
     const double mu = trial.model == JointModel::friction ? friction_coefficient : 0.0;
     if (partial_slip && trial.model == JointModel::friction) {
       // In metres: the slide of a spring with the stiffness of a contact that sticks.
       const Rubbing law = rubbing(*this, trial, motion.slide);
-      const double compliance = tangential_compliance(*this, normal);
-      const double softens = normal > least_force(*this) ? -compliance / (3.0 * normal) : 0.0;
+      const auto [compliance, softens] = contact_of(*this).tangential_compliance(normal);
       slides = trial.unslipped ? 1.0 : compliance * law.line.by_slide;
       writer.piece(detail::piece_of(law.line));
       writer.closure(1, compliance * (law.line.force - friction));
@@ -569,20 +536,17 @@ double ClearanceRevolute::dissipation(const Trial& trial, const double* after_, 
     return rub(*this, trial, after.compliance == 0.0, memory).dissipation;
   }
   return friction_coefficient * 0.5 * (start.normal + after.normal) * std::abs(slip) +
-         rim_slip(start.friction, start.compliance, after.friction, after.compliance);
+         detail::rim_slip(start.friction * start.friction, start.compliance,
+                          start.friction * after.friction, after.friction * after.friction,
+                          after.compliance);
 }
 
 double ClearanceRevolute::elastic_energy(const Trial& trial, const double* now_) const {
   const Memory now = Memory::of(now_);
-  const double normal = trial.force[0];
   const double bent = partial_slip
                           ? kernel::elastic_energy(detail::read_partial_slip(now_ + Memory::size))
                           : 0.5 * now.compliance * now.friction * now.friction;
-  if (std::isinf(hertz_stiffness)) return bent;
-  const double least = least_force(*this);
-  const double linear = std::min(normal, least);
-  return 0.4 * normal * depth_of(*this, normal).value  // 2/5 K δ^5/2
-         + 0.1 * linear * depth_of(*this, linear).value + bent;
+  return contact_of(*this).energy(trial.force[0]) + bent;
 }
 
 void ClearanceRevolute::describe(const Trial& trial, double* outputs) const {

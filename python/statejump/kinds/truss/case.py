@@ -18,6 +18,7 @@ from statejump.core.expansion import Expansion
 from statejump.core.temperature_files import Histories, MemberProgram
 from statejump.core.thermal import Thermal, returns_s
 from statejump.kinds.truss import checks
+from statejump.kinds.truss.joints.ball_joint import BallJoint
 from statejump.kinds.truss.joints.iwan_joint import IwanJoint
 from statejump.kinds.truss.joints.latch_hinge import LatchHinge
 from statejump.kinds.truss.joints.revolute import Revolute
@@ -179,6 +180,7 @@ class Tables(Section):
     torsion_spring: str | None = _beside("torsion_spring")
     latch_hinge: str | None = _beside("latch_hinge")
     iwan_joint: str | None = _beside("iwan_joint")
+    ball_joint: str | None = _beside("ball_joint")
 
 
 @definition
@@ -255,6 +257,7 @@ class TrussCase(Case):
     torsion_spring: list[TrussTorsionSpring] = tables(TrussTorsionSpring, "sections [[torsion_spring]]")
     latch_hinge: list[LatchHinge] = tables(LatchHinge, "sections [[latch_hinge]]")
     iwan_joint: list[IwanJoint] = tables(IwanJoint, "sections [[iwan_joint]]")
+    ball_joint: list[BallJoint] = tables(BallJoint, "sections [[ball_joint]]")
     drive: list[Drive] = tables(Drive, "sections [[drive]]")
     thermal: TrussThermal = section(TrussThermal, required=True)
     output: Output = section(Output)

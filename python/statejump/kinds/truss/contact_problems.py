@@ -62,7 +62,8 @@ def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: No
     problems = [_problem(case, problem) for problem in found.problems if problem["joints"]]
     if not problems:
         raise StatejumpError("no joint of the truss is a contact", case=case.name,
-                             cause="Iwan joints have no cone of Coulomb's")
+                             cause="Iwan joints have no cone of Coulomb's, ball joints one in two directions, the "
+                             "problems have one")
     return problems
 
 

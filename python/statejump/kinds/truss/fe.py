@@ -19,6 +19,8 @@ from statejump.fe import ccx
 from statejump.fe.ccx import number
 from statejump.kinds.truss.case import TrussCase, TrussThermal
 from statejump.kinds.truss.arrays import GROUND
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import whole_path
 
@@ -38,7 +40,7 @@ def answer(case: TrussCase) -> ccx.Answer:
     """
     truss = case.resolve()
     _refuse(truss)
-    locked = _without_revolutes(truss)
+    locked = _pinned(truss)
     changes = _hottest(case, truss)
     lines = deck(locked, changes)
     rough = _displacements(ccx.displacements(lines, "JOINTS")[-1], len(locked.nodes.names))
@@ -74,11 +76,16 @@ def _hottest(case: TrussCase, truss: ResolvedTruss) -> Numbers:
     return np.asarray(largest * truss.links.temperature_fraction)
 
 
-def _without_revolutes(truss: ResolvedTruss) -> ResolvedTruss:
-    """Return the truss with a pin in place of every revolute: the journal's node is the bearing's."""
-    joints, place = truss.revolutes, np.arange(len(truss.nodes.names))
-    for bearing, journal in zip(joints.bearing_node, joints.journal_node):
-        place[place == place[journal]] = place[bearing]
+def _pinned(truss: ResolvedTruss) -> ResolvedTruss:
+    """Return the truss with a pin in place of every joint with clearance: the inner part's node is the outer one's."""
+    place, none = np.arange(len(truss.nodes.names)), {}
+    for joint in JOINTS:
+        if not isinstance(joint, RoundParts):
+            continue
+        joints = truss.joints[joint.section]
+        none[joint.section] = type(joints)(**{key: value[:0] for key, value in vars(joints).items()})
+        for outer, inner in joint.joined(joints):
+            place[place == place[inner]] = place[outer]
     kept = np.unique(place)
     number_of = {int(node): index for index, node in enumerate(kept)}
     at = np.array([number_of[int(node)] for node in place])
@@ -87,12 +94,11 @@ def _without_revolutes(truss: ResolvedTruss) -> ResolvedTruss:
     np.logical_or.at(fixed, at, nodes.fixed)
     np.add.at(force, at, nodes.force_N)
     ends = np.where(sliders.nodes == GROUND, GROUND, at[sliders.nodes])
-    none = {key: value[:0] for key, value in vars(joints).items()}
     return replace(
         truss, nodes=replace(nodes, names=tuple(nodes.names[node] for node in kept), fixed=fixed, force_N=force,
                              position_m=nodes.position_m[kept], guide_normal=nodes.guide_normal[kept]),
         links=replace(links, nodes=at[links.nodes]),
-    ).with_joints(slider=replace(sliders, nodes=ends), revolute=type(joints)(**none))
+    ).with_joints(slider=replace(sliders, nodes=ends), **none)
 
 
 def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:

@@ -31,6 +31,8 @@ LEAST_PERCENT = 5e-3
 ROUNDED = 1e-9  # of the largest joint's: below is rounding, not a number to read
 ROUNDED_SURFACE = 1e-12  # of the truss' size, in metres and in radians
 ROUNDING = "≈ 0"
+# The column of a run that says where a joint of each type is, in the order of the contacts.
+PLACES = {"slider": "slide_m", "revolute": "eccentricity_m", "ball_joint": "ball_eccentricity_m"}
 Row = dict[str, Any]
 
 
@@ -105,6 +107,8 @@ class TrussPart:
             *({"name": item.name, "kind": "slider", "node": self._number[item.nodes[0]]} for item in self.case.slider),
             *({"name": item.name, "kind": "revolute", "node": self._number[item.bearing_node]}
               for item in self.case.revolute),
+            *({"name": item.name, "kind": "ball_joint", "node": self._number[item.socket_node]}
+              for item in self.case.ball_joint),
         ]
         if self.answers is None:
             self._read_off(found)
@@ -121,9 +125,9 @@ class TrussPart:
         return found
 
     def _read_off(self, joints: list[Row]) -> None:
-        run, place = self._run, {"slider": 0, "revolute": 0}
+        run, place = self._run, dict.fromkeys(PLACES, 0)
         jumps = {}
-        for kind, name in (("slider", "slide_m"), ("revolute", "eccentricity_m")):
+        for kind, name in PLACES.items():
             if name in run.history:
                 moved = self._since_start(run, "history", name)[-1]
                 jumps[kind] = np.abs(moved) if moved.ndim == 1 else np.linalg.norm(moved, axis=1)
@@ -147,8 +151,8 @@ class TrussPart:
                     True),
             Measure("heat", "Heat of friction", "J", "Heat of the joint's friction over all cycles: where it slips, "
                     "not what holds the jump."),
-            Measure("jump", "Jump of the joint", "m", "How far a slider, or a journal in its bearing, is from where it "
-                    "started: where it moved, not what holds the jump."),
+            Measure("jump", "Jump of the joint", "m", "How far a slider, a journal in its bearing or a ball in its "
+                    "socket, is from where it started: where it moved, not what holds the jump."),
         ]
         return [measure for measure in every
                 if measure.key in keys and any(joint[measure.key] for joint in self.joints)]
@@ -287,8 +291,9 @@ class TrussPart:
                 f"Journal of {joint['name']} in its clearance", equal=True, rings_m=(clearance,),
             ))
         elif joint is not None:
-            found.append(Chart(TEMPERATURE, Axis("truss_journal_m", f"Journal − bearing centre, {joint['name']}"),
-                               f"Way of the journal of {joint['name']} from its start"))
+            inner, outer = ("Ball", "socket") if joint["kind"] == "ball_joint" else ("Journal", "bearing")
+            found.append(Chart(TEMPERATURE, Axis("truss_journal_m", f"{inner} − {outer} centre, {joint['name']}"),
+                               f"Way of the {inner.lower()} of {joint['name']} from its start"))
         link = self._hardest_link()
         if link is not None:
             found.append(Chart(TEMPERATURE, Axis("truss_link_N", f"Axial force of {link}"),
@@ -316,7 +321,7 @@ class TrussPart:
         if joint is not None and joint["kind"] == "slider":
             found["truss_slide_m"] = run.history["slide_m"].values[:, names["sliders"].index(joint["name"])]
         elif joint is not None:
-            place = run.history["eccentricity_m"].values[:, names["revolutes"].index(joint["name"])]
+            place = run.history[PLACES[joint["kind"]]].values[:, names[f"{joint['kind']}s"].index(joint["name"])]
             found.update({f"truss_journal_{axis}_m": place[:, number] for number, axis in enumerate("xy")})
             found["truss_journal_m"] = np.linalg.norm(place - place[0], axis=1)
         if link is not None:
@@ -339,6 +344,8 @@ class TrussPart:
         # The drawing magnifies jumps until journals leave their bearings: a line says which belong together.
         lines += [{"nodes": [self._number[item.bearing_node], self._number[item.journal_node]], "kind": "journal",
                    "name": item.name} for item in self.case.revolute]
+        lines += [{"nodes": [self._number[item.socket_node], self._number[item.ball_node]], "kind": "journal",
+                   "name": item.name} for item in self.case.ball_joint]
         return {
             "dimension": self.case.truss.dimension,
             "nodes": self.nodes,

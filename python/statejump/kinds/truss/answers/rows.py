@@ -47,6 +47,8 @@ def joint_rows(found: TrussPath) -> list[Row]:
             ("slider", truss.sliders.names, ends["slide_m"][..., None] * truss.sliders.axis,
              ends["slider_dissipation_J"]),
             ("revolute", truss.revolutes.names, ends["eccentricity_m"], ends["revolute_dissipation_J"]),
+            ("ball_joint", truss.joints["ball_joint"].names, ends["ball_eccentricity_m"],
+             ends["ball_joint_dissipation_J"]),
         ):
             for index, name in enumerate(names):
                 jump = place[cycle, index] - place[0, index]

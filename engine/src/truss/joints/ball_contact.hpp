@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unsupported/Eigen/AutoDiff>
+
+#include "statejump/truss/joints/ball_joint.hpp"
+#include "truss/joints/hertz_contact.hpp"
+
+namespace statejump::truss::detail {
+
+// A ball in its socket at one state and on the way there, as functions of numbers, or of numbers
+// that carry their derivatives.
+
+/// Displacements of four nodes, three forces, the temperature.
+constexpr int ball_variables = 3 * most_joint_nodes + most_joint_forces + 1;
+using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, ball_variables, 1>>;
+template <class Number>
+using Vector = Eigen::Matrix<Number, 3, 1>;
+
+inline double value_of(double number) {
+  return number;
+}
+inline double value_of(const Dual& number) {
+  return number.value();
+}
+/// A function of a number, from its value and derivative there.
+inline double chain(double, const ByNormal& of) {
+  return of.value;
+}
+inline Dual chain(const Dual& number, const ByNormal& of) {
+  return {of.value, of.slope * number.derivatives()};
+}
+
+/// Local nodes.
+constexpr std::size_t ball = 0;
+constexpr std::size_t socket = 1;
+constexpr std::size_t ball_far = 2;    ///< Far end of the link that turns the ball.
+constexpr std::size_t socket_far = 3;  ///< Likewise the socket.
+
+/// What a ball joint remembers.
+struct BallMemory {
+  Eigen::Vector3d offset;            ///< Ball minus socket [m].
+  Eigen::Vector3d ball_direction;    ///< Ball link, ball minus far node; zero without [m].
+  Eigen::Vector3d socket_direction;  ///< Socket link, likewise [m].
+  Eigen::Vector3d friction;          ///< t [N].
+  double ball_radius;                ///< At the contact [m].
+  double socket_radius;              ///< Likewise.
+  double normal_force;               ///< λ_n [N].
+  double compliance;                 ///< 1/k_t [m/N]; 0: open.
+
+  static constexpr int size = 16;
+  static BallMemory of(const double* from) {
+    const auto vector = [from](int at) {
+      return Eigen::Vector3d(from[at], from[at + 1], from[at + 2]);
+    };
+    return {vector(0), vector(3), vector(6), vector(9), from[12], from[13], from[14], from[15]};
+  }
+  void to(double* numbers) const {
+    for (const Eigen::Vector3d* part : {&offset, &ball_direction, &socket_direction, &friction}) {
+      numbers = std::copy(part->data(), part->data() + 3, numbers);
+    }
+    for (const double number : {ball_radius, socket_radius, normal_force, compliance}) {
+      *numbers++ = number;
+    }
+  }
+};
+
+/// A ball joint at one state. Where the ball is in the very middle, its normal is zero.
+template <class Number>
+struct BallState {
+  Vector<Number> offset;
+  Vector<Number> ball_direction;
+  Vector<Number> socket_direction;
+  Vector<Number> force;  ///< On the socket.
+  Vector<Number> normal;
+  Vector<Number> friction;  ///< t, the force across the normal.
+  Number distance;
+  Number clearance;
+  Number ball_radius;
+  Number socket_radius;
+  Number normal_force;
+};
+
+/// @param place a function that gives the vector from one of its nodes to another
+template <class Number, class Between>
+BallState<Number> ball_state(const BallJoint& joint, const Vector<Number>& force,
+                             const Number& temperature_change, double opening, Between&& between) {
+  BallState<Number> s;
+  s.offset = between(socket, ball);
+  s.ball_direction = s.socket_direction = Vector<Number>::Zero();
+  if (joint.ball_link >= 0) s.ball_direction = between(ball_far, ball);
+  if (joint.socket_link >= 0) s.socket_direction = between(socket_far, socket);
+  s.force = force;
+  const double bore = joint.ball_radius + joint.radial_clearance;
+  const double growth =
+      joint.socket_thermal_expansion * bore - joint.ball_thermal_expansion * joint.ball_radius;
+  s.clearance = Number(opening * (joint.radial_clearance + temperature_change * growth));
+  s.distance = Number(0.0);
+  s.normal = Vector<Number>::Zero();
+  s.normal_force = Number(0.0);
+  s.friction = Vector<Number>::Zero();
+  const Number squared = s.offset.squaredNorm();
+  Number depth = Number(0.0);
+  if (value_of(squared) > 0.0) {
+    using std::sqrt;
+    s.distance = sqrt(squared);
+    s.normal = s.offset / s.distance;
+    s.normal_force = s.normal.dot(force);
+    s.friction = force - s.normal * s.normal_force;
+    if (value_of(s.distance) > value_of(s.clearance)) depth = s.distance - s.clearance;
+  }
+  // Both surfaces meet half-way between them.
+  s.ball_radius =
+      joint.ball_radius * (1.0 + joint.ball_thermal_expansion * temperature_change) - 0.5 * depth;
+  s.socket_radius =
+      bore * (1.0 + joint.socket_thermal_expansion * temperature_change) + 0.5 * depth;
+  return s;
+}
+
+/// An angle over its sine, by its cosine.
+inline ByNormal arc_over_sine(double cosine) {
+  const double x = 1.0 - cosine;
+  // Four terms are exact to rounding there.
+  if (x < 1e-4) {
+    return {1.0 + x * (1.0 / 3.0 + x * (2.0 / 15.0 + x * (2.0 / 35.0))),
+            -(1.0 / 3.0 + x * (4.0 / 15.0 + x * (6.0 / 35.0)))};
+  }
+  const double value = std::acos(cosine) / std::sqrt(x * (1.0 + cosine));
+  return {value, (cosine * value - 1.0) / (x * (1.0 + cosine))};
+}
+
+/// Smallest rotation from one direction to another, as axis times angle [rad]; zero without one.
+template <class Number>
+Vector<Number> turned(const Eigen::Vector3d& before, const Vector<Number>& now) {
+  using std::sqrt;
+  Vector<Number> turn = Vector<Number>::Zero();
+  if (before.isZero(0.0) || value_of(now.squaredNorm()) == 0.0) return turn;
+  const Vector<Number> from = before.cast<Number>();
+  const Number scale = Number(1.0 / (before.norm() * sqrt(now.squaredNorm())));
+  const Number cosine = from.dot(now) * scale;
+  // From the difference: exact where they are nearly one.
+  turn = from.cross(Vector<Number>(now - from)) *
+         Number(chain(cosine, arc_over_sine(value_of(cosine))) * scale);
+  return turn;
+}
+
+/// A vector of the tangent plane of one unit normal in that of another, by the smallest rotation.
+template <class Number>
+Vector<Number> carried(const Vector<Number>& tangential, const Vector<Number>& from,
+                       const Vector<Number>& to) {
+  const Vector<Number> half = from + to;
+  return tangential - half * Number(2.0 * tangential.dot(to) / half.squaredNorm());
+}
+
+/// A vector of the tangent plane turned about its normal.
+template <class Number>
+Vector<Number> spun(const Vector<Number>& tangential, const Vector<Number>& normal,
+                    const Number& angle) {
+  using std::cos;
+  using std::sin;
+  return tangential * Number(cos(angle)) + normal.cross(tangential) * Number(sin(angle));
+}
+
+/// What friction has to do with since the start of a step, in the tangent plane of its end.
+template <class Number>
+struct BallSlide {
+  Vector<Number> slide;  ///< σ [m].
+  Vector<Number> kept;   ///< Friction of the start, carried along [N].
+};
+
+template <class Number>
+BallSlide<Number> ball_slide(const BallState<Number>& now, const BallMemory& start) {
+  using std::sqrt;
+  BallSlide<Number> found{Vector<Number>::Zero(), Vector<Number>::Zero()};
+  if (start.offset.isZero(0.0) || value_of(now.distance) == 0.0) return found;
+  const Vector<Number> before = start.offset.normalized().cast<Number>();
+  const Vector<Number> sum = before + now.normal;
+  const Vector<Number> middle = sum / Number(sqrt(sum.squaredNorm()));
+  const Vector<Number> ball_turned = turned(start.ball_direction, now.ball_direction);
+  const Vector<Number> socket_turned = turned(start.socket_direction, now.socket_direction);
+  const Number ball_radius = 0.5 * (start.ball_radius + now.ball_radius);
+  const Number socket_radius = 0.5 * (start.socket_radius + now.socket_radius);
+  const Number distance = 0.5 * (start.offset.norm() + now.distance);
+  const Vector<Number> rolls =
+      ball_turned.cross(middle) * ball_radius - socket_turned.cross(middle) * socket_radius;
+  const Vector<Number> orbits = turned(start.offset, now.offset).cross(now.normal) * distance;
+  const Number twist = 0.5 * (ball_turned + socket_turned).dot(middle);
+  const Vector<Number> straight = orbits + carried<Number>(rolls, middle, now.normal);
+  found.slide = spun<Number>(straight, now.normal, Number(0.5 * twist));
+  found.kept = spun<Number>(carried<Number>(start.friction.cast<Number>(), before, now.normal),
+                            now.normal, twist);
+  return found;
+}
+
+/// Bend of the contact if it stuck, as the force that makes it times a compliance.
+template <class Number>
+struct BallBend {
+  Vector<Number> pull;  ///< [m]
+  Number compliance;    ///< [m/N]
+};
+
+template <class Number>
+BallBend<Number> ball_bend(const BallJoint& joint, const BallState<Number>& now,
+                           const BallMemory& start) {
+  const HertzContact contact{joint.hertz_stiffness, joint.mindlin_stiffness,
+                             joint.radial_clearance};
+  const BallSlide<Number> moved = ball_slide(now, start);
+  BallBend<Number> bend;
+  bend.compliance =
+      chain(now.normal_force, contact.tangential_compliance(value_of(now.normal_force)));
+  const double before = start.compliance;
+  if (before == 0.0) {
+    bend.pull = moved.slide;
+  } else if (value_of(bend.compliance) > before) {
+    bend.pull = moved.slide + moved.kept * Number(before);
+  } else {
+    // ∫ dF/k_t by the trapezoidal rule.
+    bend.compliance = 0.5 * (before + bend.compliance);
+    bend.pull = moved.slide + moved.kept * bend.compliance;
+  }
+  return bend;
+}
+
+}  // namespace statejump::truss::detail

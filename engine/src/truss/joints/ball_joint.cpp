@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "statejump/truss/joints/ball_joint.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "statejump/kernel/require.hpp"
+#include "statejump/truss/model.hpp"
+#include "truss/joints/ball_contact.hpp"
+#include "truss/joints/writer.hpp"
+#include "truss/parts.hpp"
+
+namespace statejump::truss {
+
+using detail::ball;
+using detail::ball_bend;
+using detail::ball_far;
+using detail::ball_slide;
+using detail::ball_variables;
+using detail::BallBend;
+using detail::BallMemory;
+using detail::BallState;
+using detail::Dual;
+using detail::HertzContact;
+using detail::index;
+using detail::socket;
+using detail::socket_far;
+using detail::Vector;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+namespace {
+
+/// Cosine of the largest angle by which a contact may move around its socket in one step, 0.5 rad;
+/// more within a located instant is a jump.
+constexpr double most_turned = 0.8775825618903728;
+
+constexpr int first_force = 3 * most_joint_nodes;
+constexpr int temperature = ball_variables - 1;
+
+HertzContact contact_of(const BallJoint& joint) {
+  return {joint.hertz_stiffness, joint.mindlin_stiffness, joint.radial_clearance};
+}
+
+BallState<double> state_of(const BallJoint& joint, const Trial& trial) {
+  const Vector3d force =
+      trial.frame.axes * Vector3d(trial.force[0], trial.force[1], trial.force[2]);
+  return detail::ball_state<double>(
+      joint, force, trial.temperature_change, trial.opening,
+      [&](std::size_t from, std::size_t to) { return trial.between(from, to); });
+}
+
+/// The same with the derivatives by everything that is unknown.
+BallState<Dual> dual_state_of(const BallJoint& joint, const Trial& trial) {
+  Vector<Dual> force = Vector<Dual>::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const Dual one(trial.force[index(k)], ball_variables, first_force + k);
+    force += Vector3d(trial.frame.axes.col(k)).cast<Dual>() * one;
+  }
+  const auto between = [&](std::size_t from, std::size_t to) {
+    const Vector3d value = trial.between(from, to);
+    Vector<Dual> made;
+    for (int k = 0; k < 3; ++k) {
+      made[k] = Dual(value[k]);
+      made[k].derivatives().setZero();
+      made[k].derivatives()[3 * static_cast<int>(to) + k] = 1.0;
+      made[k].derivatives()[3 * static_cast<int>(from) + k] = -1.0;
+    }
+    return made;
+  };
+  return detail::ball_state<Dual>(joint, force,
+                                  Dual(trial.temperature_change, ball_variables, temperature),
+                                  trial.opening, between);
+}
+
+/// Forces that the nodes have to carry, and what is to vanish.
+struct Response {
+  std::array<Vector<Dual>, most_joint_nodes> force;
+  Vector<Dual> row;  ///< Along the frame's axes.
+  std::array<bool, 3> is_balance{false, false, false};
+};
+
+/// Adds the moment about the centre of a part, which its link carries as forces across its ends.
+void add_moment(const Vector<Dual>& moment, const Vector<Dual>& direction, Vector<Dual>& at,
+                Vector<Dual>& far) {
+  const Vector<Dual> across = moment.cross(direction) / direction.squaredNorm();
+  at += across;
+  far -= across;
+}
+
+/// How far bodies slide beyond what bends if they stuck, as a vector in the tangent plane; zero on
+/// a joint that is on its branch [m].
+Vector<Dual> tangential_row(const BallJoint& joint, const BallState<Dual>& now,
+                            const BallMemory& start, JointModel model, JointStatus status) {
+  const bool rubs = model == JointModel::friction && joint.friction_coefficient > 0.0;
+  const BallBend<Dual> bend = ball_bend(joint, now, start);
+  const Vector<Dual> carries = now.friction * bend.compliance;
+  if (!rubs) return -carries;
+  const Dual squared = bend.pull.squaredNorm();
+  if (!is_slip(status) || !(squared.value() > 0.0)) return bend.pull - carries;
+  const Dual bound =
+      joint.friction_coefficient * now.normal_force * bend.compliance / sqrt(squared);
+  return bend.pull * bound - carries;
+}
+
+Response respond(const BallJoint& joint, const Trial& trial, JointStatus status) {
+  const BallState<Dual> now = dual_state_of(joint, trial);
+  Response made;
+  made.force.fill(Vector<Dual>::Zero());
+  made.force[ball] = now.force;
+  made.force[socket] = -now.force;
+  const bool open = status == JointStatus::open;
+  if (open || trial.model == JointModel::pins) {
+    // An open joint has no force; the ball may be in the middle, where no normal is defined.
+    for (int k = 0; k < 3; ++k) {
+      const Vector<Dual> along = Vector3d(trial.frame.axes.col(k)).cast<Dual>();
+      made.is_balance[index(k)] = open || !trial.frame.holds[index(k)];
+      made.row[k] = along.dot(made.is_balance[index(k)] ? now.force : now.offset);
+    }
+    return made;
+  }
+  const Vector<Dual> moment = now.normal.cross(now.friction);
+  if (joint.ball_link >= 0) {
+    add_moment(moment * now.ball_radius, now.ball_direction, made.force[ball],
+               made.force[ball_far]);
+  }
+  if (joint.socket_link >= 0) {
+    add_moment(-moment * now.socket_radius, now.socket_direction, made.force[socket],
+               made.force[socket_far]);
+  }
+  const Dual depth =
+      detail::chain(now.normal_force, contact_of(joint).depth(now.normal_force.value()));
+  const Dual gap = now.distance - now.clearance - depth;
+  const Vector<Dual> row =
+      now.normal * gap +
+      tangential_row(joint, now, BallMemory::of(trial.history), trial.model, status);
+  for (int k = 0; k < 3; ++k) {
+    made.row[k] = Vector3d(trial.frame.axes.col(k)).cast<Dual>().dot(row);
+  }
+  return made;
+}
+
+/// The slip since the start of the step, if what is there now stuck: its rate is that of the slip.
+Dual slipped(const BallJoint& joint, const Trial& trial) {
+  const BallState<Dual> now = dual_state_of(joint, trial);
+  const BallBend<Dual> bend = ball_bend(joint, now, BallMemory::of(trial.history));
+  const Dual squared = bend.pull.squaredNorm();
+  if (!(squared.value() > 0.0)) return {0.0, Dual::DerType::Zero()};
+  const Dual size = sqrt(squared);
+  return size - bend.compliance * bend.pull.dot(now.friction) / size;
+}
+
+Vector3d gradient(const Dual& of, std::size_t node) {
+  return of.derivatives().segment<3>(3 * static_cast<int>(node));
+}
+
+}  // namespace
+
+std::span<const Parameter<BallJoint>> BallJoint::parameters() {
+  using B = BallJoint;
+  static const Parameter<B> table[] = {
+      {"ball_node", "ball node", "-", Allowed::node, "the case's nodes", &B::ball_node},
+      {"socket_node", "socket node", "-", Allowed::node, "the case's nodes", &B::socket_node},
+      {"ball_link", "ball link", "-", Allowed::link_or_none, "the case's links", &B::ball_link},
+      {"socket_link", "socket link", "-", Allowed::link_or_none, "the case's links",
+       &B::socket_link},
+      {"program", "program", "-", Allowed::program, "the case", &B::program},
+      {"temperature_fraction", "temperature_fraction", "-", Allowed::finite, "the case",
+       &B::temperature_fraction},
+      {"ball_radius_m", "ball_radius", "m", Allowed::positive, "the case", &B::ball_radius},
+      {"radial_clearance_m", "radial_clearance", "m", Allowed::positive, "the case",
+       &B::radial_clearance},
+      {"ball_thermal_expansion_per_K", "ball_thermal_expansion", "1/K", Allowed::finite, "the case",
+       &B::ball_thermal_expansion},
+      {"socket_thermal_expansion_per_K", "socket_thermal_expansion", "1/K", Allowed::finite,
+       "the case", &B::socket_thermal_expansion},
+      {"friction_coefficient", "friction_coefficient", "-", Allowed::not_negative, "the case",
+       &B::friction_coefficient},
+      {"hertz_stiffness_N_per_m15", "hertz_stiffness", "N/m^1.5", Allowed::positive,
+       "Hertz: 4/3 E* sqrt(R)", &B::hertz_stiffness},
+      {"mindlin_stiffness_N_per_m15", "mindlin_stiffness", "N/m^1.5", Allowed::positive,
+       "Mindlin: 8 G* sqrt(R)", &B::mindlin_stiffness},
+  };
+  return table;
+}
+
+std::span<const Output> BallJoint::outputs() {
+  // Ball minus socket centre; normal force; friction on the ball.
+  static const Output table[] = {
+      {"ball_eccentricity_m", 3}, {"ball_normal_force_N", 1}, {"ball_friction_force_N", 3}};
+  return table;
+}
+
+void BallJoint::validate(const Model& model) const {
+  const auto check = [this](bool holds, const char* field, double value, const char* range) {
+    if (!holds) throw kernel::OutOfRange("ball_joint '" + name + "'", field, value, range);
+  };
+  check(ball_node != socket_node, "socket node", socket_node, "another than the ball's");
+  const auto check_link = [&](int link, int node, const char* field) {
+    if (link == -1) return;
+    const Link& part = model.links[index(link)];
+    check(part.first == node || part.second == node, field, link,
+          "a link that ends at the joint's node");
+  };
+  check_link(ball_link, ball_node, "ball link");
+  check_link(socket_link, socket_node, "socket link");
+  const double growth = socket_thermal_expansion * (ball_radius + radial_clearance) -
+                        ball_thermal_expansion * ball_radius;
+  const double least =
+      radial_clearance + model.lowest_strain(program, growth * temperature_fraction);
+  check(least > 0, "clearance at the program's worst temperature", least, "> 0 m");
+}
+
+int BallJoint::history() const {
+  return BallMemory::size;
+}
+
+JointFrame BallJoint::frame(const Model& model) const {
+  JointFrame frame;
+  const auto far_end = [&](int link, int node) {
+    if (link < 0) return -1;
+    const Link& part = model.links[index(link)];
+    return part.first == node ? part.second : part.first;
+  };
+  frame.nodes = {ball_node, socket_node, far_end(ball_link, ball_node),
+                 far_end(socket_link, socket_node)};
+  frame.node_count = 4;
+  frame.forces = 3;
+  frame.program = program;
+  frame.temperature_fraction = temperature_fraction;
+  // Where supports leave no motion along some direction, it is one of the axes: pins have no row
+  // along it.
+  Matrix3d free = Matrix3d::Zero();
+  for (const int node : {ball_node, socket_node}) {
+    const Node& part = model.nodes[index(node)];
+    for (int k = 0; k < part.freedoms; ++k) {
+      free += part.free_directions.col(k) * part.free_directions.col(k).transpose();
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> modes(free);
+  if (modes.eigenvalues()[0] < 0.5) frame.axes = modes.eigenvectors();
+  if (frame.axes.determinant() < 0.0) frame.axes.col(0) *= -1.0;
+  for (int k = 0; k < 3; ++k) {
+    frame.holds[index(k)] = detail::moves_along(model.nodes[index(ball_node)], frame.axes.col(k)) ||
+                            detail::moves_along(model.nodes[index(socket_node)], frame.axes.col(k));
+  }
+  return frame;
+}
+
+void BallJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const {
+  const Response made = respond(*this, trial, status);
+  for (int k = 0; k < 3; ++k) writer.carries(trial.force[index(k)]);
+  for (std::size_t a = 0; a < most_joint_nodes; ++a) {
+    const Vector<Dual>& force = made.force[a];
+    writer.force(a, {force[0].value(), force[1].value(), force[2].value()});
+    for (int k = 0; k < 3; ++k) {
+      writer.column(
+          a, k,
+          {force[0].derivatives()[first_force + k], force[1].derivatives()[first_force + k],
+           force[2].derivatives()[first_force + k]});
+    }
+    for (std::size_t b = 0; b < most_joint_nodes; ++b) {
+      Matrix3d block;
+      for (int i = 0; i < 3; ++i) block.row(i) = gradient(force[i], b);
+      writer.block(a, b, block);
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Dual row = trial.unslipped && k == slide_row ? slipped(*this, trial) : made.row[k];
+    if (made.is_balance[index(k)]) {
+      writer.balance(k, row.value());
+    } else {
+      writer.closure(k, row.value());
+    }
+    for (std::size_t a = 0; a < most_joint_nodes; ++a) writer.row(k, a, gradient(row, a));
+    for (int j = 0; j < 3; ++j) writer.corner(k, j, row.derivatives()[first_force + j]);
+  }
+}
+
+void BallJoint::warm(const Trial& trial, JointStatus status, double temperature_rate,
+                     JointWriter& writer) const {
+  if (trial.model == JointModel::pins || status == JointStatus::open) return;
+  const Response made = respond(*this, trial, status);
+  const auto rate = [&](const Dual& of) {
+    return of.derivatives()[temperature] * temperature_rate;
+  };
+  for (std::size_t a = 0; a < most_joint_nodes; ++a) {
+    const Vector<Dual>& force = made.force[a];
+    writer.force(a, {rate(force[0]), rate(force[1]), rate(force[2])});
+  }
+  for (int k = 0; k < 3; ++k) {
+    writer.closure(k,
+                   rate(trial.unslipped && k == slide_row ? slipped(*this, trial) : made.row[k]));
+  }
+}
+
+JointStatus BallJoint::decide(const Trial& trial, JointStatus status) const {
+  if (trial.model == JointModel::pins) return status;
+  const BallState<double> now = state_of(*this, trial);
+  const double mu = trial.model == JointModel::friction ? friction_coefficient : 0.0;
+  if (status == JointStatus::open) {
+    if (now.distance <= now.clearance + trial.length_rounding) return status;
+    return mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
+  }
+  if (now.normal_force < -trial.force_rounding) return JointStatus::open;
+  if (mu == 0.0) return status;
+  const double bound = mu * now.normal_force;
+  if (status == JointStatus::stick) {
+    return now.friction.norm() > bound + trial.force_rounding ? JointStatus::slip_plus : status;
+  }
+  const BallBend<double> bend = ball_bend(*this, now, BallMemory::of(trial.history));
+  const double rounding = slide_rounding(trial, trial.length_rounding, trial.force_rounding);
+  return bend.pull.norm() - bend.compliance * bound < -rounding ? JointStatus::stick : status;
+}
+
+void BallJoint::begin(const Trial& trial, JointStatus status, double* now_) const {
+  const BallState<double> now = state_of(*this, trial);
+  const bool open = status == JointStatus::open;
+  BallMemory{now.offset,
+             now.ball_direction,
+             now.socket_direction,
+             open ? Vector3d::Zero() : now.friction,
+             now.ball_radius,
+             now.socket_radius,
+             now.normal_force,
+             open ? 0.0 : contact_of(*this).tangential_compliance(now.normal_force).value}
+      .to(now_);
+}
+
+void BallJoint::commit(const Trial& trial, JointStatus status, double* after) const {
+  begin(trial, status, after);
+}
+
+double BallJoint::slip(const Trial& trial, const double* after) const {
+  if (BallMemory::of(after).compliance == 0.0) return 0.0;  // open
+  const BallState<double> now = state_of(*this, trial);
+  const BallBend<double> bend = ball_bend(*this, now, BallMemory::of(trial.history));
+  return (bend.pull - bend.compliance * now.friction).norm();
+}
+
+double BallJoint::dissipation(const Trial& trial, const double* after_, double slip) const {
+  const BallMemory start = BallMemory::of(trial.history);
+  const BallMemory after = BallMemory::of(after_);
+  const Vector3d kept = ball_slide(state_of(*this, trial), start).kept;
+  return friction_coefficient * 0.5 * (start.normal_force + after.normal_force) * slip +
+         detail::rim_slip(start.friction.squaredNorm(), start.compliance, kept.dot(after.friction),
+                          after.friction.squaredNorm(), after.compliance);
+}
+
+double BallJoint::elastic_energy(const Trial& trial, const double* now_) const {
+  const BallMemory now = BallMemory::of(now_);
+  return contact_of(*this).energy(state_of(*this, trial).normal_force) +
+         0.5 * now.compliance * now.friction.squaredNorm();
+}
+
+void BallJoint::describe(const Trial& trial, double* outputs) const {
+  const BallState<double> now = state_of(*this, trial);
+  Eigen::Map<Vector3d>(outputs, 3) = now.offset;
+  outputs[3] = now.normal_force;
+  Eigen::Map<Vector3d>(outputs + 4, 3) = -now.friction;
+}
+
+double BallJoint::slide_rounding(const Trial& trial, double length, double force) const {
+  const double normal = state_of(*this, trial).normal_force;
+  return length + contact_of(*this).tangential_compliance(normal).value * force;
+}
+
+bool BallJoint::remembers_when(JointStatus before, JointStatus after) const {
+  if (friction_coefficient == 0.0) return false;
+  return before == JointStatus::open || (is_slip(before) && after == JointStatus::stick);
+}
+
+Seat BallJoint::seat(const Trial& trial, double opened, double next, double rounding) const {
+  Seat seat;
+  seat.force = trial.force;
+  const BallState<double> now = state_of(*this, trial);
+  // The ball touches where its pin force pushes.
+  const double pushes = now.force.norm();
+  seat.touches = opened > 0.0 || pushes > rounding;
+  if (!seat.touches) return seat;
+  const Vector3d normal = opened > 0.0 ? now.normal : Vector3d(now.force / pushes);
+  seat.moved = (next - opened) * radial_clearance * normal;
+  return seat;
+}
+
+bool BallJoint::jumps(const Trial& trial, JointStatus status) const {
+  if (trial.before == JointStatus::open || status == JointStatus::open) return false;
+  const BallMemory start = BallMemory::of(trial.history);
+  const Vector3d normal = state_of(*this, trial).normal;
+  return normal.dot(start.offset.normalized()) < most_turned;
+}
+
+}  // namespace statejump::truss

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace statejump::truss::detail {
+
+/// A function of the normal force, and its derivative by it.
+struct ByNormal {
+  double value;
+  double slope;
+};
+
+/// Contact that Hertz and Mindlin make of two round parts: F_N = K δ^1.5 and k_t = 8 G* √(R δ).
+/// Infinite stiffnesses are those of a rigid contact.
+struct HertzContact {
+  double hertz_stiffness;    ///< K [N/m^1.5]
+  double mindlin_stiffness;  ///< 8 G* √R [N/m^1.5]
+  double radial_clearance;   ///< [m]
+
+  /// Normal force at which the depth is a millionth of the clearance [N]. Below it the depth is
+  /// linear: a contact that just closes would else have an infinite compliance, from which Newton's
+  /// method does not find away.
+  double least_force() const { return hertz_stiffness * std::pow(1e-6 * radial_clearance, 1.5); }
+
+  /// Depth under a normal force [m].
+  ByNormal depth(double normal_force) const {
+    if (std::isinf(hertz_stiffness)) return {0.0, 0.0};
+    const double least = least_force();
+    const double depth = std::pow(std::max(normal_force, least) / hertz_stiffness, 2.0 / 3.0);
+    if (normal_force < least) return {depth * (normal_force / least), depth / least};
+    return {depth, 2.0 / 3.0 * depth / normal_force};
+  }
+
+  /// 1/k_t of a contact that sticks [m/N]; 0: rigid.
+  ByNormal tangential_compliance(double normal_force) const {
+    if (std::isinf(mindlin_stiffness)) return {0.0, 0.0};
+    const double least = least_force();
+    const double loaded = std::max(normal_force, least);
+    const double compliance = 1.0 / (mindlin_stiffness * std::sqrt(depth(loaded).value));
+    // k_t grows as the cube root of the force.
+    return {compliance, normal_force > least ? -compliance / (3.0 * normal_force) : 0.0};
+  }
+
+  /// Energy of the depth [J].
+  double energy(double normal_force) const {
+    if (std::isinf(hertz_stiffness)) return 0.0;
+    const double linear = std::min(normal_force, least_force());
+    return 0.4 * normal_force * depth(normal_force).value  // 2/5 K δ^5/2
+           + 0.1 * linear * depth(linear).value;
+  }
+};
+
+/// Heat of micro-slip at the rim of a contact that sticks [J]: work of friction less the energy
+/// that stays in the bend. Loading, where the force F at compliance C goes to F' at C' along
+/// ΔF (C + C')/2: (F² + F'²) (C − C')/4; unloading, along F' C' − F C: F·F' (C' − C)/2.
+/// @param before_squared, product, squared F², F·F', F'² [N²]
+inline double rim_slip(double before_squared, double compliance_before, double product,
+                       double squared, double compliance) {
+  if (compliance_before == 0.0) return 0.0;
+  if (compliance == 0.0) return 0.5 * compliance_before * before_squared;
+  if (compliance > compliance_before) return 0.5 * product * (compliance - compliance_before);
+  return 0.25 * (before_squared + squared) * (compliance_before - compliance);
+}
+
+}  // namespace statejump::truss::detail

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ball joints with clearance: a ball that plays in a socket, with a cone of Coulomb friction; spatial trusses."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from statejump.core.errors import NotAllowed
+from statejump.kinds.truss.arrays import References, columns, indices, names
+from statejump.kinds.truss.joints.protocol import BLACK, Contacts, JointColumn, Sampled, Symbol
+from statejump.kinds.truss.joints.round_parts import RoundParts
+from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
+from statejump.schema.fields import CHOICE, definition, parameter, text
+from statejump.schema.items import Item
+
+if TYPE_CHECKING:
+    from statejump.kinds.truss.resolved import ResolvedTruss
+    from statejump.kinds.truss.solve import TrussPath
+
+
+@definition
+class BallJoint(Item):
+    """A ball joint with clearance and Coulomb friction in a spatial truss: the ball, at one node, plays in the socket,
+    at another. A link carries and turns each, without spinning about its own axis; without a link a part does not
+    turn."""
+
+    socket_node: str = text(..., "where the socket's centre is")
+    ball_node: str = text(..., "where the ball's centre is")
+    socket_link: str | None = text(None, "whose end carries the socket; none: it does not turn")
+    ball_link: str | None = text(None, "whose end carries the ball; none: it does not turn")
+    ball_radius_m: float = parameter(..., "m", 0, 1e2, USER, above=True)
+    radial_clearance_m: float = parameter(..., "m", 0, 1e2, USER + "; at ΔT = 0", above=True)
+    friction_coefficient: float = parameter(..., "-", 0, 10, USER)
+    ball_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, CHOICE + ": constant radii")
+    socket_thermal_expansion_per_K: float = parameter(0.0, "1/K", -1e-3, 1e-3, CHOICE + ": constant radii")
+    temperature_fraction: float = parameter(1.0, "-", -10, 10, "of its program's ΔT; fully sunlit")
+    program: str | None = text(None, "name of a [[program]]; the common [thermal]")
+    young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM, above=True)
+    poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM)
+
+
+@dataclass(frozen=True)
+class BallJoints:
+    """Ball joints with clearance."""
+
+    names: tuple[str, ...]
+    socket_node: np.ndarray  # int
+    ball_node: np.ndarray  # int
+    socket_link: np.ndarray  # int, GROUND: the socket does not turn
+    ball_link: np.ndarray  # int, GROUND: the ball does not turn
+    ball_radius_m: np.ndarray
+    radial_clearance_m: np.ndarray  # at ΔT = 0
+    friction_coefficient: np.ndarray
+    ball_thermal_expansion_per_K: np.ndarray
+    socket_thermal_expansion_per_K: np.ndarray
+    temperature_fraction: np.ndarray
+    program: np.ndarray  # int, index into ResolvedTruss.programs
+    young_modulus_Pa: np.ndarray
+    poisson_ratio: np.ndarray
+
+    @property
+    def socket_radius_m(self) -> np.ndarray:
+        """Radius of the socket at ΔT = 0 [m]."""
+        return self.ball_radius_m + self.radial_clearance_m
+
+
+class BallJointType(RoundParts[BallJoint, BallJoints]):
+    """Ball joints with clearance, in the solver and in the DEM."""
+
+    section = "ball_joint"
+    Item = BallJoint
+    columns: ClassVar[tuple[JointColumn, ...]] = (
+        JointColumn("ball_eccentricity_m", "ball minus socket centre", vector=True),
+        JointColumn("ball_normal_force_N"),
+        JointColumn("ball_friction_force_N", "on the ball", vector=True),
+    )
+    varied = ("friction_coefficient", "radial_clearance_m", "ball_radius_m", "young_modulus_Pa")
+    inner, outer = "ball", "socket"
+    eccentricity, normal_force = "ball_eccentricity_m", "ball_normal_force_N"
+    has_axis = False
+    not_in_motion = "is a joint of quasi-static paths only"
+
+    def resolve(self, items: Sequence[BallJoint], known: References) -> BallJoints:
+        return BallJoints(
+            names=names(items),
+            **{key: indices(items, key, known.node) for key in ("socket_node", "ball_node")},
+            **{key: indices(items, key, known.link) for key in ("socket_link", "ball_link")},
+            program=known.programs_of(items),
+            **columns(
+                items, "ball_radius_m", "radial_clearance_m", "friction_coefficient", "ball_thermal_expansion_per_K",
+                "socket_thermal_expansion_per_K", "temperature_fraction", "young_modulus_Pa", "poisson_ratio",
+            ),
+        )
+
+    def check_vectors(self, item: BallJoint, dimension: int) -> None:
+        if dimension == 2:
+            raise NotAllowed("truss.dimension", 2, "a ball joint needs 3: its friction has two directions; in a planar "
+                             "truss a revolute does the same", **self.where(item.name))
+
+    def check_geometry(self, truss: ResolvedTruss, joints: BallJoints, ranges_K: np.ndarray) -> None:
+        for index in np.flatnonzero((truss.sticking != "elastic") & (joints.friction_coefficient > 0))[:1]:
+            why = ("a contact that sticks rigidly does not say along which direction of its plane it begins to slide"
+                   if truss.sticking == "rigid" else
+                   "partial slip is known to the solver along one direction, a ball slides along two")
+            raise NotAllowed("reduced.sticking", truss.sticking,
+                             f'must be "elastic" with ball joints that have friction: {why}',
+                             **self.where(joints.names[index]))
+        self.check_parts(truss, joints, ranges_K, np.linalg.norm(self.offset_m(truss, joints), axis=1))
+
+    def engine_arrays(self, truss: ResolvedTruss, joints: BallJoints) -> dict[str, Any]:
+        return {
+            "hertz_stiffness_N_per_m15": self.hertz_stiffness(joints),
+            "mindlin_stiffness_N_per_m15": self.mindlin_stiffness(joints),
+        }
+
+    def contacts(self, run: Sampled, joints: BallJoints) -> Contacts:
+        return self.touching(run, joints, run.columns["ball_friction_force_N"])
+
+    def symbols(self, truss: ResolvedTruss, joints: BallJoints) -> list[Symbol]:
+        centres = truss.nodes.position_m[joints.socket_node]
+        return [Symbol(centres, "o", 1.0, 1.0, order=5), Symbol(centres, "o", 0.6, 0.6, order=6, face=BLACK)]
+
+    def legend(self, joints: BallJoints) -> str:
+        return (f"ball joint, c = {scaled(joints.radial_clearance_m, 1e3, 'mm')}, "
+                f"μ = {scaled(joints.friction_coefficient, 1.0, '').strip()}")
+
+    def describe(self, items: Sequence[BallJoint]) -> str:
+        return (
+            f"{count(items, 'ball joint')} with clearance: radial clearance "
+            f"{spread((joint.radial_clearance_m for joint in items), 'm')}, ball radius "
+            f"{spread((joint.ball_radius_m for joint in items), 'm')}, friction coefficient "
+            f"{spread(joint.friction_coefficient for joint in items)}."
+        )
+
+    def no_load(self, joints: BallJoints) -> str:
+        return ("the friction of a ball joint is not split off as a load"
+                if joints.friction_coefficient.any() else "")
+
+    def reach_m(self, path: TrussPath, joints: BallJoints) -> np.ndarray:
+        return joints.socket_radius_m
+
+
+BALL_JOINT = BallJointType()

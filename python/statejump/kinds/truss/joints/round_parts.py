@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Joints with clearance: a round part at one node plays in a bore at another, with Coulomb friction."""
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+import numpy as np
+
+from statejump.core import physics
+from statejump.core.errors import MissingKey, NotAllowed
+from statejump.kinds.truss.arrays import GROUND
+from statejump.kinds.truss.joints.protocol import IMPACT, ContactPart, Contacts, Drawn, JointType, Sampled
+from statejump.kinds.truss.references import known_name
+from statejump.schema.items import Item
+
+if TYPE_CHECKING:
+    from statejump.kinds.truss.resolved import ResolvedTruss
+    from statejump.kinds.truss.solve import TrussPath
+
+ItemType = TypeVar("ItemType", bound=Item)
+ArraysType = TypeVar("ArraysType")
+
+
+class RoundParts(JointType[ItemType, ArraysType]):
+    """Keys and arrays of both parts begin with their names: ``journal_node``, ``journal_radius_m``, ..."""
+
+    inner: ClassVar[str]  # the part that plays
+    outer: ClassVar[str]  # what it plays in
+    eccentricity: ClassVar[str]  # columns: inner less outer centre
+    normal_force: ClassVar[str]
+    has_axis: ClassVar[bool] = True  # its arrays have the axis about which parts turn
+    has_temperature = True
+    has_contacts = True
+
+    @property
+    def parts(self) -> tuple[str, str]:
+        """Both parts, the place of the contact first."""
+        return self.outer, self.inner
+
+    def _nodes(self, joints: ArraysType) -> np.ndarray:
+        return np.stack([getattr(joints, f"{part}_node") for part in self.parts], axis=1)
+
+    def _radius_m(self, joints: ArraysType, part: str) -> np.ndarray:
+        found: np.ndarray = getattr(joints, f"{part}_radius_m")
+        return found
+
+    def hertz_stiffness(self, joints: Any) -> np.ndarray:
+        """Return K of F = K δ^1.5 [N/m^1.5] of every joint. Both parts are of one material and touch as a sphere of
+        R = R1 R2/(R2 - R1) on a plane, as bodies of the DEM do; the formulas are not those of its contact law."""
+        inner, outer = (self._radius_m(joints, part) for part in (self.inner, self.outer))
+        radius = physics.conforming_radius_m(inner, outer, joints.radial_clearance_m)
+        modulus = physics.effective_young_modulus_Pa(joints.young_modulus_Pa, joints.poisson_ratio)
+        return physics.hertz_stiffness_N_per_m15(modulus, radius)
+
+    def mindlin_stiffness(self, joints: Any) -> np.ndarray:
+        """Return k_t over the root of the depth [N/m^1.5] of every joint, 8 G* sqrt(R)."""
+        return 1.5 * self.hertz_stiffness(joints) * physics.shear_over_normal_stiffness(joints.poisson_ratio)
+
+    def clearance_m(self, joints: Any, temperature_change_K: Any) -> np.ndarray:
+        """Return the radial clearance [m] where the joints are at these ΔT [K] (fraction included)."""
+        grown = [getattr(joints, f"{part}_thermal_expansion_per_K") * self._radius_m(joints, part)
+                 for part in self.parts]
+        found: np.ndarray = joints.radial_clearance_m + temperature_change_K * (grown[0] - grown[1])
+        return found
+
+    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+        where = self.where(item.name)
+        for part in self.parts:
+            node_key, link_key = f"{part}_node", f"{part}_link"
+            node, link = getattr(item, node_key), getattr(item, link_key)
+            known_name(node_key, node, node, nodes, "node", **where)
+            if link is None:
+                # Nothing at hand says how such a part turns.
+                if not nodes[node].fixed and nodes[node].guide_normal is None:
+                    raise MissingKey(
+                        link_key, f"without a link the {part} does not turn, so node {node!r} must have a support "
+                        "(fixed or guide_normal)", nodes=(node,), **where,
+                    )
+                continue
+            known_name(link_key, link, link, links, "link", **where)
+            if node not in links[link].nodes:
+                ends = " and ".join(repr(end) for end in links[link].nodes)
+                raise NotAllowed(link_key, link, f"that link ends at {ends}, it must end at {node_key} = {node!r}",
+                                 **where)
+        inner, outer = (f"{part}_node" for part in (self.inner, self.outer))
+        if getattr(item, inner) == getattr(item, outer):
+            raise NotAllowed(inner, getattr(item, inner), f"must be another node than {outer}", **where)
+        inner, outer = (f"{part}_link" for part in (self.inner, self.outer))
+        if getattr(item, outer) is not None and getattr(item, outer) == getattr(item, inner):
+            raise NotAllowed(inner, getattr(item, inner), f"must be another link than {outer}", **where)
+
+    def expands(self, item: ItemType) -> bool:
+        return any(getattr(item, f"{part}_thermal_expansion_per_K") for part in self.parts)
+
+    def check_parts(self, truss: ResolvedTruss, joints: Any, ranges_K: np.ndarray, apart_m: np.ndarray) -> None:
+        """Raise NotAllowed for parts that expand too far, or are drawn too far apart.
+
+        :param apart_m: distance of both parts' centres, as far as it closes the clearance (joints,)
+        """
+        for side in (0, 1):
+            changes = joints.temperature_fraction * ranges_K[joints.program, side]
+            for part in self.parts:
+                expansion = getattr(joints, f"{part}_thermal_expansion_per_K")
+                for index in np.flatnonzero(1 + expansion * changes <= 0)[:1]:
+                    raise NotAllowed(
+                        f"{part}_thermal_expansion_per_K", float(expansion[index]),
+                        f"the {part} has no radius left at a temperature change of {changes[index]:g} K",
+                        temperature_change_K=float(changes[index]), **self.where(joints.names[index]),
+                    )
+            for index in np.flatnonzero(~(self.clearance_m(joints, changes) > 0))[:1]:
+                raise NotAllowed(
+                    "radial_clearance_m", float(joints.radial_clearance_m[index]),
+                    f"the expansion of {self.inner} and {self.outer} closes it at a temperature change of "
+                    f"{changes[index]:g} K, it must stay above 0 [m] within the program",
+                    temperature_change_K=float(changes[index]), **self.where(joints.names[index]),
+                )
+        inner, outer = (self._radius_m(joints, part) for part in (self.inner, self.outer))
+        for index in np.flatnonzero(~(outer > inner))[:1]:
+            raise NotAllowed(
+                "radial_clearance_m", float(joints.radial_clearance_m[index]),
+                f"too small beside {self.inner}_radius_m = {inner[index]:g} [m], the radii come out equal",
+                **self.where(joints.names[index]),
+            )
+        for index in np.flatnonzero(apart_m > joints.radial_clearance_m)[:1]:
+            own, other = (truss.nodes.names[getattr(joints, f"{part}_node")[index]]
+                          for part in (self.inner, self.outer))
+            raise NotAllowed(
+                f"{self.inner}_node", own,
+                f"it is {apart_m[index]:.6g} m from {self.outer}_node = {other!r}, "
+                f"the clearance is radial_clearance_m = {joints.radial_clearance_m[index]:g} [m]",
+                **self.where(joints.names[index]),
+            )
+
+    def offset_m(self, truss: ResolvedTruss, joints: ArraysType) -> np.ndarray:
+        """Return from the outer to the inner part's centre as drawn [m] (joints, 3)."""
+        outer, inner = self._nodes(joints).T
+        return truss.nodes.position_m[inner] - truss.nodes.position_m[outer]
+
+    def joined(self, joints: ArraysType) -> np.ndarray:
+        return self._nodes(joints)
+
+    def normals(self, run: Sampled) -> np.ndarray:
+        """Return the unit normals of the contacts (samples, joints, 3); zero in the very middle."""
+        offset = run.columns[self.eccentricity]
+        distance = np.linalg.norm(offset, axis=2)[:, :, None]
+        return np.divide(offset, distance, out=np.zeros_like(offset), where=distance > 0)
+
+    def touching(self, run: Sampled, joints: Any, tangential_force_N: np.ndarray) -> Contacts:
+        """Return what the contacts do, from the force of friction on the inner part (samples, joints, 3)."""
+        normal = self.normals(run)
+        outer = self._radius_m(joints, self.outer)
+        return Contacts(
+            gap_m=self.clearance_m(joints, run.temperature_change_K)
+            - np.linalg.norm(run.columns[self.eccentricity], axis=2),
+            point_m=run.position_m[:, self.place_nodes(run.truss, joints)] + outer[:, None] * normal,
+            normal_force_N=-run.columns[self.normal_force][:, :, None] * normal,
+            tangential_force_N=tangential_force_N,
+        )
+
+    def drawn(self, truss: ResolvedTruss, joints: Any, labels: Sequence[str], taken: set[str]) -> Drawn:
+        from statejump.results import scene as drawing
+
+        parts: list[dict[str, Any]] = []
+        contacts = []
+        for place, name in enumerate(labels):
+            pair = []
+            for part, kind in ((self.inner, "journal"), (self.outer, "bearing")):
+                node, link = (int(getattr(joints, f"{part}_{what}")[place]) for what in ("node", "link"))
+                label = f"{part} {truss.nodes.names[node]}"
+                pair.append(label)
+                if label in taken:
+                    continue
+                taken.add(label)
+                # About an axis in space a link's view along z has no angle of its own to tell.
+                turns = link != GROUND and truss.dimension == 2
+                angle = drawing.ref("links/angle_rad", truss.links.names[link]) if turns else 0.0
+                axis = {"axis": joints.axis[place].tolist()} if truss.dimension == 3 and self.has_axis else {}
+                parts.append({
+                    "name": label, "type": kind, "centre": drawing.ref("history/position_m", truss.nodes.names[node]),
+                    "angle_rad": angle, "radius_m": float(getattr(joints, f"{part}_radius_m")[place]),
+                    "thermal_expansion_per_K": float(getattr(joints, f"{part}_thermal_expansion_per_K")[place]), **axis,
+                })
+            contacts.append((name, pair[0], pair[1]))
+        return Drawn(parts, contacts, joints.radial_clearance_m)
+
+    def place_nodes(self, truss: ResolvedTruss, joints: ArraysType) -> np.ndarray:
+        return self._nodes(joints)[:, 0]
+
+    def covered_nodes(self, joints: ArraysType) -> np.ndarray:
+        return self._nodes(joints).T.ravel()
+
+    def contact_parts(self, joints: Any) -> list[ContactPart]:
+        return [
+            ContactPart(getattr(joints, f"{part}_node"), [
+                (part, *role) for role in zip(
+                    self._radius_m(joints, part), joints.friction_coefficient, joints.young_modulus_Pa,
+                    getattr(joints, f"{part}_link"))])
+            for part in self.parts
+        ]
+
+    def contact_nodes(self, joints: ArraysType) -> np.ndarray:
+        return self._nodes(joints)
+
+    def contact_stiffness(self, path: TrussPath, joints: Any) -> tuple[np.ndarray, np.ndarray]:
+        force = IMPACT**3 * path.states[self.normal_force].max(axis=0)
+        normal = physics.hertz_tangent_N_per_m(force, self.hertz_stiffness(joints))
+        return self.contact_nodes(joints), normal * (1 + physics.shear_over_normal_stiffness(joints.poisson_ratio))
+
+    def scene(self, path: TrussPath, joints: ArraysType) -> dict[str, Any]:
+        return {f"{self.outer}_radius_m": self._radius_m(joints, self.outer)}

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ball joints of spatial trusses: what cases, commands and drawings say, and the DEM beside the solver."""
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from conftest import Outcome
+
+from statejump import _paths
+from statejump.core.errors import StatejumpError
+from statejump.kinds.loading import parse_case
+from statejump.kinds.truss import fe, generate, solve
+from statejump.kinds.truss.contact_problems import contact_problems
+from statejump.kinds.truss.generate.document import to_toml
+from statejump.results.read import read
+
+TRIPOD = _paths.SHARE / "cases" / "trusses" / "ball_tripod.toml"
+
+
+def tripod(**joint: Any) -> dict[str, Any]:
+    """The shipped case as a dict, keys of its joint changed; None: the key is left out."""
+    made = tomllib.loads(TRIPOD.read_text())
+    joints = made["ball_joint"][0] | joint
+    made["ball_joint"] = [{key: value for key, value in joints.items() if value is not None}]
+    return made
+
+
+@pytest.mark.parametrize("keys, sentence", [
+    ({"socket_node": "S"}, "socket_link = 'AT' is not allowed: that link ends at 'A' and 'T', it must end at"),
+    ({"ball_node": "T", "ball_link": "BT"}, "ball_node = 'T' is not allowed: must be another node than socket_node"),
+    ({"socket_link": None}, "without a link the socket does not turn, so node 'T' must have a support"),
+    ({"ball_node": "Z"}, "there is no node 'Z'"),
+    ({"ball_link": "DT"}, "there is no link 'DT'"),
+    ({"radial_clearance_m": 0.0}, "radial_clearance_m = 0.0 is not allowed: must be above 0"),
+    ({"ball_thermal_expansion_per_K": 9e-4}, "the expansion of ball and socket closes it"),
+    ({"friction_coefficient": -0.1}, "friction_coefficient = -0.1 is not allowed"),
+])
+def test_what_is_refused(keys: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(StatejumpError) as refused:
+        parse_case(tripod(**keys))
+    assert sentence in str(refused.value) and "ball_joint 'apex'" in str(refused.value)
+
+
+@pytest.mark.parametrize("sticking, why", [("rigid", "along which direction"), ("partial_slip", "along one direction")])
+def test_friction_needs_a_contact_that_gives_way(sticking: str, why: str) -> None:
+    made = tripod()
+    made["reduced"]["sticking"] = sticking
+    with pytest.raises(StatejumpError, match='must be "elastic" with ball joints that have friction') as refused:
+        parse_case(made)
+    assert why in str(refused.value)
+    made["ball_joint"][0]["friction_coefficient"] = 0.0
+    found = solve.solve(parse_case(made))
+    # Without friction the path is reversible.
+    moved = found.states["displacement_m"]
+    assert np.abs(moved[-1] - moved[0]).max() < 1e-12 * np.abs(moved).max()
+
+
+def test_in_a_plane_it_is_refused() -> None:
+    made = generate.umbrella(1)
+    joint = made.pop("revolute")[0]
+    made["ball_joint"] = [{
+        "name": joint["name"], "friction_coefficient": 0.1, "radial_clearance_m": 1e-4, "ball_radius_m": 5e-3,
+        "socket_node": joint["bearing_node"], "ball_node": joint["journal_node"]}]
+    with pytest.raises(StatejumpError, match="truss.dimension = 2 is not allowed.* in a planar truss a revolute"):
+        parse_case(made)
+
+
+def test_parts_may_not_be_drawn_apart() -> None:
+    made = tripod()
+    made["node"][4]["position_m"][2] += 2e-4
+    with pytest.raises(StatejumpError, match="it is 0.0002 m from socket_node = 'T', the clearance is"):
+        parse_case(made)
+
+
+def test_increments_matter_to_first_order_only() -> None:
+    """The state jump, of first order in the increment where the slide turns."""
+    truss = parse_case(tripod()).resolve()
+    jumps = [solve.path(truss, increments_per_branch=increments).cycle_ends["displacement_m"] for increments in (
+        25, 50, 1600)]
+    errors = [np.abs((one[-1] - one[0]) - (jumps[-1][-1] - jumps[-1][0])).max() for one in jumps[:-1]]
+    assert errors[1] < 0.65 * errors[0]
+    assert errors[1] < 5e-3 * np.abs(jumps[-1][-1] - jumps[-1][0]).max()
+
+
+def test_commands(statejump: Callable[..., Outcome], tmp_path: Path) -> None:
+    case = tmp_path / "ball.toml"
+    case.write_text(to_toml(tripod() | {"case": tripod()["case"] | {"name": "ball"}}))
+    for words in (("reduced",), ("truss", "draw"), ("truss", "answers", "--no-sensitivity", "--frames", "3")):
+        done = statejump(*words[:2] if words[0] == "truss" else words, case, *words[2:])
+        assert done.status == 0, (words, done.errors)
+    result = read(tmp_path / "results" / "ball" / "reduced.h5")
+    run = result.models["reduced"]
+    assert run.history["ball_friction_force_N"].unit == "N" and run.history["ball_eccentricity_m"].items == "ball_joints"
+    assert [event.kind for event in run.events] == ["first_slip", "stick", "slip"]
+    # Forces on the ball: pushed back from the socket's wall, and rubbed within the cone along it.
+    normal, rubs = (run.contacts[f"{kind}_force_N"].values[:, 0] for kind in ("normal", "tangential"))
+    offset = run.history["ball_eccentricity_m"].values[:, 0]
+    assert np.all((normal * offset).sum(axis=1) < 0)
+    assert np.abs((rubs * offset).sum(axis=1)).max() < 1e-9 * np.linalg.norm(rubs, axis=1).max()
+    assert np.all(np.linalg.norm(rubs, axis=1) <= 0.1 * np.linalg.norm(normal, axis=1) * (1 + 1e-9))
+    moving = statejump("reduced", "--dynamic", case)
+    assert moving.status == 2 and moving.errors.count("\n") == 1
+    assert "ball_joint 'apex' is a joint of quasi-static paths only" in moving.errors
+    told = parse_case(tripod())
+    assert ("1 ball joint with clearance: radial clearance 100\u202fµm, ball radius 5\u202fmm, friction coefficient "
+            "0.1.") in told.behaviour.describe(told)
+
+
+def test_alone_it_is_no_contact_problem() -> None:
+    with pytest.raises(StatejumpError, match="ball joints one in two directions"):
+        contact_problems(parse_case(tripod()), 3)
+
+
+def test_locked_it_is_a_pin() -> None:
+    truss = parse_case(tripod()).resolve()
+    pinned = fe._pinned(truss)
+    assert len(pinned.nodes.names) == len(truss.nodes.names) - 1 and not pinned.joints["ball_joint"].names
+
+
+def test_dem_rolls_and_slips_out_of_any_plane_as_the_path(statejump: Callable[..., Outcome], tmp_path: Path) -> None:
+    done = statejump("compare", "--results", tmp_path, TRIPOD)
+    assert done.status == 0, done.output + done.errors
+    found = read(tmp_path / "ball_tripod" / "comparison.h5")
+    rows = {row.name: row.values["dem"] for row in found.rows or ()}
+    # Nodes move by 1.5 mm/s at most, and across their links springs of 2e4 N/m hold 12 g: 1.3e3 /s. Wherever the speed
+    # turns they follow their equilibrium within 1.2e-6 m of 1.5 mm.
+    assert rows["displacement_largest_rms_over_largest"] < 8e-4
+    # Jumps are the same but for the path's error of first order, which the test above has, of the loop ten times less.
+    assert rows["jump_largest_difference_over_largest_jump_or_loop"] < 2e-4
+    assert abs(rows["energy_residual_over_friction_work"]) < 1e-6
+    path, dem = found.models.values()
+    events = [[(event.kind, event.joint) for event in run.events] for run in (path, dem)]
+    assert events[0] == events[1] and len(events[0]) == 3
+    # The DEM is sampled 100 times a second.
+    times = [[event.time_s for event in run.events] for run in (path, dem)]
+    assert times[0] == pytest.approx(times[1], abs=1.5 / 100)
+    rubs, other = (run.history["ball_friction_force_N"].values[:, 0] for run in (path, dem))
+    # From the second sample on: the DEM begins without motion.
+    assert np.linalg.norm(other - rubs, axis=1)[2:].max() < 0.02 * np.linalg.norm(rubs, axis=1).max()
+    # No plane holds the way of the ball: with the best one it would be flat to rounding.
+    way = path.history["ball_eccentricity_m"].values[:, 0]
+    sizes = np.linalg.svd(way - way.mean(axis=0), compute_uv=False)
+    assert sizes[2] > 0.02 * sizes[0]
