@@ -221,3 +221,18 @@ def test_mistakes(change: dict[str, Any], sentence: str) -> None:
     with pytest.raises(StatejumpError) as refused:
         parse_case(lever(**change)).resolve()
     assert sentence in str(refused.value)
+
+
+@needs_page
+def test_page_ranks_the_latch_by_its_heat_and_its_turn(statejump: Callable[..., Outcome], tmp_path: Path) -> None:
+    case = tmp_path / "lever.toml"
+    case.write_text(to_toml(lever()))
+    assert statejump("reduced", case).status == 0
+    done = statejump("report", tmp_path / "results" / "lever", "-o", tmp_path / "page.html")
+    assert done.status == 0, done.errors
+    page = (tmp_path / "page.html").read_text()
+    assert "Loop of latch hinge latch" in page and "Rotation of latch" in page
+    assert "heat of friction" in page.lower() and "Turn of the hinge" in page
+    found = read(tmp_path / "results" / "lever" / "reduced.h5").models["reduced"]
+    heat = found["latch_hinge_dissipation_J"]
+    assert heat[-1, 0] == pytest.approx(found["friction_dissipation_J"][-1], rel=1e-12) and heat[-1, 0] > 0

@@ -111,15 +111,18 @@ export interface ReadoutData {
 export interface JointData {
   name: string;
   kind: string;
+  /** The kind in words. */
+  called: string;
   node: number;
   jump?: number;
+  turn?: number;
   heat?: number;
   contribution?: number;
   /** Numbers with units: of the measures, of the share, of the heat in the last cycle. */
   text: Record<string, string>;
 }
 export interface MeasureData {
-  key: "contribution" | "heat" | "jump";
+  key: "contribution" | "heat" | "jump" | "turn";
   label: string;
   note: string;
   signed: boolean;

@@ -14,12 +14,13 @@ function told(state: TrussState, place: number | null): string {
   const parts = [
     text["contribution"] ? `contribution ${text["contribution"]}, ${text["share"]} of the jump` : "",
     text["jump"] ? `jump of the joint ${text["jump"]}` : "",
+    text["turn"] ? `turned by ${text["turn"]}` : "",
     text["heat"]
       ? `heat ${text["heat"]}${text["heat_of_cycle"] ? `, ${text["heat_of_cycle"]} in the last cycle` : ""}`
       : "",
   ].filter(Boolean);
   const rank = state.order.indexOf(place!) + 1;
-  return `${joint.name}, ${joint.kind} at node ${state.data.nodes[joint.node]}, rank ${rank} of ${state.data.joints.length}: ${parts.join("; ")}.`;
+  return `${joint.name}, ${joint.called} at node ${state.data.nodes[joint.node]}, rank ${rank} of ${state.data.joints.length}: ${parts.join("; ")}.`;
 }
 
 /** Bars of the joints that come first. */

@@ -18,6 +18,7 @@ from statejump.core.charts import TEMPERATURE, Axis, Chart
 from statejump.core.run import Run
 from statejump.core.units import scale_of, text, unit_of
 from statejump.kinds.truss.case import Link, Spring, TrussCase
+from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.words import is_guided, is_held
 from statejump.report import words
 from statejump.report.drawing import round_down
@@ -31,9 +32,10 @@ LEAST_PERCENT = 5e-3
 ROUNDED = 1e-9  # of the largest joint's: below is rounding, not a number to read
 ROUNDED_SURFACE = 1e-12  # of the truss' size, in metres and in radians
 ROUNDING = "≈ 0"
-# The column of a run that says where a joint of each type is, in the order of the contacts.
-PLACES = {"slider": "slide_m", "revolute": "eccentricity_m", "ball_joint": "ball_eccentricity_m"}
+# What joints are ranked by where their first column is a rotation, and where it is not.
+TURN, JUMP = "turn", "jump"
 Row = dict[str, Any]
+_TYPES: dict[str, Any] = {joint.section: joint for joint in JOINTS}
 
 
 @dataclass(frozen=True)
@@ -60,8 +62,8 @@ class TrussPart:
     """
 
     template = Path(__file__).with_name("truss.html")
-    units = {"truss_node_m": "m", "truss_slide_m": "m", "truss_journal_x_m": "m", "truss_journal_y_m": "m",
-             "truss_journal_m": "m", "truss_link_N": "N"}
+    units = {"truss_node_m": "m", "truss_slide_m": "m", "truss_turn_rad": "rad", "truss_journal_x_m": "m",
+             "truss_journal_y_m": "m", "truss_journal_m": "m", "truss_link_N": "N"}
 
     def __init__(self, result: Result, case: TrussCase) -> None:
         self.result, self.case, self.answers = result, case, result.answers
@@ -103,43 +105,48 @@ class TrussPart:
 
     def _joints(self) -> list[Row]:
         """Every joint: name, kind, node, and what it is ranked by; in the order of the file."""
-        found: list[Row] = [
-            *({"name": item.name, "kind": "slider", "node": self._number[item.nodes[0]]} for item in self.case.slider),
-            *({"name": item.name, "kind": "revolute", "node": self._number[item.bearing_node]}
-              for item in self.case.revolute),
-            *({"name": item.name, "kind": "ball_joint", "node": self._number[item.socket_node]}
-              for item in self.case.ball_joint),
-        ]
+        truss = self.case.resolve()
+        found: list[Row] = []
+        for joint in JOINTS:
+            joints = truss.joints[joint.section]
+            if len(joints.names):
+                found += [{"name": name, "kind": joint.section, "called": joint.section.replace("_", " "),
+                           "node": int(node)} for name, node in zip(joints.names, joint.place_nodes(truss, joints))]
+        self._read_off(found)
         if self.answers is None:
-            self._read_off(found)
             return found
         moved = {(row["kind"], row["joint"]): row for row in self.answers.tables["joint_jumps"]
                  if row["cycle"] == self.cycles}
         held = {(row["kind"], row["joint"]): row for row in self.answers.tables.get("contributions", [])}
-        for joint in found:
-            key = (joint["kind"], joint["name"])
-            joint["jump"], joint["heat"] = moved[key]["jump_m"], moved[key]["dissipation_J"]
-            joint["heat_of_cycle"] = moved[key]["dissipation_of_cycle_J"]
-            if held:
-                joint["contribution"], joint["share"] = held[key]["contribution"], held[key]["share"]
+        for row in found:
+            key = (row["kind"], row["name"])
+            if key in moved:
+                row["jump"], row["heat"] = moved[key]["jump_m"], moved[key]["dissipation_J"]
+                row["heat_of_cycle"] = moved[key]["dissipation_of_cycle_J"]
+            if key in held:
+                row["contribution"], row["share"] = held[key]["contribution"], held[key]["share"]
         return found
 
     def _read_off(self, joints: list[Row]) -> None:
-        run, place = self._run, dict.fromkeys(PLACES, 0)
-        jumps = {}
-        for kind, name in PLACES.items():
-            if name in run.history:
-                moved = self._since_start(run, "history", name)[-1]
-                jumps[kind] = np.abs(moved) if moved.ndim == 1 else np.linalg.norm(moved, axis=1)
-        heat = self._since_start(run, "contacts", "dissipation_J") if "dissipation_J" in run.contacts else None
-        for number, joint in enumerate(joints):
-            kind = joint["kind"]
-            joint["jump"] = float(jumps[kind][place[kind]]) if kind in jumps else 0.0
-            place[kind] += 1
-            if heat is not None:
-                joint["heat"] = float(heat[-1, number])
-                before = heat[-2, number] if len(heat) > 1 else 0.0
-                joint["heat_of_cycle"] = float(heat[-1, number] - before)
+        """Find in the histories how far joints are from where they began, and what heat their friction made."""
+        run = self._run
+        contacts = self._since_start(run, "contacts", "dissipation_J") if "dissipation_J" in run.contacts else None
+        first = 0
+        for joint in JOINTS:
+            rows, place = [row for row in joints if row["kind"] == joint.section], joint.columns[0].name
+            if rows and place in run.history:
+                moved = self._since_start(run, "history", place)[-1]
+                sizes = np.abs(moved) if moved.ndim == 1 else np.linalg.norm(moved, axis=1)
+                for row, size in zip(rows, sizes):
+                    row[TURN if unit_of(place) == "rad" else JUMP] = float(size)
+            own, heat = f"{joint.section}_dissipation_J", np.zeros((0, 0))
+            if joint.has_contacts and contacts is not None:
+                heat, first = contacts[:, first:first + len(rows)], first + len(rows)
+            elif own in run.history:
+                heat = self._since_start(run, "history", own)
+            for row, spent in zip(rows, heat.T):
+                row["heat"] = float(spent[-1])
+                row["heat_of_cycle"] = float(spent[-1] - (spent[-2] if len(spent) > 1 else 0.0))
 
     def _measures(self) -> list[Measure]:
         keys = set().union(*self.joints)
@@ -151,26 +158,30 @@ class TrussPart:
                     True),
             Measure("heat", "Heat of friction", "J", "Heat of the joint's friction over all cycles: where it slips, "
                     "not what holds the jump."),
-            Measure("jump", "Jump of the joint", "m", "How far a slider, a journal in its bearing or a ball in its "
+            Measure(JUMP, "Jump of the joint", "m", "How far a slider, a journal in its bearing or a ball in its "
                     "socket, is from where it started: where it moved, not what holds the jump."),
+            Measure(TURN, "Turn of the hinge", "rad", "How far a hinge is turned from where it started: where it "
+                    "moved, not what holds the jump."),
         ]
         return [measure for measure in every
-                if measure.key in keys and any(joint[measure.key] for joint in self.joints)]
+                if measure.key in keys and any(joint.get(measure.key) for joint in self.joints)]
 
     def ranking(self) -> list[Row]:
         """Rows of the table of joints, by the first measure, ready to print."""
         if not self.measures:
             return []
         first = self.measures[0].key
-        order = sorted(self.joints, key=lambda joint: -abs(joint[first]))
+        order = sorted(self.joints, key=lambda joint: -abs(joint.get(first, 0.0)))
         return [{**joint, "text": self._texts(joint)} for joint in order[:MOST_BARS]]
 
     def _largest(self, measure: Measure) -> float:
-        return max(abs(joint[measure.key]) for joint in self.joints)
+        return max(abs(joint.get(measure.key, 0.0)) for joint in self.joints)
 
     def _texts(self, joint: Row) -> dict[str, str]:
         found = {}
         for measure in self.measures:
+            if measure.key not in joint:
+                continue
             value = joint[measure.key]
             rounding = abs(value) < ROUNDED * self._largest(measure)
             found[measure.key] = ROUNDING if rounding else text(value, measure.unit, 4)
@@ -281,30 +292,35 @@ class TrussPart:
         found = [Chart(TEMPERATURE, Axis("truss_node_m", f"Node {self.nodes[self._first]} along its jump"),
                        f"Loop of node {self.nodes[self._first]}", marks=True)]
         joint = self._leading()
-        if joint is not None and joint["kind"] == "slider":
-            found.append(Chart(TEMPERATURE, Axis("truss_slide_m", f"Slide of {joint['name']}"),
-                               f"Loop of slider {joint['name']}"))
-        elif joint is not None and self.case.truss.dimension == 2:
-            clearance = next(item.radial_clearance_m for item in self.case.revolute if item.name == joint["name"])
-            found.append(Chart(
-                Axis("truss_journal_x_m", "Journal − bearing centre, along x"), Axis("truss_journal_y_m", "along y"),
-                f"Journal of {joint['name']} in its clearance", equal=True, rings_m=(clearance,),
-            ))
-        elif joint is not None:
-            inner, outer = ("Ball", "socket") if joint["kind"] == "ball_joint" else ("Journal", "bearing")
-            found.append(Chart(TEMPERATURE, Axis("truss_journal_m", f"{inner} − {outer} centre, {joint['name']}"),
-                               f"Way of the {inner.lower()} of {joint['name']} from its start"))
+        if joint is not None:
+            found.append(self._way(joint))
         link = self._hardest_link()
         if link is not None:
             found.append(Chart(TEMPERATURE, Axis("truss_link_N", f"Axial force of {link}"),
                                f"Largest axial force, link {link}: compression positive"))
         return found
 
+    def _way(self, joint: Row) -> Chart:
+        """Return the chart of where a joint is."""
+        kind, name = _TYPES[joint["kind"]], joint["name"]
+        if not kind.columns[0].vector:
+            key, what = ("truss_turn_rad", "Rotation") if unit_of(kind.columns[0].name) == "rad" else (
+                "truss_slide_m", "Slide")
+            return Chart(TEMPERATURE, Axis(key, f"{what} of {name}"), f"Loop of {joint['called']} {name}")
+        parts = f"{kind.inner.capitalize()} − {kind.outer} centre"
+        if self.case.truss.dimension == 3:
+            return Chart(TEMPERATURE, Axis("truss_journal_m", f"{parts}, {name}"),
+                         f"Way of the {kind.inner} of {name} from its start")
+        joints = self.case.resolve().joints[kind.section]
+        clearance = float(joints.radial_clearance_m[joints.names.index(name)])
+        return Chart(Axis("truss_journal_x_m", f"{parts}, along x"), Axis("truss_journal_y_m", "along y"),
+                     f"{kind.inner.capitalize()} of {name} in its clearance", equal=True, rings_m=(clearance,))
+
     def _leading(self) -> Row | None:
         if not self.measures:
             return None
         first = self.measures[0].key
-        return max(self.joints, key=lambda joint: abs(joint[first]))
+        return max(self.joints, key=lambda joint: abs(joint.get(first, 0.0)))
 
     def _hardest_link(self) -> str | None:
         force = self._run.links["axial_force_N"]
@@ -318,12 +334,15 @@ class TrussPart:
         moved = run.history["displacement_m"].values[:, self._first]
         found = {"truss_node_m": (moved - moved[0]) @ (way / size if size > 0 else np.array([1.0, 0.0, 0.0]))}
         joint, link = self._leading(), self._hardest_link()
-        if joint is not None and joint["kind"] == "slider":
-            found["truss_slide_m"] = run.history["slide_m"].values[:, names["sliders"].index(joint["name"])]
-        elif joint is not None:
-            place = run.history[PLACES[joint["kind"]]].values[:, names[f"{joint['kind']}s"].index(joint["name"])]
-            found.update({f"truss_journal_{axis}_m": place[:, number] for number, axis in enumerate("xy")})
-            found["truss_journal_m"] = np.linalg.norm(place - place[0], axis=1)
+        if joint is not None:
+            kind = _TYPES[joint["kind"]]
+            column = kind.columns[0]
+            place = run.history[column.name].values[:, names[kind.items].index(joint["name"])]
+            if not column.vector:
+                found["truss_turn_rad" if unit_of(column.name) == "rad" else "truss_slide_m"] = place
+            else:
+                found.update({f"truss_journal_{axis}_m": place[:, number] for number, axis in enumerate("xy")})
+                found["truss_journal_m"] = np.linalg.norm(place - place[0], axis=1)
         if link is not None:
             found["truss_link_N"] = run.links["axial_force_N"].values[:, names["links"].index(link)]
         return found
@@ -342,10 +361,11 @@ class TrussPart:
         lines = [{"nodes": [self._number[name] for name in item.nodes], "kind": kind, "name": item.name}
                  for kind, items in between.items() for item in items]
         # The drawing magnifies jumps until journals leave their bearings: a line says which belong together.
-        lines += [{"nodes": [self._number[item.bearing_node], self._number[item.journal_node]], "kind": "journal",
-                   "name": item.name} for item in self.case.revolute]
-        lines += [{"nodes": [self._number[item.socket_node], self._number[item.ball_node]], "kind": "journal",
-                   "name": item.name} for item in self.case.ball_joint]
+        truss = self.case.resolve()
+        for joint in (one for one in JOINTS if one.columns[0].vector):
+            joints = truss.joints[joint.section]
+            lines += [{"nodes": [int(node) for node in nodes], "kind": "journal", "name": name}
+                      for name, nodes in zip(joints.names, joint.joined(joints))]
         return {
             "dimension": self.case.truss.dimension,
             "nodes": self.nodes,

@@ -32,6 +32,7 @@ ITEMS = {"displacement_m": ("nodes", True), "axial_force_N": ("links", False), "
 TOUCHING = [joint for joint in JOINTS if joint.has_contacts]
 # Of these the DEM samples states; those of contacts are among the contacts of a result.
 STICKING = [joint for joint in JOINTS if joint.has_contacts or not joint.not_in_dem]
+HEAT = "heat of friction since the start"
 LOCATED = 1e-6  # of a cycle: an event within less has no uncertainty worth telling
 NOTES = {"displacement_m": "from the drawn shape", "axial_force_N": "compression positive"} | {
     column.name: column.note for joint in JOINTS for column in joint.columns}
@@ -194,6 +195,17 @@ def _heat(states: Mapping[str, np.ndarray]) -> np.ndarray:
     return np.concatenate([states[f"{joint.section}_dissipation_J"] for joint in TOUCHING], axis=1)
 
 
+def _heat_without_contact(states: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return friction's heat since the start [J] (states, joints) of types whose joints are no contacts."""
+    heats = {f"{joint.section}_dissipation_J": joint for joint in JOINTS if not joint.has_contacts}
+    return {key: states[key] for key in heats if states[key].shape[1]}
+
+
+def _heat_columns(heats: Mapping[str, np.ndarray]) -> dict[str, Column]:
+    items = {f"{joint.section}_dissipation_J": joint.items for joint in JOINTS}
+    return {key: Column(values, "J", items[key], note=HEAT) for key, values in heats.items()}
+
+
 def sample_times(case: TrussCase) -> np.ndarray:
     """Return the times of the DEM's samples [s]."""
     cycles = case.thermal.cycles
@@ -235,8 +247,9 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
     beyond = (*beyond, *_taken_together(case, path))
     run = _run(case, "reduced", plain, energy, items, _events(case, path), summary, native=path, warnings=beyond,
                sampler=lambda times: reduced_run(case, path, times))
-    heat_of_joints = Column(sampled(_heat(states)), "J", "contacts", note="heat of friction since the start")
-    return replace(run, contacts={**run.contacts, "dissipation_J": heat_of_joints})
+    others = _heat_columns({key: sampled(values) for key, values in _heat_without_contact(states).items()})
+    heat_of_joints = Column(sampled(_heat(states)), "J", "contacts", note=HEAT)
+    return replace(run, history={**run.history, **others}, contacts={**run.contacts, "dissipation_J": heat_of_joints})
 
 
 def _taken_together(case: TrussCase, path: TrussPath) -> tuple[str, ...]:
@@ -276,10 +289,11 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
     run = _run(case, "reduced", plain, energy, items, _events(case, motion), summary, native=motion,
                warnings=(*motion.warnings, *_beyond(case, plain, items)))
     velocity = Column(states["velocity_m_per_s"], "m/s", "nodes")
-    heat = Column(of_joints, "J", "contacts", note="heat of friction since the start")
+    heat = Column(of_joints, "J", "contacts", note=HEAT)
     moments = {} if not case.drive else {
         "drive_moment_N_m": Column(states["drive_moment_N_m"], "N m", "drives", note="on the link, anticlockwise")}
-    return replace(run, history={**run.history, "velocity_m_per_s": velocity, **moments},
+    others = _heat_columns(_heat_without_contact(states))
+    return replace(run, history={**run.history, **others, "velocity_m_per_s": velocity, **moments},
                    contacts={**run.contacts, "dissipation_J": heat})
 
 

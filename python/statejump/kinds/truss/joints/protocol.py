@@ -108,7 +108,7 @@ class JointType(Generic[ItemType, ArraysType]):
 
     section: ClassVar[str]
     Item: ClassVar[type[Item]]
-    columns: ClassVar[tuple[JointColumn, ...]] = ()
+    columns: ClassVar[tuple[JointColumn, ...]] = ()  # the first says where it is: a slide, an offset, a rotation
     varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that a jump may follow
     has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
     has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result
