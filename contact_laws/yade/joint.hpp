@@ -75,6 +75,10 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
   std::vector<Vector3r> slipMemory;
   Real slipSlope = 0;
   Real slipMerged = 0;
+  int slipHeld = 0;
+  Vector3r slipShift = Vector3r::Zero();
+  Vector3r slipSums = Vector3r::Zero();
+  Vector3r slipLine = Vector3r::Zero();
   bool begun = false;
   Real impactSpeed = 0;
   Real dissipationSlope = 0;
@@ -109,7 +113,19 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
         read_only("slipMemory", &JointPhys::slipMemory,
                   "What friction with partial slip remembers: for rings from the centre to the rim "
                   "8 G* r [N/m] and their elastic displacement along both axes [m], body 1 against "
-                  "2"),
+                  "2; of the first slipHeld of them before they moved by slipShift"),
+        read_only("slipHeld", &JointPhys::slipHeld,
+                  "How many points of slipMemory only moved, all alike, since they were written "
+                  "[-]"),
+        read_only("slipShift", &JointPhys::slipShift,
+                  "By how much they moved since, along both axes, and 0 [m]"),
+        read_only("slipSums", &JointPhys::slipSums,
+                  "Tangential force of their rings along both axes [N] and twice their energy [J], "
+                  "as they were written"),
+        read_only("slipLine", &JointPhys::slipLine,
+                  "Largest displacement that they are known not to exceed, as they were written, "
+                  "at the centre and at the last of them, straight over the square of 8 G* r "
+                  "between, and 0 [m]"),
         read_only("slipSlope", &JointPhys::slipSlope,
                   "Bound on that displacement at the last step, over the difference of squares of "
                   "8 G* a and 8 G* r [m^3/N^2]"),

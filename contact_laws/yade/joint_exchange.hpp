@@ -100,6 +100,10 @@ void copy_physics(const From& from, To& to) {
   to.slipMemory = from.slipMemory;
   to.slipSlope = from.slipSlope;
   to.slipMerged = from.slipMerged;
+  to.slipHeld = from.slipHeld;
+  to.slipShift = from.slipShift;
+  to.slipSums = from.slipSums;
+  to.slipLine = from.slipLine;
   to.begun = from.begun;
   to.impactSpeed = from.impactSpeed;
   to.dissipationSlope = from.dissipationSlope;

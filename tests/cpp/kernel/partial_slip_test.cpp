@@ -196,6 +196,70 @@ TEST(PartialSlip, NestedReversalsFollowMasingHoweverManyPointsStick) {
   }
 }
 
+/// A contact that rings after a slide and comes to rest in the middle: nested reversals.
+/// @param first, last half periods to go through; @param visit is called after each step
+template <class Visit>
+void ring(Contact& contact, int first, int last, const Visit& visit) {
+  constexpr int steps = 50;
+  const double gross = Contact::gross(usual_depth);
+  for (int k = first * steps + 1; k <= last * steps; ++k) {
+    const double t = testing::pi / steps * k;
+    const double fades = std::exp(-0.03 * t);
+    contact.to(usual_depth, {0.3 * gross + 0.8 * gross * fades * std::sin(t), 0.0});
+    visit();
+  }
+}
+
+TEST(PartialSlip, PointsThatAreHeldChangeNothingButRounding) {
+  Contact lazy = pressed();
+  Contact eager = pressed();
+  std::vector<PartialSlipResponse> answers;
+  ring(lazy, 0, 60, [&] { answers.push_back(lazy.response); });
+  std::size_t i = 0;
+  double worst = 0.0;
+  const double limit = mu * Contact::normal(usual_depth);
+  const double energy = limit * Contact::gross(usual_depth);
+  ring(eager, 0, 60, [&] {
+    eager.memory.release();
+    const PartialSlipResponse& other = answers[i++];
+    worst = std::max(worst, (eager.response.force - other.force).norm() / limit);
+    worst = std::max(worst, std::abs(eager.response.elastic - other.elastic) / energy);
+    worst = std::max(worst, std::abs(eager.response.dissipation - other.dissipation) / energy);
+  });
+  // Rounding of each of the steps, and what either left out beyond its capacity.
+  EXPECT_LE(worst, 3000 * 1e-16 + (lazy.memory.merged() + eager.memory.merged()) / limit);
+  EXPECT_GT(lazy.memory.held().count, 8);
+  // A slide that goes through any share of what is held.
+  for (const double share : {-1.5, -0.6, -0.2, -0.05, 0.05, 0.2, 0.6, 1.5}) {
+    Contact held = lazy;
+    Contact told = lazy;
+    told.memory.release();
+    const double next = lazy.slide.a + share * Contact::gross(usual_depth);
+    EXPECT_NEAR(held.to(usual_depth, next), told.to(usual_depth, next), 1e-13 * limit) << share;
+    EXPECT_NEAR(held.response.elastic, told.response.elastic, 1e-13 * energy) << share;
+  }
+  // What is kept beside the points is what they say.
+  PartialSlipMemory released = lazy.memory;
+  released.release();
+  EXPECT_NEAR(elastic_energy(released), lazy.response.elastic, 1e-13 * energy);
+}
+
+TEST(PartialSlip, AContactThatIsHeldIsSeldomLookedAtAsAWhole) {
+  Contact contact = pressed();
+  ring(contact, 0, 40, [] {});
+  ASSERT_GT(contact.memory.size(), 30);
+  const auto written = [&] { return contact.memory.points()[8][1]; };
+  double last = written();
+  int looks = 0;
+  int steps = 0;
+  ring(contact, 40, 60, [&] {
+    looks += written() != last ? 1 : 0;
+    last = written();
+    ++steps;
+  });
+  EXPECT_LE(looks, steps / 12);
+}
+
 TEST(PartialSlip, InitialStiffnessIsMindlins) {
   Contact contact = pressed();
   const double slide = 1e-9 * Contact::gross(usual_depth);

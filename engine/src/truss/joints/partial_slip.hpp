@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
+#include <vector>
 
 #include "statejump/kernel/partial_slip_line.hpp"
 #include "statejump/truss/joints/interface.hpp"
@@ -15,12 +17,13 @@ namespace statejump::truss::detail {
 constexpr int partial_slip_history = 3 + 2 * kernel::PartialSlipMemory::capacity;
 
 inline kernel::PartialSlipMemory read_partial_slip(const double* numbers) {
-  kernel::PartialSlipMemory memory;
-  memory.begin(numbers[0], numbers[1]);
-  for (int i = 0; i < static_cast<int>(numbers[2]); ++i) {
-    memory.push({numbers[3 + 2 * i], {numbers[4 + 2 * i], 0.0}});
+  const auto count = static_cast<std::size_t>(numbers[2]);
+  std::vector<kernel::Vector3> points;
+  points.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    points.emplace_back(numbers[3 + 2 * i], numbers[4 + 2 * i], 0.0);
   }
-  return memory;
+  return {std::move(points), numbers[0], numbers[1], {}};
 }
 
 inline void write_partial_slip(const kernel::PartialSlipMemory& memory, double* numbers) {

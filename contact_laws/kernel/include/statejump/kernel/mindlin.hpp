@@ -33,6 +33,19 @@ inline double mindlin_stiffness(double effective_shear_modulus, double contact_r
   return 8.0 * effective_shear_modulus * contact_radius;
 }
 
+namespace detail {
+
+/// What a spring remembers.
+inline void keep(const Vector3& force, double stiffness, bool slipping, ContactHistory& history) {
+  history.tangential_force = force;
+  history.tangential_stiffness = stiffness;
+  history.slipping = slipping;
+  history.tangential_axis = Vector3::Zero();
+  history.memory.clear();
+}
+
+}  // namespace detail
+
 /// Energy account of one step of the tangential spring.
 struct MindlinEnergy {
   double elastic;      ///< 1/2 F^2 / k_t after the step [J], >= 0
@@ -87,7 +100,7 @@ inline MindlinEnergy mindlin_step(double stiffness, double limit, const Vector3&
   const double old_work = old_force.dot(slide);
 
   if (!(stiffness > 0.0) || !(limit > 0.0)) {
-    history = {Vector3::Zero(), std::max(stiffness, 0.0), stiffness > 0.0};
+    detail::keep(Vector3::Zero(), std::max(stiffness, 0.0), stiffness > 0.0, history);
     return {0.0, std::max(0.0, 0.5 * (old_force_squared * old_compliance - old_work))};
   }
 
@@ -112,7 +125,7 @@ inline MindlinEnergy mindlin_step(double stiffness, double limit, const Vector3&
     force = limit * direction;
     force_squared = limit * limit;
   }
-  history = {force, stiffness, slipping};
+  detail::keep(force, stiffness, slipping, history);
   return {0.5 * force_squared * compliance, std::max(0.0, dissipation)};
 }
 

@@ -7,72 +7,28 @@
 #include <cstddef>
 #include <utility>
 
+#include "statejump/kernel/partial_slip_loss.hpp"
 #include "statejump/kernel/partial_slip_memory.hpp"
 
 namespace statejump::kernel {
 
 namespace detail {
 
-/// A ring in a step, along the direction in which it slips.
-struct Ring {
-  double start;          ///< U before the step [m]
-  double slide;          ///< of the two bodies while the ring touches [m]
-  double before, after;  ///< bounds on U when it begins to touch and when it ends [m]
-
-  double change() const { return after - before; }
-  double stick() const { return std::max(0.0, before - start); }  ///< until the bound is met
-  double speed() const { return slide - change(); }               ///< towards the bound
-  double slip() const { return std::max(0.0, start + slide - after); }
-  /// Loss per unit of x: the mean bound while the ring slips, times its slip.
-  double loss() const {
-    const double sticks = stick();
-    const double met = sticks > 0.0 ? before + change() * std::min(1.0, sticks / speed()) : before;
-    return 0.5 * (met + after) * slip();
-  }
-};
-
-/// Gauss' three points on [0, 1]: exact to the fifth power.
-inline constexpr std::array<double, 3> gauss_point{0.1127016653792583, 0.5, 0.8872983346207417};
-inline constexpr std::array<double, 3> gauss_weight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-
-/// Loss of a piece that slips in one direction. What Ring holds is straight over x^2 between its
-/// ends; the loss is a polynomial unless rings that stick first meet a bound that moves.
-inline double loss(double xa, const Ring& a, double xb, const Ring& b) {
-  const bool moves = a.change() != 0.0 || b.change() != 0.0;
-  if (!moves || (a.stick() == 0.0 && b.stick() == 0.0)) {
-    const Piece w(xa, xb);
-    const double mean_a = 0.5 * (a.before + a.after);
-    const double mean_b = 0.5 * (b.before + b.after);
-    return w.both_at_a * mean_a * a.slip() + w.both_at_b * mean_b * b.slip() +
-           w.one_each * (mean_a * b.slip() + mean_b * a.slip());
-  }
-  const double scale = 1.0 / (xb + xa);
-  double sum = 0.0;
-  for (std::size_t g = 0; g < 3; ++g) {
-    const double step = gauss_point[g] * (xb - xa);
-    const double s = gauss_point[g] * (2.0 * xa + step) * scale;
-    const Ring ring{a.start + s * (b.start - a.start), a.slide + s * (b.slide - a.slide),
-                    a.before + s * (b.before - a.before), a.after + s * (b.after - a.after)};
-    sum += gauss_weight[g] * ring.loss();
-  }
-  return sum * (xb - xa);
-}
-
 /// One step, from the trial state to the new memory.
 class PartialSlipStep {
  public:
-  PartialSlipStep(double stiffness, double limit, const Tangent& slide,
-                  const PartialSlipMemory& before)
+  /// @param memory before the step; run() leaves in it what is remembered after
+  PartialSlipStep(double stiffness, double limit, const Tangent& slide, PartialSlipMemory& memory)
       : edge_(stiffness),
         square_(stiffness * stiffness),
         slope_(1.5 * limit / (stiffness * square_)),
         slide_(slide),
-        old_(before),
-        old_edge_(before.edge()),
+        old_(memory),
+        old_edge_(memory.edge()),
         smallest_(1e-15 * slope_ * square_) {}
 
   /// Loss of rings that lose what presses them together evenly over a step [J].
-  static double released(const Tangent& slide, const PartialSlipMemory& memory) {
+  static double released(const Tangent& slide, PartialSlipMemory& memory) {
     const PartialSlipStep step(memory.edge() * 1e-9, 0.0, slide, memory);
     double sum = 0.0;
     for (int i = 1; i < memory.size(); ++i) {
@@ -81,15 +37,16 @@ class PartialSlipStep {
     return sum;
   }
 
-  PartialSlipResponse run(PartialSlipMemory& memory) {
+  PartialSlipResponse run() {
     stuck_ = stuck();
+    if (stuck_ < old_.held().count) old_.release();
     trial();
     slipping_ = stuck_ == 0;  // all rings but the rim's, which carries nothing
     for (int i = 0; i + 1 < knots_; ++i) slipping_ = slipping_ && at(i).outside;
     add(at(0).x, at(0).outside ? bent(at(0)) : at(0).trial, false);
     for (int i = 1; i < knots_; ++i) piece(at(i - 1), at(i));
-    store(memory);
-    return answer(memory, loss_, slipping_);
+    store();
+    return answer(old_, loss_, slipping_);
   }
 
  private:
@@ -106,22 +63,21 @@ class PartialSlipStep {
   /// Points from the centre on that stick and lie well within what the step changes: they move with
   /// the slide and nothing else happens to them. Rings slip from the rim inwards, so that these are
   /// nearly all of a contact that is held; the rest is bent and tidied up by itself, with
-  /// `neighbours` of them.
-  int stuck() const {
-    constexpr int neighbours = 5;
+  /// `neighbours` of them. What the memory holds is not looked at while it is held well enough.
+  int stuck() {
+    constexpr int neighbours = 3;
     const int most = old_.size() - neighbours + 1;
     if (most <= neighbours || !(old_[most - 1].x < edge_)) return 0;
-    int outside = 0;
-    for (int i = 0; i < most; ++i) {
-      const double outer = bound(old_.x()[i]) + smallest_;
-      const double a = old_.a()[i] + slide_.a;
-      const double b = old_.b()[i] + slide_.b;
-      outside += a * a + b * b > outer * outer ? 1 : 0;
-    }
-    if (outside == 0) return most - neighbours;
-    int inside = 0;
-    while (inside < most && !knot(old_[inside].x, old_[inside].u, 1.0).outside) ++inside;
-    return std::max(0, inside - neighbours);
+    const int held = old_.held().count;
+    if (held > 0 && !old_.holds(slide_, bound(0.0), bound(old_[held - 1].x))) old_.release();
+    int inside = old_.held().count;
+    while (inside < most && !outside(old_[inside])) ++inside;
+    return std::max(0, (inside < most ? inside : most) - neighbours);
+  }
+
+  bool outside(const PartialSlipMemory::Point& point) const {
+    const double outer = bound(point.x) + smallest_;
+    return (point.u + slide_).squared() > outer * outer;
   }
 
   const Knot& at(int i) const { return knot_[static_cast<std::size_t>(i)]; }
@@ -316,25 +272,55 @@ class PartialSlipStep {
   PartialSlipMemory::Point& last() { return point_[static_cast<std::size_t>(size_ - 1)]; }
 
   /// Points that say nothing go; if there are still too many, those that say least.
-  void store(PartialSlipMemory& memory) {
+  void store() {
     double merged = old_.merged();
-    // where the contact grows its old edge lies on a straight line if the path is straight
+    // Where the contact grows its old edge lies on a straight line if the path is straight, and
+    // close to one in small steps of a curve: a thousandth of the least that is merged.
+    const double nothing = edge_ > old_edge_ ? 1e-3 * least_merged * limit() : 0.0;
     for (int i = size_ - 2; i > 0 && i >= size_ - 3; --i) {
       const auto j = static_cast<std::size_t>(i);
-      const PartialSlipMemory::Point& a = point_[j - 1];
-      const PartialSlipMemory::Point& b = point_[j];
-      const PartialSlipMemory::Point& c = point_[j + 1];
-      const double share = (b.x - a.x) * (b.x + a.x) / ((c.x - a.x) * (c.x + a.x));
-      const Tangent off = b.u - (a.u + share * (c.u - a.u));
-      if (off.squared() <= 100.0 * smallest_ * smallest_) drop(i);
+      const LeftOut left = left_out(point_[j - 1], point_[j], point_[j + 1]);
+      if (left.squared_offset > 100.0 * smallest_ * smallest_) {
+        if (left.force() > nothing) continue;
+        merged += left.force();
+      }
+      drop(i);
     }
     if (stuck_ + size_ > PartialSlipMemory::capacity) merged += merge();
-    memory.keep(stuck_, slide_, slope_, merged);
-    for (int i = 0; i < size_; ++i) memory.push(point_[static_cast<std::size_t>(i)]);
+    old_.keep(stuck_, slide_, slope_, merged);
+    hold();
+    for (int i = 0; i < size_; ++i) old_.push(point_[static_cast<std::size_t>(i)]);
+  }
+
+  /// Holds the points that stick and will do so for `steps` like this one, if these are `least`
+  /// more than are held: holding costs a look at all of them.
+  void hold() {
+    constexpr int least = 4;
+    constexpr double steps = 32.0;
+    const int held = old_.held().count;
+    const double wanted =
+        steps * (std::abs(slide_.a) + std::abs(slide_.b) + std::abs(bound(0.0) - old_bound(0.0)));
+    double room = bound(0.0);  // of the points looked at
+    const auto end_from = [&](int i, int last) {
+      while (i < last) {
+        const auto [x, u] = old_[i];
+        const double next = std::min(room, bound(x) - std::abs(u.a) - std::abs(u.b));
+        if (!(next >= wanted)) break;
+        room = next;
+        ++i;
+      }
+      return i;
+    };
+    if (stuck_ < held + least || end_from(held, held + least) < held + least) return;
+    old_.release();
+    room = bound(0.0);
+    const int end = end_from(0, stuck_);
+    if (end >= least) old_.hold(end, bound(0.0) - room, bound(old_[end - 1].x) - room);
   }
 
   /// Replaces points that say least by chords. @return sum of the changes of force [N]
   double merge() {
+    old_.release();
     std::copy_backward(point_.begin(), point_.begin() + size_, point_.begin() + stuck_ + size_);
     for (int i = 0; i < stuck_; ++i) {
       point_[static_cast<std::size_t>(i)] = {old_[i].x, old_[i].u + slide_};
@@ -342,12 +328,12 @@ class PartialSlipStep {
     size_ += stuck_;
     stuck_ = 0;
     constexpr int kept = 3 * PartialSlipMemory::capacity / 4;
-    double least = 1e-9 * slope_ * square_ * edge_ / 1.5;  // of the force limit
+    double least = least_merged * limit();
     double merged = 0.0;
     while (size_ > kept) {
       for (int i = size_ - 2; i > 0 && size_ > kept; i -= 2) {
         const auto j = static_cast<std::size_t>(i);
-        const double change = left_out(point_[j - 1], point_[j], point_[j + 1]);
+        const double change = left_out(point_[j - 1], point_[j], point_[j + 1]).force();
         if (change > least) continue;
         merged += change;
         drop(i);
@@ -362,7 +348,10 @@ class PartialSlipStep {
     --size_;
   }
 
-  static constexpr double straight = 1e-8;  // rad: a chord is 1e-17 short
+  double limit() const { return slope_ * square_ * edge_ / 1.5; }  ///< mu F_N [N]
+
+  static constexpr double least_merged = 1e-9;  // of the force limit
+  static constexpr double straight = 1e-8;      // rad: a chord is 1e-17 short
   static constexpr double chord = 1e-4;
   static constexpr int largest = 4 * PartialSlipMemory::capacity;
 
@@ -370,7 +359,7 @@ class PartialSlipStep {
   double square_;  // its square
   double slope_;   // bound on |U| = slope_ (edge_^2 - x^2)
   Tangent slide_;
-  const PartialSlipMemory& old_;
+  PartialSlipMemory& old_;  // until store()
   double old_edge_;
   double smallest_;  // rounding of the largest bound
   double loss_ = 0.0;
@@ -440,7 +429,7 @@ class PartialSlipStep {
 inline PartialSlipResponse partial_slip_step(double stiffness, double limit, const Tangent& slide,
                                              PartialSlipMemory& memory) {
   if (stiffness > 0.0 && limit > 0.0) {
-    return detail::PartialSlipStep(stiffness, limit, slide, memory).run(memory);
+    return detail::PartialSlipStep(stiffness, limit, slide, memory).run();
   }
   const double lost = memory.size() > 0 ? detail::PartialSlipStep::released(slide, memory) : 0.0;
   memory.clear();

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "statejump/kernel/vector.hpp"
 
 namespace statejump::kernel {
 
@@ -19,82 +23,103 @@ struct Tangent {
 };
 
 /// What a contact with partial slip remembers: the elastic displacement U of its rings, as a line
-/// of straight pieces over x^2; see partial_slip_step(). Copying it costs what it holds. A step
-/// looks at every point and changes few: coordinates lie in rows of their own, so that several
-/// points are looked at in one instruction.
+/// of straight pieces over x^2; see partial_slip_step().
+///
+/// A contact that is held moves nearly all of its rings alike. So the first points may be held():
+/// they stay as they were written, and what they moved by since, their force and their energy are
+/// kept beside them. Points, then, are moved all at once when somebody has to look at each.
 class PartialSlipMemory {
  public:
   struct Point {
     double x;   ///< 8 G* r [N/m], r the radius of the ring
     Tangent u;  ///< elastic displacement of that ring [m]
   };
+  /// What is known of the first points while they only move.
+  struct Held {
+    int count = 0;           ///< points; 0: none, and nothing else here is read
+    Tangent shift{};         ///< by which they moved since they were written [m]
+    Tangent force{};         ///< integral of U over x between them, as written [N]
+    double squares = 0.0;    ///< integral of U^2 over x, as written [J]
+    double at_centre = 0.0;  ///< a line over x^2 that |U| as written does not exceed, at x = 0 [m]
+    double at_last = 0.0;    ///< at the last of them [m]
+  };
   /// Points at most. A path of straight parts under few nested reversals needs two for each; a
   /// smooth curve under growing load is approximated by chords, see merged().
   static constexpr int capacity = 48;
-  using Coordinates = std::array<double, static_cast<std::size_t>(capacity)>;
 
-  PartialSlipMemory() {}  // NOLINT(modernize-use-equals-default): the points stay as they are
-  PartialSlipMemory(const PartialSlipMemory& other) { *this = other; }
-  PartialSlipMemory& operator=(const PartialSlipMemory& other) {
-    fill(other.size_, other.slope_, other.merged_, [&](int i) { return other[i]; });
-    return *this;
-  }
+  PartialSlipMemory() = default;
+  /// Takes up what another gave by points(), slope(), merged() and held().
+  PartialSlipMemory(std::vector<Vector3>&& points, double slope, double merged, const Held& held)
+      : points_(std::move(points)), slope_(slope), merged_(merged), held_(held) {}
 
-  int size() const { return size_; }  ///< 0: no contact, or a new one
+  int size() const { return static_cast<int>(points_.size()); }  ///< 0: no contact, or a new one
   Point operator[](int i) const {
-    const auto j = static_cast<std::size_t>(i);
-    return {x_[j], {a_[j], b_[j]}};
+    const Vector3& point = points_[static_cast<std::size_t>(i)];
+    const Tangent u{point[1], point[2]};
+    return {point[0], i < held_.count ? u + held_.shift : u};
   }
   /// Stiffness 8 G* a [N/m] of the contact that left this memory; 0: none.
-  double edge() const { return size_ > 0 ? (*this)[size_ - 1].x : 0.0; }
+  double edge() const { return points_.empty() ? 0.0 : points_.back()[0]; }
   /// Of the bound on |U| over x^2 [m^3/N^2].
   double slope() const { return slope_; }
   /// Sum of the changes of force by points that were merged since the contact began, each with its
   /// sign lost [N]: a bound on the error of the force.
   double merged() const { return merged_; }
-  /// Of all points: x [N/m] and both components of U [m].
-  const double* x() const { return x_.data(); }
-  const double* a() const { return a_.data(); }
-  const double* b() const { return b_.data(); }
+  const Held& held() const { return held_; }
+  /// x [N/m] and both components of U [m]; those of points that are held as they were written.
+  const std::vector<Vector3>& points() const { return points_; }
+  /// The same, for whoever keeps them; the memory is empty then.
+  std::vector<Vector3> take_points() {
+    held_.count = 0;
+    return std::exchange(points_, {});
+  }
 
   void clear() { begin(0.0, 0.0); }
-  /// Starts over with values that memory() of another contact gave.
-  void begin(double slope, double merged) { keep(0, {}, slope, merged); }
-  void push(const Point& point) {
-    const auto j = static_cast<std::size_t>(size_++);
-    x_[j] = point.x;
-    a_[j] = point.u.a;
-    b_[j] = point.u.b;
+  /// Starts over without points.
+  void begin(double slope, double merged) {
+    points_.clear();
+    slope_ = slope;
+    merged_ = merged;
+    held_.count = 0;
   }
-  /// Starts over with points point_at(0), point_at(1), ... @param count at most the capacity
-  template <class PointAt>
-  void fill(int count, double slope, double merged, const PointAt& point_at) {
-    begin(slope, merged);
-    for (int i = 0; i < count; ++i) {
-      const auto j = static_cast<std::size_t>(i);
-      const Point point = point_at(i);
-      x_[j] = point.x;
-      a_[j] = point.u.a;
-      b_[j] = point.u.b;
-    }
-    size_ = count;
-  }
+  void push(const Point& point) { points_.emplace_back(point.x, point.u.a, point.u.b); }
   /// Keeps the first points, their rings moved by a slide [m], and forgets the others.
+  /// @param count not less than are held
   void keep(int count, const Tangent& slide, double slope, double merged) {
-    for (std::size_t j = 0; j < static_cast<std::size_t>(count); ++j) {
-      a_[j] += slide.a;
-      b_[j] += slide.b;
-    }
-    size_ = count;
+    if (held_.count > 0) held_.shift = held_.shift + slide;
+    move(held_.count, count, slide);
+    points_.resize(static_cast<std::size_t>(count));
     slope_ = slope;
     merged_ = merged;
   }
 
+  /// Whether what is held can be moved by a slide and stays below a bound that is straight over
+  /// x^2: [m] at x = 0 and at the last point that is held.
+  bool holds(const Tangent& slide, double at_centre, double at_last) const {
+    const double room = std::min(at_centre - held_.at_centre, at_last - held_.at_last);
+    return held_.count > 0 && room >= 0.0 && (held_.shift + slide).squared() <= room * room;
+  }
+  /// Writes what is held to where it is now: nothing is held any more.
+  void release() {
+    move(0, held_.count, held_.shift);
+    held_.count = 0;
+  }
+  /// Holds the first points, none of which is held yet.
+  /// @param at_centre, at_last of a line over x^2 that is not exceeded by |U| [m]
+  void hold(int count, double at_centre, double at_last);
+
  private:
-  int size_ = 0;
+  void move(int first, int end, const Tangent& slide) {
+    for (auto j = static_cast<std::size_t>(first); j < static_cast<std::size_t>(end); ++j) {
+      points_[j][1] += slide.a;
+      points_[j][2] += slide.b;
+    }
+  }
+
+  std::vector<Vector3> points_;
   double slope_ = 0.0;
   double merged_ = 0.0;
-  Coordinates x_, a_, b_;
+  Held held_;
 };
 
 /// What one step of the contact with partial slip answers.
@@ -120,54 +145,65 @@ struct Piece {
   }
 };
 
-/// Change of the force when the point b between a and c is left out [N].
-inline double left_out(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b,
-                       const PartialSlipMemory::Point& c) {
+/// What a point says that is left out.
+struct LeftOut {
+  double squared_offset;  ///< of the point from the chord of its neighbours [m^2]
+  double base;            ///< [N/m]
+  double force() const { return std::sqrt(squared_offset) * std::abs(base); }  ///< its change [N]
+};
+
+/// When the point b between a and c is left out.
+inline LeftOut left_out(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b,
+                        const PartialSlipMemory::Point& c) {
   const double share = (b.x - a.x) * (b.x + a.x) / ((c.x - a.x) * (c.x + a.x));
   const Tangent off = b.u - (a.u + share * (c.u - a.u));
   // the triangle's height times the mean of its base over x: weights of the two pieces at b
   const double base = (b.x - a.x) * (2.0 * b.x + a.x) / (3.0 * (b.x + a.x)) +
                       (c.x - b.x) * (2.0 * c.x + b.x) / (3.0 * (c.x + b.x));
-  return off.norm() * std::abs(base);
+  return {off.squared(), base};
 }
 
-/// Force and energy that a memory holds, with what the step adds. With theta from 0 to 1, straight
-/// over x^2, a piece is U_a + theta (U_b - U_a); the integrals of theta and theta^2 over dx are
-/// those of Piece, d (1/2 - q/6) and d (1/3 - q/6 + q^2/30). Values of all pieces first, then their
-/// sums, so that a compiler takes several at once.
-inline PartialSlipResponse answer(const PartialSlipMemory& memory, double loss, bool slipping) {
-  const std::size_t pieces = memory.size() > 0 ? static_cast<std::size_t>(memory.size()) - 1 : 0;
-  const double* const x = memory.x();
-  const double* const a = memory.a();
-  const double* const b = memory.b();
-  constexpr std::size_t lanes = 4;
-  PartialSlipMemory::Coordinates force_a, force_b, squares;
-  for (std::size_t i = 0; i < pieces; ++i) {
-    const double d = x[i + 1] - x[i];
-    const double q = d / (x[i + 1] + x[i]);
+/// Integrals over x of U [N] and of U^2 [J], by pieces.
+struct SlipSums {
+  Tangent force{};
+  double squares = 0.0;
+
+  /// With theta from 0 to 1, straight over x^2, a piece is U_a + theta (U_b - U_a); the integrals
+  /// of theta and theta^2 over dx are those of Piece, d (1/2 - q/6) and d (1/3 - q/6 + q^2/30).
+  void add(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b) {
+    const double d = b.x - a.x;
+    const double q = d / (b.x + a.x);
     const double sixth = q * (1.0 / 6.0);
     const double first = d * (0.5 - sixth);
     const double second = d * ((1.0 / 3.0) - sixth + q * q * (1.0 / 30.0));
-    const double rise_a = a[i + 1] - a[i];
-    const double rise_b = b[i + 1] - b[i];
-    force_a[i] = a[i] * d + rise_a * first;
-    force_b[i] = b[i] * d + rise_b * first;
-    squares[i] = (a[i] * a[i] + b[i] * b[i]) * d + (a[i] * rise_a + b[i] * rise_b) * (2.0 * first) +
-                 (rise_a * rise_a + rise_b * rise_b) * second;
+    const Tangent rise = b.u - a.u;
+    force = force + d * a.u + first * rise;
+    squares += a.u.squared() * d + a.u.dot(rise) * (2.0 * first) + rise.squared() * second;
   }
-  const auto sum = [&](const PartialSlipMemory::Coordinates& values) {
-    std::array<double, lanes> part{};
-    std::size_t i = 0;
-    for (; i + lanes <= pieces; i += lanes) {
-      for (std::size_t l = 0; l < lanes; ++l) part[l] += values[i + l];
-    }
-    for (; i < pieces; ++i) part[0] += values[i];
-    return (part[0] + part[1]) + (part[2] + part[3]);
-  };
-  return {{sum(force_a), sum(force_b)}, 0.5 * sum(squares), loss, slipping};
+};
+
+/// Force and energy that a memory holds, with what the step adds.
+inline PartialSlipResponse answer(const PartialSlipMemory& memory, double loss, bool slipping) {
+  SlipSums sums;
+  int first = 0;
+  const PartialSlipMemory::Held& held = memory.held();
+  if (held.count > 0) {
+    first = held.count - 1;
+    const double width = memory[first].x - memory[0].x;
+    sums.force = held.force + width * held.shift;
+    sums.squares = held.squares + 2.0 * held.shift.dot(held.force) + width * held.shift.squared();
+  }
+  for (int i = first; i + 1 < memory.size(); ++i) sums.add(memory[i], memory[i + 1]);
+  return {sums.force, std::max(0.0, 0.5 * sums.squares), loss, slipping};
 }
 
 }  // namespace detail
+
+inline void PartialSlipMemory::hold(int count, double at_centre, double at_last) {
+  detail::SlipSums sums;
+  for (int i = 0; i + 1 < count; ++i) sums.add((*this)[i], (*this)[i + 1]);
+  held_ = {count, {}, sums.force, sums.squares, at_centre, at_last};
+}
 
 /// Energy [J] of the tangential traction that a memory holds.
 inline double elastic_energy(const PartialSlipMemory& memory) {

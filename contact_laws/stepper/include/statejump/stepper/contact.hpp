@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <limits>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "statejump/kernel/contact_law.hpp"
@@ -55,6 +56,11 @@ struct ContactPhysics {
   std::vector<Vector3> slipMemory;  ///< 8 G* r [N/m], elastic displacement along both axes [m]
   double slipSlope = 0.0;           ///< [m^3/N^2]
   double slipMerged = 0.0;          ///< [N]
+  // What the kernel holds of slipMemory, see PartialSlipMemory::Held.
+  int slipHeld = 0;
+  Vector3 slipShift = Vector3::Zero();  ///< [m]
+  Vector3 slipSums = Vector3::Zero();   ///< [N], [N], [J]
+  Vector3 slipLine = Vector3::Zero();   ///< [m]
   bool begun = false;
   double impactSpeed = 0.0;            ///< [m/s]
   double dissipationSlope = 0.0;       ///< [N s/m]
@@ -219,27 +225,50 @@ kernel::ContactParameters contact_parameters(const Physics& physics) {
 }
 
 /// History of friction, carried into the tangent plane of this step. Stored forces act on body 2,
-/// the kernel's on body 1.
-template <class Geometry, class Physics>
-kernel::ContactHistory contact_history(const Geometry& geometry, const Physics& physics) {
-  kernel::ContactHistory history;
-  history.tangential_force = kernel::transport(-physics.shearForce, geometry.previousNormal,
-                                               geometry.normal, geometry.twistAngle);
-  history.tangential_stiffness = physics.ks;
-  history.slipping = physics.slipping;
-  if (!physics.slipMemory.empty()) {
+/// the kernel's on body 1. Memory is not copied but borrowed, until this ends.
+template <class Physics>
+class BorrowedHistory {
+ public:
+  template <class Geometry>
+  BorrowedHistory(const Geometry& geometry, Physics& physics) : physics_(physics) {
+    history.tangential_force = kernel::transport(-physics.shearForce, geometry.previousNormal,
+                                                 geometry.normal, geometry.twistAngle);
+    history.tangential_stiffness = physics.ks;
+    history.slipping = physics.slipping;
+    if (physics.slipMemory.empty()) return;
     history.tangential_axis = kernel::transport(physics.slipAxis, geometry.previousNormal,
                                                 geometry.normal, geometry.twistAngle);
-    history.memory.fill(static_cast<int>(physics.slipMemory.size()), physics.slipSlope,
-                        physics.slipMerged, [&](int i) -> kernel::PartialSlipMemory::Point {
-                          const Vector3& point = physics.slipMemory[static_cast<std::size_t>(i)];
-                          return {point[0], {point[1], point[2]}};
-                        });
+    const Vector3 &shift = physics.slipShift, &sums = physics.slipSums, &line = physics.slipLine;
+    history.memory = {
+        std::move(physics.slipMemory),
+        physics.slipSlope,
+        physics.slipMerged,
+        {physics.slipHeld, {shift[0], shift[1]}, {sums[0], sums[1]}, sums[2], line[0], line[1]}};
+    borrowed_ = true;
   }
-  return history;
-}
+  BorrowedHistory(const BorrowedHistory&) = delete;
+  BorrowedHistory& operator=(const BorrowedHistory&) = delete;
+  ~BorrowedHistory() {
+    kernel::PartialSlipMemory& memory = history.memory;
+    if (!borrowed_ && memory.size() == 0) return;
+    const kernel::PartialSlipMemory::Held& held = memory.held();
+    physics_.slipAxis = history.tangential_axis;
+    physics_.slipSlope = memory.slope();
+    physics_.slipMerged = memory.merged();
+    physics_.slipHeld = held.count;
+    physics_.slipShift = {held.shift.a, held.shift.b, 0.0};
+    physics_.slipSums = {held.force.a, held.force.b, held.squares};
+    physics_.slipLine = {held.at_centre, held.at_last, 0.0};
+    physics_.slipMemory = memory.take_points();
+  }
+  kernel::ContactHistory history;
 
-/// What the contact keeps until the next step: stiffnesses, forces and history.
+ private:
+  Physics& physics_;
+  bool borrowed_ = false;
+};
+
+/// What the contact keeps until the next step: stiffnesses and forces.
 template <class Physics>
 void store(const kernel::ContactResponse& response, const kernel::ContactHistory& history,
            const Vector3& normal, Physics& physics) {
@@ -248,19 +277,6 @@ void store(const kernel::ContactResponse& response, const kernel::ContactHistory
   physics.slipping = history.slipping;
   physics.normalForce = response.normal_force * normal;
   physics.shearForce = -history.tangential_force;
-  const kernel::PartialSlipMemory& memory = history.memory;
-  if (memory.size() == 0 && physics.slipMemory.empty()) return;
-  physics.slipAxis = history.tangential_axis;
-  physics.slipSlope = memory.slope();
-  physics.slipMerged = memory.merged();
-  const auto points = static_cast<std::size_t>(memory.size());
-  physics.slipMemory.resize(points);
-  for (std::size_t i = 0; i < points; ++i) {
-    Vector3& point = physics.slipMemory[i];
-    point[0] = memory.x()[i];
-    point[1] = memory.a()[i];
-    point[2] = memory.b()[i];
-  }
 }
 
 /// The energies of one contact. Expansion works on it through the clearance c and the radii: with
@@ -311,7 +327,8 @@ template <class Physics, class Host>
 /// Hertz and Mindlin. @return false when the contact is open; true, without forces, when it failed
 template <class Geometry, class Physics, class Host>
 bool hertz_mindlin_step(const Geometry& geometry, Physics& physics, Host&& host) {
-  kernel::ContactHistory history = contact_history(geometry, physics);
+  BorrowedHistory borrowed(geometry, physics);
+  kernel::ContactHistory& history = borrowed.history;
   const kernel::ContactKinematics kinematics{geometry.normal, geometry.penetrationDepth,
                                              geometry.effectiveRadius, geometry.relativeVelocity,
                                              host.time_step()};
@@ -386,7 +403,8 @@ bool joint_law_step(const kernel::laws::JointLaw& law, const Geometry& geometry,
                     const kernel::BodyMotion& motion_1, const kernel::BodyMotion& motion_2,
                     Host&& host) {
   namespace laws = kernel::laws;
-  kernel::ContactHistory history = contact_history(geometry, physics);
+  BorrowedHistory borrowed(geometry, physics);
+  kernel::ContactHistory& history = borrowed.history;
   const laws::JointKinematics kinematics{
       {geometry.penetrationDepth, geometry.normal, geometry.arm1, geometry.arm2,
        geometry.relativeVelocity, geometry.effectiveRadius, geometry.eccentricity},
