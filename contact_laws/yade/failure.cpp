@@ -45,6 +45,8 @@ std::string Failure::sentence() const {
       return before + "body " + std::to_string(id1) + after + " (" + when + ")";
     case Part::link:
       return before + "the link between bodies " + bodies + after + " (" + when + ")";
+    case Part::prismatic_joint:
+      return before + "the prismatic joint between bodies " + bodies + after + " (" + when + ")";
     case Part::torsion_spring:
       break;
   }
@@ -108,7 +110,8 @@ boost::python::object take_failure() {
   const std::lock_guard<std::mutex> lock(message_mutex);
   if (!thrown_failure) return py::object();
   const Failure failure = *std::exchange(thrown_failure, std::nullopt);
-  const char* const parts[] = {"contact", "link", "torsion_spring", "body", "scene"};
+  const char* const parts[] = {"contact",         "link", "torsion_spring",
+                               "prismatic_joint", "body", "scene"};
   py::dict result;
   result["part"] = parts[static_cast<std::size_t>(failure.part)];
   py::list bodies;

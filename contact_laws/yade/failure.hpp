@@ -35,12 +35,12 @@ class RaisesFailures {
 // sentence.
 struct Failure {
   // What the bodies stand for: two, one or, of the scene, none.
-  enum class Part : unsigned char { contact, link, torsion_spring, body, scene };
+  enum class Part : unsigned char { contact, link, torsion_spring, prismatic_joint, body, scene };
   Part part = Part::contact;
   int id1 = -1;
   int id2 = -1;  // of a torsion spring: the tips of its two links
-  // The sentence around the name of a link, spring or body; of a contact, which is named at the
-  // end, and of the scene all of it stands in `before`.
+  // The sentence around the name of a link, spring, prismatic joint or body; of a contact, which is
+  // named at the end, and of the scene all of it stands in `before`.
   std::string before = {};
   std::string after = {};
   yade::Real time = 0;  // [s]

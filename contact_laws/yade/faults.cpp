@@ -12,6 +12,7 @@
 #include "contact_parts.hpp"
 #include "guide.hpp"
 #include "joint.hpp"
+#include "prismatic.hpp"
 #include "statejump/stepper/numbers.hpp"
 #include "torsion.hpp"
 
@@ -178,6 +179,11 @@ Fault fault_of_engine(const yade::Scene& scene, const yade::Engine& engine) {
       return whole ? fault_of_spring(scene, *spring) : std::nullopt;
     });
   }
+  if (const auto* group = dynamic_cast<const PrismaticJoints*>(&engine)) {
+    return first_of(group->joints, [&](const auto& joint) {
+      return joint ? fault_of_prismatic(scene, *joint) : std::nullopt;
+    });
+  }
   if (const auto* guides = dynamic_cast<const GuidePlanes*>(&engine)) {
     return first_of(guides->ids, [&](int id) { return fault_of_body(scene, id); });
   }
@@ -220,6 +226,43 @@ Fault fault_of_spring(const yade::Scene& scene, const TorsionSpring& spring) {
   }
   if (!stepper::is_finite(spring.axis)) {
     return fault("axis (its length)", spring.axis.norm(), "", "1");
+  }
+  return std::nullopt;
+}
+
+Fault fault_of_prismatic(const yade::Scene& scene, const PrismaticJoint& joint) {
+  if (!allows(Allowed::positive, scene.dt)) return fault_of_scene(scene);
+  for (const int id : {joint.id1, joint.id2}) {
+    if (Fault fault = fault_of_body(scene, id)) return fault;
+  }
+  const auto fault = [&](const char* name, Real value, const std::string& unit,
+                         const char* allowed) {
+    return failure(scene, Part::prismatic_joint, joint.id1, joint.id2,
+                   std::string(PrismaticJoint::class_name) + "." + name + " of ",
+                   wrong(value, unit, allowed));
+  };
+  const stepper::Prismatic& values = joint;
+  if (const auto* wrong_one =
+          stepper::first_wrong<stepper::Prismatic>(stepper::prismatic_quantities, values)) {
+    return fault(wrong_one->name, values.*wrong_one->value, std::string(" ") + wrong_one->unit,
+                 words(wrong_one->allowed));
+  }
+  if (stepper::has_friction_without_stiffness(values)) {
+    return fault("frictionStiffness", values.frictionStiffness, " N/m",
+                 "above 0 with a frictionLimit");
+  }
+  if (stepper::has_stop_without_stiffness(values)) {
+    return fault("stopStiffness", values.stopStiffness, " N/m^1.5", "above 0 with a stop");
+  }
+  for (const auto& [name, value] : {std::pair{"clearanceMinus", values.clearanceMinus},
+                                    std::pair{"clearancePlus", values.clearancePlus}}) {
+    if (!(value >= 0)) return fault(name, value, " m", "0 or above");
+  }
+  if (!stepper::is_finite(values.axis)) {
+    return fault("axis (its length)", values.axis.norm(), "", "1");
+  }
+  if (!stepper::is_finite(values.offset)) {
+    return fault("offset (its length)", values.offset.norm(), " m", "finite");
   }
   return std::nullopt;
 }

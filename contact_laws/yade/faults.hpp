@@ -11,6 +11,7 @@
 
 namespace statejump::dem {
 
+struct PrismaticJoint;
 struct TorsionSpring;
 
 // The first fault of what this plugin steps: bodies with our shapes and those that links and guides
@@ -28,6 +29,10 @@ struct TorsionSpring;
 // Of a torsion spring with both links: what it is given.
 [[gnu::cold]] std::optional<Failure> fault_of_spring(const yade::Scene& scene,
                                                      const TorsionSpring& spring);
+
+// Of a slider between two bodies: the bodies, what it is given.
+[[gnu::cold]] std::optional<Failure> fault_of_prismatic(const yade::Scene& scene,
+                                                        const PrismaticJoint& joint);
 
 // What is wrong with a material; none where nothing is.
 struct MaterialFault {

@@ -14,6 +14,7 @@
 #include "faults.hpp"
 #include "guide.hpp"
 #include "joint_exchange.hpp"
+#include "prismatic.hpp"
 #include "shapes.hpp"
 #include "torsion.hpp"
 
@@ -28,7 +29,7 @@ struct EnergyEntry {
   const char* name;
   Real stepper::Energies::*value;
 };
-constexpr std::array<EnergyEntry, 9> energy_entries = {
+constexpr std::array<EnergyEntry, 11> energy_entries = {
     {{"jointFriction", &stepper::Energies::joint_friction},
      {"jointDamping", &stepper::Energies::joint_damping},
      {"jointThermalWork", &stepper::Energies::joint_thermal_work},
@@ -36,6 +37,8 @@ constexpr std::array<EnergyEntry, 9> energy_entries = {
      {"pinDamping", &stepper::Energies::pin_damping},
      {"linkThermalWork", &stepper::Energies::link_thermal_work},
      {"torsionFriction", &stepper::Energies::torsion_friction},
+     {"prismaticFriction", &stepper::Energies::prismatic_friction},
+     {"prismaticDamping", &stepper::Energies::prismatic_damping},
      {"nonviscDamp", &stepper::Energies::numerical_damping},
      {"gravWork", &stepper::Energies::gravity_work}}};
 
@@ -46,6 +49,8 @@ void as_stage(yade::Engine& engine, Act&& act) {
     act(*links);
   } else if (auto* springs = dynamic_cast<TorsionSprings*>(&engine)) {
     act(*springs);
+  } else if (auto* joints = dynamic_cast<PrismaticJoints*>(&engine)) {
+    act(*joints);
   } else if (auto* guides = dynamic_cast<GuidePlanes*>(&engine)) {
     act(*guides);
   }
@@ -62,6 +67,13 @@ void scatter_stage(const TorsionSprings& to, const stepper::Stage& from) {
   const auto& places = std::get<std::vector<stepper::TorsionPlace>>(from);
   for (std::size_t i = 0; i < places.size(); ++i) {
     static_cast<stepper::Torsion&>(*to.springs[i]) = places[i].spring;
+  }
+}
+
+void scatter_stage(const PrismaticJoints& to, const stepper::Stage& from) {
+  const auto& joints = std::get<std::vector<stepper::Prismatic>>(from);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    static_cast<stepper::Prismatic&>(*to.joints[i]) = joints[i];
   }
 }
 
@@ -304,6 +316,19 @@ bool JointArrays::gather_stage(const TorsionSprings& group, stepper::Scene& arra
     places.push_back({*spring, {first.id1, first.id2}, {second.id1, second.id2}});
   }
   arrays.stages.emplace_back(std::move(places));
+  return true;
+}
+
+bool JointArrays::gather_stage(const PrismaticJoints& group, stepper::Scene& arrays) {
+  std::vector<stepper::Prismatic> joints;
+  joints.reserve(group.joints.size());
+  for (const auto& joint : group.joints) {
+    if (!joint || joint->id1 == joint->id2 || !exists(joint->id1) || !exists(joint->id2)) {
+      return false;
+    }
+    joints.push_back(*joint);
+  }
+  arrays.stages.emplace_back(std::move(joints));
   return true;
 }
 

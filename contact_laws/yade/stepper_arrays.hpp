@@ -14,6 +14,7 @@
 namespace statejump::dem {
 
 struct GuidePlanes;
+struct PrismaticJoints;
 struct TorsionSprings;
 
 class JointArrays {
@@ -35,6 +36,7 @@ class JointArrays {
   bool find_parts(const yade::Body& one, const yade::Body& two, stepper::Contact& contact) const;
   bool gather_stage(const ThermalLinks& group, stepper::Scene& arrays);
   bool gather_stage(const TorsionSprings& group, stepper::Scene& arrays);
+  bool gather_stage(const PrismaticJoints& group, stepper::Scene& arrays);
   bool gather_stage(const GuidePlanes& group, stepper::Scene& arrays);
   void scatter_contact(const stepper::Contact& from, yade::Interaction& to);
   std::size_t program_of(const ThermalProgram& program, stepper::Scene& arrays);

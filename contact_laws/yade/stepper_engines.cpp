@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "guide.hpp"
+#include "prismatic.hpp"
 #include "stepper.hpp"
 #include "torsion.hpp"
 
@@ -48,6 +49,7 @@ class Reader {
     }
     if (dynamic_cast<const ThermalLinks*>(engine.get()) ||
         dynamic_cast<const TorsionSprings*>(engine.get()) ||
+        dynamic_cast<const PrismaticJoints*>(engine.get()) ||
         dynamic_cast<const GuidePlanes*>(engine.get())) {
       engines_.stages.push_back(engine.get());
       return stand(Place::behind, engine->getClassName());
@@ -116,10 +118,11 @@ class Reader {
     const bool behind_resetter = place != Place::stepper || last_ == Place::resetter;
     const bool stepper_is_there = place <= Place::stepper || seen_stepper_;
     if (!right || !behind_resetter || !stepper_is_there) {
-      refuse_scene(name +
-                   " stands in the wrong place, the order is ForceResetter, JointStepper, "
-                   "ThermalExpansionEngine and InsertionSortCollider, InteractionLoop, "
-                   "ThermalLinks, TorsionSprings and GuidePlanes, NewtonIntegrator");
+      refuse_scene(
+          name +
+          " stands in the wrong place, the order is ForceResetter, JointStepper, "
+          "ThermalExpansionEngine and InsertionSortCollider, InteractionLoop, "
+          "ThermalLinks, TorsionSprings, PrismaticJoints and GuidePlanes, NewtonIntegrator");
     }
     last_ = place;
     any_ = true;

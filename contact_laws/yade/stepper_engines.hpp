@@ -12,7 +12,7 @@ namespace statejump::dem {
 
 struct JointEngines {
   std::vector<ThermalExpansionEngine*> heaters;
-  std::vector<yade::Engine*> stages;  // ThermalLinks, TorsionSprings, GuidePlanes, in their order
+  std::vector<yade::Engine*> stages;  // ThermalLinks, TorsionSprings and so on, in their order
   Ig2_Journal_Bearing_JointGeom* revolute = nullptr;
   Ig2_Ball_Socket_JointGeom* ball = nullptr;
   Ig2_Ball_Ball_JointGeom* outer_balls = nullptr;

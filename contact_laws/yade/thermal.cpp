@@ -15,6 +15,7 @@
 #include "failure.hpp"
 #include "faults.hpp"
 #include "joint.hpp"
+#include "prismatic.hpp"
 #include "ranges.hpp"
 #include "shapes.hpp"
 #include "statejump/kernel/stable_step.hpp"
@@ -323,6 +324,16 @@ double stable_time_step(const yade::Scene& scene) {
           touch(link.id1, inverse_mass(links[i].root), k, 0);
           touch(link.id2, inverse_mass(links[i].tip), k, 0);
         }
+      }
+    } else if (const auto* joints = dynamic_cast<const PrismaticJoints*>(engine.get())) {
+      for (const auto& joint : joints->joints) {
+        if (!joint) continue;
+        const Real one = inverse_mass(*body_of(scene, joint->id1, "PrismaticJoint.id1").state);
+        const Real two = inverse_mass(*body_of(scene, joint->id2, "PrismaticJoint.id2").state);
+        const Real k = stepper::largest_stiffness(*joint);
+        const Real c = one + two > 0 ? stepper::largest_damping(*joint, 1 / (one + two)) : 0;
+        touch(joint->id1, one, k, c);
+        touch(joint->id2, two, k, c);
       }
     }
   }

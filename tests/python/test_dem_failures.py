@@ -61,6 +61,10 @@ def stiff_latch(found: Values) -> None:
     found["latch_hinge"]["friction_stiffness_N_m_per_rad"][0] *= 1e9
 
 
+def stiff_slider(found: Values) -> None:
+    found["slider"]["friction_stiffness_N_per_m"][0] *= 1e9
+
+
 def above_the_floor(found: Values) -> None:
     found["slider"]["depth_m"][3] = -1e-6
 
@@ -82,6 +86,7 @@ FAILURES: dict[str, tuple[str, Callable[[Values], None], str | None, str, str]] 
     "torsion spring": ("trusses/umbrella_rib", stiff_torsion_spring, None, "stable one of torsion_spring 'spring', ",
                        SET_STEP),
     "latch hinge": ("trusses/latch_lever", stiff_latch, "latch", "stable one of latch_hinge 'latch', ", SET_STEP),
+    "slider between nodes": ("trusses/telescope", stiff_slider, "S", "stable one of slider 'S', ", SET_STEP),
     "lost": ("trusses/chain_10", above_the_floor, "S4", "slider 'S4' has left its floor", ""),
     "strangers": ("trusses/chain_10", floors_everywhere, "S1", "node 'N2' and the floor of slider 'S1' touch", ""),
 }

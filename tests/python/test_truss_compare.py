@@ -168,6 +168,24 @@ def test_masses_of_a_bar_between_free_nodes() -> None:
     assert dem.lumped_mass_kg(case.resolve()) == pytest.approx([0, bar / 3 + bar / 2, bar / 2])
 
 
+def test_tubes_that_slide_in_each_other_jump_as_the_closed_form(statejump, tmp_path: Path) -> None:
+    case = Path(__file__).parents[2] / "cases" / "trusses" / "telescope.toml"
+    outcome = statejump("compare", case)
+    assert outcome.status == 0, outcome.output + outcome.errors
+    found = quantities(tmp_path / "results" / "telescope")
+    jump = found["jump_of_node_C"]
+    assert jump["reduced"] == pytest.approx(100.0 * 1.2 / (70e9 * 1e-5), rel=1e-9)  # f l/(E A)
+    # Both slide at the end: k_t does not matter.
+    assert jump["dem"] == pytest.approx(jump["reduced"], rel=1e-5)
+    assert abs(found["energy_residual_over_friction_work"]["dem"]) < 1e-6
+    # The stop is rigid in the solver; in the DEM 345 N press the pad 9.66 um into it, of which C on the softer tube has
+    # 1.2/2.2, of its 1.638 mm.
+    peak = found["displacement_at_peak_largest_difference_over_largest"]["dem"]
+    assert peak == pytest.approx(1.2 / 2.2 * 9.66e-6 / 1.638e-3, rel=0.01)
+    run = read(tmp_path / "results" / "telescope" / "comparison.h5").models["dem"]
+    assert set(np.unique(run.contacts["state"].values)) == {1, 2, 3}  # sticks, slips, rests at its stop
+
+
 def test_joints_that_could_meet_are_kept_apart() -> None:
     case = parse_case(generate.iwan(100))
     values = dem.resolved(case, solve(case))["slider"]
@@ -181,7 +199,12 @@ def test_joints_that_could_meet_are_kept_apart() -> None:
 
 
 def two_nodes(made: dict[str, Any]) -> None:
+    made["slider"][1].update(nodes=["N2", "N1"], normal_force_N=0.0)
+
+
+def two_nodes_with_partial_slip(made: dict[str, Any]) -> None:
     made["slider"][1]["nodes"] = ["N2", "N1"]
+    made["dem"] = {"friction_law": "mindlin_deresiewicz"}
 
 
 def no_mass(made: dict[str, Any]) -> None:
@@ -201,7 +224,8 @@ def two_parts(made: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize(("change", "sentence"), [
-    (two_nodes, "slider 'S2' is between two nodes"),
+    (two_nodes, "slider 'S2' is between two nodes and has no normal_force_N"),
+    (two_nodes_with_partial_slip, "slider 'S2' touches no body in the DEM, its friction is a spring that slips"),
     (no_mass, "node 'M' has no mass"),
     (no_length, "spring 'k' has the free length -9 m"),
     (two_parts, "revolute 'R' gives node 'N2' a second contact part"),

@@ -4,7 +4,8 @@ import pytest
 
 SCENES = [
     "joint", "joint_without_energy", "joint_by_name", "joint_damped", "joint_in_gravity",
-    "joint_in_undamped_gravity", "joint_in_damped_gravity", "ball", "balls", "balls_by_name", "balls_saved", "guided", "approaching", "mixed",
+    "joint_in_undamped_gravity", "joint_in_damped_gravity", "ball", "balls", "balls_by_name", "balls_saved", "guided",
+    "prismatic", "prismatic_saved", "approaching", "mixed",
     "mixed_by_name", "mixed_partial_slip", "mixed_every_step", "crowd", "crowd_with_energy", "in_pieces", "saved", "erased",
 ]
 
@@ -58,6 +59,8 @@ def test_scenes_have_what_is_compared(scenes):
     for name in ("jointFriction", "jointDamping", "jointThermalWork", "linkDamping", "linkThermalWork", "pinDamping",
                  "torsionFriction", "nonviscDamp"):
         assert energy[name] != 0, name
+    slid = scenes["prismatic"]["energy"]
+    assert slid["prismaticFriction"] > 0 and slid["prismaticDamping"] > 0
     assert scenes["joint_in_gravity"]["energy"]["gravWork"] != 0
 
 
@@ -81,7 +84,8 @@ def test_failure_is_that_of_the_ordinary_loop(failures, name, words):
 
 
 ORDER = ("stands in the wrong place, the order is ForceResetter, JointStepper, ThermalExpansionEngine and "
-         "InsertionSortCollider, InteractionLoop, ThermalLinks, TorsionSprings and GuidePlanes, NewtonIntegrator")
+         "InsertionSortCollider, InteractionLoop, ThermalLinks, TorsionSprings, PrismaticJoints and GuidePlanes, "
+         "NewtonIntegrator")
 
 
 @pytest.mark.parametrize("name, sentence", [

@@ -33,12 +33,19 @@ class Names:
     links: dict[frozenset[int], str] = field(default_factory=dict)
     # As joints, by the tips of their links.
     torsion_springs: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)
+    prismatic_joints: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)  # as joints
     bodies: dict[int, str] = field(default_factory=dict)
 
     def add_link(self, link: Any, words: str) -> None:
         """Add a link or spring; several of them may be between the same bodies."""
         bodies = pair(link.id1, link.id2)
         self.links[bodies] = f"{self.links[bodies]} or {words}" if bodies in self.links else words
+
+    def add_prismatic_joint(self, made: Any, words: str, joint: str) -> None:
+        """Add a prismatic joint; several of them may be between the same bodies."""
+        bodies = pair(made.id1, made.id2)
+        before = self.prismatic_joints.get(bodies)
+        self.prismatic_joints[bodies] = ("", f"{before[1]} or {words}") if before else (joint, words)
 
     def joint_of(self, body: int) -> str:
         """Return the joint that a body belongs to, "" where there is none or more than one."""
@@ -94,8 +101,8 @@ def described(
             bodies = pair(*taken["bodies"])
             is_link = taken["part"] == "link"
             unknown = f"the {taken['part'].replace('_', ' ')} of bodies {' and '.join(map(str, taken['bodies']))}"
-            joint, named = ("", names.links.get(bodies, unknown)) if is_link else (
-                names.torsion_springs.get(bodies, ("", unknown)))
+            known = names.prismatic_joints if taken["part"] == "prismatic_joint" else names.torsion_springs
+            joint, named = ("", names.links.get(bodies, unknown)) if is_link else known.get(bodies, ("", unknown))
             cause = taken["before"] + named + taken["after"]
         if taken["stable_time_step"] is not None:
             # One contact or link alone allows more than all that pull at one body.

@@ -45,6 +45,7 @@ def joint_engines(
     springs: tuple[sj.TorsionSpring, ...] = (),
     expansions: list[wrapper.Engine] | None = None,
     guides: dict[int, tuple[float, float, float]] | None = None,
+    prismatic_joints: tuple[sj.PrismaticJoint, ...] = (),
 ) -> list[wrapper.Engine]:
     """Return the engines of any scene of joints, links and torsion springs. Recorders see a state
     of one time: positions, temperature and forces of the current step.
@@ -77,6 +78,7 @@ def joint_engines(
         ),
         sj.ThermalLinks(links=links),
         sj.TorsionSprings(springs=list(springs)),
+        *([sj.PrismaticJoints(joints=list(prismatic_joints))] if prismatic_joints else []),
         *([sj.GuidePlanes(ids=list(guides), normals=list(guides.values()))] if guides else []),
         *recorders,
         wrapper.NewtonIntegrator(damping=0),

@@ -161,6 +161,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
         dem["contact_damping_ratio"], verletDist=0.1 * min(radii, default=1.0), recorders=recorders,
         springs=(*scene.torsion_springs, *(spring for joints in made for spring in joints.torsion_springs())),
         expansions=expansions,
+        prismatic_joints=tuple(one for joints in made for one in joints.prismatic_joints()),
         guides={
             ids[place]: node["guide_normal"] for place, node in enumerate(nodes)
             if any(node["guide_normal"]) and not all(node["blocked"])
@@ -197,8 +198,10 @@ def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
         Vector3(case["node"]["force_N"][node]).dot(states[node].pos - built.start[node]) for node in built.loaded
     )
     row = [
-        O.time, built.program.temperatureChange(O.time), total("linkElastic", "torsionElastic", "jointElastic"),
-        kinetic, total("jointFriction", "torsionFriction"), total("linkDamping", "pinDamping", "jointDamping"),
+        O.time, built.program.temperatureChange(O.time),
+        total("linkElastic", "torsionElastic", "jointElastic", "prismaticElastic"), kinetic,
+        total("jointFriction", "torsionFriction", "prismaticFriction"),
+        total("linkDamping", "pinDamping", "jointDamping", "prismaticDamping"),
         total("linkThermalWork", "jointThermalWork"), work,
     ]
     for place, state in enumerate(states):

@@ -92,6 +92,8 @@ def state():
             out["contacts"].append([spring.angle, spring.moment, spring.frictionMoment, spring.slipAngle])
             # One and the same object as in ThermalLinks, not a copy.
             out["contacts"].append([spring.link2.axialForce, spring.link2.pinDamping])
+        for joint in getattr(engine, "joints", []):
+            out["contacts"].append([joint.slide, joint.slipPosition, joint.frictionForce, joint.stopForce])
         for functor in getattr(getattr(engine, "lawDispatcher", None), "functors", []):
             found = functor.dict()
             out["law"] = [found[k] for k in sorted(found) if k not in ("label", "timingDeltas")]

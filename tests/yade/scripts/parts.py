@@ -76,7 +76,7 @@ def constant(change: float = 0.0) -> sj.ThermalProgram:
 
 def engines(
     program=None, links=(), normal_damping=0.0, tangential_damping=0.0, reader=None, thermal=None,
-    law=None, springs=(),
+    law=None, springs=(), prismatic_joints=(),
 ) -> None:
     """Set the engines of a scene of joints and links; the reader sees one consistent time."""
     O.engines = [
@@ -103,6 +103,7 @@ def engines(
         ),
         sj.ThermalLinks(links=list(links)),
         *([sj.TorsionSprings(springs=list(springs))] if springs else []),
+        *([sj.PrismaticJoints(joints=list(prismatic_joints))] if prismatic_joints else []),
         *([wrapper.PyRunner(command=reader, iterPeriod=1, initRun=True)] if reader else []),
         wrapper.NewtonIntegrator(damping=0),
     ]
@@ -148,6 +149,7 @@ def stored_minus_supplied() -> float:
         + sum(e.get(name, 0.0) for name in ("linkElastic", "linkDamping", "pinDamping"))
         + e.get("torsionElastic", 0.0)
         + e.get("torsionFriction", 0.0)
+        + sum(e.get(name, 0.0) for name in ("prismaticElastic", "prismaticFriction", "prismaticDamping"))
         - e.get("jointThermalWork", 0.0)
         - e.get("linkThermalWork", 0.0)
     )

@@ -133,6 +133,26 @@ def guided():
     O.dt = 2e-7
 
 
+def prismatic():
+    """Two tubes on hot links that slide in each other, across and along, from stop to stop."""
+    reset()
+    program = sj.ThermalProgram(shape="sine", temperatureChangeMax=60, period=1e-3, cycles=5)
+    walls = [body((0, 0, 0)), body((1, 0, 0))]
+    tubes = [body((0.5, 0, 0), mass=0.01, blocked="zXYZ", velocity=(0.1, 0.02, 0)),
+             body((0.4, 0.1, 0), mass=0.02, blocked="zXYZ", velocity=(0, -0.03, 0))]
+    links = [
+        sj.ThermalLink(id1=wall, id2=tube, youngModulus=70e9, crossSectionArea=1e-6, stressFreeLength=length,
+                       thermalExpansion=2.3e-5, dampingRatio=0.02, program=program)
+        for wall, tube, length in zip(walls, tubes, (0.5, (0.6**2 + 0.1**2) ** 0.5))
+    ]
+    joint = sj.PrismaticJoint(
+        id1=tubes[0], id2=tubes[1], axis=(0.8, 0.6, 0), offset=(0.1, -0.1, 0), stiffnessAcross=4e6, frictionLimit=3.0,
+        frictionStiffness=1e6, clearanceMinus=2e-5, clearancePlus=4e-5, stopStiffness=1e9, dampingRatio=0.02,
+    )
+    engines(program, links=links, prismatic_joints=[joint])
+    O.dt = 1e-6
+
+
 def approaching():
     """Two sliders fly towards slots that they do not touch yet: the collider has to find the pairs."""
     reset()
@@ -206,6 +226,7 @@ def scenes():
             lambda: balls(Law(frictionLaw="mindlin_deresiewicz", dissipationLaw="exact_restitution", restitution=0.6)),
             8000, 300),
         "guided": (guided, 3000, 300),
+        "prismatic": (prismatic, 5000, 300),
         "approaching": (approaching, 4000, 500),
         "mixed": (lambda: mixed.scene(False), 2000, 100),
         "mixed_by_name": (lambda: mixed.scene(True), 2000, 100),
@@ -218,6 +239,7 @@ def scenes():
     found["in_pieces"] = run_both(joint, 2000, 130, in_pieces)
     found["saved"] = run_both(lambda: mixed.scene(True), 1500, 130, saved)
     found["balls_saved"] = run_both(lambda: balls(Law(frictionLaw="mindlin_deresiewicz")), 8000, 300, saved)
+    found["prismatic_saved"] = run_both(prismatic, 3000, 130, saved)
     found["erased"] = run_both(crowd, 1500, 250, erased)
     return found
 

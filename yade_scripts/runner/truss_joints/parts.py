@@ -81,6 +81,10 @@ class Joints:
         """Return those that stand for joints, known from :meth:`append` on."""
         return []
 
+    def prismatic_joints(self) -> list[sj.PrismaticJoint]:
+        """Return those that stand for joints, known from :meth:`append` on."""
+        return []
+
     def states(self) -> list[tuple[Any, ...]]:
         """Return what every joint has of each of the columns."""
         raise NotImplementedError

@@ -1,35 +1,42 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sliders of a truss in YADE: a pad at a node, its floor and its stops, which do not move.
+"""Sliders of a truss in YADE: on ground a pad at a node, its floor and its stops, which do not move; between two nodes
+a prismatic joint of the plugin.
 
 A pad is held at the depth at which its floor carries the normal force.
 """
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from math import inf
 from typing import Any
 
 import statejump_yade as sj
 from failures import Names, SceneFailure, pair
 from scene import O
-from truss_joints.parts import AT_STOP, SLIP, STICK, Joints, Row, contact, give, material
+from truss_joints.parts import AT_STOP, GROUND, SLIP, STICK, Joints, Row, contact, give, material
 from yade import wrapper
 from yade.minieigenHP import Matrix3, Quaternion, Vector3
 
 
 class Sliders(Joints):
-    """Sliders on ground."""
+    """Sliders, in the order of the case."""
 
     section = "slider"
     columns = (("slide_m", False), ("slider_force_N", False), ("slider_state", False))
 
     def __init__(self, case: dict[str, Any]) -> None:
         super().__init__(case)
-        self._slots: list[list[wrapper.Body]] = []
+        self._damping_ratio: float = case["dem"]["contact_damping_ratio"]
+        self._slots: list[list[wrapper.Body]] = []  # none between two nodes
         self._numbers: list[list[int]] = []  # of floor and stops
+        self._between: dict[int, sj.PrismaticJoint] = {}  # by place
 
     def furnish(self, bodies: list[wrapper.Body], turn: Callable[[int, int], None],
                 expand: Callable[[int, Row], None]) -> None:
         for slider in self.rows:
+            if slider["nodes"][1] != GROUND:
+                self._slots.append([])
+                continue
             node, radius = slider["nodes"][0], slider["pad_radius_m"]
             made = material(slider)
             give(bodies[node], sj.Slider(radius=radius), made, slider["group"])
@@ -52,17 +59,44 @@ class Sliders(Joints):
 
     def append(self, ids: list[int]) -> Iterator[tuple[int, int]]:
         self.ids = ids
-        for slider, slot in zip(self.rows, self._slots):
+        for place, (slider, slot) in enumerate(zip(self.rows, self._slots)):
+            if not slot:
+                self._numbers.append([])
+                self._between[place] = self._joint(slider)
+                continue
             self._numbers.append(list(O.bodies.append(slot)))
             for face in self._numbers[-1]:
                 yield ids[slider["nodes"][0]], face
 
+    def _joint(self, slider: Row) -> sj.PrismaticJoint:
+        one, other = slider["nodes"]
+        minus, plus = (inf if slider[key] is None else slider[key] for key in ("clearance_minus_m", "clearance_plus_m"))
+        friction, sticks = slider["start_friction_N"], slider["friction_stiffness_N_per_m"]
+        return sj.PrismaticJoint(
+            id1=self.ids[one], id2=self.ids[other], axis=Vector3(slider["axis"]),
+            offset=Vector3(self.nodes[one]["position_m"]) - Vector3(self.nodes[other]["position_m"]),
+            stiffnessAcross=slider["stiffness_across_N_per_m"], frictionLimit=slider["friction_limit_N"],
+            frictionStiffness=sticks, clearanceMinus=minus, clearancePlus=plus,
+            stopStiffness=slider["stop_stiffness_N_per_m15"], dampingRatio=self._damping_ratio,
+            frictionForce=friction, slipPosition=slider["start_slide_m"] - friction / sticks,
+        )
+
+    def prismatic_joints(self) -> list[sj.PrismaticJoint]:
+        return list(self._between.values())
+
     def radii(self) -> list[float]:
-        return [slider["pad_radius_m"] for slider in self.rows]
+        return [slider["pad_radius_m"] for slider in self.rows if slider["nodes"][1] == GROUND]
 
     def states(self) -> list[tuple[Any, ...]]:
-        return [self._state(slider, self.ids[slider["nodes"][0]], *numbers)
-                for slider, numbers in zip(self.rows, self._numbers)]
+        return [self._state_between(self._between[place]) if place in self._between else
+                self._state(slider, self.ids[slider["nodes"][0]], *numbers)
+                for place, (slider, numbers) in enumerate(zip(self.rows, self._numbers))]
+
+    @staticmethod
+    def _state_between(joint: sj.PrismaticJoint) -> tuple[Any, ...]:
+        slips = abs(joint.frictionForce) >= joint.frictionLimit
+        return (joint.slide, joint.frictionForce + joint.stopForce,
+                AT_STOP if joint.stopForce != 0 else SLIP if slips else STICK)
 
     def _state(self, slider: Row, body: int, floor: int, *stops: int) -> tuple[Any, ...]:
         axis, origin = Vector3(slider["axis"]), Vector3(self.nodes[slider["nodes"][0]]["position_m"])
@@ -82,8 +116,10 @@ class Sliders(Joints):
 
     def faces(self) -> dict[int, tuple[str, str]]:
         found = {}
-        for slider, (floor, *stops) in zip(self.rows, self._numbers):
-            name = slider["names"]
+        for slider, numbers in zip(self.rows, self._numbers):
+            if not numbers:
+                continue
+            (floor, *stops), name = numbers, slider["names"]
             found[floor] = name, f"the floor of slider {name!r}"
             sides = [side for side in ("minus", "plus") if slider[f"clearance_{side}_m"] is not None]
             for side, stop in zip(sides, stops):
@@ -92,6 +128,9 @@ class Sliders(Joints):
 
     def name(self, found: Names) -> None:
         words = self.faces()
+        for place, joint in self._between.items():
+            name = self.rows[place]["names"]
+            found.add_prismatic_joint(joint, f"slider {name!r}", name)
         for slider, numbers in zip(self.rows, self._numbers):
             for face in numbers:
                 found.joints[pair(self.ids[slider["nodes"][0]], face)] = words[face]

@@ -62,6 +62,7 @@ def stable_time_step(case: TrussCase, path: TrussPath) -> float:
     and c.
     """
     truss, mass = path.truss, lumped_mass_kg(path.truss)
+    mass = np.append(mass, 0)  # of GROUND
     inverse = np.divide(1, mass, out=np.zeros_like(mass), where=mass > 0)
     stiffness, damping = np.zeros(len(mass)), np.zeros(len(mass))
 
@@ -99,11 +100,15 @@ def number_of_steps(case: TrussCase, path: TrussPath) -> int:
 
 
 def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) -> np.ndarray:
-    """Return a number per contact (of all types in turn), different for joints whose bodies could meet.
+    """Return a number per contact (of all types in turn), different for joints whose bodies could meet; -1 where no
+    bodies touch.
 
     YADE looks for contacts between all bodies that are near; only those of one joint may touch.
     """
+    own = np.concatenate([joint.bodies_touch(truss.joints[joint.section]) for joint in JOINTS])
     touching = [nodes for joint in JOINTS for nodes in joint.contact_nodes(truss.joints[joint.section]).tolist()]
+    touching = [touching[place] for place in np.flatnonzero(own)]
+    reach_m = reach_m[own]
     where = truss.nodes.position_m[[nodes[0] for nodes in touching]]
     owner = np.arange(len(where))
     # Journals in one bearing, and bearings around one journal, are one group.
@@ -114,9 +119,10 @@ def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) 
             owner[owner == other] = place
         owner[place] = place
         seen.update(dict.fromkeys(nodes, place))
-    group = np.full(len(where), -1)
+    found = np.full(len(own), -1)
     if not len(where):
-        return group
+        return found
+    group = found[own]
     tree = cKDTree(where)
     # Boxes of YADE's collider are cubes, on each side a tenth of the smallest radius larger than the parts.
     near = tree.query_ball_point(where, 2.3 * reach_m.max(), p=inf)
@@ -128,11 +134,12 @@ def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) 
         free = next((number for number in range(CONTACT_GROUPS) if number not in taken), None)
         if free is None:
             name = [name for joint in JOINTS if len(joint.contact_nodes(truss.joints[joint.section]))
-                    for name in truss.joints[joint.section].names][place]
+                    for name in truss.joints[joint.section].names][np.flatnonzero(own)[place]]
             raise refuse(case, f"joint {name!r} is within reach of more than {CONTACT_GROUPS} other joints, "
                                "the DEM cannot keep their contacts apart", joint=name)
         group[members] = free
-    return group
+    found[own] = group
+    return found
 
 
 def check(case: TrussCase) -> None:
@@ -150,6 +157,10 @@ def check(case: TrussCase) -> None:
         unable = joint.dem_refuses(joints)
         if joint.not_in_dem and joints.names:
             unable = joints.names[0], joint.not_in_dem
+        if joint.has_contacts and case.dem.friction_law != "mindlin":
+            for index in np.flatnonzero(~joint.bodies_touch(joints))[:1]:
+                unable = joints.names[index], ("touches no body in the DEM, its friction is a spring that slips, not "
+                                               f"dem.friction_law = {case.dem.friction_law!r}")
         if unable is not None:
             name, why = unable
             raise refuse(case, f"{joint.section} {name!r} {why}", joint=name)
@@ -162,6 +173,8 @@ def check(case: TrussCase) -> None:
         names = truss.joints[joint.section].names
         for part in joint.contact_parts(truss.joints[joint.section]):
             for name, node, role in zip(names, map(int, part.nodes), part.roles):
+                if node == GROUND:
+                    continue
                 if node in roles and (roles[node] != role or not part.shared):
                     raise refuse(case, f"{joint.section} {name!r} gives node {nodes.names[node]!r} a second contact "
                                        "part, in the DEM a node has one", joint=name, nodes=(nodes.names[node],))

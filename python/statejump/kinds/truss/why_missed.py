@@ -85,16 +85,18 @@ def _stiffness(path: TrussPath) -> Any:
         return way / length[:, None], length
 
     def between(nodes: np.ndarray, blocks: np.ndarray) -> Any:
-        """Springs of the stiffnesses (k, 3, 3) between pairs of nodes; of one node: to ground."""
+        """Springs of the stiffnesses (k, 3, 3) between pairs of nodes; of one node, or with GROUND: to ground."""
         sides = [(one, other, 1.0 if one == other else -1.0)
                  for one in range(nodes.shape[1]) for other in range(nodes.shape[1])]
         rows, columns, values = [], [], []
         for one, other, sign in sides:
             row, column = np.meshgrid(np.arange(3), np.arange(3), indexing="ij")
-            rows.append(3 * nodes[:, one, None, None] + row)
-            columns.append(3 * nodes[:, other, None, None] + column)
-            values.append(sign * blocks)
-        return coo_matrix((np.ravel(values), (np.ravel(rows), np.ravel(columns))), shape=found.shape).tocsr()
+            there = (nodes[:, one] != GROUND) & (nodes[:, other] != GROUND)
+            rows.append((3 * nodes[there, one, None, None] + row).ravel())
+            columns.append((3 * nodes[there, other, None, None] + column).ravel())
+            values.append(sign * blocks[there].ravel())
+        places = np.concatenate(rows), np.concatenate(columns)
+        return coo_matrix((np.concatenate(values), places), shape=found.shape).tocsr()
 
     links, springs, torsion = truss.links, truss.springs, truss.torsion_springs
     axial = physics.axial_stiffness_N_per_m(links.young_modulus_Pa, links.cross_section_area_m2,

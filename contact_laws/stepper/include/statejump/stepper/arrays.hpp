@@ -10,6 +10,7 @@
 #include "statejump/stepper/contact.hpp"
 #include "statejump/stepper/link.hpp"
 #include "statejump/stepper/motion.hpp"
+#include "statejump/stepper/prismatic.hpp"
 
 namespace statejump::stepper {
 
@@ -77,13 +78,15 @@ struct Links {
 };
 
 /// What adds forces after the contacts, in the order of the engines.
-using Stage = std::variant<Links, std::vector<TorsionPlace>, std::vector<Guide>>;
+using Stage =
+    std::variant<Links, std::vector<TorsionPlace>, std::vector<Prismatic>, std::vector<Guide>>;
 
 /// Energies that grow from step to step [J]. What is stored now belongs to the last step alone.
 struct Energies {
   double joint_friction = 0, joint_damping = 0, joint_thermal_work = 0;
   double link_damping = 0, pin_damping = 0, link_thermal_work = 0;
   double torsion_friction = 0;
+  double prismatic_friction = 0, prismatic_damping = 0;
   double numerical_damping = 0, gravity_work = 0;
 };
 

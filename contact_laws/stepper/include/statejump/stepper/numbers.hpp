@@ -8,6 +8,7 @@
 // fail for whatever is not plain; only then is it looked at in detail.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -16,6 +17,7 @@
 #include "statejump/kernel/joint_kinematics.hpp"
 #include "statejump/kernel/vector.hpp"
 #include "statejump/stepper/link.hpp"
+#include "statejump/stepper/prismatic.hpp"
 
 namespace statejump::stepper {
 
@@ -77,6 +79,26 @@ constexpr Quantities<Torsion, 8> torsion_quantities = {
 
 inline bool has_friction_without_stiffness(const Torsion& spring) {
   return spring.frictionLimit > 0 && !(spring.frictionStiffness > 0);
+}
+
+/// Of a slider between two bodies; where friction has a limit or there are stops, their stiffness
+/// has to be above 0. Clearances are 0 or above, infinity where there is no stop.
+constexpr Quantities<Prismatic, 7> prismatic_quantities = {
+    {{"stiffnessAcross", &Prismatic::stiffnessAcross, Allowed::positive, "N/m"},
+     {"frictionLimit", &Prismatic::frictionLimit, Allowed::not_negative, "N"},
+     {"frictionStiffness", &Prismatic::frictionStiffness, Allowed::not_negative, "N/m"},
+     {"stopStiffness", &Prismatic::stopStiffness, Allowed::not_negative, "N/m^1.5"},
+     {"dampingRatio", &Prismatic::dampingRatio, Allowed::not_negative, "-"},
+     {"slipPosition", &Prismatic::slipPosition, Allowed::finite, "m"},
+     {"frictionForce", &Prismatic::frictionForce, Allowed::finite, "N"}}};
+
+inline bool has_friction_without_stiffness(const Prismatic& joint) {
+  return joint.frictionLimit > 0 && !(joint.frictionStiffness > 0);
+}
+
+inline bool has_stop_without_stiffness(const Prismatic& joint) {
+  return std::isfinite(std::min(joint.clearanceMinus, joint.clearancePlus)) &&
+         !(joint.stopStiffness > 0);
 }
 
 /// Of a contact that touches: ContactPhysics or JointPhys.

@@ -89,6 +89,8 @@ inline void Parts::split() {
       return {entry.link.id1, entry.link.id2};
     } else if constexpr (std::is_same_v<Entry, TorsionPlace>) {
       return {entry.first[0], entry.first[1], entry.second[0], entry.second[1]};
+    } else if constexpr (std::is_same_v<Entry, Prismatic>) {
+      return {entry.id1, entry.id2};
     } else {
       return {entry.body};
     }
@@ -209,6 +211,14 @@ inline void Parts::fill(Part& part, std::vector<int>& places) const {
         for (int& id : some.back().second) place(id);
       }
       scene.stages.emplace_back(std::move(some));
+    } else if (const auto* joints = std::get_if<std::vector<Prismatic>>(&whole_.stages[s])) {
+      std::vector<Prismatic> some;
+      for (const std::size_t i : chosen) {
+        some.push_back((*joints)[i]);
+        place(some.back().id1);
+        place(some.back().id2);
+      }
+      scene.stages.emplace_back(std::move(some));
     } else {
       std::vector<Guide> some;
       for (const std::size_t i : chosen) {
@@ -262,6 +272,12 @@ inline void Parts::collect(Scene& whole) const {
         } else if (auto* springs = std::get_if<std::vector<TorsionPlace>>(&whole.stages[s])) {
           (*springs)[place].spring =
               std::get<std::vector<TorsionPlace>>(part.scene.stages[s])[i].spring;
+        } else if (auto* joints = std::get_if<std::vector<Prismatic>>(&whole.stages[s])) {
+          Prismatic& to = (*joints)[place];
+          const int id1 = to.id1, id2 = to.id2;
+          to = std::get<std::vector<Prismatic>>(part.scene.stages[s])[i];
+          to.id1 = id1;
+          to.id2 = id2;
         }
       }
     }

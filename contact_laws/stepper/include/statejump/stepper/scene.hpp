@@ -114,6 +114,7 @@ class Scene {
   Found find(Contact& contact);
   bool act(Links& group);
   bool act(std::vector<TorsionPlace>& springs);
+  bool act(std::vector<Prismatic>& joints);
   bool act(std::vector<Guide>& guides);
   void sum();
   void account_motion(const Body& body);
@@ -400,6 +401,28 @@ inline bool Scene::act(std::vector<TorsionPlace>& springs) {
     add(place.first, couple(first, spring.axis, spring.moment));
     add(place.second, couple(second, spring.axis, -spring.moment));
     if (tracks_energy) energies.torsion_friction += energy.friction;
+  }
+  return true;
+}
+
+inline bool Scene::act(std::vector<Prismatic>& joints) {
+  for (Prismatic& joint : joints) {
+    Body& one = body(joint.id1);
+    Body& two = body(joint.id2);
+    if (has_friction_without_stiffness(joint) || has_stop_without_stiffness(joint)) return false;
+    const double inverse = one.inverse_mass + two.inverse_mass;
+    const PrismaticStep step =
+        prismatic_step(joint,
+                       {one.motion.position - two.motion.position,
+                        one.motion.velocity - two.motion.velocity, inverse > 0 ? 1 / inverse : 0},
+                       time_step);
+    if (!(time_step <= step.largest_step) || !is_plain(step.force)) return false;
+    if (one.moves) one.added_force += step.force;
+    if (two.moves) two.added_force += -step.force;
+    if (tracks_energy) {
+      energies.prismatic_friction += step.friction;
+      energies.prismatic_damping += step.damping;
+    }
   }
   return true;
 }

@@ -88,7 +88,7 @@ class Drawn:
 class ContactPart:
     """Nodes that the DEM gives a contact part. A node has one: parts that are equal are one."""
 
-    nodes: np.ndarray  # (k,)
+    nodes: np.ndarray  # (k,) GROUND: this joint gives no node a part
     roles: list[tuple[Any, ...]]  # (k,) what the part is made of
     shared: bool = True  # whether several joints may have one part
 
@@ -229,12 +229,16 @@ class JointType(Generic[ItemType, ArraysType]):
         """Return the nodes (joints, k) whose bodies touch or carry what touches, the place of the contact first."""
         return np.zeros((0, 1), dtype=int)
 
+    def bodies_touch(self, joints: ArraysType) -> np.ndarray:
+        """Return which of its joints have bodies that touch in the DEM; an engine has the forces of the others."""
+        return np.full(len(self.contact_nodes(joints)), True)
+
     def reach_m(self, path: TrussPath, joints: ArraysType) -> np.ndarray:
         """Return how far from its place a contact's bodies extend [m] (joints,)."""
         return np.zeros(0)
 
     def contact_stiffness(self, path: TrussPath, joints: ArraysType) -> tuple[np.ndarray, np.ndarray]:
-        """Return the nodes (joints, k) that a contact pushes and its greatest stiffness [N/m] on the path."""
+        """Return the nodes (joints, k) or GROUND that a contact pushes and its greatest stiffness [N/m] on the path."""
         return np.zeros((0, 1), dtype=int), np.zeros(0)
 
     def torsion(self, joints: ArraysType) -> Torsion:

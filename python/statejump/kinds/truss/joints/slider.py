@@ -102,7 +102,7 @@ def pressing_directions(truss: ResolvedTruss, sliders: Sliders) -> np.ndarray:
 
 
 class SliderType(AlongAxis[Slider, Sliders]):
-    """Sliders, in the solver, in motion and, on ground, in the DEM."""
+    """Sliders, in the solver, in motion and in the DEM: there a pad on a floor on ground, an engine's between nodes."""
 
     section = "slider"
     noun = "a slider"
@@ -181,13 +181,19 @@ class SliderType(AlongAxis[Slider, Sliders]):
                 f"{f'with {stops} stops' if stops else 'without stops'}.")
 
     def dem_refuses(self, joints: Sliders) -> tuple[str, str] | None:
-        for index in np.flatnonzero(joints.nodes[:, 1] != GROUND)[:1]:
-            return joints.names[index], "is between two nodes, the DEM has sliders on ground only"
+        loose = ~self.bodies_touch(joints) & (joints.normal_force_N == 0)
+        for index in np.flatnonzero(loose)[:1]:
+            return joints.names[index], ("is between two nodes and has no normal_force_N, from which the DEM takes how "
+                                         "stiffly it holds them together across its axis")
         return None
 
     def contact_parts(self, joints: Sliders) -> list[ContactPart]:
         roles = list(zip(joints.pad_radius_m, joints.friction_coefficient, joints.young_modulus_Pa))
-        return [ContactPart(joints.nodes[:, 0], [("pad", *role) for role in roles], shared=False)]
+        nodes = np.where(self.bodies_touch(joints), joints.nodes[:, 0], GROUND)
+        return [ContactPart(nodes, [("pad", *role) for role in roles], shared=False)]
+
+    def bodies_touch(self, joints: Sliders) -> np.ndarray:
+        return joints.nodes[:, 1] == GROUND
 
     def contact_nodes(self, joints: Sliders) -> np.ndarray:
         return joints.nodes[:, :1]
@@ -200,14 +206,21 @@ class SliderType(AlongAxis[Slider, Sliders]):
         at_stop = np.isfinite(joints.clearance_minus_m) | np.isfinite(joints.clearance_plus_m)
         force = IMPACT**3 * np.abs(path.states["slider_force_N"]).max(axis=0)
         stop = np.where(at_stop, physics.hertz_tangent_N_per_m(force, pad_hertz_stiffness(joints)), 0.0)
-        return joints.nodes[:, :1], pads(joints).tangential_N_per_m + stop
+        pad = pads(joints)
+        across = np.where(self.bodies_touch(joints), 0.0, pad.normal_N_per_m)
+        return joints.nodes, np.maximum(pad.tangential_N_per_m + stop, across)
 
     def scene(self, path: TrussPath, joints: Sliders) -> dict[str, Any]:
         def finite(values: np.ndarray) -> list[float | None]:
             return [float(value) if np.isfinite(value) else None for value in values]
 
+        pad, limit = pads(joints), joints.friction_coefficient * joints.normal_force_N
         return {
-            "depth_m": pads(joints).depth_m, "reach_m": self.reach_m(path, joints),
+            "friction_limit_N": limit, "friction_stiffness_N_per_m": pad.tangential_N_per_m,
+            "stiffness_across_N_per_m": pad.normal_N_per_m, "stop_stiffness_N_per_m15": pad_hertz_stiffness(joints),
+            "start_slide_m": path.states["slide_m"][0],
+            "start_friction_N": np.clip(path.states["slider_force_N"][0], -limit, limit),
+            "depth_m": pad.depth_m, "reach_m": self.reach_m(path, joints),
             "floor_normal": pressing_directions(path.truss, joints),
             "clearance_minus_m": finite(joints.clearance_minus_m), "clearance_plus_m": finite(joints.clearance_plus_m),
         }

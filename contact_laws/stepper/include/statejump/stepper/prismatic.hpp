@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sliders between two bodies: one step of each. The plugin's engine and the stepper call the same
+// functions.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "statejump/kernel/contact_law.hpp"
+#include "statejump/kernel/stable_step.hpp"
+#include "statejump/kernel/vector.hpp"
+
+namespace statejump::stepper {
+
+using kernel::Vector3;
+
+/// A slider between two bodies; the attributes of PrismaticJoint. Body 1 slides against body 2
+/// along an axis fixed in space. With the slide s = (x1 - x2 - offset) . axis the force on body 1
+/// against the axis is friction and stop,
+///
+///     F_f = clamp(k_t (s - s_f); -f, f),   s_f follows where it slips: a spring behind a slider;
+///     stop: Hertz's K d^1.5 of the depth d by which s is beyond a clearance.
+///
+/// Across the axis a spring k_n holds both bodies together. Forces act at the bodies' centres and
+/// do not turn them. Each spring has the dashpot of a damping ratio: that of friction while it
+/// sticks, within its limit, that of a stop as long as it does not pull.
+struct Prismatic {
+  int id1 = -1;
+  int id2 = -1;
+  Vector3 axis = Vector3::UnitX();
+  Vector3 offset = Vector3::Zero();  ///< x1 - x2 where the slide is 0 [m]
+  double stiffnessAcross = 0;        ///< k_n [N/m]
+  double frictionLimit = 0;          ///< f [N]
+  double frictionStiffness = 0;      ///< k_t [N/m]
+  double clearanceMinus = std::numeric_limits<double>::infinity();  ///< [m]
+  double clearancePlus = std::numeric_limits<double>::infinity();   ///< [m]
+  double stopStiffness = 0;                                         ///< K [N/m^1.5]
+  double dampingRatio = 0;                                          ///< [-]
+  double slide = 0;                                                 ///< s [m]
+  double slipPosition = 0;                                          ///< s_f [m]
+  double frictionForce = 0;                                         ///< F_f without dashpot [N]
+  double stopForce = 0;  ///< of stop and its dashpot, against the axis [N]
+};
+
+/// Where the two bodies are, and how fast: 1 against 2.
+struct PrismaticMotion {
+  Vector3 apart;     ///< x1 - x2 [m]
+  Vector3 velocity;  ///< v1 - v2 [m/s]
+  double mass;       ///< 1/(1/m1 + 1/m2) [kg]; 0: neither moves
+};
+
+/// What a step answers.
+struct PrismaticStep {
+  Vector3 force;        ///< on body 1 [N]; body 2 gets the opposite
+  double elastic;       ///< stored now [J]
+  double friction;      ///< loss of this step [J]
+  double damping;       ///< loss of this step by dashpots [J]
+  double largest_step;  ///< stable time step of the joint alone [s]
+};
+
+/// Depth of the stop that the slide is beyond [m]; below 0 where there is none.
+inline double stop_depth(const Prismatic& joint) {
+  return joint.slide > 0 ? joint.slide - joint.clearancePlus : -joint.slide - joint.clearanceMinus;
+}
+
+/// Largest stiffness that the joint has at its present slide [N/m].
+inline double largest_stiffness(const Prismatic& joint) {
+  const double stop = 1.5 * joint.stopStiffness * std::sqrt(std::max(0.0, stop_depth(joint)));
+  const double sticks = joint.frictionLimit > 0 ? joint.frictionStiffness : 0;
+  return std::max(joint.stiffnessAcross, sticks + stop);
+}
+
+/// Of the dashpot of that spring [N s/m]. @param mass 1/(1/m1 + 1/m2) [kg]
+inline double largest_damping(const Prismatic& joint, double mass) {
+  return kernel::viscous_damping(joint.dampingRatio, mass, largest_stiffness(joint));
+}
+
+/// @param time_step [s]
+inline PrismaticStep prismatic_step(Prismatic& joint, const PrismaticMotion& motion,
+                                    double time_step) {
+  const Vector3 moved = motion.apart - joint.offset;
+  const double slide = moved.dot(joint.axis);
+  const Vector3 across = moved - slide * joint.axis;
+  const double speed = motion.velocity.dot(joint.axis);
+  const Vector3 speed_across = motion.velocity - speed * joint.axis;
+  const auto dashpot = [&](double stiffness) {
+    return kernel::viscous_damping(joint.dampingRatio, motion.mass, stiffness);
+  };
+  joint.slide = slide;
+
+  const double damping_across = dashpot(joint.stiffnessAcross);
+  PrismaticStep step{-joint.stiffnessAcross * across - damping_across * speed_across,
+                     0.5 * joint.stiffnessAcross * across.squaredNorm(), 0,
+                     damping_across * speed_across.squaredNorm() * time_step, 0};
+
+  double along = 0;  // against the axis
+  if (joint.frictionLimit > 0) {
+    const double limit = joint.frictionLimit;
+    double friction = joint.frictionStiffness * (slide - joint.slipPosition);
+    if (std::abs(friction) > limit) {
+      friction = std::copysign(limit, friction);
+      const double slid_to = slide - friction / joint.frictionStiffness;
+      // Leapfrog does its work with the mean of the forces of two steps.
+      step.friction = 0.5 * (friction + joint.frictionForce) * (slid_to - joint.slipPosition);
+      joint.slipPosition = slid_to;
+      along = friction;
+    } else {
+      along = std::clamp(friction + dashpot(joint.frictionStiffness) * speed, -limit, limit);
+      step.damping += (along - friction) * speed * time_step;
+    }
+    step.elastic += 0.5 * friction * (slide - joint.slipPosition);
+    joint.frictionForce = friction;
+  }
+
+  joint.stopForce = 0;
+  const double depth = stop_depth(joint);
+  if (depth > 0) {
+    const double sign = slide > 0 ? 1.0 : -1.0;
+    const double root = std::sqrt(depth);
+    const double pushes = joint.stopStiffness * depth * root;
+    const double pressed = kernel::damped_normal_force(
+        pushes, dashpot(1.5 * joint.stopStiffness * root), sign * speed);
+    joint.stopForce = sign * pressed;
+    step.elastic += 0.4 * pushes * depth;
+    step.damping += (pressed - pushes) * sign * speed * time_step;
+  }
+  step.force -= (along + joint.stopForce) * joint.axis;
+
+  step.largest_step = motion.mass > 0
+                          ? kernel::critical_time_step(motion.mass, largest_stiffness(joint),
+                                                       largest_damping(joint, motion.mass))
+                          : std::numeric_limits<double>::infinity();
+  return step;
+}
+
+}  // namespace statejump::stepper

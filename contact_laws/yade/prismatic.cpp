@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "prismatic.hpp"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "blocked_motion.hpp"
+#include "contact_parts.hpp"
+#include "faults.hpp"
+#include "ranges.hpp"
+#include "statejump/stepper/numbers.hpp"
+#include "thermal.hpp"
+
+namespace statejump::dem {
+namespace {
+
+// Entries of O.energy; kept as strings, because the tracker takes strings and is asked every step.
+const std::string prismatic_elastic = "prismaticElastic";
+const std::string prismatic_friction = "prismaticFriction";
+const std::string prismatic_damping = "prismaticDamping";
+
+[[noreturn, gnu::cold]] void fail(const yade::Scene& scene, const PrismaticJoint& joint,
+                                  const std::string& before, const std::string& after,
+                                  Real stable) {
+  // Where it is a number of the joint or of its bodies that is none, that is what is said.
+  if (auto fault = fault_of_prismatic(scene, joint)) throw_failure(*std::move(fault));
+  throw_failure({Failure::Part::prismatic_joint, joint.id1, joint.id2, before, after, scene.time,
+                 stable, when(scene)});
+}
+
+std::string text_of(Real value) {
+  std::ostringstream text;
+  text.precision(6);
+  text << value;
+  return text.str();
+}
+
+}  // namespace
+
+void PrismaticJoint::check() const {
+  require_settable<stepper::Prismatic>(class_name, stepper::prismatic_quantities, *this);
+  for (const auto& [name, value] :
+       {std::pair{"clearanceMinus", clearanceMinus}, std::pair{"clearancePlus", clearancePlus}}) {
+    if (!(value >= 0)) refuse(class_name, name, value, "0 or above [m]");
+  }
+  require_unit(class_name, "axis", axis);
+  if (!stepper::is_finite(offset)) refuse(class_name, "offset", offset.norm(), "finite [m]");
+}
+
+void PrismaticJoints::action() {
+  begin(*scene);
+  for (const auto& joint : joints) {
+    if (!joint) throw std::invalid_argument("PrismaticJoints.joints holds None");
+    act(*joint);
+  }
+}
+
+void PrismaticJoints::act(PrismaticJoint& joint) {
+  const yade::State& one = *body_of(*scene, joint.id1, "PrismaticJoint.id1").state;
+  const yade::State& two = *body_of(*scene, joint.id2, "PrismaticJoint.id2").state;
+  if (joint.id1 == joint.id2) {
+    throw std::invalid_argument("PrismaticJoint.id2 = " + std::to_string(joint.id2) +
+                                " is not allowed: must be another body than id1");
+  }
+  constexpr Real no_step = std::numeric_limits<Real>::quiet_NaN();
+  if (stepper::has_friction_without_stiffness(joint) ||
+      stepper::has_stop_without_stiffness(joint)) {
+    fail(*scene, joint, "a stiffness is missing of ", "", no_step);
+  }
+  const Real inverse = inverse_mass(one) + inverse_mass(two);
+  const stepper::PrismaticStep step = stepper::prismatic_step(
+      joint,
+      {one.se3.position - two.se3.position, one.vel - two.vel, inverse > 0 ? 1 / inverse : 0},
+      scene->dt);
+  if (!(scene->dt <= step.largest_step)) {
+    fail(*scene, joint, "the time step " + text_of(scene->dt) + " s is above the stable one of ",
+         ", " + text_of(step.largest_step) + " s", step.largest_step);
+  }
+  if (!stepper::is_plain(step.force)) {
+    fail(*scene, joint, "the force is not finite of ", "", no_step);
+  }
+  scene->forces.addForce(joint.id1, step.force);
+  scene->forces.addForce(joint.id2, -step.force);
+
+  if (scene->trackEnergy) {
+    scene->energy->add(step.elastic, prismatic_elastic, energy_ids_[0], true);
+    scene->energy->add(step.friction, prismatic_friction, energy_ids_[1], false);
+    scene->energy->add(step.damping, prismatic_damping, energy_ids_[2], false);
+  }
+}
+
+}  // namespace statejump::dem
