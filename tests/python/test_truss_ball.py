@@ -78,14 +78,14 @@ def test_parts_may_not_be_drawn_apart() -> None:
         parse_case(made)
 
 
-def test_increments_matter_to_first_order_only() -> None:
-    """The state jump, of first order in the increment where the slide turns."""
+def test_increments_matter_to_second_order_only() -> None:
+    """Twice as many leave a quarter of the error of the jump, which is a 300th of the loop."""
     truss = parse_case(tripod()).resolve()
     jumps = [solve.path(truss, increments_per_branch=increments).cycle_ends["displacement_m"] for increments in (
         25, 50, 1600)]
     errors = [np.abs((one[-1] - one[0]) - (jumps[-1][-1] - jumps[-1][0])).max() for one in jumps[:-1]]
-    assert errors[1] < 0.65 * errors[0]
-    assert errors[1] < 5e-3 * np.abs(jumps[-1][-1] - jumps[-1][0]).max()
+    assert errors[1] == pytest.approx(0.25 * errors[0], rel=0.3)
+    assert errors[1] < 2e-3 * np.abs(jumps[-1][-1] - jumps[-1][0]).max()
 
 
 def test_commands(statejump: Callable[..., Outcome], tmp_path: Path) -> None:
@@ -131,8 +131,8 @@ def test_dem_rolls_and_slips_out_of_any_plane_as_the_path(statejump: Callable[..
     # Nodes move by 1.5 mm/s at most, and across their links springs of 2e4 N/m hold 12 g: 1.3e3 /s. Wherever the speed
     # turns they follow their equilibrium within 1.2e-6 m of 1.5 mm.
     assert rows["displacement_largest_rms_over_largest"] < 8e-4
-    # Jumps are the same but for the path's error of first order, which the test above has, of the loop ten times less.
-    assert rows["jump_largest_difference_over_largest_jump_or_loop"] < 2e-4
+    # Of the jump the error of the increments is 2e-3 at most, as the test above has it, of the loop 300 times less.
+    assert rows["jump_largest_difference_over_largest_jump_or_loop"] < 1e-5
     assert abs(rows["energy_residual_over_friction_work"]) < 1e-6
     path, dem = found.models.values()
     events = [[(event.kind, event.joint) for event in run.events] for run in (path, dem)]

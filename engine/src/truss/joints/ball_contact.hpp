@@ -139,11 +139,11 @@ Vector<Number> turned(const Eigen::Vector3d& before, const Vector<Number>& now) 
   using std::sqrt;
   Vector<Number> turn = Vector<Number>::Zero();
   if (before.isZero(0.0) || value_of(now.squaredNorm()) == 0.0) return turn;
-  const Vector<Number> from = before.cast<Number>();
   const Number scale = Number(1.0 / (before.norm() * sqrt(now.squaredNorm())));
-  const Number cosine = from.dot(now) * scale;
+  const Number cosine = before.cast<Number>().dot(now) * scale;
   // From the difference: exact where they are nearly one.
-  turn = from.cross(Vector<Number>(now - from)) *
+  const Vector<Number> change = now - before.cast<Number>();
+  turn = before.cast<Number>().cross(change) *
          Number(chain(cosine, arc_over_sine(value_of(cosine))) * scale);
   return turn;
 }
@@ -199,8 +199,10 @@ BallSlide<Number> ball_slide(const BallState<Number>& now, const BallMemory& sta
 /// Bend of the contact if it stuck, as the force that makes it times a compliance.
 template <class Number>
 struct BallBend {
+  BallSlide<Number> moved;
   Vector<Number> pull;  ///< [m]
   Number compliance;    ///< [m/N]
+  Number mean;          ///< Compliance over the step [m/N].
 };
 
 template <class Number>
@@ -208,21 +210,56 @@ BallBend<Number> ball_bend(const BallJoint& joint, const BallState<Number>& now,
                            const BallMemory& start) {
   const HertzContact contact{joint.hertz_stiffness, joint.mindlin_stiffness,
                              joint.radial_clearance};
-  const BallSlide<Number> moved = ball_slide(now, start);
   BallBend<Number> bend;
+  bend.moved = ball_slide(now, start);
   bend.compliance =
       chain(now.normal_force, contact.tangential_compliance(value_of(now.normal_force)));
   const double before = start.compliance;
+  bend.mean = 0.5 * (before + bend.compliance);
   if (before == 0.0) {
-    bend.pull = moved.slide;
+    bend.pull = bend.moved.slide;
+    bend.mean = bend.compliance;
   } else if (value_of(bend.compliance) > before) {
-    bend.pull = moved.slide + moved.kept * Number(before);
+    bend.pull = bend.moved.slide + bend.moved.kept * Number(before);
   } else {
     // ∫ dF/k_t by the trapezoidal rule.
-    bend.compliance = 0.5 * (before + bend.compliance);
-    bend.pull = moved.slide + moved.kept * bend.compliance;
+    bend.compliance = bend.mean;
+    bend.pull = bend.moved.slide + bend.moved.kept * bend.compliance;
   }
   return bend;
+}
+
+/// Direction of friction at the end of a step in which the contact slips; `pull` is not zero.
+///
+/// Friction t turns into a straight slide s by dϑ/ds = −(k_t/|t|) sin ϑ, ϑ the angle between both:
+/// a tractrix, tan(ϑ/2) falls as E = exp(−∫ k_t ds/|t|). With the directions t and s, c = t·s and
+/// q = (1 − c)/(1 + c) = tan²(ϑ/2) of the start, t ends up along (1 − E)(1 + q E) s + E (1 + q) t.
+/// A slip that begins within the step, or that turns far back, is projected onto the cone.
+/// @param slipped whether it slipped at the start of the step
+template <class Number>
+Vector<Number> slip_direction(const BallJoint& joint, const BallState<Number>& now,
+                              const BallMemory& start, const BallBend<Number>& bend, bool slipped) {
+  using std::sqrt;
+  Vector<Number> projected = bend.pull / Number(sqrt(bend.pull.squaredNorm()));
+  const Number squared = bend.moved.slide.squaredNorm();
+  const double kept = start.friction.norm();
+  if (!slipped || !(kept > 0.0) || !(value_of(squared) > 0.0)) return projected;
+  const Number mean_bound =
+      0.5 * joint.friction_coefficient * (start.normal_force + now.normal_force);
+  const Number slid = sqrt(squared);
+  const Number turns = slid / (bend.mean * mean_bound);
+  const Vector<Number> before = bend.moved.kept / Number(kept);
+  const Vector<Number> along = bend.moved.slide / slid;
+  const Number cosine = before.dot(along);
+  // On short ways both are the same to rounding.
+  if (!(value_of(turns) > 1e-7) || !(value_of(cosine) > -0.5)) return projected;
+  const double left = std::exp(-value_of(turns));
+  const Number stays = chain(turns, {left, -left});
+  const Number goes = chain(turns, {-std::expm1(-value_of(turns)), left});
+  const Number q = (1.0 - cosine) / (1.0 + cosine);
+  const Vector<Number> sum =
+      along * Number(goes * (1.0 + q * stays)) + before * Number(stays * (1.0 + q));
+  return sum / Number(1.0 + q * stays * stays);
 }
 
 }  // namespace statejump::truss::detail

@@ -88,19 +88,17 @@ void add_moment(const Vector<Dual>& moment, const Vector<Dual>& direction, Vecto
   far -= across;
 }
 
-/// How far bodies slide beyond what bends if they stuck, as a vector in the tangent plane; zero on
-/// a joint that is on its branch [m].
-Vector<Dual> tangential_row(const BallJoint& joint, const BallState<Dual>& now,
-                            const BallMemory& start, JointModel model, JointStatus status) {
-  const bool rubs = model == JointModel::friction && joint.friction_coefficient > 0.0;
+/// How far bodies slide beyond what bends if they stuck, or how far friction is off its bound times
+/// the compliance: a vector in the tangent plane, zero on a joint that is on its branch [m].
+Vector<Dual> tangential_row(const BallJoint& joint, const Trial& trial, const BallState<Dual>& now,
+                            JointStatus status) {
+  const BallMemory start = BallMemory::of(trial.history);
   const BallBend<Dual> bend = ball_bend(joint, now, start);
   const Vector<Dual> carries = now.friction * bend.compliance;
-  if (!rubs) return -carries;
-  const Dual squared = bend.pull.squaredNorm();
-  if (!is_slip(status) || !(squared.value() > 0.0)) return bend.pull - carries;
-  const Dual bound =
-      joint.friction_coefficient * now.normal_force * bend.compliance / sqrt(squared);
-  return bend.pull * bound - carries;
+  if (trial.model != JointModel::friction || joint.friction_coefficient == 0.0) return -carries;
+  if (!is_slip(status) || bend.pull.squaredNorm().value() == 0.0) return bend.pull - carries;
+  const Dual bound = joint.friction_coefficient * now.normal_force * bend.compliance;
+  return detail::slip_direction(joint, now, start, bend, is_slip(trial.before)) * bound - carries;
 }
 
 Response respond(const BallJoint& joint, const Trial& trial, JointStatus status) {
@@ -131,9 +129,7 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   const Dual depth =
       detail::chain(now.normal_force, contact_of(joint).depth(now.normal_force.value()));
   const Dual gap = now.distance - now.clearance - depth;
-  const Vector<Dual> row =
-      now.normal * gap +
-      tangential_row(joint, now, BallMemory::of(trial.history), trial.model, status);
+  const Vector<Dual> row = now.normal * gap + tangential_row(joint, trial, now, status);
   for (int k = 0; k < 3; ++k) {
     made.row[k] = Vector3d(trial.frame.axes.col(k)).cast<Dual>().dot(row);
   }

@@ -263,9 +263,9 @@ TEST(BallJoint, FrictionTurnsIntoANewSlideAsATractrix) {
     }
     EXPECT_GT(turning, 20);
   }
-  // Implicit Euler: of first order in the increment, which is ks/μN = 0.07 at first.
-  EXPECT_LT(error[0], 0.05);
-  EXPECT_NEAR(error[1], 0.5 * error[0], 0.1 * error[0]);
+  // The rods give way by a thousandth of what the contact does; increments do not matter.
+  EXPECT_LT(error[0], 1e-3);
+  EXPECT_NEAR(error[1], error[0], 1e-6);
 }
 
 TEST(BallJoint, IsTheHistorySpringOfTheDemInSpace) {
@@ -329,9 +329,9 @@ TEST(BallJoint, IsTheHistorySpringOfTheDemInSpace) {
     EXPECT_GT(slips, 100);
     EXPECT_LT(slips, static_cast<int>(path.states.size()) - 100);
   }
-  // Both are of first order in the increment where the slide turns, with another constant.
-  EXPECT_LT(error[0], 1e-2);
-  EXPECT_LT(error[1], 0.6 * error[0]);
+  // A step of the DEM's contact is of first order where the slide turns.
+  EXPECT_LT(error[0], 2e-3);
+  EXPECT_NEAR(error[1], 0.5 * error[0], 0.05 * error[0]);
 }
 
 TEST(BallJoint, IncrementsDoNotMatterAndEnergyIsKept) {
@@ -351,10 +351,11 @@ TEST(BallJoint, IncrementsDoNotMatterAndEnergyIsKept) {
     jump[i] = (moved - fine).norm() / fine.norm();
     residue[i] = std::abs(relative_residue(path));
   }
-  EXPECT_LT(jump[0], 1e-3);
-  EXPECT_LT(jump[1], 0.4 * jump[0]);
-  EXPECT_LT(residue[0], 1e-2);
-  EXPECT_LT(residue[2], 0.1 * residue[0]);
+  // Four times as many: of second order both, the works of higher.
+  EXPECT_LT(jump[0], 1e-6);
+  EXPECT_LT(jump[1], 0.08 * jump[0]);
+  EXPECT_LT(residue[0], 1e-6);
+  EXPECT_LT(residue[1], 0.08 * residue[0]);
 }
 
 TEST(BallJoint, ItemsOutOfRangeAreNamed) {

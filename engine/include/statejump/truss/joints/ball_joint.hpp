@@ -29,9 +29,10 @@ namespace statejump::truss {
 /// the moment of friction about that axis has nothing to turn. Of several links at a node, the one
 /// that is named turns the part.
 ///
-/// **Step.** Slide and turns of a step are taken at its middle, an error of second order in the
-/// increment. Slip is the implicit Euler step of the cone (radial return [1]): exact on a straight
-/// slide; on one that turns, of first order in the increment.
+/// **Step.** Slide and turns of a step are taken at its middle. Friction that slips turns into the
+/// slide as it does where the slide is straight and the bound constant, along a tractrix; where a
+/// slip begins it is projected onto the cone (radial return [1]). All of it is of second order in
+/// the increment.
 ///
 /// **Unknowns.** The force on the ball as a vector along fixed directions, λ_n n + t. Then no
 /// direction of the tangent plane is chosen anywhere, and pins, contact and open joint have the
