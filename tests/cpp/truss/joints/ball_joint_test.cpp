@@ -268,6 +268,37 @@ TEST(BallJoint, FrictionTurnsIntoANewSlideAsATractrix) {
   EXPECT_NEAR(error[1], error[0], 1e-6);
 }
 
+TEST(BallJoint, OpensAndClosesWhereTheRodThatPressesItIsAsLongAsTheWay) {
+  // Three rods hold the ball; cooling shortens the one that presses it down.
+  Model model = pushed_around_a_corner();
+  model.programs = {quarters({0.0, -100.0, 0.0})};
+  model.nodes[1].load.setZero();
+  model.nodes.push_back(node("Z", {0, 0, 10.0}, 0));
+  const double pressed = 10.002;
+  const double expansion = 2e-6;
+  model.links = {{"X", 2, 1, 1e9, 10.0, 0.0, 0, 1.0},
+                 {"Y", 3, 1, 1e9, 10.0, 0.0, 0, 1.0},
+                 {"Z", 4, 1, 1e9, pressed, expansion, 0, 1.0}};
+  const Path path = solve(model);
+  // At the apex of the cone friction slips before the contact opens: the bend outlives the bound.
+  const JointStatus expected[] = {JointStatus::stick, JointStatus::slip_plus, JointStatus::open,
+                                  JointStatus::stick};
+  ASSERT_GE(path.events.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(path.events[i].before, expected[i]);
+    EXPECT_EQ(path.events[i].after, expected[i + 1]);
+  }
+  // Rods across carry c/L of what 5e-8 m, c²/(2 L), stretch them by: below 1e-5 K.
+  const double change = ((10.0 + joint_of(model).radial_clearance) / pressed - 1.0) / expansion;
+  EXPECT_NEAR(path.events[1].temperature_change, change, 1e-5);
+  EXPECT_NEAR(path.events[2].temperature_change, change, 1e-5);
+  for (const State& state : path.states) {
+    if (state.joint_status[0] != JointStatus::open) continue;
+    EXPECT_EQ(normal(model, state), 0.0);
+    EXPECT_TRUE(friction(model, state).isZero(0.0));
+  }
+}
+
 TEST(BallJoint, IsTheHistorySpringOfTheDemInSpace) {
   // The contact of the DEM, with its own kinematics, driven along the path that the solver found.
   const Model model = tripod();
