@@ -19,8 +19,8 @@ from statejump.core.tables import write_rows, write_text
 def fe_command(case_file: Path, results: Results, quiet: bool) -> None:
     """CASE in finite elements beside the reduced model: writes a deck, runs CalculiX (ccx), reads it back.
 
-    A bar on a slider gets frictional contact and stops; of a truss every joint is locked. Exit status 1 where the two
-    differ by more than they may.
+    A bar on a slider gets frictional contact and stops; of a truss every joint is locked, and where its only joints are
+    sliders they slip as well. Exit status 1 where the two differ by more than they may.
 
     \b
     Example:

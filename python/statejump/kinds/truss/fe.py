@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A truss with every joint locked in CalculiX: bars of type T3D2, small displacements.
+"""A truss with every joint locked in CalculiX: bars of type T3D2, small displacements. Where its only joints are
+sliders they slip in a second deck, see :mod:`statejump.kinds.truss.fe_sliding`.
 
 CalculiX linearizes and the solver does not, so what is compared is the rate of the solver's path at ΔT = 0, of
 temperatures and loads together, times their full size: (u(h) - u(-h))/(2 h) with h = STEP leaves an error of order
@@ -17,6 +18,7 @@ from statejump.core.comparison import Quantity
 from statejump.core.errors import NotAllowed
 from statejump.fe import ccx
 from statejump.fe.ccx import number
+from statejump.kinds.truss import fe_sliding
 from statejump.kinds.truss.case import TrussCase, TrussThermal
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.joints import JOINTS
@@ -49,11 +51,31 @@ def answer(case: TrussCase) -> ccx.Answer:
     own = _rate(locked, changes)
     carried, other = (_forces(locked, changes, moved) for moved in (own, fine))
     held = np.abs(_forces(locked, changes, np.zeros_like(own))).max()
-    rows = (_row("largest_displacement", "m", own, fine), _row("largest_axial_force", "N", carried, other, float(held)))
-    return ccx.Answer("\n".join(lines) + "\n", rows, (
-        "every joint is locked, displacements are small: the solver's rate at ΔT = 0 times the largest ΔT of each link",
-        "differences are the largest of all nodes and links, over the largest value; of forces over the one that holds "
-        "a link's expansion, where it is larger"))
+    rows = [_row("largest_displacement", "m", own, fine), _row("largest_axial_force", "N", carried, other, float(held))]
+    notes = ["every joint is locked, displacements are small: the solver's rate at ΔT = 0 times the largest ΔT of each "
+             "link",
+             "differences are the largest of all nodes and links, over the largest value; of forces over the one that "
+             "holds a link's expansion, where it is larger"]
+    if truss.sliders.names:
+        try:
+            lines, sliding = _sliding(case, truss)
+            rows += sliding
+            notes.append("rows that end in sliding: the sliders slip along the program, displacements are small (the "
+                         f"solver's at {fe_sliding.STEP:g} of temperatures, loads, friction and play, over that); what "
+                         f"is rigid gives way by 1/{fe_sliding.STICK:g} of the stiffest bar")
+        except NotAllowed as refused:
+            notes.append(f"sliders that slip are not followed: {refused}")
+    return ccx.Answer("\n".join(lines) + "\n", tuple(rows), tuple(notes))
+
+
+def _sliding(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Quantity, ...]]:
+    """Return the deck in which sliders slip, and what it says.
+
+    :raises NotAllowed: there are other joints, or something else that this deck does not have
+    """
+    if truss.number_of_joints() > len(truss.sliders.names) or truss.sticking == "partial_slip":
+        raise NotAllowed("joints", cause="beside them there are other joints, or partial slip")
+    return fe_sliding.rows(case, truss)
 
 
 def _refuse(truss: ResolvedTruss) -> None:
