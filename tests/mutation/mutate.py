@@ -48,7 +48,7 @@ MUTATIONS = [
              "dissipation = 0.5 * old_force_squared * (old_compliance - compliance);",
              "dissipation = 0.0;", "mindlin_test"),
     Mutation("spring_survives_the_gap", "mindlin.hpp",
-             "history = {Vector3::Zero(), std::max(stiffness, 0.0), stiffness > 0.0};", "",
+             "detail::keep(Vector3::Zero(), std::max(stiffness, 0.0), stiffness > 0.0, history);", "",
              "mindlin_test"),
     Mutation("factor_8_of_mindlin_missing", "mindlin.hpp",
              "return 8.0 * effective_shear_modulus", "return effective_shear_modulus",
