@@ -31,6 +31,7 @@ def case(friction, period, steps):
 def orbit(friction, period, steps):
     O.reset()
     resolved = case(friction, period, steps)
+    resolved["bar_program"] = resolved["thermal"]
     recorder = wrapper.PyRunner(command="read()", iterPeriod=250, initRun=True)
     built = scene_spring_slider.build(resolved, [recorder])
     rows = []
