@@ -281,6 +281,8 @@ def structure(model: type[SectionType], data: Mapping[str, Any]) -> SectionType:
             read = attribute.metadata[READ]
             made[name] = read(name, data[name]) if read else read_tables(item, name, data[name])
         elif keys is not None:
+            if data[name] is None and attribute.default is None:
+                continue  # as to_dict() has it
             if not isinstance(data[name], Mapping):
                 raise NotAllowed(name, data[name], f"must be a section [{name}]")
             made[name] = _section(keys, name, data[name])
