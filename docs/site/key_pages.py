@@ -9,10 +9,11 @@ from typing import Any, Iterator
 
 from statejump import _engine, kinds
 from statejump.core.units import unit_of
+from statejump.kinds.truss.joints import JOINTS
 from statejump.schema import json_schema as schema
 
 # Names of the table of symbols that are YADE's own, or say in words how to get a value.
-YADES_OWN = {"young", "poisson", "frictionAngle", "state.pos", "kn", "ks", "state.mass"}
+YADES_OWN = {"young", "poisson", "frictionAngle", "state.pos", "kn", "ks", "shearForce", "state.mass"}
 
 
 def heading(text: str, mark: str) -> str:
@@ -171,6 +172,7 @@ def columns_page() -> str:
 def history_columns() -> set[str]:
     """Return the columns of histories and the arguments that the engine's module documents."""
     found = {column for name in kinds.names() for column in kinds.kind(name).COLUMNS}
+    found.update(column.name for joint in JOINTS for column in joint.columns)
     for value in vars(_engine).values():
         inner = vars(value) if isinstance(value, type) else {}
         found.update(inner)
