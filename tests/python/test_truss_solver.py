@@ -2,7 +2,6 @@
 """Quasi-static solver of trusses against closed forms and the other reduced models."""
 from __future__ import annotations
 
-import importlib.util
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -422,22 +421,3 @@ def test_joint_that_loses_its_contact_is_reported_with_the_temperature(bias_rad:
 def test_path_ends_when_progress_says_so() -> None:
     found = path(generate.ring(6), progress=lambda share: share < 0.3)
     assert not found.complete and 1 < len(found.states["time_s"])
-
-
-def test_a_step_on_which_many_joints_wander_is_divided() -> None:
-    """45 latches of a mast want to slip in the first step. Pivots of all of them at once do not settle there: until steps
-    were divided after ten of them that helped nothing, a solve took 37 factorizations in the mean, now 4.5."""
-    spec = importlib.util.spec_from_file_location("histories", ROOT / "bench" / "histories.py")
-    assert spec is not None and spec.loader is not None
-    histories = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(histories)
-    mast = histories.mast(1600)
-    warm = np.random.default_rng(1)
-    for link in mast["link"]:
-        link["temperature_fraction"] = float(warm.uniform(-1, 1))
-    for slider in mast["slider"]:
-        slider["normal_force_N"] = 5.0
-    mast["thermal"] = {"shape": "triangle", "temperature_change_max_K": 40.0}
-    found = path(mast, increments_per_branch=1, locate_events=False, cycle_ends_only=True,
-                 progress=lambda share: share < 0.45)
-    assert len(found.events) > 10 and found.factorizations < 10 * found.solves

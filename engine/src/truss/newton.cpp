@@ -22,9 +22,6 @@ constexpr double force_tolerance = 1e-12;
 constexpr double closure_tolerance = 1e-13;
 /// Steps that a step is compared with: M of Grippo, Lampariello and Lucidi.
 constexpr std::size_t remembered_steps = 10;
-/// Pivots of all joints at once that may leave no fewer violations than there ever were: p of
-/// Júdice and Pires. In a large truss such pivots may wander without end and without a circle.
-constexpr int most_idle_pivots = 10;
 /// Halvings of a step after which it is below a thousandth: Newton's direction leads nowhere.
 constexpr int most_halvings = 10;
 /// Halvings of the share of a step at which a joint changes: to rounding of the step.
@@ -141,19 +138,15 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   int halvings = 0;
   int iterations = 0;
   std::size_t pieces = 0;
-  int idle = 0;
-  /// False if the sets go round in a circle, or wander on a step that may be shorter as well.
+  /// False if the sets go round in a circle.
   const auto pivot = [&](const Violations& found) {
     if (found.joints.empty()) return true;
     if (found.joints.size() < fewest) {
       fewest = found.joints.size();
-      idle = 0;
       if (pivoting == Pivoting::single) {
         pivoting = Pivoting::rounded;
         seen.clear();
       }
-    } else if (ahead && pivoting != Pivoting::single && ++idle > most_idle_pivots) {
-      return false;
     }
     const auto take = [&] {
       if (pivoting != Pivoting::single) return found.corrected;

@@ -50,9 +50,7 @@ struct Ahead {
 /// joint at a time is changed, the lowest first and only where the smooth equations hold (Murty),
 /// until fewer joints than ever violate theirs. For a P-matrix that ends after finitely many
 /// pivots; friction that follows a normal force can make another one, where a set comes back once
-/// more and the solve ends without a solution. In a large truss many pivots at once may wander for
-/// hundreds of factorizations before a set comes back: a solve that looks ahead, whose step may as
-/// well be shorter, ends after ten that left no fewer violations than there ever were.
+/// more and the solve ends without a solution.
 ///
 /// **Events ahead.** On one set of branches the state is nearly linear over a step, so the line
 /// from its start to the first full step tells when the first joint violates its inequality. Joints
