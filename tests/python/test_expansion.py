@@ -201,25 +201,17 @@ WRONG_BLOCK: dict[str, tuple[Callable[[dict[str, Any]], None], str]] = {
 }
 
 
-@pytest.mark.parametrize("what", WRONG_BLOCK)
-def test_what_is_wrong_with_a_bar_on_a_slider_is_one_sentence(
-    what: str, tmp_path: Any, statejump: Callable[..., Outcome]
+@pytest.mark.parametrize(("made", "change", "sentence"), [
+    *(pytest.param(pushed_block, *wrong, id=f"block, {what}") for what, wrong in WRONG_BLOCK.items()),
+    *(pytest.param(bar, *wrong, id=f"bar, {what}") for what, wrong in WRONG.items()),
+])
+def test_what_is_wrong_is_one_sentence(
+    made: Callable[[], dict[str, Any]], change: Callable[[dict[str, Any]], None], sentence: str, tmp_path: Any,
+    statejump: Callable[..., Outcome],
 ) -> None:
-    data = deepcopy(pushed_block())
-    change, sentence = WRONG_BLOCK[what]
+    data = deepcopy(made())
     change(data)
-    (tmp_path / "block.toml").write_text(to_toml(data), encoding="utf-8")
-    told = statejump("reduced", tmp_path / "block.toml")
-    assert told.status == 2 and told.errors.count("\n") == 1
-    assert sentence in told.errors
-
-
-@pytest.mark.parametrize("what", WRONG)
-def test_what_is_wrong_is_one_sentence(what: str, tmp_path: Any, statejump: Callable[..., Outcome]) -> None:
-    data = deepcopy(bar())
-    change, sentence = WRONG[what]
-    change(data)
-    (tmp_path / "bar.toml").write_text(to_toml(data), encoding="utf-8")
-    told = statejump("reduced", tmp_path / "bar.toml")
+    (tmp_path / "case.toml").write_text(to_toml(data), encoding="utf-8")
+    told = statejump("reduced", tmp_path / "case.toml")
     assert told.status == 2 and told.errors.count("\n") == 1
     assert sentence in told.errors

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Joints with clearance of a truss in YADE: a round part at one node plays in another's bore."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any, ClassVar
+
+from failures import Names, pair
+from scene import O
+from truss_joints.parts import GROUND, Joints, Row, contact, give, material
+from yade import wrapper
+
+
+class RoundParts(Joints):
+    """Keys of both parts begin with their names: ``journal_node``, ``journal_radius_m``, ..."""
+
+    shapes: ClassVar[dict[str, Any]]  # by part: what it plays in, the part that plays
+
+    def furnish(self, bodies: list[wrapper.Body], turn: Callable[[int, int], None],
+                expand: Callable[[int, Row], None]) -> None:
+        for joint in self.rows:
+            for part, shape in self.shapes.items():
+                node, expansion = joint[f"{part}_node"], joint[f"{part}_thermal_expansion_per_K"]
+                give(bodies[node], shape(radius=joint[f"{part}_radius_m"]), material(joint, expansion), joint["group"])
+                self.orient(bodies[node], joint)
+                if expansion:
+                    expand(node, joint)
+                if joint[f"{part}_link"] != GROUND:
+                    turn(joint[f"{part}_link"], node)
+
+    def orient(self, body: wrapper.Body, joint: Row) -> None:
+        """Turn a part to the joint's axis, if it has one."""
+
+    def bodies_of(self, joint: Row) -> tuple[int, int]:
+        """Return the part that plays and what it plays in."""
+        outer, inner = self.shapes
+        return self.ids[joint[f"{inner}_node"]], self.ids[joint[f"{outer}_node"]]
+
+    def append(self, ids: list[int]) -> Iterator[tuple[int, int]]:
+        self.ids = ids
+        for joint in self.rows:
+            yield self.bodies_of(joint)
+
+    def radii(self) -> list[float]:
+        _, inner = self.shapes
+        return [joint[f"{inner}_radius_m"] for joint in self.rows]
+
+    def states(self) -> list[tuple[Any, ...]]:
+        return [self._state(joint) for joint in self.rows]
+
+    def _state(self, joint: Row) -> tuple[Any, ...]:
+        inner, outer = self.bodies_of(joint)
+        touching = contact(inner, outer)
+        if touching is not None and touching.geom.penetrationDepth <= 0:
+            touching = None
+        return self.read(joint, O.bodies[inner].state.pos - O.bodies[outer].state.pos, touching)
+
+    def read(self, joint: Row, offset: Any, touching: Any) -> tuple[Any, ...]:
+        """Return what the columns have of a joint: of the offset of its centres, and of its contact if it touches."""
+        raise NotImplementedError
+
+    def name(self, found: Names) -> None:
+        for joint in self.rows:
+            found.joints[pair(*self.bodies_of(joint))] = (joint["names"], f"{self.section} {joint['names']!r}")
