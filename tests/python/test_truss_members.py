@@ -2,12 +2,14 @@
 """Warnings about a run of a truss: Euler's load and yield strength of links, changes that are taken together."""
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import statejump as sj
+from statejump.core.run import warnings_of
 from statejump.kinds.loading import load_case
 from statejump.kinds.spring_slider.reduced import spring_slider
 from statejump.kinds.truss.resolved import FIXITY
@@ -63,6 +65,18 @@ def test_the_worst_link_is_named_and_the_others_are_counted() -> None:
     strength = 0.5 * (np.sort(forces)[0] + np.sort(forces)[1]) / 9e-6
     warned, = told(chain.changed({"link.*.yield_strength_Pa": strength}), "yield")
     assert f"link 'L{1 + int(np.argmax(forces))}'" in warned and ", and so does 1 other link: the models keep links elastic" in warned
+
+
+def test_what_both_models_warn_of_is_said_once() -> None:
+    both = bar(yield_strength_Pa=1e7)
+    still, moving = both.reduced(), both.changed({"motion.steps_per_cycle": 1000}).reduced(dynamic=True)
+    assert len(still.warnings) == 2 and still.warnings != moving.warnings  # of buckling and of yielding
+    assert warnings_of([still, moving]) == [*still.warnings]
+    assert warnings_of([still, replace(moving, warnings=(*moving.warnings, "link 'L1' is lost"))]) == [
+        *still.warnings, "link 'L1' is lost"]
+    # Within one run all are kept: that of two joints in one model differs by their names' numbers.
+    assert warnings_of([replace(still, warnings=("joint J1 sticks", "joint J2 sticks"))]) == [
+        "joint J1 sticks", "joint J2 sticks"]
 
 
 def test_motion_and_answers_warn_as_well() -> None:

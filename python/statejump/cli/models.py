@@ -15,7 +15,7 @@ from statejump.case import Case
 from statejump.core.errors import Interrupted, TolerancesMissed
 from statejump.core.limits import check_memory, history_of
 from statejump.core.results_folder import Results, ResultsFolder
-from statejump.core.run import Run
+from statejump.core.run import Run, warnings_of
 
 
 def _told(case: Case, runs: dict[str, Run], console: Console) -> None:
@@ -24,7 +24,7 @@ def _told(case: Case, runs: dict[str, Run], console: Console) -> None:
 
 
 def _warn(runs: dict[str, Run], console: Console) -> None:
-    for warning in dict.fromkeys(warning for run in runs.values() for warning in run.warnings):
+    for warning in warnings_of(runs.values()):
         console.print(f"warning: {warning}")
 
 

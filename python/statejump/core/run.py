@@ -3,7 +3,8 @@
 case and for both models."""
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -316,3 +317,17 @@ def energy_residue_J(
     """
     total = [sum(change(columns, name) for name in names) for names in (supplied, stored, dissipated)]
     return total[0] - total[1] - total[2]
+
+
+# Two models find one limit at slightly different loads: a number and its unit.
+_AMOUNT = re.compile(r"[-+]?\d\S*( \S+)?")
+
+
+def warnings_of(runs: Iterable[Run]) -> list[str]:
+    """Return what runs of one case warn of. What several say is said once, in the words of the first: of two runs,
+    sentences that differ in amounts only are one."""
+    found: list[str] = []
+    for run in runs:
+        known = {_AMOUNT.sub("", warning) for warning in found}
+        found += [warning for warning in dict.fromkeys(run.warnings) if _AMOUNT.sub("", warning) not in known]
+    return found

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from statejump.core.case import Case
 from statejump.core.comparison import Comparison
-from statejump.core.run import Run
+from statejump.core.run import Run, warnings_of
 from statejump.core.tables import write_json
 from statejump.results import export_csv
 from statejump.results.contents import Answers, Result
@@ -31,7 +31,6 @@ def result_of(
     :param runs: by model
     """
     kind = case.behaviour
-    warnings = [warning for run in runs.values() for warning in run.warnings]
     return Result(
         command=command,
         complete=all(run.complete for run in runs.values()),
@@ -47,7 +46,7 @@ def result_of(
         models=dict(runs),
         rows=None if comparison is None else comparison.rows,
         reasons=[] if comparison is None else list(comparison.reasons),
-        warnings=list(dict.fromkeys(warnings)),
+        warnings=warnings_of(runs.values()),
         answers=answers,
         members=getattr(case.thermal, "members", None),
     )

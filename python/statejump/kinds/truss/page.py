@@ -242,8 +242,9 @@ class TrussPart:
 
     @property
     def notes(self) -> list[str]:
-        """What the answers say of themselves."""
-        return [note[:1].upper() + note[1:] + "." for note in (self.answers.notes if self.answers is not None else [])]
+        """What the answers say of themselves, but for warnings of the run: the page has them at its head."""
+        return [] if self.answers is None else [
+            note[:1].upper() + note[1:] + "." for note in self.answers.notes if note not in self.result.warnings]
 
     def cycle_rows(self) -> list[Row]:
         """Rows of the table of cycles: of many the first and the last ones."""

@@ -12,10 +12,7 @@ from statejump.kinds.umbrella.case import UmbrellaCase
 STORED = tuple(f"{name}_energy_J" for name in ("kinetic", "axial", "contact", "torsion"))
 DISSIPATED = tuple(f"{name}_dissipation_J" for name in ("axial", "pin", "friction", "impact"))
 FIRST_CONTACT = "first_contact_temperature_change"
-CHAOS = (
-    "without damping of links and pins the motion after contact is chaotic: compared point by point until the largest "
-    "temperature; for the rest see 'statejump figures'"
-)
+UNTIL = "compared point by point until the largest temperature only"
 
 
 def largest_temperature(run: Run) -> int:
@@ -110,7 +107,7 @@ def compare(case: UmbrellaCase, reduced: Run, dem: Run) -> Comparison:
     rows += history_rows(case, reduced, dem)
     rows.append(_energy_row(case, reduced, dem))
     return Comparison(case, {"reduced": reduced, "dem": dem}, tuple(rows),
-                      notes=() if case.is_reproducible else (CHAOS,))
+                      notes=() if case.is_reproducible else (UNTIL,))
 
 
 def difference(case: UmbrellaCase, first: Run, second: Run) -> list[Quantity]:
