@@ -13,6 +13,7 @@ from conftest import Outcome
 import statejump as sj
 from statejump.kinds.spring_slider.fe import kinks
 from statejump.kinds.truss import fe
+from statejump.kinds.truss.generate.document import to_toml
 
 BAR = {"young_modulus_Pa": 7e10, "cross_section_area_m2": 1e-4, "thermal_expansion_per_K": 2.3e-5,
        "density_kg_per_m3": 2700.0}
@@ -55,6 +56,26 @@ def with_slider() -> dict[str, Any]:
     return data
 
 
+def with_iwan_joint() -> dict[str, Any]:
+    """Return the square with a bolted joint within a diagonal, which is locked."""
+    data = truss()
+    data["node"].append({"name": "J", "position_m": data["node"][2]["position_m"]})
+    data["link"][3]["nodes"] = ["A", "J"]
+    data["iwan_joint"] = [{"name": "I", "nodes": ["J", "C"], "axis": [1.0, 1.1], "tangent_stiffness_N_per_m": 1e7,
+                           "slip_force_N": 100.0, "exponent": -0.5, "stiffness_ratio": 1.0}]
+    return data
+
+
+def between_walls() -> dict[str, Any]:
+    """Return a bar that is held at both ends: nothing moves."""
+    data = truss()
+    data["node"] = [{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
+                    {"name": "M", "position_m": [0.5, 0.0], "fixed": ["y"]},
+                    {"name": "B", "position_m": [1.0, 0.0], "fixed": ["x", "y"]}]
+    data["link"] = [{"name": pair, "nodes": list(pair), **BAR} for pair in ("AM", "MB")]
+    return data
+
+
 def with_revolute() -> dict[str, Any]:
     """Return the square whose diagonal ends in a clearance joint, which is locked."""
     data = truss()
@@ -67,7 +88,8 @@ def with_revolute() -> dict[str, Any]:
 
 
 TRUSSES = {"free expansion": free, "statically indeterminate": truss, "in space": lambda: truss(3),
-           "locked slider": with_slider, "locked revolute": with_revolute}
+           "between walls": between_walls, "locked slider": with_slider, "locked revolute": with_revolute,
+           "locked Iwan joint": with_iwan_joint}
 
 
 with_calculix = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not here: not every Debian has it")
@@ -78,8 +100,22 @@ with_calculix = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX
 def test_a_truss_with_locked_joints_agrees_to_1e_8(what: str) -> None:
     found = fe.answer(sj.load(TRUSSES[what]()).definition)
     moved, force, *_ = found.rows
-    assert moved.values["reduced"] > 1e-4 and moved.passed and force.passed
+    assert moved.passed and force.passed and (what == "between walls" or moved.values["reduced"] > 1e-4)
     assert what == "free expansion" or force.values["reduced"] > 100
+
+
+@with_calculix
+@pytest.mark.parametrize("what", ["free expansion", "statically indeterminate", "in space"])
+def test_the_deck_of_a_truss_is_imported_again(what: str, statejump: Callable[..., Outcome], tmp_path: Path) -> None:
+    case = sj.load(TRUSSES[what]())
+    (tmp_path / "first.toml").write_text(to_toml(TRUSSES[what]()))
+    for words in ("fe", "first.toml", "--results", "out"), ("truss", "import", f"out/{case.name}/fe.inp", "-o", "again.toml"):
+        told = statejump(*words)
+        assert told.status == 0, told.errors
+    runs = case.reduced(), sj.load(tmp_path / "again.toml").reduced()
+    for own, other in zip(*((run["displacement_m"], run.links["axial_force_N"].values) for run in runs)):
+        # Sixteen digits of a number pass through the deck; forces of a free triangle are none, of the solver's rounding.
+        assert np.abs(own - other).max() <= 1e-9 * max(np.abs(own).max(), 1e-3)
 
 
 def with_play() -> dict[str, Any]:
@@ -149,7 +185,8 @@ def test_without_calculix_one_sentence_says_so(statejump: Callable[..., Outcome]
 
 
 @pytest.mark.parametrize(("case", "sentence"), [
-    ("trusses/umbrella_rib", "torsion_spring is not allowed: 'statejump fe' takes trusses of links and joints only"),
+    ("trusses/umbrella_rib", "torsion_spring is not allowed: 'statejump fe' takes trusses of links, sliders, "),
+    ("trusses/latch_lever", "latch_hinge is not allowed: 'statejump fe' takes trusses of links, sliders, "),
     ("umbrella", "case.kind = 'umbrella' is not allowed: 'statejump fe' is for 'spring_slider' and 'truss'"),
     ("table1_frictionless", "joint.friction_coefficient = 0.0 is not allowed"),
 ])

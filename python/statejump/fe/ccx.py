@@ -51,7 +51,8 @@ def displacements(deck: Sequence[str], set_name: str) -> list[dict[int, np.ndarr
                                   stdin=subprocess.DEVNULL, timeout=LONGEST_S, check=False)
         except subprocess.TimeoutExpired:
             raise FailedRun(f"CalculiX was not done after {LONGEST_S:g} s") from None
-        said = [" ".join(line.split()) for line in done.stdout.splitlines() if "*ERROR" in line]
+        said = [" ".join(line.split()).partition("; please")[0] for line in done.stdout.splitlines()
+                if "*ERROR" in line]
         if done.returncode or said or "Job finished" not in done.stdout:
             raise FailedRun("CalculiX did not come to the end", cause=said[0] if said else None)
         return _read(folder / "deck.dat", set_name)

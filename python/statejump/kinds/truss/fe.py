@@ -3,26 +3,30 @@
 sliders they slip in a second deck, see :mod:`statejump.kinds.truss.fe_sliding`.
 
 CalculiX linearizes and the solver does not, so what is compared is the rate of the solver's path at ΔT = 0, of
-temperatures and loads together, times their full size: (u(h) - u(-h))/(2 h) with h = STEP leaves an error of order
-(strain)², 1e-11 here. CalculiX prints seven digits; of a second run, in which every displacement is told as its
-difference from the first (an equation with two nodes that nothing else holds), seven more.
+temperatures and loads together, times their full size: r(h) = (u(h) - u(-h))/(2 h), extrapolated as
+(4 r(h/2) - r(h))/3 with h = STEP. What is left is of order (h u/height)⁴, where a shallow truss has little height.
+CalculiX prints seven digits; of a second run, in which every displacement is told as its difference from the first (an
+equation with two nodes that nothing else holds), seven more.
 """
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from statejump.core.comparison import Quantity
-from statejump.core.errors import NotAllowed
+from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.fe import ccx
 from statejump.fe.ccx import number
 from statejump.kinds.truss import fe_sliding
 from statejump.kinds.truss.case import TrussCase, TrussThermal
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.along_axis import AlongAxis, Axes
 from statejump.kinds.truss.joints.round_parts import RoundParts
+from statejump.kinds.truss.joints.slider import SLIDER
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import whole_path
 
@@ -51,11 +55,13 @@ def answer(case: TrussCase) -> ccx.Answer:
     own = _rate(locked, changes)
     carried, other = (_forces(locked, changes, moved) for moved in (own, fine))
     held = np.abs(_forces(locked, changes, np.zeros_like(own))).max()
-    rows = [_row("largest_displacement", "m", own, fine), _row("largest_axial_force", "N", carried, other, float(held))]
+    expansion = np.abs(locked.links.thermal_expansion_per_K * changes * locked.links.stress_free_length_m).max()
+    rows = [_row("largest_displacement", "m", own, fine, float(expansion)),
+            _row("largest_axial_force", "N", carried, other, float(held))]
     notes = ["every joint is locked, displacements are small: the solver's rate at ΔT = 0 times the largest ΔT of each "
              "link",
-             "differences are the largest of all nodes and links, over the largest value; of forces over the one that "
-             "holds a link's expansion, where it is larger"]
+             "differences are the largest of all nodes and links, over the largest value, or over the largest "
+             "expansion of a free link and the force that holds it, where they are larger"]
     if truss.sliders.names:
         try:
             lines, sliding = _sliding(case, truss)
@@ -63,7 +69,7 @@ def answer(case: TrussCase) -> ccx.Answer:
             notes.append("rows that end in sliding: the sliders slip along the program, displacements are small (the "
                          f"solver's at {fe_sliding.STEP:g} of temperatures, loads, friction and play, over that); what "
                          f"is rigid gives way by 1/{fe_sliding.STICK:g} of the stiffest bar")
-        except NotAllowed as refused:
+        except StatejumpError as refused:
             notes.append(f"sliders that slip are not followed: {refused}")
     return ccx.Answer("\n".join(lines) + "\n", tuple(rows), tuple(notes))
 
@@ -80,9 +86,13 @@ def _sliding(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Qu
 
 def _refuse(truss: ResolvedTruss) -> None:
     """Raise NotAllowed for what the deck does not have."""
-    for section, names in (("spring", truss.springs.names), ("torsion_spring", truss.torsion_springs.names)):
+    of_angles = [(joint.section, truss.joints[joint.section].names) for joint in JOINTS
+                 if not isinstance(joint, (AlongAxis, RoundParts))]
+    of_springs = [("spring", truss.springs.names), ("torsion_spring", truss.torsion_springs.names)]
+    for section, names in of_springs + of_angles:
         if names:
-            raise NotAllowed(section, cause="'statejump fe' takes trusses of links and joints only")
+            raise NotAllowed(section, cause="'statejump fe' takes trusses of links, sliders, Iwan joints and joints "
+                             "with clearance only")
     ends = truss.nodes.position_m[truss.links.nodes]
     drawn = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     free = truss.links.stress_free_length_m
@@ -99,13 +109,19 @@ def _hottest(case: TrussCase, truss: ResolvedTruss) -> Numbers:
 
 
 def _pinned(truss: ResolvedTruss) -> ResolvedTruss:
-    """Return the truss with a pin in place of every joint with clearance: the inner part's node is the outer one's."""
+    """Return the truss with a pin in place of every joint with clearance (the inner part's node is the outer one's),
+    and a slider in place of whatever moves along an axis."""
     place, none = np.arange(len(truss.nodes.names)), {}
+    for joint in JOINTS:
+        if not isinstance(joint, AlongAxis) or joint is SLIDER:
+            continue
+        truss, joints = _with_sliders(truss, truss.joints[joint.section]), truss.joints[joint.section]
+        none[joint.section] = _no(joints)
     for joint in JOINTS:
         if not isinstance(joint, RoundParts):
             continue
         joints = truss.joints[joint.section]
-        none[joint.section] = type(joints)(**{key: value[:0] for key, value in vars(joints).items()})
+        none[joint.section] = _no(joints)
         for outer, inner in joint.joined(joints):
             place[place == place[inner]] = place[outer]
     kept = np.unique(place)
@@ -123,10 +139,25 @@ def _pinned(truss: ResolvedTruss) -> ResolvedTruss:
     ).with_joints(slider=replace(sliders, nodes=ends), **none)
 
 
+def _no(joints: Any) -> Any:
+    """Return joints of the same type, none of them."""
+    return type(joints)(**{key: value[:0] for key, value in vars(joints).items()})
+
+
+def _with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
+    """Return the truss with locked sliders more, along the axes of joints."""
+    sliders, count = truss.sliders, len(joints.names)
+    unknown, no_stop = np.full(count, np.nan), np.full(count, np.inf)
+    more = {**dict.fromkeys(vars(sliders), unknown), "nodes": joints.nodes, "axis": joints.axis,
+            "clearance_minus_m": no_stop, "clearance_plus_m": no_stop}
+    both: dict[str, Any] = {key: np.concatenate([value, more[key]]) for key, value in vars(sliders).items()
+                            if key != "names"}
+    return truss.with_joints(slider=type(sliders)(names=sliders.names + joints.names, **both))
+
+
 def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:
     """Return the rate of the solver's displacements (n, 3) [m] with temperatures and loads at nothing, times both."""
-    found = []
-    for step in (STEP, -STEP):
+    def moved(step: float) -> Numbers:
         count = len(truss.links.names)
         program = TrussThermal(shape="triangle", temperature_change_max_K=1.0, period_s=1.0)
         scaled = replace(
@@ -139,8 +170,10 @@ def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:
             normal_force_N=np.full(len(truss.sliders.names), LARGEST_HELD)))
         path = whole_path(scaled, increments_per_branch=1)
         peak = int(np.argmin(np.abs(path.states["time_s"] - 0.5)))
-        found.append(path.states["displacement_m"][peak])
-    return np.asarray((found[0] - found[1]) / (2 * STEP))
+        return np.asarray(path.states["displacement_m"][peak])
+
+    coarse, fine = ((moved(step) - moved(-step)) / (2 * step) for step in (STEP, STEP / 2))
+    return np.asarray((4 * fine - coarse) / 3)
 
 
 def _forces(truss: ResolvedTruss, changes: Numbers, moved: Numbers) -> Numbers:
@@ -180,11 +213,13 @@ def deck(truss: ResolvedTruss, changes: Numbers, reference: Numbers | None = Non
     for index, (first, second) in enumerate(links.nodes, start=1):
         lines += [f"*ELEMENT, TYPE=T3D2, ELSET=E{index}", f"{index}, {first + 1}, {second + 1}"]
     poisson = links.poisson_ratio
+    # A node has one temperature, bars have each their own: all nodes are as hot as the hottest bar, and the expansion
+    # of a cooler one is less in proportion.
+    hot = max(changes, key=abs, default=0.0) or 1.0
     for index in range(len(links.names)):
-        # All nodes are heated by 1 K: each bar's expansion is that of its own temperature change.
         lines += [f"*MATERIAL, NAME=M{index + 1}", "*ELASTIC",
                   f"{number(links.young_modulus_Pa[index])}, {number(poisson[index])}", "*EXPANSION, ZERO=0.",
-                  number(links.thermal_expansion_per_K[index] * changes[index]),
+                  number(links.thermal_expansion_per_K[index] * (changes[index] / hot)),
                   f"*SOLID SECTION, ELSET=E{index + 1}, MATERIAL=M{index + 1}",
                   number(links.cross_section_area_m2[index])]
     lines += _locks(truss)
@@ -198,7 +233,7 @@ def deck(truss: ResolvedTruss, changes: Numbers, reference: Numbers | None = Non
     if reference is not None:
         lines += [f"{2 * count + node + 1}, {axis + 1}, {axis + 1}, {number(reference[node, axis])}"
                   for node in range(count) for axis in range(3)]
-    lines += ["*STEP", "*STATIC", "*TEMPERATURE", "JOINTS, 1."]
+    lines += ["*STEP", "*STATIC", "*TEMPERATURE", f"JOINTS, {number(hot)}"]
     loads = [f"{node + 1}, {axis + 1}, {number(nodes.force_N[node, axis])}"
              for node, axis in zip(*np.nonzero(nodes.force_N))]
     lines += ["*CLOAD", *loads] if loads else []

@@ -100,13 +100,18 @@ def _changes(deck: Deck, given: float | None) -> list[float]:
     return found
 
 
+def _in_units(value: float, unit: float) -> float:
+    """Return a number of a deck in the units of cases, with the digits that a deck can have: 50 mm2 are 5e-05 m2."""
+    return value if unit == 1 else float(f"{value * unit:.15g}")
+
+
 def _node(deck: Deck, name: str, dimension: int, length: float, force: float) -> dict[str, Any]:
     made: dict[str, Any] = {"name": f"N{name}" if name.isdecimal() else name,
-                            "position_m": [value * length for value in deck.nodes[name][:dimension]]}
+                            "position_m": [_in_units(value, length) for value in deck.nodes[name][:dimension]]}
     fixed = [axis for axis in "xyz"[:dimension] if axis in deck.fixed.get(name, ())]
     if fixed:
         made["fixed"] = fixed
-    load = [value * force for value in deck.force.get(name, ())][:dimension]
+    load = [_in_units(value, force) for value in deck.force.get(name, ())][:dimension]
     if any(load):
         made["force_N"] = load
     return made
@@ -119,7 +124,7 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, length: float, force
     for key, words, value, unit in (("young_modulus_Pa", "Young's modulus", bar.young_modulus, stress),
                                     ("cross_section_area_m2", "cross-section area", bar.area, length**2)):
         if value:
-            numbers[key] = value * unit
+            numbers[key] = _in_units(value, unit)
         elif key in given:
             numbers[key] = given[key]
         else:
@@ -135,7 +140,8 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, length: float, force
     if bar.expansion is None and "thermal_expansion_per_K" not in given:
         deck.leave(bar.kind, "no thermal expansion: 0 is taken", 0)
     if bar.density:
-        made["density_kg_per_m3"] = bar.density * force / length**4  # mass is force by length, times seconds squared
+        # Mass is force by length, times seconds squared.
+        made["density_kg_per_m3"] = _in_units(bar.density, force / length**4)
     elif density is not None:
         made["density_kg_per_m3"] = density
     else:
