@@ -11,6 +11,7 @@
 #include "object_list.hpp"
 #include "prismatic.hpp"
 #include "shapes.hpp"
+#include "state_recorder.hpp"
 #include "statejump/kernel/elastic_pair.hpp"
 #include "statejump/kernel/hertz.hpp"
 #include "statejump/law_loader/load.hpp"
@@ -46,7 +47,7 @@ using OurClasses = ClassList<
     Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys, Law2_JointGeom_JointPhys_HertzMindlin,
     Law2_JointGeom_JointPhys_JointLaw, ThermalProgram, ThermalExpansionEngine, ThermalLink,
     ThermalLinks, TorsionSpring, TorsionSprings, PrismaticJoint, PrismaticJoints, GuidePlanes,
-    JointStepper
+    StateRecorder, JointStepper
 #ifdef STATEJUMP_HAS_VIEW
     ,
     Gl1<Journal>, Gl1<Bearing>, Gl1<Ball>, Gl1<Socket>, Gl1<Slider>, Gl1<SlotFace>, Gl1<MeshBore>
@@ -145,6 +146,7 @@ STATEJUMP_EXPORT(TorsionSprings)
 STATEJUMP_EXPORT(PrismaticJoint)
 STATEJUMP_EXPORT(PrismaticJoints)
 STATEJUMP_EXPORT(GuidePlanes)
+STATEJUMP_EXPORT(StateRecorder)
 STATEJUMP_EXPORT(JointStepper)
 #undef STATEJUMP_EXPORT
 

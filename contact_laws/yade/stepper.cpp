@@ -2,11 +2,14 @@
 #include "stepper.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
+#include "interpreter.hpp"
 #include "ranges.hpp"
 #include "statejump/stepper/parts.hpp"
 #include "stepper_arrays.hpp"
+#include "stepper_energies.hpp"
 #include "stepper_engines.hpp"
 
 namespace statejump::dem {
@@ -26,39 +29,99 @@ long steps_ahead(const yade::Scene& scene, long substeps) {
   return ahead;
 }
 
-long run(stepper::Scene& arrays, long steps, const stepper::Scene::Make& make) {
+long run(stepper::Scene& arrays, long steps, const stepper::Scene::Make& make,
+         const stepper::Scene::Observe& observe) {
   // Energies are sums over all contacts in their order, step by step.
-  if (arrays.tracks_energy) return arrays.run(steps, make);
+  if (arrays.tracks_energy) return arrays.run(steps, make, observe);
   stepper::Parts parts(arrays);
-  if (parts.size() == 1) return arrays.run(steps, make);
-  const long done = parts.run(steps, make);
-  if (done == steps) parts.collect(arrays);
-  return done;
+  if (parts.size() == 1) return arrays.run(steps, make, observe);
+  const long apart = observe ? steps - 1 : steps;  // who looks at a step sees all of it
+  const long done = parts.run(apart, make);
+  if (done < apart) return done;
+  parts.collect(arrays);
+  return observe ? done + arrays.run(1, make, observe) : done;
 }
 
-void step_ahead(yade::Scene& scene, const JointEngines& engines, const stepper::Energies& before,
-                long ahead) {
-  JointArrays exchange(scene, engines);
-  stepper::Scene arrays;
-  const auto make = [&](std::size_t contact) { return exchange.physics(contact); };
-  const auto attempt = [&](long steps) {
-    if (!exchange.gather(arrays)) return 0L;
-    arrays.energies = before;
-    return run(arrays, steps, make);
-  };
-  long done = attempt(ahead);
-  if (done > 0 && done < ahead) done = attempt(done);
-  if (done > 0 && !arrays.is_sound()) {
-    // The step that leaves a number that is none is for the ordinary loop to tell: those before.
-    done = attempt(0);
-    while (arrays.run(1, make) == 1 && arrays.is_sound()) ++done;
-    if (done > 0) attempt(done);
+class StepsAhead {
+ public:
+  StepsAhead(yade::Scene& scene, const JointEngines& engines, const stepper::Energies& before)
+      : scene_(scene), engines_(engines), before_(before), exchange_(scene, engines) {}
+
+  void make(long steps) {
+    if (!exchange_.gather(arrays_)) return;
+    arrays_.energies = before_;
+    long done = 0;
+    while (done < steps) {
+      const long piece = std::min(steps - done, steps_to_a_sample());
+      const long made = make_piece(piece);
+      done += made;
+      if (made < piece) break;
+    }
+    if (done == 0 && !sampled_) return;
+    const Interpreter lock;
+    exchange_.scatter(arrays_);
+    if (scene_.trackEnergy) write_energies(arrays_.energies, before_, scene_);
   }
-  if (done == 0) return;
-  const Interpreter lock;
-  exchange.scatter(arrays);
-  if (scene.trackEnergy) write_energies(arrays.energies, before, scene);
-}
+
+ private:
+  // Until a step that a recorder wants is made.
+  long steps_to_a_sample() const {
+    long steps = std::numeric_limits<long>::max();
+    for (const StateRecorder* recorder : engines_.recorders) {
+      const long beyond = arrays_.iteration % recorder->iterPeriod;
+      steps = std::min(steps, beyond == 0 ? 1 : recorder->iterPeriod - beyond + 1);
+    }
+    return steps;
+  }
+
+  // Leaves the arrays behind the steps that the ordinary loop has nothing to say to.
+  long make_piece(long steps) {
+    start_ = arrays_;
+    const long last = arrays_.iteration + steps - 1;
+    std::vector<std::pair<StateRecorder*, std::size_t>> wanting;
+    for (StateRecorder* recorder : engines_.recorders) {
+      if (recorder->samples(last)) wanting.emplace_back(recorder, recorder->size());
+    }
+    const auto observe = [&] {
+      sampled_ = true;
+      const Interpreter lock;
+      exchange_.scatter(arrays_);
+      for (const auto& [recorder, size] : wanting) {
+        recorder->sample(scene_, {arrays_.energies, arrays_.stored,
+                                  [&](std::size_t id) { return arrays_.bodies[id].force; }});
+      }
+    };
+    const auto attempt = [&](long some, const stepper::Scene::Observe& observe_last) {
+      return run(arrays_, some, make_, observe_last);
+    };
+    long done = attempt(steps, wanting.empty() ? stepper::Scene::Observe() : observe);
+    if (done == steps && arrays_.is_sound()) return done;
+    for (const auto& [recorder, size] : wanting) recorder->forget(size);
+    if (done < steps) {
+      arrays_ = start_;
+      if (done > 0) attempt(done, {});
+    }
+    if (!arrays_.is_sound()) {
+      // The step that leaves a number that is none is for the ordinary loop to tell: those before.
+      arrays_ = start_;
+      done = 0;
+      while (arrays_.run(1, make_) == 1 && arrays_.is_sound()) ++done;
+      arrays_ = start_;
+      if (done > 0) attempt(done, {});
+    }
+    return done;
+  }
+
+  yade::Scene& scene_;
+  const JointEngines& engines_;
+  const stepper::Energies& before_;
+  JointArrays exchange_;
+  stepper::Scene arrays_, start_;
+  const stepper::Scene::Make make_ = [this](std::size_t contact) {
+    return exchange_.physics(contact);
+  };
+  bool sampled_ = false;
+};
 
 }  // namespace
 
@@ -90,7 +153,7 @@ void JointStepper::action() {
       engines = joint_engines(*scene, *this);
       if (scene->trackEnergy) before = read_energies(*scene);
     }
-    if (ahead > 0) step_ahead(*scene, engines, before, ahead);
+    if (ahead > 0) StepsAhead(*scene, engines, before).make(ahead);
   }
   last_iteration_ = scene->iter;
 }

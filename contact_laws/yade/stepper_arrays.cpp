@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stepper_arrays.hpp"
 
-#include <array>
 #include <boost/make_shared.hpp>
-#include <boost/python.hpp>
 #include <limits>
 #include <string>
 #include <utility>
@@ -21,26 +19,7 @@
 namespace statejump::dem {
 namespace {
 
-namespace py = boost::python;
-
 constexpr int aspherical = 2;  // bit of Body::flags
-
-struct EnergyEntry {
-  const char* name;
-  Real stepper::Energies::*value;
-};
-constexpr std::array<EnergyEntry, 11> energy_entries = {
-    {{"jointFriction", &stepper::Energies::joint_friction},
-     {"jointDamping", &stepper::Energies::joint_damping},
-     {"jointThermalWork", &stepper::Energies::joint_thermal_work},
-     {"linkDamping", &stepper::Energies::link_damping},
-     {"pinDamping", &stepper::Energies::pin_damping},
-     {"linkThermalWork", &stepper::Energies::link_thermal_work},
-     {"torsionFriction", &stepper::Energies::torsion_friction},
-     {"prismaticFriction", &stepper::Energies::prismatic_friction},
-     {"prismaticDamping", &stepper::Energies::prismatic_damping},
-     {"nonviscDamp", &stepper::Energies::numerical_damping},
-     {"gravWork", &stepper::Energies::gravity_work}}};
 
 // Calls act with the engine as what it is.
 template <class Act>
@@ -80,27 +59,6 @@ void scatter_stage(const PrismaticJoints& to, const stepper::Stage& from) {
 void scatter_stage(const GuidePlanes&, const stepper::Stage&) {}  // keeps nothing
 
 }  // namespace
-
-stepper::Energies read_energies(const yade::Scene& scene) {
-  const py::object items(py::object(scene.energy).attr("items")());
-  stepper::Energies energies;
-  for (py::ssize_t i = 0; i < py::len(items); ++i) {
-    const py::object item(items[i]);
-    const std::string name = py::extract<std::string>(item[0]);
-    for (const EnergyEntry& entry : energy_entries) {
-      if (name == entry.name) energies.*entry.value = py::extract<Real>(item[1]);
-    }
-  }
-  return energies;
-}
-
-void write_energies(const stepper::Energies& energies, const stepper::Energies& before,
-                    const yade::Scene& scene) {
-  py::object tracker(scene.energy);
-  for (const EnergyEntry& entry : energy_entries) {
-    if (energies.*entry.value != before.*entry.value) tracker[entry.name] = energies.*entry.value;
-  }
-}
 
 bool JointArrays::gather(stepper::Scene& arrays) {
   arrays = {};
@@ -277,6 +235,7 @@ bool JointArrays::gather_contact(std::size_t place, stepper::Scene& arrays) {
   contact.strain_1 = strain_of(one, arrays);
   contact.strain_2 = strain_of(two, arrays);
   contact.real = interaction.isReal();
+  contact.made = interaction.iterMadeReal;
   if (contact.real) {
     const auto* geometry = dynamic_cast<const JointGeom*>(interaction.geom.get());
     const auto* kept = dynamic_cast<const JointPhys*>(interaction.phys.get());
@@ -367,7 +326,7 @@ void JointArrays::scatter_contact(const stepper::Contact& from, yade::Interactio
     to.iterMadeReal = -1;
     return;
   }
-  if (from.renewed) {
+  if (from.renewed || !to.isReal()) {
     to.geom = boost::make_shared<JointGeom>();
     to.phys = boost::make_shared<JointPhys>();
     to.iterMadeReal = from.made;

@@ -54,9 +54,4 @@ class JointArrays {
   std::map<const ThermalProgram*, std::size_t> programs_;
 };
 
-// Energies that grow, as O.energy has them. The interpreter's lock is held.
-stepper::Energies read_energies(const yade::Scene& scene);
-void write_energies(const stepper::Energies& energies, const stepper::Energies& before,
-                    const yade::Scene& scene);
-
 }  // namespace statejump::dem

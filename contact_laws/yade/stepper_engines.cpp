@@ -25,7 +25,7 @@ std::string type_of(const py::object& object) {
 enum class Known { resetter, collider, loop, newton, onlooker, time_stepper };
 
 // Where an engine stands in a step.
-enum class Place { resetter, stepper, before, loop, behind, motion };
+enum class Place { resetter, stepper, before, loop, behind, recorder, motion };
 
 class Reader {
  public:
@@ -53,6 +53,10 @@ class Reader {
         dynamic_cast<const GuidePlanes*>(engine.get())) {
       engines_.stages.push_back(engine.get());
       return stand(Place::behind, engine->getClassName());
+    }
+    if (auto* recorder = dynamic_cast<StateRecorder*>(engine.get())) {
+      engines_.recorders.push_back(recorder);
+      return stand(Place::recorder, recorder->class_name);
     }
     read_of_yade(py::object(engine), *engine);
   }
@@ -118,11 +122,11 @@ class Reader {
     const bool behind_resetter = place != Place::stepper || last_ == Place::resetter;
     const bool stepper_is_there = place <= Place::stepper || seen_stepper_;
     if (!right || !behind_resetter || !stepper_is_there) {
-      refuse_scene(
-          name +
-          " stands in the wrong place, the order is ForceResetter, JointStepper, "
-          "ThermalExpansionEngine and InsertionSortCollider, InteractionLoop, "
-          "ThermalLinks, TorsionSprings, PrismaticJoints and GuidePlanes, NewtonIntegrator");
+      refuse_scene(name +
+                   " stands in the wrong place, the order is ForceResetter, JointStepper, "
+                   "ThermalExpansionEngine and InsertionSortCollider, InteractionLoop, "
+                   "ThermalLinks, TorsionSprings, PrismaticJoints and GuidePlanes, StateRecorder, "
+                   "NewtonIntegrator");
     }
     last_ = place;
     any_ = true;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "joint.hpp"
+#include "state_recorder.hpp"
 #include "statejump/stepper/motion.hpp"
 #include "thermal.hpp"
 
@@ -13,6 +14,7 @@ namespace statejump::dem {
 struct JointEngines {
   std::vector<ThermalExpansionEngine*> heaters;
   std::vector<yade::Engine*> stages;  // ThermalLinks, TorsionSprings and so on, in their order
+  std::vector<StateRecorder*> recorders;
   Ig2_Journal_Bearing_JointGeom* revolute = nullptr;
   Ig2_Ball_Socket_JointGeom* ball = nullptr;
   Ig2_Ball_Ball_JointGeom* outer_balls = nullptr;
@@ -23,18 +25,6 @@ struct JointEngines {
   stepper::Newton newton;
   bool exact_rotation = true;  // of aspherical bodies
   bool has_collider = false;
-};
-
-// The interpreter's lock, which a running simulation does not hold.
-class Interpreter {
- public:
-  Interpreter() : state_(PyGILState_Ensure()) {}
-  ~Interpreter() { PyGILState_Release(state_); }
-  Interpreter(const Interpreter&) = delete;
-  Interpreter& operator=(const Interpreter&) = delete;
-
- private:
-  PyGILState_STATE state_;
 };
 
 // Throws std::invalid_argument: "JointStepper: " and what it is that cannot be stepped.

@@ -7,6 +7,8 @@ SCENES = [
     "joint_in_undamped_gravity", "joint_in_damped_gravity", "ball", "balls", "balls_by_name", "balls_saved", "guided",
     "prismatic", "prismatic_saved", "approaching", "mixed",
     "mixed_by_name", "mixed_partial_slip", "mixed_every_step", "crowd", "crowd_with_energy", "in_pieces", "saved", "erased",
+    "joint_recorded", "prismatic_recorded", "approaching_recorded", "mixed_by_name_recorded", "crowd_recorded",
+    "mixed_saved_recorded",
 ]
 
 
@@ -18,6 +20,11 @@ def scenes(run_script):
 @pytest.fixture(scope="module")
 def laws(run_script):
     return run_script("stepper.py", "laws")
+
+
+@pytest.fixture(scope="module")
+def recording(run_script):
+    return run_script("stepper.py", "recording")
 
 
 @pytest.fixture(scope="module")
@@ -36,11 +43,12 @@ def test_every_scene_is_there(scenes):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_same_state_bit_for_bit(scenes, name):
-    # Positions, velocities, orientations, forces, contacts, links, springs, energies, bounds, laws; no tolerance.
+    # Positions, velocities, orientations, forces, contacts, links, springs, energies, bounds, laws, recorded rows; no
+    # tolerance.
     assert scenes[name]["differences"] == []
 
 
-@pytest.mark.parametrize("name", [name for name in SCENES if name not in ("mixed_every_step", "approaching")])
+@pytest.mark.parametrize("name", [name for name in SCENES if name != "mixed_every_step" and "approaching" not in name])
 def test_most_steps_are_the_steppers(scenes, name):
     assert scenes[name]["made_by_yade"] < 0.03 * scenes[name]["steps"]
 
@@ -64,6 +72,13 @@ def test_scenes_have_what_is_compared(scenes):
     assert scenes["joint_in_gravity"]["energy"]["gravWork"] != 0
 
 
+def test_recorder_keeps_what_a_script_reads(recording):
+    # Time, energies, contacts, bodies, links, springs; by YADE's loop, to which the scenes compare the stepper's.
+    assert len(recording["kept"]) == 72 and recording["after"] == 0
+    assert recording["kept"] == recording["read"]
+    assert len({row[16] for row in recording["kept"]}) > 1, "contacts begin and end"
+
+
 def test_every_law_bit_for_bit(laws):
     assert len(laws) >= 14
     for name, found in laws.items():
@@ -85,7 +100,7 @@ def test_failure_is_that_of_the_ordinary_loop(failures, name, words):
 
 ORDER = ("stands in the wrong place, the order is ForceResetter, JointStepper, ThermalExpansionEngine and "
          "InsertionSortCollider, InteractionLoop, ThermalLinks, TorsionSprings, PrismaticJoints and GuidePlanes, "
-         "NewtonIntegrator")
+         "StateRecorder, NewtonIntegrator")
 
 
 @pytest.mark.parametrize("name, sentence", [
@@ -94,6 +109,8 @@ ORDER = ("stands in the wrong place, the order is ForceResetter, JointStepper, T
     ("before_resetter", "JointStepper: JointStepper " + ORDER),
     ("last", "JointStepper: ThermalExpansionEngine " + ORDER),
     ("loop_first", "JointStepper: ThermalExpansionEngine " + ORDER),
+    ("recorder_first", "JointStepper: ThermalExpansionEngine " + ORDER),
+    ("recorded_body", "StateRecorder.bodies: there is no body 400"),
     ("no_newton", "JointStepper: there is no NewtonIntegrator"),
     ("unknown", "JointStepper: it does not know the engine ForceEngine"),
     ("no_verlet", "JointStepper: InsertionSortCollider.verletDist must be above 0 [m]: without it the collider looks "
@@ -104,6 +121,15 @@ ORDER = ("stands in the wrong place, the order is ForceResetter, JointStepper, T
 ])
 def test_what_it_cannot_step_is_refused(wrong, name, sentence):
     assert wrong[name] == sentence
+
+
+@pytest.mark.parametrize("sentence", [
+    "StateRecorder.iterPeriod = 0 is not allowed: must be 1 or above [-]",
+    "StateRecorder.contacts holds an odd number of ids: two of each contact",
+    "StateRecorder.contacts names bodies 2 and 1 twice", "StateRecorder.links holds None",
+])
+def test_wrong_attributes_of_the_recorder(wrong, sentence):
+    assert sentence in wrong.values()
 
 
 @pytest.mark.parametrize("name, value", [("zero", "0"), ("negative", "-3")])

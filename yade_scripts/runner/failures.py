@@ -18,11 +18,12 @@ class SceneFailure(RuntimeError):
 
     :param joint: name of the joint as result files have it
     :param remedy: what would help, "" if that is not known
+    :param time_s: time of the state
     """
 
-    def __init__(self, sentence: str, joint: str = "", remedy: str = "") -> None:
+    def __init__(self, sentence: str, joint: str = "", remedy: str = "", *, time_s: float) -> None:
         super().__init__(sentence)
-        self.joint, self.remedy = joint, remedy
+        self.joint, self.remedy, self.time_s = joint, remedy, time_s
 
 
 @dataclass
@@ -109,7 +110,7 @@ def described(
             whole = stable_time_step()
             remedy = step_remedy(min(taken["stable_time_step"], whole if isfinite(whole) and whole > 0 else inf))
     if isinstance(error, SceneFailure):
-        joint, remedy = error.joint, error.remedy
+        joint, remedy, time_s = error.joint, error.remedy, error.time_s
     time_s = float(f"{time_s:.9g}")
     fields = {"time_s": time_s, "temperature_change_K": float(f"{temperature_change(time_s):.9g}"), "joint": joint,
               "place": words, "cause": cause, "remedy": remedy}

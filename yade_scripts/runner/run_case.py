@@ -3,7 +3,7 @@
 
     STATEJUMP_CASE_JSON=case.json STATEJUMP_OUTPUT=history.csv yade -n -x yade_scripts/runner/run_case.py
 
-The resolved case comes as JSON. Samples go to ``<output>.partial`` as they are taken; at the end
+The resolved case comes as JSON. Samples go to ``<output>.partial``, block by block; at the end
 the file is renamed. What the caller is told stands on lines of standard output that begin with ``STATEJUMP``:
 ``{"progress": share}``, or ``{"failure": {...}}`` by the names of a failure's fields.
 """
@@ -12,13 +12,19 @@ import json
 import os
 import sys
 import time
+from contextlib import suppress
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
 sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
+import numpy as np
 import statejump_yade as sj
 from failures import described
+from states import Recorder
+
+# Samples are worked up in blocks, after so long or when they take so much memory.
+SECONDS_OF_A_BLOCK, BYTES_OF_A_BLOCK = 0.1, 2**25
 
 
 class CaseFailure(Exception):
@@ -40,6 +46,37 @@ def scene_of(name):
     return module
 
 
+class Block:
+    """Samples that are not written yet."""
+
+    def __init__(self, case, kind, built, recorder, write):
+        self._case, self._kind, self._built, self._recorder, self._write = case, kind, built, recorder, write
+        self._written = time.perf_counter()
+        self.refused = None  # what YADE hands on of an error in Python is a traceback
+
+    def record(self):
+        """Write what there is, if it is much or if it has waited long enough for somebody to see it; tell how far the
+        run is."""
+        waited = time.perf_counter() - self._written
+        if waited < SECONDS_OF_A_BLOCK and self._recorder.bytes_kept < BYTES_OF_A_BLOCK:
+            return
+        self.write()
+        tell({"progress": O.iter / self._case["dem"]["number_of_steps"]})
+        self._written = time.perf_counter()
+
+    def write(self):
+        """Write what there is."""
+        states = self._recorder.take()
+        if not len(states):
+            return
+        try:
+            columns = self._kind.sample(self._case, self._built, states)
+        except Exception as error:
+            self.refused = error
+            raise
+        self._write(np.column_stack(columns).tolist())
+
+
 def run(case, output):
     """Build the scene, run it, write the history and its summary."""
     kind = scene_of(case["scene"])
@@ -53,39 +90,36 @@ def run(case, output):
         writer = csv.writer(stream)
         columns = getattr(kind, "columns", None)  # of a kind whose items differ from case to case
         writer.writerow(columns(case) if columns else kind.COLUMNS)
-        recorder = PyRunner(
-            command="record()", iterPeriod=every, initRun=True, label="recorder"
-        )
-        built = kind.build(case, [recorder])
+
+        def write(rows):
+            writer.writerows(rows)
+            stream.flush()
+
+        recorder = Recorder(every)
+        between = PyRunner(command="block.record()", label="between")
+        built = kind.build(case, [recorder.engine, between])
+        recorder.watch(kind.watched(built))
+        between.iterPeriod = every * max(1, min(
+            case["number_of_samples"] // 100, BYTES_OF_A_BLOCK // recorder.bytes_of_a_sample
+        ))
         if case["dem"].get("stepper") == "joint":
-            O.engines = [O.engines[0], sj.JointStepper(substeps=every), *O.engines[1:]]
-        reported = [-1.0]
-        refused = []  # what YADE hands on of an error in Python is a traceback
-
-        def record():
-            try:
-                row = kind.sample(case, built)
-            except Exception as error:
-                refused.append(error)
-                raise
-            writer.writerow([repr(value) for value in row])
-            fraction = O.iter / steps
-            if fraction - reported[0] >= 0.01:
-                reported[0] = fraction
-                stream.flush()
-                tell({"progress": fraction})
-
-        globals()["record"] = record
+            O.engines = [O.engines[0], sj.JointStepper(substeps=between.iterPeriod), *O.engines[1:]]
+        globals()["block"] = block = Block(case, kind, built, recorder, write)
         started, started_cpu = time.perf_counter(), time.process_time()
         try:
-            O.run(steps + 1, True)  # the recorder sees the end of the program one step later
+            O.run(steps + 1, True)  # the end of the program is recorded one step later
+            block.write()
             elapsed, elapsed_cpu = time.perf_counter() - started, time.process_time() - started_cpu
             if O.iter != steps + 1:  # an error in the first steps can end the run without a word
                 O.step()  # which here says it
                 raise RuntimeError(f"YADE stopped after {O.iter} of {steps + 1} steps")
         except Exception as error:
+            taken = sj.take_failure()
+            if not block.refused:
+                with suppress(Exception):  # which it keeps
+                    block.write()  # a sample from before the failure may be one, too
             raise CaseFailure(described(
-                refused[0] if refused else error, sj.take_failure(), kind.names(case, built), O.time,
+                block.refused or error, None if block.refused else taken, kind.names(case, built), O.time,
                 built.program.temperatureChange, sj.stable_time_step, lambda stable: kind.step_remedy(case, stable),
             )) from error
     os.replace(partial, output)

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from math import atan
 from typing import Any
 
+import numpy as np
 import statejump_yade as sj
 from failures import Names, SceneFailure, pair, rounded_down
 from scene import O, fixed_point, joint_engines, thermal_program
+from states import Pair, States, Watched, each, norm
 from yade import wrapper
 
 COLUMNS = (
@@ -32,6 +34,11 @@ class SpringSliderScene:
     preload_link: sj.ThermalLink | None
     start_height_m: float  # y of the slider at the start, where the floor carries the normal force
     start_energy_J: float  # of bar and preload at the start
+
+    @property
+    def pairs(self) -> list[Pair]:
+        """The slider with its floor and with its stops."""
+        return [(self.slider, face) for face in (self.floor, self.stop_minus, self.stop_plus)]
 
 
 def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSliderScene:
@@ -121,48 +128,48 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
     )
 
 
-def stored_by_preload(joint: dict[str, Any], displacement: float) -> float:
+def stored_by_preload(joint: dict[str, Any], displacement: Any) -> Any:
     """Return what the preload spring stores [J]: k_p x²/2 + P x."""
     return (0.5 * joint["preload_stiffness_N_per_m"] * displacement + joint["preload_force_N"]) * displacement
 
 
-def sample(case: dict[str, Any], built: SpringSliderScene) -> tuple:
-    """Return one row: the state of the current step. Forces on the block, axial force in
-    compression positive; the contact's stored forces act on the face."""
-    state = O.bodies[built.slider].state
-    contacts = {}
-    for face in (built.floor, built.stop_minus, built.stop_plus):
-        if O.interactions.has(built.slider, face):
-            contact = O.interactions[built.slider, face]
-            if contact.isReal:
-                contacts[face] = contact.phys
-    floor = contacts.get(built.floor)
-    if floor is None:
-        raise SceneFailure("the slider has left the floor of its slot: the contact is lost", "floor")
-    stops = [contacts[face] for face in (built.stop_minus, built.stop_plus) if face in contacts]
-    energy = dict(O.energy.items())
+def watched(built: SpringSliderScene) -> Watched:
+    """Return what has to be recorded."""
+    return Watched([built.slider], built.pairs, [built.link])
+
+
+def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> list[np.ndarray]:
+    """Return the columns. Forces on the block, axial force in compression positive; the contact's stored forces act
+    on the face."""
+    (slider,), (link,) = states.bodies([built.slider]).T, states.links([built.link]).T
+    floor, *stops = states.contacts(built.pairs).T
+    lost = floor["real"] == 0
+    if lost.any():
+        raise SceneFailure("the slider has left the floor of its slot: the contact is lost", "floor",
+                           time_s=states.times[lost.argmax()])
+    at_stop = sum(stop["real"] for stop in stops) > 0
+    x, velocity = slider["position"][:, 0], slider["velocity"]
     bar = built.link
-    stiffness = bar.youngModulus * bar.crossSectionArea / bar.previousStressFreeLength
-    elastic = 0.5 * stiffness * bar.previousExtension**2
-    return (
-        O.time,
-        built.program.temperatureChange(O.time),
-        state.pos[0],
-        bar.axialForce,
-        -floor.shearForce[0],
-        -sum(stop.normalForce[0] for stop in stops),
-        elastic,
-        energy["jointFriction"],
-        energy["jointDamping"] + energy["linkDamping"],
-        0.5 * state.mass * (state.vel[0] ** 2 + state.vel[1] ** 2),
-        energy.get("linkThermalWork", 0.0) + energy.get("jointThermalWork", 0.0),
-        -case["joint"]["normal_force_N"] * (state.pos[1] - built.start_height_m),
-        energy["jointElastic"],
-        stored_by_preload(case["joint"], state.pos[0]) - built.start_energy_J,
-        int(floor.slipping),
-        int(bool(stops)),
-        floor.normalForce.norm(),
-    )
+    stiffness = bar.youngModulus * bar.crossSectionArea / link["stressFreeLength"]
+    return [
+        states.times,
+        each(built.program.temperatureChange, states.times),
+        x,
+        link["axialForce"],
+        -floor["shearForce"][:, 0],
+        np.where(at_stop, -sum(stop["normalForce"][:, 0] for stop in stops), 0.0),
+        0.5 * stiffness * link["extension"] ** 2,
+        states.energy("jointFriction"),
+        states.energy("jointDamping", "linkDamping"),
+        0.5 * case["dem"]["tip_mass_kg"] * (velocity[:, 0] ** 2 + velocity[:, 1] ** 2),
+        states.energy("linkThermalWork", "jointThermalWork"),
+        -case["joint"]["normal_force_N"] * (slider["position"][:, 1] - built.start_height_m),
+        states.energy("jointElastic"),
+        stored_by_preload(case["joint"], x) - built.start_energy_J,
+        floor["slipping"],
+        at_stop,
+        norm(floor["normalForce"]),
+    ]
 
 
 def names(case: dict[str, Any], built: SpringSliderScene) -> Names:

@@ -6,14 +6,17 @@ masses are lumped.
 """
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
 import statejump_yade as sj
-from failures import Names, SceneFailure, pair, rounded_down
+from failures import Names, SceneFailure, rounded_down
 from scene import O, joint_engines
+from states import Pair, States, Watched, dot, each, in_order
 from truss_joints import JOINTS
-from truss_joints.parts import Joints, Row, contact, rows
+from truss_joints.parts import Joints, Row, rows
 from truss_joints.torsion import torsion_spring
 from yade import wrapper
 from yade.minieigenHP import Vector3
@@ -36,7 +39,7 @@ class TrussScene:
     free: list[int] = field(default_factory=list)  # nodes that move
     loaded: list[int] = field(default_factory=list)  # nodes with a dead load
     start: list[Vector3] = field(default_factory=list)
-    pairs: set[tuple[int, int]] = field(default_factory=set)  # bodies that may touch
+    pairs: list[Pair] = field(default_factory=list)  # bodies that may touch
     torsion_springs: list[sj.TorsionSpring] = field(default_factory=list)
 
 
@@ -105,14 +108,14 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
     def expand(node: int, joint: Row) -> None:
         parts_of.setdefault((joint["program"], joint["temperature_fraction"]), []).append(node)
 
-    made = [joints(case) for joints in JOINTS]
+    made = [joints(case) for joints in JOINTS if case[joints.section]["names"]]
     for joints in made:
         joints.furnish(bodies, turn, expand)
     ids = [O.bodies.append(body) for body in bodies]
     common = programs.of(0, 1.0)
     scene = TrussScene(common, ids, [], [], joints=made)
     for joints in made:
-        scene.pairs.update(joints.append(ids))
+        scene.pairs.extend(joints.append(ids))
     for place, node in enumerate(nodes):
         scene.start.append(Vector3(node["start_m"]))
         if not all(node["blocked"]):
@@ -172,48 +175,37 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
     return scene
 
 
-def _velocity_now(body: int) -> Vector3:
-    """Velocity at the time of the positions [m/s]: YADE keeps that of half a step before."""
-    state = O.bodies[body].state
-    moved = 0.5 * O.dt / state.mass * O.forces.f(body, sync=True)
-    held = state.blockedDOFs
-    return state.vel + Vector3(*(0.0 if axis in held else moved[k] for k, axis in enumerate("xyz")))
-
-
-def sample(case: dict[str, Any], built: TrussScene) -> list[float]:
-    """Return one row: the state of the current step, see :func:`columns`."""
-    energy = dict(O.energy.items())
-
-    def total(*names: str) -> float:
-        return sum(energy.get(name, 0.0) for name in names)
-
-    if O.interactions.countReal() > sum(contact(*pair) is not None for pair in built.pairs):
-        strangers, joint = _strangers(case, built)
-        raise SceneFailure(f"{strangers} touch and are of different joints: the model has no such contact", joint)
-    states = [O.bodies[body].state for body in built.nodes]
-    kinetic = sum(
-        0.5 * states[node].mass * _velocity_now(built.nodes[node]).squaredNorm() for node in built.free
+def watched(built: TrussScene) -> Watched:
+    """Return what has to be recorded."""
+    return Watched(
+        built.nodes, built.pairs, built.links + built.springs,
+        [spring for joints in built.joints for spring in joints.torsion_springs()],
+        [joint for joints in built.joints for joint in joints.prismatic_joints()],
     )
-    work = sum(
-        Vector3(case["node"]["force_N"][node]).dot(states[node].pos - built.start[node]) for node in built.loaded
-    )
-    row = [
-        O.time, built.program.temperatureChange(O.time),
-        total("linkElastic", "torsionElastic", "jointElastic", "prismaticElastic"), kinetic,
-        total("jointFriction", "torsionFriction", "prismaticFriction"),
-        total("linkDamping", "pinDamping", "jointDamping", "prismaticDamping"),
-        total("linkThermalWork", "jointThermalWork"), work,
+
+
+def sample(case: dict[str, Any], built: TrussScene, states: States) -> list[np.ndarray]:
+    """Return the columns of all samples, see :func:`columns`; several of them as an array with two axes."""
+    faults = [*_strangers(case, built, states), *(fault for joints in built.joints for fault in joints.faults(states))]
+    if faults:
+        raise min(faults, key=lambda fault: fault.time_s)
+    positions = states.bodies(built.nodes)["position"]
+    loads = np.array([case["node"]["force_N"][node] for node in built.loaded]).reshape(-1, 3)
+    starts = np.array([built.start[node] for node in built.loaded]).reshape(-1, 3)
+    found = [
+        states.times, each(built.program.temperatureChange, states.times),
+        states.energy("linkElastic", "torsionElastic", "jointElastic", "prismaticElastic"),
+        in_order(states.kinetic_energies([built.nodes[node] for node in built.free])),
+        states.energy("jointFriction", "torsionFriction", "prismaticFriction"),
+        states.energy("linkDamping", "pinDamping", "jointDamping", "prismaticDamping"),
+        states.energy("linkThermalWork", "jointThermalWork"),
+        in_order(dot(loads, positions[:, built.loaded] - starts)),
+        (positions - np.array(case["node"]["position_m"])).reshape(len(states), -1),
+        states.links(built.links)["axialForce"], -states.links(built.springs)["axialForce"],
     ]
-    for place, state in enumerate(states):
-        row += [state.pos[k] - case["node"]["position_m"][place][k] for k in range(3)]
-    row += [link.axialForce for link in built.links]
-    row += [-spring.axialForce for spring in built.springs]
     for joints in built.joints:
-        states = joints.states()
-        for place, (_, vector) in enumerate(joints.columns):
-            for values in states:
-                row += list(values[place]) if vector else [values[place]]
-    return row
+        found += [values.reshape(len(states), -1) for values in joints.states(states)]
+    return found
 
 
 def _bodies(case: dict[str, Any], built: TrussScene) -> dict[int, str]:
@@ -223,13 +215,20 @@ def _bodies(case: dict[str, Any], built: TrussScene) -> dict[int, str]:
     return found
 
 
-def _strangers(case: dict[str, Any], built: TrussScene) -> tuple[str, str]:
-    """Return the words for two bodies that touch and may not, and the joint whose face one of them is."""
-    words, allowed = _bodies(case, built), {pair(*bodies) for bodies in built.pairs}
+def _strangers(case: dict[str, Any], built: TrussScene, states: States) -> Iterator[SceneFailure]:
+    """Yield the first two bodies that touch and may not."""
+    strangers = states.strangers()
+    touching = strangers[:, 0] >= 0
+    if not touching.any():
+        return
+    words = _bodies(case, built)
     owner = {face: name for joints in built.joints for face, (name, _) in joints.faces().items()}
-    found = ((one.id1, one.id2) for one in O.interactions if one.isReal)
-    one, other = next(bodies for bodies in found if pair(*bodies) not in allowed)
-    return f"{words[one]} and {words[other]}", owner.get(one, owner.get(other, ""))
+    first = touching.argmax()
+    one, other = strangers[first].tolist()
+    yield SceneFailure(
+        f"{words[one]} and {words[other]} touch and are of different joints: the model has no such contact",
+        owner.get(one, owner.get(other, "")), time_s=states.times[first],
+    )
 
 
 def names(case: dict[str, Any], built: TrussScene) -> Names:

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from math import atan, atan2, ceil, hypot
 from typing import Any
 
+import numpy as np
 import statejump_yade as sj
 from failures import Names, pair
 from scene import O, fixed_point, joint_engines, thermal_program
+from states import States, Watched, dot, each, in_order, norm
 from yade import wrapper
-from yade.minieigenHP import Vector3
 
 COLUMNS = (
     "time_s", "temperature_change_K", "theta2_rad", "theta4_rad", "length_ab_m", "length_bc_m",
@@ -127,48 +128,37 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> UmbrellaScen
     return UmbrellaScene(program, bearing, journal, *links, law, tuple(springs))
 
 
-def velocity_now(body: int):
-    """Velocity at the time of the positions [m/s]: YADE keeps that of half a step before."""
-    state = O.bodies[body].state
-    return state.vel + 0.5 * O.dt / state.mass * O.forces.f(body, sync=True)
+def watched(built: UmbrellaScene) -> Watched:
+    """Return what has to be recorded."""
+    return Watched([built.bearing, built.journal], [(built.journal, built.bearing)], [built.link_ab])
 
 
-def sample(case: dict[str, Any], built: UmbrellaScene) -> tuple:
-    """Return one row: the state of the current step. Forces on the journal, the tangential one
-    along (-n_y, n_x)."""
-    bearing, journal = O.bodies[built.bearing].state, O.bodies[built.journal].state
-    ab, bc = bearing.pos, journal.pos - Vector3(case["frame"]["length_m"], 0, 0)
-    eccentricity = journal.pos - bearing.pos
-    change = built.link_ab.temperatureChange
-    joint = case["joint"]
+def sample(case: dict[str, Any], built: UmbrellaScene, states: States) -> list[np.ndarray]:
+    """Return the columns. Forces on the journal, the tangential one along (-n_y, n_x)."""
+    tips = (built.bearing, built.journal)
+    bearing, journal = states.bodies(tips).T
+    (contact,), (link,) = states.contacts([(built.journal, built.bearing)]).T, states.links([built.link_ab]).T
+    joint, frame = case["joint"], case["frame"]["length_m"]
+    ab, bc = bearing["position"], journal["position"] - (frame, 0, 0)
+    eccentricity = journal["position"] - bearing["position"]
+    change = link["temperatureChange"]
     clearance = (joint["journal_radius_m"] + joint["radial_clearance_m"]) * (
         1 + joint["bearing_thermal_expansion_per_K"] * change
     ) - joint["journal_radius_m"] * (1 + joint["journal_thermal_expansion_per_K"] * change)
-    distance = hypot(eccentricity[0], eccentricity[1])
-    normal_force = tangential_force = 0.0
-    slipping = 0
-    if O.interactions.has(built.journal, built.bearing):
-        contact = O.interactions[built.journal, built.bearing]
-        if contact.isReal:
-            normal = contact.geom.normal
-            normal_force = contact.phys.normalForce.dot(normal)
-            tangential_force = -contact.phys.shearForce.dot(Vector3(-normal[1], normal[0], 0))
-            slipping = int(contact.phys.slipping)
-    energy = dict(O.energy.items())
-    kinetic = sum(
-        0.5 * O.bodies[body].state.mass * velocity_now(body).squaredNorm()
-        for body in (built.bearing, built.journal)
-    )
-    return (
-        O.time, change, atan2(ab[1], ab[0]), atan2(bc[1], bc[0]), ab.norm(), bc.norm(),
-        0.5 * ab[0], 0.5 * ab[1], case["frame"]["length_m"] + 0.5 * bc[0], 0.5 * bc[1],
-        bearing.pos[0], bearing.pos[1], journal.pos[0], journal.pos[1],
-        eccentricity[0], eccentricity[1], distance - clearance, normal_force, tangential_force,
-        slipping, kinetic, energy["linkElastic"], energy.get("jointElastic", 0.0),
-        energy.get("torsionElastic", 0.0), energy["linkDamping"], energy.get("pinDamping", 0.0),
-        energy.get("jointFriction", 0.0), energy.get("jointDamping", 0.0),
-        energy.get("linkThermalWork", 0.0) + energy.get("jointThermalWork", 0.0),
-    )
+    distance = each(hypot, eccentricity[:, 0], eccentricity[:, 1])
+    normal = contact["normal"]
+    along = np.stack([-normal[:, 1], normal[:, 0], np.zeros(len(states))], axis=1)
+    return [
+        states.times, change, each(atan2, ab[:, 1], ab[:, 0]), each(atan2, bc[:, 1], bc[:, 0]), norm(ab), norm(bc),
+        0.5 * ab[:, 0], 0.5 * ab[:, 1], frame + 0.5 * bc[:, 0], 0.5 * bc[:, 1],
+        *bearing["position"][:, :2].T, *journal["position"][:, :2].T, *eccentricity[:, :2].T,
+        distance - clearance, dot(contact["normalForce"], normal),
+        np.where(contact["real"] > 0, -dot(contact["shearForce"], along), 0.0), contact["slipping"],
+        in_order(states.kinetic_energies(tips)),
+        states.energy("linkElastic"), states.energy("jointElastic"), states.energy("torsionElastic"),
+        states.energy("linkDamping"), states.energy("pinDamping"), states.energy("jointFriction"),
+        states.energy("jointDamping"), states.energy("linkThermalWork", "jointThermalWork"),
+    ]
 
 
 def names(case: dict[str, Any], built: UmbrellaScene) -> Names:

@@ -2,6 +2,7 @@
 """The same scenes with and without the JointStepper; `stepper.py PART` with the parts at the end."""
 import hashlib
 import json
+import struct
 import sys
 import tempfile
 from pathlib import Path
@@ -40,11 +41,29 @@ def in_one_go(steps):
     O.run(steps, True)
 
 
-def run_both(build, steps, substeps, go=in_one_go):
+def recorded():
+    """Record what the scene has, in steps that are no multiples of substeps: contacts of other bodies than two are
+    strangers."""
+    parts = {name: [part for engine in O.engines for part in getattr(engine, name, [])]
+             for name in ("links", "springs", "joints")}
+    bodies = [number for number in (0, 1, 3, 4) if number < len(O.bodies)]
+    recorder = sj.StateRecorder(iterPeriod=7, bodies=bodies, contacts=[1, 0], **parts)
+    O.engines = [*O.engines[:-1], recorder, O.engines[-1]]
+
+
+def rows():
+    """Return what has been recorded, None where nothing is."""
+    found = [engine.take().hex() for engine in O.engines if isinstance(engine, sj.StateRecorder)]
+    return found[0] if found else None
+
+
+def run_both(build, steps, substeps, go=in_one_go, record=False):
     """Run a scene both ways; how many steps the ordinary loop made of them, and what differs."""
     found = {}
     for way in ("ordinary", "stepper"):
         build()
+        if record:
+            recorded()
         if way == "stepper":
             with_stepper(substeps)
         counted()
@@ -56,7 +75,7 @@ def run_both(build, steps, substeps, go=in_one_go):
             ],
             "interactions": [[i.id1, i.id2, i.isReal] for i in O.interactions],
             "bounds": [[b.bound.lastUpdateIter, list(b.bound.min)] for b in O.bodies if b.bound],
-            "rate": O.dt,
+            "rate": O.dt, "rows": rows(),
         }
         for row in found[way]["geometry"]:
             row[-1] = {key: list(v) if isinstance(v, Vector3) else v for key, v in row[-1].items()}
@@ -236,6 +255,15 @@ def scenes():
         "crowd_with_energy": (lambda: crowd(True), 1000, 250),
     }
     found = {name: run_both(*case) for name, case in cases.items()}
+    cases = {
+        "joint": (joint, 3000, 500),
+        "prismatic": (prismatic, 5000, 300),
+        "approaching": (approaching, 4000, 500),
+        "mixed_by_name": (lambda: mixed.scene(True), 2000, 100),
+        "crowd": (crowd, 2000, 1000),
+        "mixed_saved": (lambda: mixed.scene(True), 1500, 130, saved),
+    }
+    found |= {f"{name}_recorded": run_both(*case, record=True) for name, case in cases.items()}
     found["in_pieces"] = run_both(joint, 2000, 130, in_pieces)
     found["saved"] = run_both(lambda: mixed.scene(True), 1500, 130, saved)
     found["balls_saved"] = run_both(lambda: balls(Law(frictionLaw="mindlin_deresiewicz")), 8000, 300, saved)
@@ -274,6 +302,41 @@ def error_of(build, steps=2000, substeps=100):
         taken = sj.take_failure()
         found.append([kind, text, O.iter, O.time, None if taken is None else taken["time"]])
     return found
+
+
+def recording():
+    """What a recorder keeps beside what a script reads in the same steps."""
+    mixed.scene(True)
+    recorded()
+    recorder, read = O.engines[-2], []
+
+    def vectors(*of):
+        return [value for vector in of for value in vector]
+
+    def look():
+        row = [O.time, *(dict(O.energy.items()).get(name, 0.0) for name in recorder.scalars()[1:-3])]
+        others = [(i.id1, i.id2) for i in O.interactions if i.isReal and {i.id1, i.id2} != {0, 1}]
+        row += [O.interactions.countReal(), *(others[0] if others else (-1, -1))]
+        for number in recorder.bodies:
+            state, force = O.bodies[number].state, O.forces.f(number, sync=True)
+            free = [0.0 if axis in state.blockedDOFs else force[k] for k, axis in enumerate("xyz")]
+            row += vectors(state.pos, state.vel, free)
+        pair = contact(0, 1)
+        row += [0.0] * 12 if pair is None else [
+            1.0, pair.geom.penetrationDepth, float(pair.phys.slipping),
+            *vectors(pair.geom.normal, pair.phys.normalForce, pair.phys.shearForce)]
+        for link in recorder.links:
+            row += [link.axialForce, link.temperatureChange, link.previousExtension, link.previousStressFreeLength]
+        for spring in recorder.springs:
+            row += [spring.angle, spring.moment, spring.frictionMoment]
+        read.append(row)
+
+    MAIN.look = look
+    O.engines = [*O.engines[:-1], wrapper.PyRunner(command="look()", iterPeriod=7, initRun=True), O.engines[-1]]
+    O.run(500, True)
+    count, width = recorder.rows(), recorder.width()
+    kept = list(struct.unpack(f"{count * width}d", recorder.take()))
+    return {"kept": [kept[i * width:(i + 1) * width] for i in range(count)], "read": read, "after": recorder.rows()}
 
 
 def closing():
@@ -321,6 +384,9 @@ def wrong():
     found = {}
     for name, value in (("zero", 0), ("negative", -3), ("fraction", 1.5), ("text", "many")):
         found["substeps " + name] = sentence_of(lambda value=value: sj.JointStepper(substeps=value))
+    link = sj.ThermalLink(id1=0, id2=1, stressFreeLength=1)
+    for name, wrong_value in (("iterPeriod", 0), ("contacts", [1, 2, 3]), ("contacts", [1, 2, 2, 1]), ("links", [link, None])):
+        found[f"{name} {len(found)}"] = sentence_of(lambda: sj.StateRecorder(**{name: wrong_value}))[1]
     found["substeps set"] = sentence_of(lambda: setattr(sj.JointStepper(), "substeps", 2.5))
     e = lambda: O.engines  # noqa: E731
     changes = {
@@ -329,6 +395,8 @@ def wrong():
         "before_resetter": lambda: engines_are(e()[1], e()[0], *e()[2:]),
         "last": lambda: engines_are(e()[0], *e()[2:], e()[1]),
         "loop_first": lambda: engines_are(e()[0], e()[1], e()[4], e()[2], e()[3], *e()[5:]),
+        "recorder_first": lambda: engines_are(e()[0], e()[1], sj.StateRecorder(), *e()[2:]),
+        "recorded_body": lambda: engines_are(*e()[:-1], sj.StateRecorder(bodies=[400]), e()[-1]),
         "no_newton": lambda: engines_are(*e()[:-1]),
         "unknown": lambda: engines_are(*e()[:-1], wrapper.ForceEngine(), e()[-1]),
         "no_verlet": lambda: setattr(e()[3], "verletDist", 0),
@@ -341,4 +409,4 @@ def wrong():
     return found
 
 
-finish({"scenes": scenes, "laws": laws, "failures": failures, "wrong": wrong}[sys.argv[1]]())
+finish({"scenes": scenes, "laws": laws, "recording": recording, "failures": failures, "wrong": wrong}[sys.argv[1]]())

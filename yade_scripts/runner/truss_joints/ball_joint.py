@@ -2,12 +2,9 @@
 """Ball joints of a truss in YADE: a ball at one node, a socket at another."""
 from __future__ import annotations
 
-from typing import Any
-
+import numpy as np
 import statejump_yade as sj
-from truss_joints.parts import SEPARATED, SLIP, STICK, Row
 from truss_joints.round_parts import RoundParts
-from yade.minieigenHP import Vector3
 
 
 class BallJoints(RoundParts):
@@ -18,9 +15,5 @@ class BallJoints(RoundParts):
                ("ball_joint_state", False))
     shapes = {"socket": sj.Socket, "ball": sj.Ball}
 
-    def read(self, joint: Row, offset: Any, touching: Any) -> tuple[Any, ...]:
-        if touching is None:
-            return offset, 0.0, Vector3.Zero, SEPARATED
-        # Forces of a contact act on the socket.
-        return (offset, touching.phys.normalForce.dot(touching.geom.normal), -touching.phys.shearForce,
-                SLIP if touching.phys.slipping else STICK)
+    def read(self, offset: np.ndarray, contacts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return offset, -contacts["shearForce"]  # forces of a contact act on the socket

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
+import numpy as np
 import statejump_yade as sj
 from failures import Names
+from states import States
 from truss_joints.parts import SLIP, STICK, Joints, Row, rows
 from truss_joints.torsion import torsion_spring
 from yade import wrapper
@@ -45,9 +47,12 @@ class LatchHinges(Joints):
     def torsion_springs(self) -> list[sj.TorsionSpring]:
         return self._springs
 
-    def states(self) -> list[tuple[Any, ...]]:
-        return [(spring.angle - spring.freeAngle, spring.moment,
-                 SLIP if abs(spring.frictionMoment) >= spring.frictionLimit else STICK) for spring in self._springs]
+    def states(self, states: States) -> list[np.ndarray]:
+        found = states.springs(self._springs)
+        free, limit = (np.array([getattr(spring, name) for spring in self._springs])
+                       for name in ("freeAngle", "frictionLimit"))
+        return [found["angle"] - free, found["moment"],
+                np.where(np.abs(found["frictionMoment"]) >= limit, SLIP, STICK)]
 
     def name(self, found: Names) -> None:
         for hinge, spring in zip(self.rows, self._springs):

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What joints of a truss in YADE share: their interface, rows of a section, material and contact of bodies."""
+"""What joints of a truss in YADE share: their interface, rows of a section, material of bodies."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from math import atan
 from typing import Any
 
+import numpy as np
 import statejump_yade as sj
-from failures import Names
-from scene import O
+from failures import Names, SceneFailure
+from states import States
 from yade import wrapper
 
 GROUND = -1
@@ -36,14 +37,6 @@ def give(body: wrapper.Body, shape, made, group: int) -> None:
     """Give a body shape and material; it meets the bodies of its group only."""
     body.shape, body.material, body.bound = shape, made, wrapper.Aabb()
     body.mask = 1 << group
-
-
-def contact(one: int, other: int):
-    """Return the contact of two bodies, None where they do not touch."""
-    if not O.interactions.has(one, other):
-        return None
-    found = O.interactions[one, other]
-    return found if found.isReal else None
 
 
 class Joints:
@@ -85,9 +78,13 @@ class Joints:
         """Return those that stand for joints, known from :meth:`append` on."""
         return []
 
-    def states(self) -> list[tuple[Any, ...]]:
-        """Return what every joint has of each of the columns."""
+    def states(self, states: States) -> list[np.ndarray]:
+        """Return each of the columns: its values by sample and joint, vectors along a third axis."""
         raise NotImplementedError
+
+    def faults(self, states: States) -> Iterator[SceneFailure]:
+        """Yield what the model of a joint does not have, its first time."""
+        yield from ()
 
     def faces(self) -> dict[int, tuple[str, str]]:
         """Return joint and words of bodies of its own."""

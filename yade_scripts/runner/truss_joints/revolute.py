@@ -2,10 +2,10 @@
 """Clearance revolutes of a truss in YADE: a journal at one node, a bearing at another."""
 from __future__ import annotations
 
-from typing import Any
-
+import numpy as np
 import statejump_yade as sj
-from truss_joints.parts import SEPARATED, SLIP, STICK, Row
+from states import dot
+from truss_joints.parts import Row
 from truss_joints.round_parts import RoundParts
 from yade import wrapper
 from yade.minieigenHP import Quaternion, Vector3
@@ -24,12 +24,8 @@ class Revolutes(RoundParts):
         turned.setFromTwoVectors(Vector3(0, 0, 1), Vector3(joint["axis"]))
         body.state.ori = turned
 
-    def read(self, joint: Row, offset: Any, touching: Any) -> tuple[Any, ...]:
-        axis = Vector3(joint["axis"])
-        offset -= offset.dot(axis) * axis
-        if touching is None:
-            return offset, 0.0, 0.0, SEPARATED
-        normal = touching.geom.normal
+    def read(self, offset: np.ndarray, contacts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        axes = np.array([joint["axis"] for joint in self.rows])
         # On the journal against the positive slide, which is anticlockwise: shearForce acts on the bearing.
-        friction = touching.phys.shearForce.dot(axis.cross(normal))
-        return offset, touching.phys.normalForce.dot(normal), friction, SLIP if touching.phys.slipping else STICK
+        friction = dot(contacts["shearForce"], np.cross(axes, contacts["normal"]))
+        return offset - dot(offset, axes)[..., None] * axes, friction

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any, ClassVar
 
+import numpy as np
 from failures import Names, pair
-from scene import O
-from truss_joints.parts import GROUND, Joints, Row, contact, give, material
+from states import States, dot
+from truss_joints.parts import GROUND, SEPARATED, SLIP, STICK, Joints, Row, give, material
 from yade import wrapper
 
 
@@ -45,18 +46,19 @@ class RoundParts(Joints):
         _, inner = self.shapes
         return [joint[f"{inner}_radius_m"] for joint in self.rows]
 
-    def states(self) -> list[tuple[Any, ...]]:
-        return [self._state(joint) for joint in self.rows]
+    def states(self, states: States) -> list[np.ndarray]:
+        pairs = [self.bodies_of(joint) for joint in self.rows]
+        inner, outer = (states.bodies([bodies[side] for bodies in pairs])["position"] for side in (0, 1))
+        contacts = states.contacts(pairs)
+        touches = (contacts["real"] > 0) & (contacts["penetrationDepth"] > 0)
+        offset, friction = self.read(inner - outer, contacts)
+        vector = friction.ndim > 2
+        return [offset, np.where(touches, dot(contacts["normalForce"], contacts["normal"]), 0.0),
+                np.where(touches[..., None] if vector else touches, friction, 0.0),
+                np.where(touches, np.where(contacts["slipping"] > 0, SLIP, STICK), SEPARATED)]
 
-    def _state(self, joint: Row) -> tuple[Any, ...]:
-        inner, outer = self.bodies_of(joint)
-        touching = contact(inner, outer)
-        if touching is not None and touching.geom.penetrationDepth <= 0:
-            touching = None
-        return self.read(joint, O.bodies[inner].state.pos - O.bodies[outer].state.pos, touching)
-
-    def read(self, joint: Row, offset: Any, touching: Any) -> tuple[Any, ...]:
-        """Return what the columns have of a joint: of the offset of its centres, and of its contact if it touches."""
+    def read(self, offset: np.ndarray, contacts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return what the columns have as offset of the centres and as friction where they touch."""
         raise NotImplementedError
 
     def name(self, found: Names) -> None:

@@ -10,10 +10,12 @@ from collections.abc import Callable, Iterator
 from math import inf
 from typing import Any
 
+import numpy as np
 import statejump_yade as sj
 from failures import Names, SceneFailure, pair
 from scene import O
-from truss_joints.parts import AT_STOP, GROUND, SLIP, STICK, Joints, Row, contact, give, material
+from states import States, dot
+from truss_joints.parts import AT_STOP, GROUND, SLIP, STICK, Joints, Row, give, material
 from yade import wrapper
 from yade.minieigenHP import Matrix3, Quaternion, Vector3
 
@@ -87,32 +89,49 @@ class Sliders(Joints):
     def radii(self) -> list[float]:
         return [slider["pad_radius_m"] for slider in self.rows if slider["nodes"][1] == GROUND]
 
-    def states(self) -> list[tuple[Any, ...]]:
-        return [self._state_between(self._between[place]) if place in self._between else
-                self._state(slider, self.ids[slider["nodes"][0]], *numbers)
-                for place, (slider, numbers) in enumerate(zip(self.rows, self._numbers))]
+    def states(self, states: States) -> list[np.ndarray]:
+        slide, force = np.empty((2, len(states), len(self.rows)))
+        state = np.empty((len(states), len(self.rows)), dtype=int)
+        between, ground = list(self._between), [place for place, faces in enumerate(self._numbers) if faces]
+        joints = states.joints(self._between.values())
+        slide[:, between], force[:, between] = joints["slide"], joints["frictionForce"] + joints["stopForce"]
+        limits = np.array([joint.frictionLimit for joint in self._between.values()])
+        slips = np.abs(joints["frictionForce"]) >= limits
+        state[:, between] = np.where(joints["stopForce"] != 0, AT_STOP, np.where(slips, SLIP, STICK))
 
-    @staticmethod
-    def _state_between(joint: sj.PrismaticJoint) -> tuple[Any, ...]:
-        slips = abs(joint.frictionForce) >= joint.frictionLimit
-        return (joint.slide, joint.frictionForce + joint.stopForce,
-                AT_STOP if joint.stopForce != 0 else SLIP if slips else STICK)
-
-    def _state(self, slider: Row, body: int, floor: int, *stops: int) -> tuple[Any, ...]:
-        axis, origin = Vector3(slider["axis"]), Vector3(self.nodes[slider["nodes"][0]]["position_m"])
-        touching = contact(body, floor)
-        if touching is None:
-            raise SceneFailure(f"slider {slider['names']!r} has left its floor: the contact is lost", slider["names"])
+        axes, origins = np.empty((2, len(self.rows), 3))
+        for place, slider in enumerate(self.rows):
+            axes[place], origins[place] = slider["axis"], self.nodes[slider["nodes"][0]]["position_m"]
+        positions = states.bodies([self._pad(place) for place in ground])["position"]
+        slide[:, ground] = dot(positions - origins[ground], axes[ground])
+        floors = self._contacts(states, ground, 0)
         # Forces of a contact act on the face: along the axis they are against the slider's.
-        force = touching.phys.shearForce.dot(axis)
-        at_stop = False
-        for face in stops:
-            stop = contact(body, face)
-            if stop is not None and stop.phys.normalForce.squaredNorm() > 0:
-                force += stop.phys.normalForce.dot(axis)
-                at_stop = True
-        state = AT_STOP if at_stop else SLIP if touching.phys.slipping else STICK
-        return (O.bodies[body].state.pos - origin).dot(axis), force, state
+        force[:, ground] = dot(floors["shearForce"], axes[ground])
+        state[:, ground] = np.where(floors["slipping"] > 0, SLIP, STICK)
+        for stop in (1, 2):
+            stopped = [place for place in ground if len(self._numbers[place]) > stop]
+            forces = self._contacts(states, stopped, stop)["normalForce"]
+            touches = dot(forces, forces) > 0
+            force[:, stopped] = np.where(touches, force[:, stopped] + dot(forces, axes[stopped]), force[:, stopped])
+            state[:, stopped] = np.where(touches, AT_STOP, state[:, stopped])
+        return [slide, force, state]
+
+    def _pad(self, place: int) -> int:
+        return self.ids[self.rows[place]["nodes"][0]]
+
+    def _contacts(self, states: States, places: list[int], face: int) -> np.ndarray:
+        """Return those of some sliders with their floors, 0, or one of their stops."""
+        return states.contacts((self._pad(place), self._numbers[place][face]) for place in places)
+
+    def faults(self, states: States) -> Iterator[SceneFailure]:
+        ground = [place for place, faces in enumerate(self._numbers) if faces]
+        lost = self._contacts(states, ground, 0)["real"] == 0
+        if not lost.any():
+            return
+        sample, which = np.unravel_index(lost.argmax(), lost.shape)
+        name = self.rows[ground[which]]["names"]
+        yield SceneFailure(f"slider {name!r} has left its floor: the contact is lost", name,
+                           time_s=states.times[sample])
 
     def faces(self) -> dict[int, tuple[str, str]]:
         found = {}

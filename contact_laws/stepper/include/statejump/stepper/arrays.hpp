@@ -81,13 +81,18 @@ struct Links {
 using Stage =
     std::variant<Links, std::vector<TorsionPlace>, std::vector<Prismatic>, std::vector<Guide>>;
 
-/// Energies that grow from step to step [J]. What is stored now belongs to the last step alone.
+/// Energies that grow from step to step [J].
 struct Energies {
   double joint_friction = 0, joint_damping = 0, joint_thermal_work = 0;
   double link_damping = 0, pin_damping = 0, link_thermal_work = 0;
   double torsion_friction = 0;
   double prismatic_friction = 0, prismatic_damping = 0;
   double numerical_damping = 0, gravity_work = 0;
+};
+
+/// Energies that are stored now, of one step [J].
+struct StoredEnergies {
+  double joint = 0, link = 0, torsion = 0, prismatic = 0;
 };
 
 inline Vector3 axis_of(const Quaternion& q) {

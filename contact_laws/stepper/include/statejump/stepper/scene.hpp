@@ -48,11 +48,16 @@ class Scene {
   std::vector<Stage> stages;
   std::variant<HertzMindlin, NamedLaw> law;
   Energies energies;
+  StoredEnergies stored;  ///< of the last step of a run
   Begun begun;
   bool any_contact = false;  ///< a contact has been computed since the arrays were filled
 
   /// Physics of a contact that begins, by its place; none where the materials allow none.
   using Make = std::function<std::optional<ContactPhysics>(std::size_t)>;
+
+  /// Looks at the last step of a run between its forces and its motions, at one time: positions,
+  /// forces, contacts, and velocities half a step old.
+  using Observe = std::function<void()>;
 
   /// Says what rests and what moves; call it when the arrays are filled.
   void prepare();
@@ -60,8 +65,9 @@ class Scene {
   /// Makes steps until one cannot be made here: a failure, which is for the ordinary loop to tell,
   /// or a body that leaves its bound, after which the collider has to look again. That step is left
   /// half made: fill the arrays again and make the steps before it.
+  /// @param observe of the last step; may be empty
   /// @return steps that were made whole
-  long run(long steps, const Make& make);
+  long run(long steps, const Make& make, const Observe& observe = {});
 
   /// Whether all that a step leaves behind are numbers.
   bool is_sound() const;
@@ -75,6 +81,7 @@ class Scene {
     double time_step() const { return scene.time_step; }
     bool tracks_energy() const { return scene.tracks_energy; }
     void add(const ContactEnergy& energy) {
+      scene.stored.joint += energy.elastic;
       scene.energies.joint_friction += energy.friction;
       scene.energies.joint_damping += energy.damping;
       scene.energies.joint_thermal_work += energy.thermal_work;
@@ -174,7 +181,7 @@ inline bool Scene::sums_before_moving() const {
   });
 }
 
-inline long Scene::run(long steps, const Make& make) {
+inline long Scene::run(long steps, const Make& make, const Observe& observe) {
   return std::visit(
       [&](const auto& one) {
         const auto contact = [&](std::size_t place) { return step_contact(one, place, make); };
@@ -199,7 +206,14 @@ inline long Scene::run(long steps, const Make& make) {
           }
           return true;
         };
-        while (done < steps && step(one_by_one, [&] { return move(moving_); })) ++done;
+        const auto observed = [&] {
+          if (observe && done == steps - 1) {
+            sum();
+            observe();
+          }
+          return move(moving_);
+        };
+        while (done < steps && step(one_by_one, observed)) ++done;
         return done;
       },
       law);
@@ -208,6 +222,7 @@ inline long Scene::run(long steps, const Make& make) {
 template <class Contacts, class Move>
 bool Scene::step(const Contacts& contacts_of_all, const Move& move) {
   summed_ = false;
+  stored = {};
   for (std::size_t i = 0; i < programs.size(); ++i) {
     changes_[i] = programs[i].temperature_change(time);
   }
@@ -362,6 +377,7 @@ inline bool Scene::act(Links& group) {
     if (root.moves) root.added_force += -force;
     if (tracks_energy) {
       const LinkEnergy step = energy(link, now, time_step, last_softening);
+      stored.link += step.elastic;
       energies.link_damping += step.damping;
       energies.pin_damping += step.pin_damping;
       if (step.works) energies.link_thermal_work += step.thermal_work;
@@ -400,7 +416,10 @@ inline bool Scene::act(std::vector<TorsionPlace>& springs) {
     };
     add(place.first, couple(first, spring.axis, spring.moment));
     add(place.second, couple(second, spring.axis, -spring.moment));
-    if (tracks_energy) energies.torsion_friction += energy.friction;
+    if (tracks_energy) {
+      stored.torsion += energy.elastic;
+      energies.torsion_friction += energy.friction;
+    }
   }
   return true;
 }
@@ -420,6 +439,7 @@ inline bool Scene::act(std::vector<Prismatic>& joints) {
     if (one.moves) one.added_force += step.force;
     if (two.moves) two.added_force += -step.force;
     if (tracks_energy) {
+      stored.prismatic += step.elastic;
       energies.prismatic_friction += step.friction;
       energies.prismatic_damping += step.damping;
     }

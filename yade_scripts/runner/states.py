@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""States of a scene in many steps, as arrays: what a StateRecorder has kept."""
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import statejump_yade as sj
+from scene import O
+from yade import wrapper
+
+Pair = tuple[int, int]
+
+# The numbers of a row, see StateRecorder.
+VECTOR, NUMBER = "3f8", "f8"
+BODY = [("position", VECTOR), ("velocity", VECTOR), ("force", VECTOR)]
+CONTACT = [("real", NUMBER), ("penetrationDepth", NUMBER), ("slipping", NUMBER), ("normal", VECTOR),
+           ("normalForce", VECTOR), ("shearForce", VECTOR)]
+LINK = [("axialForce", NUMBER), ("temperatureChange", NUMBER), ("extension", NUMBER), ("stressFreeLength", NUMBER)]
+SPRING = [("angle", NUMBER), ("moment", NUMBER), ("frictionMoment", NUMBER)]
+JOINT = [("slide", NUMBER), ("frictionForce", NUMBER), ("stopForce", NUMBER)]
+
+
+class Watched:
+    """The parts of a scene whose states are recorded, in the order in which they are named."""
+
+    def __init__(self, bodies: Iterable[int] = (), contacts: Iterable[Pair] = (),
+                 links: Iterable[sj.ThermalLink] = (), springs: Iterable[sj.TorsionSpring] = (),
+                 joints: Iterable[sj.PrismaticJoint] = ()) -> None:
+        self.bodies, self.contacts = list(bodies), list(contacts)
+        self.links, self.springs, self.joints = list(links), list(springs), list(joints)
+
+
+class States:
+    """Samples: the first axis of every array; the second one has the parts that are asked for, the third one is that
+    of a vector."""
+
+    def __init__(self, rows: np.ndarray, places: dict[Any, int]) -> None:
+        self._rows, self._places = rows, places
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    @property
+    def times(self) -> np.ndarray:
+        """Times [s]."""
+        return self._rows["time"]
+
+    def energy(self, *names: str) -> np.ndarray:
+        """Return the sum of energies by their names in O.energy [J]."""
+        return sum(self._rows[name] for name in names)
+
+    def strangers(self) -> np.ndarray:
+        """Return two bodies that touch and whose contact is not watched, -1 where there are none."""
+        return np.stack([self._rows["stranger1"], self._rows["stranger2"]], axis=1).astype(int)
+
+    def _of(self, sort: str, keys: Iterable[Any]) -> np.ndarray:
+        return self._rows[sort][:, [self._places[sort, key] for key in keys]]
+
+    def bodies(self, ids: Sequence[int]) -> np.ndarray:
+        """Return ``position`` [m], ``velocity`` half a step before [m/s] and ``force`` in free directions [N]."""
+        return self._of("bodies", ids)
+
+    def kinetic_energies(self, ids: Sequence[int]) -> np.ndarray:
+        """Return those of bodies that only move [J], at the time of the positions: YADE keeps velocities of half a
+        step before."""
+        bodies, masses = self.bodies(ids), np.array([O.bodies[body].state.mass for body in ids])
+        velocities = bodies["velocity"] + (0.5 * O.dt / masses)[:, None] * bodies["force"]
+        return 0.5 * masses * dot(velocities, velocities)
+
+    def contacts(self, pairs: Iterable[Pair]) -> np.ndarray:
+        """Return ``real`` and ``slipping`` (1 or 0), ``penetrationDepth`` [m] and, as YADE has them, ``normal``,
+        ``normalForce`` and ``shearForce`` [N]; zeros where the bodies do not touch."""
+        return self._of("contacts", pairs)
+
+    def links(self, links: Iterable[sj.ThermalLink]) -> np.ndarray:
+        """Return ``axialForce`` [N], ``temperatureChange`` [K], ``extension`` and ``stressFreeLength`` [m]."""
+        return self._of("links", map(id, links))
+
+    def springs(self, springs: Iterable[sj.TorsionSpring]) -> np.ndarray:
+        """Return ``angle`` [rad], ``moment`` and ``frictionMoment`` [N m]."""
+        return self._of("springs", map(id, springs))
+
+    def joints(self, joints: Iterable[sj.PrismaticJoint]) -> np.ndarray:
+        """Return ``slide`` [m], ``frictionForce`` and ``stopForce`` [N]."""
+        return self._of("joints", map(id, joints))
+
+
+class Recorder:
+    """A StateRecorder and the meaning of its rows. ``engine`` is to stand right before the NewtonIntegrator.
+
+    :param every: steps from sample to sample
+    """
+
+    def __init__(self, every: int) -> None:
+        self.engine: wrapper.Engine = sj.StateRecorder(iterPeriod=every)
+
+    def watch(self, watched: Watched) -> None:
+        """Say what is recorded from now on."""
+        engine = self.engine
+        engine.bodies, engine.contacts = watched.bodies, [body for pair in watched.contacts for body in pair]
+        engine.links, engine.springs, engine.joints = watched.links, watched.springs, watched.joints
+        keys = {"bodies": watched.bodies, "contacts": watched.contacts, "links": map(id, watched.links),
+                "springs": map(id, watched.springs), "joints": map(id, watched.joints)}
+        self._watched = watched  # its objects have to stay for their ids to be theirs
+        self._places = {(sort, key): place for sort, all_keys in keys.items() for place, key in enumerate(all_keys)}
+        self._row = np.dtype([(name, NUMBER) for name in engine.scalars()] + [
+            (sort, part, (len(getattr(watched, sort)),))
+            for sort, part in (("bodies", BODY), ("contacts", CONTACT), ("links", LINK), ("springs", SPRING),
+                               ("joints", JOINT))
+        ])
+        assert self._row.itemsize == 8 * engine.width()
+
+    @property
+    def bytes_of_a_sample(self) -> int:
+        """Memory of one sample [B]."""
+        return self._row.itemsize
+
+    @property
+    def bytes_kept(self) -> int:
+        """Memory of the samples since the last call of :meth:`take` [B]."""
+        return self._row.itemsize * self.engine.rows()
+
+    def take(self) -> States:
+        """Return the samples since the last call."""
+        return States(np.frombuffer(self.engine.take(), self._row), self._places)
+
+
+def dot(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return scalar products along the last axis, in the order in which Eigen adds."""
+    return one[..., 0] * other[..., 0] + (one[..., 1] * other[..., 1] + one[..., 2] * other[..., 2])
+
+
+def norm(vectors: np.ndarray) -> np.ndarray:
+    """Return lengths along the last axis."""
+    return np.sqrt(dot(vectors, vectors))
+
+
+def in_order(values: np.ndarray) -> np.ndarray:
+    """Return sums over the second axis, added from the first to the last."""
+    return 0.0 + np.cumsum(values, axis=1)[:, -1] if values.shape[1] else np.zeros(len(values))
+
+
+def each(function: Any, *values: np.ndarray) -> np.ndarray:
+    """Return a function of Python's ``math`` of every sample: NumPy's own differ with the processor."""
+    return np.array(list(map(function, *(some.tolist() for some in values))))
