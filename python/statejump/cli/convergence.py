@@ -12,9 +12,12 @@ from statejump.core.results_folder import Results
 
 @click.command("convergence")
 @CASE
+@click.option("--decades", type=click.IntRange(0, 3), default=0, show_default=True,
+              help="How much longer than 4 periods cycles last, and how much shorter than 0.025 of the stable one time "
+                   "steps are; every decade takes ten times as long.")
 @RESULTS
 @QUIET
-def convergence_command(case_file: Path, results: Results, quiet: bool) -> None:
+def convergence_command(case_file: Path, decades: int, results: Results, quiet: bool) -> None:
     """DEM error of CASE against the duration of the cycle and the time step, as a table.
 
     \b
@@ -25,6 +28,6 @@ def convergence_command(case_file: Path, results: Results, quiet: bool) -> None:
     case = loaded(case_file, "convergence")
     with results.folder(case.name) as folder:
         with progress(console, "convergence") as tell:
-            found = case.behaviour.ability("convergence", case)(case, tell)
+            found = case.behaviour.ability("convergence", case)(case, tell, decades)
         _, text = folder.publish(found.write(folder.staged))
     console.print(text.read_text(encoding="utf-8"))

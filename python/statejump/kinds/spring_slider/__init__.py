@@ -151,11 +151,11 @@ class SpringSlider(Kind[SpringSliderCase]):
 
         return control.control(case, **settings)
 
-    def convergence(self, case: SpringSliderCase, tell: Tell) -> Convergence:
-        """Return how the DEM approaches the reduced model."""
+    def convergence(self, case: SpringSliderCase, tell: Tell, decades: int = 0) -> Convergence:
+        """Return how the DEM approaches the reduced model; see :func:`.convergence.convergence`."""
         from statejump.kinds.spring_slider import convergence
 
-        return convergence.convergence(case, tell)
+        return convergence.convergence(case, tell, decades)
 
 
 KIND = SpringSlider()

@@ -52,6 +52,7 @@ class Convergence:
     case: SpringSliderCase
     slower: tuple[Row, ...]  # the period grows
     finer: tuple[Row, ...]  # the time step falls
+    decades: int = 0  # further than usual
 
     @property
     def rows(self) -> tuple[Row, ...]:
@@ -62,9 +63,10 @@ class Convergence:
         """Write ``convergence.csv`` and ``convergence.md``."""
         entries = [asdict(row) for row in self.rows]
         shown = [["" if math.isnan(value) else f"{value:.4g}" for value in entry.values()] for entry in entries]
+        command = "statejump convergence" + (f" --decades {self.decades}" if self.decades else "")
         lines = [
             f"# DEM against reduced model: {self.case.title}", "",
-            f"Made by {made_by('statejump convergence', self.case)}.", "",
+            f"Made by {made_by(command, self.case)}.", "",
             *markdown(list(entries[0]), shown), "", *explanation(self),
         ]
         return [write_rows(folder / "convergence.csv", entries), write_markdown(folder / "convergence.md", lines)]
@@ -83,22 +85,30 @@ def _variant(case: SpringSliderCase, factor: float, **settings: Any) -> SpringSl
     return changed
 
 
-def variants(case: SpringSliderCase) -> tuple[list[SpringSliderCase], list[SpringSliderCase]]:
+def _further(values: Sequence[float], decades: int) -> list[float]:
+    """Return values that go on by their last ratio until they are so many decades further."""
+    ratio = values[-1] / values[-2]
+    more = math.ceil(decades / abs(math.log10(ratio)))
+    return [*values, *(values[-1] * ratio**place for place in range(1, more + 1))]
+
+
+def variants(case: SpringSliderCase, decades: int = 0) -> tuple[list[SpringSliderCase], list[SpringSliderCase]]:
     """Return cases to run: each period at the case's own step, and each step on a fast cycle."""
     return (
-        [_variant(case, factor) for factor in PERIOD_FACTORS],
+        [_variant(case, factor) for factor in _further(PERIOD_FACTORS, decades)],
         [_variant(case, STEP_PERIOD_FACTOR, samples_per_cycle=STEP_SAMPLES, time_step_fraction=fraction)
-         for fraction in STEP_FRACTIONS],
+         for fraction in _further(STEP_FRACTIONS, decades)],
     )
 
 
-def convergence(case: SpringSliderCase, tell: Tell = lambda share: None) -> Convergence:
+def convergence(case: SpringSliderCase, tell: Tell = lambda share: None, decades: int = 0) -> Convergence:
     """Run the DEM with slower cycles, then with shorter steps.
 
+    :param decades: how much further than usual, 0 to 3; every decade takes ten times as long
     :param tell: takes the finished share, 0 to 1
     :raises StatejumpError: a run failed
     """
-    slower, finer = variants(case)
+    slower, finer = variants(case, decades)
     every = [*slower, *finer]
     runs: list[Run] = []
     for place, variant in enumerate(every):
@@ -106,7 +116,8 @@ def convergence(case: SpringSliderCase, tell: Tell = lambda share: None) -> Conv
             runs.append(case.behaviour.dem(variant, one_of(tell, place, len(every))))
         except Interrupted:
             raise Interrupted("interrupted; no table was written") from None
-    return compared(case, (slower, finer), (runs[: len(slower)], runs[len(slower) :]))
+    found = compared(case, (slower, finer), (runs[: len(slower)], runs[len(slower) :]))
+    return replace(found, decades=decades)
 
 
 def compared(
