@@ -13,7 +13,7 @@ import statejump as sj
 from statejump.core.errors import StatejumpError
 from statejump.core.yade_process import execute
 from statejump.kinds.loading import parse_case
-from statejump.kinds.truss import KIND, dem, generate
+from statejump.kinds.truss import KIND, dem, generate, masses
 from statejump.results.read import read
 from statejump.kinds.truss.generate.document import write
 from statejump.kinds.truss.solve import solve
@@ -165,7 +165,7 @@ def test_masses_of_a_bar_between_free_nodes() -> None:
     case = parse_case(generate.chain(2))
     bar = 2700 * 9e-6 * 0.5
     # A third at the tip of the bar that hangs on the ground, else halves.
-    assert dem.lumped_mass_kg(case.resolve()) == pytest.approx([0, bar / 3 + bar / 2, bar / 2])
+    assert masses.lumped_mass_kg(case.resolve()) == pytest.approx([0, bar / 3 + bar / 2, bar / 2])
 
 
 def test_tubes_that_slide_in_each_other_jump_as_the_closed_form(statejump, tmp_path: Path) -> None:

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A truss as the YADE script needs it: bodies, masses, contact groups, time step, loaded start.
 
-Nodes are bodies. A link's mass is lumped: a third at the tip of a link whose other end is fixed (exact
-for a uniform rod on a pin), else half at each end. A slider's pad is held by the node's supports at the
-depth at which its floor carries the normal force, so that the friction limit is that of the quasi-static
-model whatever else loads the supports.
+Nodes are bodies with lumped masses, see :mod:`~statejump.kinds.truss.masses`. A slider's pad is held by the
+node's supports at the depth at which its floor carries the normal force, so that the friction limit is that of the
+quasi-static model whatever else loads the supports.
 """
 from __future__ import annotations
 
@@ -17,16 +16,19 @@ from scipy.spatial import cKDTree
 
 from statejump import _engine
 from statejump.core import physics, thermal, yade_process
-from statejump.core.errors import MissingKey, StatejumpError
+from statejump.core.engine_failures import EngineFailed
+from statejump.core.errors import StatejumpError
 from statejump.core.progress import Tell
 from statejump.core.run import Run
 from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.mechanism import refused_at_rest
 from statejump.kinds.truss.joints.protocol import Torsion
+from statejump.kinds.truss.masses import lumped_mass_kg
+from statejump.kinds.truss.mechanism import refused_at_rest
+from statejump.kinds.truss.motion import simulate
 from statejump.kinds.truss.resolved import ResolvedTruss
-from statejump.kinds.truss.solve import TrussPath, solve
+from statejump.kinds.truss.solve import Course, TrussPath, solve
 
 CONTACT_GROUPS = 30  # bits of a body's mask in YADE that are free to use
 
@@ -38,22 +40,7 @@ def refuse(case: TrussCase, why: str, **fields: Any) -> StatejumpError:
     return StatejumpError(cause=why, case=case.name, remedy="'statejump reduced' can run the case", **fields)
 
 
-def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
-    """Return the mass of every node [kg]. :raises MissingKey: a link has none"""
-    for name, link in zip(truss.links.names, truss.links.mass_kg):
-        if np.isnan(link):
-            raise MissingKey("mass_kg", "what moves has one of them", section="density_kg_per_m3 or mass_kg",
-                             item=f"link {name!r}", case=truss.name)
-    mass = truss.nodes.mass_kg.copy()
-    held = np.asarray(truss.nodes.fixed.all(axis=1))
-    for ends, link in zip(truss.links.nodes, truss.links.mass_kg):
-        share = link / 3 if held[ends].any() else link / 2
-        mass[ends] += share
-    mass[held] = 0
-    return mass
-
-
-def stable_time_step(case: TrussCase, path: TrussPath) -> float:
+def stable_time_step(case: TrussCase, path: Course) -> float:
     """Return a stable time step [s] for the largest forces of the quasi-static path.
 
     The square of a spring's stretch is at most the number of its ends that move times the sum of their
@@ -93,7 +80,7 @@ def stable_time_step(case: TrussCase, path: TrussPath) -> float:
     return float(np.min(_engine.critical_time_step_s(1.0, stiffness, damping), initial=inf))
 
 
-def number_of_steps(case: TrussCase, path: TrussPath) -> int:
+def number_of_steps(case: TrussCase, path: Course) -> int:
     """Steps of the whole run: a multiple of the samples, so that the last sample is the end."""
     wanted = case.dem.time_step_fraction * stable_time_step(case, path)
     return ceil(case.period_s / wanted / case.samples_per_cycle) * case.samples_per_cycle * case.thermal.cycles
@@ -209,7 +196,7 @@ def _refuse_tilted_torsion(case: TrussCase, truss: ResolvedTruss) -> None:
                                    "not across its axis, the DEM has torsion springs in a plane only")
 
 
-def _refuse_far_turns(case: TrussCase, path: TrussPath) -> None:
+def _refuse_far_turns(case: TrussCase, path: Course) -> None:
     """Beyond a quarter of a turn the DEM cannot tell an angle from its opposite."""
     torsion = path.truss.torsion_springs
     if len(torsion.links) and np.abs(torsion.bias_rad).max() > pi / 2:
@@ -237,16 +224,17 @@ def _lists(part: Any, **more: Any) -> dict[str, Any]:
     return {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in values.items()}
 
 
-def resolved(case: TrussCase, path: TrussPath) -> dict[str, Any]:
+def resolved(case: TrussCase, path: Course) -> dict[str, Any]:
     """Return everything that the YADE script needs, as plain values.
 
-    :param path: the quasi-static path of the case: its first state is the start, its forces give the
+    :param path: the quasi-static path of the case, or its motion: its first state is the start, its forces give the
         time step, its slides the size of the floors
     :raises StatejumpError: the DEM cannot represent an item, which the sentence names
     """
     check(case)
     truss, mass = path.truss, lumped_mass_kg(path.truss)
-    if path.cycle_ends and len(path.states["time_s"]) <= len(path.cycle_ends["time_s"]):
+    ends = path.cycle_ends if isinstance(path, TrussPath) else {}
+    if ends and len(path.states["time_s"]) <= len(ends["time_s"]):
         raise refuse(case, "the path is too large to be kept as a whole")
     reach = [joint.reach_m(path, truss.joints[joint.section]) for joint in JOINTS]
     groups = np.split(_contact_groups(truss, case, np.concatenate(reach)), np.cumsum([len(own) for own in reach]))
@@ -268,12 +256,22 @@ def resolved(case: TrussCase, path: TrussPath) -> dict[str, Any]:
 
 
 def dem_input(case: TrussCase, tell: Tell = lambda share: None) -> dict[str, Any]:
-    """Return everything that the YADE script needs, see :func:`resolved`; the path is found first.
+    """Return everything that the YADE script needs, see :func:`resolved`; the path is found first, or the motion.
 
     :param tell: takes the finished share of the path
     """
     check(case)
-    return resolved(case, solve(case, tell))
+    return resolved(case, _course(case, tell))
+
+
+def _course(case: TrussCase, tell: Tell) -> Course:
+    """Return the quasi-static path; of a case that snaps its motion, since such a path ends where slip runs away."""
+    try:
+        return solve(case, tell)
+    except EngineFailed as failure:
+        if failure.reason != "no_continuation":
+            raise
+    return simulate(case, tell)
 
 
 def run(case: TrussCase, scene: str, make_run: Callable[..., Run], tell: Tell) -> Run:

@@ -14,8 +14,8 @@ from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import Interrupted, StatejumpError
 from statejump.core.progress import Tell
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.dem import lumped_mass_kg
 from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.masses import lumped_mass_kg
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussEvents, engine_items
 

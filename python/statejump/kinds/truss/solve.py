@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, overload
+from typing import Any, Protocol, overload
 
 import numpy as np
 
@@ -70,6 +70,18 @@ class TrussEvents(Sequence[TrussEvent]):
             self.truss.joints[kind].names[self.joint[place]], self.statuses[int(self.before[place])],
             self.statuses[int(self.after[place])],
         )
+
+
+class Course(Protocol):
+    """What a truss went through: a quasi-static path, or a motion."""
+
+    @property
+    def truss(self) -> ResolvedTruss:
+        """Which."""
+
+    @property
+    def states(self) -> dict[str, np.ndarray]:
+        """As of :class:`TrussPath`."""
 
 
 @dataclass(frozen=True)

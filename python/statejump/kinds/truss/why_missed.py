@@ -14,7 +14,8 @@ from statejump.core.run import Run
 from statejump.core.why_missed import heated_too_fast, still_moving
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.dem import blocked_directions, lumped_mass_kg
+from statejump.kinds.truss.dem import blocked_directions
+from statejump.kinds.truss.masses import lumped_mass_kg
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.solve import TrussPath, engine_program, solve
 

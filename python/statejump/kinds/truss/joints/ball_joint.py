@@ -18,7 +18,7 @@ from statejump.schema.items import Item
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.solve import TrussPath
+    from statejump.kinds.truss.solve import Course
 
 
 @definition
@@ -139,7 +139,7 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
         return ("the friction of a ball joint is not split off as a load"
                 if joints.friction_coefficient.any() else "")
 
-    def reach_m(self, path: TrussPath, joints: BallJoints) -> np.ndarray:
+    def reach_m(self, path: Course, joints: BallJoints) -> np.ndarray:
         return joints.socket_radius_m
 
 

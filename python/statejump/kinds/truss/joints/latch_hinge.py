@@ -18,7 +18,7 @@ from statejump.schema.items import Item
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.solve import TrussPath
+    from statejump.kinds.truss.solve import Course
 
 
 @definition
@@ -117,10 +117,10 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
         sticking = np.where(joints.friction_moment_N_m > 0, joints.friction_stiffness_N_m_per_rad, 0.0)
         return Torsion(joints.names, joints.links, joints.axis, joints.stiffness_N_m_per_rad + sticking)
 
-    def largest_turn_rad(self, path: TrussPath, joints: LatchHinges) -> np.ndarray:
+    def largest_turn_rad(self, path: Course, joints: LatchHinges) -> np.ndarray:
         return np.asarray(np.abs(path.states["hinge_rotation_rad"]).max(axis=0))
 
-    def scene(self, path: TrussPath, joints: LatchHinges) -> dict[str, Any]:
+    def scene(self, path: Course, joints: LatchHinges) -> dict[str, Any]:
         rotation, moment = path.states["hinge_rotation_rad"][0], path.states["hinge_moment_N_m"][0]
         beyond = rotation - np.clip(rotation, -joints.deadband_rad, joints.deadband_rad)
         without_friction = joints.preload_moment_N_m + joints.stiffness_N_m_per_rad * beyond

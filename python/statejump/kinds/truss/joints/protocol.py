@@ -19,7 +19,7 @@ from statejump.schema.items import Item
 if TYPE_CHECKING:
     from statejump.kinds.truss.case import TrussCase
     from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.solve import TrussPath
+    from statejump.kinds.truss.solve import Course
 
 ItemType = TypeVar("ItemType", bound=Item)
 ArraysType = TypeVar("ArraysType")
@@ -233,11 +233,11 @@ class JointType(Generic[ItemType, ArraysType]):
         """Return which of its joints have bodies that touch in the DEM; an engine has the forces of the others."""
         return np.full(len(self.contact_nodes(joints)), True)
 
-    def reach_m(self, path: TrussPath, joints: ArraysType) -> np.ndarray:
+    def reach_m(self, path: Course, joints: ArraysType) -> np.ndarray:
         """Return how far from its place a contact's bodies extend [m] (joints,)."""
         return np.zeros(0)
 
-    def contact_stiffness(self, path: TrussPath, joints: ArraysType) -> tuple[np.ndarray, np.ndarray]:
+    def contact_stiffness(self, path: Course, joints: ArraysType) -> tuple[np.ndarray, np.ndarray]:
         """Return the nodes (joints, k) or GROUND that a contact pushes and its greatest stiffness [N/m] on the path."""
         return np.zeros((0, 1), dtype=int), np.zeros(0)
 
@@ -245,11 +245,11 @@ class JointType(Generic[ItemType, ArraysType]):
         """Return what turns links against each other by a moment."""
         return Torsion((), np.zeros((0, 2), dtype=int), np.zeros((0, 3)), np.zeros(0))
 
-    def largest_turn_rad(self, path: TrussPath, joints: ArraysType) -> np.ndarray:
+    def largest_turn_rad(self, path: Course, joints: ArraysType) -> np.ndarray:
         """Return how far :meth:`torsion` turns from the drawn shape on the path (joints,)."""
         return np.zeros(0)
 
-    def scene(self, path: TrussPath, joints: ArraysType) -> dict[str, Any]:
+    def scene(self, path: Course, joints: ArraysType) -> dict[str, Any]:
         """Return what the YADE script gets beside the arrays."""
         return {}
 

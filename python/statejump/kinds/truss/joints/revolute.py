@@ -20,7 +20,7 @@ from statejump.schema.items import Item
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.solve import TrussPath
+    from statejump.kinds.truss.solve import Course
 
 
 @definition
@@ -147,7 +147,7 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
         elastic = np.where(joints.rigid, 0.0, joints.young_modulus_Pa)
         return [*super().parameters(joints), *([("young_modulus_Pa", elastic)] if elastic.any() else [])]
 
-    def reach_m(self, path: TrussPath, joints: Revolutes) -> np.ndarray:
+    def reach_m(self, path: Course, joints: Revolutes) -> np.ndarray:
         return np.sqrt(2) * joints.bearing_radius_m
 
 

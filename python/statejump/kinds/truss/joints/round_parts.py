@@ -16,7 +16,7 @@ from statejump.schema.items import Item
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.solve import TrussPath
+    from statejump.kinds.truss.solve import Course
 
 ItemType = TypeVar("ItemType", bound=Item)
 ArraysType = TypeVar("ArraysType")
@@ -202,10 +202,10 @@ class RoundParts(JointType[ItemType, ArraysType]):
     def contact_nodes(self, joints: ArraysType) -> np.ndarray:
         return self._nodes(joints)
 
-    def contact_stiffness(self, path: TrussPath, joints: Any) -> tuple[np.ndarray, np.ndarray]:
+    def contact_stiffness(self, path: Course, joints: Any) -> tuple[np.ndarray, np.ndarray]:
         force = IMPACT**3 * path.states[self.normal_force].max(axis=0)
         normal = physics.hertz_tangent_N_per_m(force, self.hertz_stiffness(joints))
         return self.contact_nodes(joints), normal * (1 + physics.shear_over_normal_stiffness(joints.poisson_ratio))
 
-    def scene(self, path: TrussPath, joints: ArraysType) -> dict[str, Any]:
+    def scene(self, path: Course, joints: ArraysType) -> dict[str, Any]:
         return {f"{self.outer}_radius_m": self._radius_m(joints, self.outer)}

@@ -21,7 +21,7 @@ from statejump.schema.items import Item
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.solve import TrussPath
+    from statejump.kinds.truss.solve import Course
 
 BLOCK: Strokes = (
     ((-0.75, -0.45), (0.75, -0.45), (0.75, 0.45), (-0.75, 0.45), (-0.75, -0.45)), ((-1.0, -0.55), (1.0, -0.55)),
@@ -198,11 +198,11 @@ class SliderType(AlongAxis[Slider, Sliders]):
     def contact_nodes(self, joints: Sliders) -> np.ndarray:
         return joints.nodes[:, :1]
 
-    def reach_m(self, path: TrussPath, joints: Sliders) -> np.ndarray:
+    def reach_m(self, path: Course, joints: Sliders) -> np.ndarray:
         # A floor ends where no pad gets to: twice as far as in the quasi-static model, and the pad itself.
         return joints.pad_radius_m + 2 * np.abs(path.states["slide_m"]).max(axis=0)
 
-    def contact_stiffness(self, path: TrussPath, joints: Sliders) -> tuple[np.ndarray, np.ndarray]:
+    def contact_stiffness(self, path: Course, joints: Sliders) -> tuple[np.ndarray, np.ndarray]:
         at_stop = np.isfinite(joints.clearance_minus_m) | np.isfinite(joints.clearance_plus_m)
         force = IMPACT**3 * np.abs(path.states["slider_force_N"]).max(axis=0)
         stop = np.where(at_stop, physics.hertz_tangent_N_per_m(force, pad_hertz_stiffness(joints)), 0.0)
@@ -210,7 +210,7 @@ class SliderType(AlongAxis[Slider, Sliders]):
         across = np.where(self.bodies_touch(joints), 0.0, pad.normal_N_per_m)
         return joints.nodes, np.maximum(pad.tangential_N_per_m + stop, across)
 
-    def scene(self, path: TrussPath, joints: Sliders) -> dict[str, Any]:
+    def scene(self, path: Course, joints: Sliders) -> dict[str, Any]:
         def finite(values: np.ndarray) -> list[float | None]:
             return [float(value) if np.isfinite(value) else None for value in values]
 

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Masses of nodes. A link's mass is lumped: a third at the tip of a link whose other end is fixed (exact for a uniform
+rod on a pin), else half at each end."""
+from __future__ import annotations
+
+import numpy as np
+
+from statejump.core.errors import MissingKey
+from statejump.kinds.truss.resolved import ResolvedTruss
+
+
+def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
+    """Return the mass of every node [kg]. :raises MissingKey: a link has none"""
+    for name, link in zip(truss.links.names, truss.links.mass_kg):
+        if np.isnan(link):
+            raise MissingKey("mass_kg", "what moves has one of them", section="density_kg_per_m3 or mass_kg",
+                             item=f"link {name!r}", case=truss.name)
+    mass = truss.nodes.mass_kg.copy()
+    held = np.asarray(truss.nodes.fixed.all(axis=1))
+    for ends, link in zip(truss.links.nodes, truss.links.mass_kg):
+        share = link / 3 if held[ends].any() else link / 2
+        mass[ends] += share
+    mass[held] = 0
+    return mass
