@@ -14,7 +14,11 @@ from scipy.optimize import brentq
 from conftest import REPOSITORY
 from test_truss_iwan import JOINT, bolted
 
+from statejump import _engine
 from statejump.core.errors import StatejumpError
+from statejump.kinds.truss import masses
+from statejump.kinds.truss.arrays import GROUND
+from statejump.kinds.truss.motion import joint_dashpots_sqrt_kg
 
 MASS_KG, LOAD_N = 2.0, 90.0
 
@@ -120,3 +124,14 @@ def test_arch_snaps_in_the_dem_as_it_does_in_motion() -> None:
     assert sj.compare(*runs).passed
     snapped = [run["position_m"][-1, run.names["nodes"].index("B"), 1] for run in runs]
     assert max(snapped) < -5e-3 and snapped[0] == pytest.approx(snapped[1], rel=1e-3)
+
+
+def test_a_dashpot_between_two_nodes_has_both_masses_in_series() -> None:
+    truss = sj.load("telescope").definition.resolve()
+    mass, ratio = masses.lumped_mass_kg(truss), 0.05
+    sections = [kind for kind in _engine.truss_joints() for _ in truss.joints[kind].names]
+    found = joint_dashpots_sqrt_kg(truss, ratio, mass)
+    for (first, second), one in zip(truss.sliders.nodes, found[np.array(sections) == "slider"]):
+        inverse = 1 / mass[first] + (0 if second == GROUND else 1 / mass[second])
+        assert one == pytest.approx(2 * ratio / inverse**0.5, rel=1e-14)
+    assert (truss.sliders.nodes[:, 1] != GROUND).any()

@@ -67,12 +67,13 @@ def joint_dashpots_sqrt_kg(truss: ResolvedTruss, ratio: float, mass_kg: np.ndarr
 
     :param mass_kg: of every node; 0 for one that does not move
     """
+    mass_kg = np.append(mass_kg, 0.0)  # of GROUND
     inverse = np.divide(1, mass_kg, out=np.zeros_like(mass_kg), where=mass_kg > 0)
     found = []
     for kind in _engine.truss_joints():
         joint = next(one for one in JOINTS if one.section == kind)
         joints = truss.joints[kind]
-        nodes = joint.contact_nodes(joints) if joint.has_contacts else np.zeros((len(joints.names), 0), dtype=int)
+        nodes = joint.pushed_nodes(joints) if joint.has_contacts else np.zeros((len(joints.names), 0), dtype=int)
         pair = inverse[nodes].sum(axis=1)
         found.append(2 * ratio * np.sqrt(np.divide(1, pair, out=np.zeros_like(pair), where=pair > 0)))
     return np.concatenate(found)

@@ -229,6 +229,10 @@ class JointType(Generic[ItemType, ArraysType]):
         """Return the nodes (joints, k) whose bodies touch or carry what touches, the place of the contact first."""
         return np.zeros((0, 1), dtype=int)
 
+    def pushed_nodes(self, joints: ArraysType) -> np.ndarray:
+        """Return the nodes (joints, k) or GROUND that a contact pushes, whose masses it moves."""
+        return self.contact_nodes(joints)
+
     def bodies_touch(self, joints: ArraysType) -> np.ndarray:
         """Return which of its joints have bodies that touch in the DEM; an engine has the forces of the others."""
         return np.full(len(self.contact_nodes(joints)), True)

@@ -205,7 +205,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
     def contact_stiffness(self, path: Course, joints: Any) -> tuple[np.ndarray, np.ndarray]:
         force = IMPACT**3 * path.states[self.normal_force].max(axis=0)
         normal = physics.hertz_tangent_N_per_m(force, self.hertz_stiffness(joints))
-        return self.contact_nodes(joints), normal * (1 + physics.shear_over_normal_stiffness(joints.poisson_ratio))
+        return self.pushed_nodes(joints), normal * (1 + physics.shear_over_normal_stiffness(joints.poisson_ratio))
 
     def scene(self, path: Course, joints: ArraysType) -> dict[str, Any]:
         return {f"{self.outer}_radius_m": self._radius_m(joints, self.outer)}

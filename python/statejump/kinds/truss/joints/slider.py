@@ -198,6 +198,9 @@ class SliderType(AlongAxis[Slider, Sliders]):
     def contact_nodes(self, joints: Sliders) -> np.ndarray:
         return joints.nodes[:, :1]
 
+    def pushed_nodes(self, joints: Sliders) -> np.ndarray:
+        return joints.nodes
+
     def reach_m(self, path: Course, joints: Sliders) -> np.ndarray:
         # A floor ends where no pad gets to: twice as far as in the quasi-static model, and the pad itself.
         return joints.pad_radius_m + 2 * np.abs(path.states["slide_m"]).max(axis=0)
@@ -208,7 +211,7 @@ class SliderType(AlongAxis[Slider, Sliders]):
         stop = np.where(at_stop, physics.hertz_tangent_N_per_m(force, pad_hertz_stiffness(joints)), 0.0)
         pad = pads(joints)
         across = np.where(self.bodies_touch(joints), 0.0, pad.normal_N_per_m)
-        return joints.nodes, np.maximum(pad.tangential_N_per_m + stop, across)
+        return self.pushed_nodes(joints), np.maximum(pad.tangential_N_per_m + stop, across)
 
     def scene(self, path: Course, joints: Sliders) -> dict[str, Any]:
         def finite(values: np.ndarray) -> list[float | None]:
