@@ -41,26 +41,29 @@ constexpr std::size_t socket = 1;
 constexpr std::size_t ball_far = 2;    ///< Far end of the link that turns the ball.
 constexpr std::size_t socket_far = 3;  ///< Likewise the socket.
 
-/// What a ball joint remembers.
+/// What a ball joint remembers; with partial slip the contact's memory follows.
 struct BallMemory {
   Eigen::Vector3d offset;            ///< Ball minus socket [m].
   Eigen::Vector3d ball_direction;    ///< Ball link, ball minus far node; zero without [m].
   Eigen::Vector3d socket_direction;  ///< Socket link, likewise [m].
   Eigen::Vector3d friction;          ///< t [N].
+  Eigen::Vector3d axis;              ///< Across the normal, of the contact's memory; or zero.
   double ball_radius;                ///< At the contact [m].
   double socket_radius;              ///< Likewise.
   double normal_force;               ///< λ_n [N].
   double compliance;                 ///< 1/k_t [m/N]; 0: open.
 
-  static constexpr int size = 16;
+  static constexpr int size = 19;
   static BallMemory of(const double* from) {
     const auto vector = [from](int at) {
       return Eigen::Vector3d(from[at], from[at + 1], from[at + 2]);
     };
-    return {vector(0), vector(3), vector(6), vector(9), from[12], from[13], from[14], from[15]};
+    return {vector(0), vector(3), vector(6), vector(9), vector(12),
+            from[15],  from[16],  from[17],  from[18]};
   }
   void to(double* numbers) const {
-    for (const Eigen::Vector3d* part : {&offset, &ball_direction, &socket_direction, &friction}) {
+    for (const Eigen::Vector3d* part :
+         {&offset, &ball_direction, &socket_direction, &friction, &axis}) {
       numbers = std::copy(part->data(), part->data() + 3, numbers);
     }
     for (const double number : {ball_radius, socket_radius, normal_force, compliance}) {
@@ -170,12 +173,14 @@ template <class Number>
 struct BallSlide {
   Vector<Number> slide;  ///< σ [m].
   Vector<Number> kept;   ///< Friction of the start, carried along [N].
+  Vector<Number> axis;   ///< The memory's, likewise [-].
 };
 
 template <class Number>
 BallSlide<Number> ball_slide(const BallState<Number>& now, const BallMemory& start) {
   using std::sqrt;
-  BallSlide<Number> found{Vector<Number>::Zero(), Vector<Number>::Zero()};
+  BallSlide<Number> found{Vector<Number>::Zero(), Vector<Number>::Zero(),
+                          start.axis.cast<Number>()};
   if (start.offset.isZero(0.0) || value_of(now.distance) == 0.0) return found;
   const Vector<Number> before = start.offset.normalized().cast<Number>();
   const Vector<Number> sum = before + now.normal;
@@ -191,8 +196,12 @@ BallSlide<Number> ball_slide(const BallState<Number>& now, const BallMemory& sta
   const Number twist = 0.5 * (ball_turned + socket_turned).dot(middle);
   const Vector<Number> straight = orbits + carried<Number>(rolls, middle, now.normal);
   found.slide = spun<Number>(straight, now.normal, Number(0.5 * twist));
-  found.kept = spun<Number>(carried<Number>(start.friction.cast<Number>(), before, now.normal),
-                            now.normal, twist);
+  const auto keep = [&](const Eigen::Vector3d& tangential) {
+    return spun<Number>(carried<Number>(tangential.cast<Number>(), before, now.normal), now.normal,
+                        twist);
+  };
+  found.kept = keep(start.friction);
+  if (!start.axis.isZero(0.0)) found.axis = keep(start.axis);
   return found;
 }
 

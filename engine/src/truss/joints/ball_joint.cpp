@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "statejump/truss/joints/ball_joint.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "statejump/kernel/require.hpp"
-#include "statejump/truss/model.hpp"
-#include "truss/joints/ball_contact.hpp"
+#include "truss/joints/ball_rubbing.hpp"
 #include "truss/joints/writer.hpp"
 #include "truss/parts.hpp"
 
@@ -78,6 +75,7 @@ struct Response {
   std::array<Vector<Dual>, most_joint_nodes> force;
   Vector<Dual> row;  ///< Along the frame's axes.
   std::array<bool, 3> is_balance{false, false, false};
+  std::size_t piece = 0;
 };
 
 /// Adds the moment about the centre of a part, which its link carries as forces across its ends.
@@ -86,6 +84,21 @@ void add_moment(const Vector<Dual>& moment, const Vector<Dual>& direction, Vecto
   const Vector<Dual> across = moment.cross(direction) / direction.squaredNorm();
   at += across;
   far -= across;
+}
+
+kernel::PartialSlipMemory slip_memory(const double* history) {
+  return detail::read_partial_slip(history + BallMemory::size, 2);
+}
+
+/// The step of the law with partial slip. @param memory at its start; that at its end
+kernel::PartialSlipResponse rub(const BallJoint& joint, const Trial& trial, bool open,
+                                kernel::PartialSlipMemory& memory) {
+  const BallState<double> now = state_of(joint, trial);
+  const auto by = detail::ball_rub(now, BallMemory::of(trial.history));
+  const double stiffness =
+      open ? 0.0 : 1.0 / contact_of(joint).tangential_compliance(now.normal_force).value;
+  return kernel::partial_slip_step(stiffness, joint.friction_coefficient * now.normal_force,
+                                   {by.along_first, by.along_second}, memory);
 }
 
 /// How far bodies slide beyond what bends if they stuck, or how far friction is off its bound times
@@ -129,7 +142,18 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   const Dual depth =
       detail::chain(now.normal_force, contact_of(joint).depth(now.normal_force.value()));
   const Dual gap = now.distance - now.clearance - depth;
-  const Vector<Dual> row = now.normal * gap + tangential_row(joint, trial, now, status);
+  Vector<Dual> row = now.normal * gap;
+  if (joint.partial_slip && trial.model == JointModel::friction) {
+    // In metres: the slide of a spring with the stiffness of a contact that sticks.
+    const Dual compliance = detail::chain(
+        now.normal_force, contact_of(joint).tangential_compliance(now.normal_force.value()));
+    const detail::BallRubbed law = detail::ball_rubbed(joint, now, BallMemory::of(trial.history),
+                                                       compliance, slip_memory(trial.history));
+    made.piece = law.piece;
+    row += (law.friction - now.friction) * compliance;
+  } else {
+    row += tangential_row(joint, trial, now, status);
+  }
   for (int k = 0; k < 3; ++k) {
     made.row[k] = Vector3d(trial.frame.axes.col(k)).cast<Dual>().dot(row);
   }
@@ -152,99 +176,13 @@ Vector3d gradient(const Dual& of, std::size_t node) {
 
 }  // namespace
 
-std::span<const Parameter<BallJoint>> BallJoint::parameters() {
-  using B = BallJoint;
-  static const Parameter<B> table[] = {
-      {"ball_node", "ball node", "-", Allowed::node, "the case's nodes", &B::ball_node},
-      {"socket_node", "socket node", "-", Allowed::node, "the case's nodes", &B::socket_node},
-      {"ball_link", "ball link", "-", Allowed::link_or_none, "the case's links", &B::ball_link},
-      {"socket_link", "socket link", "-", Allowed::link_or_none, "the case's links",
-       &B::socket_link},
-      {"program", "program", "-", Allowed::program, "the case", &B::program},
-      {"temperature_fraction", "temperature_fraction", "-", Allowed::finite, "the case",
-       &B::temperature_fraction},
-      {"ball_radius_m", "ball_radius", "m", Allowed::positive, "the case", &B::ball_radius},
-      {"radial_clearance_m", "radial_clearance", "m", Allowed::positive, "the case",
-       &B::radial_clearance},
-      {"ball_thermal_expansion_per_K", "ball_thermal_expansion", "1/K", Allowed::finite, "the case",
-       &B::ball_thermal_expansion},
-      {"socket_thermal_expansion_per_K", "socket_thermal_expansion", "1/K", Allowed::finite,
-       "the case", &B::socket_thermal_expansion},
-      {"friction_coefficient", "friction_coefficient", "-", Allowed::not_negative, "the case",
-       &B::friction_coefficient},
-      {"hertz_stiffness_N_per_m15", "hertz_stiffness", "N/m^1.5", Allowed::positive,
-       "Hertz: 4/3 E* sqrt(R)", &B::hertz_stiffness},
-      {"mindlin_stiffness_N_per_m15", "mindlin_stiffness", "N/m^1.5", Allowed::positive,
-       "Mindlin: 8 G* sqrt(R)", &B::mindlin_stiffness},
-  };
-  return table;
-}
-
-std::span<const Output> BallJoint::outputs() {
-  // Ball minus socket centre; normal force; friction on the ball.
-  static const Output table[] = {
-      {"ball_eccentricity_m", 3}, {"ball_normal_force_N", 1}, {"ball_friction_force_N", 3}};
-  return table;
-}
-
-void BallJoint::validate(const Model& model) const {
-  const auto check = [this](bool holds, const char* field, double value, const char* range) {
-    if (!holds) throw kernel::OutOfRange("ball_joint '" + name + "'", field, value, range);
-  };
-  check(ball_node != socket_node, "socket node", socket_node, "another than the ball's");
-  const auto check_link = [&](int link, int node, const char* field) {
-    if (link == -1) return;
-    const Link& part = model.links[index(link)];
-    check(part.first == node || part.second == node, field, link,
-          "a link that ends at the joint's node");
-  };
-  check_link(ball_link, ball_node, "ball link");
-  check_link(socket_link, socket_node, "socket link");
-  const double growth = socket_thermal_expansion * (ball_radius + radial_clearance) -
-                        ball_thermal_expansion * ball_radius;
-  const double least =
-      radial_clearance + model.lowest_strain(program, growth * temperature_fraction);
-  check(least > 0, "clearance at the program's worst temperature", least, "> 0 m");
-}
-
 int BallJoint::history() const {
-  return BallMemory::size;
-}
-
-JointFrame BallJoint::frame(const Model& model) const {
-  JointFrame frame;
-  const auto far_end = [&](int link, int node) {
-    if (link < 0) return -1;
-    const Link& part = model.links[index(link)];
-    return part.first == node ? part.second : part.first;
-  };
-  frame.nodes = {ball_node, socket_node, far_end(ball_link, ball_node),
-                 far_end(socket_link, socket_node)};
-  frame.node_count = 4;
-  frame.forces = 3;
-  frame.program = program;
-  frame.temperature_fraction = temperature_fraction;
-  // Where supports leave no motion along some direction, it is one of the axes: pins have no row
-  // along it.
-  Matrix3d free = Matrix3d::Zero();
-  for (const int node : {ball_node, socket_node}) {
-    const Node& part = model.nodes[index(node)];
-    for (int k = 0; k < part.freedoms; ++k) {
-      free += part.free_directions.col(k) * part.free_directions.col(k).transpose();
-    }
-  }
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> modes(free);
-  if (modes.eigenvalues()[0] < 0.5) frame.axes = modes.eigenvectors();
-  if (frame.axes.determinant() < 0.0) frame.axes.col(0) *= -1.0;
-  for (int k = 0; k < 3; ++k) {
-    frame.holds[index(k)] = detail::moves_along(model.nodes[index(ball_node)], frame.axes.col(k)) ||
-                            detail::moves_along(model.nodes[index(socket_node)], frame.axes.col(k));
-  }
-  return frame;
+  return partial_slip ? BallMemory::size + detail::partial_slip_history(2) : BallMemory::size;
 }
 
 void BallJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const {
   const Response made = respond(*this, trial, status);
+  if (partial_slip) writer.piece(made.piece);
   for (int k = 0; k < 3; ++k) writer.carries(trial.force[index(k)]);
   for (std::size_t a = 0; a < most_joint_nodes; ++a) {
     const Vector<Dual>& force = made.force[a];
@@ -299,7 +237,7 @@ JointStatus BallJoint::decide(const Trial& trial, JointStatus status) const {
     return mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
   }
   if (now.normal_force < -trial.force_rounding) return JointStatus::open;
-  if (mu == 0.0) return status;
+  if (mu == 0.0 || partial_slip) return status;  // slips freely, or one row for stick and slip
   const double bound = mu * now.normal_force;
   if (status == JointStatus::stick) {
     return now.friction.norm() > bound + trial.force_rounding ? JointStatus::slip_plus : status;
@@ -312,31 +250,61 @@ JointStatus BallJoint::decide(const Trial& trial, JointStatus status) const {
 void BallJoint::begin(const Trial& trial, JointStatus status, double* now_) const {
   const BallState<double> now = state_of(*this, trial);
   const bool open = status == JointStatus::open;
+  const double compliance =
+      open ? 0.0 : contact_of(*this).tangential_compliance(now.normal_force).value;
   BallMemory{now.offset,
              now.ball_direction,
              now.socket_direction,
              open ? Vector3d::Zero() : now.friction,
+             partial_slip ? detail::any_across(now.normal) : Vector3d::Zero(),
              now.ball_radius,
              now.socket_radius,
              now.normal_force,
-             open ? 0.0 : contact_of(*this).tangential_compliance(now.normal_force).value}
+             compliance}
       .to(now_);
+  if (!partial_slip) return;
+  detail::write_partial_slip(
+      detail::pressed(open ? 0.0 : 1.0 / compliance, friction_coefficient * now.normal_force),
+      now_ + BallMemory::size, 2);
 }
 
 void BallJoint::commit(const Trial& trial, JointStatus status, double* after) const {
   begin(trial, status, after);
+  if (!partial_slip) return;
+  const bool open = status == JointStatus::open;
+  kernel::PartialSlipMemory memory = slip_memory(trial.history);
+  rub(*this, trial, open, memory);
+  detail::write_partial_slip(memory, after + BallMemory::size, 2);
+  if (open) return;
+  const BallState<double> now = state_of(*this, trial);
+  const Vector3d carried = detail::ball_slide(now, BallMemory::of(trial.history)).axis;
+  if (carried.isZero(0.0)) return;
+  BallMemory end = BallMemory::of(after);
+  // Rounding of many steps must not lead it out of the plane.
+  end.axis = (carried - now.normal * now.normal.dot(carried)).normalized();
+  end.to(after);
 }
 
 double BallJoint::slip(const Trial& trial, const double* after) const {
   if (BallMemory::of(after).compliance == 0.0) return 0.0;  // open
   const BallState<double> now = state_of(*this, trial);
-  const BallBend<double> bend = ball_bend(*this, now, BallMemory::of(trial.history));
+  const BallMemory start = BallMemory::of(trial.history);
+  const BallBend<double> bend = ball_bend(*this, now, start);
+  if (partial_slip) {
+    const BallMemory end = BallMemory::of(after);
+    return (bend.moved.slide + start.compliance * bend.moved.kept - end.compliance * now.friction)
+        .norm();
+  }
   return (bend.pull - bend.compliance * now.friction).norm();
 }
 
 double BallJoint::dissipation(const Trial& trial, const double* after_, double slip) const {
   const BallMemory start = BallMemory::of(trial.history);
   const BallMemory after = BallMemory::of(after_);
+  if (partial_slip) {
+    kernel::PartialSlipMemory memory = slip_memory(trial.history);
+    return rub(*this, trial, after.compliance == 0.0, memory).dissipation;
+  }
   const Vector3d kept = ball_slide(state_of(*this, trial), start).kept;
   return friction_coefficient * 0.5 * (start.normal_force + after.normal_force) * slip +
          detail::rim_slip(start.friction.squaredNorm(), start.compliance, kept.dot(after.friction),
@@ -345,8 +313,9 @@ double BallJoint::dissipation(const Trial& trial, const double* after_, double s
 
 double BallJoint::elastic_energy(const Trial& trial, const double* now_) const {
   const BallMemory now = BallMemory::of(now_);
-  return contact_of(*this).energy(state_of(*this, trial).normal_force) +
-         0.5 * now.compliance * now.friction.squaredNorm();
+  const double bent = partial_slip ? kernel::elastic_energy(slip_memory(now_))
+                                   : 0.5 * now.compliance * now.friction.squaredNorm();
+  return contact_of(*this).energy(state_of(*this, trial).normal_force) + bent;
 }
 
 void BallJoint::describe(const Trial& trial, double* outputs) const {
@@ -363,7 +332,19 @@ double BallJoint::slide_rounding(const Trial& trial, double length, double force
 
 bool BallJoint::remembers_when(JointStatus before, JointStatus after) const {
   if (friction_coefficient == 0.0) return false;
-  return before == JointStatus::open || (is_slip(before) && after == JointStatus::stick);
+  if (before == JointStatus::open) return true;
+  return !partial_slip && is_slip(before) && after == JointStatus::stick;
+}
+
+JointStatus BallJoint::settled(const Trial& trial, JointStatus status) const {
+  if (!partial_slip || status == JointStatus::open) return status;
+  const BallState<double> now = state_of(*this, trial);
+  const double compliance = contact_of(*this).tangential_compliance(now.normal_force).value;
+  const auto by = detail::ball_rub(now, BallMemory::of(trial.history));
+  const kernel::PartialSlipPlane law =
+      kernel::partial_slip_plane(1.0 / compliance, friction_coefficient * now.normal_force,
+                                 {by.along_first, by.along_second}, slip_memory(trial.history));
+  return detail::sliding(law, trial.before, trial.length_rounding);
 }
 
 Seat BallJoint::seat(const Trial& trial, double opened, double next, double rounding) const {

@@ -7,33 +7,40 @@
 #include <utility>
 #include <vector>
 
-#include "statejump/kernel/partial_slip_line.hpp"
+#include "statejump/kernel/partial_slip_plane.hpp"
 #include "statejump/truss/joints/interface.hpp"
 
 namespace statejump::truss::detail {
 
-/// How many numbers a joint keeps of a contact that slides in one direction: slope of the bound,
-/// force of merged points, number of points, and their x and U.
-constexpr int partial_slip_history = 3 + 2 * kernel::PartialSlipMemory::capacity;
+/// How many numbers a joint keeps of a contact that slides in one direction, or in two: slope of
+/// the bound, force of merged points, number of points, and their x and U.
+constexpr int partial_slip_history(int directions) {
+  return 3 + (1 + directions) * kernel::PartialSlipMemory::capacity;
+}
 
-inline kernel::PartialSlipMemory read_partial_slip(const double* numbers) {
+inline kernel::PartialSlipMemory read_partial_slip(const double* numbers, int directions = 1) {
   const auto count = static_cast<std::size_t>(numbers[2]);
   std::vector<kernel::Vector3> points;
   points.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    points.emplace_back(numbers[3 + 2 * i], numbers[4 + 2 * i], 0.0);
+  const double* from = numbers + 3;
+  for (std::size_t i = 0; i < count; ++i, from += 1 + directions) {
+    points.emplace_back(from[0], from[1], directions == 2 ? from[2] : 0.0);
   }
   return {std::move(points), numbers[0], numbers[1], {}};
 }
 
-inline void write_partial_slip(const kernel::PartialSlipMemory& memory, double* numbers) {
-  std::fill_n(numbers, partial_slip_history, 0.0);
+inline void write_partial_slip(const kernel::PartialSlipMemory& memory, double* numbers,
+                               int directions = 1) {
+  std::fill_n(numbers, partial_slip_history(directions), 0.0);
   numbers[0] = memory.slope();
   numbers[1] = memory.merged();
   numbers[2] = memory.size();
+  double* to = numbers + 3;
   for (int i = 0; i < memory.size(); ++i) {
-    numbers[3 + 2 * i] = memory[i].x;
-    numbers[4 + 2 * i] = memory[i].u.a;
+    const kernel::PartialSlipMemory::Point point = memory[i];
+    *to++ = point.x;
+    *to++ = point.u.a;
+    if (directions == 2) *to++ = point.u.b;
   }
 }
 
@@ -49,6 +56,10 @@ inline std::size_t piece_of(const kernel::PartialSlipLine& line) {
   return static_cast<std::size_t>(line.stuck + 1024 * (line.plus + 1024 * line.minus));
 }
 
+inline std::size_t piece_of(const kernel::PartialSlipPlane& plane) {
+  return static_cast<std::size_t>(plane.stuck + 1024 * plane.slips);
+}
+
 /// Whether a contact slides as a whole at the end of a step, and which way.
 /// @param before the same at its start: one that rests where it slid still does so
 /// @param rounding of the slide [m]
@@ -57,6 +68,13 @@ inline JointStatus sliding(const kernel::PartialSlipLine& line, JointStatus befo
   const JointStatus way = line.centre > 0.0 ? JointStatus::slip_plus : JointStatus::slip_minus;
   const double beyond = std::abs(line.centre) - line.bound;
   return beyond >= (before == way ? -rounding : rounding) ? way : JointStatus::stick;
+}
+/// Likewise in a plane, where a slip has no sense.
+inline JointStatus sliding(const kernel::PartialSlipPlane& plane, JointStatus before,
+                           double rounding) {
+  const double beyond = plane.centre.norm() - plane.bound;
+  return beyond >= (is_slip(before) ? -rounding : rounding) ? JointStatus::slip_plus
+                                                            : JointStatus::stick;
 }
 
 }  // namespace statejump::truss::detail

@@ -340,7 +340,7 @@ void ClearanceRevolute::validate(const Model& model) const {
 }
 
 int ClearanceRevolute::history() const {
-  return partial_slip ? Memory::size + detail::partial_slip_history : Memory::size;
+  return partial_slip ? Memory::size + detail::partial_slip_history(1) : Memory::size;
 }
 
 JointFrame ClearanceRevolute::frame(const Model& model) const {

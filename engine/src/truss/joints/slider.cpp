@@ -158,7 +158,7 @@ void Slider::validate(const Model&) const {
 }
 
 int Slider::history() const {
-  return partial_slip ? 1 + detail::partial_slip_history : 1;
+  return partial_slip ? 1 + detail::partial_slip_history(1) : 1;
 }
 
 JointFrame Slider::frame(const Model& model) const {

@@ -14,17 +14,20 @@ namespace statejump::truss {
 /// Holds the Jacobian of a truss against central differences of its residual, at z after a step
 /// from `before`, on each of the branches and as pins; and the residual's derivative by time, where
 /// nothing moves, likewise.
-/// @param steps of the unknowns: displacements [m] and forces [N]; so small that the residual is
+/// @param displacement_step, force_step of the unknowns [m], [N]; so small that the residual is
 /// nearly linear over them
+/// @param between a state on the way from `before`, where a step ends; empty: none
 inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
                             const Eigen::VectorXd& before, const std::vector<JointStatus>& branches,
-                            double displacement_step, double force_step) {
+                            double displacement_step, double force_step,
+                            const Eigen::VectorXd& between = {}) {
   const detail::System system(model);
   Assembly at = system.assembly();
   Assembly moved_to = system.assembly();
   for (const JointStatus status : branches) {
     const detail::Statuses statuses(model.joints.size(), status);
-    const detail::StepStart start = system.begin(before, 0.0, statuses, 1.0);
+    detail::StepStart start = system.begin(before, 0.0, statuses, 1.0);
+    if (between.size() > 0) start = system.commit(between, 0.15, statuses, start);
     for (const JointModel joints :
          {JointModel::pins, JointModel::frictionless, JointModel::friction}) {
       const auto residual = [&](const Eigen::VectorXd& where) {

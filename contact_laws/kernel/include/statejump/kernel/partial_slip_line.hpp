@@ -25,20 +25,56 @@ struct PartialSlipLine {
 
 namespace detail {
 
-/// Both ends of a piece over which everything is straight over x^2.
-struct LineKnot {
+/// An end of a piece over which everything is straight over x^2. U has one direction or two.
+template <class Displacement>
+struct SlipKnot {
   double x;
-  double trial;      ///< U if the ring sticks [m]
-  double bound;      ///< on |U| [m]
-  double share;      ///< of the slide that the ring takes part in
-  double by_growth;  ///< of that share by the edge of the contact [m/N]
+  Displacement trial;  ///< U if the ring sticks [m]
+  double bound;        ///< on |U| [m]
+  double share;        ///< of the slide that the ring takes part in
+  double by_growth;    ///< of that share by the edge of the contact [m/N]
 
-  LineKnot towards(const LineKnot& b, double s) const {
+  SlipKnot towards(const SlipKnot& b, double s) const {
     const auto mix = [s](double from, double to) { return from + s * (to - from); };
-    return {std::sqrt(mix(x * x, b.x * b.x)), mix(trial, b.trial), mix(bound, b.bound),
+    return {std::sqrt(mix(x * x, b.x * b.x)), trial + s * (b.trial - trial), mix(bound, b.bound),
             mix(share, b.share), mix(by_growth, b.by_growth)};
   }
 };
+using LineKnot = SlipKnot<double>;
+
+/// Leads a sum through the pieces of a step's end, from the centre to the edge.
+/// @param of the displacement of a point of the memory along the directions that are looked at
+/// @returns the knot at the centre
+template <class Displacement, class Of, class Sum>
+SlipKnot<Displacement> add_pieces(double edge, double slope, const Displacement& slide,
+                                  const PartialSlipMemory& memory, Of&& of, Sum& sum) {
+  using Knot = SlipKnot<Displacement>;
+  const double old_edge = memory.edge();
+  const auto knot = [&](double x, const Displacement& start, double share, double by_growth) {
+    return Knot{x, start + share * slide, slope * (edge - x) * (edge + x), share, by_growth};
+  };
+  const Knot centre = knot(0.0, memory.size() > 0 ? of(memory[0]) : Displacement{}, 1.0, 0.0);
+  Knot last = centre;
+  for (int i = 1; i < memory.size(); ++i) {
+    const Knot next = knot(memory[i].x, of(memory[i]), 1.0, 0.0);
+    if (next.x >= edge) {
+      const double share =
+          (edge - last.x) * (edge + last.x) / ((next.x - last.x) * (next.x + last.x));
+      Knot end = last.towards(next, share);
+      end.x = edge;
+      end.bound = 0.0;
+      sum.piece(last, end);
+      break;
+    }
+    sum.piece(last, next);
+    last = next;
+  }
+  if (edge > old_edge) {
+    const double grown = (edge - old_edge) * (edge + old_edge);
+    sum.piece(last, knot(edge, Displacement{}, 0.0, 2.0 * edge / grown));
+  }
+  return centre;
+}
 
 /// Adds up the pieces of a line.
 class LineSum {
@@ -127,35 +163,13 @@ inline PartialSlipLine partial_slip_line(double stiffness, double limit, double 
                                          const PartialSlipMemory& memory) {
   PartialSlipLine line;
   if (!(stiffness > 0.0 && limit > 0.0)) return line;
-  const double edge = stiffness;
-  const double slope = 1.5 * limit / (edge * edge * edge);
-  const double old_edge = memory.edge();
-  const auto knot = [&](double x, double start, double share, double by_growth) {
-    return detail::LineKnot{x, start + share * slide, slope * (edge - x) * (edge + x), share,
-                            by_growth};
-  };
-  detail::LineSum sum(edge, slope, slide);
-  detail::LineKnot last = knot(0.0, memory.size() > 0 ? memory[0].u.a : 0.0, 1.0, 0.0);
-  line.centre = last.trial;
-  line.bound = last.bound;
-  for (int i = 1; i < memory.size(); ++i) {
-    const detail::LineKnot next = knot(memory[i].x, memory[i].u.a, 1.0, 0.0);
-    if (next.x >= edge) {
-      const double share =
-          (edge - last.x) * (edge + last.x) / ((next.x - last.x) * (next.x + last.x));
-      detail::LineKnot end = last.towards(next, share);
-      end.x = edge;
-      end.bound = 0.0;
-      sum.piece(last, end);
-      break;
-    }
-    sum.piece(last, next);
-    last = next;
-  }
-  if (edge > old_edge) {
-    const double grown = (edge - old_edge) * (edge + old_edge);
-    sum.piece(last, knot(edge, 0.0, 0.0, 2.0 * edge / grown));
-  }
+  const double slope = 1.5 * limit / (stiffness * stiffness * stiffness);
+  detail::LineSum sum(stiffness, slope, slide);
+  const detail::LineKnot centre = detail::add_pieces(
+      stiffness, slope, slide, memory,
+      [](const PartialSlipMemory::Point& point) { return point.u.a; }, sum);
+  line.centre = centre.trial;
+  line.bound = centre.bound;
   sum.finish(line);
   return line;
 }

@@ -34,6 +34,12 @@ namespace statejump::truss {
 /// slip begins it is projected onto the cone (radial return [1]). All of it is of second order in
 /// the increment.
 ///
+/// With partial slip t is the force of kernel::partial_slip_plane() for the slide of the step, the
+/// stiffness k_t of the depth and the limit μ λ_n, along directions that are carried as friction
+/// is: one row for stick and slip. What is remembered is what kernel::partial_slip_step() leaves,
+/// whose chords differ from t by up to 1e-4 of the limit where the direction turns. A slip then
+/// says that the whole contact slides.
+///
 /// **Unknowns.** The force on the ball as a vector along fixed directions, λ_n n + t. Then no
 /// direction of the tangent plane is chosen anywhere, and pins, contact and open joint have the
 /// same unknowns.
@@ -52,6 +58,8 @@ struct BallJoint {
   double friction_coefficient = 0.0;    ///< μ, >= 0.
   double hertz_stiffness = 0.0;         ///< K of Hertz's F_N = K δ^1.5 [N/m^1.5], > 0.
   double mindlin_stiffness = 0.0;  ///< 8 G* √R of Mindlin's k_t = 8 G* √(R δ) [N/m^1.5], > 0.
+  /// 1: slides at the rim of its contact first. Needs friction.
+  int partial_slip = 0;
   int program = 0;
   double temperature_fraction = 1;
 
@@ -74,10 +82,10 @@ struct BallJoint {
   void describe(const Trial& trial, double* outputs) const;
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
-  JointStatus settled(const Trial&, JointStatus status) const { return status; }
+  JointStatus settled(const Trial& trial, JointStatus status) const;
   /// Contact problems have one direction of friction: as a contact it is held.
   std::optional<LocalContact> contact(const Trial&, JointStatus) const { return {}; }
-  bool slips_smoothly() const { return false; }
+  bool slips_smoothly() const { return partial_slip != 0; }
   double least_slide() const { return radial_clearance; }
   JointStatus rest() const {
     return friction_coefficient > 0.0 ? JointStatus::stick : JointStatus::slip_plus;

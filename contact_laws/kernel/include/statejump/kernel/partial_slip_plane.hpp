@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "statejump/kernel/partial_slip_line.hpp"
+
+namespace statejump::kernel {
+
+/// Force of a step of partial_slip_step() in the plane, with its derivatives: for implicit solvers,
+/// which ask for many ends of a step before they take one.
+struct PartialSlipPlane {
+  Tangent force{};           ///< of the contact, positive along the slide that causes it [N]
+  Tangent by_slide_a{};      ///< by the slide along the first tangent [N/m]; symmetric
+  Tangent by_slide_b{};      ///< by that along the second
+  Tangent by_stiffness{};    ///< by 8 G* a at a fixed limit [m]
+  Tangent by_limit{};        ///< by mu F_N at a fixed stiffness [-]
+  Tangent centre{};          ///< U of the innermost ring if it stuck [m]
+  double bound = 0.0;        ///< on its size: it is the last to slip [m]
+  int stuck = 0, slips = 0;  ///< pieces of rings: the law is smooth while they stay as many
+};
+
+namespace detail {
+
+using PlaneKnot = SlipKnot<Tangent>;
+
+/// Adds up the pieces in a plane.
+class PlaneSum {
+ public:
+  PlaneSum(double edge, double slope, const Tangent& slide)
+      : edge_(edge), slope_(slope), slide_(slide), smallest_(1e-15 * slope * edge * edge) {}
+
+  void piece(const PlaneKnot& a, const PlaneKnot& b) {
+    if (!(b.x > a.x)) return;
+    if (sticks(a) && sticks(b)) {
+      stick(a, b);
+      return;
+    }
+    // Where |U| meets its bound: q0 + 2 q1 s + q2 s^2 = 0 on the way from a to b.
+    const Tangent way = b.trial - a.trial;
+    const double fall = b.bound - a.bound;
+    const double q0 = a.trial.squared() - a.bound * a.bound;
+    const double q1 = a.trial.dot(way) - a.bound * fall;
+    const double q2 = way.squared() - fall * fall;
+    const double root = std::sqrt(std::max(0.0, q1 * q1 - q0 * q2));
+    const double far = -(q1 + std::copysign(root, q1));
+    std::array<double, 4> cut{0.0, 1.0, 1.0, 1.0};
+    std::size_t cuts = 1;
+    for (const double s : {far / q2, q0 / far}) {
+      if (s > 0.0 && s < 1.0) cut[cuts++] = s;
+    }
+    std::sort(cut.begin(), cut.end());
+    for (std::size_t i = 0; i < cuts; ++i) {
+      const PlaneKnot from = a.towards(b, cut[i]);
+      const PlaneKnot to = a.towards(b, cut[i + 1]);
+      if (!(to.x > from.x)) continue;
+      if (sticks(a.towards(b, 0.5 * (cut[i] + cut[i + 1])))) {
+        stick(from, to);
+      } else {
+        slip(from, to);
+      }
+    }
+  }
+
+  void finish(PartialSlipPlane& plane) const {
+    plane.force = force_;
+    plane.by_slide_a = {by_slide_[0], by_slide_[1]};
+    plane.by_slide_b = {by_slide_[1], by_slide_[2]};
+    plane.by_limit = 1.5 / (edge_ * edge_ * edge_) * by_slope_;
+    plane.by_stiffness = by_edge_ - (3.0 * slope_ / edge_) * by_slope_;
+    plane.stuck = stuck_;
+    plane.slips = slips_;
+  }
+
+ private:
+  bool sticks(const PlaneKnot& k) const {
+    const double outer = k.bound + smallest_;
+    return k.trial.squared() <= outer * outer;
+  }
+
+  void stick(const PlaneKnot& a, const PlaneKnot& b) {
+    ++stuck_;
+    const Piece w(a.x, b.x);
+    const double at_a = w.both_at_a + w.one_each;
+    const double at_b = w.both_at_b + w.one_each;
+    force_ = force_ + at_a * a.trial + at_b * b.trial;
+    const double share = at_a * a.share + at_b * b.share;
+    by_slide_[0] += share;
+    by_slide_[2] += share;
+    by_edge_ = by_edge_ + (at_a * a.by_growth + at_b * b.by_growth) * slide_;
+  }
+
+  /// A ring ends at bound U/|U|, which is straight along U alone. Gauss' points in each of `parts`
+  /// make of it a function without steps, exact where the direction does not turn.
+  void slip(const PlaneKnot& a, const PlaneKnot& b) {
+    constexpr int parts = 4;
+    ++slips_;
+    const double width = (b.x - a.x) / parts;
+    for (int part = 0; part < parts; ++part) {
+      for (std::size_t g = 0; g < 3; ++g) {
+        const double moved = (part + gauss_point[g]) * width;
+        const double s = moved * (2.0 * a.x + moved) / ((b.x - a.x) * (b.x + a.x));
+        ring(a.towards(b, s), gauss_weight[g] * width);
+      }
+    }
+  }
+
+  void ring(const PlaneKnot& k, double weight) {
+    const double size = k.trial.norm();
+    const Tangent way = (1.0 / size) * k.trial;
+    force_ = force_ + (weight * k.bound) * way;
+    by_slope_ = by_slope_ + (weight * k.bound / slope_) * way;
+    by_edge_ = by_edge_ + (weight * slope_ * 2.0 * edge_) * way;
+    // Across itself U is only turned.
+    const double turns = weight * k.bound / size;
+    const Tangent across{-way.b, way.a};
+    by_slide_[0] += turns * k.share * across.a * across.a;
+    by_slide_[1] += turns * k.share * across.a * across.b;
+    by_slide_[2] += turns * k.share * across.b * across.b;
+    by_edge_ = by_edge_ + (turns * k.by_growth * slide_.dot(across)) * across;
+  }
+
+  double edge_, slope_;
+  Tangent slide_;
+  double smallest_;
+  Tangent force_{}, by_slope_{}, by_edge_{};
+  std::array<double, 3> by_slide_{};  // aa, ab, bb
+  int stuck_ = 0, slips_ = 0;
+};
+
+}  // namespace detail
+
+/// Force and derivatives at the end of a step in the plane; see partial_slip_step(), from whose
+/// force it differs by what that approximates: pieces that slip while their direction turns are
+/// chords there (1e-4 of the limit), so that its force has steps of that size, and integrals here.
+/// Along one direction it is partial_slip_line().
+/// @param stiffness, limit, memory as there
+/// @param slide of body 1 against body 2 in the step [m]
+inline PartialSlipPlane partial_slip_plane(double stiffness, double limit, const Tangent& slide,
+                                           const PartialSlipMemory& memory) {
+  PartialSlipPlane plane;
+  if (!(stiffness > 0.0 && limit > 0.0)) return plane;
+  const double slope = 1.5 * limit / (stiffness * stiffness * stiffness);
+  detail::PlaneSum sum(stiffness, slope, slide);
+  const detail::PlaneKnot centre = detail::add_pieces(
+      stiffness, slope, slide, memory,
+      [](const PartialSlipMemory::Point& point) { return point.u; }, sum);
+  plane.centre = centre.trial;
+  plane.bound = centre.bound;
+  sum.finish(plane);
+  return plane;
+}
+
+}  // namespace statejump::kernel
