@@ -101,12 +101,10 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
                              "truss a revolute does the same", **self.where(item.name))
 
     def check_geometry(self, truss: ResolvedTruss, joints: BallJoints, ranges_K: np.ndarray) -> None:
-        for index in np.flatnonzero((truss.sticking != "elastic") & (joints.friction_coefficient > 0))[:1]:
-            why = ("a contact that sticks rigidly does not say along which direction of its plane it begins to slide"
-                   if truss.sticking == "rigid" else
-                   "partial slip is known to the solver along one direction, a ball slides along two")
+        for index in np.flatnonzero((truss.sticking == "rigid") & (joints.friction_coefficient > 0))[:1]:
             raise NotAllowed("reduced.sticking", truss.sticking,
-                             f'must be "elastic" with ball joints that have friction: {why}',
+                             'must be "elastic" or "partial_slip" with ball joints that have friction: a contact that '
+                             "sticks rigidly does not say along which direction of its plane it begins to slide",
                              **self.where(joints.names[index]))
         self.check_parts(truss, joints, ranges_K, np.linalg.norm(self.offset_m(truss, joints), axis=1))
 
@@ -114,6 +112,7 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
         return {
             "hertz_stiffness_N_per_m15": self.hertz_stiffness(joints),
             "mindlin_stiffness_N_per_m15": self.mindlin_stiffness(joints),
+            "partial_slip": (truss.sticking == "partial_slip") & (joints.friction_coefficient > 0),
         }
 
     def contacts(self, run: Sampled, joints: BallJoints) -> Contacts:
