@@ -8,10 +8,12 @@ import subprocess
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from conftest import COMMAND
 from statejump import kinds, read
+from statejump.core.samples import names_line, rows_of
 
 E_LINE, NU = "young_modulus_Pa = 70e9\nstress", "friction_coefficient = 0.3"
 
@@ -122,9 +124,9 @@ def test_failed_run(statejump, cases: Path, fake_yade, tmp_path: Path, failure: 
 def test_interrupt_keeps_the_samples_so_far(cases: Path, fake_yade, tmp_path: Path) -> None:
     # the columns that yade_scripts/runner/scene_spring_slider.py writes
     names = [name for name in kinds.kind("spring_slider").COLUMNS if name != "stage"]
-    rows = [",".join([time] + ["0.0"] * (len(names) - 1)) for time in ("0.0", "1.0", "2.0")]
-    lines = "\\n".join([",".join(names), *rows])[:-2]
-    yade = fake_yade(f'printf "{lines}" > "$STATEJUMP_OUTPUT.partial"\n{HALF}sleep 30\n')
+    columns = [np.arange(3.0), *[np.zeros(3)] * (len(names) - 1)]
+    (tmp_path / "cut").write_bytes((names_line(names) + rows_of(columns))[:-2])
+    yade = fake_yade(f'cp {tmp_path}/cut "$STATEJUMP_OUTPUT.partial"\n{HALF}sleep 30\n')
     process = subprocess.Popen(
         [COMMAND, "dem", str(cases / "table1.toml")], cwd=tmp_path, stderr=subprocess.PIPE,
         stdout=subprocess.PIPE, text=True, env={**os.environ, "STATEJUMP_YADE": yade, "PYTHONUNBUFFERED": "1"},
@@ -139,7 +141,7 @@ def test_interrupt_keeps_the_samples_so_far(cases: Path, fake_yade, tmp_path: Pa
     assert errors == "interrupted; the 2 samples so far are in results/table1/dem.interrupted.h5\n"
     # the row that was cut in the middle is not kept
     table = (folder / "dem_history.interrupted.csv").read_text().splitlines()
-    assert table == [",".join(names), *rows[:2]]
+    assert table == [",".join(names), *(",".join([time_s] + ["0.0"] * (len(names) - 1)) for time_s in ("0.0", "1.0"))]
     kept = read(folder / "dem.interrupted.h5")
     assert not kept.complete and kept.models["dem"].time_s.tolist() == [0.0, 1.0]
     assert sorted(entry.name for entry in folder.iterdir()) == ["dem.interrupted.h5", "dem_history.interrupted.csv"]

@@ -114,13 +114,14 @@ def test_damaged_files_never_end_in_another_error(cases: Path) -> None:
 
 
 DONE = "echo 'STATEJUMP {\"progress\": 1.0}'\n"
-HEADER = "time_s,displacement_m\\n"
+NAMES = """printf '["time_s", "displacement_m"]\\n'; head -c"""  # so many bytes of zeros behind it
 ODD_YADES = {
     "no history": DONE,
     "an empty history": f'touch "$STATEJUMP_OUTPUT"\n{DONE}',
-    "a row cut short": f'printf "{HEADER}0,0\\n1" > "$STATEJUMP_OUTPUT"\n{DONE}',
-    "a word for a number": f'printf "{HEADER}0,zero\\n" > "$STATEJUMP_OUTPUT"\n{DONE}',
-    "no summary": f'printf "{HEADER}0,0\\n" > "$STATEJUMP_OUTPUT"\n{DONE}',
+    "a row cut short": f'({NAMES} 24 /dev/zero) > "$STATEJUMP_OUTPUT"\n{DONE}',
+    "text": f'echo "time_s,displacement_m" > "$STATEJUMP_OUTPUT"\n{DONE}',
+    "numbers for names": f'echo "[1, 2]" > "$STATEJUMP_OUTPUT"\n{DONE}',
+    "no summary": f'({NAMES} 16 /dev/zero) > "$STATEJUMP_OUTPUT"\n{DONE}',
     "progress without a number": "echo STATEJUMP soon\nexit 4\n",
 }
 
@@ -157,7 +158,7 @@ def test_signal_ends_yade_and_its_children(
     cases: Path, fake_yade, tmp_path: Path, command: str, number: int, status: int, share: str
 ) -> None:
     yade = fake_yade(
-        'printf "time_s,displacement_m\\n0,0\\n" > "$STATEJUMP_OUTPUT.partial"\n'
+        f'({NAMES} 16 /dev/zero) > "$STATEJUMP_OUTPUT.partial"\n'
         f'sleep 60 &\necho "$$ $!" > {tmp_path}/pids\n' "echo 'STATEJUMP {\"progress\": 0.5}'\nwait\n"
     )
     scratch = tmp_path / "scratch"

@@ -97,13 +97,13 @@ class Campaign:
         """Return a command that stands for YADE: it gives the histories of the reduced model for those of the DEM, for
         what is tested are the files."""
         script = self.canned / "yade"
-        script.write_text(f'#!/bin/sh\ncp {self.canned}/history.csv "$STATEJUMP_OUTPUT"\n'
+        script.write_text(f'#!/bin/sh\ncp {self.canned}/dem.samples "$STATEJUMP_OUTPUT"\n'
                           'echo "{}" > "$STATEJUMP_OUTPUT.json"\necho \'STATEJUMP {"progress": 1.0}\'\n')
         script.chmod(0o755)
         import numpy as np
 
         from statejump import load
-        from statejump.core.tables import write_columns
+        from statejump.core.samples import names_line, rows_of
 
         run = load(REPOSITORY / "cases" / "table1.toml").reduced()
         columns = run.flat()
@@ -111,8 +111,9 @@ class Campaign:
         zero = np.zeros(len(run))
         columns.update(slipping=np.isin(stage, ("S2", "S5")).astype(float),
                        stop_contact=(np.abs(columns["displacement_m"]) > 1e-3 - 1e-12).astype(float))
-        write_columns({**dict.fromkeys(("contact_energy_J", "kinetic_energy_J", "damping_dissipation_J",
-                                        "external_work_J"), zero), **columns}, self.canned / "history.csv")
+        columns = {**dict.fromkeys(("contact_energy_J", "kinetic_energy_J", "damping_dissipation_J",
+                                    "external_work_J"), zero), **columns}
+        (self.canned / "dem.samples").write_bytes(names_line(columns) + rows_of(list(columns.values())))
         return script
 
     def prepared(self, subject: Subject, old: bool) -> Path:

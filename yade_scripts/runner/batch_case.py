@@ -17,6 +17,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
 from statejump.campaign.yade_batch import BatchSample
 from statejump.core.errors import StatejumpError
+from statejump.core.samples import read_samples
+from statejump.core.tables import write_columns
 from yade import utils
 
 utils.readParamsFromTable(unknownOk=True, noTableOk=False)
@@ -29,13 +31,14 @@ except StatejumpError as problem:
     print(f"ERROR {problem}", flush=True)
     os._exit(2)
 history = table_file.with_name(f"{table_file.name}.sample_{sample.index}.csv")
-values = history.with_suffix(".case.json")
+values, samples = history.with_suffix(".case.json"), history.with_suffix(".samples")
 values.write_text(json.dumps(sample.dem_values()))
-os.environ["STATEJUMP_CASE_JSON"], os.environ["STATEJUMP_OUTPUT"] = str(values), str(history)
+os.environ["STATEJUMP_CASE_JSON"], os.environ["STATEJUMP_OUTPUT"] = str(values), str(samples)
 # The same script that statejump starts; it needs the namespace of the main script.
 runner = Path(sys.argv[0]).resolve().with_name("run_case.py")
 exec(compile(runner.read_text(), str(runner), "exec"), globals())
 values.unlink()
+write_columns(read_samples(samples), history)
 history.with_suffix(".outcomes.json").write_text(
-    json.dumps({"sample": sample.index, **sample.outcomes(history)}, indent=2) + "\n"
+    json.dumps({"sample": sample.index, **sample.outcomes(samples)}, indent=2) + "\n"
 )

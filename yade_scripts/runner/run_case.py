@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs one case in YADE and writes its history; started by ``statejump dem CASE``.
 
-    STATEJUMP_CASE_JSON=case.json STATEJUMP_OUTPUT=history.csv yade -n -x yade_scripts/runner/run_case.py
+    STATEJUMP_CASE_JSON=case.json STATEJUMP_OUTPUT=dem.samples yade -n -x yade_scripts/runner/run_case.py
 
-The resolved case comes as JSON. Samples go to ``<output>.partial``, block by block; at the end
-the file is renamed. What the caller is told stands on lines of standard output that begin with ``STATEJUMP``:
-``{"progress": share}``, or ``{"failure": {...}}`` by the names of a failure's fields.
+The resolved case comes as JSON. Samples, see ``statejump.core.samples``, go to ``<output>.partial``, block by block;
+at the end the file is renamed. What the caller is told stands on lines of standard output that begin with
+``STATEJUMP``: ``{"progress": share}``, or ``{"failure": {...}}`` by the names of a failure's fields.
 """
-import csv
 import json
 import os
 import sys
@@ -18,10 +17,10 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
 sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
-import numpy as np
 import statejump_yade as sj
 from failures import described
 from states import Recorder
+from statejump.core.samples import names_line, rows_of
 
 # Samples are worked up in blocks, after so long or when they take so much memory.
 SECONDS_OF_A_BLOCK, BYTES_OF_A_BLOCK = 0.1, 2**25
@@ -74,7 +73,7 @@ class Block:
         except Exception as error:
             self.refused = error
             raise
-        self._write(np.column_stack(columns).tolist())
+        self._write(rows_of(columns))
 
 
 def run(case, output):
@@ -86,13 +85,12 @@ def run(case, output):
     if every == 0 or rest != 0:
         raise ValueError(f"dem.number_of_steps = {steps} is not a multiple of the samples")
     partial = output.with_name(output.name + ".partial")
-    with partial.open("w", newline="") as stream:
-        writer = csv.writer(stream)
+    with partial.open("wb") as stream:
         columns = getattr(kind, "columns", None)  # of a kind whose items differ from case to case
-        writer.writerow(columns(case) if columns else kind.COLUMNS)
+        stream.write(names_line(columns(case) if columns else kind.COLUMNS))
 
         def write(rows):
-            writer.writerows(rows)
+            stream.write(rows)
             stream.flush()
 
         recorder = Recorder(every)

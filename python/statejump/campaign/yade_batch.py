@@ -11,7 +11,7 @@ from statejump.campaign.campaign_file import load_campaign
 from statejump.campaign.plan import MONTECARLO, Plan
 from statejump.core.errors import NotAllowed
 from statejump.core.output import write_atomically
-from statejump.core.tables import read_columns
+from statejump.core.samples import read_samples
 from statejump.kinds.loading import parse_case
 from statejump.schema.paths import filled
 
@@ -54,10 +54,10 @@ class BatchSample:
         """Return what the scene needs."""
         return self.case.behaviour.dem_values(self.case)
 
-    def outcomes(self, history: Path) -> dict[str, float]:
-        """Return the outcomes of a run that left its history, and what it says of itself beside it."""
-        about = json.loads(history.with_name(history.name + ".json").read_text(encoding="utf-8"))
+    def outcomes(self, samples: Path) -> dict[str, float]:
+        """Return the outcomes of a run that left its samples, and what it says of itself beside them."""
+        about = json.loads(samples.with_name(samples.name + ".json").read_text(encoding="utf-8"))
         behaviour, case = self.case.behaviour, self.case
-        run = behaviour.ability("dem_run", case)(case, read_columns(history), about)
+        run = behaviour.ability("dem_run", case)(case, read_samples(samples), about)
         found: dict[str, float] = behaviour.ability("outcomes", case)(case, run)
         return found

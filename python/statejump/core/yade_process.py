@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A case in YADE: a process of its own, its progress, what it leaves, what goes wrong with it.
 
-The script in YADE writes samples as CSV and says everything else in lines of JSON that begin with ``MARK``: the
-finished share, or a failure by the names of :class:`~statejump.core.errors.StatejumpError`.
+The script in YADE writes :mod:`~statejump.core.samples` and says everything else in lines of JSON that begin with
+``MARK``: the finished share, or a failure by the names of :class:`~statejump.core.errors.StatejumpError`.
 """
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from statejump.core.case import Case
 from statejump.core.errors import FailedRun, Interrupted, StatejumpError
 from statejump.core.progress import Tell
 from statejump.core.run import Run
-from statejump.core.tables import read_columns
+from statejump.core.samples import read_samples
 from statejump.schema.fields import choice
 
 MARK = "STATEJUMP "
@@ -107,7 +107,7 @@ def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
     name, threads = values["case"]["name"], values["dem"]["threads"]
     command = [find_yade(), "-n", "-x", f"-j{threads}", str(_paths.YADE_SCRIPTS / "runner" / "run_case.py")]
     with scratch() as folder:
-        input_file, output = folder / "case.json", folder / "dem_history.csv"
+        input_file, output = folder / "case.json", folder / "dem.samples"
         input_file.write_text(json.dumps(values), encoding="utf-8")
         modules = str(Path(__file__).resolve().parents[2])
         environment = dict(
@@ -129,7 +129,7 @@ def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
             raise failure.located(case=name) from None
         try:
             about = json.loads(output.with_name(output.name + ".json").read_text(encoding="utf-8"))
-            return Samples(read_columns(output), about)
+            return Samples(read_samples(output), about)
         except (OSError, ValueError, IndexError, StatejumpError) as error:
             raise FailedRun("the DEM run left no complete result", case=name, cause=str(error)) from None
 
@@ -210,10 +210,7 @@ class RunFailed(FailedRun):
 
 def _interrupted(output: Path) -> Interrupted:
     partial = output.with_name(output.name + ".partial")
-    lines = partial.read_text(encoding="utf-8").splitlines(keepends=True) if partial.exists() else []
-    if lines and not lines[-1].endswith("\n"):
-        lines.pop()  # a row cut in the middle
-    if len(lines) < 2:
+    try:
+        return Interrupted(run=Samples(read_samples(partial, whole=False), {}))
+    except (OSError, ValueError, StatejumpError):
         return Interrupted("interrupted before the first sample; nothing was written")
-    partial.write_text("".join(lines), encoding="utf-8")
-    return Interrupted(run=Samples(read_columns(partial), {}))
