@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from conftest import Outcome
+from test_truss_iwan import bolted
 
 import statejump as sj
 from statejump.core.errors import Interrupted, StatejumpError
@@ -24,6 +25,7 @@ from statejump.kinds.truss.answers.outputs import chosen_output
 from statejump.kinds.truss.answers.sensitivity import sensitivities
 from statejump.kinds.truss.answers.verdict import Verdict, judged, others, verdict
 from statejump.kinds.truss.generate import GENERATORS
+from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
@@ -84,6 +86,18 @@ def test_friction_forces_give_the_jump_back(mast: TrussPath) -> None:
     assert shares.reproduced == pytest.approx(shares.jump, rel=1e-6)
     # Third order in the turning of links by 1e-3 and of contacts by 0.1.
     assert shares.sum_error < 0.01
+
+
+@pytest.mark.parametrize("name", ["ball_tripod", "latch_boom", "latch_lever", "telescope", "bolted"])
+def test_friction_of_every_type_of_joint_gives_the_jump_back(name: str) -> None:
+    """The truss without friction, under what stands for it, is where the path ended: forces, moments, signs."""
+    case = sj.load(bolted()) if name == "bolted" else sj.load(f"trusses/{name}")
+    path = quick_path(case.definition.resolve())
+    shares = contributions(path, chosen_output(path, "node"))
+    assert shares.names == tuple(name for joint in JOINTS for name in path.truss.joints[joint.section].names)
+    assert abs(shares.jump) > 1e-9
+    # Equilibria are found to 1e-12 of their forces, displacements to the rounding of lengths of a metre.
+    assert shares.reproduced == pytest.approx(shares.jump, rel=1e-8) and shares.sum_error < 1e-8
 
 
 def test_not_differentiable_is_said() -> None:

@@ -24,9 +24,9 @@ from statejump.kinds.truss import fe_sliding
 from statejump.kinds.truss.case import TrussCase, TrussThermal
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.joints.along_axis import AlongAxis, Axes
+from statejump.kinds.truss.joints.along_axis import AlongAxis
 from statejump.kinds.truss.joints.round_parts import RoundParts
-from statejump.kinds.truss.joints.slider import SLIDER
+from statejump.kinds.truss.joints.slider import SLIDER, with_sliders
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import whole_path
 
@@ -115,7 +115,7 @@ def _pinned(truss: ResolvedTruss) -> ResolvedTruss:
     for joint in JOINTS:
         if not isinstance(joint, AlongAxis) or joint is SLIDER:
             continue
-        truss, joints = _with_sliders(truss, truss.joints[joint.section]), truss.joints[joint.section]
+        truss, joints = with_sliders(truss, truss.joints[joint.section]), truss.joints[joint.section]
         none[joint.section] = _no(joints)
     for joint in JOINTS:
         if not isinstance(joint, RoundParts):
@@ -142,17 +142,6 @@ def _pinned(truss: ResolvedTruss) -> ResolvedTruss:
 def _no(joints: Any) -> Any:
     """Return joints of the same type, none of them."""
     return type(joints)(**{key: value[:0] for key, value in vars(joints).items()})
-
-
-def _with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
-    """Return the truss with locked sliders more, along the axes of joints."""
-    sliders, count = truss.sliders, len(joints.names)
-    unknown, no_stop = np.full(count, np.nan), np.full(count, np.inf)
-    more = {**dict.fromkeys(vars(sliders), unknown), "nodes": joints.nodes, "axis": joints.axis,
-            "clearance_minus_m": no_stop, "clearance_plus_m": no_stop}
-    both: dict[str, Any] = {key: np.concatenate([value, more[key]]) for key, value in vars(sliders).items()
-                            if key != "names"}
-    return truss.with_joints(slider=type(sliders)(names=sliders.names + joints.names, **both))
 
 
 def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:

@@ -2,17 +2,17 @@
 """Which joints hold the jump of a truss: the effect of their friction forces on the truss without friction."""
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from statejump.core.progress import Tell
 from statejump.kinds.truss.answers.outputs import Output
-from statejump.kinds.truss.arrays import GROUND
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.friction_loads import Loads
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, whole_path
-
-STOPS = (3, 4)  # statuses of a slider at a stop, as the engine numbers them
 
 
 @dataclass(frozen=True)
@@ -37,62 +37,27 @@ class Contributions:
         return np.argsort(-np.abs(self.contribution), kind="stable")
 
 
-def _turning(force: np.ndarray, truss: ResolvedTruss, places: np.ndarray, link: int, moment: np.ndarray) -> None:
-    """Add a moment on a link as a pair of forces on its nodes."""
-    if link == GROUND:
-        return
-    one, two = truss.links.nodes[link]
-    along = places[two] - places[one]
-    pair = np.cross(moment, along) / (along @ along)
-    force[two] += pair
-    force[one] -= pair
-
-
-def friction_loads(truss: ResolvedTruss, state: dict[str, np.ndarray], index: int) -> np.ndarray:
-    """Return the nodal forces [N] (joints, nodes, 3) that stand for the friction of each joint in a state:
-    sliders, then revolutes; a revolute's with the moments on its links. A slider at a stop has none: what
-    of its force is friction is not known."""
-    sliders, revolutes = truss.sliders, truss.revolutes
-    places = truss.nodes.position_m + state["displacement_m"][index]
-    loads = np.zeros((len(sliders.names) + len(revolutes.names), len(truss.nodes.names), 3))
-    for joint, ((one, two), axis) in enumerate(zip(sliders.nodes, sliders.axis)):
-        if state["slider_status"][index, joint] in STOPS:
-            continue
-        along = state["slider_force_N"][index, joint] * axis
-        loads[joint, one] -= along
-        if two != GROUND:
-            loads[joint, two] += along
-    # The radii meet in the middle of the depth; at the ends of cycles ΔT = 0.
-    for joint in range(len(revolutes.names)):
-        load = loads[len(sliders.names) + joint]
-        centre = state["eccentricity_m"][index, joint]
-        distance = float(np.linalg.norm(centre))
-        friction = state["friction_force_N"][index, joint]
-        if friction == 0 or distance == 0:
-            continue
-        normal, axis = centre / distance, revolutes.axis[joint]
-        tangent = np.cross(axis, normal)
-        depth = max(distance - revolutes.radial_clearance_m[joint], 0.0)
-        radius = revolutes.journal_radius_m[joint] - depth / 2
-        load[revolutes.journal_node[joint]] -= friction * tangent
-        load[revolutes.bearing_node[joint]] += friction * tangent
-        _turning(load, truss, places, revolutes.journal_link[joint], -friction * radius * axis)
-        _turning(load, truss, places, revolutes.bearing_link[joint], friction * (radius + distance) * axis)
-    return loads
+def friction_loads(truss: ResolvedTruss, states: Mapping[str, np.ndarray], index: int) -> np.ndarray:
+    """Return the nodal forces [N] (joints, nodes, 3) that stand for the friction of each joint in a state, type by
+    type. Joints whose friction is not known have none."""
+    state = {name: values[index] for name, values in states.items()}
+    place = truss.nodes.position_m + state["displacement_m"]
+    found = []
+    for joint in JOINTS:
+        joints = truss.joints[joint.section]
+        loads = Loads(truss, np.zeros((len(joints.names), *place.shape)), place)
+        joint.add_friction(loads, joints, state)
+        found.append(loads.force_N)
+    return np.concatenate(found)
 
 
 def without_friction(truss: ResolvedTruss) -> ResolvedTruss:
     """Return the truss with frictionless joints that stays at ΔT = 0."""
-    return replace(
-        truss,
-        links=replace(truss.links, temperature_fraction=0 * truss.links.temperature_fraction),
-        # Nothing follows them any more, but all have to last equally long.
-        programs=len(truss.programs) * (truss.programs[0].repeated(1),),
-    ).with_joints(
-        slider=replace(truss.sliders, friction_coefficient=0 * truss.sliders.friction_coefficient),
-        revolute=replace(truss.revolutes, friction_coefficient=0 * truss.revolutes.friction_coefficient,
-                         temperature_fraction=0 * truss.revolutes.temperature_fraction),
-    )
+    for joint in JOINTS:
+        truss = joint.without_friction(truss)
+    # Nothing follows programs any more, but all have to last equally long.
+    return replace(truss, links=replace(truss.links, temperature_fraction=0 * truss.links.temperature_fraction),
+                   programs=len(truss.programs) * (truss.programs[0].repeated(1),))
 
 
 def contributions(
@@ -125,9 +90,11 @@ def contributions(
             alone = value(start.sum(axis=0) + change) - first
             shares[joint] = 0.5 * (alone + last - value(end.sum(axis=0) - change))
         tell((joint + 1) / len(start))
-    names = (*truss.sliders.names, *truss.revolutes.names)
-    kinds = ("slider",) * len(truss.sliders.names) + ("revolute",) * len(truss.revolutes.names)
-    stopped = np.isin(ends["slider_status"][[0, -1]], STOPS).any(axis=0)
-    notes = [f"slider {truss.sliders.names[index]} rests at a stop: what of its force is friction is not known"
-             for index in np.flatnonzero(stopped)]
+    joints = [(joint, truss.joints[joint.section]) for joint in JOINTS]
+    names = tuple(name for _, own in joints for name in own.names)
+    kinds = tuple(joint.section for joint, own in joints for _ in own.names)
+    states = [{name: values[index] for name, values in ends.items()} for index in (0, -1)]
+    notes = [f"{joint.section} {own.names[index]} rests at a stop: what of its force is friction is not known"
+             for joint, own in joints
+             for index in sorted({index for state in states for index in joint.unknown_friction(own, state)})]
     return Contributions(names, kinds, shares, output.jump(found), last - first, tuple(notes))

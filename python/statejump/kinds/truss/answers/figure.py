@@ -19,6 +19,7 @@ from statejump.core.figures import Constrained, Drawing, panels, style
 from statejump.kinds.truss.answers.contributions import Contributions
 from statejump.kinds.truss.answers.jumps import node_jumps
 from statejump.kinds.truss.answers.outputs import Output
+from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
@@ -47,8 +48,8 @@ def magnification(truss: ResolvedTruss, largest_jump_m: float) -> float:
 
 
 def joint_places(truss: ResolvedTruss) -> np.ndarray:
-    """Return the node of every joint: sliders, then revolutes."""
-    return np.concatenate((truss.sliders.nodes[:, 0], truss.revolutes.bearing_node)).astype(int)
+    """Return the node of every joint, type by type."""
+    return np.concatenate([joint.place_nodes(truss, truss.joints[joint.section]) for joint in JOINTS]).astype(int)
 
 
 def jumps_figure(found: TrussPath, shares: Contributions | None, title: str) -> Figure:

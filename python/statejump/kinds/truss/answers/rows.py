@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from statejump.core.units import unit_of
 from statejump.kinds.truss.answers import reflector
 from statejump.kinds.truss.answers.contributions import Contributions
 from statejump.kinds.truss.answers.jumps import node_jumps
 from statejump.kinds.truss.answers.sensitivity import Sensitivity
+from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.solve import TrussPath, heat_of_joints_J
 
 Row = dict[str, Any]
@@ -43,17 +45,16 @@ def joint_rows(found: TrussPath) -> list[Row]:
     ends, truss = found.cycle_ends, found.truss
     rows = []
     for cycle in range(1, len(ends["time_s"])):
-        for kind, names, place, heat in (
-            ("slider", truss.sliders.names, ends["slide_m"][..., None] * truss.sliders.axis,
-             ends["slider_dissipation_J"]),
-            ("revolute", truss.revolutes.names, ends["eccentricity_m"], ends["revolute_dissipation_J"]),
-            ("ball_joint", truss.joints["ball_joint"].names, ends["ball_eccentricity_m"],
-             ends["ball_joint_dissipation_J"]),
-        ):
-            for index, name in enumerate(names):
-                jump = place[cycle, index] - place[0, index]
+        for joint in JOINTS:
+            column, joints = joint.columns[0], truss.joints[joint.section]
+            if unit_of(column.name) != "m":  # a rotation: no jump of a place
+                continue
+            place, heat = ends[column.name], ends[f"{joint.section}_dissipation_J"]
+            for index, name in enumerate(joints.names):
+                moved = place[cycle, index] - place[0, index]
+                jump = moved if column.vector else moved * joints.axis[index]
                 rows.append({
-                    "joint": name, "kind": kind, "cycle": cycle,
+                    "joint": name, "kind": joint.section, "cycle": cycle,
                     **{f"jump_{axis}_m": float(value) for axis, value in zip("xyz", jump)},
                     "jump_m": float(np.linalg.norm(jump)),
                     "dissipation_of_cycle_J": float(heat[cycle, index] - heat[cycle - 1, index]),

@@ -22,7 +22,6 @@ from statejump.kinds.truss.answers.outputs import Output, chosen_output
 from statejump.kinds.truss.answers.sensitivity import STEP, sensitivities
 from statejump.kinds.truss.answers.verdict import RESOLVED, Verdict, judged, others
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.result import reduced_run
 from statejump.kinds.truss.solve import TrussPath
 from statejump.results.contents import Answers, Scalar
@@ -211,11 +210,6 @@ def _jumps(found: TrussPath, output: Output, jump: float) -> bool:
 
 def _shares(found: TrussPath, output: Output, tell: Tell, tables: dict[str, list[rows.Row]],
             notes: list[str]) -> Contributions | None:
-    for joint in JOINTS:
-        why = joint.no_load(found.truss.joints[joint.section])
-        if why:
-            notes.append(f"no contributions: {why}")
-            return None
     try:
         shares = contributions(found, output, tell)
     except EngineFailed as failure:

@@ -14,6 +14,7 @@ from statejump.kinds.truss.references import known_nodes, vector
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
+    from statejump.kinds.truss.joints.friction_loads import Loads
     from statejump.kinds.truss.resolved import ResolvedTruss
 
 
@@ -81,6 +82,16 @@ class AlongAxis(JointType[ItemType, ArraysType]):
         along = joints.axis
         return (truss.nodes.position_m[joints.nodes[:, 0]],
                 np.stack((-along[:, 1], along[:, 0], np.zeros(len(along))), axis=1))
+
+    def add_friction(self, loads: Loads, joints: ArraysType, state: Mapping[str, np.ndarray]) -> None:
+        for index, (friction, (first, second), axis) in enumerate(
+                zip(self.friction_N(state), joints.nodes, joints.axis)):
+            loads.push(index, first, -friction * axis)
+            loads.push(index, second, friction * axis)
+
+    def friction_N(self, state: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Return the friction on the first node against the axis (joints,) in one state of the solver."""
+        raise NotImplementedError
 
     def covered_nodes(self, joints: ArraysType) -> np.ndarray:
         return joints.nodes[:, 0]

@@ -2,7 +2,7 @@
 """Ball joints with clearance: a ball that plays in a socket, with a cone of Coulomb friction; spatial trusses."""
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -134,9 +134,8 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
             f"{spread(joint.friction_coefficient for joint in items)}."
         )
 
-    def no_load(self, joints: BallJoints) -> str:
-        return ("the friction of a ball joint is not split off as a load"
-                if joints.friction_coefficient.any() else "")
+    def friction_on_inner_N(self, joints: BallJoints, state: Mapping[str, np.ndarray]) -> np.ndarray:
+        return state["ball_friction_force_N"]
 
     def reach_m(self, path: Course, joints: BallJoints) -> np.ndarray:
         return joints.socket_radius_m

@@ -5,7 +5,7 @@ The engine's ``iwan_joint.hpp`` has the law and its source.
 """
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
@@ -16,6 +16,7 @@ from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.arrays import References, column, columns, names, pairs, unit, vectors
 from statejump.kinds.truss.joints.along_axis import AlongAxis
 from statejump.kinds.truss.joints.protocol import JointColumn, Strokes, Symbol
+from statejump.kinds.truss.joints.slider import with_sliders
 from statejump.kinds.truss.joints.words import USER, count, scaled, spread
 from statejump.schema.fields import CHOICE, definition, numbers, parameter, texts, whole
 from statejump.schema.items import Item
@@ -113,8 +114,13 @@ class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
             f"{spread((100 * share for share in slack), '-', 2)} % of the slip force above that of the model."
         )
 
-    def no_load(self, joints: IwanJoints) -> str:
-        return "what of an Iwan joint's force is friction is not told" if joints.names else ""
+    def friction_N(self, state: Mapping[str, np.ndarray]) -> np.ndarray:
+        return state["iwan_force_N"]  # all of its springs end in friction: without it the joint carries nothing
+
+    def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
+        joints: IwanJoints = truss.joints[self.section]
+        none = IwanJoints(**{key: value[:0] for key, value in vars(joints).items()})
+        return with_sliders(truss, joints).with_joints(iwan_joint=none)
 
 
 IWAN_JOINT = IwanJointType()

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from statejump.kinds.truss.arrays import References, columns, names, pairs
+from statejump.kinds.truss.arrays import GROUND, References, columns, names, pairs
 from statejump.kinds.truss.joints.protocol import JointColumn, JointType, Symbol, Torsion
 from statejump.kinds.truss.joints.words import USER, count, scaled, spread
 from statejump.kinds.truss.references import axis_of_rotation, known_links, turned_links
@@ -17,6 +17,7 @@ from statejump.schema.fields import definition, numbers, parameter, texts
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
+    from statejump.kinds.truss.joints.friction_loads import Loads
     from statejump.kinds.truss.resolved import ResolvedTruss
     from statejump.kinds.truss.solve import Course
 
@@ -109,9 +110,24 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
             f"{spread((hinge.friction_moment_N_m for hinge in items), 'N m')}."
         )
 
-    def no_load(self, joints: LatchHinges) -> str:
-        return ("the friction of a latch hinge is a moment that turns with links, no load on nodes"
-                if joints.friction_moment_N_m.any() else "")
+    def add_friction(self, loads: Loads, joints: LatchHinges, state: Mapping[str, np.ndarray]) -> None:
+        for index, (moment, (first, second)) in enumerate(zip(self._friction_N_m(joints, state), joints.links)):
+            against = moment * joints.axis[index]
+            # Against the ground the first link's own turn counts.
+            loads.turn(index, first, -against if second == GROUND else against)
+            loads.turn(index, second, -against)
+
+    def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
+        hinges: LatchHinges = truss.joints[self.section]
+        return truss.with_joints(latch_hinge=replace(hinges, friction_moment_N_m=0 * hinges.friction_moment_N_m))
+
+    @staticmethod
+    def _friction_N_m(joints: LatchHinges, state: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Return what of the moment of a state is friction."""
+        rotation = state["hinge_rotation_rad"]
+        beyond = rotation - np.clip(rotation, -joints.deadband_rad, joints.deadband_rad)
+        elastic = joints.preload_moment_N_m + joints.stiffness_N_m_per_rad * beyond
+        return np.asarray(state["hinge_moment_N_m"] - elastic)
 
     def torsion(self, joints: LatchHinges) -> Torsion:
         sticking = np.where(joints.friction_moment_N_m > 0, joints.friction_stiffness_N_m_per_rad, 0.0)
@@ -121,10 +137,9 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
         return np.asarray(np.abs(path.states["hinge_rotation_rad"]).max(axis=0))
 
     def scene(self, path: Course, joints: LatchHinges) -> dict[str, Any]:
-        rotation, moment = path.states["hinge_rotation_rad"][0], path.states["hinge_moment_N_m"][0]
-        beyond = rotation - np.clip(rotation, -joints.deadband_rad, joints.deadband_rad)
-        without_friction = joints.preload_moment_N_m + joints.stiffness_N_m_per_rad * beyond
-        return {"start_rotation_rad": rotation, "start_friction_N_m": moment - without_friction}
+        start = {key: path.states[key][0] for key in ("hinge_rotation_rad", "hinge_moment_N_m")}
+        return {"start_rotation_rad": start["hinge_rotation_rad"],
+                "start_friction_N_m": self._friction_N_m(joints, start)}
 
 
 LATCH_HINGE = LatchHingeType()

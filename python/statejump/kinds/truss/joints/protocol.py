@@ -18,6 +18,7 @@ from statejump.schema.items import Item
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.case import TrussCase
+    from statejump.kinds.truss.joints.friction_loads import Loads
     from statejump.kinds.truss.resolved import ResolvedTruss
     from statejump.kinds.truss.solve import Course
 
@@ -211,9 +212,17 @@ class JointType(Generic[ItemType, ArraysType]):
         """Return keys and values (joints,) of what a jump may follow; 0 or infinity: that joint has none."""
         return [(key, getattr(joints, key)) for key in self.varied]
 
-    def no_load(self, joints: ArraysType) -> str:
-        """Return why no load on nodes stands for its friction, in words; empty: one does, or there is none."""
-        return ""
+    def add_friction(self, loads: Loads, joints: ArraysType, state: Mapping[str, np.ndarray]) -> None:
+        """Add the forces that stand for the friction of its joints in one state of the solver."""
+        raise NotImplementedError
+
+    def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
+        """Return the truss whose joints of this type have no friction and stay as warm as they are drawn."""
+        raise NotImplementedError
+
+    def unknown_friction(self, joints: ArraysType, state: Mapping[str, np.ndarray]) -> Iterable[int]:
+        """Return the joints whose friction in a state is not known."""
+        return ()
 
     # ---------------------------------------------------------------- DEM
 

@@ -2,7 +2,7 @@
 """Clearance revolutes: a journal that plays in a bearing, with Coulomb friction."""
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -126,6 +126,12 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
         normal = self.normals(run)
         across = np.cross(joints.axis, normal) if len(joints.names) else normal
         return self.touching(run, joints, -run.columns["friction_force_N"][:, :, None] * across)
+
+    def friction_on_inner_N(self, joints: Revolutes, state: Mapping[str, np.ndarray]) -> np.ndarray:
+        offset = state["eccentricity_m"]
+        distance = np.linalg.norm(offset, axis=1, keepdims=True)
+        normal = np.divide(offset, distance, out=np.zeros_like(offset), where=distance > 0)
+        return np.asarray(-state["friction_force_N"][:, None] * np.cross(joints.axis, normal))
 
     def symbols(self, truss: ResolvedTruss, joints: Revolutes) -> list[Symbol]:
         centres = truss.nodes.position_m[joints.bearing_node]

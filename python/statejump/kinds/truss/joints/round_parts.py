@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
@@ -15,6 +16,7 @@ from statejump.kinds.truss.references import known_name
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
+    from statejump.kinds.truss.joints.friction_loads import Loads
     from statejump.kinds.truss.resolved import ResolvedTruss
     from statejump.kinds.truss.solve import Course
 
@@ -198,6 +200,25 @@ class RoundParts(JointType[ItemType, ArraysType]):
                     getattr(joints, f"{part}_link"))])
             for part in self.parts
         ]
+
+    def friction_on_inner_N(self, joints: Any, state: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Return the friction on the inner part (joints, 3) in one state of the solver."""
+        raise NotImplementedError
+
+    def add_friction(self, loads: Loads, joints: Any, state: Mapping[str, np.ndarray]) -> None:
+        links = np.stack([getattr(joints, f"{part}_link") for part in self.parts], axis=1)
+        offset = state[self.eccentricity]
+        # The radii meet in the middle of the depth; at the ends of cycles ΔT = 0.
+        depth = np.maximum(np.linalg.norm(offset, axis=1) - joints.radial_clearance_m, 0.0)
+        arm = self._radius_m(joints, self.inner) - depth / 2
+        for index, friction in enumerate(self.friction_on_inner_N(joints, state)):
+            loads.rub(index, self._nodes(joints)[index], links[index], friction, offset[index], arm[index])
+
+    def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
+        joints: Any = truss.joints[self.section]
+        return truss.with_joints(**{self.section: replace(
+            joints, friction_coefficient=0 * joints.friction_coefficient,
+            temperature_fraction=0 * joints.temperature_fraction)})
 
     def contact_nodes(self, joints: ArraysType) -> np.ndarray:
         return self._nodes(joints)

@@ -2,8 +2,8 @@
 """Sliders: frictional prismatic joints on ground or between two nodes."""
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import inf
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from statejump.core import physics
 from statejump.kinds.truss.arrays import GROUND, References, columns, names, pairs, unit, vectors
-from statejump.kinds.truss.joints.along_axis import AlongAxis
+from statejump.kinds.truss.joints.along_axis import AlongAxis, Axes
 from statejump.kinds.truss.joints.protocol import (
     IMPACT, ContactPart, Contacts, Drawn, JointColumn, Sampled, Strokes, Symbol,
 )
@@ -101,6 +101,21 @@ def pressing_directions(truss: ResolvedTruss, sliders: Sliders) -> np.ndarray:
     return np.array(found).reshape(-1, 3)
 
 
+AT_STOP = (3, 4)  # statuses at a stop, as the engine numbers them
+
+
+def with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
+    """Return the truss with sliders more, along the axes of joints, that have neither friction nor stops."""
+    sliders, count = truss.sliders, len(joints.names)
+    nothing, no_stop = np.zeros(count), np.full(count, np.inf)
+    more = {**dict.fromkeys(vars(sliders), nothing), "nodes": joints.nodes, "axis": joints.axis,
+            "clearance_minus_m": no_stop, "clearance_plus_m": no_stop, "pad_radius_m": np.ones(count),
+            "young_modulus_Pa": np.ones(count)}
+    both: dict[str, Any] = {key: np.concatenate([value, more[key]]) for key, value in vars(sliders).items()
+                            if key != "names"}
+    return truss.with_joints(slider=Sliders(names=sliders.names + joints.names, **both))
+
+
 class SliderType(AlongAxis[Slider, Sliders]):
     """Sliders, in the solver, in motion and in the DEM: there a pad on a floor on ground, an engine's between nodes."""
 
@@ -179,6 +194,20 @@ class SliderType(AlongAxis[Slider, Sliders]):
         limits = (joint.friction_coefficient * joint.normal_force_N for joint in items)
         return (f"{count(items, 'sliding joint')} held by friction up to {spread(limits, 'N')}, "
                 f"{f'with {stops} stops' if stops else 'without stops'}.")
+
+    def friction_N(self, state: Mapping[str, np.ndarray]) -> np.ndarray:
+        return np.where(self._stopped(state), 0.0, state["slider_force_N"])
+
+    def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
+        sliders = truss.sliders
+        return truss.with_joints(slider=replace(sliders, friction_coefficient=0 * sliders.friction_coefficient))
+
+    def unknown_friction(self, joints: Sliders, state: Mapping[str, np.ndarray]) -> Iterable[int]:
+        return map(int, np.flatnonzero(self._stopped(state)))
+
+    @staticmethod
+    def _stopped(state: Mapping[str, np.ndarray]) -> np.ndarray:
+        return np.isin(state["slider_status"], AT_STOP)
 
     def dem_refuses(self, joints: Sliders) -> tuple[str, str] | None:
         loose = ~self.bodies_touch(joints) & (joints.normal_force_N == 0)

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Nodal forces that stand for the friction of a joint. Their resultant is none; a moment on a link is a pair of forces
+on its ends, across it: what twists a link about itself is left out, the solver's links have no such turn either."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from statejump.kinds.truss.arrays import GROUND
+from statejump.kinds.truss.resolved import ResolvedTruss
+
+
+@dataclass(frozen=True)
+class Loads:
+    """Forces of one joint after the other.
+
+    :param force_N: (joints, nodes, 3), added to
+    :param place_m: (nodes, 3), where nodes are in the state
+    """
+
+    truss: ResolvedTruss
+    force_N: np.ndarray
+    place_m: np.ndarray
+
+    def push(self, joint: int, node: int, force_N: np.ndarray) -> None:
+        """Add a force on a node; on GROUND none."""
+        if node != GROUND:
+            self.force_N[joint, node] += force_N
+
+    def turn(self, joint: int, link: int, moment_N_m: np.ndarray) -> None:
+        """Add a moment on a link; on GROUND none."""
+        if link == GROUND:
+            return
+        one, two = self.truss.links.nodes[link]
+        along = self.place_m[two] - self.place_m[one]
+        pair = np.cross(moment_N_m, along) / (along @ along)
+        self.force_N[joint, two] += pair
+        self.force_N[joint, one] -= pair
+
+    def rub(self, joint: int, nodes: tuple[int, int], links: tuple[int, int], friction_N: np.ndarray,
+            offset_m: np.ndarray, arm_m: float) -> None:
+        """Add the friction of a round part in a hollow one, of both moments about their own nodes.
+
+        :param nodes: of the hollow part and of the round one; ``links`` likewise
+        :param friction_N: on the round part
+        :param offset_m: of the round part's centre from the hollow one's
+        :param arm_m: from the round part's centre to where they touch
+        """
+        distance = float(np.linalg.norm(offset_m))
+        if distance == 0 or not friction_N.any():
+            return
+        for node, link, force, arm in ((nodes[0], links[0], -friction_N, arm_m + distance),
+                                       (nodes[1], links[1], friction_N, arm_m)):
+            self.push(joint, node, force)
+            self.turn(joint, link, np.cross(offset_m / distance * arm, force))
