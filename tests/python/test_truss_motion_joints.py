@@ -122,6 +122,9 @@ def test_arch_snaps_in_the_dem_as_it_does_in_motion() -> None:
     case = sj.load("two_bar_snap")
     runs = case.reduced(dynamic=True), case.dem()
     assert sj.compare(*runs).passed
+    labels = [text.get_text() for axes in sj.compare(*runs).plot().axes for legend in [axes.get_legend()] if legend
+              for text in legend.get_texts()]
+    assert "reduced model in motion" in labels and "quasi-static solver" not in labels
     snapped = [run["position_m"][-1, run.names["nodes"].index("B"), 1] for run in runs]
     assert max(snapped) < -5e-3 and snapped[0] == pytest.approx(snapped[1], rel=1e-3)
 

@@ -86,6 +86,11 @@ def difference(case: TrussCase, first: Run, second: Run) -> list[Quantity]:
     return rows
 
 
+def reduced_name(run: Run) -> str:
+    """Return what the reduced model of a run is: the solver of quasi-static paths, or motion."""
+    return "reduced model in motion" if "velocity_m_per_s" in run.history else "quasi-static solver"
+
+
 def loop_drift_m(case: TrussCase, run: Run) -> float:
     """Largest distance of a node in any later cycle from where it was in the second at the same phase [m]."""
     samples, displacement = case.samples_per_cycle, run["displacement_m"]

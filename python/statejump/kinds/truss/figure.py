@@ -4,6 +4,7 @@ thin beside its reversible part is drawn again without it."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,9 +14,9 @@ from statejump.core.run import Run
 from statejump.core.thin_loops import straight_part
 from statejump.core.units import scale_of, text
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.compare import jumps_m
+from statejump.kinds.truss.compare import jumps_m, reduced_name
 
-QUASI_STATIC = {**REDUCED, "label": "quasi-static solver", "linewidth": 3.6}
+REDUCED_RUN: dict[str, Any] = {**REDUCED, "linewidth": 3.6}
 DEM_RUN = {**DEM, "linewidth": 1.1}
 
 
@@ -42,7 +43,7 @@ def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
     shown = _shown(case, first)
     scale, unit = (1e3, "mm") if np.abs(first["displacement_m"]).max() > 2e-3 else (1e6, "µm")
     link = int(np.argmax(np.ptp(first.links["axial_force_N"].values, axis=0)))
-    styled = [(run, QUASI_STATIC if run.model == "reduced" else DEM_RUN) for run in runs]
+    styled = [(run, {**REDUCED_RUN, "label": reduced_name(run)} if run.model == "reduced" else DEM_RUN) for run in runs]
 
     def loop(node: int, axis: int) -> Panel:
         def draw(axes: Axes) -> None:

@@ -85,7 +85,7 @@ def told(case: TrussCase, runs: Mapping[str, Run]) -> list[Shown | str]:
     title = f"{case.title}: state jump after {case.thermal.cycles} cycle(s)"
     found: list[Shown | str] = [Shown(title, header, rows, left=("node",))]
     for model, run in runs.items():
-        label = {"reduced": "solver: ", "dem": "DEM: "}[model] if others else ""
+        label = {"reduced": compare.reduced_name(run), "dem": "DEM"}[model] + ": " if others else ""
         found.append(f"{label}{len(run.events)} events, energy residue {run.summary['energy_residue_J']:.3g} J")
     if first.native is not None and not others:
         path = first.native
