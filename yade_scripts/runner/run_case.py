@@ -4,8 +4,10 @@
     STATEJUMP_CASE_JSON=case.json STATEJUMP_OUTPUT=dem.samples yade -n -x yade_scripts/runner/run_case.py
 
 The resolved case comes as JSON. Samples, see ``statejump.core.samples``, go to ``<output>.partial``, block by block;
-at the end the file is renamed. What the caller is told stands on lines of standard output that begin with
-``STATEJUMP``: ``{"progress": share}``, or ``{"failure": {...}}`` by the names of a failure's fields.
+at the end the file is renamed. A scene's module has ``COLUMNS`` or ``columns(case)``, ``build``, ``watched``,
+``sample``, ``names``, ``step_remedy`` and ``summary``; those beside this script say what they do. What the caller is
+told stands on lines of standard output that begin with ``STATEJUMP``: ``{"progress": share}``, or
+``{"failure": {...}}`` by the names of a failure's fields.
 """
 import json
 import os

@@ -86,10 +86,9 @@ def _variant(case: SpringSliderCase, factor: float, **settings: Any) -> SpringSl
 
 
 def _further(values: Sequence[float], decades: int) -> list[float]:
-    """Return values that go on by their last ratio until they are so many decades further."""
-    ratio = values[-1] / values[-2]
-    more = math.ceil(decades / abs(math.log10(ratio)))
-    return [*values, *(values[-1] * ratio**place for place in range(1, more + 1))]
+    """Return values that go on in their direction, one a decade."""
+    direction = 1 if values[-1] > values[0] else -1
+    return [*values, *(values[-1] * 10.0**(direction * decade) for decade in range(1, decades + 1))]
 
 
 def variants(case: SpringSliderCase, decades: int = 0) -> tuple[list[SpringSliderCase], list[SpringSliderCase]]:
