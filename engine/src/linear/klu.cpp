@@ -125,6 +125,12 @@ Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {
   return result;
 }
 
+double SparseFactor::solutions_per_factorization() const {
+  const double lower = factors_->numeric->lnz;
+  const double upper = factors_->numeric->unz;
+  return lower * upper / factors_->size / (lower + upper);
+}
+
 int SparseFactor::determinant_sign() const {
   const Factors& f = *factors_;
   // Rows are divided by positive numbers; both permutations make the matrix block triangular.

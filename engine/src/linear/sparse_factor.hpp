@@ -26,6 +26,9 @@ class SparseFactor {
   bool factorize(const Eigen::SparseMatrix<double>& matrix);
   /// Solution of the factored system.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
+  /// Cost of a factorization in that of a solution: entries of the factors if all their columns and
+  /// rows have as many.
+  double solutions_per_factorization() const;
   /// Sign of the determinant of the factored matrix, 1 or -1.
   int determinant_sign() const;
   /// "KLU" or "SparseLU".

@@ -50,6 +50,12 @@ Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {
   return factors_->lu.solve(right_side);
 }
 
+double SparseFactor::solutions_per_factorization() const {
+  const auto lower = static_cast<double>(factors_->lu.nnzL());
+  const auto upper = static_cast<double>(factors_->lu.nnzU());
+  return lower * upper / static_cast<double>(factors_->lu.rows()) / (lower + upper);
+}
+
 int SparseFactor::determinant_sign() const {
   return factors_->lu.signDeterminant() < 0.0 ? -1 : 1;
 }

@@ -171,6 +171,17 @@ void System::assemble_joints(const VectorXd& z, double time, const StepStart& st
   }
 }
 
+void System::evaluate_joint(int joint, const VectorXd& z, double time, const StepStart& start,
+                            JointStatus status, JointModel model, double opening,
+                            Assembly& to) const {
+  to.entries.clear();
+  to.residual.segment(force_row(joint), force_count(joint)).setZero();
+  JointWriter to_joint = writer(joint, to);
+  const Trial at = trial(joint, z, time, start, model, opening);
+  std::visit([&](const auto& one) { one.evaluate(at, status, to_joint); },
+             model_->joints[index(joint)]);
+}
+
 VectorXd System::heating(const VectorXd& z, double time, const StepStart& start,
                          const Statuses& statuses, const std::vector<double>& program_rates) const {
   const Model& model = *model_;

@@ -33,6 +33,23 @@ double torsion_angle(const Model& model, const TorsionSpring& spring, const Matr
   return spring.second_link < 0 ? first : turned(spring.second_link) - first;
 }
 
+/// Integral of a function of share and time of a step by the temperature of a program [K]: by the
+/// trapezoidal rule of a straight way, else of fourth order.
+template <class Function>
+double along(const Way& way, const thermal::Program& program, Function&& function) {
+  if (way.is_straight()) {
+    const double warmed =
+        program.temperature_change(way.to_time) - program.temperature_change(way.from_time);
+    return 0.5 * (function(0.0, way.from_time) + function(1.0, way.to_time)) * warmed;
+  }
+  double sum = 0.0;
+  for (const auto& [share, weight] : gauss_legendre) {
+    const double when = way.from_time + share * way.step();
+    sum += weight * way.step() * program.temperature_rate(when) * function(share, when);
+  }
+  return sum;
+}
+
 }  // namespace
 
 Axial System::axial(const Link& link, const VectorXd& z, double time) const {
@@ -119,60 +136,85 @@ VectorXd System::heat(const VectorXd& z, double time, const StepStart& start,
   return found;
 }
 
-void System::account(const VectorXd& z_before, double time_before, const VectorXd& z, double time,
-                     const StepStart& start, const StepStart& after, const VectorXd& slips,
-                     State& state, const VectorXd& rate_before, const VectorXd& rate) const {
-  const Model& model = *model_;
-  const double step = time - time_before;
-  const bool known = rate_before.size() > 0 && rate.size() > 0;
-  VectorXd dissipated = heat(z, time, start, after, slips);
-  if (known && (dissipated.array() > 0.0).any()) {
+void System::account(const Way& way, const StepStart& start, const StepStart& after,
+                     const VectorXd& slips, State& state) const {
+  VectorXd dissipated = heat(way.to, way.to_time, start, after, slips);
+  if (!way.is_straight() && (dissipated.array() > 0.0).any()) {
     // By way of the middle of the cubic, and what that and the straight way say of no steps at all.
-    const VectorXd middle = 0.5 * (z_before + z) + 0.125 * step * (rate_before - rate);
-    const double then = time_before + 0.5 * step;
+    const VectorXd middle =
+        0.5 * (way.from + way.to) + 0.125 * way.step() * (*way.from_rate - *way.to_rate);
+    const double then = way.from_time + 0.5 * way.step();
     const StepStart half = commit(middle, then, after.statuses, start);
-    const StepStart whole = commit(z, time, after.statuses, half);
+    const StepStart whole = commit(way.to, way.to_time, after.statuses, half);
     const VectorXd halves =
         heat(middle, then, start, half, this->slips(middle, then, start, half)) +
-        heat(z, time, half, whole, this->slips(z, time, half, whole));
+        heat(way.to, way.to_time, half, whole, this->slips(way.to, way.to_time, half, whole));
     dissipated = halves + (halves - dissipated) / 3.0;
   }
   state.joint_dissipation += dissipated;
+  state.thermal_work += work_on_links(way) + work_on_joints(way, start);
+}
+
+double System::work_on_links(const Way& way) const {
+  const Model& model = *model_;
   const auto growth_rate = [&](const Link& link, const VectorXd& at, const VectorXd& moving) {
     const Lengths length = lengths_between(link.first, link.second, at);
-    return step *
+    return way.step() *
            length.along.dot(displacement(link.second, moving) - displacement(link.first, moving)) /
            length.now;
   };
+  double work = 0.0;
   for (const Link& link : model.links) {
     const double expansion =
         link.stress_free_length * link.thermal_expansion * link.temperature_fraction;
     if (expansion == 0.0) continue;
     const thermal::Program& program = model.programs[index(link.program)];
-    const Lengths first = lengths_between(link.first, link.second, z_before);
-    const Lengths last = lengths_between(link.first, link.second, z);
+    const Lengths first = lengths_between(link.first, link.second, way.from);
+    const Lengths last = lengths_between(link.first, link.second, way.to);
     // ∂V/∂l_T = −N − N²/(2 E A)
     const auto by_length = [&](double growth, double when) {
       const double change = link.temperature_fraction * program.temperature_change(when);
       const double tension = link_axial(link, growth, last.drawn, change).tension;
       return -tension * (1.0 + 0.5 * tension / link.axial_stiffness);
     };
-    if (!known) {
-      const double warmed =
-          program.temperature_change(time) - program.temperature_change(time_before);
-      state.thermal_work += 0.5 *
-                            (by_length(first.growth, time_before) + by_length(last.growth, time)) *
-                            expansion * warmed;
-      continue;
+    Cubic growth{first.growth, last.growth, 0.0, 0.0};
+    if (!way.is_straight()) {
+      growth.first_rate = growth_rate(link, way.from, *way.from_rate);
+      growth.last_rate = growth_rate(link, way.to, *way.to_rate);
     }
-    const Cubic growth{first.growth, last.growth, growth_rate(link, z_before, rate_before),
-                       growth_rate(link, z, rate)};
-    for (const auto& [share, weight] : gauss_legendre) {
-      const double when = time_before + share * step;
-      state.thermal_work += weight * step * expansion * program.temperature_rate(when) *
-                            by_length(growth.at(share), when);
-    }
+    work += expansion * along(way, program, [&](double share, double when) {
+              return by_length(growth.at(share), when);
+            });
   }
+  return work;
+}
+
+double System::work_on_joints(const Way& way, const StepStart& start) const {
+  double work = 0.0;
+  for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.clearance_growth(); }) {
+            const JointFrame& frame = frames_[index(i)];
+            const double growth = one.clearance_growth() * frame.temperature_fraction;
+            if (growth == 0.0) return;
+            const auto at = [&](const VectorXd& z) {
+              return trial(i, z, way.to_time, start, JointModel::friction, 1.0);
+            };
+            const auto force = [&](double share, double) {
+              if (way.is_straight()) {
+                return one.contact_force(at(share == 0.0 ? way.from : way.to));
+              }
+              return one.contact_force(on_its_way(at(way.from), at(way.to), at(*way.from_rate),
+                                                  at(*way.to_rate), way.step(), share));
+            };
+            // A contact whose clearance grows gives way: ∂V/∂c = −N.
+            work -= growth * along(way, model_->programs[index(frame.program)], force);
+          }
+        },
+        model_->joints[index(i)]);
+  }
+  return work;
 }
 
 Eigen::SparseMatrix<double> System::joined_stiffness(const VectorXd& z, double time,

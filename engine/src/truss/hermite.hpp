@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "statejump/truss/joints/interface.hpp"
+
 namespace statejump::truss::detail {
 
 /// Cubic over a step from the values and rates at its ends (Hermite), as a function of the share of
@@ -40,5 +42,26 @@ struct Cubic {
     return end;
   }
 };
+
+/// A joint on its way between both ends of a step of a duration, by the cubics of its nodes and
+/// forces; the rest is that of the end.
+/// @param first_rate, last_rate the same joint, asked with the rates of the unknowns
+inline Trial on_its_way(const Trial& first, const Trial& last, const Trial& first_rate,
+                        const Trial& last_rate, double duration, double share) {
+  Trial at = last;
+  for (std::size_t k = 0; k < most_joint_nodes; ++k) {
+    for (Eigen::Index x = 0; x < 3; ++x) {
+      at.moved[k][x] = Cubic{first.moved[k][x], last.moved[k][x], duration * first_rate.moved[k][x],
+                             duration * last_rate.moved[k][x]}
+                           .at(share);
+    }
+  }
+  for (std::size_t k = 0; k < most_joint_forces; ++k) {
+    at.force[k] = Cubic{first.force[k], last.force[k], duration * first_rate.force[k],
+                        duration * last_rate.force[k]}
+                      .at(share);
+  }
+  return at;
+}
 
 }  // namespace statejump::truss::detail

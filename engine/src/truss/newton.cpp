@@ -6,9 +6,11 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <set>
 #include <unordered_set>
 #include <utility>
 
+#include "condensed_pivots.hpp"
 #include "rate_problem.hpp"
 
 namespace statejump::truss::detail {
@@ -28,15 +30,6 @@ constexpr int most_halvings = 10;
 constexpr int share_halvings = 50;
 /// How often those who wait are told [s]: often enough for a bar of progress and for Ctrl-C.
 constexpr double told_every = 0.1;
-
-/// Hash (FNV-1a) of all statuses.
-std::size_t fingerprint(const Statuses& statuses) {
-  std::size_t hash = 14695981039346656037ull;
-  for (const JointStatus status : statuses) {
-    hash = (hash ^ static_cast<std::size_t>(status)) * 1099511628211ull;
-  }
-  return hash;
-}
 
 /// What is left of the equations, each kind in its own unit.
 struct Residuals {
@@ -138,16 +131,57 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   int halvings = 0;
   int iterations = 0;
   std::size_t pieces = 0;
+  // Pivots of all joints since there were ever fewer violations, and the joints that had any.
+  int idle = 0;
+  std::set<int> wandering;
+  // Pivots that wander lead far away, where the equations are others: they begin anew from here.
+  const VectorXd first_z = z;
+  const Statuses first_statuses = statuses;
+  bool condensed = false;
+  /// Takes the step from the start that pivots on its factors lead to; false: there is none.
+  const auto condense = [&] {
+    condensed = true;
+    idle = 0;
+    system_->evaluate(first_z, time, start, first_statuses, joints, opening, at_);
+    ++factorizations_;
+    if (!factor_.factorize(at_.jacobian)) return false;
+    const VectorXd whole = factor_.solve(-at_.residual);
+    const std::vector<int> in_play(wandering.begin(), wandering.end());
+    const Linearized here{first_z, time, start, joints, opening, first_statuses, factor_, whole};
+    auto settled = condensed_pivots(*system_, here, in_play);
+    if (!settled || !seen.insert(fingerprint(settled->statuses)).second) return false;
+    statuses = std::move(settled->statuses);
+    z = first_z + settled->step;
+    return true;
+  };
   /// False if the sets go round in a circle.
-  const auto pivot = [&](const Violations& found) {
+  /// @param stepped whether z is at the end of a full step on the present factors
+  const auto pivot = [&](const Violations& found, bool stepped) {
     if (found.joints.empty()) return true;
+    wandering.insert(found.joints.begin(), found.joints.end());
+    const auto begin_anew = [&] {
+      current_ = false;
+      report.joints = found.joints;
+      lengths.clear();
+      halvings = 0;
+      iterations = 0;
+      return true;
+    };
+    ++idle;
     if (found.joints.size() < fewest) {
       fewest = found.joints.size();
+      idle = 0;
       if (pivoting == Pivoting::single) {
         pivoting = Pivoting::rounded;
         seen.clear();
       }
     }
+    // While inequalities are strict, a set that comes back tells that rounding decides.
+    const double paid = idle * factor_.solutions_per_factorization();
+    const bool wanders = pivoting == Pivoting::rounded && stepped && idle > 0 &&
+                         paid >= static_cast<double>(wandering.size());
+    if (wanders && !condensed && condense()) return begin_anew();
+    if (wanders && ahead) return false;
     const auto take = [&] {
       if (pivoting != Pivoting::single) return found.corrected;
       Statuses one = statuses;
@@ -163,12 +197,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       next = take();
     }
     statuses = next;
-    current_ = false;
-    report.joints = found.joints;
-    lengths.clear();
-    halvings = 0;
-    iterations = 0;
-    return true;
+    return begin_anew();
   };
 
   // Every joint once on each of the other branches that it has, at most five.
@@ -201,8 +230,9 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         return report;
       }
       const Pivoting before = pivoting;
-      if (!pivot(found)) return report;
-      if (before == Pivoting::strict && pivoting == Pivoting::rounded && !pivot(violations())) {
+      if (!pivot(found, false)) return report;
+      if (before == Pivoting::strict && pivoting == Pivoting::rounded &&
+          !pivot(violations(), false)) {
         return report;
       }
       continue;
@@ -249,7 +279,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
           }
         }
       }
-      if (!pivot(found)) return report;
+      if (!pivot(found, true)) return report;
     }
     const auto now = std::chrono::steady_clock::now();
     if (std::chrono::duration<double>(now - told).count() > told_every) {

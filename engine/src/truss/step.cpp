@@ -165,8 +165,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
     path.problems.push_back(local_problem(system, trial, target, begin, trial_statuses));
   }
   const bool smooth = trial_statuses == origin.statuses && !is_short;
-  system.account(z, time, trial, target, begin, after, slips, state, smooth ? rate : VectorXd(),
-                 smooth ? rate_after : VectorXd());
+  system.account({z, time, trial, target, smooth ? &rate : nullptr, smooth ? &rate_after : nullptr},
+                 begin, after, slips, state);
   rate = rate_after;
   slide_rate = slide_rate_after;
   z = trial;

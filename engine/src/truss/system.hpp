@@ -13,6 +13,15 @@ namespace statejump::truss::detail {
 
 using Statuses = std::vector<JointStatus>;
 
+/// Hash (FNV-1a) of all statuses.
+inline std::size_t fingerprint(const Statuses& statuses) {
+  std::size_t hash = 14695981039346656037ull;
+  for (const JointStatus status : statuses) {
+    hash = (hash ^ static_cast<std::size_t>(status)) * 1099511628211ull;
+  }
+  return hash;
+}
+
 /// State at the start of a step, from which slides are counted.
 struct StepStart {
   Statuses statuses;
@@ -23,6 +32,22 @@ struct StepStart {
 struct Rounding {
   double length = 0.0;
   double force = 0.0;
+};
+
+/// Way of the unknowns in a step: straight, or a cubic where the rates at both ends are known.
+struct Way {
+  const VectorXd& from;
+  double from_time;
+  const VectorXd& to;
+  double to_time;
+  const VectorXd* from_rate = nullptr;  ///< None or empty: not known.
+  const VectorXd* to_rate = nullptr;
+
+  bool is_straight() const {
+    return from_rate == nullptr || to_rate == nullptr || from_rate->size() == 0 ||
+           to_rate->size() == 0;
+  }
+  double step() const { return to_time - from_time; }
 };
 
 /// Equations of a truss: layout of the unknowns, residual, Jacobian, inequalities. Joints are asked
@@ -39,6 +64,10 @@ class System {
   int displacements() const { return displacements_; }
   int first_displacement(int node) const { return node_row_[index(node)]; }
   const Model& model() const { return *model_; }
+
+  /// Residual and rows of a joint alone, each entry of the Jacobian listed.
+  void evaluate_joint(int joint, const VectorXd& z, double time, const StepStart& start,
+                      JointStatus status, JointModel model, double opening, Assembly& to) const;
 
   /// Which parts of a truss an evaluation asks.
   enum class Parts : unsigned char { all, bars, joints };
@@ -95,11 +124,12 @@ class System {
 
   /// Friction's heat of a step and the temperature's work, added to the state's.
   /// @param after the state at z as the start of the next step, @param slips see slips()
-  /// @param rate_before, rate rates of the unknowns at both ends, by which both are of fourth
-  /// order; without, or where a status changed between them, they are of second
-  void account(const VectorXd& z_before, double time_before, const VectorXd& z, double time,
-               const StepStart& start, const StepStart& after, const VectorXd& slips, State& state,
-               const VectorXd& rate_before = {}, const VectorXd& rate = {}) const;
+  /// @param way where statuses are the same at both ends, the rates by which both are of fourth
+  /// order; without they are of second
+  void account(const Way& way, const StepStart& start, const StepStart& after,
+               const VectorXd& slips, State& state) const;
+  /// The temperature's work on links of a step [J].
+  double work_on_links(const Way& way) const;
 
   /// Displacements, forces and energies at z; dissipation and thermal work are left alone.
   /// @param now the state at z as the start of the next step
@@ -140,6 +170,8 @@ class System {
   double size() const { return size_; }  ///< Largest extent of the drawn shape [m].
 
  private:
+  /// The temperature's work of a step on joints whose parts expand [J].
+  double work_on_joints(const Way& way, const StepStart& start) const;
   /// Heat of a step of every joint [J], as if all were straight between its ends.
   VectorXd heat(const VectorXd& z, double time, const StepStart& start, const StepStart& after,
                 const VectorXd& slips) const;

@@ -54,25 +54,13 @@ double Walker::turn_of_stick(int i, const Ends& ends, const Rounding& rounding) 
   const Trial last_rate =
       system.trial(i, ends.to_rate, ends.to_time, ends.start, JointModel::friction, 1.0);
   const auto leaves = [&](double share) {
-    Trial at = last;
+    Trial at = on_its_way(first, last, first_rate, last_rate, step, share);
     at.length_rounding = rounding.length;
     at.force_rounding = rounding.force;
     const JointFrame& frame = last.frame;
     if (frame.program >= 0) {
       at.temperature_change = model.temperature_change(frame.program, frame.temperature_fraction,
                                                        ends.from_time + share * step);
-    }
-    for (std::size_t k = 0; k < most_joint_nodes; ++k) {
-      for (Eigen::Index x = 0; x < 3; ++x) {
-        at.moved[k][x] = Cubic{first.moved[k][x], last.moved[k][x], step * first_rate.moved[k][x],
-                               step * last_rate.moved[k][x]}
-                             .at(share);
-      }
-    }
-    for (std::size_t k = 0; k < most_joint_forces; ++k) {
-      at.force[k] = Cubic{first.force[k], last.force[k], step * first_rate.force[k],
-                          step * last_rate.force[k]}
-                        .at(share);
     }
     return joint(i, [&](const auto& one) { return one.decide(at, status); }) != status;
   };

@@ -354,6 +354,52 @@ TEST(Truss, RibFollowsItsPathAndClosesItsBalance) {
   }
 }
 
+TEST(Truss, JournalThatGrowsWorksAgainstTheForceThatPressesIt) {
+  // A load presses a journal into a fixed bore; it gives way by what the clearance grows.
+  Model model = rib();
+  const double load = 50.0;
+  model.nodes = {node("bore", 0, 0, 0), node("journal", 0, 0, 2), node("wall", -1, 0, 0)};
+  model.nodes[1].load = {load, 0.0, 0.0};
+  model.links.clear();
+  model.torsion_springs.clear();
+  model.springs = {{"spring", 2, 1, 1e3, 1.0, false}};
+  ClearanceRevolute& joint = revolute(model);
+  joint.journal_node = 1;
+  joint.bearing_node = 0;
+  joint.journal_link = joint.bearing_link = -1;
+  joint.friction_coefficient = 0.0;
+  joint.journal_thermal_expansion = 2e-5;
+  joint.bearing_thermal_expansion = 1e-5;
+  const double growth =
+      1e-5 * (joint.journal_radius + joint.radial_clearance) - 2e-5 * joint.journal_radius;
+  const Path path = solve(model);
+  double largest = 0.0;
+  for (const State& state : path.states) {
+    const double stored = state.elastic_energy + state.load_potential -
+                          path.states.front().elastic_energy - path.states.front().load_potential;
+    // The spring takes 1e3 N/m times the clearance of the load.
+    const double pressed = load - 1e3 * joint.radial_clearance;
+    const double work = -pressed * growth * state.temperature_change;
+    EXPECT_NEAR(state.thermal_work, work, 1e-2 * std::abs(work) + 1e-18);
+    EXPECT_NEAR(state.thermal_work, stored, 1e-12 * load * joint.radial_clearance);
+    largest = std::max(largest, std::abs(work));
+  }
+  EXPECT_GT(largest, 1e-4 * load * joint.radial_clearance);  // else the balance says nothing
+}
+
+TEST(Truss, RibOfExpandingJournalsClosesItsBalance) {
+  Model model = elastic_rib();
+  revolute(model).journal_thermal_expansion = 3e-5;
+  revolute(model).bearing_thermal_expansion = 1e-5;
+  // What rolls is of second order: four times the increments leave a sixteenth.
+  Options options;
+  const double coarse = std::abs(relative_residue(solve(model, options)));
+  options.increments_per_branch *= 4;
+  const double fine = std::abs(relative_residue(solve(model, options)));
+  EXPECT_LT(coarse, 1e-5);
+  EXPECT_LT(fine, 0.08 * coarse);
+}
+
 TEST(Truss, ItemsOutOfRangeAreNamed) {
   Model model = bar();
   model.links[0].axial_stiffness = -1.0;

@@ -99,9 +99,8 @@ BallState<Number> ball_state(const BallJoint& joint, const Vector<Number>& force
   if (joint.socket_link >= 0) s.socket_direction = between(socket_far, socket);
   s.force = force;
   const double bore = joint.ball_radius + joint.radial_clearance;
-  const double growth =
-      joint.socket_thermal_expansion * bore - joint.ball_thermal_expansion * joint.ball_radius;
-  s.clearance = Number(opening * (joint.radial_clearance + temperature_change * growth));
+  s.clearance =
+      Number(opening * (joint.radial_clearance + temperature_change * joint.clearance_growth()));
   s.distance = Number(0.0);
   s.normal = Vector<Number>::Zero();
   s.normal_force = Number(0.0);

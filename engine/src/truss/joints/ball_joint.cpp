@@ -318,6 +318,10 @@ double BallJoint::elastic_energy(const Trial& trial, const double* now_) const {
   return contact_of(*this).energy(state_of(*this, trial).normal_force) + bent;
 }
 
+double BallJoint::contact_force(const Trial& trial) const {
+  return state_of(*this, trial).normal_force;
+}
+
 void BallJoint::describe(const Trial& trial, double* outputs) const {
   const BallState<double> now = state_of(*this, trial);
   Eigen::Map<Vector3d>(outputs, 3) = now.offset;

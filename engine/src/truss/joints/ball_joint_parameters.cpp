@@ -63,10 +63,8 @@ void BallJoint::validate(const Model& model) const {
   check_link(socket_link, socket_node, "socket link");
   check(!partial_slip || friction_coefficient > 0.0, "partial_slip", partial_slip,
         "0 without friction");
-  const double growth = socket_thermal_expansion * (ball_radius + radial_clearance) -
-                        ball_thermal_expansion * ball_radius;
   const double least =
-      radial_clearance + model.lowest_strain(program, growth * temperature_fraction);
+      radial_clearance + model.lowest_strain(program, clearance_growth() * temperature_fraction);
   check(least > 0, "clearance at the program's worst temperature", least, "> 0 m");
 }
 

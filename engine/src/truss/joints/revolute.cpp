@@ -117,9 +117,7 @@ Geometry geometry_of(const ClearanceRevolute& joint, const Trial& trial) {
   }
   const double change = trial.temperature_change;
   const double bore = joint.journal_radius + joint.radial_clearance;
-  const double growth = change * (joint.bearing_thermal_expansion * bore -
-                                  joint.journal_thermal_expansion * joint.journal_radius);
-  g.clearance = trial.opening * (joint.radial_clearance + growth);
+  g.clearance = trial.opening * (joint.radial_clearance + change * joint.clearance_growth());
   // Both surfaces meet half-way between them.
   g.depth = std::max(0.0, g.eccentricity.norm() - g.clearance);
   g.journal_radius =
@@ -332,10 +330,8 @@ void ClearanceRevolute::validate(const Model& model) const {
         mindlin_stiffness, "infinite, because hertz_stiffness is");
   check(!partial_slip || (friction_coefficient > 0.0 && std::isfinite(mindlin_stiffness)),
         "partial_slip", partial_slip, "0 without friction or with a rigid contact");
-  const double growth = bearing_thermal_expansion * (journal_radius + radial_clearance) -
-                        journal_thermal_expansion * journal_radius;
   const double least =
-      radial_clearance + model.lowest_strain(program, growth * temperature_fraction);
+      radial_clearance + model.lowest_strain(program, clearance_growth() * temperature_fraction);
   check(least > 0, "clearance at the program's worst temperature", least, "> 0 m");
 }
 

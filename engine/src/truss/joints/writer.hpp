@@ -29,6 +29,14 @@ class Assembly {
     product = residual = Eigen::VectorXd::Zero(along.size());
   }
 
+  /// Lists every entry of the Jacobian instead of adding them up.
+  static Assembly listing(Eigen::Index unknowns) {
+    Assembly made(unknowns);
+    made.lists_ = true;
+    made.residual.setZero();
+    return made;
+  }
+
   /// Adds up residuals only, for who needs no Jacobian.
   static Assembly without_jacobian(Eigen::Index unknowns) {
     Assembly made(unknowns);
@@ -48,6 +56,8 @@ class Assembly {
   void add(int row, int column, double value) {
     if (slots_ != nullptr) {
       jacobian.valuePtr()[(*slots_)[next_++]] += value;
+    } else if (lists_) {
+      entries.emplace_back(row, column, value);
     } else if (along_ != nullptr) {
       product[row] += value * (*along_)[column];
     } else {
@@ -59,13 +69,15 @@ class Assembly {
 
   Eigen::VectorXd residual;
   Eigen::SparseMatrix<double> jacobian;
-  Eigen::VectorXd product;     ///< Jacobian times the vector.
-  std::vector<RowUnit> units;  ///< Of every row.
-  double largest_force = 0.0;  ///< Of any part [N].
-  std::size_t pieces = 0;      ///< Tells sets of pieces of branches that have several.
+  Eigen::VectorXd product;                      ///< Jacobian times the vector.
+  std::vector<Eigen::Triplet<double>> entries;  ///< Of the Jacobian, where they are listed.
+  std::vector<RowUnit> units;                   ///< Of every row.
+  double largest_force = 0.0;                   ///< Of any part [N].
+  std::size_t pieces = 0;  ///< Tells sets of pieces of branches that have several.
 
  private:
   bool residual_only_ = false;
+  bool lists_ = false;
   const Eigen::VectorXd* along_ = nullptr;
   std::size_t next_ = 0;
   std::vector<std::pair<int, int>> places_;

@@ -314,11 +314,7 @@ void Stepper::book(const Trial& step, const Local& local) {
   Statuses statuses = origin_.statuses;
   contacts_.write(z, statuses);
   StepStart after = system_->commit(z, step.to, statuses, origin_);
-  State worked;
-  worked.joint_dissipation = VectorXd::Zero(account_.friction.size());
-  system_->account(z_, time_, z, step.to, origin_, after, VectorXd::Zero(account_.friction.size()),
-                   worked);
-  account_.thermal_work += worked.thermal_work;
+  account_.thermal_work += system_->work_on_links({z_, time_, z, step.to});
   note_branches();
   contacts_.remember_clearances();
   internal_ = internal_after_;

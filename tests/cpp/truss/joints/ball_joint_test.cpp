@@ -133,10 +133,7 @@ TEST(BallJoint, OpensAndClosesWhereTheRodThatPressesItIsAsLongAsTheWay) {
 }
 
 TEST(BallJoint, IncrementsDoNotMatterAndEnergyIsKept) {
-  Model model = tripod();
-  // The work of what expands at a contact is not in the balance of the truss.
-  BallJoint& joint = std::get<BallJoint>(model.joints[0]);
-  joint.ball_thermal_expansion = joint.socket_thermal_expansion = 0.0;
+  const Model model = tripod();
   double jump[3] = {0.0, 0.0, 0.0};
   double residue[3] = {0.0, 0.0, 0.0};
   Vector3d fine = Vector3d::Zero();

@@ -79,6 +79,11 @@ struct BallJoint {
   double slip(const Trial& trial, const double* after) const;
   double dissipation(const Trial& trial, const double* after, double slip) const;
   double elastic_energy(const Trial& trial, const double* now) const;
+  double clearance_growth() const {
+    return socket_thermal_expansion * (ball_radius + radial_clearance) -
+           ball_thermal_expansion * ball_radius;
+  }
+  double contact_force(const Trial& trial) const;
   void describe(const Trial& trial, double* outputs) const;
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;

@@ -144,6 +144,8 @@ struct Seat {
 //   slip()                slide of the step that friction turned into heat [m]
 //   dissipation()         heat of the step [J]
 //   elastic_energy()      stored in it [J]
+//   clearance_growth()    of types with a clearance that its temperature changes: by how much
+//                         [m/K]; contact_force() is what it then works against [N]
 //   beyond_edges()        of types with edges at which the stiffness jumps without a change of
 //                         status: how far it is beyond each [m]
 //   describe()            outputs in their order

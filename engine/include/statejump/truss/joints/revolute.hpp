@@ -66,6 +66,11 @@ struct ClearanceRevolute {
   double slip(const Trial& trial, const double* after) const;
   double dissipation(const Trial& trial, const double* after, double slip) const;
   double elastic_energy(const Trial& trial, const double* now) const;
+  double clearance_growth() const {
+    return bearing_thermal_expansion * (journal_radius + radial_clearance) -
+           journal_thermal_expansion * journal_radius;
+  }
+  static double contact_force(const Trial& trial) { return trial.force[0]; }
   void describe(const Trial& trial, double* outputs) const;
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;

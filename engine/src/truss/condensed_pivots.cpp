@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "condensed_pivots.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+
+namespace statejump::truss::detail {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// A row of the equations on one branch.
+struct Row {
+  std::vector<std::pair<int, double>> gradient;  ///< Unknown and derivative.
+  double value = 0.0;
+
+  bool operator==(const Row&) const = default;
+};
+
+/// Rows of a joint's forces on one of its branches.
+using Rows = std::vector<Row>;
+
+class Pivots {
+ public:
+  Pivots(const System& system, const Linearized& of, const std::vector<int>& joints)
+      : system_(system),
+        of_(of),
+        listing_(Assembly::listing(system.unknowns())),
+        statuses_(of.statuses),
+        end_(of.z + of.step),
+        local_(index(system.unknowns()), -1) {
+    for (const int joint : joints) {
+      if (of.statuses[index(joint)] == JointStatus::open) continue;
+      joints_.push_back(joint);
+      // Its rows name all unknowns that it is asked about.
+      for (const Row& row : rows(joint, of.statuses[index(joint)])) {
+        for (const auto& entry : row.gradient) see(entry.first);
+      }
+      for (int k = 0; k < system.force_count(joint); ++k) see(system.force_row(joint) + k);
+    }
+  }
+
+  std::optional<CondensedPivots> solve() {
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
+    std::unordered_set<std::size_t> sets{fingerprint(statuses_)};
+    for (;;) {
+      const Rounding slack = system_.rounding(end_);
+      std::vector<std::pair<int, JointStatus>> changes;
+      for (const int joint : joints_) {
+        const JointStatus status = statuses_[index(joint)];
+        const JointStatus wanted =
+            system_.decide(joint, end_, of_.time, of_.start, of_.model, of_.opening, status, slack);
+        if (wanted != status && wanted != JointStatus::open) changes.emplace_back(joint, wanted);
+      }
+      if (changes.empty()) return CondensedPivots{statuses_, whole_step()};
+      if (changes.size() < fewest) {
+        fewest = changes.size();
+        sets.clear();
+      } else {
+        changes.resize(1);
+      }
+      for (const auto& [joint, status] : changes) {
+        if (!change(joint, status)) return std::nullopt;
+      }
+      if (!sets.insert(fingerprint(statuses_)).second) return std::nullopt;
+      move();
+    }
+  }
+
+ private:
+  const Rows& rows(int joint, JointStatus status) {
+    const auto [found, is_new] = rows_.try_emplace({joint, status});
+    if (!is_new) return found->second;
+    system_.evaluate_joint(joint, of_.z, of_.time, of_.start, status, of_.model, of_.opening,
+                           listing_);
+    const int first = system_.force_row(joint);
+    Rows made(index(system_.force_count(joint)));
+    for (std::size_t k = 0; k < made.size(); ++k) {
+      made[k].value = listing_.residual[first + static_cast<int>(k)];
+    }
+    for (const auto& entry : listing_.entries) {
+      const int row = entry.row() - first;
+      if (row < 0 || row >= static_cast<int>(made.size())) continue;
+      made[index(row)].gradient.emplace_back(entry.col(), entry.value());
+    }
+    return found->second = std::move(made);
+  }
+
+  void see(int unknown) {
+    int& place = local_[index(unknown)];
+    if (place >= 0) return;
+    place = static_cast<int>(seen_.size());
+    seen_.push_back(unknown);
+  }
+
+  /// Puts a joint on another branch. False: that leaves the equations singular.
+  bool change(int joint, JointStatus status) {
+    const Rows& before = rows(joint, statuses_[index(joint)]);
+    const Rows& after = rows(joint, status);
+    statuses_[index(joint)] = status;
+    for (std::size_t k = 0; k < after.size(); ++k) {
+      if (before[k] == after[k]) continue;
+      if (!set(place_of(system_.force_row(joint) + static_cast<int>(k)), after[k])) return false;
+    }
+    return true;
+  }
+
+  /// Place of a row among the condensed ones, where it is on the branch of the base at first.
+  Index place_of(int row) {
+    const auto n = static_cast<Index>(responses_.size());
+    const auto [found, is_new] = place_.try_emplace(row, n);
+    if (!is_new) return found->second;
+    rows_condensed_.push_back(row);
+    const VectorXd response = of_.factors.solve(VectorXd::Unit(system_.unknowns(), row));
+    responses_.emplace_back(response(seen_));
+    // Its own row of the base is that of the identity; the others see it as they are now.
+    VectorXd column(n);
+    for (Index i = 0; i < n; ++i) column[i] = along(now_[static_cast<std::size_t>(i)], n);
+    inverse_.conservativeResize(n + 1, n + 1);
+    inverse_.col(n).head(n) = -(inverse_.topLeftCorner(n, n) * column);
+    inverse_.row(n).setZero();
+    inverse_(n, n) = 1.0;
+    values_.conservativeResize(n + 1);
+    values_[n] = 0.0;
+    now_.emplace_back();
+    matrix_.conservativeResize(n + 1, n + 1);
+    matrix_.col(n).head(n) = column;
+    matrix_.row(n).setZero();
+    matrix_(n, n) = 1.0;
+    return n;
+  }
+
+  double along(const Row& row, Index column) const {
+    double sum = 0.0;
+    const VectorXd& response = responses_[static_cast<std::size_t>(column)];
+    for (const auto& [unknown, slope] : row.gradient) {
+      sum += slope * response[local_[index(unknown)]];
+    }
+    return sum;
+  }
+
+  bool set(Index place, const Row& row) {
+    const auto n = static_cast<Index>(responses_.size());
+    Eigen::RowVectorXd now(n);
+    for (Index j = 0; j < n; ++j) now[j] = along(row, j);
+    const Eigen::RowVectorXd passed = (now - matrix_.row(place)) * inverse_;
+    const double pivot = 1.0 + passed[place];
+    if (!(std::abs(pivot) > 0.0) || !std::isfinite(pivot)) return false;
+    inverse_ -= VectorXd(inverse_.col(place)) * (passed / pivot);
+    matrix_.row(place) = now;
+    values_[place] = row.value;
+    for (const auto& [unknown, slope] : row.gradient) values_[place] += slope * of_.step[unknown];
+    now_[static_cast<std::size_t>(place)] = row;
+    return true;
+  }
+
+  /// Goes to the solution on the present branches, as far as the joints see it.
+  void move() {
+    condensed_ = inverse_ * values_;
+    VectorXd moved = VectorXd::Zero(static_cast<Index>(seen_.size()));
+    for (std::size_t j = 0; j < responses_.size(); ++j) {
+      moved += condensed_[static_cast<Index>(j)] * responses_[j];
+    }
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      const int unknown = seen_[k];
+      end_[unknown] = of_.z[unknown] + of_.step[unknown] - moved[static_cast<Index>(k)];
+    }
+  }
+
+  VectorXd whole_step() const {
+    VectorXd right = VectorXd::Zero(system_.unknowns());
+    for (std::size_t j = 0; j < rows_condensed_.size(); ++j) {
+      right[rows_condensed_[j]] = condensed_[static_cast<Index>(j)];
+    }
+    return of_.step - of_.factors.solve(right);
+  }
+
+  const System& system_;
+  const Linearized& of_;
+  Assembly listing_;
+  std::vector<int> joints_;
+  Statuses statuses_;
+  VectorXd end_;            ///< Of the step, as far as the joints see it.
+  std::vector<int> local_;  ///< Place of an unknown among those that the joints see, or −1.
+  std::vector<int> seen_;   ///< Those unknowns.
+  std::map<std::pair<int, JointStatus>, Rows> rows_;
+  std::unordered_map<int, Index> place_;  ///< Of a row of the equations.
+  std::vector<int> rows_condensed_;
+  std::vector<Row> now_;             ///< Of every condensed row; empty: that of the base.
+  std::vector<VectorXd> responses_;  ///< Of the seen unknowns to a unit in each condensed row.
+  MatrixXd matrix_;
+  MatrixXd inverse_;
+  VectorXd values_;
+  VectorXd condensed_;
+};
+
+}  // namespace
+
+std::optional<CondensedPivots> condensed_pivots(const System& system, const Linearized& of,
+                                                const std::vector<int>& joints) {
+  return Pivots(system, of, joints).solve();
+}
+
+}  // namespace statejump::truss::detail
