@@ -30,7 +30,7 @@ struct ContactHost {
     scene.forces.addForce(contact.id2, wrench.force_2);
     scene.forces.addTorque(contact.id2, wrench.torque_2);
   }
-  static constexpr bool looks_at_forces = true;
+  static constexpr bool judges = true;
   [[gnu::cold, gnu::noinline]] bool accepts(Real stiffness, const Vector3r& force,
                                             const JointPhys& physics) const {
     const stepper::Answer answer = stepper::judge(stiffness, force, physics, scene.dt);

@@ -38,7 +38,7 @@ TEST(Questions, BatchesAreNeverMoreLenientThanOneByOne) {
   for (int i = 0; i < 100'000; ++i) {
     const ContactPhysics physics = scenes::physics(std::pow(10, exponent(random)));
     const double step = std::pow(10, 0.5 * exponent(random));
-    const double largest = detail::plain_stiffness(physics, step);
+    const double largest = plain_stiffness(physics, step);
     // Next to the limit, where rounding decides.
     const double limit = 4 * physics.effectiveMass / (step * step);
     const double stiffness = limit * (1 + off(random) * std::numeric_limits<double>::epsilon());
@@ -52,16 +52,40 @@ TEST(Questions, BatchesAreNeverMoreLenientThanOneByOne) {
   EXPECT_GT(plain, 10'000);
 }
 
+TEST(Questions, ChangesBelowTheBoundOfARunLeaveEveryLength) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> exponent(-12, 3), off(-40, 40);
+  int plain = 0;
+  Link link;
+  link.stressFreeLength = 0.5;
+  for (int i = 0; i < 100'000; ++i) {
+    const double expansion = std::pow(10, exponent(random));
+    const double bound = plain_change(expansion);
+    const double change = (1 + off(random) * std::numeric_limits<double>::epsilon()) / expansion;
+    if (change < bound) {
+      ++plain;
+      link.thermalExpansion = -expansion;
+      EXPECT_TRUE(is_strain(-expansion * change));
+      EXPECT_GT(stress_free_length(link, change), 0);
+    }
+    EXPECT_LT(0.999 / expansion, bound);
+    EXPECT_GT(1.001 / expansion, bound);
+    EXPECT_EQ(plain_change(-expansion), bound);
+  }
+  EXPECT_GT(plain, 10'000);
+  for (const double wrong : {none, HUGE_VAL, -HUGE_VAL}) EXPECT_EQ(plain_change(wrong), 0);
+}
+
 TEST(Questions, NoStiffnessIsPlainForNumbersThatAreNone) {
   for (const auto& quantity : contact_quantities<ContactPhysics>) {
     for (const double wrong : {none, -1.0, HUGE_VAL}) {
       ContactPhysics physics = scenes::physics(scenes::mass);
       physics.*quantity.value = wrong;
-      EXPECT_TRUE(std::isnan(detail::plain_stiffness(physics, 1e-6))) << quantity.name;
+      EXPECT_TRUE(std::isnan(plain_stiffness(physics, 1e-6))) << quantity.name;
     }
   }
   for (const double step : {0.0, -1e-6, none}) {
-    EXPECT_TRUE(std::isnan(detail::plain_stiffness(scenes::physics(scenes::mass), step))) << step;
+    EXPECT_TRUE(std::isnan(plain_stiffness(scenes::physics(scenes::mass), step))) << step;
   }
 }
 
@@ -95,6 +119,10 @@ double time_of(const Scene& scene, long step) {
   return static_cast<double>(step) * scene.time_step;
 }
 
+/// Of the link below: none of the steps has a temperature at which its length is 0, and its force
+/// none.
+constexpr double shrinks = 0.9;  // [1/K]
+
 /// A crowd with one more link that shrinks by its own length within some steps.
 Scene shrinking(bool moves) {
   Scene scene = scenes::held_crowd(5);
@@ -103,7 +131,7 @@ Scene shrinking(bool moves) {
   auto& places = std::get<Links>(scene.stages.front()).places;
   for (LinkPlace& each : places) each.link.thermalExpansion = 0;
   LinkPlace more = places[2];
-  more.link.thermalExpansion = -1;
+  more.link.thermalExpansion = -shrinks;
   more.link.youngModulus = 1e3;
   more.link.dampingRatio = 0.9;
   if (!moves) more.link.id2 = places[3].link.id1;
@@ -116,8 +144,12 @@ TEST(Questions, ARunEndsBeforeALinkLosesItsLength) {
   for (const bool moves : {true, false}) {
     SCOPED_TRACE(moves ? "its tip moves" : "both ends rest");
     const Scene scene = shrinking(moves);
-    long expected = 0;  // T exceeds 1 K
-    while (scene.programs.front().temperature_change(time_of(scene, expected)) < 1) ++expected;
+    const auto length = [&](long step) {
+      return 1 - shrinks * scene.programs.front().temperature_change(time_of(scene, step));
+    };
+    long expected = 0;
+    while (length(expected) > 0) ++expected;
+    ASSERT_LT(length(expected), -0.01);
     ASSERT_GT(expected, 2);
     EXPECT_EQ(steps_alone(scene, scenes::maker(), 100), expected);
     EXPECT_EQ(steps_of_a_run(scene, scenes::maker(), 100), expected);

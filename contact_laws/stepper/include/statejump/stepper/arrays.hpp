@@ -28,7 +28,6 @@ struct Heater {
   };
   std::size_t program;  ///< place in Scene::programs
   std::vector<Target> targets;
-  double largest_expansion = 0;  ///< in magnitude, of the targets [1/K]
 };
 
 enum class Joint : unsigned char { revolute, ball, plane, outer_balls };
@@ -49,6 +48,7 @@ struct Contact {
   Vector3 axis = Vector3::Zero();  ///< where none does: of body 2
   ContactGeometry geometry;
   ContactPhysics physics;
+  double plain_stiffness = 0;  ///< plain_stiffness() of the physics [N/m]
 };
 
 /// A link, with its program and what is known of it before the first step.

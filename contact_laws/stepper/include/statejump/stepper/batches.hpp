@@ -206,7 +206,7 @@ inline void Batches::load(ContactLanes& batch, std::size_t lane) {
   put(batch.velocity_2, lane, two.motion.velocity);
   put(batch.spin_1, lane, one.motion.angular_velocity);
   put(batch.spin_2, lane, two.motion.angular_velocity);
-  batch.load(lane, contact, arrays_.time_step);
+  batch.load(lane, contact);
   if (!used) batch.real[lane] = 0;
 }
 
@@ -238,7 +238,7 @@ bool Batches::make_one(ContactLanes& batch, std::size_t lane, const One& one) {
   Contact& contact = arrays_.contacts[place];
   batch.unload(lane, contact);
   const bool made = one(place);
-  batch.load(lane, contact, arrays_.time_step);
+  batch.load(lane, contact);
   return made;
 }
 

@@ -309,19 +309,22 @@ ContactEnergy account(const kernel::ContactResponse& response, double dissipatio
 /// What the laws ask of whoever steps them:
 ///   time_step() [s], tracks_energy(), add(ContactEnergy)
 ///   exert(wrench)              forces on the two bodies
-///   looks_at_forces            whether a force that is no number is to be seen in its own step
-///   accepts(k, force, physics) whether an answer that is not plain is good: normal stiffness k
-///                              [N/m], force on body 1 [N]; else it fails
+///   judges                     whether an answer is judged before it acts; else whoever steps the
+///                              contact asks afterwards what it keeps
+///   accepts(k, force, physics) of one that judges: whether an answer that is not plain is good:
+///                              normal stiffness k [N/m], force on body 1 [N]; else it fails
 ///
 /// Whether the answer of a contact can be used.
 template <class Physics, class Host>
 [[gnu::always_inline]] inline bool is_usable(const kernel::ContactResponse& response,
                                              const Physics& physics, Host&& host) {
-  bool plain = is_plain_stiffness(response.normal_stiffness, physics, host.time_step());
-  if constexpr (std::decay_t<Host>::looks_at_forces) {
-    plain = plain && physics.tangensOfFrictionAngle >= 0 && is_plain(response.force_on_1);
+  if constexpr (std::decay_t<Host>::judges) {
+    return (is_plain_stiffness(response.normal_stiffness, physics, host.time_step()) &&
+            physics.tangensOfFrictionAngle >= 0 && is_plain(response.force_on_1)) ||
+           host.accepts(response.normal_stiffness, response.force_on_1, physics);
+  } else {
+    return true;
   }
-  return plain || host.accepts(response.normal_stiffness, response.force_on_1, physics);
 }
 
 /// Hertz and Mindlin. @return false when the contact is open; true, without forces, when it failed

@@ -15,20 +15,6 @@
 
 namespace statejump::stepper {
 
-namespace detail {
-
-/// Of every run: up to which stiffness of the normal law is_plain_stiffness() holds [N/m], less by
-/// more than rounding; NaN, below which is nothing, for numbers that are not allowed.
-inline double plain_stiffness(const ContactPhysics& physics, double time_step) {
-  if (!(time_step > 0) || first_wrong(contact_quantities<ContactPhysics>, physics)) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  constexpr double less = 1 - 8 * std::numeric_limits<double>::epsilon();
-  return less * 4 * physics.effectiveMass / time_step / time_step;
-}
-
-}  // namespace detail
-
 /// Up to four contacts of one kind of joint, and what they keep from step to step. Lanes that are
 /// not used repeat the first.
 struct ContactLanes {
@@ -51,7 +37,7 @@ struct ContactLanes {
   Pack elastic_force, elastic_energy, clearance, radius;  // of the last step
 
   /// Takes over a contact; the rest of a lane stays what it is from step to step.
-  void load(std::size_t lane, const Contact& contact, double time_step) {
+  void load(std::size_t lane, const Contact& contact) {
     const ContactPhysics& physics = contact.physics;
     real[lane] = contact.real ? -1 : 0;
     young[lane] = physics.effectiveYoungModulus;
@@ -62,7 +48,7 @@ struct ContactLanes {
     damps_normal = any(normal_damping > 0);
     damps_tangential = any(tangential_damping > 0);
     mass[lane] = physics.effectiveMass;
-    plain_stiffness[lane] = detail::plain_stiffness(physics, time_step);
+    plain_stiffness[lane] = contact.plain_stiffness;
     put(normal, lane, contact.geometry.normal);
     put(tangential_force, lane, -physics.shearForce);
     stiffness[lane] = physics.ks;
@@ -103,7 +89,7 @@ struct MotionLanes {
 
 namespace detail {
 
-/// is_plain_stiffness(), for contacts of a radius above 0.
+/// is_below(), lane by lane.
 [[gnu::always_inline]] inline Mask are_below(const Pack& stiffness, const Pack& largest) {
   return stiffness < largest;
 }

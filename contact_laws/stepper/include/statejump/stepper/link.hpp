@@ -79,6 +79,11 @@ struct LinkStep {
   double tension;             ///< N [N]
 };
 
+/// l_T [m] at a temperature change [K].
+inline double stress_free_length(const Link& link, double temperature_change) {
+  return link.stressFreeLength * (1 + link.thermalExpansion * temperature_change);
+}
+
 /// @param temperature_rate gives dT' at this time [K/s]; asked in the first step only
 /// @param damping damping_coefficient() [N s/m]; @param time [s]
 template <class Rate>
@@ -90,8 +95,7 @@ LinkStep link_step(Link& link, const Span& span, const Vector3& root_velocity,
   step.relative_velocity = tip_velocity - root_velocity;
   const double length_rate = step.relative_velocity.dot(span.direction);
   link.temperatureChange = temperature_change;
-  step.stress_free_length =
-      link.stressFreeLength * (1 + link.thermalExpansion * link.temperatureChange);
+  step.stress_free_length = stress_free_length(link, temperature_change);
   // Of the last step, as the velocities are: at a corner of the program the rate of one instant
   // would set the dashpot against a speed that the tip does not have yet.
   const double since = time - link.previousTime;

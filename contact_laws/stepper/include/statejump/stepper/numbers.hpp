@@ -152,6 +152,30 @@ bool is_plain_stiffness(double stiffness, const Physics& physics, double time_st
   return rate > 0 && time_step * rate <= 4 * physics.effectiveMass;
 }
 
+/// Of every run: below which stiffness of the normal law, 0 or above, is_plain_stiffness() holds
+/// [N/m], less by more than rounding; NaN, below which is nothing, for numbers that are not
+/// allowed.
+template <class Physics>
+double plain_stiffness(const Physics& physics, double time_step) {
+  if (!(time_step > 0) || first_wrong(contact_quantities<Physics>, physics)) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  constexpr double less = 1 - 8 * std::numeric_limits<double>::epsilon();
+  return less * 4 * physics.effectiveMass / time_step / time_step;
+}
+
+/// Of every run: below which magnitude of a temperature change an expansion leaves every length
+/// [K], less by more than rounding; 0 for a coefficient that is none. @param expansion [1/K]
+inline double plain_change(double expansion) {
+  constexpr double less = 1 - 8 * std::numeric_limits<double>::epsilon();
+  return std::isfinite(expansion) ? less / std::abs(expansion) : 0;
+}
+
+/// Of every step: below a bound of the run. Fails where either is none.
+inline bool is_below(double value, double bound) {
+  return value < bound;
+}
+
 /// What is to be done with the answer of a contact that is not plain.
 enum class Answer : unsigned char { good, step_is_too_long, no_number };
 

@@ -23,11 +23,6 @@
 
 namespace statejump::stepper {
 
-/// Of every step of a link.
-inline bool has_length(const LinkStep& step) {
-  return step.stress_free_length > 0;
-}
-
 /// The law of contacts that is not made of laws by name.
 struct HertzMindlin {};
 
@@ -77,7 +72,6 @@ class Scene {
   struct Host {
     Scene& scene;
     const Contact& contact;
-    bool* failed;
     double time_step() const { return scene.time_step; }
     bool tracks_energy() const { return scene.tracks_energy; }
     void add(const ContactEnergy& energy) {
@@ -98,13 +92,7 @@ class Scene {
         if (two.turns) two.added_torque += wrench.torque_2;
       }
     }
-    // What is no number stays none: is_sound() sees it when the steps are made.
-    static constexpr bool looks_at_forces = false;
-    [[gnu::cold, gnu::noinline]] bool accepts(double stiffness, const Vector3& force,
-                                              const ContactPhysics& physics) {
-      *failed = judge(stiffness, force, physics, scene.time_step) != Answer::good;
-      return !*failed;
-    }
+    static constexpr bool judges = false;  // step_contact() does
   };
 
   // Whether a journal's axis is further from parallel to the bearing's than is allowed.
@@ -115,9 +103,12 @@ class Scene {
   template <class Contacts, class Move>
   bool step(const Contacts& contacts_of_all, const Move& move);
   bool sums_before_moving() const;
-  bool heat();
+  bool change_temperatures();
+  bool leaves_lengths(std::size_t program) const;
+  void heat();
   template <class Law>
   bool step_contact(const Law& law, std::size_t place, const Make& make);
+  bool accepts(const ContactPhysics& physics) const;
   Found find(Contact& contact);
   bool act(Links& group);
   bool act(std::vector<TorsionPlace>& springs);
@@ -128,8 +119,9 @@ class Scene {
   bool move_all(const std::vector<std::size_t>& places);
 
   std::vector<std::size_t> moving_;
-  std::vector<double> changes_;  // temperature changes of the programs in this step [K]
-  std::vector<Vector3> kept_;    // moments on tips, forces across planes
+  std::vector<double> changes_;        // temperature changes of the programs in this step [K]
+  std::vector<double> plain_changes_;  // of the programs: below them leaves_lengths() holds [K]
+  std::vector<Vector3> kept_;          // moments on tips, forces across planes
   bool summed_ = false;
 };
 
@@ -156,13 +148,21 @@ inline void Scene::prepare() {
     if (bodies[i].moves) moving_.push_back(i);
   }
   changes_.assign(programs.size(), 0);
-  for (Heater& heater : heaters) {
-    heater.largest_expansion = 0;
+  plain_changes_.assign(programs.size(), std::numeric_limits<double>::infinity());
+  const auto limit = [&](std::size_t program, double change) {
+    plain_changes_[program] = std::min(plain_changes_[program], change);
+  };
+  for (const Heater& heater : heaters) {
     for (const Heater::Target& target : heater.targets) {
-      const double expansion = std::abs(target.expansion);
-      heater.largest_expansion = std::isfinite(expansion)
-                                     ? std::max(heater.largest_expansion, expansion)
-                                     : std::numeric_limits<double>::infinity();
+      limit(heater.program, plain_change(target.expansion));
+    }
+  }
+  for (const Stage& stage : stages) {
+    const auto* links = std::get_if<Links>(&stage);
+    if (!links) continue;
+    for (const LinkPlace& place : links->places) {
+      const bool has_length = place.link.stressFreeLength > 0;
+      limit(place.program, has_length ? plain_change(place.link.thermalExpansion) : 0);
     }
   }
   for (Contact& contact : contacts) {
@@ -171,6 +171,7 @@ inline void Scene::prepare() {
     contact.turns = one.turns || two.turns;
     contact.axis = axis_of(two.orientation);
     contact.tilted = tilt(one, contact.axis);
+    contact.plain_stiffness = plain_stiffness(contact.physics, time_step);
   }
 }
 
@@ -223,10 +224,9 @@ template <class Contacts, class Move>
 bool Scene::step(const Contacts& contacts_of_all, const Move& move) {
   summed_ = false;
   stored = {};
-  for (std::size_t i = 0; i < programs.size(); ++i) {
-    changes_[i] = programs[i].temperature_change(time);
-  }
-  if (!heat() || !contacts_of_all()) return false;
+  if (!change_temperatures()) return false;
+  heat();
+  if (!contacts_of_all()) return false;
   for (Stage& stage : stages) {
     if (!std::visit([&](auto& list) { return act(list); }, stage)) return false;
   }
@@ -258,14 +258,37 @@ inline bool Scene::is_sound() const {
                      [&](const Stage& stage) { return std::visit(of_links, stage); });
 }
 
-inline bool Scene::heat() {
+inline bool Scene::change_temperatures() {
+  for (std::size_t i = 0; i < programs.size(); ++i) {
+    changes_[i] = programs[i].temperature_change(time);
+    if (!is_below(std::abs(changes_[i]), plain_changes_[i]) && !leaves_lengths(i)) return false;
+  }
+  return true;
+}
+
+// Whether the temperature of a program leaves a length of all that it heats.
+[[gnu::cold, gnu::noinline]] inline bool Scene::leaves_lengths(std::size_t program) const {
+  const double change = changes_[program];
+  const auto of_heater = [&](const Heater& heater) {
+    return heater.program != program || std::all_of(heater.targets.begin(), heater.targets.end(),
+                                                    [&](const Heater::Target& target) {
+                                                      return is_strain(target.expansion * change);
+                                                    });
+  };
+  const auto of_stage = [&](const Stage& stage) {
+    const auto* links = std::get_if<Links>(&stage);
+    return !links ||
+           std::all_of(links->places.begin(), links->places.end(), [&](const LinkPlace& place) {
+             return place.program != program || stress_free_length(place.link, change) > 0;
+           });
+  };
+  return std::all_of(heaters.begin(), heaters.end(), of_heater) &&
+         std::all_of(stages.begin(), stages.end(), of_stage);
+}
+
+inline void Scene::heat() {
   for (const Heater& heater : heaters) {
     const double change = changes_[heater.program];
-    if (!is_plain_strain(heater.largest_expansion * change)) {
-      for (const Heater::Target& target : heater.targets) {
-        if (!is_strain(target.expansion * change)) return false;
-      }
-    }
     for (const Heater::Target& target : heater.targets) {
       Strain& now = strains[target.strain];
       const double strain = target.expansion * change;
@@ -273,7 +296,6 @@ inline bool Scene::heat() {
       now.strain = strain;
     }
   }
-  return true;
 }
 
 inline Found Scene::find(Contact& contact) {
@@ -317,17 +339,21 @@ bool Scene::step_contact(const Law& one, std::size_t place, const Make& make) {
   if (found == Found::apart) return true;
   if (found != Found::contact) return false;
   if (!contact.real) {
-    const std::optional<ContactPhysics> physics = make(place);
-    if (!physics) return false;
-    contact.physics = *physics;
+    const std::optional<ContactPhysics> made = make(place);
+    if (!made) return false;
+    contact.physics = *made;
+    contact.plain_stiffness = plain_stiffness(contact.physics, time_step);
     contact.real = contact.renewed = true;
     contact.made = iteration;
   }
   any_contact = true;
-  bool failed = false;
-  Host host{*this, contact, &failed};
+  Host host{*this, contact};
+  const ContactPhysics& physics = contact.physics;
+  // Asked behind all that is computed, which is quicker; a step that cannot be made is left half
+  // made anyway. A force that is no number stays none: is_sound() sees it when the steps are made.
   if constexpr (std::is_same_v<Law, HertzMindlin>) {
     contact.real = hertz_mindlin_step(contact.geometry, contact.physics, host);
+    return !contact.real || is_below(physics.kn, contact.plain_stiffness) || accepts(physics);
   } else {
     if (misfit(one, contact.geometry) != Misfit::none) return false;
     if (contact.geometry.penetrationDepth > 0 && !contact.physics.begun) {
@@ -339,8 +365,15 @@ bool Scene::step_contact(const Law& one, std::size_t place, const Make& make) {
     } catch (const std::exception&) {
       return false;
     }
+    // A law of one's own may answer anything.
+    return !contact.real || is_plain_stiffness(physics.kn, physics, time_step) || accepts(physics);
   }
-  return !failed;
+}
+
+// Whether what a contact keeps of its step is good after all.
+[[gnu::cold, gnu::noinline]] inline bool Scene::accepts(const ContactPhysics& physics) const {
+  return judge(physics.kn, physics.normalForce + physics.shearForce, physics, time_step) ==
+         Answer::good;
 }
 
 inline bool Scene::act(Links& group) {
@@ -363,7 +396,6 @@ inline bool Scene::act(Links& group) {
         [&, place = program] { return programs[place].temperature_rate(time); }, damping, time);
     if (inverse > 0 && !is_stable(now, inverse, time_step)) return false;
     Vector3 force = force_on_tip(now);
-    if (!has_length(now)) return false;
     if (link.tipTurnsWithLink) {
       if ((tip.blocked & all_rotations) != all_rotations) return false;
       force += turn_tip(link, now, kept_[i], tip.orientation, tip.motion.angular_velocity);
