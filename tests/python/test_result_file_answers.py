@@ -119,3 +119,31 @@ def test_no_number_comes_back_as_none(folder: Path, tmp_path: Path) -> None:
     changed = replace(result.answers, tables={"sensitivities": rows, "surface": []})
     write(replace(result, answers=changed), tmp_path / "changed.h5")
     assert read(tmp_path / "changed.h5").answers == changed
+
+
+@pytest.mark.parametrize("names", [("jump",), ("sum_of_contributions",), ("sum_error_relative",)])
+def test_answers_that_lack_a_number_are_refused(folder: Path, tmp_path: Path, names: tuple[str, ...]) -> None:
+    path = tmp_path / "bad.h5"
+    path.write_bytes((folder / "answers.h5").read_bytes())
+    with h5py.File(path, "r+") as file:
+        for name in names:
+            del file[f"answers/summary/{name}"]
+    sealed(path)
+    with pytest.raises(StatejumpError, match=f"bad.h5: damaged: /answers/summary/{names[0]} is missing"):
+        read(path)
+
+
+@pytest.mark.parametrize("column, value, said", [
+    ("answers/node_jumps/jump_x_m", np.nan, "truss.largest_m is not finite"),
+    ("models/reduced/contacts/tangential_force_N", 1e308, "places or forces are not finite, or too large"),
+    ("models/reduced/history/position_m", 1e308, "places or forces are not finite, or too large"),
+])
+def test_what_cannot_be_drawn_is_one_sentence(folder: Path, tmp_path: Path, column: str, value: float, said: str) -> None:
+    path = tmp_path / "bad.h5"
+    path.write_bytes((folder / "answers.h5").read_bytes())
+    with h5py.File(path, "r+") as file:
+        file[column][-1] = value
+    sealed(path)
+    done = run(tmp_path, "report", path)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and f"cannot be drawn: {said}" in done.stderr, done.stderr
+    assert not list(tmp_path.rglob("*.html"))

@@ -69,7 +69,8 @@ class Drawing:
                 for state, colour in result.scene["states"].items()
             ],
         }
-        self._measure()
+        with np.errstate(over="ignore", invalid="ignore"):  # it refuses what is too large
+            self._measure()
 
     def _column(self, name: str, values: Callable[[Run], np.ndarray]) -> str:
         for model, run in self.result.models.items():
@@ -230,10 +231,11 @@ class Drawing:
         }
 
     def _largest(self, force: dict[str, Any]) -> float:
-        return max(
-            float(np.nanmax(np.sqrt(sum(columns[name] ** 2 for name in force["vector"])), initial=0.0))
-            for columns in self.columns.values()
-        )
+        with np.errstate(over="ignore"):
+            return max(
+                float(np.nanmax(np.sqrt(sum(columns[name] ** 2 for name in force["vector"])), initial=0.0))
+                for columns in self.columns.values()
+            )
 
     def _measure(self) -> None:
         """Size of the scene at the start, largest force, magnification to begin with."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from markupsafe import Markup
 
 from statejump import __version__
 from statejump.core import units
-from statejump.core.errors import NotWritten, StatejumpError
+from statejump.core.errors import NotWritten, StatejumpError, Unreadable
 from statejump.core.output import write_atomically
 from statejump.report import words
 from statejump.report.campaign import CampaignDocument
@@ -40,6 +41,27 @@ def embedded_json(data: Any) -> Markup:
     return Markup(dumped.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e"))
 
 
+def _not_finite(data: Any, place: str = "") -> Iterator[str]:
+    """Yield where numbers that are none stand in data for the page."""
+    if isinstance(data, Mapping):
+        for key, value in data.items():
+            yield from _not_finite(value, f"{place}.{key}" if place else str(key))
+    elif isinstance(data, (list, tuple)):
+        for number, value in enumerate(data):
+            yield from _not_finite(value, f"{place}[{number}]")
+    elif isinstance(data, float) and not math.isfinite(data):
+        yield place
+
+
+def _payload(document: Document | CampaignDocument) -> dict[str, Any]:
+    """Return the data of a document. :raises Unreadable: one of its numbers is none"""
+    data = document.payload()
+    wrong = next(_not_finite(data), None)
+    if wrong is not None:
+        raise Unreadable("cannot be drawn", cause=f"{wrong} is not finite", case=document.title)
+    return data
+
+
 def embedded_code(source: str, element: str) -> Markup:
     """Return a script or style that may stand in its element; ValueError if it would end it."""
     if f"</{element}" in source.lower():
@@ -65,8 +87,8 @@ def render(documents: Sequence[Document | CampaignDocument | UnsolvedDocument]) 
         models=words.MODELS,
         sides=words.SIDES,
         data=embedded_json({
-            "runs": [document.payload() for document in documents if isinstance(document, Document)],
-            "campaigns": [document.payload() for document in documents if isinstance(document, CampaignDocument)],
+            "runs": [_payload(document) for document in documents if isinstance(document, Document)],
+            "campaigns": [_payload(document) for document in documents if isinstance(document, CampaignDocument)],
         }),
         script=embedded_code(script, "script"),
         style=embedded_code(style, "style"),

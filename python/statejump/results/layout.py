@@ -173,6 +173,8 @@ ENTRIES = (
           required=False),
 )
 
+# Numbers of /answers/summary that stand there together, or not at all.
+SUM_OF_CONTRIBUTIONS = ("sum_of_contributions", "sum_error_relative")
 # Tables of /answers: what a row is, and the columns in the order of the CSV file.
 _JUMP = ("jump_x_m", "jump_y_m", "jump_z_m", "jump_m")
 TABLES: dict[str, tuple[str, tuple[str, ...]]] = {

@@ -18,7 +18,7 @@ from statejump.core.temperature_files import Histories
 from statejump.core.run import Column, Event, Events, Run
 from statejump.results.check import check
 from statejump.results.contents import Answers, Mesh, Result, Scalar
-from statejump.results.layout import MODELS, SUFFIX, TABLES
+from statejump.results.layout import MODELS, SUFFIX, SUM_OF_CONTRIBUTIONS, TABLES
 from statejump.results.scene_check import problems
 
 
@@ -155,10 +155,16 @@ def _comparison(group: h5py.Group) -> tuple[Quantity, ...]:
 
 
 def _answers(group: h5py.Group) -> Answers:
+    summary = _scalars(group["summary"])
+    # A sum of contributions comes with its error.
+    needed = ["jump", *(SUM_OF_CONTRIBUTIONS if any(name in summary for name in SUM_OF_CONTRIBUTIONS) else ())]
+    missing = [name for name in needed if name not in summary]
+    if missing:
+        raise ValueError(f"{group.name}/summary/{missing[0]} is missing")
     return Answers(
         **{key: group.attrs[key] for key in ("output", "text", "unit", "verdict", "verdict_text")},
         notes=_texts(group["notes"]),
-        summary=_scalars(group["summary"]),
+        summary=summary,
         tables={name: _rows(name, table) for name, table in group.items() if name not in ("notes", "summary")},
     )
 
