@@ -43,6 +43,8 @@ EQUIVALENT = HERE / "equivalent.toml"
 KILLED, SURVIVED, INVALID = "killed", "survived", "does not compile"
 # A mutant that takes longer than this many times the unmutated test has been noticed.
 PATIENCE, LEAST_SECONDS = 10, 60
+# Of what a mutant asks beyond the end of an array the assertions of the libraries tell.
+ASSERTING = ("-UNDEBUG", "-D_GLIBCXX_ASSERTIONS")
 # What tests include and no mutant changes.
 COMMON = ("gtest/gtest.h", "Eigen/Core", "Eigen/Geometry", "random", "string", "vector")
 HEAVY = ("numpy", "attrs", "h5py", "scipy.optimize", "scipy.stats", "hypothesis", "pytest", "matplotlib.pyplot",
@@ -172,7 +174,7 @@ class Compiled(Guards):
                 next(words)
             elif not re.match(r"-(O\d|g|W)", word):
                 kept.append(word.replace(f"{self.root}/", f"{self.folder}/"))
-        return [*kept, "-w"]
+        return [*kept, "-w", *ASSERTING]
 
     def compile(self, file: str, result: Path, *options: str) -> str | None:
         """Compile a file of the copy; return what the compiler said if it does not compile."""

@@ -57,6 +57,6 @@ MODULES = [
             "truss_campaign"),
     _python("validation", ("kinds/*/case.py", "kinds/truss/checks.py", "kinds/fclib/case.py"), "bad_input", "schema",
             "truss_case", "umbrella_case", "thermal_tables", "fclib", "statics"),
-    _python("verdicts", ("kinds/*/compare.py", "core/comparison.py", "results/difference.py"), "not_finite",
-            "truss_compare", "end_to_end", "umbrella_compare"),
+    _python("verdicts", ("kinds/*/compare.py", "core/comparison.py", "results/difference.py"), "verdict_rows",
+            "not_finite", "result_file", "truss_compare", "end_to_end", "umbrella_compare"),
 ]

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The reduced model of every shipped case by other compilers, optimisations and numbers of threads: the same bits.
 
-    determinism.py FOLDER [--compiler g++] [--case NAME ...]
+    determinism.py FOLDER [--beside build/python] [--compiler clang++] [--level=-O2] [--case NAME ...]
 
 Builds engine and Python package below FOLDER once for each of GCC and Clang at -O0, -O2 and -O3, runs the shipped cases
 with each, and once more with two threads for whatever library would take them, and prints a row for every case: the
-hash of all its numbers by the first build, and which of the others give another one. Exit status 1: one does. What is
-built and run already is kept.
+hash of all its numbers by the first build, and which of the others give another one. Exit status 1: one does. A package
+that is built already comes first with ``--beside``, by whatever compiler it was built. What is built and run already is
+kept.
 """
 from __future__ import annotations
 
@@ -77,10 +78,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--compiler", action="append", choices=COMPILERS, help="both if not given")
+    parser.add_argument("--level", action="append", choices=LEVELS, help="all if not given")
+    parser.add_argument("--beside", type=Path, metavar="PYTHON", help="a built package to compare with")
     parser.add_argument("--case", action="append", default=[])
     options = parser.parse_args()
     found: dict[str, dict[str, str]] = {}
-    for compiler, level in product(options.compiler or COMPILERS, LEVELS):
+    if options.beside:
+        results = options.folder.resolve() / "beside"
+        found[str(options.beside)] = hashes(options.beside.resolve(), results, options.case, 1)
+    for compiler, level in product(options.compiler or COMPILERS, options.level or LEVELS):
         name = f"{compiler} {level}"
         folder = options.folder.resolve() / (compiler + level)
         python = built(folder / "build", compiler, level)

@@ -109,6 +109,7 @@ TEST(Ball, RefusesASocketThatDoesNotHoldTheBall) {
   EXPECT_THROW(ball_contact(body, 5e-3, body, 5e-3), std::invalid_argument);
   EXPECT_THROW(ball_contact(body, 5e-3, body, 4e-3), std::invalid_argument);
   EXPECT_TRUE(ball_touches(body.position, 5e-3, body.position, 4.9e-3));
+  EXPECT_TRUE(ball_touches(body.position, 5e-3, body.position, 5e-3));
 }
 
 constexpr double other_radius = 3e-3;

@@ -164,6 +164,7 @@ TEST(Revolute, RefusesABearingThatDoesNotHoldTheJournal) {
   EXPECT_THROW(revolute_contact(body, 5e-3, body, 4e-3, Vector3::UnitZ()), std::invalid_argument);
   // The early-out lets such a pair through, so that the error is seen.
   EXPECT_TRUE(revolute_touches(body.position, 5e-3, body.position, 4.9e-3, Vector3::UnitZ()));
+  EXPECT_TRUE(revolute_touches(body.position, 5e-3, body.position, 5e-3, Vector3::UnitZ()));
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(revolute_contact(body, 5e-3, body, infinity, Vector3::UnitZ()).effective_radius, 5e-3);
 }

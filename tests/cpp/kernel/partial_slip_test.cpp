@@ -139,6 +139,40 @@ TEST(PartialSlip, PointsThatSayNothingGoFirst) {
   }
 }
 
+TEST(PartialSlip, AsManyPointsAsFitStay) {
+  constexpr int full = PartialSlipMemory::capacity;
+  const double edge = Contact::stiffness(usual_depth);
+  const double limit = mu * Contact::normal(usual_depth);
+  const double slope = 1.5 * limit / (edge * edge * edge);
+  PartialSlipMemory memory;
+  memory.begin(slope, 0.0);
+  for (int i = 0; i < full; ++i) {
+    const double square = edge * edge * i / (full - 1);
+    memory.push({std::sqrt(square), {(i % 2 ? 0.1 : -0.1) * slope * (edge * edge - square), 0.0}});
+  }
+  partial_slip_step(edge, limit, {0.0, 0.0}, memory);
+  EXPECT_EQ(memory.size(), full);
+  EXPECT_EQ(memory.merged(), 0.0);
+}
+
+TEST(PartialSlip, AtConstantLoadAPointThatSaysHardlyAnythingStays) {
+  // A corner of 1e-13 of the bound is above rounding and below what growth leaves out.
+  const double edge = Contact::stiffness(usual_depth);
+  const double limit = mu * Contact::normal(usual_depth);
+  const double bound = 1.5 * limit / edge;
+  const auto merged = [&](double growth) {
+    PartialSlipMemory memory;
+    memory.begin(bound / (edge * edge), 0.0);
+    memory.push({0.0, {0.1 * bound, 0.0}});
+    memory.push({std::sqrt(0.5) * edge, {(0.05 + 1e-13) * bound, 0.0}});
+    memory.push({edge, {0.0, 0.0}});
+    partial_slip_step(growth * edge, growth * growth * growth * limit, {0.0, 0.0}, memory);
+    return memory.merged();
+  };
+  EXPECT_EQ(merged(1.0), 0.0);
+  EXPECT_GT(merged(1.01), 0.0);
+}
+
 TEST(PartialSlip, LoadingUnloadingReloadingAtConstantLoad) {
   const double limit = mu * Contact::normal(usual_depth);
   const double gross = Contact::gross(usual_depth);

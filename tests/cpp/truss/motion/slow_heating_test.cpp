@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Joints whose friction sticks as springs, heated slowly in motion: beside the quasi-static path,
+// which has rows of its own for them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../joints/heated_bar.hpp"
+#include "scenes.hpp"
+#include "statejump/truss/path.hpp"
+
+namespace statejump::truss {
+namespace {
+
+using namespace scenes;
+
+/// A lever on a latch hinge, which a heated strut lifts through its play.
+Model lever(double seconds) {
+  Model model;
+  model.programs = {lasting(seconds, 100.0)};
+  model.nodes = {node("A", 0, 0, 0), node("B", 0.5, 0, 2), node("C", 0.5, -0.4, 0)};
+  model.links = {{"AB", 0, 1, 7e5, 0.5, 0.0, 0, 1.0}, {"CB", 2, 1, 7e5, 0.4, 2e-5, 0, 1.0}};
+  LatchHinge hinge;
+  hinge.name = "latch";
+  hinge.first_link = 0;
+  hinge.deadband = 5e-4;
+  hinge.stiffness = 200.0;
+  hinge.friction_moment = 3.0;
+  hinge.friction_stiffness = 1e5;
+  model.joints = {hinge};
+  return model;
+}
+
+/// A bar against a bolted joint.
+Model bolted(double seconds) {
+  IwanJoint joint;
+  joint.name = "bolts";
+  joint.first = 1;
+  joint.tangent_stiffness = 2e7;
+  joint.slip_force = 120.0;
+  joint.exponent = -0.4;
+  joint.stiffness_ratio = 0.7;
+  joint.elements = 10;
+  Model model = testing::heated_bar(joint, 100.0, 1);
+  model.programs = {lasting(seconds, 100.0)};
+  return model;
+}
+
+struct Apart {
+  double displacement;  ///< of node 1 at the end, over its jump [-]
+  double heat;          ///< over that of the path [-]
+};
+
+/// Motion at the end of a cycle beside the path, links of 0.1 kg with half their critical damping.
+Apart apart(const Model& model) {
+  const auto links = static_cast<Eigen::Index>(model.links.size());
+  Inertia inertia{Eigen::VectorXd::Constant(links, 0.1), {}, Eigen::VectorXd(links), {}, {}};
+  for (Eigen::Index i = 0; i < links; ++i) {
+    const Link& link = model.links[static_cast<std::size_t>(i)];
+    inertia.link_damping[i] = std::sqrt(link.axial_stiffness * link.stress_free_length * 0.1 / 3.0);
+  }
+  MotionOptions options;
+  options.steps = options.sample_every = 20000;
+  const State moved = simulate(model, inertia, options).states.back();
+  const State rested = solve(model).states.back();
+  const double jump = rested.displacement.col(1).norm();
+  return {(moved.displacement.col(1) - rested.displacement.col(1)).norm() / jump,
+          std::abs(moved.joint_dissipation.sum() / rested.joint_dissipation.sum() - 1.0)};
+}
+
+TEST(MotionSlowHeating, LatchHingesAndBoltedJointsFollowTheirPath) {
+  for (const auto& model : {lever, bolted}) {
+    const Apart fast = apart(model(0.1));
+    const Apart slow = apart(model(1.0));
+    SCOPED_TRACE(slow.displacement);
+    EXPECT_LT(slow.displacement, 1e-3);
+    EXPECT_LT(slow.heat, 1e-3);
+    EXPECT_LT(slow.displacement, 0.2 * fast.displacement);
+  }
+}
+
+}  // namespace
+}  // namespace statejump::truss
