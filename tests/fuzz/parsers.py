@@ -388,6 +388,9 @@ def one(reader: Reader, folder: Path, seed: int, number: int, counts: Counts) ->
     place.mkdir()
     chance = random.Random(f"{seed}:{reader.name}:{number}")
     given = reader.spoiled(place, chance)
+    # What makes the input is not tried: HDF5 itself does not survive every end of memory.
+    unlimited = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (_used_bytes() + MEMORY_BYTES, unlimited[1]))
     signal.setitimer(signal.ITIMER_PROF, CPU_S)
     signal.alarm(WALL_S)
     try:
@@ -401,12 +404,11 @@ def one(reader: Reader, folder: Path, seed: int, number: int, counts: Counts) ->
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
         signal.alarm(0)
+        resource.setrlimit(resource.RLIMIT_AS, unlimited)
 
 
 def _child(reader: Reader, folder: Path, seed: int, last: int, counts: Counts) -> None:
     """Take inputs until all are done."""
-    limit = _used_bytes() + MEMORY_BYTES
-    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     while counts["at"] < last:
         number = counts["at"]
         try:
