@@ -86,7 +86,8 @@ machine; here it is a ratio to YADE's loop in the same run. Load average of the 
 |---|--:|--:|--:|--:|--:|---|---|
 {rows_of_table}
 
-Samples are taken by Python in YADE, in both alike; the steps of the chain are without.
+Samples are those of a StateRecorder, worked up in blocks by Python in YADE, in both alike; the steps of the chain are
+without.
 
 Again: `PYTHONPATH=build/python /usr/bin/python3 bench/steppers.py [--repetitions N]`.
 """

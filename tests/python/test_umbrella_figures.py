@@ -284,7 +284,7 @@ def tiny(edited: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> Path:
         ("reduced_steps_per_cycle = 100000", "reduced_steps_per_cycle = 20000"),
         ("dem_steps_per_cycle = 400000", "dem_steps_per_cycle = 24000"),
         ("reduced_runs = 100", "reduced_runs = 4"),
-        ("dem_runs = 30", "dem_runs = 3"),
+        ("dem_runs = 100", "dem_runs = 3"),
         ("[start]", "[output]\nsamples_per_cycle = 200\n\n[start]"),
         case="umbrella",
     )
