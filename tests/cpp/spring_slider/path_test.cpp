@@ -411,5 +411,19 @@ TEST(SpringSliderPath, RefusesALinkOfNegativeLength) {
   EXPECT_NE(refusal([&model] { solve(model, cycle()); }), "");
 }
 
+TEST(SpringSliderPath, RefusesModelsAndProgramsOutOfRange) {
+  SpringSlider soft = table1();
+  soft.cross_section_area = -soft.cross_section_area;
+  thermal::Program endless = cycle();
+  endless.period = 0.0;
+  for (const auto& [model, program, field] :
+       {std::tuple{soft, cycle(), "cross_section_area"}, std::tuple{table1(), endless, "period"}}) {
+    const auto all = [&m = model, &p = program] { solve(m, p); };
+    const auto some = [&m = model, &p = program] { solve(m, p, Eigen::VectorXd::Zero(1)); };
+    EXPECT_NE(refusal(all).find(field), std::string::npos) << refusal(all);
+    EXPECT_NE(refusal(some).find(field), std::string::npos) << refusal(some);
+  }
+}
+
 }  // namespace
 }  // namespace statejump::spring_slider
