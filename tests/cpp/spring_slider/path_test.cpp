@@ -5,6 +5,7 @@
 
 #include <array>
 #include <random>
+#include <tuple>
 
 #include "statejump/spring_slider/history.hpp"
 #include "table1.hpp"
