@@ -176,9 +176,10 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         seen.clear();
       }
     }
-    // While inequalities are strict, a set that comes back tells that rounding decides.
+    // While inequalities are strict, a set that comes back tells that rounding decides. Laws of
+    // several pieces change them without a pivot: they are not condensed.
     const double paid = idle * factor_.solutions_per_factorization();
-    const bool wanders = pivoting == Pivoting::rounded && stepped && idle > 0 &&
+    const bool wanders = at_.pieces == 0 && pivoting == Pivoting::rounded && stepped && idle > 0 &&
                          paid >= static_cast<double>(wandering.size());
     if (wanders && !condensed && condense()) return begin_anew();
     if (wanders && ahead) return false;
