@@ -533,18 +533,16 @@ TEST(PartialSlip, RandomHistoriesInThePlane) {
   EXPECT_LE(eight.mean_square, 2e-3);
 }
 
-/// A known weakness and its size: round a circle twice at constant load. Chords are watched step by
-/// step, so that in many small steps they go off unnoticed.
-TEST(PartialSlip, ASlideThatTurnsSlowlyIsOffTheMoreTheMoreSteps) {
+/// Round a circle twice at constant load. What a chord goes off is measured over the slide after
+/// which rings forget, so that many small steps are as good as few.
+TEST(PartialSlip, ASlideThatTurnsIsFollowedWhateverTheNumberOfSteps) {
   struct Round {
     double share;  // of the slide of gross slip
     int steps;
-    double most;  // off, of mu F_N
   };
-  for (const auto& [share, steps, most] :
-       {Round{0.3, 200, 5e-4}, Round{0.3, 1000, 2e-3}, Round{0.3, 10000, 0.06},
-        Round{0.3, 100000, 0.06}, Round{1.0, 200, 2e-3}, Round{1.0, 1000, 1e-3},
-        Round{1.0, 10000, 0.02}, Round{1.0, 100000, 0.5}}) {
+  for (const auto& [share, steps] :
+       {Round{0.3, 200}, Round{0.3, 1000}, Round{0.3, 10000}, Round{0.3, 100000}, Round{1.0, 200},
+        Round{1.0, 1000}, Round{1.0, 10000}, Round{1.0, 100000}}) {
     Contact contact;
     contact.to(usual_depth, {0.0, 0.0});
     Punches row(200, 2e-6);
@@ -568,8 +566,9 @@ TEST(PartialSlip, ASlideThatTurnsSlowlyIsOffTheMoreTheMoreSteps) {
     // What is lost without being told.
     const double missing = (work - contact.response.elastic - contact.heat) / work;
     RecordProperty("missing" + which, std::to_string(missing));
-    EXPECT_LE(std::abs(missing), 0.3) << share << ", " << steps;
-    EXPECT_LE(worst, most) << share << ", " << steps;
+    // Some ten chords of 1e-4 each, all off to one side; the row has 200 punches.
+    EXPECT_LE(std::abs(missing), 1e-3) << share << ", " << steps;
+    EXPECT_LE(worst, 1e-3) << share << ", " << steps;
   }
 }
 

@@ -44,7 +44,10 @@ class PartialSlipStep {
     slipping_ = stuck_ == 0;  // all rings but the rim's, which carries nothing
     for (int i = 0; i + 1 < knots_; ++i) slipping_ = slipping_ && at(i).outside;
     add(at(0).x, at(0).outside ? bent(at(0)) : at(0).trial, false);
-    for (int i = 1; i < knots_; ++i) piece(at(i - 1), at(i));
+    for (int i = 1; i < knots_; ++i) {
+      pieces_left_ = knots_ - i;
+      piece(at(i - 1), at(i));
+    }
     store();
     return answer(old_, loss_, slipping_);
   }
@@ -163,7 +166,9 @@ class PartialSlipStep {
       add(b.x, b.trial, false);
       return;
     }
-    if (a.outside && b.outside) {
+    if (a.outside && b.outside && is_chord_of_bound(a, b)) {
+      slip(a, b);
+    } else if (a.outside && b.outside) {
       const double first = crossing(a, b);
       const double second = 1.0 - crossing(b, a);
       if (first < second) {
@@ -219,31 +224,70 @@ class PartialSlipStep {
   }
 
   /// A piece that slips as a whole. Its direction turns along it where the old one differs from
-  /// that of the slide: chords of at most `chord` each.
+  /// that of the slide: chords, none of which goes further off in this step than its budget().
   void slip(const Knot& a, const Knot& b, int depth = 0) {
-    constexpr int deepest = 8;
     if (!(b.x > a.x)) return;
     const double cross = a.trial.a * b.trial.b - a.trial.b * b.trial.a;
     const double along = a.trial.dot(b.trial);
-    if ((std::abs(cross) > straight * std::abs(along) || along < 0.0) && depth < deepest &&
-        knots_left()) {
+    const bool turns = std::abs(cross) > straight * std::abs(along) || along < 0.0;
+    if (turns && depth < deepest && knots_left()) {
       const Knot middle = on(a, b, 0.5);
-      const Tangent off = bent(middle) - 0.5 * (bent(a) + bent(b));
-      if (off.norm() * (b.x - a.x) > chord * slope_ * square_ * edge_) {
+      // a ring between them that is as near to its bound as they are
+      Knot ring = middle;
+      ring.old = (0.5 * (a.old.norm() + b.old.norm())) * direction(middle.old);
+      ring.trial = ring.old + ring.share * slide_;
+      const Tangent off = (bent(ring) - ring.old) - 0.5 * ((bent(a) - a.old) + (bent(b) - b.old));
+      if (off.norm() * (b.x - a.x) > budget()) {
         slip(a, middle, depth + 1);
         slip(middle, b, depth + 1);
         return;
       }
     }
-    const Tangent way = direction(a.trial + b.trial);
-    const auto ring = [&](const Knot& k) {
-      return Ring{k.old.dot(way), k.share * slide_.dot(way), old_bound(k.x), k.bound};
-    };
-    loss_ += loss(a.x, ring(a), b.x, ring(b));
+    if (turns && on_old_bound(a) && on_old_bound(b)) {
+      loss_ += loss_of_chord(a, b);
+    } else {
+      const Tangent way = direction(a.trial + b.trial);
+      const auto ring = [&](const Knot& k) {
+        const Tangent own = turns ? direction(k.trial) : way;
+        return Ring{k.old.dot(own), k.share * slide_.dot(own), old_bound(k.x), k.bound};
+      };
+      loss_ += loss(a.x, ring(a), b.x, ring(b));
+    }
     add(b.x, bent(b), true);
   }
 
-  bool knots_left() const { return stuck_ + size_ + 8 < largest; }
+  /// By how much one chord may change the force in this step [N]: over the slide after which rings
+  /// forget, however many steps it takes, by `chord` of the limit.
+  double budget() const { return chord * edge_ * std::min(slope_ * square_, slide_.norm()); }
+
+  bool on_old_bound(const Knot& k) const { return k.old.norm() >= (1.0 - 1e-9) * old_bound(k.x); }
+  static bool turned(const Tangent& a, const Tangent& b) {
+    return std::abs(a.a * b.b - a.b * b.a) > straight * std::sqrt(a.squared() * b.squared());
+  }
+
+  /// Whether rings between two knots slipped in directions between theirs. The chord lies within
+  /// the bound; that its rings stuck would be an answer to the chord.
+  bool is_chord_of_bound(const Knot& a, const Knot& b) const {
+    constexpr double near = 0.8;  // chords are divided long before; after a kink they are not
+    return turned(a.old, b.old) &&
+           a.old.dot(b.old) > near * std::sqrt(a.old.squared() * b.old.squared()) &&
+           on_old_bound(a) && on_old_bound(b);
+  }
+
+  /// Mean of U at both ends of the step, times its slip: of rings that slip all through it, as
+  /// chords have them, so that energies close.
+  static double loss_of_chord(const Knot& a, const Knot& b) {
+    const auto mean = [](const Knot& k) { return 0.5 * (k.old + bent(k)); };
+    const auto slipped = [](const Knot& k) { return k.trial - bent(k); };
+    const Piece w(a.x, b.x);
+    return std::max(0.0, w.both_at_a * mean(a).dot(slipped(a)) +
+                             w.both_at_b * mean(b).dot(slipped(b)) +
+                             w.one_each * (mean(a).dot(slipped(b)) + mean(b).dot(slipped(a))));
+  }
+
+  /// Whether a chord may be divided: each piece that is still to come may add three points, and
+  /// each half of a chord that is being divided one.
+  bool knots_left() const { return stuck_ + size_ + 3 * pieces_left_ + 2 * deepest < largest; }
 
   /// Adds a point of the new profile. @param on_bound the piece that ends here follows the bound
   void add(double x, const Tangent& u, bool on_bound) {
@@ -262,6 +306,16 @@ class PartialSlipStep {
       if (std::abs(cross) <= straight * std::sqrt(p.squared() * q.squared()) && p.dot(q) > 0.0 &&
           std::abs(next) <= straight * std::sqrt(p.squared() * u.squared()) && p.dot(u) >= 0.0) {
         last() = {x, u};
+        return;
+      }
+    }
+    if (size_ > 1) {
+      // a point where the direction turns, but less than a chord may
+      const PartialSlipMemory::Point& before = point_[static_cast<std::size_t>(size_ - 2)];
+      if ((turned(before.u, last().u) || turned(last().u, u)) &&
+          left_out(before, last(), {x, u}).force() <= 0.25 * budget()) {
+        last() = {x, u};
+        follows_ = follows_ && on_bound;
         return;
       }
     }
@@ -353,6 +407,7 @@ class PartialSlipStep {
   static constexpr double least_merged = 1e-9;  // of the force limit
   static constexpr double straight = 1e-8;      // rad: a chord is 1e-17 short
   static constexpr double chord = 1e-4;
+  static constexpr int deepest = 8;  // times that a chord is divided
   static constexpr int largest = 4 * PartialSlipMemory::capacity;
 
   double edge_;    // 8 G* a now
@@ -367,6 +422,7 @@ class PartialSlipStep {
   bool follows_ = false;  // the last piece follows the bound
   int stuck_ = 0;         // points that only move with the slide; the others are below
   int knots_ = 0;
+  int pieces_left_ = 0;  // with the present one
   int size_ = 0;
   std::array<Knot, static_cast<std::size_t>(PartialSlipMemory::capacity) + 2> knot_;
   std::array<PartialSlipMemory::Point, static_cast<std::size_t>(largest)> point_;
@@ -414,8 +470,10 @@ class PartialSlipStep {
 ///
 /// In the plane U and slide are vectors; a ring goes back to its bound along its own radius. Then
 /// the row of springs is an approximation of the half-space, whose rings act on each other across
-/// the slide, and U(x) of a piece that slips in a turning direction is approximated by chords of at
-/// most 0.1 rad, 0.13 % short.
+/// the slide, and U(x) of a piece that slips in a turning direction is approximated by chords, each
+/// of which changes the force by at most 1e-4 of the limit over the slide after which rings forget,
+/// in however many steps. Such a piece loses the mean of U times its slip in every step, which is
+/// nearly always positive; where it is not it counts as nothing.
 ///
 /// @param stiffness k = 8 G* a [N/m] at the end of the step, of the radius of contact; <= 0: the
 ///        contact is lost
