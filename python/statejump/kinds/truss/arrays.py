@@ -20,6 +20,11 @@ GROUND = -1
 SAME_DIRECTION = 1e-6
 
 
+def none_of(joints: Any) -> Any:
+    """Return joints of the same type as these arrays, none of them."""
+    return type(joints)(**{key: value[:0] for key, value in vars(joints).items()})
+
+
 def column(items: Sequence[Item], key: str) -> np.ndarray:
     """Return one number of every item; NaN where it is not given."""
     if isinstance(items, ItemColumns):

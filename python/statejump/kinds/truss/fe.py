@@ -11,7 +11,6 @@ equation with two nodes that nothing else holds), seven more.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +21,7 @@ from statejump.fe import ccx
 from statejump.fe.ccx import number
 from statejump.kinds.truss import fe_sliding
 from statejump.kinds.truss.case import TrussCase, TrussThermal
-from statejump.kinds.truss.arrays import GROUND
+from statejump.kinds.truss.arrays import GROUND, none_of
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.along_axis import AlongAxis
 from statejump.kinds.truss.joints.round_parts import RoundParts
@@ -116,12 +115,12 @@ def _pinned(truss: ResolvedTruss) -> ResolvedTruss:
         if not isinstance(joint, AlongAxis) or joint is SLIDER:
             continue
         truss, joints = with_sliders(truss, truss.joints[joint.section]), truss.joints[joint.section]
-        none[joint.section] = _no(joints)
+        none[joint.section] = none_of(joints)
     for joint in JOINTS:
         if not isinstance(joint, RoundParts):
             continue
         joints = truss.joints[joint.section]
-        none[joint.section] = _no(joints)
+        none[joint.section] = none_of(joints)
         for outer, inner in joint.joined(joints):
             place[place == place[inner]] = place[outer]
     kept = np.unique(place)
@@ -137,11 +136,6 @@ def _pinned(truss: ResolvedTruss) -> ResolvedTruss:
                              position_m=nodes.position_m[kept], guide_normal=nodes.guide_normal[kept]),
         links=replace(links, nodes=at[links.nodes]),
     ).with_joints(slider=replace(sliders, nodes=ends), **none)
-
-
-def _no(joints: Any) -> Any:
-    """Return joints of the same type, none of them."""
-    return type(joints)(**{key: value[:0] for key, value in vars(joints).items()})
 
 
 def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:

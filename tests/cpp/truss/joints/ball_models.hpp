@@ -2,6 +2,8 @@
 // Trusses with a ball joint.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Geometry>
 #include <string>
 #include <utility>
@@ -160,6 +162,31 @@ inline double relative_residue(const Path& path) {
   return (last.thermal_work - (last.elastic_energy - first.elastic_energy) -
           (last.load_potential - first.load_potential) - heat) /
          heat;
+}
+
+/// The truss turned in space moves as it does as it stands.
+///
+/// @param friction_share by which friction may differ
+inline void expect_the_same_turned(const Model& model, double friction_share) {
+  const Path path = solve(model);
+  Model other = model;
+  const Matrix3d turned =
+      Eigen::AngleAxisd(2.1, Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
+  for (Node& one : other.nodes) {
+    one.position = turned * one.position;
+    one.free_directions = turned;
+  }
+  const Path found = solve(other);
+  ASSERT_EQ(found.events.size(), path.events.size());
+  const double size = path.states.back().displacement.norm();
+  EXPECT_LT(
+      (turned.transpose() * found.states.back().displacement - path.states.back().displacement)
+          .norm(),
+      1e-10 * size);
+  EXPECT_LT((turned.transpose() * friction(other, found.states.back()) -
+             friction(model, path.states.back()))
+                .norm(),
+            friction_share * friction(model, path.states.back()).norm());
 }
 
 }  // namespace statejump::truss::testing

@@ -69,26 +69,7 @@ TEST(BallPartialSlip, InAPlaneHoweverTurnedItIsTheRevolute) {
 }
 
 TEST(BallPartialSlip, TurnedInSpaceTheTrussIsTheSame) {
-  const Model model = with_partial_slip(tripod());
-  const Path path = solve(model);
-  Model other = model;
-  const Matrix3d turned =
-      Eigen::AngleAxisd(2.1, Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
-  for (Node& one : other.nodes) {
-    one.position = turned * one.position;
-    one.free_directions = turned;
-  }
-  const Path found = solve(other);
-  ASSERT_EQ(found.events.size(), path.events.size());
-  const double size = path.states.back().displacement.norm();
-  EXPECT_LT(
-      (turned.transpose() * found.states.back().displacement - path.states.back().displacement)
-          .norm(),
-      1e-10 * size);
-  EXPECT_LT((turned.transpose() * friction(other, found.states.back()) -
-             friction(model, path.states.back()))
-                .norm(),
-            1e-6 * friction(model, path.states.back()).norm());
+  expect_the_same_turned(with_partial_slip(tripod()), 1e-6);
 }
 
 TEST(BallPartialSlip, IncrementsMatterToFirstOrderAndEnergyIsKeptToTheChords) {

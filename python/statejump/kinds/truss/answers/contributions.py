@@ -37,10 +37,9 @@ class Contributions:
         return np.argsort(-np.abs(self.contribution), kind="stable")
 
 
-def friction_loads(truss: ResolvedTruss, states: Mapping[str, np.ndarray], index: int) -> np.ndarray:
+def friction_loads(truss: ResolvedTruss, state: Mapping[str, np.ndarray]) -> np.ndarray:
     """Return the nodal forces [N] (joints, nodes, 3) that stand for the friction of each joint in a state, type by
     type. Joints whose friction is not known have none."""
-    state = {name: values[index] for name, values in states.items()}
     place = truss.nodes.position_m + state["displacement_m"]
     found = []
     for joint in JOINTS:
@@ -76,7 +75,8 @@ def contributions(
     """
     truss, ends = found.truss, found.cycle_ends
     free = without_friction(truss)
-    start, end = (friction_loads(truss, ends, index) for index in (0, -1))
+    states = [{name: values[index] for name, values in ends.items()} for index in (0, -1)]
+    start, end = (friction_loads(truss, state) for state in states)
 
     def value(load: np.ndarray) -> float:
         loaded = replace(free, nodes=replace(free.nodes, force_N=free.nodes.force_N + load))
@@ -93,7 +93,6 @@ def contributions(
     joints = [(joint, truss.joints[joint.section]) for joint in JOINTS]
     names = tuple(name for _, own in joints for name in own.names)
     kinds = tuple(joint.section for joint, own in joints for _ in own.names)
-    states = [{name: values[index] for name, values in ends.items()} for index in (0, -1)]
     notes = [f"{joint.section} {own.names[index]} rests at a stop: what of its force is friction is not known"
              for joint, own in joints
              for index in sorted({index for state in states for index in joint.unknown_friction(own, state)})]

@@ -13,7 +13,7 @@ import numpy as np
 
 from statejump import _engine
 from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import References, column, columns, names, pairs, unit, vectors
+from statejump.kinds.truss.arrays import References, column, columns, names, none_of, pairs, unit, vectors
 from statejump.kinds.truss.joints.along_axis import AlongAxis
 from statejump.kinds.truss.joints.protocol import JointColumn, Strokes, Symbol
 from statejump.kinds.truss.joints.slider import with_sliders
@@ -119,8 +119,7 @@ class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
 
     def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
         joints: IwanJoints = truss.joints[self.section]
-        none = IwanJoints(**{key: value[:0] for key, value in vars(joints).items()})
-        return with_sliders(truss, joints).with_joints(iwan_joint=none)
+        return with_sliders(truss, joints).with_joints(iwan_joint=none_of(joints))
 
 
 IWAN_JOINT = IwanJointType()
