@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <cstring>
+
+#include "words.hpp"
+
+namespace statejump::geometry::formats {
+
+void read_off(std::string_view content, Reading& reading) {
+  Words words(content, '#');
+  std::string_view word;
+  if (!words.next(word)) reading.refuse("it holds nothing");
+  std::string_view kind = word;
+  for (const char* part : {"ST", "C", "N"})
+    if (kind.substr(0, std::strlen(part)) == part) kind.remove_prefix(std::strlen(part));
+  if (kind != "OFF") reading.refuse_line(words.line(), "does not begin with OFF");
+  std::array<std::uint64_t, 2> counts{};
+  for (std::uint64_t& count : counts)
+    if (!words.next(word) || !to_number(word, count))
+      reading.refuse_line(words.line(), "should hold the numbers of vertices and faces");
+  words.skip_line();  // the number of edges
+  // No vertex is shorter than "0 0 0", no face than "3 0 1 2", each with the end of its line.
+  const std::uint64_t length = content.size() + 1;
+  if (counts[0] > length / 6 || counts[1] > (length - 6 * counts[0]) / 8)
+    reading.refuse("it declares " + std::to_string(counts[0]) + " vertices and " +
+                   std::to_string(counts[1]) + " faces, which do not fit into its " +
+                   std::to_string(content.size()) + " bytes");
+  // A vertex stands in one line. Its first three numbers are read: normal, colour, texture follow.
+  for (std::uint64_t i = 0; i < counts[0]; ++i) {
+    if (!words.next(word)) reading.refuse("it ends before its last vertex");
+    Eigen::Vector3d point;
+    for (int k = 0; k < 3; ++k)
+      if ((k > 0 && !words.in_line(word)) || !to_number(word, point[k]))
+        reading.refuse_line(words.line(), "has no three coordinates");
+    words.skip_line();
+    reading.add_point(point);
+  }
+  std::vector<std::int64_t> corners;
+  for (std::uint64_t i = 0; i < counts[1]; ++i) {
+    std::uint64_t count = 0;
+    if (!words.next(word)) reading.refuse("it ends before its last face");
+    if (!to_number(word, count)) reading.refuse_line(words.line(), "has no number of corners");
+    corners.clear();
+    for (std::uint64_t k = 0; k < count; ++k) {
+      std::int64_t corner = 0;
+      if (!words.in_line(word) || !to_number(word, corner))
+        reading.refuse_line(words.line(), "has fewer corners than it declares");
+      corners.push_back(corner);
+    }
+    words.skip_line();
+    reading.add_polygon(corners);
+  }
+  if (words.next(word))
+    reading.refuse_line(words.line(), "follows the last of the faces that it declares");
+}
+
+}  // namespace statejump::geometry::formats

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bytes.hpp"
+#include "words.hpp"
+
+namespace statejump::geometry::formats {
+
+namespace {
+
+void read_stl_text(std::string_view content, Reading& reading) {
+  Words words(content, '\0');
+  std::string_view word;
+  bool in_solid = false;
+  int corners = -1;  // of the facet that is being read; -1: none
+  const auto follows = [&](const char* wanted) {
+    if (!words.next(word) || !same_word(word, wanted))
+      reading.refuse_line(words.line(), std::string("lacks the word ") + wanted);
+  };
+  while (words.next(word)) {
+    const bool in_facet = corners >= 0;
+    if (!in_solid) {
+      if (!same_word(word, "solid")) reading.refuse_line(words.line(), "is outside of a solid");
+      words.skip_line();
+      in_solid = true;
+    } else if (!in_facet && same_word(word, "endsolid")) {
+      words.skip_line();
+      in_solid = false;
+    } else if (!in_facet && same_word(word, "facet")) {
+      follows("normal");
+      for (int k = 0; k < 3; ++k)
+        if (!words.next(word)) reading.refuse("it ends inside a facet");
+      follows("outer");
+      follows("loop");
+      corners = 0;
+    } else if (in_facet && corners < 3 && same_word(word, "vertex")) {
+      reading.add_point(coordinates(words, reading));
+      ++corners;
+    } else if (corners == 3 && same_word(word, "endloop")) {
+      follows("endfacet");
+      const auto last = static_cast<std::int64_t>(reading.points());
+      reading.add_polygon({last - 3, last - 2, last - 1});
+      corners = -1;
+    } else {
+      reading.refuse_line(words.line(), "is out of place");
+    }
+  }
+  if (in_solid) reading.refuse("it ends before endsolid");
+}
+
+constexpr std::size_t stl_header = 84;  // bytes: 80 of text and the number of facets
+constexpr std::size_t stl_facet = 50;
+
+}  // namespace
+
+void read_stl(std::string_view content, Reading& reading) {
+  const bool swapped = !machine_is_little_endian();
+  const bool long_enough = content.size() >= stl_header;
+  const std::uint64_t count =
+      long_enough ? from_bytes<std::uint32_t>(content.data() + 80, swapped) : 0;
+  const std::uint64_t expected = stl_header + stl_facet * count;
+  if (!long_enough || content.size() != expected) {
+    // Binary files may begin with "solid", too, but then their length is right.
+    std::string_view word;
+    if (Words(content, '\0').next(word) && same_word(word, "solid"))
+      return read_stl_text(content, reading);
+    if (!long_enough) reading.refuse("it neither begins with solid nor has 84 bytes");
+    reading.refuse("it declares " + std::to_string(count) + " facets, which take " +
+                   std::to_string(expected) + " bytes, but it has " +
+                   std::to_string(content.size()));
+  }
+  for (std::uint64_t f = 0; f < count; ++f) {
+    const char* facet = content.data() + stl_header + stl_facet * f;
+    for (int k = 1; k <= 3; ++k) {  // the normal comes first
+      Eigen::Vector3d point;
+      for (int i = 0; i < 3; ++i)
+        point[i] = static_cast<double>(from_bytes<float>(facet + 12 * k + 4 * i, swapped));
+      reading.add_point(point);
+    }
+    const auto last = static_cast<std::int64_t>(reading.points());
+    reading.add_polygon({last - 3, last - 2, last - 1});
+  }
+}
+
+}  // namespace statejump::geometry::formats

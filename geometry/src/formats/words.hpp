@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words and numbers of a text.
+#pragma once
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <string_view>
+
+#include "reading.hpp"
+
+namespace statejump::geometry::formats {
+
+inline bool is_space(char c) {
+  return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+inline bool same_word(std::string_view word, std::string_view lower_case) {
+  return word.size() == lower_case.size() &&
+         std::equal(word.begin(), word.end(), lower_case.begin(), [](char a, char b) {
+           return std::tolower(static_cast<unsigned char>(a)) == b;
+         });
+}
+
+/// A whole word as a number, correctly rounded; "nan" and "inf" are numbers here.
+template <class Number>
+inline bool to_number(std::string_view word, Number& value) {
+  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc{} && end == word.data() + word.size();
+}
+
+/// Words of a text, line by line; what follows a comment sign is skipped.
+class Words {
+ public:
+  Words(std::string_view text, char comment) : text_(text), comment_(comment) {}
+
+  /// Next word of this line; false at its end.
+  bool in_line(std::string_view& word) {
+    while (at_ < text_.size() && text_[at_] != '\n' && is_space(text_[at_])) ++at_;
+    if (at_ >= text_.size() || text_[at_] == '\n') return false;
+    if (comment_ != '\0' && text_[at_] == comment_) {
+      skip_line();
+      return false;
+    }
+    const std::size_t start = at_;
+    while (at_ < text_.size() && !is_space(text_[at_]) &&
+           (comment_ == '\0' || text_[at_] != comment_))
+      ++at_;
+    word = text_.substr(start, at_ - start);
+    return true;
+  }
+  /// Next word, of this line or a later one; false at the end of the text.
+  bool next(std::string_view& word) {
+    while (!in_line(word)) {
+      if (at_ >= text_.size()) return false;
+      ++at_;
+      ++line_;
+    }
+    return true;
+  }
+  /// To the end of this line.
+  void skip_line() {
+    while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+  }
+  int line() const { return line_; }
+
+ private:
+  std::string_view text_;
+  char comment_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+};
+
+inline Eigen::Vector3d coordinates(Words& words, const Reading& reading) {
+  Eigen::Vector3d point;
+  std::string_view word;
+  for (int k = 0; k < 3; ++k)
+    if (!words.in_line(word) || !to_number(word, point[k]))
+      reading.refuse_line(words.line(), "has no three coordinates");
+  return point;
+}
+
+}  // namespace statejump::geometry::formats
