@@ -241,7 +241,7 @@ def test_command(statejump: Callable[..., Any], tmp_path: Path) -> None:
     (("none.csv",), "error: none.csv: cannot be read: No such file or directory\n"),
     (("hinge.csv", "--model", "x"), "error: --model = 'x' is not allowed: must be auto or of"),
     (("hinge.csv", "--normal-force", "-1"), "error: --normal-force = -1.0 is not allowed: must be a number above 0\n"),
-    (("ragged.csv",), "error: ragged.csv: is no CSV file with as many cells in each row as in the first\n"),
+    (("ragged.csv",), "error: ragged.csv: line 3 has not as many cells as the header\n"),
 ])
 def test_command_refuses(statejump: Callable[..., Any], tmp_path: Path, arguments: tuple[str, ...], sentence: str
                          ) -> None:

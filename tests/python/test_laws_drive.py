@@ -130,11 +130,19 @@ def test_command(statejump, tmp_path: Path) -> None:
         assert written[name].tolist() == values.tolist(), name
 
 
+def test_a_mark_of_byte_order_is_no_part_of_the_first_name(tmp_path: Path) -> None:
+    text = "slide_m,penetration_depth_m\n0,1e-6\n1e-9,1e-6\n"
+    for name, coding in (("plain.csv", "utf-8"), ("office.csv", "utf-8-sig")):
+        (tmp_path / name).write_text(text, encoding=coding)
+    plain, office = (laws.drive("mindlin", tmp_path / name, **CONTACT) for name in ("plain.csv", "office.csv"))
+    assert list(plain) == list(office) and plain["slide_m"].tolist() == office["slide_m"].tolist()
+
+
 @pytest.mark.parametrize("text, sentence", [
     (None, "error: history.csv: cannot be read: No such file or directory\n"),
     ("slide_m,penetration_depth_m\n", "error: history.csv: holds no samples\n"),
-    ("slide_m,penetration_depth_m\n0\n", "error: history.csv: is no CSV file with as many cells in each row as in the "
-                                         "first\n"),
+    ("slide_m,penetration_depth_m\n0\n", "error: history.csv: line 2 has not as many cells as the header\n"),
+    ("slide_m,penetration_depth_m\n0,0\n0,0,0\n", "error: history.csv: line 3 has not as many cells as the header\n"),
     ("slide_m\n0\n", "error: history.csv: column penetration_depth_m is missing: the history needs "
                      "penetration_depth_m or normal_force_N\n"),
 ])

@@ -114,10 +114,7 @@ def _repeatability(samples: Path, column: str, share: float, length_m: float) ->
     from statejump.campaign.outputs import unit
     from statejump.surface import repeatability
 
-    try:
-        columns = read_columns(samples)
-    except (OSError, UnicodeDecodeError, IndexError):
-        raise StatejumpError("cannot be read as a table of samples", file=samples) from None
+    columns = read_columns(samples)
     lengths = [name for name in columns if unit(name) == "m" and np.issubdtype(columns[name].dtype, np.number)]
     if column not in lengths:
         raise NotAllowed("--column", column, f"must be one of {', '.join(lengths)}" if lengths

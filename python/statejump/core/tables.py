@@ -15,6 +15,7 @@ import numpy as np
 
 from statejump.core.errors import NotAllowed, StatejumpError, Unreadable
 from statejump.core.output import write_atomically
+from statejump.core.reading import open_csv
 
 
 BLOCK = 4096  # rows that are written at once
@@ -72,10 +73,16 @@ def _quoted(text: str) -> str:
 def read_columns(path: Path) -> dict[str, np.ndarray]:
     """Return the columns of a CSV file with a header; numbers where all cells are.
 
-    :raises Unreadable: the file holds no samples
+    :raises Unreadable: the file may not be read, is no CSV file with as many cells in each row as in the first, holds
+        no samples
     """
-    with path.open(newline="", encoding="utf-8") as stream:
-        rows = list(csv.reader(stream))
+    rows: list[list[str]] = []
+    with open_csv(path) as stream:
+        reader = csv.reader(stream)
+        for row in reader:
+            rows.append(row)
+            if len(row) != len(rows[0]):
+                raise Unreadable(f"line {reader.line_num} has not as many cells as the header", file=path)
     if len(rows) < 2:
         raise Unreadable("holds no samples", file=path)
     columns = {}

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey, Unreadable
+from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey
 from statejump.core.tables import check_columns, read_columns
 from statejump.identification.hysteresis import Memory, remembered
 
@@ -83,12 +83,7 @@ def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown") ->
     if isinstance(source, Mapping):
         return _loop("loop", {str(name): np.atleast_1d(np.asarray(values)) for name, values in source.items()}, start)
     file = Path(source)
-    try:
-        columns = read_columns(file)
-    except OSError as error:
-        raise Unreadable("cannot be read", cause=error.strerror, file=file) from None
-    except (UnicodeDecodeError, IndexError):
-        raise Unreadable("is no CSV file with as many cells in each row as in the first", file=file) from None
+    columns = read_columns(file)
     try:
         return _loop(file.stem, columns, start)
     except StatejumpError as failure:

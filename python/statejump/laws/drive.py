@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from statejump import _engine
-from statejump.core.errors import FailedRun, MissingKey, NotAllowed, StatejumpError, UnknownKey, Unreadable
+from statejump.core.errors import FailedRun, MissingKey, NotAllowed, StatejumpError, UnknownKey
 from statejump.core.tables import check_columns, read_columns, write_columns
 from statejump.laws.traits import Law, catalogue
 
@@ -142,12 +142,7 @@ def _columns(history: Mapping[str, Any] | str | Path) -> tuple[Path | None, dict
     if isinstance(history, Mapping):
         return None, {str(name): np.atleast_1d(np.asarray(values)) for name, values in history.items()}
     file = Path(history)
-    try:
-        return file, read_columns(file)
-    except OSError as error:
-        raise Unreadable("cannot be read", cause=error.strerror, file=file) from None
-    except (UnicodeDecodeError, IndexError):
-        raise Unreadable("is no CSV file with as many cells in each row as in the first", file=file) from None
+    return file, read_columns(file)
 
 
 def _check(columns: Mapping[str, np.ndarray], kind: str, law: Law) -> None:

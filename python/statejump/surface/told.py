@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey, Unreadable
+from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey
 from statejump.core.tables import read_columns
 from statejump.surface.design import DEFINITIONS, Design
 from statejump.surface.motion import pointing_rad
@@ -25,12 +25,7 @@ def read_nodes(file: Path) -> tuple[np.ndarray, np.ndarray]:
 
     :raises StatejumpError: no such file, a column that is missing or unknown, a cell that is no finite number
     """
-    try:
-        columns = read_columns(file)
-    except OSError as error:
-        raise Unreadable("cannot be read", cause=error.strerror, file=file) from None
-    except (UnicodeDecodeError, IndexError):
-        raise Unreadable("is no CSV file with as many cells in each row as in the first", file=file) from None
+    columns = read_columns(file)
     for name in columns:
         if name not in COLUMNS:
             raise UnknownKey(name, section=f"column {name}", cause=f"known are {', '.join(COLUMNS)}", file=file)
