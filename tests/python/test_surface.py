@@ -179,7 +179,7 @@ def test_command_of_a_truss(statejump: Callable[..., Any], tmp_path: Path, cases
     assert history[0].startswith("time_s,temperature_change_K,rms_design_m,rms_rigid_m,rms_rigid_focal_m,tilt_1_rad")
     for arguments, sentence in (
         ((cases / "trusses" / "chain_10.toml",), "section [reflector] is missing: it names the nodes of the surface"),
-        ((cases / "table1.toml",), "case.kind = 'spring_slider' is not allowed: only a truss has a surface"),
+        ((cases / "table1.toml",), "case.kind = 'spring_slider' is not allowed: 'statejump truss surface' is for 'truss'"),
         ((cases / "trusses" / "umbrella_8.toml", "--focal-length", 1), "--focal-length is not allowed beside a case"),
         ((cases / "trusses" / "umbrella_8.toml", "--samples", "samples.csv"), "--column is missing"),
     ):

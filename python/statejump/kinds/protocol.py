@@ -126,6 +126,6 @@ class Kind(Generic[CaseType]):
 
 # Commands whose name is not that of the ability.
 COMMANDS = {"dem_input": "dem", "dynamic": "reduced --dynamic", "quasi_static": "reduced --quasi-static",
-            "answers": "truss answers", "creak": "truss creak", "draw": "truss draw", "contact_problems": "fclib write",
-            "outcomes": "sweep", "sheet": "plot"}
+            "answers": "truss answers", "creak": "truss creak", "draw": "truss draw", "surface": "truss surface",
+            "contact_problems": "fclib write", "outcomes": "sweep", "sheet": "plot"}
 Columns = Mapping[str, np.ndarray]

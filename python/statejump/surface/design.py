@@ -76,7 +76,9 @@ class Design:
     design_rms_m: float
 
     @classmethod
-    def of(cls, position_m: Any, axis: Sequence[float] = (0, 0, 1), focal_length_m: float | None = None) -> Design:
+    def of(
+        cls, position_m: Any, axis: Sequence[float] | np.ndarray = (0, 0, 1), focal_length_m: float | None = None
+    ) -> Design:
         """Return the paraboloid of least squares along the axis; a plane, where the nodes determine no focal length.
 
         :param position_m: (nodes, 3) [m]

@@ -5,28 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from statejump.core.case import Case
-from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.errors import StatejumpError
 from statejump.core.run import Run
 from statejump.surface.design import DEFINITIONS, Design, check_measure, rms
 from statejump.surface.motion import pointing_rad
 
 
 def reflector_of(case: Case) -> tuple[Design, np.ndarray]:
-    """Return the drawn surface of a truss and the places of its nodes.
+    """Return the drawn surface of a case and the places of its nodes.
 
-    :raises StatejumpError: the case is no truss, or has no [reflector]
+    :raises StatejumpError: cases of its kind have no surface, or it has no [reflector]
     """
-    if case.kind != "truss":
-        raise NotAllowed("case.kind", case.kind, "only a truss has a surface", file=case.origin.file)
-    truss = case.resolve()  # type: ignore[attr-defined]
-    if truss.reflector is None:
-        raise StatejumpError("section [reflector] is missing", file=case.origin.file,
-                             remedy="it names the nodes of the surface")
-    try:
-        nodes = np.asarray(truss.reflector.nodes)
-        return Design.of(truss.nodes.position_m[nodes], truss.reflector.axis, truss.reflector.focal_length_m), nodes
-    except StatejumpError as failure:
-        raise failure.located(file=case.origin.file) from None
+    found: tuple[Design, np.ndarray] = case.behaviour.ability("surface", case)(case)
+    return found
 
 
 def history(run: Run, measure: str = "normal") -> dict[str, np.ndarray]:

@@ -15,6 +15,7 @@ from statejump.kinds.protocol import Kind
 from statejump.kinds.truss.case import TrussCase
 
 if TYPE_CHECKING:
+    import numpy as np
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from statejump.kinds.truss.creak import Creak
     from statejump.kinds.truss.page import TrussPart
     from statejump.results.contents import Result
+    from statejump.surface.design import Design
 
 
 class Truss(Kind[TrussCase]):
@@ -143,6 +145,12 @@ class Truss(Kind[TrussCase]):
         from statejump.kinds.truss import draw
 
         return draw.draw(case, axes, names)
+
+    def surface(self, case: TrussCase) -> tuple[Design, np.ndarray]:
+        """Return the drawn surface of its reflector and the places of the nodes."""
+        from statejump.kinds.truss import reflector
+
+        return reflector.surface(case)
 
     def contact_problems(self, case: TrussCase, number: int, tell: Tell) -> list[ContactProblem]:
         """Return frictional contact problems of steps of the path."""

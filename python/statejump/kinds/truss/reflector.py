@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The drawn surface of the nodes that [reflector] names."""
+from __future__ import annotations
+
+import numpy as np
+
+from statejump.core.errors import StatejumpError
+from statejump.kinds.truss.case import TrussCase
+from statejump.surface.design import Design
+
+
+def surface(case: TrussCase) -> tuple[Design, np.ndarray]:
+    """Return the surface and the places of its nodes among those of the truss.
+
+    :raises StatejumpError: the case has no [reflector], or its nodes make no surface
+    """
+    truss = case.resolve()
+    if truss.reflector is None:
+        raise StatejumpError("section [reflector] is missing", file=case.origin.file,
+                             remedy="it names the nodes of the surface")
+    nodes = np.asarray(truss.reflector.nodes)
+    try:
+        return Design.of(truss.nodes.position_m[nodes], truss.reflector.axis, truss.reflector.focal_length_m), nodes
+    except StatejumpError as failure:
+        raise failure.located(file=case.origin.file) from None
