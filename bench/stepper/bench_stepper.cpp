@@ -45,6 +45,19 @@ void crowd(benchmark::State& state) {
   step(state, stepper::scenes::crowd(static_cast<std::size_t>(state.range(0))), state.range(0));
 }
 
+// Contacts by a friction law by name that stick, after a ringing start.
+void stuck(benchmark::State& state, const char* law_of_friction) {
+  const long joints = state.range(0);
+  Scene scene = stepper::scenes::crowd(static_cast<std::size_t>(joints));
+  stepper::NamedLaw law;
+  law.law.friction = kernel::laws::friction_law(law_of_friction);
+  scene.law = law;
+  scene.prepare();
+  const Scene::Make make = stepper::scenes::maker();
+  if (scene.run(1500, make) != 1500) state.SkipWithError("a step could not be made");
+  step(state, scene, joints);
+}
+
 void chain(benchmark::State& state) {
   step(state, stepper::scenes::chain(static_cast<std::size_t>(state.range(0))), state.range(0));
 }
@@ -55,6 +68,8 @@ void rib(benchmark::State& state) {
 
 BENCHMARK(bare_loop)->Arg(1)->Arg(100)->Arg(10'000);
 BENCHMARK(crowd)->Arg(1)->Arg(100)->Arg(10'000);
+BENCHMARK_CAPTURE(stuck, mindlin, "mindlin")->Arg(1)->Arg(100)->Arg(10'000);
+BENCHMARK_CAPTURE(stuck, mindlin_deresiewicz, "mindlin_deresiewicz")->Arg(1)->Arg(100)->Arg(10'000);
 BENCHMARK(chain)->Arg(1'000);
 BENCHMARK(rib);
 

@@ -26,6 +26,9 @@ from statejump.core.samples import names_line, rows_of
 
 # Samples are worked up in blocks, after so long or when they take so much memory.
 SECONDS_OF_A_BLOCK, BYTES_OF_A_BLOCK = 0.1, 2**25
+# Between two looks at the samples a run makes a hundredth of its steps, of a small scene so many times bodies: some
+# milliseconds of the JointStepper, whose arrays are filled and given back each time.
+STEPS_OF_A_BODY = 100_000
 
 
 class CaseFailure(Exception):
@@ -100,7 +103,7 @@ def run(case, output):
         built = kind.build(case, [recorder.engine, between])
         recorder.watch(kind.watched(built))
         between.iterPeriod = every * max(1, min(
-            case["number_of_samples"] // 100, BYTES_OF_A_BLOCK // recorder.bytes_of_a_sample
+            max(steps // 100, STEPS_OF_A_BODY // len(O.bodies)) // every, BYTES_OF_A_BLOCK // recorder.bytes_of_a_sample
         ))
         if case["dem"].get("stepper") == "joint":
             O.engines = [O.engines[0], sj.JointStepper(substeps=between.iterPeriod), *O.engines[1:]]

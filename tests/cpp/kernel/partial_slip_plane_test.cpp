@@ -8,46 +8,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support.hpp"
+#include "partial_slip_histories.hpp"
 
 namespace statejump::kernel {
 namespace {
 
+using testing::gross;
+using testing::limit;
 using testing::pi;
 using testing::Random;
-
-/// Sphere and plane, by the depth [m].
-constexpr double shear_root = 8.0 * 7.9e9 * 0.1, hertz_root = 4.0 / 3.0 * 38.5e9 * 0.1, mu = 0.3;
-double stiffness(double depth) {
-  return shear_root * std::sqrt(depth);
-}
-double limit(double depth) {
-  return mu * hertz_root * depth * std::sqrt(depth);
-}
-double gross(double depth) {
-  return 1.5 * limit(depth) / stiffness(depth);
-}
+using testing::random_history;
+using testing::stiffness;
 
 Tangent along(double angle, double size) {
   return {size * std::cos(angle), size * std::sin(angle)};
 }
 double apart(const Tangent& a, const Tangent& b) {
   return (a - b).norm();
-}
-
-/// A contact after a random history of so many steps, loss and return included.
-/// @param turns the largest angle of a slide [rad]; 0: all in one direction
-template <class Way>
-PartialSlipMemory random_history(Random& random, int steps, Way&& way) {
-  PartialSlipMemory memory;
-  double depth = 1e-6;
-  for (int i = 0; i < steps; ++i) {
-    const bool lost = random.uniform(0.0, 1.0) < 0.05;
-    if (random.uniform(0.0, 1.0) < 0.6) depth = random.uniform(0.3e-6, 2e-6);
-    const double slide = random.uniform(-1.0, 1.0) * random.uniform(0.0, 1.5) * gross(1e-6);
-    partial_slip_step(lost ? 0.0 : stiffness(depth), limit(depth), way(slide), memory);
-  }
-  return memory;
 }
 
 TEST(PartialSlipPlane, AlongOneDirectionItIsTheLine) {

@@ -700,6 +700,27 @@ void random_walk(long steps) {
   }
 }
 
+/// Whoever asks for no energies gets the same forces and memory, bit for bit.
+TEST(PartialSlip, ForcesDoNotDependOnWhetherEnergiesAreAskedFor) {
+  Random random;
+  Contact with;
+  Contact without;
+  without.memory.set_accounts(false);
+  for (int i = 0; i < 20000; ++i) {
+    const double depth = i % 4 ? usual_depth * random.uniform(-0.05, 2.0) : with.depth;
+    const double size = Contact::gross(usual_depth) * std::pow(10.0, random.uniform(-4.0, 0.5));
+    const Tangent step{random.uniform(-size, size), i % 3 ? 0.0 : random.uniform(-size, size)};
+    with.to(depth, with.slide + step);
+    without.to(depth, without.slide + step);
+    ASSERT_EQ(with.response.force.a, without.response.force.a) << i;
+    ASSERT_EQ(with.response.force.b, without.response.force.b) << i;
+    ASSERT_EQ(with.response.slipping, without.response.slipping) << i;
+    ASSERT_EQ(with.memory.points(), without.memory.points()) << i;
+  }
+  EXPECT_GT(with.heat, 0.0);
+  EXPECT_EQ(without.heat, 0.0);
+}
+
 TEST(PartialSlip, NoLossIsNegative) {
   random_walk(100000);
 }

@@ -25,6 +25,7 @@ class PartialSlipStep {
         slide_(slide),
         old_(memory),
         old_edge_(memory.edge()),
+        accounts_(memory.accounts()),
         smallest_(1e-15 * slope_ * square_) {}
 
   /// Loss of rings that lose what presses them together evenly over a step [J].
@@ -42,11 +43,15 @@ class PartialSlipStep {
     if (stuck_ < old_.held().count) old_.release();
     trial();
     slipping_ = stuck_ == 0;  // all rings but the rim's, which carries nothing
-    for (int i = 0; i + 1 < knots_; ++i) slipping_ = slipping_ && at(i).outside;
+    for (int i = 0; slipping_ && i + 1 < knots_; ++i) slipping_ = at(i).outside;
     add(at(0).x, at(0).outside ? bent(at(0)) : at(0).trial, false);
     for (int i = 1; i < knots_; ++i) {
       pieces_left_ = knots_ - i;
-      piece(at(i - 1), at(i));
+      if (at(i - 1).outside || at(i).outside) {
+        piece(at(i - 1), at(i));
+      } else {
+        add_stuck(at(i).x, at(i).trial);
+      }
     }
     store();
     return answer(old_, loss_, slipping_);
@@ -68,9 +73,9 @@ class PartialSlipStep {
   /// nearly all of a contact that is held; the rest is bent and tidied up by itself, with
   /// `neighbours` of them. What the memory holds is not looked at while it is held well enough.
   int stuck() {
-    constexpr int neighbours = 3;
+    constexpr int neighbours = 2;
     const int most = old_.size() - neighbours + 1;
-    if (most <= neighbours || !(old_[most - 1].x < edge_)) return 0;
+    if (most <= neighbours) return 0;
     const int held = old_.held().count;
     if (held > 0 && !old_.holds(slide_, bound(0.0), bound(old_[held - 1].x))) old_.release();
     int inside = old_.held().count;
@@ -80,7 +85,7 @@ class PartialSlipStep {
 
   bool outside(const PartialSlipMemory::Point& point) const {
     const double outer = bound(point.x) + smallest_;
-    return (point.u + slide_).squared() > outer * outer;
+    return !(point.x < edge_) || (point.u + slide_).squared() > outer * outer;
   }
 
   const Knot& at(int i) const { return knot_[static_cast<std::size_t>(i)]; }
@@ -129,6 +134,7 @@ class PartialSlipStep {
 
   /// Rings that leave the contact on the way, x^2 falling evenly.
   void leave(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b) {
+    if (!accounts_) return;
     const double fall = (old_edge_ - edge_) * (old_edge_ + edge_);
     if (b.x > a.x && fall > 0.0) loss_ += left(a, b, fall);
   }
@@ -162,10 +168,6 @@ class PartialSlipStep {
 
   /// Between two knots: parts inside the bound stay, the others are bent back to it.
   void piece(const Knot& a, const Knot& b) {
-    if (!a.outside && !b.outside) {
-      add(b.x, b.trial, false);
-      return;
-    }
     if (a.outside && b.outside && is_chord_of_bound(a, b)) {
       slip(a, b);
     } else if (a.outside && b.outside) {
@@ -243,7 +245,9 @@ class PartialSlipStep {
         return;
       }
     }
-    if (turns && on_old_bound(a) && on_old_bound(b)) {
+    if (!accounts_) {
+      // nobody asks for the loss
+    } else if (turns && on_old_bound(a) && on_old_bound(b)) {
       loss_ += loss_of_chord(a, b);
     } else {
       const Tangent way = direction(a.trial + b.trial);
@@ -262,7 +266,8 @@ class PartialSlipStep {
 
   bool on_old_bound(const Knot& k) const { return k.old.norm() >= (1.0 - 1e-9) * old_bound(k.x); }
   static bool turned(const Tangent& a, const Tangent& b) {
-    return std::abs(a.a * b.b - a.b * b.a) > straight * std::sqrt(a.squared() * b.squared());
+    const double cross = a.a * b.b - a.b * b.a;
+    return cross * cross > straight * straight * (a.squared() * b.squared());
   }
 
   /// Whether rings between two knots slipped in directions between theirs. The chord lies within
@@ -291,6 +296,21 @@ class PartialSlipStep {
 
   /// Adds a point of the new profile. @param on_bound the piece that ends here follows the bound
   void add(double x, const Tangent& u, bool on_bound) {
+    look_and_add(x, u, on_bound);
+    bends_ = size_ > 1 && turned(point_[static_cast<std::size_t>(size_ - 2)].u, last().u);
+  }
+
+  /// The same of a piece inside the bound, mostly without a look at the points before.
+  void add_stuck(double x, const Tangent& u) {
+    if (bends_ || size_ == 0 || !(x > last().x) || turned(last().u, u)) {
+      add(x, u, false);
+      return;
+    }
+    follows_ = false;
+    point_[static_cast<std::size_t>(size_++)] = {x, u};
+  }
+
+  void look_and_add(double x, const Tangent& u, bool on_bound) {
     if (size_ > 0 && !(x > last().x)) {
       if (on_bound) last().u = u;
       follows_ = follows_ && on_bound;
@@ -312,7 +332,7 @@ class PartialSlipStep {
     if (size_ > 1) {
       // a point where the direction turns, but less than a chord may
       const PartialSlipMemory::Point& before = point_[static_cast<std::size_t>(size_ - 2)];
-      if ((turned(before.u, last().u) || turned(last().u, u)) &&
+      if ((bends_ || turned(last().u, u)) &&
           left_out(before, last(), {x, u}).force() <= 0.25 * budget()) {
         last() = {x, u};
         follows_ = follows_ && on_bound;
@@ -335,7 +355,7 @@ class PartialSlipStep {
       const auto j = static_cast<std::size_t>(i);
       const LeftOut left = left_out(point_[j - 1], point_[j], point_[j + 1]);
       if (left.squared_offset > 100.0 * smallest_ * smallest_) {
-        if (left.force() > nothing) continue;
+        if (left.is_more_than(nothing)) continue;
         merged += left.force();
       }
       drop(i);
@@ -343,15 +363,18 @@ class PartialSlipStep {
     if (stuck_ + size_ > PartialSlipMemory::capacity) merged += merge();
     old_.keep(stuck_, slide_, slope_, merged);
     hold();
-    for (int i = 0; i < size_; ++i) old_.push(point_[static_cast<std::size_t>(i)]);
+    old_.append(point_.data(), size_);
   }
 
   /// Holds the points that stick and will do so for `steps` like this one, if these are `least`
   /// more than are held: holding costs a look at all of them.
   void hold() {
     constexpr int least = 4;
+    constexpr int loose = 2;  // next to the others: they come and go with these
     constexpr double steps = 32.0;
     const int held = old_.held().count;
+    const int most = stuck_ - loose;
+    if (most < held + least) return;
     const double wanted =
         steps * (std::abs(slide_.a) + std::abs(slide_.b) + std::abs(bound(0.0) - old_bound(0.0)));
     double room = bound(0.0);  // of the points looked at
@@ -365,10 +388,10 @@ class PartialSlipStep {
       }
       return i;
     };
-    if (stuck_ < held + least || end_from(held, held + least) < held + least) return;
+    if (end_from(held, held + least) < held + least) return;
     old_.release();
     room = bound(0.0);
-    const int end = end_from(0, stuck_);
+    const int end = end_from(0, most);
     if (end >= least) old_.hold(end, bound(0.0) - room, bound(old_[end - 1].x) - room);
   }
 
@@ -416,10 +439,12 @@ class PartialSlipStep {
   Tangent slide_;
   PartialSlipMemory& old_;  // until store()
   double old_edge_;
+  bool accounts_;    // whether energies are asked for
   double smallest_;  // rounding of the largest bound
   double loss_ = 0.0;
   bool slipping_ = false;
   bool follows_ = false;  // the last piece follows the bound
+  bool bends_ = false;    // U turns along the last piece
   int stuck_ = 0;         // points that only move with the slide; the others are below
   int knots_ = 0;
   int pieces_left_ = 0;  // with the present one
@@ -480,7 +505,7 @@ class PartialSlipStep {
 /// @param limit mu F_N [N]; <= 0: no friction. Where F_N is not Hertz's alone (damping) all
 ///        pressures are scaled.
 /// @param slide of body 1 against body 2 in this step [m]
-/// @param memory of this contact; updated
+/// @param memory of this contact; updated. Where it does not account() both energies are 0.
 /// Limits: identical materials (or both incompressible), else normal and tangential tractions are
 /// coupled; half-space, a << R; quasi-static; mu constant over the area; the small slip across the
 /// slide that Poisson's ratio causes is left out, as in all these sources.
@@ -489,7 +514,9 @@ inline PartialSlipResponse partial_slip_step(double stiffness, double limit, con
   if (stiffness > 0.0 && limit > 0.0) {
     return detail::PartialSlipStep(stiffness, limit, slide, memory).run();
   }
-  const double lost = memory.size() > 0 ? detail::PartialSlipStep::released(slide, memory) : 0.0;
+  const double lost = memory.size() > 0 && memory.accounts()
+                          ? detail::PartialSlipStep::released(slide, memory)
+                          : 0.0;
   memory.clear();
   const bool touching = stiffness > 0.0;
   if (touching) {

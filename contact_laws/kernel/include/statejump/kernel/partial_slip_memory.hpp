@@ -66,6 +66,9 @@ class PartialSlipMemory {
   /// sign lost [N]: a bound on the error of the force.
   double merged() const { return merged_; }
   const Held& held() const { return held_; }
+  /// Whether the energies of a step are asked for, which takes a third of its time.
+  bool accounts() const { return accounts_; }
+  void set_accounts(bool accounts) { accounts_ = accounts; }
   /// x [N/m] and both components of U [m]; those of points that are held as they were written.
   const std::vector<Vector3>& points() const { return points_; }
   /// The same, for whoever keeps them; the memory is empty then.
@@ -83,6 +86,13 @@ class PartialSlipMemory {
     held_.count = 0;
   }
   void push(const Point& point) { points_.emplace_back(point.x, point.u.a, point.u.b); }
+  void append(const Point* points, int count) {
+    const std::size_t first = points_.size();
+    points_.resize(first + static_cast<std::size_t>(count));
+    for (std::size_t j = first; j < points_.size(); ++j, ++points) {
+      points_[j] = {points->x, points->u.a, points->u.b};
+    }
+  }
   /// Keeps the first points, their rings moved by a slide [m], and forgets the others.
   /// @param count not less than are held
   void keep(int count, const Tangent& slide, double slope, double merged) {
@@ -120,6 +130,7 @@ class PartialSlipMemory {
   double slope_ = 0.0;
   double merged_ = 0.0;
   Held held_;
+  bool accounts_ = true;
 };
 
 /// What one step of the contact with partial slip answers.
@@ -148,8 +159,21 @@ struct Piece {
 /// What a point says that is left out.
 struct LeftOut {
   double squared_offset;  ///< of the point from the chord of its neighbours [m^2]
-  double base;            ///< [N/m]
-  double force() const { return std::sqrt(squared_offset) * std::abs(base); }  ///< its change [N]
+  double x_a, x_b, x_c;   ///< of the point b and its neighbours [N/m]
+
+  /// Change of force [N]: the triangle's height times the mean of its base over x, weights of the
+  /// two pieces at b.
+  double force() const {
+    const double base = (x_b - x_a) * (2.0 * x_b + x_a) / (3.0 * (x_b + x_a)) +
+                        (x_c - x_b) * (2.0 * x_c + x_b) / (3.0 * (x_c + x_b));
+    return std::sqrt(squared_offset) * std::abs(base);
+  }
+  /// Whether force() is more than a limit >= 0, mostly without it: the base is at least half the
+  /// distance of the neighbours.
+  bool is_more_than(double limit) const {
+    const double half = 0.5 * (1.0 - 1e-12) * (x_c - x_a);
+    return squared_offset * (half * half) > limit * limit || force() > limit;
+  }
 };
 
 /// When the point b between a and c is left out.
@@ -157,10 +181,7 @@ inline LeftOut left_out(const PartialSlipMemory::Point& a, const PartialSlipMemo
                         const PartialSlipMemory::Point& c) {
   const double share = (b.x - a.x) * (b.x + a.x) / ((c.x - a.x) * (c.x + a.x));
   const Tangent off = b.u - (a.u + share * (c.u - a.u));
-  // the triangle's height times the mean of its base over x: weights of the two pieces at b
-  const double base = (b.x - a.x) * (2.0 * b.x + a.x) / (3.0 * (b.x + a.x)) +
-                      (c.x - b.x) * (2.0 * c.x + b.x) / (3.0 * (c.x + b.x));
-  return {off.squared(), base};
+  return {off.squared(), a.x, b.x, c.x};
 }
 
 /// Integrals over x of U [N] and of U^2 [J], by pieces.
@@ -170,20 +191,24 @@ struct SlipSums {
 
   /// With theta from 0 to 1, straight over x^2, a piece is U_a + theta (U_b - U_a); the integrals
   /// of theta and theta^2 over dx are those of Piece, d (1/2 - q/6) and d (1/3 - q/6 + q^2/30).
+  /// @tparam both whether squares are wanted, too
+  template <bool both>
   void add(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b) {
     const double d = b.x - a.x;
     const double q = d / (b.x + a.x);
     const double sixth = q * (1.0 / 6.0);
     const double first = d * (0.5 - sixth);
-    const double second = d * ((1.0 / 3.0) - sixth + q * q * (1.0 / 30.0));
     const Tangent rise = b.u - a.u;
     force = force + d * a.u + first * rise;
+    if constexpr (!both) return;
+    const double second = d * ((1.0 / 3.0) - sixth + q * q * (1.0 / 30.0));
     squares += a.u.squared() * d + a.u.dot(rise) * (2.0 * first) + rise.squared() * second;
   }
 };
 
-/// Force and energy that a memory holds, with what the step adds.
-inline PartialSlipResponse answer(const PartialSlipMemory& memory, double loss, bool slipping) {
+/// Of all that a memory remembers.
+template <bool both>
+SlipSums sums_of(const PartialSlipMemory& memory) {
   SlipSums sums;
   int first = 0;
   const PartialSlipMemory::Held& held = memory.held();
@@ -193,21 +218,38 @@ inline PartialSlipResponse answer(const PartialSlipMemory& memory, double loss, 
     sums.force = held.force + width * held.shift;
     sums.squares = held.squares + 2.0 * held.shift.dot(held.force) + width * held.shift.squared();
   }
-  for (int i = first; i + 1 < memory.size(); ++i) sums.add(memory[i], memory[i + 1]);
-  return {sums.force, std::max(0.0, 0.5 * sums.squares), loss, slipping};
+  if (memory.size() == 0) return sums;
+  PartialSlipMemory::Point last = memory[first];
+  for (int i = first + 1; i < memory.size(); ++i) {
+    const PartialSlipMemory::Point next = memory[i];
+    sums.add<both>(last, next);
+    last = next;
+  }
+  return sums;
+}
+
+inline double elastic(const SlipSums& sums) {
+  return std::max(0.0, 0.5 * sums.squares);
+}
+
+/// Force and energy that a memory holds, with what the step adds.
+inline PartialSlipResponse answer(const PartialSlipMemory& memory, double loss, bool slipping) {
+  if (!memory.accounts()) return {sums_of<false>(memory).force, 0.0, 0.0, slipping};
+  const SlipSums sums = sums_of<true>(memory);
+  return {sums.force, elastic(sums), loss, slipping};
 }
 
 }  // namespace detail
 
 inline void PartialSlipMemory::hold(int count, double at_centre, double at_last) {
   detail::SlipSums sums;
-  for (int i = 0; i + 1 < count; ++i) sums.add((*this)[i], (*this)[i + 1]);
+  for (int i = 0; i + 1 < count; ++i) sums.add<true>((*this)[i], (*this)[i + 1]);
   held_ = {count, {}, sums.force, sums.squares, at_centre, at_last};
 }
 
 /// Energy [J] of the tangential traction that a memory holds.
 inline double elastic_energy(const PartialSlipMemory& memory) {
-  return detail::answer(memory, 0.0, false).elastic;
+  return detail::elastic(detail::sums_of<true>(memory));
 }
 
 }  // namespace statejump::kernel

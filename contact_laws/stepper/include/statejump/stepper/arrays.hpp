@@ -95,6 +95,32 @@ struct StoredEnergies {
   double joint = 0, link = 0, torsion = 0, prismatic = 0;
 };
 
+/// Bodies that feel what is in a scene.
+inline std::array<int, 2> bodies_of(const Contact& one) {
+  return {one.body_1, one.body_2};
+}
+inline std::array<int, 2> bodies_of(const LinkPlace& one) {
+  return {one.link.id1, one.link.id2};
+}
+inline std::array<int, 4> bodies_of(const TorsionPlace& one) {
+  return {one.first[0], one.first[1], one.second[0], one.second[1]};
+}
+inline std::array<int, 2> bodies_of(const Prismatic& one) {
+  return {one.id1, one.id2};
+}
+inline std::array<int, 1> bodies_of(const Guide& one) {
+  return {one.body};
+}
+
+/// What a stage holds.
+inline const std::vector<LinkPlace>& entries(const Links& stage) {
+  return stage.places;
+}
+template <class Entry>
+const std::vector<Entry>& entries(const std::vector<Entry>& stage) {
+  return stage;
+}
+
 inline Vector3 axis_of(const Quaternion& q) {
   // Local z axis in the world: orientation * (0, 0, 1) without the products with zero.
   return {2 * (q.x() * q.z() + q.w() * q.y()), 2 * (q.y() * q.z() - q.w() * q.x()),

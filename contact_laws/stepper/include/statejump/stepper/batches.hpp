@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contacts and bodies of a scene, four at once where they allow it. Between two steps the arrays of
-// the scene have all motions; what a contact keeps is here until unload().
+// the scene have the motions of all bodies that anything else looks at; what a contact keeps, and
+// the motion of a body that feels nothing but one contact, is here until unload().
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
+#include <variant>
 #include <vector>
 
 #include "statejump/stepper/arrays.hpp"
@@ -18,6 +22,7 @@ namespace statejump::stepper {
 struct BatchedArrays {
   std::vector<Body>& bodies;
   std::vector<Contact>& contacts;
+  const std::vector<Stage>& stages;
   const std::vector<Strain>& strains;
   Energies& energies;
   const Newton& newton;
@@ -54,7 +59,7 @@ class Batches {
   /// Places of the bodies that are not moved here, in their order.
   const std::vector<std::size_t>& others() const { return others_; }
 
-  /// Gives the arrays what their contacts keep.
+  /// Gives the arrays what their contacts keep and where their bodies are.
   void unload();
 
  private:
@@ -69,7 +74,16 @@ class Batches {
            contact.physics.slipMemory.empty() &&
            !(contact.joint == Joint::revolute && contact.tilted);
   }
-  void fill_bodies(bool nothing_between);
+  // The contacts of a batch and, where these feel nothing else, their first bodies.
+  struct Batch {
+    ContactLanes contacts;
+    std::size_t mover;  // place in movers_, or none
+  };
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+  void fill_movers();
+  void fill_bodies(bool is_simple);
+  std::vector<int> felt() const;
   void add(std::size_t first, std::size_t count);
   void load(ContactLanes& batch, std::size_t lane);
 
@@ -106,17 +120,29 @@ class Batches {
     return 1.0 + Pack{all[at[0]].strain, all[at[1]].strain, all[at[2]].strain, all[at[3]].strain};
   }
   template <bool tracks_energy>
-  [[gnu::always_inline]] inline LanesStep step(ContactLanes& batch);
+  [[gnu::always_inline]] inline LanesStep step(ContactLanes& batch, const MotionLanes& one);
+  template <bool tracks_energy>
+  [[gnu::always_inline]] inline void account(const LanesStep& step, std::size_t lane);
+  template <bool tracks_energy, class One>
+  [[gnu::always_inline]] inline bool act(ContactLanes& batch, const LanesStep& step,
+                                         const One& one);
+  template <bool tracks_energy, class One>
+  [[gnu::always_inline]] inline bool step_and_move(ContactLanes& batch, BodyLanes& bodies,
+                                                   const One& one);
+  template <bool tracks_energy, class One>
+  [[gnu::cold, gnu::noinline]] bool act_apart(ContactLanes& batch, BodyLanes& bodies,
+                                              const LanesStep& step, const One& one, Pack3& added);
   [[gnu::always_inline]] inline void exert(const ContactLanes& batch, std::size_t lane,
                                            const Vector3& force);
+  void unload(const BodyLanes& batch);
   template <class One>
   [[gnu::cold, gnu::noinline]] bool make_one(ContactLanes& batch, std::size_t lane, const One& one);
   [[gnu::always_inline]] inline bool move_all();
 
   BatchedArrays arrays_;
-  std::vector<ContactLanes> contacts_;
+  std::vector<Batch> contacts_;
   std::vector<Stretch> stretches_;
-  std::vector<BodyLanes> bodies_;
+  std::vector<BodyLanes> movers_, bodies_;  // bodies that their contact moves, and others
   std::vector<std::size_t> others_;
   bool useful_ = false;
 };
@@ -140,20 +166,62 @@ inline void Batches::fill(bool hertz_mindlin, bool nothing_between) {
       ++first;
     }
   }
-  fill_bodies(nothing_between);
-  useful_ = !contacts_.empty() || !bodies_.empty();
-}
-
-inline void Batches::fill_bodies(bool nothing_between) {
-  bodies_.clear();
-  others_.clear();
   // Energies of motion are summed body by body; without damping and gravity there are none.
   const bool is_simple =
       nothing_between &&
       (!arrays_.tracks_energy || (arrays_.newton.damping == 0 && arrays_.newton.gravity.isZero(0)));
+  movers_.clear();
+  if (is_simple) fill_movers();
+  fill_bodies(is_simple);
+  useful_ = !contacts_.empty() || !bodies_.empty();
+}
+
+// How many contacts and other things each body feels.
+inline std::vector<int> Batches::felt() const {
+  std::vector<int> felt(arrays_.bodies.size(), 0);
+  const auto count = [&](const auto& list) {
+    for (const auto& one : list) {
+      for (const int body : bodies_of(one)) ++felt[static_cast<std::size_t>(body)];
+    }
+  };
+  count(arrays_.contacts);
+  for (const Stage& stage : arrays_.stages) {
+    std::visit([&](const auto& one) { count(entries(one)); }, stage);
+  }
+  return felt;
+}
+
+inline void Batches::fill_movers() {
+  if (contacts_.empty()) return;
+  const std::vector<int> felt = this->felt();
+  for (Batch& batch : contacts_) {
+    const ContactLanes& contacts = batch.contacts;
+    bool alone = !contacts.any_moves_2;
+    for (std::size_t lane = 0; lane < contacts.count; ++lane) {
+      alone = alone && contacts.moves_1[lane] && felt[contacts.body_1[lane]] == 1;
+    }
+    if (!alone) continue;
+    batch.mover = movers_.size();
+    BodyLanes& bodies = movers_.emplace_back();
+    bodies.count = contacts.count;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      bodies.load(lane, contacts.body_1[lane], arrays_.bodies[contacts.body_1[lane]],
+                  arrays_.newton);
+      if (lane >= contacts.count) bodies.bounded[lane] = 0;  // it moves on without its contact
+    }
+  }
+}
+
+inline void Batches::fill_bodies(bool is_simple) {
+  bodies_.clear();
+  others_.clear();
+  std::vector<bool> moved(arrays_.bodies.size(), false);
+  for (const BodyLanes& batch : movers_) {
+    for (const std::size_t body : batch.body) moved[body] = true;
+  }
   for (std::size_t i = 0; i < arrays_.bodies.size(); ++i) {
     const Body& body = arrays_.bodies[i];
-    if (!body.moves) continue;
+    if (!body.moves || moved[i]) continue;
     if (body.turns || !is_simple) {
       others_.push_back(i);
       continue;
@@ -175,11 +243,12 @@ inline void Batches::fill_bodies(bool nothing_between) {
 
 inline void Batches::add(std::size_t first, std::size_t count) {
   stretches_.push_back({true, contacts_.size(), 1});
-  ContactLanes& batch = contacts_.emplace_back();
+  contacts_.emplace_back().mover = none;
+  ContactLanes& batch = contacts_.back().contacts;
   batch.first = first;
   batch.count = count;
   batch.joint = arrays_.contacts[first].joint;
-  batch.any_moves_2 = false;
+  batch.any_moves_2 = batch.spins = false;
   for (std::size_t lane = 0; lane < lanes; ++lane) load(batch, lane);
 }
 
@@ -206,30 +275,56 @@ inline void Batches::load(ContactLanes& batch, std::size_t lane) {
   put(batch.velocity_2, lane, two.motion.velocity);
   put(batch.spin_1, lane, one.motion.angular_velocity);
   put(batch.spin_2, lane, two.motion.angular_velocity);
+  // Nothing turns, so that products with a spin are 0 and change at most the sign of a 0 that they
+  // are added to. A velocity that is not -0 never becomes it.
+  for (const Body* body : {&one, &two}) {
+    for (int i = 0; i < 3; ++i) {
+      const double velocity = body->motion.velocity[i];
+      batch.spins = batch.spins || body->motion.angular_velocity[i] != 0 ||
+                    (velocity == 0 && std::signbit(velocity));
+    }
+  }
   batch.load(lane, contact);
   if (!used) batch.real[lane] = 0;
 }
 
 inline void Batches::unload() {
-  for (const ContactLanes& batch : contacts_) {
-    for (std::size_t lane = 0; lane < batch.count; ++lane) {
-      batch.unload(lane, arrays_.contacts[batch.first + lane]);
+  for (const Batch& batch : contacts_) {
+    for (std::size_t lane = 0; lane < batch.contacts.count; ++lane) {
+      batch.contacts.unload(lane, arrays_.contacts[batch.contacts.first + lane]);
     }
+  }
+  for (const BodyLanes& batch : movers_) unload(batch);
+}
+
+inline void Batches::unload(const BodyLanes& batch) {
+  for (std::size_t lane = 0; lane < batch.count; ++lane) {
+    kernel::BodyMotion& motion = arrays_.bodies[batch.body[lane]].motion;
+    motion.position = get(batch.position, lane);
+    motion.velocity = get(batch.velocity, lane);
   }
 }
 
 template <bool tracks_energy>
-LanesStep Batches::step(ContactLanes& batch) {
+LanesStep Batches::step(ContactLanes& batch, const MotionLanes& one) {
   const MotionLanes two =
       batch.any_moves_2 ? motions(batch.body_2) : MotionLanes{batch.position_2, batch.velocity_2};
-  return step_lanes<tracks_energy>(batch, motions(batch.body_1), two,
-                                   batch.length_1 * grown(batch.strain_1),
+  return step_lanes<tracks_energy>(batch, one, two, batch.length_1 * grown(batch.strain_1),
                                    batch.length_2 * grown(batch.strain_2), arrays_.time_step);
 }
 
 inline void Batches::exert(const ContactLanes& batch, std::size_t lane, const Vector3& force) {
   if (batch.moves_1[lane]) arrays_.bodies[batch.body_1[lane]].added_force += force;
   if (batch.moves_2[lane]) arrays_.bodies[batch.body_2[lane]].added_force += -force;
+}
+
+template <bool tracks_energy>
+void Batches::account(const LanesStep& step, std::size_t lane) {
+  if constexpr (tracks_energy) {
+    arrays_.energies.joint_friction += step.friction[lane];
+    arrays_.energies.joint_damping += step.damping[lane];
+    arrays_.energies.joint_thermal_work += step.thermal_work[lane];
+  }
 }
 
 template <class One>
@@ -242,6 +337,48 @@ bool Batches::make_one(ContactLanes& batch, std::size_t lane, const One& one) {
   return made;
 }
 
+// Puts what the contacts of a batch do into the arrays.
+template <bool tracks_energy, class One>
+bool Batches::act(ContactLanes& batch, const LanesStep& step, const One& one) {
+  const bool whole = !any(step.left);
+  for (std::size_t lane = 0; lane < batch.count; ++lane) {
+    if (!whole && step.left[lane]) {
+      if (!make_one(batch, lane, one)) return false;
+    } else if (step.touches[lane]) {
+      account<tracks_energy>(step, lane);
+      exert(batch, lane, get(step.force, lane));
+    }
+  }
+  return true;
+}
+
+// The same by way of the arrays, of bodies that are moved here. @param added forces [N]
+template <bool tracks_energy, class One>
+bool Batches::act_apart(ContactLanes& batch, BodyLanes& bodies, const LanesStep& step,
+                        const One& one, Pack3& added) {
+  unload(bodies);
+  const bool made = act<tracks_energy>(batch, step, one);
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    put(added, lane, arrays_.bodies[bodies.body[lane]].added_force);
+  }
+  for (const std::size_t body : bodies.body) arrays_.bodies[body].added_force = Vector3::Zero();
+  return made;
+}
+
+template <bool tracks_energy, class One>
+bool Batches::step_and_move(ContactLanes& batch, BodyLanes& bodies, const One& one) {
+  const LanesStep step = this->step<tracks_energy>(batch, {bodies.position, bodies.velocity});
+  Pack3 added = select(step.touches, Pack3{} + step.force, Pack3{});
+  if (any(step.left)) {
+    if (!act_apart<tracks_energy>(batch, bodies, step, one, added)) return false;
+  } else if constexpr (tracks_energy) {
+    for (std::size_t lane = 0; lane < batch.count; ++lane) {
+      if (step.touches[lane]) account<true>(step, lane);
+    }
+  }
+  return !any(move_lanes(bodies, added, arrays_.newton, arrays_.time_step));
+}
+
 template <bool tracks_energy, class One>
 bool Batches::step_all(const One& one) {
   for (const Stretch& stretch : stretches_) {
@@ -251,20 +388,12 @@ bool Batches::step_all(const One& one) {
       }
       continue;
     }
-    ContactLanes& batch = contacts_[stretch.first];
-    const LanesStep step = this->step<tracks_energy>(batch);
-    const bool whole = !any(step.left);
-    for (std::size_t lane = 0; lane < batch.count; ++lane) {
-      if (!whole && step.left[lane]) {
-        if (!make_one(batch, lane, one)) return false;
-      } else if (step.touches[lane]) {
-        if constexpr (tracks_energy) {
-          arrays_.energies.joint_friction += step.friction[lane];
-          arrays_.energies.joint_damping += step.damping[lane];
-          arrays_.energies.joint_thermal_work += step.thermal_work[lane];
-        }
-        exert(batch, lane, get(step.force, lane));
-      }
+    auto& [batch, mover] = contacts_[stretch.first];
+    if (mover != none) {
+      if (!step_and_move<tracks_energy>(batch, movers_[mover], one)) return false;
+    } else {
+      const LanesStep step = this->step<tracks_energy>(batch, motions(batch.body_1));
+      if (!act<tracks_energy>(batch, step, one)) return false;
     }
   }
   return true;

@@ -408,6 +408,7 @@ bool joint_law_step(const kernel::laws::JointLaw& law, const Geometry& geometry,
   namespace laws = kernel::laws;
   BorrowedHistory borrowed(geometry, physics);
   kernel::ContactHistory& history = borrowed.history;
+  history.memory.set_accounts(host.tracks_energy());
   const laws::JointKinematics kinematics{
       {geometry.penetrationDepth, geometry.normal, geometry.arm1, geometry.arm2,
        geometry.relativeVelocity, geometry.effectiveRadius, geometry.eccentricity},

@@ -24,6 +24,7 @@ struct ContactLanes {
   std::array<std::size_t, lanes> body_1, body_2, strain_1, strain_2;
   std::array<bool, lanes> moves_1, moves_2;
   bool any_moves_2, damps_normal, damps_tangential;
+  bool spins;  // where none does, what spins add is 0
   Mask used, real;
   Pack length_1, length_2;  // [m]
   Pack3 axis;               // unit, of the bearing; of a plane its normal
@@ -149,10 +150,14 @@ template <bool tracks_energy>
     step.left &= at.used;
     return step;
   }
-  const Pack3 arm_1 = normal * (length_1 - 0.5 * depth);
-  const Pack3 arm_2 = centres + arm_1;
-  const Pack3 velocity =
-      (one.velocity + cross(at.spin_1, arm_1)) - (two.velocity + cross(at.spin_2, arm_2));
+  Pack3 velocity;
+  if (at.spins) {
+    const Pack3 arm_1 = normal * (length_1 - 0.5 * depth);
+    const Pack3 arm_2 = centres + arm_1;
+    velocity = (one.velocity + cross(at.spin_1, arm_1)) - (two.velocity + cross(at.spin_2, arm_2));
+  } else {
+    velocity = one.velocity - two.velocity;
+  }
 
   // hertz() and the normal part of contact_step()
   const Pack contact_radius = root(radius * depth);

@@ -80,33 +80,11 @@ inline void Parts::split() {
     }
     return first;
   };
-  using Ids = std::vector<int>;
-  const auto ids_of = [](const auto& entry) -> Ids {
-    using Entry = std::decay_t<decltype(entry)>;
-    if constexpr (std::is_same_v<Entry, Contact>) {
-      return {entry.body_1, entry.body_2};
-    } else if constexpr (std::is_same_v<Entry, LinkPlace>) {
-      return {entry.link.id1, entry.link.id2};
-    } else if constexpr (std::is_same_v<Entry, TorsionPlace>) {
-      return {entry.first[0], entry.first[1], entry.second[0], entry.second[1]};
-    } else if constexpr (std::is_same_v<Entry, Prismatic>) {
-      return {entry.id1, entry.id2};
-    } else {
-      return {entry.body};
-    }
-  };
-  for (const Contact& contact : whole_.contacts) join(ids_of(contact));
-  const auto entries = [](const auto& stage) -> const auto& {
-    if constexpr (std::is_same_v<std::decay_t<decltype(stage)>, Links>) {
-      return stage.places;
-    } else {
-      return stage;
-    }
-  };
+  for (const Contact& contact : whole_.contacts) join(bodies_of(contact));
   for (const Stage& stage : whole_.stages) {
     std::visit(
         [&](const auto& one) {
-          for (const auto& entry : entries(one)) join(ids_of(entry));
+          for (const auto& entry : entries(one)) join(bodies_of(entry));
         },
         stage);
   }
@@ -136,21 +114,21 @@ inline void Parts::split() {
     parts_.back().stages.resize(whole_.stages.size());
   }
   // What holds resting bodies only belongs to the first part.
-  const auto part_with = [&](const Ids& ids) -> Part& {
+  const auto part_with = [&](const auto& ids) -> Part& {
     for (const int id : ids) {
       if (moves(id)) return parts_[part_of[groups.of(static_cast<std::size_t>(id))]];
     }
     return parts_.front();
   };
   for (std::size_t i = 0; i < whole_.contacts.size(); ++i) {
-    part_with(ids_of(whole_.contacts[i])).contacts.push_back(i);
+    part_with(bodies_of(whole_.contacts[i])).contacts.push_back(i);
   }
   for (std::size_t s = 0; s < whole_.stages.size(); ++s) {
     std::visit(
         [&](const auto& one) {
           const auto& list = entries(one);
           for (std::size_t i = 0; i < list.size(); ++i) {
-            part_with(ids_of(list[i])).stages[s].push_back(i);
+            part_with(bodies_of(list[i])).stages[s].push_back(i);
           }
         },
         whole_.stages[s]);

@@ -189,8 +189,8 @@ inline long Scene::run(long steps, const Make& make, const Observe& observe) {
         const auto move = [&](const std::vector<std::size_t>& places) { return move_all(places); };
         long done = 0;
         if (steps > 1) {
-          Batches batches(
-              {bodies, contacts, strains, energies, newton, time_step, tracks_energy, uses_avx2});
+          Batches batches({bodies, contacts, stages, strains, energies, newton, time_step,
+                           tracks_energy, uses_avx2});
           batches.fill(std::is_same_v<decltype(one), const HertzMindlin&>, !sums_before_moving());
           // The last step is not made in batches: it leaves all that anybody may ask for.
           while (done < steps - 1 && batches.useful() &&
