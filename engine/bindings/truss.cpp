@@ -366,19 +366,24 @@ py::dict motion_dict(const truss::Model& model, const truss::Motion& motion) {
   result["watched_velocity_m_per_s"] = Eigen::MatrixX3d(motion.watched_velocity.transpose());
   result["complete"] = motion.complete;
   result["time_step_s"] = motion.time_step;
+  result["steps"] = motion.steps;
+  result["rejected_steps"] = motion.rejected_steps;
+  result["inexact_steps"] = motion.inexact_steps;
   result["iterations"] = motion.iterations;
   result["factorizations"] = motion.factorizations;
   result["unknowns"] = motion.unknowns;
   result["largest_contact_merit"] = motion.largest_contact_merit;
   result["negative_dissipation_J"] = motion.negative_dissipation;
-  result["undetermined"] = py::none();
-  if (motion.undetermined) {
+  const auto time_and_joints = [&](const std::optional<truss::Undetermined>& found) -> py::object {
+    if (!found) return py::none();
     py::list joints;
-    for (const int joint : motion.undetermined->joints) {
+    for (const int joint : found->joints) {
       joints.append(truss::name_of(model.joints[static_cast<std::size_t>(joint)]));
     }
-    result["undetermined"] = py::make_tuple(motion.undetermined->time, joints);
-  }
+    return py::make_tuple(found->time, joints);
+  };
+  result["undetermined"] = time_and_joints(motion.undetermined);
+  result["jammed"] = time_and_joints(motion.jammed);
   return result;
 }
 
@@ -507,8 +512,8 @@ void bind_truss(py::module_& module) {
       [](const py::dict& nodes, const py::dict& links, const py::dict& springs,
          const py::dict& torsion_springs, const py::dict& joints,
          std::vector<thermal::Program> programs, const py::dict& inertia, long steps,
-         long sample_every, double theta, double restitution, int watched_node,
-         const py::list& drives, bool start_drawn, const py::object& progress) {
+         long sample_every, double theta, double displacement_tolerance_m, double restitution,
+         int watched_node, const py::list& drives, bool start_drawn, const py::object& progress) {
         const truss::Model model =
             make_model(nodes, links, springs, torsion_springs, joints, std::move(programs));
         const auto numbers = [&](const char* key) { return inertia[key].cast<Eigen::VectorXd>(); };
@@ -534,6 +539,7 @@ void bind_truss(py::module_& module) {
         options.steps = steps;
         options.sample_every = sample_every;
         options.theta = theta;
+        options.displacement_tolerance = displacement_tolerance_m;
         options.restitution = restitution;
         options.watched_node = watched_node;
         options.progress = until_interrupted(progress);
@@ -546,16 +552,17 @@ void bind_truss(py::module_& module) {
       },
       py::arg("nodes"), py::arg("links"), py::arg("springs"), py::arg("torsion_springs"),
       py::arg("joints"), py::arg("programs"), py::arg("inertia"), py::kw_only(), py::arg("steps"),
-      py::arg("sample_every"), py::arg("theta") = 0.5, py::arg("restitution") = 0.0,
-      py::arg("watched_node") = -1, py::arg("drives") = py::list(), py::arg("start_drawn") = false,
-      py::arg("progress") = py::none(),
+      py::arg("sample_every"), py::arg("theta") = 0.5, py::arg("displacement_tolerance_m") = 0.0,
+      py::arg("restitution") = 0.0, py::arg("watched_node") = -1, py::arg("drives") = py::list(),
+      py::arg("start_drawn") = false, py::arg("progress") = py::none(),
       "Motion of a truss from the equilibrium in which its quasi-static path begins, or from the\n"
       "drawn shape, at rest.\n\n"
       "Items as of truss_path(). inertia: link_mass_kg, link_damping_N_s_per_m,\n"
       "pin_damping_N_m_s_per_rad (a number for each link), node_mass_kg,\n"
       "spring_damping_N_s_per_m, joint_damping_sqrt_kg (2 ζ √m of each joint, kind by kind as of\n"
       "truss_joints()), link_centre (m, 2) shares along and to the left, link_moment_kg_m2.\n"
-      "steps: of the whole program. drives: dicts with name, link, time_s,\n"
+      "steps: of the whole program. displacement_tolerance_m: of a step, which is then as long as\n"
+      "that allows; 0: equal steps. drives: dicts with name, link, time_s,\n"
       "angular_velocity_rad_per_s; their moments and work are among the states.\n\n"
       "Returns states as truss_path() with velocities and energies, events with the heat of their\n"
       "step, the watched node's velocity at every step. Ctrl-C, or progress(share) that returns\n"

@@ -132,6 +132,7 @@ std::string cause(const FailureFields& fields) {
                         : ", while the status of " + joint(fields) + " still changed");
     }
     case FailureKind::no_continuation:
+      if (fields.joints.empty()) return "no equilibrium is near beyond it, the truss snaps through";
       return "the more " + joints(fields) + (fields.joints.size() == 1 ? " slips" : " slip") +
              ", the more the truss pushes";
     case FailureKind::several_continuations:
@@ -183,7 +184,8 @@ std::string sentence(const FailureFields& fields) {
     case FailureKind::not_converged:
       return fields.sought + where + ": " + why;
     case FailureKind::no_continuation:
-      return "slip runs away" + where + ": " + why + "; " + remedy(fields);
+      return (fields.joints.empty() ? "the path ends at a limit point" : "slip runs away") + where +
+             ": " + why + "; " + remedy(fields);
     case FailureKind::several_continuations:
       return "the path parts" + where + ": " + why;
     case FailureKind::unsettled_joint:

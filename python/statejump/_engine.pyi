@@ -387,6 +387,7 @@ def truss_motion(
     steps: int,
     sample_every: int,
     theta: float = ...,
+    displacement_tolerance_m: float = ...,
     restitution: float = ...,
     watched_node: int = ...,
     drives: list[dict[str, Any]] = ...,

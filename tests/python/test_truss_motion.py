@@ -2,6 +2,7 @@
 """Trusses in motion, through the command and from Python."""
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -57,6 +58,7 @@ def test_masses_are_those_of_rods_or_of_the_dem() -> None:
 
 @pytest.mark.parametrize(("key", "value", "allowed"), [
     ("theta", 0.4, "0.5"), ("restitution", 1.2, "1"), ("steps_per_cycle", 5, "10"), ("masses", "heavy", "lumped"),
+    ("displacement_tolerance_m", 0, "above 0"),
 ])
 def test_keys_out_of_range_are_refused(statejump, tmp_path: Path, key: str, value: Any, allowed: str) -> None:
     outcome = statejump("reduced", "--dynamic", case_file(tmp_path, chain(**{key: value})))
@@ -104,3 +106,44 @@ def test_steps_whose_contacts_keep_their_branches_share_their_factors() -> None:
     found = motion.simulate(sj.load(generate.chain(20)).changed({"motion.steps_per_cycle": 4000}).definition)
     assert len(found.events) > 20
     assert found.factorizations < 2 * len(found.events) < 400
+
+
+def test_what_a_motion_leaves_open_is_told() -> None:
+    found = motion.simulate(sj.load(chain()).definition)
+    assert found.warnings == ()
+    open_ended = replace(found, jammed=(0.25, ["S1"]), undetermined=(0.5, ["S1", "S2"]), inexact_steps=3)
+    inexact, jammed, undetermined = open_ended.warnings
+    assert inexact.startswith(f"in 3 of {found.steps} steps") and "displacement_tolerance_m" in inexact
+    assert jammed.startswith("at 0.25 s joint 'S1' could not slide on") and "Painlevé" in jammed
+    assert undetermined.startswith("from 0.5 s on") and "'S1', 'S2'" in undetermined
+
+
+def test_steps_as_long_as_a_tolerance_allows_meet_equal_ones(statejump, tmp_path: Path) -> None:
+    made = chain(displacement_tolerance_m=1e-9)
+    equal = sj.load(chain()).changed({"motion.steps_per_cycle": 100_000}).reduced(dynamic=True)
+    run = sj.load(made).reduced(dynamic=True)
+    # Errors of steps add up over what rings: a few hundred of them, at most.
+    assert run.summary["steps"] < 10_000 and run.summary["rejected_steps"] > 0
+    assert run.summary["time_step_s"] < 0.1 / run.summary["steps"]
+    apart = np.abs(run["displacement_m"] - equal["displacement_m"]).max()
+    assert apart < 300e-9
+    assert np.array_equal(run.time_s, equal.time_s)
+    heat = run["friction_dissipation_J"]
+    assert heat[-1] == pytest.approx(equal["friction_dissipation_J"][-1], rel=1e-3)
+    outcome = statejump("reduced", "--dynamic", case_file(tmp_path, made))
+    assert outcome.status == 0 and f"{run.summary['steps']:,.0f} steps" in outcome.output
+    # A spectrum is of equal steps, and so is theta.
+    refused = statejump("truss", "creak", tmp_path / "chain_3.toml", "--node", "N3")
+    assert refused.status == 2 and "motion.displacement_tolerance_m = 1e-09" in refused.errors
+    refused = statejump("reduced", "--dynamic", case_file(tmp_path, chain(displacement_tolerance_m=1e-9, theta=1.0)))
+    assert refused.status == 2 and "motion.theta = 1" in refused.errors and len(refused.errors.splitlines()) == 1
+
+
+def test_branches_that_are_not_found_at_once_are_sought_in_a_shorter_step() -> None:
+    # Blocks let go by the dozen in a tenth of the cycle, whatever the tolerance; pivots come back to where they were.
+    case = sj.load(generate.chain(50, friction_force_N=30.0, period_s=0.1)).changed({
+        "motion.displacement_tolerance_m": 1.0, "output.samples_per_cycle": 10})
+    found = motion.simulate(case.definition)
+    assert found.rejected_steps > 0
+    assert found.iterations == 0  # no contact problem
+    assert found.steps < 20

@@ -129,6 +129,26 @@ def test_arch_snaps_in_the_dem_as_it_does_in_motion() -> None:
     assert max(snapped) < -5e-3 and snapped[0] == pytest.approx(snapped[1], rel=1e-3)
 
 
+def test_an_arch_without_a_joint_snaps_in_both_models_where_its_path_ends() -> None:
+    snap = sj.load("two_bar_snap").to_dict()
+    pinned = {key: value for key, value in snap.items() if key != "revolute"}
+    pinned["node"] = [one for one in snap["node"] if one["name"] != "J"]
+    pinned["link"] = [{**one, "nodes": [one["nodes"][0], "B"]} for one in snap["link"]]
+    case = sj.load(pinned)
+    half, rise, rigidity, load, shrinks = 0.5, 5e-3, 70e9 * 9e-6, 0.1, 2e-6
+    # 2 E A (1 - l / l_T) y / l = P: past its shortest bars l_T the arch stands nowhere.
+    height = np.linspace(1e-3, rise, 1_000_000)
+    length = np.hypot(half, height)
+    shortest = (length / (1 - load * length / (2 * rigidity * height))).min()
+    at = (1 - shortest / np.hypot(half, rise)) / shrinks
+    with pytest.raises(StatejumpError, match="the path ends at a limit point") as told:
+        case.reduced()
+    assert told.value.temperature_change_K == pytest.approx(at, rel=1e-6)
+    runs = case.reduced(dynamic=True), case.dem()
+    assert sj.compare(*runs).passed
+    assert max(run["position_m"][-1, 2, 1] for run in runs) < -rise
+
+
 def test_a_dashpot_between_two_nodes_has_both_masses_in_series() -> None:
     truss = sj.load("telescope").definition.resolve()
     mass, ratio = masses.lumped_mass_kg(truss), 0.05

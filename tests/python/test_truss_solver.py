@@ -195,7 +195,7 @@ def test_tall_masts_pass_with_every_event_located(bays: int, most_changes: int) 
     that sticks: whoever is let off by rounding starts the next step beyond its bound, and flickers."""
     located, quick = (path(generate.mast(bays), locate_events=locate) for locate in (True, False))
     assert located.complete
-    # Increments of 1/50 of a branch: the rolling of elastic contacts is of second order in them.
+    # Events of the quick path happen somewhere in increments of 1/50 of a branch.
     assert jump_m(located)[-1] == pytest.approx(jump_m(quick)[-1], rel=0, abs=1e-6 * np.abs(jump_m(quick)).max())
     # No joint changes more than a few times in each of the two branches; one that flickers does so hundreds of times.
     most = max(Counter(event.name for event in located.events).values())
@@ -215,10 +215,25 @@ def test_every_state_keeps_to_coulomb_and_the_play() -> None:
     assert found.largest_force_residual < 1e-11
 
 
-def test_energy_residue_is_of_second_order() -> None:
-    """A step's rolling is the mean radius times its turn, of second order: four times the points, a sixteenth."""
-    coarse, fine = (path(generate.umbrella(1), increments_per_branch=k).energy_residue_J for k in (10, 40))
-    assert abs(fine) < abs(coarse) / 8
+@pytest.mark.parametrize("case", [
+    "chain_10", "chain_cable", "iwan_10", "latch_boom", "latch_lever", "ring_12", "telescope", "umbrella_8", "umbrella_rib",
+])
+def test_energies_of_shipped_cases_balance_at_every_state(case: str) -> None:
+    found = solve.solve(load_case(ROOT / "cases" / "trusses" / f"{case}.toml"))
+    states = found.states
+    stored = states["elastic_energy_J"] + states["load_potential_J"]
+    residue = states["thermal_work_J"] - (stored - stored[0]) - solve.heat_of_joints_J(states).sum(axis=1)
+    assert np.abs(residue).max() < 1e-10 * np.abs(states["thermal_work_J"]).max()
+
+
+def test_what_rolls_is_of_fourth_order_in_the_increment() -> None:
+    """What the rule of a step leaves is made up for in the next one: twice the increments, a sixteenth of the error. The
+    reference has eight times the most of them, so that its own error is 1/4096 of theirs."""
+    ring = load_case(ROOT / "cases" / "trusses" / "ring_12.toml").resolve()
+    ends = {k: solve.path(ring, increments_per_branch=k).states["displacement_m"][-1] for k in (20, 40, 320)}
+    coarse, fine = (np.abs(ends[k] - ends[320]).max() for k in (20, 40))
+    assert coarse > 1e4 * 1e-16 * np.abs(ends[320]).max()  # else rounding tells nothing
+    assert fine < coarse / 10
 
 
 def test_path_repeats_bit_for_bit_whatever_the_threads(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -356,7 +371,8 @@ def test_rib_held_by_springs_starts_open_in_the_middle(contact: str) -> None:
     exact = expansion * states["temperature_change_K"][before, None] * [frame, 0.0, 0.0]
     assert np.count_nonzero(before) > 10
     assert np.abs(apart[before]) == pytest.approx(exact, rel=0, abs=CLOSED_FORM * clearance)
-    assert not states["normal_force_N"][before].any() and not states["elastic_energy_J"][0]
+    # Both bars are drawn without stress: k = E A/l times the square of what rounding makes of a length.
+    assert not states["normal_force_N"][before].any() and states["elastic_energy_J"][0] < 1e7 * (1e-16 * frame) ** 2
     after = ~opened(found)
     assert np.all(states["normal_force_N"][after] >= 0) and states["normal_force_N"].max() > 0.1
     assert jump_m(found)[-1] == pytest.approx(0, abs=1e-12)
@@ -444,3 +460,10 @@ def test_many_joints_that_wander_are_settled_on_few_factorizations() -> None:
     assert len(found.events) > 10 and found.factorizations < 10 * found.solves
     chain = path(sticking(generate.chain(200, cycles=2), "elastic"), increments_per_branch=1, locate_events=False)
     assert chain.factorizations < 400
+
+
+def test_quiet_increments_keep_the_factors() -> None:
+    """No joint of this ring changes its branch on its path: steps by factors that are there lead from increment to
+    increment (86 factorizations, when each Newton step made its own)."""
+    found = path(generate.ring(100), increments_per_branch=10, locate_events=False)
+    assert len(found.events) == 0 and found.factorizations < found.solves

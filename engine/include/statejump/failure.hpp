@@ -22,7 +22,7 @@ enum class FailureKind : unsigned char {
   jump_across_play,  ///< Revolute whose contact force vanishes on the way.
   singular,          ///< No equilibrium found: the equations are singular to rounding.
   not_converged,     ///< No equilibrium found: the iteration does not end.
-  no_continuation,   ///< Truss: no slow continuation, slip runs away.
+  no_continuation,   ///< Truss: no slow continuation, slip runs away or the truss snaps through.
   several_continuations,  ///< Truss: statics does not choose between several.
   unsettled_joint,        ///< Truss: a joint's status changes without end.
   law_left_range,         ///< Dynamics: a contact law is asked for what it does not cover.

@@ -74,16 +74,26 @@ struct SparseFactor::Factors {
     if (numeric == nullptr) return false;
     if (klu_refactor(columns, rows, values, symbolic, numeric, &common) == 0) return false;
     if (common.status != KLU_OK) return false;
-    const auto entries = static_cast<std::size_t>(numeric->lnz);
-    lower_column.resize(static_cast<std::size_t>(size) + 1);
-    lower_row.resize(entries);
-    lower.resize(entries);
-    klu_extract(numeric, symbolic, lower_column.data(), lower_row.data(), lower.data(), nullptr,
-                nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr,
-                &common);
-    const double most = 1.0 / common.tol;
-    return std::all_of(lower.begin(), lower.end(),
-                       [most](double entry) { return std::abs(entry) <= most; });
+    return lower_within(1.0 / common.tol);
+  }
+
+  /// Whether no entry of L is beyond a bound. They are read where KLU has them, of every column
+  /// first the rows, then the entries: klu_extract() copies all of L.
+  bool lower_within(double most) const {
+    for (int block = 0; block < symbolic->nblocks; ++block) {
+      if (symbolic->R[block + 1] - symbolic->R[block] < 2) continue;
+      const double* units = static_cast<const double*>(numeric->LUbx[block]);
+      for (int k = symbolic->R[block]; k < symbolic->R[block + 1]; ++k) {
+        const auto length = static_cast<std::size_t>(numeric->Llen[k]);
+        const std::size_t rows = (length * sizeof(int) + sizeof(double) - 1) / sizeof(double);
+        const double* entries = units + numeric->Lip[k] + rows;
+        if (!std::all_of(entries, entries + length,
+                         [most](double entry) { return std::abs(entry) <= most; })) {
+          return false;
+        }
+      }
+    }
+    return true;
   }
 
   // KLU's C interface allocates and frees these itself.
@@ -93,9 +103,6 @@ struct SparseFactor::Factors {
   int size = 0;
   Eigen::VectorXd row_size;
   std::vector<int> pivot_of_row;
-  std::vector<int> lower_column;
-  std::vector<int> lower_row;
-  std::vector<double> lower;
 };
 
 SparseFactor::SparseFactor() : factors_(std::make_unique<Factors>()) {}

@@ -60,16 +60,21 @@ class NodeWriter {
       to_.residual[rows_[index(node)] + i] += part.free_directions.col(i).dot(value);
     }
   }
-  void block(int row_node, int column_node, const Matrix3d& value) {
+  /// Derivative of a node's force by another node's displacement: `value(direction of the force,
+  /// direction of the displacement)`.
+  template <class Value>
+  void block(int row_node, int column_node, Value&& value) {
     const Node& row_part = model_.nodes[index(row_node)];
     const Node& column_part = model_.nodes[index(column_node)];
     for (int j = 0; j < column_part.freedoms; ++j) {
-      const Vector3d image = value * column_part.free_directions.col(j);
       for (int i = 0; i < row_part.freedoms; ++i) {
-        to_.add(rows_[index(row_node)] + i, rows_[index(column_node)] + j,
-                row_part.free_directions.col(i).dot(image));
+        to_.add(rows_[index(row_node)] + i, rows_[index(column_node)] + j, value(i, j));
       }
     }
+  }
+  /// A vector along the directions in which a node moves.
+  Vector3d seen(int node, const Vector3d& vector) const {
+    return model_.nodes[index(node)].free_directions.transpose() * vector;
   }
 
  private:
@@ -97,13 +102,22 @@ void System::assemble_bars(const VectorXd& z, double time, Assembly& to) const {
     nodes.force(second, axial.tension * direction);
     to.largest_force = std::max(to.largest_force, std::abs(axial.tension));
     if (to.residual_only()) return;
-    const Matrix3d along = direction * direction.transpose();
-    const Matrix3d stiffness =
-        axial.stiffness * along + axial.tension / length * (Matrix3d::Identity() - along);
-    nodes.block(first, first, stiffness);
-    nodes.block(second, second, stiffness);
-    nodes.block(first, second, -stiffness);
-    nodes.block(second, first, -stiffness);
+    // Along the bar its stiffness, across it that of the tension.
+    const double across = axial.tension / length;
+    const std::array<int, 2> ends{first, second};
+    const std::array<Vector3d, 2> along{nodes.seen(first, direction),
+                                        nodes.seen(second, direction)};
+    for (std::size_t a = 0; a < 2; ++a) {
+      const Matrix3d& of_force = model.nodes[index(ends[a])].free_directions;
+      for (std::size_t b = 0; b < 2; ++b) {
+        const Matrix3d& moved = model.nodes[index(ends[b])].free_directions;
+        const double sense = a == b ? 1.0 : -1.0;
+        nodes.block(ends[a], ends[b], [&](int i, int j) {
+          return sense * ((axial.stiffness - across) * along[a][i] * along[b][j] +
+                          across * of_force.col(i).dot(moved.col(j)));
+        });
+      }
+    }
   };
   for (const Link& link : model.links) {
     const Lengths length = lengths_between(link.first, link.second, z);
@@ -137,24 +151,41 @@ void System::assemble_bars(const VectorXd& z, double time, Assembly& to) const {
       turn[k] = angle_derivatives(drawn + moved, plane);
     }
     const double moment = spring.stiffness * (angle - spring.free_angle);
+    // The angle by the places of the ends: that of the second of a link as turn, of the first
+    // against.
+    struct End {
+      std::size_t link;
+      int node;
+      bool is_second;
+      Vector3d along;
+    };
+    std::array<End, 4> ends;
+    std::size_t count = 0;
     for (std::size_t k = 0; k < 2; ++k) {
       if (links[k] < 0) continue;
       const Link& link = model.links[index(links[k])];
-      const Vector3d force = moment * sign[k] * turn[k].gradient;
-      nodes.force(link.second, force);
-      nodes.force(link.first, -force);
-      to.largest_force = std::max(to.largest_force, force.norm());
-      if (to.residual_only()) continue;
-      for (std::size_t m = 0; m < 2; ++m) {
-        if (links[m] < 0) continue;
-        const Link& other = model.links[index(links[m])];
-        Matrix3d block =
-            spring.stiffness * sign[k] * sign[m] * turn[k].gradient * turn[m].gradient.transpose();
-        if (k == m) block += moment * sign[k] * turn[k].hessian;
-        nodes.block(link.second, other.second, block);
-        nodes.block(link.first, other.first, block);
-        nodes.block(link.second, other.first, -block);
-        nodes.block(link.first, other.second, -block);
+      const Vector3d by_place = sign[k] * turn[k].gradient;
+      nodes.force(link.second, moment * by_place);
+      nodes.force(link.first, -moment * by_place);
+      to.largest_force = std::max(to.largest_force, std::abs(moment) * by_place.norm());
+      ends[count++] = {k, link.second, true, nodes.seen(link.second, by_place)};
+      ends[count++] = {k, link.first, false, nodes.seen(link.first, -by_place)};
+    }
+    if (to.residual_only()) continue;
+    for (std::size_t a = 0; a < count; ++a) {
+      const Matrix3d& of_force = model.nodes[index(ends[a].node)].free_directions;
+      for (std::size_t b = 0; b < count; ++b) {
+        const Matrix3d& moved = model.nodes[index(ends[b].node)].free_directions;
+        Matrix3d bends = Matrix3d::Zero();
+        if (ends[a].link == ends[b].link) {
+          bends = moment * sign[ends[a].link] *
+                  (ends[a].is_second == ends[b].is_second ? 1.0 : -1.0) *
+                  turn[ends[a].link].hessian;
+        }
+        nodes.block(ends[a].node, ends[b].node, [&](int m, int n) {
+          return spring.stiffness * ends[a].along[m] * ends[b].along[n] +
+                 of_force.col(m).dot(bends * moved.col(n));
+        });
       }
     }
   }

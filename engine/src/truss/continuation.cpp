@@ -88,8 +88,7 @@ SolveReport Walker::continue_from_event(double target, VectorXd& to, Statuses& s
     if (second.end == SolveEnd::stopped) return second;
     if (second.end != SolveEnd::converged) {
       for (const double steps : tangent_steps) {
-        if (any_slips(answer.statuses) &&
-            rates.index_at(z + steps * answer.step, target, origin, answer.statuses) < 0) {
+        if (rates.index_at(z + steps * answer.step, target, origin, answer.statuses) < 0) {
           fail_continuation(FailureKind::no_continuation, target, {});
         }
       }
@@ -118,7 +117,6 @@ bool Walker::passes_instability(const Statuses& statuses) {
 bool Walker::follows_its_rates(const Ends& ends) const {
   if (ends.start.statuses != ends.statuses) return true;
   const Eigen::Index n = system.displacements();
-  if (n == 0) return true;
   const double half = 0.5 * (ends.to_time - ends.from_time);
   const auto before = half * ends.from_rate.head(n);
   const auto after = half * ends.to_rate.head(n);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -129,27 +130,58 @@ VectorXd System::heat(const VectorXd& z, double time, const StepStart& start,
   VectorXd found(slips.size());
   for (int i = 0; i < slips.size(); ++i) {
     const Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
-    found[i] = std::visit(
-        [&](const auto& one) { return one.dissipation(at, history(i, after), slips[i]); },
-        model_->joints[index(i)]);
+    // What a joint that sticks is off by is no slip.
+    const double slip = after.statuses[index(i)] == JointStatus::stick ? 0.0 : slips[i];
+    found[i] =
+        std::visit([&](const auto& one) { return one.dissipation(at, history(i, after), slip); },
+                   model_->joints[index(i)]);
   }
   return found;
 }
 
-void System::account(const Way& way, const StepStart& start, const StepStart& after,
-                     const VectorXd& slips, State& state) const {
+std::optional<System::Halves> System::halves_of(const Way& way, const StepStart& start,
+                                                const Statuses& statuses) const {
+  const bool asked = !rolling_.empty() || slips_smoothly_ ||
+                     std::any_of(statuses.begin(), statuses.end(), is_slip);
+  if (way.is_straight() || !asked) return std::nullopt;
+  Halves made;
+  made.middle = 0.5 * (way.from + way.to) + 0.125 * way.step() * (*way.from_rate - *way.to_rate);
+  made.time = way.from_time + 0.5 * way.step();
+  made.half = commit(made.middle, made.time, statuses, start);
+  made.whole = commit(way.to, way.to_time, statuses, made.half);
+  return made;
+}
+
+void System::note_slides(const Way& way, const std::optional<Halves>& halves,
+                         const StepStart& start, StepStart& after) const {
+  if (rolling_.empty()) return;
+  const auto joints = static_cast<Eigen::Index>(model_->joints.size());
+  after.owed = after.lost = Eigen::Matrix3Xd::Zero(3, joints);
+  if (halves) after.last_step = way.step();
+  for (const int i : rolling_) {
+    if (after.statuses[index(i)] != JointStatus::stick) continue;
+    const Vector3d foreseen = start.foreseen(i, way.to_time);
+    if (halves) {
+      // Both halves together are off by a quarter of what the whole step is.
+      after.lost.col(i) =
+          4.0 / 3.0 *
+          (lag(i, halves->middle, halves->time, start) + lag(i, way.to, way.to_time, halves->half) -
+           lag(i, way.to, way.to_time, start));
+    }
+    after.owed.col(i) = after.lost.col(i) - foreseen;
+  }
+}
+
+void System::account(const Way& way, const std::optional<Halves>& halves, const StepStart& start,
+                     const StepStart& after, const VectorXd& slips, State& state) const {
   VectorXd dissipated = heat(way.to, way.to_time, start, after, slips);
-  if (!way.is_straight() && (dissipated.array() > 0.0).any()) {
-    // By way of the middle of the cubic, and what that and the straight way say of no steps at all.
-    const VectorXd middle =
-        0.5 * (way.from + way.to) + 0.125 * way.step() * (*way.from_rate - *way.to_rate);
-    const double then = way.from_time + 0.5 * way.step();
-    const StepStart half = commit(middle, then, after.statuses, start);
-    const StepStart whole = commit(way.to, way.to_time, after.statuses, half);
-    const VectorXd halves =
+  if (halves && (dissipated.array() > 0.0).any()) {
+    // What both halves and the whole say of no steps at all.
+    const auto& [middle, then, half, whole] = *halves;
+    const VectorXd by_halves =
         heat(middle, then, start, half, this->slips(middle, then, start, half)) +
         heat(way.to, way.to_time, half, whole, this->slips(way.to, way.to_time, half, whole));
-    dissipated = halves + (halves - dissipated) / 3.0;
+    dissipated = by_halves + (by_halves - dissipated) / 3.0;
   }
   state.joint_dissipation += dissipated;
   state.thermal_work += work_on_links(way) + work_on_joints(way, start);
@@ -222,14 +254,17 @@ Eigen::SparseMatrix<double> System::joined_stiffness(const VectorXd& z, double t
                                                      double held) const {
   // The forces of the joints are condensed: a direction that a joint holds becomes a stiff spring.
   // Rows that hold nothing drop out.
-  Assembly at = assembly();
-  evaluate(z, time, begin(z, time, statuses, 1.0), statuses, joints, 1.0, at);
-  const Eigen::SparseMatrix<double> full = at.jacobian.block(0, 0, displacements_, displacements_);
-  const int forces = unknowns_ - displacements_;
-  Eigen::SparseMatrix<double> rows = at.jacobian.block(displacements_, 0, forces, displacements_);
+  Eigen::SparseMatrix<double> stiffness, rows;
+  {
+    Assembly at = assembly();
+    evaluate(z, time, begin(z, time, statuses, 1.0), statuses, joints, 1.0, at);
+    stiffness = at.jacobian.block(0, 0, displacements_, displacements_);
+    rows = at.jacobian.block(displacements_, 0, unknowns_ - displacements_, displacements_);
+  }
+  // Half of it and half of its transpose, in the place of both.
+  stiffness *= 0.5;
+  stiffness += Eigen::SparseMatrix<double>(stiffness.transpose());
   // Rows in metres have gradients of order one, whatever lever arms they have.
-  Eigen::SparseMatrix<double> stiffness =
-      0.5 * (full + Eigen::SparseMatrix<double>(full.transpose()));
   stiffness += held * stiffness_scale_ * (rows.transpose() * rows);
   return stiffness;
 }

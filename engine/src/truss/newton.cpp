@@ -103,6 +103,12 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
                           const std::optional<Ahead>& ahead) {
   SolveReport report;
   current_ = false;
+  // Laws of several pieces have other equations on each; strict inequalities ask for states that
+  // only new factors make as exact.
+  const bool may_keep = !strict_ && !system_->slips_smoothly();
+  bool kept = std::exchange(quiet_, false) && may_keep;
+  bool stale = true;  // no factors have been made yet
+  bool pivoted = false;
   const VectorXd origin = ahead ? z : VectorXd();
   bool looking = ahead.has_value();
   const int displacements = system_->displacements();
@@ -142,9 +148,9 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const auto condense = [&] {
     condensed = true;
     idle = 0;
+    at_.want_jacobian(true);
     system_->evaluate(first_z, time, start, first_statuses, joints, opening, at_);
-    ++factorizations_;
-    if (!factor_.factorize(at_.jacobian)) return false;
+    if (!factorize(first_statuses, joints)) return false;
     const VectorXd whole = factor_.solve(-at_.residual);
     const std::vector<int> in_play(wandering.begin(), wandering.end());
     const Linearized here{first_z, time, start, joints, opening, first_statuses, factor_, whole};
@@ -159,6 +165,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const auto pivot = [&](const Violations& found, bool stepped) {
     if (found.joints.empty()) return true;
     wandering.insert(found.joints.begin(), found.joints.end());
+    pivoted = true;
     const auto begin_anew = [&] {
       current_ = false;
       report.joints = found.joints;
@@ -204,7 +211,19 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   // Every joint once on each of the other branches that it has, at most five.
   const long most_pivots = most_iterations + 5 * static_cast<long>(statuses.size());
   for (long total = 0; iterations < most_iterations && total < most_pivots; ++total, ++iterations) {
-    system_->evaluate(z, time, start, statuses, joints, opening, at_);
+    // By factors that are there the residual is enough.
+    bool old = kept && at_.pieces == 0 && halvings == 0 && keeps(statuses, joints);
+    kept = may_keep;
+    const auto evaluate = [&](bool jacobian) {
+      at_.want_jacobian(jacobian);
+      system_->evaluate(z, time, start, statuses, joints, opening, at_);
+    };
+    evaluate(!old);
+    const auto start_anew = [&] {
+      z = first_z;
+      lengths.clear();
+      kept = false;
+    };
     const double reach = length(z);
     const double rounding = 64.0 * epsilon * system_->stiffness_scale() * reach;
     const Residuals left = residuals(at_);
@@ -214,7 +233,11 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       halvings = 0;
     }
     const double largest = at_.largest_force;
-    if (!std::isfinite(left.balance + left.closure + left.force)) return report;
+    if (!std::isfinite(left.balance + left.closure + left.force)) {
+      if (!stale || total == 0) return report;
+      start_anew();
+      continue;
+    }
     // Where rounding is larger than foreseen the iteration stands still: that is the end as well,
     // if forces balance at all.
     const bool closed = left.balance <= force_tolerance * largest + rounding &&
@@ -225,10 +248,18 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     if (total > 0 && (closed || still)) {
       Violations found = violations();
       if (found.joints.empty()) {
+        if (old) evaluate(true);
         report.end = SolveEnd::converged;
         report.force_residual = largest > 0.0 ? left.balance / largest : 0.0;
         report.closure_residual = left.closure;
+        quiet_ = !pivoted;
+        solved_on_ = statuses;
+        solved_model_ = joints;
         return report;
+      }
+      if (stale) {
+        start_anew();
+        continue;
       }
       const Pivoting before = pivoting;
       if (!pivot(found, false)) return report;
@@ -238,18 +269,40 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       }
       continue;
     }
-    ++factorizations_;
-    if (!factor_.factorize(at_.jacobian)) {
-      report.end = SolveEnd::singular;
-      return report;
+    VectorXd next;
+    double next_length = 0.0;
+    if (old) {
+      next = factor_.solve(-at_.residual);
+      next_length = length(next);
+      const double enough = closure_tolerance * reach;
+      if (!lengths.empty() && next_length > enough) {
+        const double share = next_length / lengths.back();
+        const bool shrinks = share < 1.0;
+        if (!shrinks && stale) {
+          start_anew();
+          continue;
+        }
+        old = shrinks && keeping_pays(std::log(enough / next_length) / std::log(share));
+      } else if (!lengths.empty() && lengths.back() <= enough) {
+        old = false;  // it stands still
+      }
+      old = old && next.allFinite();
+      if (!old) evaluate(true);
     }
-    current_ = true;
-    const VectorXd next = factor_.solve(-at_.residual);
-    if (!next.allFinite()) {
-      report.end = SolveEnd::singular;
-      return report;
+    if (!old) {
+      if (!factorize(statuses, joints)) {
+        report.end = SolveEnd::singular;
+        return report;
+      }
+      stale = false;
+      current_ = true;
+      next = factor_.solve(-at_.residual);
+      if (!next.allFinite()) {
+        report.end = SolveEnd::singular;
+        return report;
+      }
+      next_length = length(next);
     }
-    const double next_length = length(next);
     const bool too_long = !lengths.empty() && next_length > closure_tolerance * reach &&
                           next_length > *std::max_element(lengths.begin(), lengths.end());
     if (too_long) {
@@ -266,6 +319,10 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     if (lengths.size() > remembered_steps) lengths.pop_front();
     if (!damped && pivoting != Pivoting::single) {
       const Violations found = violations();
+      if (stale && !found.joints.empty()) {
+        start_anew();
+        continue;
+      }
       if (looking && !found.joints.empty()) {
         const Violation first = first_violation(found.joints, origin, z, ahead->from_time, time,
                                                 start, joints, statuses);
@@ -275,6 +332,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
           report.leaving.emplace(first.joint, found.corrected[index(first.joint)]);
           report.joints = found.joints;
           if (ahead->stop) {
+            quiet_ = !pivoted;
             report.end = SolveEnd::event_ahead;
             return report;
           }
@@ -294,11 +352,27 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   return report;
 }
 
+bool Newton::factorize(const Statuses& statuses, JointModel joints) {
+  ++factorizations_;
+  factored_ = factor_.factorize(at_.jacobian);
+  factored_on_ = statuses;
+  factored_model_ = joints;
+  return factored_;
+}
+
+bool Newton::keeping_pays(double decades) const {
+  // By old factors each step is one decade, by new ones the first is two and every one twice that
+  // of the last. An iteration passes the entries of the factors, as many in L and U as the cost of
+  // a factorization tells, and those of the Jacobian.
+  const double saved = factor_.solutions_per_factorization();
+  const double factors = 4.0 * saved * system_->unknowns();
+  const auto jacobian = static_cast<double>(at_.jacobian.nonZeros());
+  const double by_new = std::ceil(std::log2(0.5 * decades + 1.0));
+  return std::ceil(decades) - by_new <= saved * factors / (factors + jacobian);
+}
+
 int Newton::stability_index() {
-  if (!current_) {
-    ++factorizations_;
-    current_ = factor_.factorize(at_.jacobian);
-  }
+  if (!current_) current_ = factorize(solved_on_, solved_model_);
   return current_ ? index_of(factor_.determinant_sign(), at_) : 0;
 }
 
@@ -307,23 +381,25 @@ std::optional<VectorXd> Newton::rate(const VectorXd& by_time) {
   // where it is not (the branches have changed since), there are new factors.
   for (const bool fresh : {false, true}) {
     if (fresh) {
-      ++factorizations_;
-      current_ = factor_.factorize(at_.jacobian);
+      current_ = factorize(solved_on_, solved_model_);
       if (!current_) return std::nullopt;
     }
     VectorXd found = factor_.solve(-by_time);
     double last = found.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(last)) continue;
     const double rounding = epsilon * last;
-    while (last > rounding) {
+    double left = last;
+    while (left > rounding) {
       const VectorXd change = factor_.solve(-by_time - at_.jacobian * found);
       const double size = change.lpNorm<Eigen::Infinity>();
       if (!(size <= 0.5 * last)) break;
       found += change;
+      // What is left shrinks by the same share.
+      left = size * (size / last);
       last = size;
     }
     // Rounding ends it as well: the best that these factors give.
-    if (last <= std::sqrt(epsilon) * found.lpNorm<Eigen::Infinity>()) return found;
+    if (left <= std::sqrt(epsilon) * found.lpNorm<Eigen::Infinity>()) return found;
   }
   return std::nullopt;
 }

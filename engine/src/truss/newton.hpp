@@ -43,6 +43,13 @@ struct Ahead {
 /// over ten steps as in [2]); a longer one means that the step before it went too far, and that is
 /// halved.
 ///
+/// **Factors are kept** as long as the set of branches is that for which they were made: within a
+/// solve, and for the next one where no joint changed. Steps by old factors (the simplified method
+/// [1], ch. 2.1) shrink by the same share each; new ones are made where the steps that they save
+/// cost more than a factorization. Branches and events are decided by steps on
+/// factors of the same solve: where a joint leaves its branch after one on older ones, the solve
+/// begins anew with factors of its start.
+///
 /// **The set of branches** changes by block principal pivoting [3]: every joint that violates its
 /// inequality changes its branch at once, after each full step. Inequalities are strict at first: a
 /// joint that is let off because rounding might be the reason would start the next step beyond its
@@ -105,13 +112,31 @@ class Newton {
                             const StepStart& start, JointModel model,
                             const Statuses& statuses) const;
 
+  /// Factors the Jacobian at hand, which is one on this set of branches.
+  bool factorize(const Statuses& statuses, JointModel joints);
+  /// Whether the factors are of equations on this set of branches.
+  bool keeps(const Statuses& statuses, JointModel joints) const {
+    return factored_ && joints == factored_model_ && statuses == factored_on_;
+  }
+
+  /// Whether steps by the factors that are there cost less than new ones.
+  /// @param decades how often what is left of the way has to shrink as the last step did
+  bool keeping_pays(double decades) const;
+
   const System* system_;
   bool strict_;
   std::function<bool()> going_on_;
   Assembly at_;
   linear::SparseFactor factor_;
   long factorizations_ = 0;
-  bool current_ = false;  ///< Whether the factors are those of the last set of branches.
+  /// Whether the factors were made in the last solve, of the set of branches on which it ended.
+  bool current_ = false;
+  bool quiet_ = false;     ///< Whether no joint changed in the last solve.
+  bool factored_ = false;  ///< Whether there are factors, and of what:
+  Statuses factored_on_;
+  JointModel factored_model_ = JointModel::pins;
+  Statuses solved_on_;  ///< Where the last solve converged.
+  JointModel solved_model_ = JointModel::pins;
 };
 
 /// Modes of a truss that nothing resists.

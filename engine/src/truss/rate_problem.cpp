@@ -2,41 +2,24 @@
 #include "rate_problem.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <utility>
+
+#include "rate_sets.hpp"
 
 namespace statejump::truss::detail {
 
 namespace {
 
-/// Joints at a bound that are decided together, as a rule with two branches each.
+/// Joints at a bound beside which a step that was found is not examined further.
 constexpr std::size_t most_joints = 8;
-constexpr std::size_t most_sets = std::size_t{1} << most_joints;
-
+/// Numbers of a dense matrix that is made to decide: 1 GiB of them.
+constexpr std::size_t most_numbers = std::size_t{1} << 27;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-
-/// A joint at a bound and its branches there, the first of them with contact.
-struct Candidate {
-  int joint;
-  std::vector<JointStatus> branches;
-  int first_row;
-  int rows;
-  Eigen::Index place;  ///< Of its first row among those of all candidates.
-
-  bool has(JointStatus status) const {
-    return std::find(branches.begin(), branches.end(), status) != branches.end();
-  }
-};
-
-/// Largest displacement [m].
-double length_of(const VectorXd& step, int displacements) {
-  return displacements == 0 ? 0.0 : step.head(displacements).lpNorm<Eigen::Infinity>();
-}
 
 /// Displacement beyond which a motion is a jump [m].
 double farthest(const System& system, const VectorXd& z, const VectorXd& step) {
@@ -49,24 +32,6 @@ double farthest(const System& system, const VectorXd& z, const VectorXd& step) {
   }
   return std::sqrt(share) * system.size();
 }
-
-/// Rows of all candidates on one branch each.
-struct Layer {
-  Eigen::MatrixXd influence;  ///< On these rows of a unit of each row of the base.
-  VectorXd value;             ///< Of the rows after the base's step.
-  std::vector<RowUnit> units;
-};
-
-/// The problem with the candidates' branches fixed.
-struct Branches {
-  std::vector<Candidate> candidates;
-  Statuses base;
-  std::vector<Layer>
-      layers;                ///< Layer k: every candidate on its branch k, the last if it has less.
-  Eigen::MatrixXd response;  ///< Of the unknowns to a unit in each row of the base.
-  VectorXd step;             ///< Of the unknowns on the base.
-  int index = 0;             ///< Of the base.
-};
 
 /// Whether only stick and slip one way are asked, each a row of its own kind.
 std::optional<Eigen::MatrixXd> complementarity_matrix(const Branches& of) {
@@ -122,90 +87,15 @@ int index_of(int determinant_sign, const Assembly& at) {
 
 int RateProblem::index_at(const VectorXd& z, double time, const StepStart& start,
                           const Statuses& statuses) {
+  begin();
   system_->evaluate(z, time, start, statuses, JointModel::friction, 1.0, at_);
   if (!factor_.factorize(at_.jacobian)) return 0;
   return index_of(factor_.determinant_sign(), at_);
 }
 
-namespace {
-
-/// Factors the base and evaluates the other branches; nothing if the base is singular.
-std::optional<Branches> prepare(const System& system, const VectorXd& z, double target,
-                                const StepStart& start, std::vector<Candidate> candidates,
-                                Assembly& at, linear::SparseFactor& factor) {
-  Branches made{std::move(candidates), start.statuses, {}, {}, {}, 0};
-  Eigen::Index rows = 0;
-  std::size_t most = 0;
-  for (Candidate& one : made.candidates) {
-    one.place = rows;
-    rows += one.rows;
-    most = std::max(most, one.branches.size());
-    made.base[index(one.joint)] = one.branches.front();
-  }
-  system.evaluate(z, target, start, made.base, JointModel::friction, 1.0, at);
-  if (!factor.factorize(at.jacobian)) return std::nullopt;
-  made.index = index_of(factor.determinant_sign(), at);
-  made.step = factor.solve(-at.residual);
-  made.response.resize(system.unknowns(), rows);
-  for (const Candidate& one : made.candidates) {
-    for (int k = 0; k < one.rows; ++k) {
-      made.response.col(one.place + k) =
-          factor.solve(VectorXd::Unit(system.unknowns(), one.first_row + k));
-    }
-  }
-  if (!made.step.allFinite() || !made.response.allFinite()) return std::nullopt;
-  for (std::size_t layer = 0; layer < most; ++layer) {
-    Statuses statuses = made.base;
-    for (const Candidate& one : made.candidates) {
-      statuses[index(one.joint)] = one.branches[std::min(layer, one.branches.size() - 1)];
-    }
-    if (layer > 0) system.evaluate(z, target, start, statuses, JointModel::friction, 1.0, at);
-    Layer added{Eigen::MatrixXd(rows, rows), VectorXd(rows), {}};
-    const RowMajor jacobian = at.jacobian;
-    for (const Candidate& one : made.candidates) {
-      for (int k = 0; k < one.rows; ++k) {
-        const int row = one.first_row + k;
-        added.influence.row(one.place + k) = jacobian.row(row) * made.response;
-        added.value[one.place + k] = at.residual[row] + jacobian.row(row).dot(made.step);
-        added.units.push_back(at.units[index(row)]);
-      }
-    }
-    made.layers.push_back(std::move(added));
-  }
-  return made;
-}
-
-/// The motion with every candidate on one of its branches, and the index of that set.
-struct Motion {
-  VectorXd step;
-  int index;
-};
-
-std::optional<Motion> motion_on(const Branches& of, const std::vector<std::size_t>& choice) {
-  const Eigen::Index rows = of.response.cols();
-  Eigen::MatrixXd matrix(rows, rows);
-  VectorXd value(rows);
-  int sign = of.index;
-  for (std::size_t i = 0; i < of.candidates.size(); ++i) {
-    const Candidate& one = of.candidates[i];
-    const Layer& layer = of.layers[choice[i]];
-    for (Eigen::Index k = one.place; k < one.place + one.rows; ++k) {
-      matrix.row(k) = layer.influence.row(k);
-      value[k] = layer.value[k];
-      const auto at = static_cast<std::size_t>(k);
-      if (layer.units[at] != of.layers[0].units[at]) sign = -sign;
-    }
-  }
-  const Eigen::FullPivLU<Eigen::MatrixXd> factors(matrix);
-  if (!factors.isInvertible()) return std::nullopt;
-  if (factors.determinant() < 0.0) sign = -sign;
-  return Motion{of.step - of.response * factors.solve(value), sign};
-}
-
-}  // namespace
-
 RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart& start,
                               const Statuses& found, const std::vector<int>& changing) {
+  begin();
   RateAnswer answer;
   std::vector<Candidate> candidates;
   const auto candidate = [&](int joint) -> Candidate& {
@@ -231,17 +121,17 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
     const bool slips = is_slip(before) && system_->remembers_when(i, before, JointStatus::stick);
     if (slips) add(candidate(i), JointStatus::stick);
     if (!found.empty() && found[index(i)] != before) add(candidate(i), found[index(i)]);
-    if (candidates.size() > most_joints) return answer;
+    if (!found.empty() && candidates.size() > most_joints) return answer;
   }
   for (const int joint : changing) candidate(joint);
 
-  const int displacements = system_->displacements();
-  const Rounding rounding = system_->rounding(z);
   // Every round knows one more branch of one of at most so many joints.
   for (;;) {
-    std::size_t sets = 1;
-    for (const Candidate& one : candidates) sets *= one.branches.size();
-    if (candidates.size() > most_joints || sets > most_sets) return answer;
+    std::size_t numbers = 0;
+    for (const Candidate& one : candidates) numbers += index(one.rows);
+    numbers *= index(system_->unknowns());
+    if ((!found.empty() && candidates.size() > most_joints) || numbers > most_numbers)
+      return answer;
     answer.joints.clear();
     for (const Candidate& one : candidates) {
       answer.joints.push_back(one.joint);
@@ -257,68 +147,80 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
         return answer;
       }
     }
-    const double near = farthest(*system_, z, of->step);
-
+    const Asking asking(*system_, z, target, start, *of, farthest(*system_, z, of->step));
+    std::vector<Group> groups = groups_of(*of);
+    if (of->index < 0) {
+      // Which group makes the base unstable is not known.
+      Group all(candidates.size());
+      std::iota(all.begin(), all.end(), 0);
+      groups = {all};
+    }
+    std::vector<Found> all;
     bool widened = false;
-    std::vector<Motion> solutions;
-    std::vector<Statuses> sets_found;
-    std::vector<std::size_t> choice(candidates.size(), 0);
-    for (std::size_t set = 0; set < sets && !widened; ++set) {
-      Statuses statuses = start.statuses;
-      std::size_t left = set;
-      for (std::size_t i = 0; i < candidates.size(); ++i) {
-        choice[i] = left % candidates[i].branches.size();
-        left /= candidates[i].branches.size();
-        statuses[index(candidates[i].joint)] = candidates[i].branches[choice[i]];
-      }
-      const auto motion = motion_on(*of, choice);
-      if (!motion) answer.singular = statuses;
-      if (!motion || !(length_of(motion->step, displacements) <= near)) continue;
-      const VectorXd end = z + motion->step;
-      const auto asked = [&](int joint) {
-        return system_->decide(joint, end, target, start, JointModel::friction, 1.0,
-                               statuses[index(joint)], rounding);
-      };
-      bool holds = true;
-      for (std::size_t i = 0; i < candidates.size(); ++i) {
-        const JointStatus wanted = asked(candidates[i].joint);
-        if (wanted == candidates[i].branches[choice[i]]) continue;
-        holds = false;
+    for (const Group& group : groups) {
+      all.push_back(motions_of(*of, group, asking));
+      for (const auto& [i, wanted] : all.back().wishes) {
         widened = add(candidates[i], wanted) || widened;
       }
-      if (!holds) continue;
-      for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
-        const JointStatus wanted = asked(i);
-        if (wanted == statuses[index(i)]) continue;
-        holds = false;
-        widened = add(candidate(i), wanted) || widened;
+      if (all.back().singular) answer.singular = asking.statuses(*all.back().singular);
+    }
+    if (widened) continue;
+
+    // The ways on of one group, the others on the first of theirs: does any joint beside object?
+    const auto together = [&](std::size_t special, const Motion& with) {
+      Motion whole{Choice(candidates.size(), 0), with.step, with.index};
+      for (std::size_t g = 0; g < groups.size(); ++g) {
+        const Motion& part = g == special ? with : all[g].motions.front();
+        for (const std::size_t i : groups[g]) whole.choice[i] = part.choice[i];
+        if (g != special) whole.step += part.step - of->step;
       }
-      if (!holds) continue;
-      const auto agrees = [&](const Motion& other) {
-        const double apart = length_of(other.step - motion->step, displacements);
-        const double size = length_of(motion->step, displacements);
-        return apart <= std::sqrt((rounding.length + epsilon * size) * size);
-      };
-      const auto known = std::find_if(solutions.begin(), solutions.end(), agrees);
-      if (known == solutions.end()) {
-        solutions.push_back(*motion);
-        sets_found.push_back(statuses);
-      } else if (motion->index > known->index) {
-        *known = *motion;
-        sets_found[static_cast<std::size_t>(known - solutions.begin())] = statuses;
+      return whole;
+    };
+    const bool each =
+        std::all_of(all.begin(), all.end(), [](const Found& one) { return !one.motions.empty(); });
+    for (std::size_t g = 0; g < groups.size() && each; ++g) {
+      for (const Motion& motion : all[g].motions) {
+        const Motion whole = together(g, motion);
+        const Statuses statuses = asking.statuses(whole.choice);
+        for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
+          const JointStatus wanted = asking.wanted(i, whole, statuses[index(i)]);
+          if (wanted != statuses[index(i)]) widened = add(candidate(i), wanted) || widened;
+        }
       }
     }
     if (widened) continue;
-    int stable = 0;
-    for (std::size_t i = 0; i < solutions.size(); ++i) {
-      if (solutions[i].index < 0) continue;
-      ++stable;
-      answer.statuses = sets_found[i];
-      answer.step = solutions[i].step;
+
+    // Groups in which no way goes on, or several do, decide for all; and name their joints.
+    std::vector<int> stopped, parting;
+    bool examined = true;
+    std::vector<Motion> stable;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const auto& motions = all[g].motions;
+      const auto count = std::count_if(motions.begin(), motions.end(),
+                                       [](const Motion& one) { return one.index >= 0; });
+      if (count == 0 && !all[g].examined) examined = false;
+      if (count == 1) {
+        stable.push_back(*std::find_if(motions.begin(), motions.end(),
+                                       [](const Motion& one) { return one.index >= 0; }));
+        continue;
+      }
+      std::vector<int>& named = count == 0 ? stopped : parting;
+      for (const std::size_t i : groups[g]) named.push_back(candidates[i].joint);
     }
-    answer.count = stable == 0   ? Continuation::none
-                   : stable == 1 ? Continuation::one
-                                 : Continuation::several;
+    if (!examined) return answer;
+    if (!stopped.empty() || !parting.empty()) {
+      answer.count = stopped.empty() ? Continuation::several : Continuation::none;
+      answer.joints = stopped.empty() ? parting : stopped;
+      return answer;
+    }
+    answer.count = Continuation::one;
+    Choice choice(candidates.size(), 0);
+    answer.step = of->step;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      for (const std::size_t i : groups[g]) choice[i] = stable[g].choice[i];
+      answer.step += stable[g].step - of->step;
+    }
+    answer.statuses = asking.statuses(choice);
     return answer;
   }
 }

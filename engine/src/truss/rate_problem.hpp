@@ -31,7 +31,9 @@ struct RateAnswer {
 ///
 /// **Answer.** With stick and slip alone it is a linear complementarity problem; where the
 /// symmetric part of its matrix is positive definite, there is exactly one solution, whatever heats
-/// [1]. Else all sets are tried. Solutions count as one where their motions agree. The sign of det
+/// [1]. Else joints that do not move each other are problems of their own; of up to eight joints
+/// all sets are tried, of more one solution is sought by pivoting, and another is not excluded.
+/// Solutions count as one where their motions agree. The sign of det
 /// J(S), each closure taken as negative, is the index of a solution; friction that grows with the
 /// speed of the slide, however little, drives away from one with a negative index, so that is no
 /// continuation.
@@ -42,7 +44,7 @@ struct RateAnswer {
 /// [1] R. W. Cottle, J.-S. Pang, R. E. Stone, The Linear Complementarity Problem, SIAM 2009, ch. 3.
 class RateProblem {
  public:
-  explicit RateProblem(const System& system) : system_(&system), at_(system.assembly()) {}
+  explicit RateProblem(const System& system) : system_(&system), at_(0) {}
 
   /// @param z unknowns at the start of the step, @param target its end
   /// @param found statuses on which a solve over the same step converged; empty if none did
@@ -55,6 +57,11 @@ class RateProblem {
   int index_at(const VectorXd& z, double time, const StepStart& start, const Statuses& statuses);
 
  private:
+  /// Makes the place of the equations, which many trusses never ask for.
+  void begin() {
+    if (at_.residual.size() == 0) at_ = system_->assembly();
+  }
+
   const System* system_;
   Assembly at_;
   linear::SparseFactor factor_;

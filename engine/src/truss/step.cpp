@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -145,7 +146,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
     slide_rate_after =
         system.slide_rates(trial, target, begin, trial_statuses, rate_after, program_rates);
   }
-  const StepStart after = system.commit(trial, target, trial_statuses, begin);
+  StepStart after = system.commit(trial, target, trial_statuses, begin);
   const VectorXd slips = system.slips(trial, target, begin, after);
   const Ends ends{time, target,     begin,      trial_statuses,   z,    trial,
                   rate, rate_after, slide_rate, slide_rate_after, slips};
@@ -159,14 +160,23 @@ StepEnd Walker::step_to(double target, double tolerance) {
       return StepEnd::event_inside;
     }
   }
+  const bool smooth = trial_statuses == origin.statuses && !is_short;
+  const Way way{z, time, trial, target, smooth ? &rate : nullptr, smooth ? &rate_after : nullptr};
+  const std::optional<System::Halves> halves = system.halves_of(way, begin, trial_statuses);
+  system.note_slides(way, halves, begin, after);
+  if (halves && begin.last_step == 0.0 && !after.lost.isZero(0.0)) {
+    // The first step of a smooth piece of the path, of which nothing could be foreseen: again.
+    ++path.solves;
+    origin.lost = after.lost;
+    origin.last_step = way.step();
+    return step_to(target, tolerance);
+  }
   note(report);
   const std::vector<double>& asked = options.problem_times;
   if (path.problems.size() < asked.size() && target >= asked[path.problems.size()]) {
     path.problems.push_back(local_problem(system, trial, target, begin, trial_statuses));
   }
-  const bool smooth = trial_statuses == origin.statuses && !is_short;
-  system.account({z, time, trial, target, smooth ? &rate : nullptr, smooth ? &rate_after : nullptr},
-                 begin, after, slips, state);
+  system.account(way, halves, begin, after, slips, state);
   rate = rate_after;
   slide_rate = slide_rate_after;
   z = trial;

@@ -23,6 +23,9 @@ System::System(const Model& model) : model_(&model) {
           history_begin_.push_back(history_);
           history_ += one.history();
           slips_smoothly_ = slips_smoothly_ || one.slips_smoothly();
+          if constexpr (requires { one.rolls(); }) {
+            if (one.rolls()) rolling_.push_back(static_cast<int>(frames_.size()) - 1);
+          }
         },
         joint);
     output_begin_.push_back(outputs_);
@@ -73,6 +76,10 @@ Trial System::trial(int joint, const VectorXd& z, double time, const StepStart& 
               .temperature_change = temperature_change(frame, time),
               .model = joints,
               .opening = opening};
+  if (start.owed.cols() > 0) {
+    trial.owed = start.owed.col(joint) + start.foreseen(joint, time);
+    trial.owed_rate = start.foreseen_rate(joint, time);
+  }
   for (std::size_t k = 0; k < most_joint_nodes; ++k) {
     const int node = frame.nodes[k];
     trial.drawn[k] = node < 0 ? Vector3d::Zero() : model_->nodes[index(node)].position;
@@ -94,7 +101,7 @@ JointStatus System::decide(int joint, const VectorXd& z, double time, const Step
 
 StepStart System::begin(const VectorXd& z, double time, const Statuses& statuses,
                         double opening) const {
-  StepStart start{statuses, VectorXd::Zero(history_)};
+  StepStart start{statuses, VectorXd::Zero(history_), time, {}, {}, 0.0};
   StepStart made = start;
   for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
     const Trial at = trial(i, z, time, start, JointModel::friction, opening);
@@ -107,7 +114,7 @@ StepStart System::begin(const VectorXd& z, double time, const Statuses& statuses
 
 StepStart System::commit(const VectorXd& z, double time, const Statuses& statuses,
                          const StepStart& last) const {
-  StepStart made{statuses, VectorXd(history_)};
+  StepStart made{statuses, VectorXd(history_), time, {}, {}, 0.0};
   for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
     const Trial at = trial(i, z, time, last, JointModel::friction, 1.0);
     double* after = made.history.data() + history_begin_[index(i)];
@@ -156,6 +163,17 @@ double System::slide_rounding(int joint, const VectorXd& z, double time, const S
 bool System::remembers_when(int joint, JointStatus before, JointStatus after) const {
   return std::visit([&](const auto& one) { return one.remembers_when(before, after); },
                     model_->joints[index(joint)]);
+}
+
+Vector3d System::lag(int joint, const VectorXd& z, double time, const StepStart& start) const {
+  Trial at = trial(joint, z, time, start, JointModel::friction, 1.0);
+  at.owed.setZero();
+  return std::visit(
+      [&](const auto& one) -> Vector3d {
+        if constexpr (requires { one.lag(at); }) return one.lag(at);
+        return Vector3d::Zero();
+      },
+      model_->joints[index(joint)]);
 }
 
 void System::apply(int joint, const Seat& seat, VectorXd& z) const {

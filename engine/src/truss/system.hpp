@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "joints/writer.hpp"
@@ -25,7 +27,24 @@ inline std::size_t fingerprint(const Statuses& statuses) {
 /// State at the start of a step, from which slides are counted.
 struct StepStart {
   Statuses statuses;
-  VectorXd history;  ///< What the joints remember, one after the other.
+  VectorXd history;   ///< What the joints remember, one after the other.
+  double time = 0.0;  ///< [s]
+  /// Of joints that roll, see System::note_slides(); empty: nothing.
+  Eigen::Matrix3Xd owed;   ///< Slide that the steps before left over [m].
+  Eigen::Matrix3Xd lost;   ///< What the rule of the slide left over in the last step [m].
+  double last_step = 0.0;  ///< Its duration [s].
+
+  /// What the rule is going to leave in a step to a time [m]: it grows with the third power of the
+  /// step, but of no longer step than the last one is it known.
+  Vector3d foreseen(int joint, double to) const {
+    if (!(last_step > 0.0)) return Vector3d::Zero();
+    const double share = std::min(1.0, (to - time) / last_step);
+    return share * share * share * lost.col(joint);
+  }
+  Vector3d foreseen_rate(int joint, double to) const {
+    if (!(last_step > 0.0) || !(to > time)) return Vector3d::Zero();
+    return 3.0 / (to - time) * foreseen(joint, to);
+  }
 };
 
 /// What rounding may make of lengths [m] and forces [N].
@@ -122,12 +141,30 @@ class System {
   /// How far cables and joints are beyond the edges at which their stiffness jumps [m].
   VectorXd beyond_edges(const VectorXd& z, double time, const StepStart& now) const;
 
+  /// A step by way of the middle of its cubic.
+  struct Halves {
+    VectorXd middle;
+    double time;      ///< There [s].
+    StepStart half;   ///< The state there as the start of the second half.
+    StepStart whole;  ///< That of the end.
+  };
+  /// Nothing where the way is straight, or where no joint asks for it.
+  std::optional<Halves> halves_of(const Way& way, const StepStart& start,
+                                  const Statuses& statuses) const;
+  /// What the slides of a step are off, noted in `after`. Such as ∫ |d| dφ are taken by the
+  /// trapezoidal rule, whose error in a step is of third order. It does not add up: what a step is
+  /// off, known from its halves (Richardson), is made up for in the next one, and as the next is
+  /// off by nearly as much, that is foreseen there. So what is left at any state is of fourth
+  /// order.
+  void note_slides(const Way& way, const std::optional<Halves>& halves, const StepStart& start,
+                   StepStart& after) const;
+
   /// Friction's heat of a step and the temperature's work, added to the state's.
   /// @param after the state at z as the start of the next step, @param slips see slips()
   /// @param way where statuses are the same at both ends, the rates by which both are of fourth
   /// order; without they are of second
-  void account(const Way& way, const StepStart& start, const StepStart& after,
-               const VectorXd& slips, State& state) const;
+  void account(const Way& way, const std::optional<Halves>& halves, const StepStart& start,
+               const StepStart& after, const VectorXd& slips, State& state) const;
   /// The temperature's work on links of a step [J].
   double work_on_links(const Way& way) const;
 
@@ -166,6 +203,8 @@ class System {
   bool remembers_when(int joint, JointStatus before, JointStatus after) const;
   /// Whether a joint slips at its rim while it sticks.
   bool slips_smoothly() const { return slips_smoothly_; }
+  /// Slide of a step less what friction bends, of a joint that rolls; nothing is owed to it [m].
+  Vector3d lag(int joint, const VectorXd& z, double time, const StepStart& start) const;
   double stiffness_scale() const { return stiffness_scale_; }
   double size() const { return size_; }  ///< Largest extent of the drawn shape [m].
 
@@ -206,6 +245,7 @@ class System {
   std::vector<int> force_row_;      // first force of each joint
   std::vector<int> history_begin_;  // of each joint
   std::vector<int> output_begin_;   // of each joint
+  std::vector<int> rolling_;        // joints whose slides are integrals along the way
   std::vector<Matrix32> torsion_plane_;
   Assembly pattern_{0};  // of all parts, which others copy
 };

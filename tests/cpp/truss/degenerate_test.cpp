@@ -10,20 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "parts.hpp"
 #include "statejump/failure.hpp"
-#include "statejump/truss/path.hpp"
 
 namespace statejump::truss {
 namespace {
 
 using Eigen::Vector3d;
-
-thermal::Program triangle(double largest) {
-  thermal::Program program;
-  program.shape = thermal::Shape::triangle;
-  program.temperature_change_max = largest;
-  return program;
-}
+using testing::triangle;
 
 /// Heats to a temperature, holds it, heats on, cools.
 thermal::Program held(double at, double largest) {
@@ -115,7 +109,7 @@ Model wheel(int blocks) {
   return model;
 }
 
-class Wheel : public testing::TestWithParam<int> {};
+class Wheel : public ::testing::TestWithParam<int> {};
 
 TEST_P(Wheel, BlocksThatSlipAtTheSameInstantDoSoTogether) {
   const int blocks = GetParam();
@@ -144,7 +138,7 @@ TEST_P(Wheel, BlocksThatSlipAtTheSameInstantDoSoTogether) {
   EXPECT_LT(path.solves, 200);
 }
 
-INSTANTIATE_TEST_SUITE_P(Degenerate, Wheel, testing::Values(2, 5, 50));
+INSTANTIATE_TEST_SUITE_P(Degenerate, Wheel, ::testing::Values(2, 5, 50));
 
 TEST(Degenerate, BlocksThatSlipAtTheSameInstantAndLeaveAMechanismAreAnError) {
   Model model = wheel(2);

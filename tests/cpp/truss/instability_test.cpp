@@ -1,35 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "parts.hpp"
 #include "statejump/failure.hpp"
-#include "statejump/truss/path.hpp"
 
 namespace statejump::truss {
 namespace {
 
 using Eigen::Vector3d;
+using testing::node;
+using testing::triangle;
 
 constexpr double rigidity = 1e6;
-
-thermal::Program triangle(double largest) {
-  thermal::Program program;
-  program.shape = thermal::Shape::triangle;
-  program.temperature_change_max = largest;
-  return program;
-}
-
-Node node(const char* name, double x, double y, int freedoms) {
-  Node made;
-  made.name = name;
-  made.position = {x, y, 0.0};
-  made.freedoms = freedoms;
-  return made;
-}
 
 /// Flat arch under prestress, friction holds its apex: past its limit point but for that.
 Model arch() {
@@ -112,6 +101,66 @@ TEST(Instability, SlipThatNothingSlowsEndsThePathWhereItBegins) {
   expect_end(footed(0.0), footed_at(0.0, 0.0), 2e-7);
 }
 
+/// Arches beside each other.
+Model arches(int count) {
+  Model model = arch();
+  for (int i = 1; i < count; ++i) {
+    const Model one = arch();
+    const int first = static_cast<int>(model.nodes.size());
+    for (Node node : one.nodes) {
+      node.position.z() = i;
+      model.nodes.push_back(node);
+    }
+    for (Link link : one.links) {
+      link.first += first;
+      link.second += first;
+      model.links.push_back(link);
+    }
+    Slider slider = std::get<Slider>(one.joints[0]);
+    slider.first += first;
+    slider.name = "S" + std::to_string(i);
+    model.joints.push_back(slider);
+  }
+  return model;
+}
+
+TEST(Instability, ManyThatSlipUnstablyAtTheSameInstantAreAllNamed) {
+  for (const int count : {2, 12}) {
+    for (const bool locate : {true, false}) {
+      Options options;
+      options.locate_events = locate;
+      try {
+        solve(arches(count), options);
+        ADD_FAILURE() << count;
+      } catch (const Failure& failed) {
+        EXPECT_EQ(failed.fields().kind, FailureKind::no_continuation) << failed.what();
+        EXPECT_EQ(failed.fields().joints.size(), static_cast<std::size_t>(count)) << failed.what();
+      }
+    }
+  }
+}
+
+TEST(Instability, OneOfManyThatSlipAtTheSameInstantIsNamedIfItAloneDoesSoUnstably) {
+  constexpr int count = 12;
+  Model model = arches(count);
+  // Ties slow all slips but that of the first arch.
+  for (int i = 1; i < count; ++i) {
+    Node sky = node("sky", 0.0, 1.01, 0);
+    sky.position.z() = i;
+    model.nodes.push_back(sky);
+    model.springs.push_back(
+        {"tie", 3 * i + 1, static_cast<int>(model.nodes.size()) - 1, 2000.0, 1.0, false});
+  }
+  try {
+    solve(model);
+    ADD_FAILURE();
+  } catch (const Failure& failed) {
+    EXPECT_EQ(failed.fields().kind, FailureKind::no_continuation) << failed.what();
+    ASSERT_EQ(failed.fields().joints.size(), 1u) << failed.what();
+    EXPECT_EQ(failed.fields().joints[0].name, "S");
+  }
+}
+
 TEST(Instability, SlipThatASpringSlowsGoesOn) {
   Model model = arch();
   model.nodes.push_back(node("sky", 0.0, 1.01, 0));
@@ -137,6 +186,45 @@ TEST(Instability, SlipThatTheTrussOvertakesEndsThePathAtTheLimitPoint) {
   ASSERT_LT(inner, 0.04);
   // Slip begins 0.9 K before it runs away; a longer increment without location steps over both.
   expect_end(footed(stiffness), footed_at(stiffness, inner), 1e-6, 50);
+}
+
+/// Arch of one freedom, without joints, that its load presses through when its bars have become
+/// short.
+Model loaded_arch() {
+  Model model;
+  model.programs = {triangle(-20.0)};
+  Node apex = node("apex", 0.0, 0.1, 1);
+  apex.free_directions << Vector3d::UnitY(), Vector3d::UnitX(), Vector3d::UnitZ();
+  apex.load = {0.0, -100.0, 0.0};
+  model.nodes = {node("left", -1.0, 0.0, 0), apex, node("right", 1.0, 0.0, 0)};
+  for (int i = 0; i < 2; ++i) {
+    model.links.push_back({"bar", i, i + 1, rigidity, std::hypot(1.0, 0.1), 2e-4, 0, 1.0});
+  }
+  return model;
+}
+
+TEST(Instability, ALimitPointWithoutSlipEndsThePathThere) {
+  // 2 E A (1 − l/l_T) y/l = P with l² = 1 + y²: past the shortest l_T on its way down it stands
+  // nowhere.
+  double shortest = std::numeric_limits<double>::infinity();
+  for (double height = 0.1; height > 0.02; height -= 1e-6) {
+    const double length = std::hypot(1.0, height);
+    shortest = std::min(shortest, length / (1.0 - 100.0 * length / (2.0 * rigidity * height)));
+  }
+  const double change = (shortest / std::hypot(1.0, 0.1) - 1.0) / 2e-4;
+  ASSERT_LT(change, -5.0);
+  ASSERT_GT(change, -20.0);
+  for (const int increments : {1, 7, 50, 333}) {
+    Options options;
+    options.increments_per_branch = increments;
+    try {
+      const Path path = solve(loaded_arch(), options);
+      ADD_FAILURE() << increments << " " << path.states.back().displacement.col(1).transpose();
+    } catch (const Failure& failed) {
+      EXPECT_EQ(failed.fields().kind, FailureKind::no_continuation) << failed.what();
+      EXPECT_NEAR(*failed.fields().temperature_change, change, 1e-6) << increments;
+    }
+  }
 }
 
 }  // namespace

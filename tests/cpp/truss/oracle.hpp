@@ -187,7 +187,8 @@ class MinimisingTruss {
     for (Eigen::Index r = 0; r < m; ++r) {
       value -= delassus.col(r) * rows[std::size_t(r)]->multiplier;
     }
-    // A sweep that moves nothing by more than rounding ends it.
+    // A sweep that moves nothing by more than the rounding of bars of a metre, from which the
+    // values are, ends it.
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     for (int sweep = 0; sweep < 100000; ++sweep) {
       double largest = 0.0;
@@ -203,7 +204,7 @@ class MinimisingTruss {
           largest = std::max(largest, std::abs(change) * delassus(r, r));
         }
       }
-      if (largest < 1e-17) return;
+      if (largest < epsilon) return;
     }
     throw std::runtime_error("Gauss-Seidel does not converge");
   }

@@ -165,7 +165,7 @@ Shuffled shuffled(const Model& model, unsigned seed) {
   return made;
 }
 
-class Oracle : public testing::TestWithParam<unsigned> {};
+class Oracle : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(Oracle, OrderOfPartsDoesNotMatter) {
   // One truss in ten, of every size; all 200 agree.
@@ -247,7 +247,7 @@ TEST_P(Oracle, RandomTrussesMinimiseTheirEnergy) {
   EXPECT_GT(events, 200u);  // else little was compared
 }
 
-INSTANTIATE_TEST_SUITE_P(TwoHundred, Oracle, testing::Range(0u, 20u));
+INSTANTIATE_TEST_SUITE_P(TwoHundred, Oracle, ::testing::Range(0u, 20u));
 
 }  // namespace
 }  // namespace statejump::truss

@@ -52,9 +52,12 @@ struct MotionStart {
 };
 
 struct MotionOptions {
-  long steps = 10000;      ///< Over all cycles, >= 1.
-  long sample_every = 1;   ///< Steps between samples, >= 1; start and end are samples as well.
-  double theta = 0.5;      ///< θ of the scheme, 0.5 to 1.
+  long steps = 10000;     ///< Over all cycles, >= 1.
+  long sample_every = 1;  ///< Steps between samples, >= 1; start and end are samples as well.
+  double theta = 0.5;     ///< θ of the scheme, 0.5 to 1.
+  /// What displacements may be off by in one step [m]; 0: equal steps. Above it steps are of
+  /// backward differentiation, as long as that allows, up to the time between samples.
+  double displacement_tolerance = 0;
   double restitution = 0;  ///< e of Newton's impact law, 0 to 1; of rigid contacts only.
   int most_iterations = 50;
   /// Without: the equilibrium in which the quasi-static path begins, at rest.
@@ -92,13 +95,19 @@ struct Motion {
   std::vector<double> event_heat;     ///< Heat of all joints in the step of each event [J].
   Eigen::Matrix3Xd watched_velocity;  ///< Of the watched node at every step, the start first.
   bool complete = true;               ///< False if MotionOptions::progress ended it.
-  double time_step = 0.0;             ///< [s]
-  long iterations = 0;                ///< Contact problems solved.
+  double time_step = 0.0;             ///< [s]; the shortest one.
+  long steps = 0;
+  long rejected_steps = 0;  ///< Tried, and longer than the tolerance allows.
+  long inexact_steps = 0;   ///< Off by more than the tolerance at the shortest length there is.
+  long iterations = 0;      ///< Contact problems solved.
   long factorizations = 0;
   int unknowns = 0;                    ///< Free displacements.
   double largest_contact_merit = 0.0;  ///< Of the contact problems, see complementarity::Merit.
   std::optional<Undetermined> undetermined;  ///< The first such step.
-  double negative_dissipation = 0.0;         ///< Sum of what steps gave below zero [J], <= 0.
+  /// The first step in which a slide of a rigid contact ends that could not go on: its force had
+  /// no solution or was one of several (Painlevé).
+  std::optional<Undetermined> jammed;
+  double negative_dissipation = 0.0;  ///< Sum of what steps gave below zero [J], <= 0.
 };
 
 /// Motion of a truss through its temperature programs, after Moreau and Jean [1, 2].

@@ -89,13 +89,15 @@ struct Path {
 /// **Why the increment does not matter.** With every status fixed, the state is an algebraic
 /// function of temperature: stick, stops and the cone |λ_t| = μ λ_n are holonomic, so a step is
 /// exact however long. (Rolling is so for rigid contacts and radii that do not expand; else it is
-/// taken by the trapezoidal rule, as is the k_t of a revolute that sticks: an error of second order
-/// in the increment.) Memory enters only where a slip ends in a stick and where an open
-/// joint closes. Steps with such a change are shortened until it happens within `event_tolerance`
-/// of a branch, or until what the joint may have slid by then, at the rate with which it begins the
-/// step, is below that share of its clearance plus rounding; and so is the first step after each
-/// corner of a program, where slips turn into sticks. With `locate_events` this is done for every
-/// change of status. A step that does not converge is shortened as well.
+/// an integral along the way, as is the bend of a contact with k_t: taken by the trapezoidal rule,
+/// and what a step is off by is made up for in the next one. That leaves an error of fourth order
+/// in the increment of a revolute, of third order of a ball that sticks, of second order of one
+/// that slips and with partial slip.) Memory enters only where a slip ends in a stick and where an
+/// open joint closes. Steps with such a change are shortened until it happens within
+/// `event_tolerance` of a branch, or until what the joint may have slid by then, at the rate with
+/// which it begins the step, is below that share of its clearance plus rounding; and so is the
+/// first step after each corner of a program, where slips turn into sticks. With `locate_events`
+/// this is done for every change of status. A step that does not converge is shortened as well.
 ///
 /// **What turns within a step.** The rates of all unknowns, from the tangent of the last solve, are
 /// known at both ends of a step; with the states they make a cubic. A joint that slips backwards

@@ -70,6 +70,20 @@ BallState<Dual> dual_state_of(const BallJoint& joint, const Trial& trial) {
                                   trial.opening, between);
 }
 
+/// What its slide lacks, across the normal [m].
+template <class Number>
+Vector<Number> across(const Vector<Number>& owed, const BallState<Number>& now) {
+  return owed - now.normal * Number(now.normal.dot(owed));
+}
+
+/// The bend of a joint that sticks, with what its slide lacks.
+template <class Number>
+BallBend<Number> bend_of(const BallJoint& joint, const Trial& trial, const BallState<Number>& now) {
+  BallBend<Number> bend = ball_bend(joint, now, BallMemory::of(trial.history));
+  if (!trial.owed.isZero(0.0)) bend.pull += across<Number>(trial.owed.cast<Number>(), now);
+  return bend;
+}
+
 /// Forces that the nodes have to carry, and what is to vanish.
 struct Response {
   std::array<Vector<Dual>, most_joint_nodes> force;
@@ -106,7 +120,7 @@ kernel::PartialSlipResponse rub(const BallJoint& joint, const Trial& trial, bool
 Vector<Dual> tangential_row(const BallJoint& joint, const Trial& trial, const BallState<Dual>& now,
                             JointStatus status) {
   const BallMemory start = BallMemory::of(trial.history);
-  const BallBend<Dual> bend = ball_bend(joint, now, start);
+  const BallBend<Dual> bend = bend_of(joint, trial, now);
   const Vector<Dual> carries = now.friction * bend.compliance;
   if (trial.model != JointModel::friction || joint.friction_coefficient == 0.0) return -carries;
   if (!is_slip(status) || bend.pull.squaredNorm().value() == 0.0) return bend.pull - carries;
@@ -163,7 +177,7 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
 /// The slip since the start of the step, if what is there now stuck: its rate is that of the slip.
 Dual slipped(const BallJoint& joint, const Trial& trial) {
   const BallState<Dual> now = dual_state_of(joint, trial);
-  const BallBend<Dual> bend = ball_bend(joint, now, BallMemory::of(trial.history));
+  const BallBend<Dual> bend = bend_of(joint, trial, now);
   const Dual squared = bend.pull.squaredNorm();
   if (!(squared.value() > 0.0)) return {0.0, Dual::DerType::Zero()};
   const Dual size = sqrt(squared);
@@ -222,9 +236,12 @@ void BallJoint::warm(const Trial& trial, JointStatus status, double temperature_
     const Vector<Dual>& force = made.force[a];
     writer.force(a, {rate(force[0]), rate(force[1]), rate(force[2])});
   }
+  Vector3d foreseen = Vector3d::Zero();
+  if (rolls() && status == JointStatus::stick)
+    foreseen = across(trial.owed_rate, state_of(*this, trial));
   for (int k = 0; k < 3; ++k) {
-    writer.closure(k,
-                   rate(trial.unslipped && k == slide_row ? slipped(*this, trial) : made.row[k]));
+    const Dual row = trial.unslipped && k == slide_row ? slipped(*this, trial) : made.row[k];
+    writer.closure(k, rate(row) + trial.frame.axes.col(k).dot(foreseen));
   }
 }
 
@@ -242,7 +259,7 @@ JointStatus BallJoint::decide(const Trial& trial, JointStatus status) const {
   if (status == JointStatus::stick) {
     return now.friction.norm() > bound + trial.force_rounding ? JointStatus::slip_plus : status;
   }
-  const BallBend<double> bend = ball_bend(*this, now, BallMemory::of(trial.history));
+  const BallBend<double> bend = bend_of(*this, trial, now);
   const double rounding = slide_rounding(trial, trial.length_rounding, trial.force_rounding);
   return bend.pull.norm() - bend.compliance * bound < -rounding ? JointStatus::stick : status;
 }
@@ -285,17 +302,23 @@ void BallJoint::commit(const Trial& trial, JointStatus status, double* after) co
   end.to(after);
 }
 
+Vector3d BallJoint::lag(const Trial& trial) const {
+  const BallState<double> now = state_of(*this, trial);
+  const BallBend<double> bend = bend_of(*this, trial, now);
+  return bend.pull - bend.compliance * now.friction;
+}
+
 double BallJoint::slip(const Trial& trial, const double* after) const {
   if (BallMemory::of(after).compliance == 0.0) return 0.0;  // open
-  const BallState<double> now = state_of(*this, trial);
-  const BallMemory start = BallMemory::of(trial.history);
-  const BallBend<double> bend = ball_bend(*this, now, start);
   if (partial_slip) {
+    const BallState<double> now = state_of(*this, trial);
+    const BallMemory start = BallMemory::of(trial.history);
+    const BallBend<double> bend = ball_bend(*this, now, start);
     const BallMemory end = BallMemory::of(after);
     return (bend.moved.slide + start.compliance * bend.moved.kept - end.compliance * now.friction)
         .norm();
   }
-  return (bend.pull - bend.compliance * now.friction).norm();
+  return lag(trial).norm();
 }
 
 double BallJoint::dissipation(const Trial& trial, const double* after_, double slip) const {

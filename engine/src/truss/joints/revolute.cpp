@@ -403,7 +403,7 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     } else if (status == JointStatus::stick && trial.model == JointModel::friction) {
       slides = 1.0;
       const ElasticSlide elastic = elastic_slide(*this, trial, start);
-      writer.closure(1, motion.slide - elastic.slide);
+      writer.closure(1, motion.slide - elastic.slide + trial.owed.x());
       corner[1][0] = -elastic.by_normal;
       corner[1][1] = -elastic.by_friction;
     } else {
@@ -450,7 +450,7 @@ void ClearanceRevolute::warm(const Trial& trial, JointStatus status, double temp
                                                  rubbing(*this, trial, motion.slide).line.by_slide;
       writer.closure(1, gives * slide);
     } else if (status == JointStatus::stick) {
-      writer.closure(1, slide);
+      writer.closure(1, slide + trial.owed_rate.x());
     }
   }
   const double friction = trial.force[1];
@@ -464,6 +464,16 @@ void ClearanceRevolute::warm(const Trial& trial, JointStatus status, double temp
   if (journal_link >= 0) turn(journal, journal_far, g.journal_direction, by_journal);
   if (bearing_link >= 0) turn(bearing, bearing_far, g.bearing_direction, -by_bearing);
 }
+
+namespace {
+
+/// The slide of a step less what friction bends, with what is owed [m].
+double lag_at(const ClearanceRevolute& joint, const Trial& trial, const Geometry& g) {
+  const Memory start = Memory::of(trial.history);
+  return motion_of(g, start).slide - elastic_slide(joint, trial, start).slide + trial.owed.x();
+}
+
+}  // namespace
 
 JointStatus ClearanceRevolute::decide(const Trial& trial, JointStatus status) const {
   if (trial.model == JointModel::pins) return status;
@@ -482,11 +492,9 @@ JointStatus ClearanceRevolute::decide(const Trial& trial, JointStatus status) co
            : friction < -bound ? JointStatus::slip_minus
                                : status;
   }
-  const Memory start = Memory::of(trial.history);
   const double sense = status == JointStatus::slip_plus ? 1.0 : -1.0;
-  const double slid = motion_of(g, start).slide - elastic_slide(*this, trial, start).slide;
   const double rounding = slide_rounding(trial, trial.length_rounding, trial.force_rounding);
-  return sense * slid < -rounding ? JointStatus::stick : status;
+  return sense * lag_at(*this, trial, g) < -rounding ? JointStatus::stick : status;
 }
 
 void ClearanceRevolute::begin(const Trial& trial, JointStatus status, double* now) const {
@@ -513,15 +521,18 @@ void ClearanceRevolute::commit(const Trial& trial, JointStatus status, double* a
   detail::write_partial_slip(memory, after + Memory::size);
 }
 
+Eigen::Vector3d ClearanceRevolute::lag(const Trial& trial) const {
+  return {lag_at(*this, trial, geometry_of(*this, trial)), 0.0, 0.0};
+}
+
 double ClearanceRevolute::slip(const Trial& trial, const double* after_) const {
-  const Memory start = Memory::of(trial.history);
   if (partial_slip) {
+    const Memory start = Memory::of(trial.history);
     const Memory after = Memory::of(after_);
     return motion_of(geometry_of(*this, trial), start).slide -
            (after.compliance * after.friction - start.compliance * start.friction);
   }
-  return motion_of(geometry_of(*this, trial), start).slide -
-         elastic_slide(*this, trial, start).slide;
+  return lag(trial).x();
 }
 
 double ClearanceRevolute::dissipation(const Trial& trial, const double* after_, double slip) const {

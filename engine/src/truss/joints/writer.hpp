@@ -44,16 +44,20 @@ class Assembly {
     return made;
   }
   bool residual_only() const { return residual_only_; }
+  /// From the next evaluation on: whether the Jacobian is added up, or stays as it is.
+  void want_jacobian(bool wanted) { residual_only_ = !wanted; }
 
   /// Begins an evaluation.
   void clear() {
     residual.setZero();
-    if (slots_ != nullptr) std::fill_n(jacobian.valuePtr(), jacobian.nonZeros(), 0.0);
+    if (slots_ != nullptr && !residual_only_)
+      std::fill_n(jacobian.valuePtr(), jacobian.nonZeros(), 0.0);
     next_ = 0;
     largest_force = 0.0;
     pieces = 0;
   }
   void add(int row, int column, double value) {
+    if (residual_only_) return;
     if (slots_ != nullptr) {
       jacobian.valuePtr()[(*slots_)[next_++]] += value;
     } else if (lists_) {
@@ -107,6 +111,7 @@ class JointWriter {
   }
   /// Derivative of a node's force by another node's displacement [N/m].
   void block(std::size_t by_node, std::size_t of_node, const Eigen::Matrix3d& value) {
+    if (to_->residual_only()) return;
     const Place& rows = places[by_node];
     const Place& columns = places[of_node];
     for (int j = 0; j < columns.freedoms; ++j) {
@@ -118,6 +123,7 @@ class JointWriter {
   }
   /// Derivative of a row by a node's displacement.
   void row(int row, std::size_t node, const Eigen::Vector3d& gradient) {
+    if (to_->residual_only()) return;
     const Place& at = places[node];
     for (int i = 0; i < at.freedoms; ++i) {
       to_->add(first_force + row, at.row + i, at.directions->col(i).dot(gradient));
@@ -125,6 +131,7 @@ class JointWriter {
   }
   /// Derivative of a node's force by one of the joint's.
   void column(std::size_t node, int force, const Eigen::Vector3d& gradient) {
+    if (to_->residual_only()) return;
     const Place& at = places[node];
     for (int i = 0; i < at.freedoms; ++i) {
       to_->add(at.row + i, first_force + force, at.directions->col(i).dot(gradient));

@@ -134,7 +134,7 @@ void Stepper::solve(Trial& step, Local& local) {
 }
 
 void Stepper::check_determined(const Trial& step, const Local& local) {
-  if (undetermined_) return;
+  if (undetermined_ || local.delassus.size() == 0) return;
   // Rows of W that hold. How a slider's friction and its stop share a force is never determined:
   // it is one force there.
   std::vector<Eigen::Index> rows;

@@ -65,7 +65,7 @@ Contact::Across Contact::across(double depth, double speed, double h) const {
 Contact::Along Contact::along(double normal, double h) const {
   const double now = tangential_compliance(normal);
   if (now == 0.0) return {0.0, 0.0};
-  const double kept = std::min(compliance, now) * elastic_friction;
+  const double kept = std::min(compliance, now) * elastic_friction + slid;
   if (damping == 0.0) return {now, kept};
   const double share = 1.0 / (1.0 + damping * std::sqrt(now) / h);
   return {share * now, share * kept};

@@ -42,6 +42,8 @@ struct Contact {
   double gap = 0.0;  ///< At the middle, radii of the end [m].
   double clearance_after = 0.0;
   bool active = false;
+  double opened = 0.0;  ///< What the gap at the end has beyond that of the middle at no speed [m].
+  double slid = 0.0;    ///< Slide of the step that its speed at the end does not tell [m].
 
   bool is_elastic() const { return hertz_stiffness < infinite; }
   double depth(double force) const;
@@ -58,7 +60,7 @@ struct Contact {
 
   /// 1/k_t under an elastic normal force [m/N]; 0: rigid.
   double tangential_compliance(double normal) const;
-  /// Friction that sticks over a step h: f = (bend + h u)/compliance at the speed u of the slide.
+  /// Friction that sticks over a step: f = (bend + h u)/compliance at the speed u of the slide.
   struct Along {
     double compliance;  ///< [m/N], 1/(k_t + c_t/h); 0: rigid.
     double bend;        ///< Of the force that is kept of the last step [m].

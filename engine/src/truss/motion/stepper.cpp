@@ -76,7 +76,7 @@ VectorXd Stepper::force(const VectorXd& q, const VectorXd& v, const Bodies::Step
 
 Eigen::SparseMatrix<double> Stepper::iteration_matrix(const Trial& step) {
   const Eigen::Index n = q_.size();
-  const double theta = options_->theta;
+  const double theta = step.theta;
   const double h = step.h;
   VectorXd middle = VectorXd::Zero(system_->unknowns());
   middle.head(n) = step.q_middle;
@@ -158,17 +158,20 @@ Stepper::Local Stepper::local_problem(const Trial& step) {
   local.directions.resize(n, rows);
   local.directions.setFromTriplets(entries.begin(), entries.end());
   local.before = local.directions.transpose() * v_;
+  const VectorXd opened = local.directions.transpose() * (step.q_from - step.q_middle);
+  const VectorXd slid = local.directions.transpose() * (step.q_from - q_);
   for (Eigen::Index i = 0; i < rows / 2; ++i) {
-    const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
-    local.before[2 * i] += (contact.clearance_after - contact.clearance) / step.h;
+    Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+    local.before[2 * i] += (contact.clearance_after - contact.clearance) / step.length;
+    contact.opened = opened[2 * i];
+    contact.slid = slid[2 * i + 1];
   }
   return local;
 }
 
 double Stepper::depth(const Trial& step, const Local& local, Eigen::Index i, double speed) const {
-  // From the gap at the middle of the step on by the velocity that comes.
   const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
-  return -(contact.gap + step.h * (speed - 0.5 * local.directions.col(2 * i).dot(v_)));
+  return -(contact.gap + contact.opened + step.h * speed);
 }
 
 Stepper::Tangent Stepper::tangent(const Trial& step, const Local& local, Eigen::Index i,
@@ -189,15 +192,15 @@ double Stepper::elastic_normal(const Trial& step, const Local& local, Eigen::Ind
 
 double Stepper::leaving(const Trial& step, const Local& local, Eigen::Index i) const {
   const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
-  return (contact.clearance_after - contact.clearance) / step.h +
+  return (contact.clearance_after - contact.clearance) / step.length +
          options_->restitution * std::min(local.before[2 * i], 0.0);
 }
 
 VectorXd Stepper::move(Trial& step) {
-  const double theta = options_->theta;
-  step.q = q_ + step.h * (theta * step.v + (1.0 - theta) * v_);
+  const double theta = step.theta;
+  step.q = step.q_from + step.h * (theta * step.v + (1.0 - theta) * v_);
   const VectorXd now = force(step.q, step.v, step.span);
-  return bodies_->mass() * (step.v - v_) -
+  return bodies_->mass() * (step.v - step.v_from) -
          step.h * (theta * now + (1.0 - theta) * step.force_before);
 }
 
@@ -234,39 +237,66 @@ bool Stepper::balanced(const Trial& step, const VectorXd& residual, const Vector
   return true;
 }
 
-void Stepper::advance(double to) {
-  Trial step{to - time_, to, bodies_->step(time_, to), q_ + 0.5 * (to - time_) * v_, {}, {}, v_};
+Stepper::Trial Stepper::trial(double to) const {
+  const double length = to - time_;
+  Trial step;
+  step.h = step.length = length;
+  step.to = to;
+  step.theta = options_->theta;
+  step.span = bodies_->step(time_, to);
+  step.q_from = q_;
+  step.v_from = step.v = v_;
+  step.q_middle = q_ + 0.5 * length * v_;
+  return step;
+}
+
+std::optional<Stepper::Local> Stepper::find(Trial& step, bool give_up) {
   step.force_before = internal_;
   if (bodies_->damped()) step.force_before += bodies_->force(q_, v_, step.span);
 
-  evaluate_contacts(step.q_middle, to);
+  evaluate_contacts(step.q_middle, step.to);
   VectorXd middle = z_;
   middle.head(q_.size()) = step.q_middle;
-  contacts_.measure(middle, to, origin_, joints_.residual, system_->rounding(middle).length);
+  contacts_.measure(middle, step.to, origin_, joints_.residual, system_->rounding(middle).length);
   Local local = local_problem(step);
   if (!on_branches(step, local)) {
+    if (give_up) return {};
     step.v = v_;
     local = local_problem(step);
     solve(step, local);
-    check_determined(step, local);
   }
-  book(step, local);
+  return local;
+}
+
+void Stepper::advance(double to) {
+  Trial step = trial(to);
+  const std::optional<Local> local = find(step, false);
+  book(step, *local);
 }
 
 /// Takes the step: memories, energies, statuses.
 void Stepper::book(const Trial& step, const Local& local) {
   const double h = step.h;
+  check_slides(step, local);
+  check_determined(step, local);
   for (Contact& contact : contacts_.all()) {
     if (contact.active) continue;
     contact.normal_force = contact.friction_force = contact.compliance = 0.0;
     contact.elastic_normal = contact.elastic_friction = 0.0;
   }
-  const VectorXd mean =
-      0.5 * (local.before + local.directions.transpose() * step.v);  // normals: less the growth
+  // Speeds by which impulses work.
+  const VectorXd through =
+      step.differentiates ? VectorXd((step.q - q_) / h) : VectorXd(0.5 * (v_ + step.v));
+  const VectorXd along = local.directions.transpose() * through;
+  // A force that has turned up within a step of backward differentiation was half as large in the
+  // mean; one that is at its bound was so as long as it slid.
+  const auto in_mean = [&](double before, double after, bool slides) {
+    return step.differentiates && !slides ? 0.5 * (before + after) : after;
+  };
   for (std::size_t i = 0; i < local.contacts.size(); ++i) {
     Contact& contact = *local.contacts[i];
     const auto n = static_cast<Eigen::Index>(2 * i);
-    const double stored_before[] = {contact.normal_energy(), contact.tangential_energy()};
+    const Contact before = contact;
     const double normal = local.impulses[n] / h;
     if (contact.normal_column >= 0) contact.normal_force = normal;
     contact.friction_force = normal > 0.0 ? -local.impulses[n + 1] / h : 0.0;
@@ -274,38 +304,47 @@ void Stepper::book(const Trial& step, const Local& local) {
     const double compliance = normal > 0.0 ? contact.tangential_compliance(elastic) : 0.0;
     contact.elastic_friction =
         contact.damping > 0.0 && compliance > 0.0
-            ? contact.spring_friction(elastic, h * local.directions.col(n + 1).dot(step.v),
+            ? contact.spring_friction(elastic,
+                                      h * local.directions.col(n + 1).dot(step.v) + contact.slid,
                                       contact.friction_coefficient * normal)
             : contact.friction_force;
     contact.compliance = compliance;
     if (contact.normal_column >= 0) contact.elastic_normal = elastic;
     if (contact.tangential_column >= 0) {
-      const double dashpot = (contact.friction_force - contact.elastic_friction) * h * mean[n + 1];
+      const bool slides = normal > 0.0 && !contact.sticks(normal, contact.friction_force);
+      const double force = in_mean(before.friction_force, contact.friction_force, slides);
+      const double elastic_force =
+          in_mean(before.elastic_friction, contact.elastic_friction, slides);
+      const double dashpot = (force - elastic_force) * h * along[n + 1];
       account_.damping += dashpot;
-      const double heat = contact.friction_force * h * mean[n + 1] - dashpot -
-                          (contact.tangential_energy() - stored_before[1]);
+      const double heat = force * h * along[n + 1] - dashpot -
+                          (contact.tangential_energy() - before.tangential_energy());
       account_.friction[contact.joint] += heat;
       account_.negative += std::min(heat, 0.0);
     }
     if (contact.normal_column >= 0) {
       const double growth = contact.clearance_after - contact.clearance;
-      const double moved = mean[n] + 0.5 * growth / h;
-      const double dashpot = -h * (contact.normal_force - contact.elastic_normal) * moved;
+      const bool rigid = !contact.is_elastic();
+      const double force = in_mean(before.normal_force, contact.normal_force, rigid);
+      const double elastic_force = in_mean(before.elastic_normal, contact.elastic_normal, rigid);
+      const double opened = h * along[n] + growth;
+      const double dashpot = -(force - elastic_force) * opened;
       account_.damping += dashpot;
       const double heat =
-          -local.impulses[n] * moved - dashpot - (contact.normal_energy() - stored_before[0]);
+          -force * opened - dashpot - (contact.normal_energy() - before.normal_energy());
       account_.impact += heat;
-      if (!contact.is_elastic()) account_.negative += std::min(heat, 0.0);
-      account_.thermal_work -= contact.normal_force * growth;
+      if (rigid) account_.negative += std::min(heat, 0.0);
+      account_.thermal_work -= force * growth;
     }
   }
   for (Eigen::Index k = 0; k < drives_.count(); ++k) {
     const Eigen::Index column = holds_.cols() - drives_.count() + k;
     drive_moment_[k] = -hold_scale_ * step.held[column] / h;
-    account_.drives -= step.held[column] * holds_.col(column).dot(0.5 * (v_ + step.v));
+    account_.drives -= step.held[column] * holds_.col(column).dot(through);
   }
   if (bodies_->damped()) {
-    const Bodies::Work work = bodies_->work(q_, v_, step.q, step.v, step.span, options_->theta);
+    const double theta = step.differentiates ? 0.5 : step.theta;
+    const Bodies::Work work = bodies_->work(q_, v_, step.q, step.v, step.span, theta);
     account_.damping += work.heat;
     account_.thermal_work += work.thermal;
   }

@@ -38,6 +38,12 @@ class Stepper {
   void begin(const VectorXd& q, const VectorXd& v, const State* equilibrium);
   /// One step to this time. @throws Failure if it has no solution that is found
   void advance(double to);
+  /// The same by backward differentiation, not yet taken: what displacements are off by [m]. Of
+  /// second order where the step before was one of these. Without a number where its branches were
+  /// not found and `give_up`, which saves the contact problem. @throws Failure as advance()
+  std::optional<double> attempt(double to, bool give_up);
+  /// Takes what was attempted last.
+  void accept();
 
   const VectorXd& velocity() const { return v_; }
   double time() const { return time_; }
@@ -47,6 +53,7 @@ class Stepper {
   double kinetic_energy() const { return 0.5 * v_.dot(bodies_->mass() * v_); }
   void describe(State& state) const;
   const std::optional<Undetermined>& undetermined() const { return undetermined_; }
+  const std::optional<Undetermined>& jammed() const { return jammed_; }
   long iterations() const { return iterations_; }
   long factorizations() const { return factorizations_; }
   double largest_merit() const { return largest_merit_; }
@@ -62,16 +69,29 @@ class Stepper {
     Eigen::MatrixXd delassus;
     VectorXd impulses;
   };
-  /// A step in the making.
+  /// A step in the making: M (v − v_from) = h (θ f + (1 − θ) f0) + H r, q = q_from + h (θ v +
+  /// (1 − θ) v0). After Moreau and Jean it begins where the last one ended; one of backward
+  /// differentiation has θ = 1, begins where the last two point to, and its h is a part of it.
   struct Trial {
-    double h;
-    double to;
-    Bodies::Step span;
+    double h = 0.0;  ///< [s]; impulses are h times the forces at the end.
+    double to = 0.0;
+    double length = 0.0;  ///< [s]
+    double theta = 1.0;
+    bool differentiates = false;  ///< From the last two steps.
+    Bodies::Step span = {};
+    VectorXd q_from;
+    VectorXd v_from;
     VectorXd q_middle;
     VectorXd force_before;  ///< f0 [N]
     VectorXd q;
     VectorXd v;
     VectorXd held = {};  ///< Impulses of what holds or drives, against its scaled columns.
+  };
+  /// The step before the next one, for backward differentiation.
+  struct Before {
+    double length = 0.0;  ///< [s]; 0: none, or velocities jump.
+    VectorXd q;           ///< Where it began.
+    VectorXd v;
   };
 
   /// Depth of an elastic contact at the end of the step, opening at this speed [m].
@@ -90,6 +110,13 @@ class Stepper {
   /// Speed with which a rigid contact opens after an impact, with its sign turned [m/s].
   double leaving(const Trial& step, const Local& local, Eigen::Index contact) const;
 
+  Trial trial(double to) const;
+  /// Finds the end of a step; none where its branches are not found and `give_up`.
+  std::optional<Local> find(Trial& step, bool give_up);
+  /// Whether a rigid contact closes in the step, so that velocities jump.
+  static bool closes(const Local& local);
+  /// Depth at the end of a step of rigid contacts that its middle did not know closed [m].
+  double deepest(const Trial& step) const;
   Eigen::SparseMatrix<double> iteration_matrix(const Trial& step);
   Local local_problem(const Trial& step);
   /// Directions of what holds or drives, and the speeds along them, of the size of a matrix.
@@ -150,6 +177,10 @@ class Stepper {
                 const Local& local, bool by_branches) const;
   /// Notes the first step whose reactions are not unique.
   void check_determined(const Trial& step, const Local& local);
+  /// Notes the first step in which a slide ends that could not go on.
+  void check_slides(const Trial& step, const Local& local);
+  /// Branches of the active contacts at the end of a step, by their impulses.
+  static std::vector<Branch> branches_of(const Local& local);
   void book(const Trial& step, const Local& local);
   [[noreturn]] void fail(FailureKind kind, double when, const Contact* contact) const;
   const Contact* worst(const complementarity::Problem& problem, const VectorXd& impulses,
@@ -178,10 +209,13 @@ class Stepper {
   VectorXd v_;
   VectorXd z_;  ///< q and the forces of the joints at the end of the last step.
   double time_ = 0.0;
+  Before before_;
+  std::optional<std::pair<Trial, Local>> attempted_;
   VectorXd internal_;        ///< Forces without dashpots and contacts at (q, time) [N].
   VectorXd internal_after_;  ///< The same where force() was asked last.
   Account account_;
   std::optional<Undetermined> undetermined_;
+  std::optional<Undetermined> jammed_;
   std::vector<Eigen::Index> holding_;  ///< Rows of contacts, see check_determined().
   long iterations_ = 0;
   long factorizations_ = 0;

@@ -200,7 +200,9 @@ class TrussMotion(Section):
     contacts in [dem]."""
 
     steps_per_cycle: int = whole(10_000, 10, 1_000_000_000, CHOICE)
-    theta: float = parameter(0.5, "-", 0.5, 1, "second order, no numerical damping; 1: implicit Euler")
+    displacement_tolerance_m: float | None = parameter(
+        None, "m", 0, LARGEST_LENGTH_M, "equal steps; else of a step, which is then as long as that allows", above=True)
+    theta: float = parameter(0.5, "-", 0.5, 1, "second order, no numerical damping; 1: implicit Euler; of equal steps")
     restitution: float = parameter(0.0, "-", 0, 1, CHOICE + "; Newton's, of stops and of revolutes with rigid contact")
     masses: str = choice("consistent", ("consistent", "lumped"), "exact for bodies on links; lumped: as in the DEM")
     start: str = choice(

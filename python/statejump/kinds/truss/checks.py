@@ -34,6 +34,9 @@ def check(case: TrussCase) -> None:
     _vectors(case)
     check_references(case)
     check_geometry(case)
+    if case.motion.displacement_tolerance_m is not None and case.motion.theta != 0.5:
+        raise NotAllowed("motion.theta", case.motion.theta, "it is of equal steps, which "
+                         "motion.displacement_tolerance_m has not")
 
 
 def _programs(case: TrussCase) -> None:

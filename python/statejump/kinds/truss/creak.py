@@ -129,13 +129,16 @@ def creak(case: TrussCase, node: str, tell: Tell = lambda share: None) -> Creak:
 
     :param node: name of the node
     :param tell: takes the finished share, 0 to 1
-    :raises NotAllowed: there is no such node
+    :raises NotAllowed: there is no such node, or steps are not equal
     :raises FailedRun: as of the motion
     """
     names = case.resolve().nodes.names
     if node not in names:
         some = ", ".join(names[:8]) + (" …" if len(names) > 8 else "")
         raise NotAllowed("node", node, f"the truss has the nodes {some}", case=case.name)
+    if case.motion.displacement_tolerance_m is not None:
+        raise NotAllowed("motion.displacement_tolerance_m", case.motion.displacement_tolerance_m,
+                         "a spectrum is of equal steps: leave it out and set motion.steps_per_cycle", case=case.name)
     found = motion.simulate(case, tell, names.index(node))
     run = result.motion_run(case, found)
     step = found.time_step_s

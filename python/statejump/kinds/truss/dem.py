@@ -265,7 +265,7 @@ def dem_input(case: TrussCase, tell: Tell = lambda share: None) -> dict[str, Any
 
 
 def _course(case: TrussCase, tell: Tell) -> Course:
-    """Return the quasi-static path; of a case that snaps its motion, since such a path ends where slip runs away."""
+    """Return the quasi-static path; of a case that snaps its motion, since such a path ends at its limit point."""
     try:
         return solve(case, tell)
     except EngineFailed as failure:

@@ -30,23 +30,37 @@ class TrussMotion:
     event_heat_J: np.ndarray  # of all joints in the step of each event
     watched_velocity_m_per_s: np.ndarray  # (steps + 1, 3)
     complete: bool
-    time_step_s: float
+    time_step_s: float  # the shortest one
+    steps: int
+    rejected_steps: int
+    inexact_steps: int
     iterations: int
     factorizations: int
     unknowns: int
     largest_contact_merit: float
     negative_dissipation_J: float
     undetermined: tuple[float, list[str]] | None  # first step [s] whose reactions are not unique, and the joints
+    jammed: tuple[float, list[str]] | None  # first step [s] that ends a slide which could not go on, and the joint
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the motion leaves open, in sentences."""
+        found = []
+        if self.inexact_steps:
+            found.append(f"in {self.inexact_steps} of {self.steps} steps, as short as steps can be, displacements are "
+                         "off by more than motion.displacement_tolerance_m")
+        if self.jammed is not None:
+            time_s, (joint,) = self.jammed
+            found.append(f"at {time_s:.6g} s joint {joint!r} could not slide on: no normal force keeps it closed with "
+                         "the friction that comes with it, or several do; velocities jump, to one of several motions "
+                         "(Painlevé's paradox)")
         if self.undetermined is None:
-            return ()
+            return tuple(found)
         time_s, joints = self.undetermined
         named = ", ".join(repr(name) for name in joints)
-        return (f"from {time_s:.6g} s on rigid contacts of joints {named} hold each other: their forces are one of "
-                "several solutions, the motion is the same for all",)
+        found.append(f"from {time_s:.6g} s on rigid contacts of joints {named} hold each other: their forces are one "
+                     "of several solutions, the motion is the same for all")
+        return tuple(found)
 
 
 def dashpots_N_s_per_m(nodes: np.ndarray, stiffness_N_per_m: np.ndarray, ratio: float, mass_kg: np.ndarray
@@ -123,12 +137,13 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
     try:
         found = _engine.truss_motion(
             **engine_items(truss), inertia=inertia(case), steps=steps_per_sample * samples * case.thermal.cycles,
-            sample_every=steps_per_sample, theta=case.motion.theta, restitution=case.motion.restitution,
+            sample_every=steps_per_sample, theta=case.motion.theta,
+            displacement_tolerance_m=case.motion.displacement_tolerance_m or 0.0, restitution=case.motion.restitution,
             watched_node=watched_node, drives=_drives(truss), start_drawn=case.motion.start == "drawn",
             progress=going_on,
         )
     except _engine.EngineFailure as failure:
-        raise EngineFailed(failure, remedy=_remedy(failure), case=truss.name, place=truss.name) from None
+        raise EngineFailed(failure, remedy=_remedy(case, failure), case=truss.name, place=truss.name) from None
     events = TrussEvents(truss, **found.pop("events"))
     if not found["complete"] and len(found["states"].get("time_s", ())) < 2:
         raise Interrupted("interrupted before a whole sample; nothing was written")
@@ -145,8 +160,9 @@ def _drives(truss: ResolvedTruss) -> list[dict[str, Any]]:
                                                drives.angular_velocity_rad_per_s)]
 
 
-def _remedy(failure: _engine.EngineFailure) -> str | None:
+def _remedy(case: TrussCase, failure: _engine.EngineFailure) -> str | None:
     if str(failure.kind).endswith("mechanism"):
         return "a mechanism moves from where it is drawn with motion.start = 'drawn'"
-    stepped = failure.kind in ("not_converged", "singular") and "no step" in str(failure.message)
+    equal = case.motion.displacement_tolerance_m is None  # others have been made as short as they can be
+    stepped = equal and failure.kind in ("not_converged", "singular") and "no step" in str(failure.message)
     return "set motion.steps_per_cycle to more" if stepped else None

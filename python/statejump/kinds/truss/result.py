@@ -284,7 +284,8 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
     summary = {
         "energy_residue_J": compare.energy_residual(energy), "time_step_s": motion.time_step_s,
         "contact_problems": float(motion.iterations), "negative_dissipation_J": motion.negative_dissipation_J,
-        "unknowns": float(motion.unknowns),
+        "unknowns": float(motion.unknowns), "steps": float(motion.steps),
+        "rejected_steps": float(motion.rejected_steps),
     }
     run = _run(case, "reduced", plain, energy, items, _events(case, motion), summary, native=motion,
                warnings=(*motion.warnings, *_beyond(case, plain, items)))

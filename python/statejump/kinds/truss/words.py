@@ -89,6 +89,7 @@ def told(case: TrussCase, runs: Mapping[str, Run]) -> list[Shown | str]:
         found.append(f"{label}{len(run.events)} events, energy residue {run.summary['energy_residue_J']:.3g} J")
     if first.native is not None and not others:
         path = first.native
-        done = (f"{path.iterations:,} contact problems" if isinstance(path, TrussMotion) else f"{path.solves:,} solves")
+        done = (f"{path.steps:,} steps, {path.iterations:,} contact problems" if isinstance(path, TrussMotion)
+                else f"{path.solves:,} solves")
         found.append(f"{done}, {len(path.events)} changes of joints, {path.unknowns} unknowns")
     return found

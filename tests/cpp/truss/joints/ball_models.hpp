@@ -9,21 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "statejump/thermal/program.hpp"
-#include "statejump/truss/path.hpp"
+#include "../parts.hpp"
 
 namespace statejump::truss::testing {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-inline thermal::Program triangle(double largest) {
-  thermal::Program program;
-  program.shape = thermal::Shape::triangle;
-  program.temperature_change_max = largest;
-  program.period = 1.0;
-  return program;
-}
 
 /// ΔT at every quarter of a second.
 inline thermal::Program quarters(std::vector<double> changes) {
@@ -34,14 +25,6 @@ inline thermal::Program quarters(std::vector<double> changes) {
   program.period = program.table_times.back();
   program.table_temperature_changes = std::move(changes);
   return program;
-}
-
-inline Node node(const char* name, const Vector3d& position, int freedoms) {
-  Node made;
-  made.name = std::string(name);
-  made.position = position;
-  made.freedoms = freedoms;
-  return made;
 }
 
 inline BallJoint ball_joint(int ball_node, int ball_link, int socket_node, int socket_link) {

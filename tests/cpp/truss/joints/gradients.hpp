@@ -28,6 +28,11 @@ inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
     const detail::Statuses statuses(model.joints.size(), status);
     detail::StepStart start = system.begin(before, 0.0, statuses, 1.0);
     if (between.size() > 0) start = system.commit(between, 0.15, statuses, start);
+    // What steps before left over of a slide, and what this one is foreseen to leave.
+    const auto count = static_cast<Eigen::Index>(model.joints.size());
+    start.owed = Eigen::Matrix3Xd::Constant(3, count, 1e-9);
+    start.lost = Eigen::Matrix3Xd::Constant(3, count, 2e-9);
+    start.last_step = 1.0;
     for (const JointModel joints :
          {JointModel::pins, JointModel::frictionless, JointModel::friction}) {
       const auto residual = [&](const Eigen::VectorXd& where) {

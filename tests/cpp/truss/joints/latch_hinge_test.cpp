@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "../parts.hpp"
 #include "gradients.hpp"
-#include "statejump/thermal/program.hpp"
 
 namespace statejump::truss {
 namespace {
+
+using testing::node;
 
 TEST(LatchHinge, GradientsAreThoseOfItsForces) {
   Model model;
   thermal::Program program;
   program.period = 1.0;
   model.programs = {program};
-  const auto node = [](const char* name, double x, double y, double z) {
-    Node made;
-    made.name = name;
-    made.position = {x, y, z};
-    return made;
-  };
-  model.nodes = {node("A", 0.0, 0.0, 0.0), node("B", 0.1, 0.02, 0.01),
-                 node("C", 0.15, 0.09, -0.02)};
+  model.nodes = {node("A", {0.0, 0.0, 0.0}, 3), node("B", {0.1, 0.02, 0.01}, 3),
+                 node("C", {0.15, 0.09, -0.02}, 3)};
   model.links = {{"AB", 0, 1, 1e2, 0.1, 0.0, 0, 1.0}, {"BC", 1, 2, 1e2, 0.1, 0.0, 0, 1.0}};
   LatchHinge hinge;
   hinge.name = "H";

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "../parts.hpp"
 #include "gradients.hpp"
-#include "statejump/thermal/program.hpp"
 
 namespace statejump::truss {
 namespace {
+
+using testing::node;
 
 /// Two bars with a clearance joint whose contact gives way and whose radii expand.
 Model rib() {
@@ -12,25 +14,11 @@ Model rib() {
   program.temperature_change_max = 100.0;
   program.period = 1.0;
   model.programs = {program};
-  const auto node = [](const char* name, double x, double y, int freedoms) {
-    Node made;
-    made.name = name;
-    made.position = {x, y, 0.0};
-    made.freedoms = freedoms;
-    return made;
-  };
   model.nodes = {node("A", 0, 0, 2), node("C", 0.12, 0, 2), node("B", 0.02875, 0.0409, 2),
                  node("J", 0.02875, 0.0409, 2)};
   // Soft links: their rounding does not hide what the joint adds.
   model.links = {{"AB", 0, 2, 1e2, 0.05, 2e-5, 0, 1.0}, {"CJ", 1, 3, 1e2, 0.1, 1e-5, 0, 0.5}};
-  ClearanceRevolute joint;
-  joint.name = "joint";
-  joint.bearing_node = 2;
-  joint.journal_node = 3;
-  joint.bearing_link = 0;
-  joint.journal_link = 1;
-  joint.journal_radius = 5e-3;
-  joint.radial_clearance = 1e-4;
+  ClearanceRevolute joint = testing::rib_joint();
   joint.journal_thermal_expansion = 2e-5;
   joint.bearing_thermal_expansion = 1e-5;
   joint.friction_coefficient = 0.15;

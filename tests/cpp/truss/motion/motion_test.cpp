@@ -160,18 +160,10 @@ TEST(Motion, JournalBouncesAtItsAnalyticTimes) {
   EXPECT_LT(std::abs(residue(motion)), 1e-12 * energy * 1e3);
 }
 
-/// Bar of Table 1 on a block that slides on the ground.
+/// Bar of Table 1 on a block that slides on the ground, up to a stop.
 Model bar(double seconds) {
-  Model model;
-  model.programs = {lasting(seconds, 100.0)};
-  model.nodes = {node("A", 0, 0, 0), node("B", 0.5, 0, 1)};
-  model.links = {{"AB", 0, 1, 70e9 * 9e-6, 0.5, 23.4e-6, 0, 1.0}};
-  Slider slider;
-  slider.name = "S";
-  slider.first = 1;
-  slider.friction_force = 30.0;
-  slider.clearance_plus = 1e-3;
-  model.joints = {slider};
+  Model model = testing::sliding_bar(seconds);
+  std::get<Slider>(model.joints[0]).clearance_plus = 1e-3;
   return model;
 }
 
@@ -241,14 +233,7 @@ TEST(Motion, RibMeetsTheLinkageThroughImpacts) {
   model.nodes = {node("A", 0, 0, 0), node("C", 0.12, 0, 0), node("B", x, y, 2), node("J", x, y, 2)};
   model.links = {{"AB", 0, 2, 6.3e5, 0.05, 23.75e-6, 0, 1.0},
                  {"CJ", 1, 3, 6.3e5, 0.1, 23.75e-6, 0, 1.0}};
-  ClearanceRevolute joint;
-  joint.name = "joint";
-  joint.bearing_node = 2;
-  joint.journal_node = 3;
-  joint.bearing_link = 0;
-  joint.journal_link = 1;
-  joint.journal_radius = 5e-3;
-  joint.radial_clearance = 1e-4;
+  ClearanceRevolute joint = testing::rib_joint();
   joint.hertz_stiffness = 4.0 / 3.0 * 70e9 / (2.0 * (1.0 - 0.09)) * std::sqrt(5e-3 * 5.1e-3 / 1e-4);
   model.joints = {joint};
   const auto error = [&](long steps) {
@@ -273,6 +258,58 @@ TEST(Motion, RibMeetsTheLinkageThroughImpacts) {
   EXPECT_NEAR(coarse / fine, 2.0, 0.4);
 }
 
+/// Painlevé's rod: uniform, of 1 m and 1 kg, at 60° with its tip on a rough floor, along which it
+/// moves. The floor is the bottom of a bearing with a play of 100 m.
+Model rod_on_floor(double friction) {
+  Model model;
+  model.programs = {lasting(1e-3)};
+  const double angle = std::acos(0.5);
+  model.nodes = {node("O", 0, 100.0, 0), node("tip", 0, 0, 2),
+                 node("top", std::cos(angle), std::sin(angle), 2)};
+  for (std::size_t i : {1u, 2u}) model.nodes[i].load = {0.0, -0.5 * 9.81, 0.0};
+  model.links = {{"rod", 1, 2, 1e13, 1.0, 0.0, 0, 1.0}};
+  ClearanceRevolute floor;
+  floor.name = "floor";
+  floor.bearing_node = 0;
+  floor.journal_node = 1;
+  floor.journal_radius = 5e-3;
+  floor.radial_clearance = 100.0;
+  floor.friction_coefficient = friction;
+  model.joints = {floor};
+  return model;
+}
+
+TEST(Motion, SlidesThatCannotGoOnAreNamed) {
+  // For a unit of normal force the tip's acceleration is 1 + 3 cos a (cos a -+ mu sin a) in 1/kg:
+  // at 60 degrees it is below 0 from mu = 1.347 on, if the tip goes towards the rod's foot. The rod
+  // is so stiff that it is rigid in steps of 10 us.
+  const double speed = 1.0;
+  const auto first_step = [&](double friction, double towards, long steps) {
+    const Model model = rod_on_floor(friction);
+    MotionOptions options;
+    options.steps = steps;
+    options.start = at_rest(model);
+    options.start->velocity.row(0).tail(2).setConstant(towards * speed);
+    return simulate(model, {Eigen::VectorXd::Constant(1, 1.0), {}, {}, {}, {}}, options);
+  };
+  const auto lost = [&](const Motion& motion, double towards) {
+    return speed - towards * motion.moving[1].velocity(0, 1);
+  };
+  for (const long steps : {10L, 100L}) {
+    const double h = 1e-3 / static_cast<double>(steps);
+    const Motion jams = first_step(1.4, -1.0, steps);
+    ASSERT_TRUE(jams.jammed) << steps;
+    EXPECT_EQ(jams.jammed->joints, std::vector<int>{0});
+    EXPECT_NEAR(jams.jammed->time, h, 1e-3 * h);  // at once
+    EXPECT_NEAR(lost(jams, -1.0), speed, 1e-3 * speed);
+    // Close by, and the other way, it slides on: forces are finite, however large.
+    const Motion slides = first_step(1.3, -1.0, steps);
+    EXPECT_FALSE(slides.jammed) << steps;
+    EXPECT_LT(lost(slides, -1.0), 1e3 * h);
+    EXPECT_FALSE(first_step(1.4, 1.0, steps).jammed) << steps;
+  }
+}
+
 TEST(Motion, StepsWhoseReactionsAreOpenAreNamed) {
   // Two sliders in a row on one rigid node: which of them carries the load nothing determines.
   Model model = bar(0.01);
@@ -280,19 +317,24 @@ TEST(Motion, StepsWhoseReactionsAreOpenAreNamed) {
   Slider twin = std::get<Slider>(model.joints[0]);
   twin.name = "T";
   model.nodes[1].load = {10.0, 0.0, 0.0};
-  const auto run = [&] {
+  const auto run = [&](double tolerance = 0.0) {
     MotionOptions options;
     options.steps = 100;
+    options.displacement_tolerance = tolerance;
     options.start = at_rest(model);
     return simulate(model, {Vector2d(0.1, 0.0).head(1), {}, {}, {}, {}}, options);
   };
   EXPECT_FALSE(run().undetermined);
   model.joints.push_back(twin);
-  const Motion motion = run();
-  ASSERT_TRUE(motion.undetermined);
-  EXPECT_EQ(motion.undetermined->joints, (std::vector<int>{0, 1}));
-  EXPECT_NEAR(motion.states.back().displacement(0, 1), 0.0,
-              1e-12);  // merit 1e-10 of h f W, 1e-4 m/s
+  // No step is short enough for branches of theirs: that is not sought for ever.
+  for (const double tolerance : {0.0, 1e-9}) {
+    const Motion motion = run(tolerance);
+    ASSERT_TRUE(motion.undetermined);
+    EXPECT_EQ(motion.undetermined->joints, (std::vector<int>{0, 1}));
+    EXPECT_NEAR(motion.states.back().displacement(0, 1), 0.0,
+                1e-12);  // merit 1e-10 of h f W, 1e-4 m/s
+    EXPECT_LT(motion.factorizations, 30 * motion.steps);
+  }
 }
 
 }  // namespace

@@ -2,26 +2,15 @@
 // Parts of trusses in motion that several tests share.
 #pragma once
 
-#include <string>
-
+#include "../parts.hpp"
 #include "statejump/truss/motion.hpp"
 
 namespace statejump::truss::scenes {
 
-inline thermal::Program lasting(double seconds, double largest = 0.0) {
-  thermal::Program program;
-  program.shape = thermal::Shape::triangle;
-  program.temperature_change_max = largest;
-  program.period = seconds;
-  return program;
-}
+using testing::node;
 
-inline Node node(const std::string& name, double x, double y, int freedoms) {
-  Node made;
-  made.name = name;
-  made.position = {x, y, 0.0};
-  made.freedoms = freedoms;
-  return made;
+inline thermal::Program lasting(double seconds, double largest = 0.0) {
+  return testing::triangle(largest, seconds);
 }
 
 inline MotionStart at_rest(const Model& model) {

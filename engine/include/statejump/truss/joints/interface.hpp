@@ -109,6 +109,10 @@ struct Trial {
   double opening = 1.0;  ///< Share of the clearances that is open (start).
   /// Asked how fast it slides: the row of the slide is that of a contact of which nothing slips.
   bool unslipped = false;
+  /// What the slide of a joint that rolls lacks of the steps before and of this one [m], and its
+  /// rate [m/s]: along its way, or a vector in the tangent plane.
+  Eigen::Vector3d owed = Eigen::Vector3d::Zero();
+  Eigen::Vector3d owed_rate = Eigen::Vector3d::Zero();
   /// What rounding may make of a length [m] and of a force [N]; 0 where inequalities are strict.
   double length_rounding = 0.0;
   double force_rounding = 0.0;
@@ -141,6 +145,8 @@ struct Seat {
 //   decide()              the branch that its inequalities ask for, from the branch whose rows hold
 //   commit()              what it remembers at the start of the next step
 //   begin()               the same at the very start, where nothing is remembered
+//   rolls(), lag()        of types whose slide is an integral along the way: whether it is one,
+//                         and the slide of a step less what friction bends, with what is owed [m]
 //   slip()                slide of the step that friction turned into heat [m]
 //   dissipation()         heat of the step [J]
 //   elastic_energy()      stored in it [J]

@@ -19,9 +19,9 @@ namespace statejump::truss {
 ///     stick   Δσ = 0, |λ_t| <= μ λ_n     slip±   λ_t = ±μ λ_n, ±Δσ >= 0
 ///
 /// A joint that sticks therefore rolls. The integral is taken by the trapezoidal rule, radii at
-/// start and end of the step: its error is of third order in a step, of second order in a path.
-/// With a finite tangential stiffness k_t a joint that sticks gives way elastically, as bodies of a
-/// DEM do: Δσ is then the slide less what friction bends, ∫ dλ_t/k_t. k_t follows the depth
+/// start and end of the step; what that leaves, of third order in a step, the next one makes up
+/// for. With a finite tangential stiffness k_t a joint that sticks gives way elastically, as bodies
+/// of a DEM do: Δσ is then the slide less what friction bends, ∫ dλ_t/k_t. k_t follows the depth
 /// (Mindlin, k_t = 8 G* √(R δ)): what loads the contact keeps λ_t, what unloads it keeps λ_t/k_t;
 /// energy lost either way is heat at the contact's rim.
 ///
@@ -63,6 +63,8 @@ struct ClearanceRevolute {
   JointStatus decide(const Trial& trial, JointStatus status) const;
   void begin(const Trial& trial, JointStatus status, double* now) const;
   void commit(const Trial& trial, JointStatus status, double* after) const;
+  bool rolls() const { return friction_coefficient > 0.0 && partial_slip == 0; }
+  Eigen::Vector3d lag(const Trial& trial) const;
   double slip(const Trial& trial, const double* after) const;
   double dissipation(const Trial& trial, const double* after, double slip) const;
   double elastic_energy(const Trial& trial, const double* now) const;

@@ -2,10 +2,10 @@
 """Whether the jump of an output settles over the cycles: said only where it survives smaller increments.
 
 Between located changes a path of rigid contacts does not depend on its increments. Rolling at a radius that follows
-Hertz's depth and elastic sticking are integrated by the trapezoidal rule, partial slip along chords: there what a cycle
-adds has an error of second order, a quarter with twice as many increments. So two paths are compared, of n and 2 n
-increments a branch. Their difference is at least the error of the finer one for every order from the first on (three
-times the error for the second), and nothing is told of a motion that does not exceed it.
+Hertz's depth and elastic sticking are integrated along the way, of fourth order, balls that slip and partial slip of
+second: there what a cycle adds has an error, a quarter with twice as many increments. So two paths are compared, of n
+and 2 n increments a branch. Their difference is at least the error of the finer one for every order from the first on
+(three times the error for the second), and nothing is told of a motion that does not exceed it.
 """
 from __future__ import annotations
 

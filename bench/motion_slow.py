@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Slow heating: trusses in motion with a tolerance beside the DEM; writes results/motion/slow_heating.md and .csv.
+
+    PYTHONPATH=build/python /usr/bin/python3 bench/motion_slow.py [--case PERIOD] [--runs FOLDER]
+
+A chain of 100 blocks with dashpots, heated and cooled once in several periods. The DEM's steps go with the period,
+those of the motion with what happens. Runs of the DEM take minutes of CPU; with --runs they are kept and taken from
+there.
+"""
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from time import process_time
+from typing import Any
+
+import numpy as np
+import statejump as sj
+from run import REPOSITORY, publish, start
+from statejump.core.errors import StatejumpError
+from statejump.kinds.truss import motion
+
+SAMPLES = 200  # of a cycle
+BLOCKS = 100
+PERIODS_S = {"10": 10.0, "100": 100.0, "1000": 1000.0}
+# Of the stable step. The shorter step of the longest period would take an hour.
+FRACTIONS = {"10": (0.9, 0.1), "100": (0.9, 0.1), "1000": (0.9,)}
+TOLERANCES_M = (1e-6, 1e-7, 1e-8, 1e-9)
+COLUMNS = ("period_s", "model", "steps", "rms_over_largest", "largest_over_largest", "cpu_time_s", "us_per_step")
+
+
+def case(period: str) -> Any:
+    """Return the chain, with the DEM's masses and sticking."""
+    return sj.truss.chain(BLOCKS).changed({
+        "thermal.period_s": PERIODS_S[period], "reduced.sticking": "elastic", "motion.masses": "lumped",
+        "output.samples_per_cycle": SAMPLES})
+
+
+def dem(period: str, fraction: float, runs: Path | None) -> dict[str, Any]:
+    """Return displacements [m], CPU time [s] and steps of the DEM."""
+    kept = None if runs is None else runs / f"{period}_{fraction}.npz"
+    if kept is not None and kept.exists():
+        with np.load(kept) as found:
+            return {key: found[key] for key in found}
+    run = case(period).changed({"dem.time_step_fraction": fraction}).dem()
+    found = {"d": run["displacement_m"], "cpu": run.about["cpu_time_s"], "steps": run.about["steps"]}
+    if kept is not None:
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        np.savez(kept, **found)
+    return found
+
+
+def moved(period: str, tolerance_m: float) -> dict[str, Any]:
+    """Return the same of the motion."""
+    definition = case(period).changed({"motion.displacement_tolerance_m": tolerance_m}).definition
+    definition.resolve()
+    begun = process_time()
+    found = motion.simulate(definition)
+    return {"d": found.states["displacement_m"], "cpu": process_time() - begun, "steps": found.steps}
+
+
+def row(period: str, model: str, run: dict[str, Any], reference: np.ndarray) -> dict[str, Any]:
+    """Return what one run costs, and how far from the reference it is."""
+    apart = np.linalg.norm(run["d"] - reference, axis=2)
+    largest = np.linalg.norm(reference, axis=2).max()
+    return {
+        "period_s": PERIODS_S[period], "model": model, "steps": int(run["steps"]),
+        "rms_over_largest": float(np.sqrt((apart**2).mean(axis=0)).max() / largest),
+        "largest_over_largest": float(apart.max() / largest), "cpu_time_s": round(float(run["cpu"]), 4),
+        "us_per_step": round(1e6 * float(run["cpu"]) / int(run["steps"]), 2),
+    }
+
+
+def measure(periods: list[str], runs: Path | None) -> list[dict[str, Any]]:
+    """Run both models."""
+    rows = []
+    for period in periods:
+        by_fraction = {fraction: dem(period, fraction, runs) for fraction in FRACTIONS[period]}
+        reference = by_fraction[min(by_fraction)]["d"]
+        found = {f"DEM, {fraction} of the stable step": one for fraction, one in by_fraction.items()}
+        found |= {f"in motion, {tolerance:.0e} m": moved(period, tolerance) for tolerance in TOLERANCES_M}
+        for model, one in found.items():
+            rows.append(row(period, model, one, reference))
+            print(rows[-1], flush=True)
+    return rows
+
+
+def report(rows: list[dict[str, Any]]) -> str:
+    """Return the table as Markdown."""
+    lines = []
+    for period in dict.fromkeys(one["period_s"] for one in rows):
+        of_period = [one for one in rows if one["period_s"] == period]
+        longest = next(one for one in of_period if one["model"].startswith("DEM"))
+        for k, one in enumerate(of_period):
+            is_reference = one["rms_over_largest"] == 0
+            rms = "of the reference" if is_reference else f"{one['rms_over_largest']:.1e}"
+            largest = "" if is_reference else f"{one['largest_over_largest']:.1e}"
+            ratio = "" if one["model"].startswith("DEM") else f"{longest['cpu_time_s'] / one['cpu_time_s']:.3g}"
+            first = f"{period:g} s" if k == 0 else ""
+            lines.append(f"| {first} | {one['model']} | {one['steps']:,} | {rms} | {largest} | "
+                         f"{one['cpu_time_s']:.3g} s | {one['us_per_step']:.3g} µs | {ratio} |")
+    table = "\n".join(lines)
+    return f"""# Slow heating: trusses in motion with a tolerance beside the DEM
+
+A chain of {BLOCKS} blocks with dashpots, heated and cooled once in the period, masses as the DEM has them, elastic
+sticking, {SAMPLES} samples. In motion: `motion.displacement_tolerance_m`. rms: the largest of all nodes over the run,
+over the largest displacement; largest: the largest at any time. Both against the DEM with its shortest step of the
+period. CPU time of the stepping on one shared core. Times cheaper: than the DEM at 0.9 of its stable step.
+
+| period | model | steps | rms | largest | CPU | per step | times cheaper |
+|---|---|--:|--:|--:|--:|--:|--:|
+{table}
+
+What it says: [docs/motion.md](../../docs/motion.md#cost).
+
+## Again
+
+```
+PYTHONPATH=build/python /usr/bin/python3 bench/motion_slow.py [--case PERIOD] [--runs FOLDER]
+```
+"""
+
+
+def main() -> None:
+    """Measure and write."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--case", action="append", choices=tuple(PERIODS_S), help="period [s]; all")
+    parser.add_argument("--runs", type=Path, help="folder in which runs of the DEM are kept")
+    parser.add_argument("--output", type=Path, default=REPOSITORY / "results" / "motion")
+    arguments = parser.parse_args()
+    rows = measure(arguments.case or list(PERIODS_S), arguments.runs)
+    publish(arguments.output, "slow_heating", COLUMNS, rows, report(rows))
+
+
+if __name__ == "__main__":
+    start(main, StatejumpError)

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+namespace statejump::truss::detail {
+
+/// Lengths of steps through one span of time, each a half of the next longer one, so that factors
+/// of a length may be kept. A step of a length begins at a multiple of it: both ends of the span
+/// are hit.
+class Ladder {
+ public:
+  /// @param level halvings of the span for the first step; @param most_halvings at which the
+  /// shortest step is
+  Ladder(int level, int most_halvings);
+
+  /// Share of the span where the next step ends.
+  double to() const;
+  /// Length of the next step as a share of the span.
+  double length() const;
+  int level() const { return level_; }
+  bool is_shortest() const { return level_ == most_; }
+  bool done() const { return at_ == whole(); }
+
+  /// Goes on; to a step of twice the length where that is possible and wanted.
+  void accept(bool longer);
+  /// Halves the next step so often, as far as possible.
+  void shorten(int halvings);
+
+ private:
+  // Multiples of the shortest step.
+  long whole() const { return 1L << most_; }
+  long step() const { return 1L << (most_ - level_); }
+
+  int most_;
+  int level_;
+  long at_ = 0;
+};
+
+}  // namespace statejump::truss::detail

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What tests put trusses together from.
+#pragma once
+
+#include <string>
+
+#include "statejump/thermal/program.hpp"
+#include "statejump/truss/path.hpp"
+
+namespace statejump::truss::testing {
+
+/// One triangle of heating.
+inline thermal::Program triangle(double largest, double seconds = 1.0) {
+  thermal::Program program;
+  program.shape = thermal::Shape::triangle;
+  program.temperature_change_max = largest;
+  program.period = seconds;
+  return program;
+}
+
+/// @param freedoms how many directions it is free in, x, y, z in this order
+inline Node node(const std::string& name, const Eigen::Vector3d& position, int freedoms) {
+  Node made;
+  made.name = name;
+  made.position = position;
+  made.freedoms = freedoms;
+  return made;
+}
+
+inline Node node(const std::string& name, double x, double y, int freedoms) {
+  return node(name, {x, y, 0.0}, freedoms);
+}
+
+/// The joint of a rib of two bars, the tip of the first (link 0, node 2) around that of the second
+/// (link 1, node 3): 5 mm of radius, 0.1 mm of clearance, without friction, rigid.
+inline ClearanceRevolute rib_joint() {
+  ClearanceRevolute joint;
+  joint.name = std::string("joint");
+  joint.bearing_node = 2;
+  joint.journal_node = 3;
+  joint.bearing_link = 0;
+  joint.journal_link = 1;
+  joint.journal_radius = 5e-3;
+  joint.radial_clearance = 1e-4;
+  return joint;
+}
+
+/// The bar of Table 1 on a block that slides on the ground, with 30 N of friction and no stops.
+inline Model sliding_bar(double seconds = 1.0) {
+  Model model;
+  model.programs = {triangle(100.0, seconds)};
+  model.nodes = {node("A", 0, 0, 0), node("B", 0.5, 0, 1)};
+  model.links = {{"AB", 0, 1, 70e9 * 9e-6, 0.5, 23.4e-6, 0, 1.0}};
+  Slider slider;
+  slider.name = std::string("S");
+  slider.first = 1;
+  slider.friction_force = 30.0;
+  model.joints = {slider};
+  return model;
+}
+
+}  // namespace statejump::truss::testing
