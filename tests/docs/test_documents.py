@@ -36,6 +36,13 @@ def test_links_lead_to_files_of_the_repository(page: Path) -> None:
         assert found is None or str(found) in known | folders, f"{page} links to {target}"
 
 
+def test_the_first_page_leads_to_every_other() -> None:
+    start = documents.START
+    targets = documents.links((REPOSITORY / start).read_text(encoding="utf-8"))
+    reached = {Path("README.md"), start, *(documents.local_target(start, target) for target in targets)}
+    assert [str(page) for page in PAGES if page not in reached] == []
+
+
 def test_results_that_are_kept_are_shown() -> None:
     shown = {str(documents.local_target(page, target)) for page in PAGES
              for target in documents.links((REPOSITORY / page).read_text(encoding="utf-8"))}
