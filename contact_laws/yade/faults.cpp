@@ -12,6 +12,7 @@
 #include "contact_parts.hpp"
 #include "guide.hpp"
 #include "joint.hpp"
+#include "known_cast.hpp"
 #include "prismatic.hpp"
 #include "statejump/stepper/numbers.hpp"
 #include "torsion.hpp"
@@ -114,13 +115,13 @@ Fault fault_of_body(const yade::Scene& scene, int id) {
   if (Fault fault = fault_of_inertia(scene, id, state)) return fault;
   if (Fault fault = fault_of_forces(scene, id)) return fault;
   if (Fault fault = fault_of_motion(scene, id, state)) return fault;
-  if (const auto* material = dynamic_cast<const ThermalFrictMat*>(body.material.get())) {
+  if (const auto* material = known_cast<const ThermalFrictMat>(body.material.get())) {
     if (const auto fault = fault_of(*material)) {
       return of_body(scene, id, std::string(ThermalFrictMat::class_name) + "." + fault->attribute,
                      fault->value, "", fault->allowed);
     }
   }
-  if (const auto* shape = dynamic_cast<const ThermalShape*>(body.shape.get())) {
+  if (const auto* shape = known_cast<const ThermalShape>(body.shape.get())) {
     if (!stepper::is_strain(shape->thermalStrain)) {
       return of_body(scene, id, "the thermal strain", shape->thermalStrain, "", "above -1");
     }
@@ -140,12 +141,12 @@ Fault fault_of_physics(const yade::Scene& scene, const yade::Interaction& contac
 }
 
 Fault fault_of_physics(const yade::Scene& scene, const yade::Interaction& contact) {
-  if (const auto* many = dynamic_cast<const BorePhys*>(contact.phys.get())) {
+  if (const auto* many = known_cast<const BorePhys>(contact.phys.get())) {
     for (const auto& one : many->contacts) {
       if (Fault fault = one ? fault_of_physics(scene, contact, *one) : std::nullopt) return fault;
     }
   }
-  const auto* physics = dynamic_cast<const JointPhys*>(contact.phys.get());
+  const auto* physics = known_cast<const JointPhys>(contact.phys.get());
   return physics ? fault_of_physics(scene, contact, *physics) : std::nullopt;
 }
 
@@ -168,23 +169,23 @@ Fault first_of(const List& list, FaultOf&& fault_of_one) {
 }
 
 Fault fault_of_engine(const yade::Scene& scene, const yade::Engine& engine) {
-  if (const auto* group = dynamic_cast<const ThermalLinks*>(&engine)) {
+  if (const auto* group = known_cast<const ThermalLinks>(&engine)) {
     return first_of(group->links, [&](const auto& link) {
       return link ? fault_of_link(scene, *link) : std::nullopt;
     });
   }
-  if (const auto* group = dynamic_cast<const TorsionSprings*>(&engine)) {
+  if (const auto* group = known_cast<const TorsionSprings>(&engine)) {
     return first_of(group->springs, [&](const auto& spring) {
       const bool whole = spring && spring->link1 && spring->link2;
       return whole ? fault_of_spring(scene, *spring) : std::nullopt;
     });
   }
-  if (const auto* group = dynamic_cast<const PrismaticJoints*>(&engine)) {
+  if (const auto* group = known_cast<const PrismaticJoints>(&engine)) {
     return first_of(group->joints, [&](const auto& joint) {
       return joint ? fault_of_prismatic(scene, *joint) : std::nullopt;
     });
   }
-  if (const auto* guides = dynamic_cast<const GuidePlanes*>(&engine)) {
+  if (const auto* guides = known_cast<const GuidePlanes>(&engine)) {
     return first_of(guides->ids, [&](int id) { return fault_of_body(scene, id); });
   }
   return std::nullopt;
@@ -274,7 +275,7 @@ Fault fault_of_scene(const yade::Scene& scene) {
   }
   for (std::size_t i = 0; i < number_of_bodies(scene); ++i) {
     const auto& body = body_at(scene, i);
-    if (!body || !dynamic_cast<const ThermalShape*>(body->shape.get())) continue;
+    if (!body || !known_cast<const ThermalShape>(body->shape.get())) continue;
     if (Fault fault = fault_of_body(scene, static_cast<int>(i))) return fault;
   }
   for (std::size_t i = 0; i < number_of_interactions(scene); ++i) {

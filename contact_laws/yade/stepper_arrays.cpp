@@ -12,6 +12,7 @@
 #include "faults.hpp"
 #include "guide.hpp"
 #include "joint_exchange.hpp"
+#include "known_cast.hpp"
 #include "prismatic.hpp"
 #include "shapes.hpp"
 #include "torsion.hpp"
@@ -24,13 +25,13 @@ constexpr int aspherical = 2;  // bit of Body::flags
 // Calls act with the engine as what it is.
 template <class Act>
 void as_stage(yade::Engine& engine, Act&& act) {
-  if (auto* links = dynamic_cast<ThermalLinks*>(&engine)) {
+  if (auto* links = known_cast<ThermalLinks>(&engine)) {
     act(*links);
-  } else if (auto* springs = dynamic_cast<TorsionSprings*>(&engine)) {
+  } else if (auto* springs = known_cast<TorsionSprings>(&engine)) {
     act(*springs);
-  } else if (auto* joints = dynamic_cast<PrismaticJoints*>(&engine)) {
+  } else if (auto* joints = known_cast<PrismaticJoints>(&engine)) {
     act(*joints);
-  } else if (auto* guides = dynamic_cast<GuidePlanes*>(&engine)) {
+  } else if (auto* guides = known_cast<GuidePlanes>(&engine)) {
     act(*guides);
   }
 }
@@ -102,17 +103,17 @@ bool JointArrays::gather_body(std::size_t id, stepper::Scene& arrays) {
   if (!pointer) return true;  // erased: it rests
   const yade::Body& body = *pointer;
   const yade::State& state = *body.state;
-  const std::string which = "body " + std::to_string(id);
-  if (body.clumpId >= 0) refuse_scene(which + " belongs to a clump");
-  if (body.shape && !dynamic_cast<const ThermalShape*>(body.shape.get())) {
-    refuse_scene("it does not know the shape of " + which + ", " + body.shape->getClassName());
+  const auto which = [id] { return "body " + std::to_string(id); };
+  if (body.clumpId >= 0) refuse_scene(which() + " belongs to a clump");
+  if (body.shape && !known_cast<const ThermalShape>(body.shape.get())) {
+    refuse_scene("it does not know the shape of " + which() + ", " + body.shape->getClassName());
   }
-  if (dynamic_cast<const MeshBore*>(body.shape.get())) {
-    refuse_scene(which + " is a MeshBore, whose contacts the ordinary loop alone can follow");
+  if (known_cast<const MeshBore>(body.shape.get())) {
+    refuse_scene(which() + " is a MeshBore, whose contacts the ordinary loop alone can follow");
   }
   if ((body.flags & aspherical) != 0 && engines_.exact_rotation &&
       (state.blockedDOFs & stepper::all_rotations) == 0) {
-    refuse_scene(which + " is aspherical and free to turn about all axes");
+    refuse_scene(which() + " is aspherical and free to turn about all axes");
   }
   one.motion = motion(state);
   one.orientation = state.se3.orientation;
@@ -179,8 +180,8 @@ bool JointArrays::find_parts(const yade::Body& one, const yade::Body& two,
   const yade::Shape* const first = one.shape.get();
   const yade::Shape* const second = two.shape.get();
   if (engines_.revolute) {
-    const auto* journal = dynamic_cast<const Journal*>(first);
-    const auto* bearing = journal ? dynamic_cast<const Bearing*>(second) : nullptr;
+    const auto* journal = known_cast<const Journal>(first);
+    const auto* bearing = journal ? known_cast<const Bearing>(second) : nullptr;
     if (bearing) {
       contact.joint = stepper::Joint::revolute;
       contact.length_1 = journal->radius;
@@ -189,8 +190,8 @@ bool JointArrays::find_parts(const yade::Body& one, const yade::Body& two,
     }
   }
   if (engines_.ball) {
-    const auto* ball = dynamic_cast<const Ball*>(first);
-    const auto* socket = ball ? dynamic_cast<const Socket*>(second) : nullptr;
+    const auto* ball = known_cast<const Ball>(first);
+    const auto* socket = ball ? known_cast<const Socket>(second) : nullptr;
     if (socket) {
       contact.joint = stepper::Joint::ball;
       contact.length_1 = ball->radius;
@@ -199,8 +200,8 @@ bool JointArrays::find_parts(const yade::Body& one, const yade::Body& two,
     }
   }
   if (engines_.outer_balls) {
-    const auto* ball = dynamic_cast<const Ball*>(first);
-    const auto* other = ball ? dynamic_cast<const Ball*>(second) : nullptr;
+    const auto* ball = known_cast<const Ball>(first);
+    const auto* other = ball ? known_cast<const Ball>(second) : nullptr;
     if (other) {
       contact.joint = stepper::Joint::outer_balls;
       contact.length_1 = ball->radius;
@@ -209,8 +210,8 @@ bool JointArrays::find_parts(const yade::Body& one, const yade::Body& two,
     }
   }
   if (engines_.plane) {
-    const auto* slider = dynamic_cast<const Slider*>(first);
-    const auto* face = slider ? dynamic_cast<const SlotFace*>(second) : nullptr;
+    const auto* slider = known_cast<const Slider>(first);
+    const auto* face = slider ? known_cast<const SlotFace>(second) : nullptr;
     if (face) {
       contact.joint = stepper::Joint::plane;
       contact.length_1 = slider->radius;
@@ -237,8 +238,8 @@ bool JointArrays::gather_contact(std::size_t place, stepper::Scene& arrays) {
   contact.real = interaction.isReal();
   contact.made = interaction.iterMadeReal;
   if (contact.real) {
-    const auto* geometry = dynamic_cast<const JointGeom*>(interaction.geom.get());
-    const auto* kept = dynamic_cast<const JointPhys*>(interaction.phys.get());
+    const auto* geometry = known_cast<const JointGeom>(interaction.geom.get());
+    const auto* kept = known_cast<const JointPhys>(interaction.phys.get());
     if (!geometry || !kept) return false;
     copy_geometry(*geometry, contact.geometry);
     copy_physics(*kept, contact.physics);
@@ -307,8 +308,8 @@ std::optional<stepper::ContactPhysics> JointArrays::physics(std::size_t contact)
   const yade::Interaction& interaction = interaction_at(scene_, interactions_[contact]);
   const yade::Body& one = body(interaction.id1);
   const yade::Body& two = body(interaction.id2);
-  const auto* first = dynamic_cast<const ThermalFrictMat*>(one.material.get());
-  const auto* second = dynamic_cast<const ThermalFrictMat*>(two.material.get());
+  const auto* first = known_cast<const ThermalFrictMat>(one.material.get());
+  const auto* second = known_cast<const ThermalFrictMat>(two.material.get());
   if (!engines_.physics || !first || !second) return std::nullopt;
   stepper::ContactPhysics made;
   bool good = true;

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <tuple>
+#include <unordered_map>
 #include <vector>
 
 #include "statejump/stepper/scene.hpp"
@@ -47,8 +48,8 @@ class JointArrays {
   yade::Scene& scene_;
   const JointEngines& engines_;
   std::vector<std::size_t> interactions_;  // of each contact, its place in YADE's container
-  std::vector<std::pair<ThermalShape*, std::size_t>> heated_;  // shapes that engines set
-  std::map<const ThermalShape*, std::size_t> strains_;         // of those, their strain
+  std::vector<std::pair<ThermalShape*, std::size_t>> heated_;     // shapes that engines set
+  std::unordered_map<const ThermalShape*, std::size_t> strains_;  // of those, their strain
   // Strains that are the same and stay so: by engine, expansion, strain and its rate.
   std::map<std::tuple<std::size_t, Real, Real, Real>, std::size_t> common_strains_;
   std::map<const ThermalProgram*, std::size_t> programs_;
