@@ -10,7 +10,7 @@
 #include "contact_parts.hpp"
 #include "failure.hpp"
 #include "ranges.hpp"
-#include "statejump/geometry/follow.hpp"
+#include "statejump/stepper/bore.hpp"
 
 namespace statejump::dem {
 namespace {
@@ -191,13 +191,6 @@ py::dict BorePhys::pyDict() const {
 
 // ---- contacts
 
-struct BoreContacts::Probe {
-  bool is_ball;
-  Real radius;       // at its temperature [m]
-  Real radius_rate;  // by expansion [m/s]
-  Vector3r axis;     // world; zero for a ball
-};
-
 namespace {
 
 [[gnu::cold, gnu::noinline]] void fail_curvature(const char* inner, Real radius, Real wall_radius,
@@ -224,141 +217,45 @@ void Ig2_Journal_MeshBore_BoreGeom::check() const {
   check_patch_angle(class_name);
 }
 
-bool BoreContacts::find(const Probe& probe, const MeshBore& bore, const yade::State& state1,
-                        const yade::State& state2, const Vector3r& shift2, bool force,
+bool BoreContacts::find(const stepper::BoreProbe& probe, const MeshBore& bore,
+                        const yade::State& state1, const yade::State& state2,
+                        const Vector3r& shift2, bool force,
                         const yade::shared_ptr<yade::Interaction>& contact,
                         yade::Scene& scene) const {
-  // None of what this calls, the wall's geometry and the kernel, may throw out of YADE's loop.
-  try {
-    return find_or_throw(probe, bore, state1, state2, shift2, force, contact, scene);
-  } catch (const std::exception& error) {
-    record_failure(error.what(), scene, *contact);
-    return false;
-  }
-}
-
-bool BoreContacts::find_or_throw(const Probe& probe, const MeshBore& bore,
-                                 const yade::State& state1, const yade::State& state2,
-                                 const Vector3r& shift2, bool force,
-                                 const yade::shared_ptr<yade::Interaction>& contact,
-                                 yade::Scene& scene) const {
   if (!bore.mesh()) {
     record_failure("a MeshBore has neither a file nor triangles", scene, *contact);
     return false;
   }
-  const geometry::BoreMesh& mesh = *bore.mesh();
-  const bool keep = force || contact->isReal();
-  const Eigen::Matrix3d turn = state2.se3.orientation.toRotationMatrix();
-  const Vector3r centres = state1.se3.position - state2.se3.position - shift2;
-  const Real grown = bore.expanded(1);
-  const Vector3r centre = mesh.centre() + (turn.transpose() * centres - mesh.centre()) / grown;
-  const Vector3r axis = turn.transpose() * probe.axis;
-  const Real radius = probe.radius / grown;
-  if (!stepper::is_plain(centre) || !(radius > 0)) {
-    record_failure("no place of the parts against each other", scene, *contact);
+  stepper::BoreStep step;
+  // None of what this calls, the wall's geometry and the kernel, may throw out of YADE's loop.
+  try {
+    step = stepper::find_in_bore(
+        probe, {*bore.mesh(), bore.expanded(1), bore.thermalStrainRate, patchAngle}, motion(state1),
+        motion(state2), state2.se3.orientation, state1.se3.position - state2.se3.position - shift2,
+        force || contact->isReal(), scene.dt,
+        // Real is a pair only with physics.
+        [&]() -> BoreGeom& {
+          if (!contact->geom) contact->geom = boost::make_shared<BoreGeom>();
+          return static_cast<BoreGeom&>(*contact->geom);
+        });
+  } catch (const std::exception& error) {
+    record_failure(error.what(), scene, *contact);
     return false;
   }
-
-  // Even without contact the pair keeps what is known of the wall; it is real only with physics.
-  if (!contact->geom) contact->geom = boost::make_shared<BoreGeom>();
-  auto& pair = static_cast<BoreGeom&>(*contact->geom);
-  thread_local std::vector<geometry::FollowedContact> found;
-  geometry::follow_contacts(mesh, {centre, axis, radius}, patchAngle, pair.known, found);
-
-  // The list of contacts. Most steps leave it as it is.
-  std::size_t touching = 0;
-  bool same = true;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const bool touches = found[i].distance < radius;
-    const int now = touches ? static_cast<int>(touching) : -1;
-    same = same && found[i].label == now;
-    geometry::set_label(pair.known, i, now);
-    touching += touches;
-  }
-  same = same && touching == pair.contacts.size();
-  if (same) {
-    for (std::size_t i = 0; i < touching; ++i) pair.previous[i] = static_cast<int>(i);
-  } else {
-    const auto old = pair.contacts;
-    std::vector<char> continues(old.size(), 0);
-    pair.contacts.clear();
-    pair.previous.clear();
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      if (!(found[i].distance < radius)) continue;
-      const int before = found[i].label;
-      pair.previous.push_back(before);
-      if (before >= 0) {
-        pair.contacts.push_back(old[static_cast<std::size_t>(before)]);
-        continues[static_cast<std::size_t>(before)] = 1;
-      } else {
-        auto fresh = boost::make_shared<JointGeom>();
-        fresh->normal = turn * found[i].normal;
-        pair.contacts.push_back(fresh);
-      }
-    }
-    // Contacts that have just ended, for the law to close their account.
-    for (std::size_t i = 0; i < old.size(); ++i) {
-      if (continues[i] || !(old[i]->penetrationDepth > 0)) continue;
-      old[i]->eccentricity -= old[i]->penetrationDepth;
-      old[i]->penetrationDepth = 0;
-      old[i]->previousNormal = old[i]->normal;
-      old[i]->clearanceRate = 0;
-      pair.contacts.push_back(old[i]);
-      pair.previous.push_back(static_cast<int>(i));
-    }
-  }
-
-  pair.refR1 = pair.refR2 = probe.radius;
-  pair.strain_change = bore.thermalStrainRate * scene.dt / grown;
-  const kernel::BodyMotion motion1 = motion(state1);
-  const kernel::BodyMotion motion2 = motion(state2);
-  const Vector3r world_axis = probe.is_ball ? Vector3r(Vector3r::Zero()) : turn * mesh.axis();
-  std::size_t next = 0;
-  Real deepest = 0;
-  for (const geometry::FollowedContact& one : found) {
-    if (!(one.distance < radius)) continue;
-    const bool is_new = pair.previous[next] < 0;
-    JointGeom& geometry = *pair.contacts[next++];
-    const Vector3r foot = centre - mesh.centre() + one.distance * one.normal;
-    const Real wall_radius = grown / one.curvature;
-    if (wall_radius > 0 && !(wall_radius > probe.radius)) {
-      fail_curvature(probe.is_ball ? "ball" : "journal", probe.radius, wall_radius,
-                     state1.se3.position + turn * (probe.radius * one.normal), scene, *contact);
+  switch (step.found) {
+    case stepper::InBore::nowhere:
+      record_failure("no place of the parts against each other", scene, *contact);
       return false;
-    }
-    kernel::JointContact here;
-    here.normal = turn * one.normal;
-    here.penetration_depth = grown * (radius - one.distance);
-    here.effective_radius = kernel::internal_effective_radius(probe.radius, wall_radius);
-    here.arm_1 = (probe.radius - 0.5 * here.penetration_depth) * here.normal;
-    here.arm_2 = centres + here.arm_1;
-    here.relative_velocity = kernel::material_velocity(motion1, here.arm_1) -
-                             kernel::material_velocity(motion2, here.arm_2);
-    // What expansion alone does to the depth: the foot moves away from the wall's centre. The
-    // clearance is the sum of that, so that motion along an uneven wall does not count as
-    // expansion.
-    const Real reach = foot.dot(one.normal);
-    const Real clearance_rate = bore.thermalStrainRate * reach - probe.radius_rate;
-    const Real clearance =
-        is_new ? grown * reach - probe.radius
-               : geometry.eccentricity - geometry.penetrationDepth + clearance_rate * scene.dt;
-    here.eccentricity = here.penetration_depth + clearance;
-    geometry.refR1 = probe.radius;
-    geometry.refR2 = std::abs(wall_radius);
-    geometry.journalRadius = probe.radius;
-    geometry.bearingRadius = wall_radius;
-    geometry.axis = world_axis;
-    geometry.clearanceRate = clearance_rate;
-    stepper::update(here, motion1, motion2, scene.dt, geometry);
-    geometry.contactPoint = state1.se3.position + geometry.arm1;
-    if (here.penetration_depth > deepest) {
-      deepest = here.penetration_depth;
-      pair.normal = here.normal;
-      pair.contactPoint = geometry.contactPoint;
-      pair.refR2 = std::abs(wall_radius);
-    }
+    case stepper::InBore::conforms:
+      fail_curvature(probe.is_ball ? "ball" : "journal", probe.radius, step.wall_radius, step.place,
+                     scene, *contact);
+      return false;
+    case stepper::InBore::apart:
+      return false;
+    case stepper::InBore::contact:
+      break;
   }
-  return keep || touching > 0;
+  return true;
 }
 
 bool Ig2_Journal_MeshBore_BoreGeom::go(const yade::shared_ptr<yade::Shape>& shape1,
@@ -368,11 +265,11 @@ bool Ig2_Journal_MeshBore_BoreGeom::go(const yade::shared_ptr<yade::Shape>& shap
                                        const yade::shared_ptr<yade::Interaction>& contact) {
   const auto& journal = static_cast<const Journal&>(*shape1);
   const auto& bore = static_cast<const MeshBore&>(*shape2);
-  const Probe probe{false, journal.expanded(journal.radius),
-                    journal.radius * journal.thermalStrainRate, axis_of(state1.se3.orientation)};
+  const stepper::BoreProbe probe{false, journal.expanded(journal.radius),
+                                 journal.radius * journal.thermalStrainRate,
+                                 axis_of(state1.se3.orientation)};
   if (bore.mesh() &&
-      !(probe.axis.cross(state2.se3.orientation * bore.mesh()->axis()).squaredNorm() <=
-        maxTilt * maxTilt)) {
+      stepper::tilted_in_bore(probe.axis, *bore.mesh(), state2.se3.orientation, maxTilt)) {
     fail_tilted(*scene, *contact);
     return false;
   }
@@ -385,8 +282,8 @@ bool Ig2_Ball_MeshBore_BoreGeom::go(const yade::shared_ptr<yade::Shape>& shape1,
                                     const Vector3r& shift2, const bool& force,
                                     const yade::shared_ptr<yade::Interaction>& contact) {
   const auto& ball = static_cast<const Ball&>(*shape1);
-  const Probe probe{true, ball.expanded(ball.radius), ball.radius * ball.thermalStrainRate,
-                    Vector3r::Zero()};
+  const stepper::BoreProbe probe{true, ball.expanded(ball.radius),
+                                 ball.radius * ball.thermalStrainRate, Vector3r::Zero()};
   return find(probe, static_cast<const MeshBore&>(*shape2), state1, state2, shift2, force, contact,
               *scene);
 }
@@ -407,49 +304,11 @@ void Law2_BoreGeom_BorePhys_JointLaw::check() {
 bool Law2_BoreGeom_BorePhys_JointLaw::go(yade::shared_ptr<yade::IGeom>& geometry_pointer,
                                          yade::shared_ptr<yade::IPhys>& physics_pointer,
                                          yade::Interaction* contact) {
-  auto& geometry = static_cast<BoreGeom&>(*geometry_pointer);
-  auto& pair = static_cast<BorePhys&>(*physics_pointer);
-  const std::size_t count = geometry.contacts.size();
-  bool same = pair.contacts.size() == count;
-  for (std::size_t i = 0; same && i < count; ++i) {
-    same = geometry.previous[i] == static_cast<int>(i);
-  }
-  if (!same) {
-    const auto old = pair.contacts;
-    pair.contacts.clear();
-    for (const int before : geometry.previous) {
-      if (before >= 0 && before < static_cast<int>(old.size())) {
-        pair.contacts.push_back(old[static_cast<std::size_t>(before)]);
-        continue;
-      }
-      auto fresh = boost::make_shared<JointPhys>();
-      fresh->effectiveYoungModulus = pair.effectiveYoungModulus;
-      fresh->effectiveShearModulus = pair.effectiveShearModulus;
-      fresh->effectiveMass = pair.effectiveMass;
-      fresh->normalDampingRatio = pair.normalDampingRatio;
-      fresh->tangentialDampingRatio = pair.tangentialDampingRatio;
-      fresh->tangensOfFrictionAngle = pair.tangensOfFrictionAngle;
-      pair.contacts.push_back(fresh);
-    }
-  }
-  bool touching = false;
-  pair.kn = pair.ks = 0;
-  pair.slipping = true;
-  pair.normalForce = pair.shearForce = Vector3r::Zero();
-  for (std::size_t i = 0; i < count; ++i) {
-    const JointGeom& here = *geometry.contacts[i];
-    JointPhys& physics = *pair.contacts[i];
-    // The part of the wall's radius that expansion has changed; the rest is another place.
-    physics.previousBearingRadius = here.bearingRadius * (1 - geometry.strain_change);
-    if (!step(here, physics, *contact, *scene)) continue;
-    touching = true;
-    pair.kn += physics.kn;
-    pair.ks += physics.ks;
-    pair.slipping = pair.slipping && physics.slipping;
-    pair.normalForce += physics.normalForce;
-    pair.shearForce += physics.shearForce;
-  }
-  return touching;
+  return stepper::bore_law_step(static_cast<const BoreGeom&>(*geometry_pointer),
+                                static_cast<BorePhys&>(*physics_pointer),
+                                [&](const JointGeom& here, JointPhys& physics) {
+                                  return step(here, physics, *contact, *scene);
+                                });
 }
 
 }  // namespace statejump::dem

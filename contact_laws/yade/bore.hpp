@@ -12,6 +12,7 @@
 #include "registered.hpp"
 #include "shapes.hpp"
 #include "statejump/geometry/bore_mesh.hpp"
+#include "statejump/stepper/bore.hpp"
 
 namespace statejump::dem {
 
@@ -155,14 +156,10 @@ class BoreContacts {
   Real patchAngle = 2e-4;
 
  protected:
-  struct Probe;  // the journal or ball as the wall sees it
   void check_patch_angle(const char* class_name) const;
-  bool find(const Probe& probe, const MeshBore& bore, const yade::State& state1,
+  bool find(const stepper::BoreProbe& probe, const MeshBore& bore, const yade::State& state1,
             const yade::State& state2, const Vector3r& shift2, bool force,
             const yade::shared_ptr<yade::Interaction>& contact, yade::Scene& scene) const;
-  bool find_or_throw(const Probe& probe, const MeshBore& bore, const yade::State& state1,
-                     const yade::State& state2, const Vector3r& shift2, bool force,
-                     const yade::shared_ptr<yade::Interaction>& contact, yade::Scene& scene) const;
   static constexpr const char* patch_angle_doc =
       "Angle by which the normal of a contact may turn before the smooth wall is asked again at "
       "its new place; until then the wall around it has the curvature found there. 0: search the "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stepper_arrays.hpp"
 
+#include <algorithm>
 #include <boost/make_shared.hpp>
 #include <limits>
 #include <string>
@@ -59,6 +60,85 @@ void scatter_stage(const PrismaticJoints& to, const stepper::Stage& from) {
 
 void scatter_stage(const GuidePlanes&, const stepper::Stage&) {}  // keeps nothing
 
+// What YADE keeps of any contact of two round parts.
+template <class From, class To>
+void copy_place(const From& from, To& to) {
+  to.normal = from.normal;
+  to.contactPoint = from.contactPoint;
+  to.refR1 = from.refR1;
+  to.refR2 = from.refR2;
+}
+
+template <class Entry>
+void resize(std::vector<Entry>& contacts, std::size_t count) {
+  contacts.resize(std::min(count, contacts.size()));
+  while (contacts.size() < count) contacts.push_back(stepper::new_contact<Entry>());
+}
+
+// Geometry and physics of all contacts with a bore, either way.
+template <class From, class To>
+void copy_bore_geometry(const From& from, To& to) {
+  copy_place(from, to);
+  to.previous = from.previous;
+  to.known = from.known;
+  to.strain_change = from.strain_change;
+  resize(to.contacts, from.contacts.size());
+  for (std::size_t i = 0; i < from.contacts.size(); ++i) {
+    copy_geometry(stepper::contact_of(from.contacts[i]), stepper::contact_of(to.contacts[i]));
+    copy_place(stepper::contact_of(from.contacts[i]), stepper::contact_of(to.contacts[i]));
+  }
+}
+
+template <class From, class To>
+void copy_bore_physics(const From& from, To& to) {
+  copy_physics(from, to);
+  resize(to.contacts, from.contacts.size());
+  for (std::size_t i = 0; i < from.contacts.size(); ++i) {
+    copy_physics(stepper::contact_of(from.contacts[i]), stepper::contact_of(to.contacts[i]));
+  }
+}
+
+// False where the pair has what the ordinary loop alone may have a word on.
+bool gather_bore(const yade::Interaction& from, stepper::Bore& to) {
+  const auto* geometry = known_cast<const BoreGeom>(from.geom.get());
+  const auto* physics = known_cast<const BorePhys>(from.phys.get());
+  if ((from.geom && !geometry) || (from.phys && !physics) || (physics && !geometry)) return false;
+  const auto whole = [](const auto& list) {
+    return std::all_of(list.begin(), list.end(),
+                       [](const auto& one) { return static_cast<bool>(one); });
+  };
+  if (geometry) {
+    if (!whole(geometry->contacts)) return false;
+    copy_bore_geometry(*geometry, to.geometry);
+    to.has_geometry = true;
+  }
+  if (physics) {
+    if (!whole(physics->contacts)) return false;
+    copy_bore_physics(*physics, to.physics);
+  }
+  return true;
+}
+
+void scatter_bore(const stepper::Contact& contact, const stepper::Bore& from,
+                  yade::Interaction& to) {
+  if (!from.has_geometry) {
+    to.geom.reset();
+  } else {
+    if (from.renewed || !to.geom) to.geom = boost::make_shared<BoreGeom>();
+    copy_bore_geometry(from.geometry, static_cast<BoreGeom&>(*to.geom));
+  }
+  if (!contact.real) {
+    to.phys.reset();
+    to.iterMadeReal = -1;
+    return;
+  }
+  if (contact.renewed || !to.phys) {
+    to.phys = boost::make_shared<BorePhys>();
+    to.iterMadeReal = contact.made;
+  }
+  copy_bore_physics(from.physics, static_cast<BorePhys&>(*to.phys));
+}
+
 }  // namespace
 
 bool JointArrays::gather(stepper::Scene& arrays) {
@@ -78,6 +158,10 @@ bool JointArrays::gather(stepper::Scene& arrays) {
   if (engines_.joint_law) {
     arrays.law = engines_.joint_law->named_law();
     arrays.begun = {engines_.joint_law->firstContactTime, engines_.joint_law->contacts};
+  }
+  if (engines_.bore_law) {
+    arrays.bore_law = engines_.bore_law->named_law();
+    arrays.begun_in_bores = {engines_.bore_law->firstContactTime, engines_.bore_law->contacts};
   }
   scene_.forces.sync();  // the permanent forces alone: the others have just been reset
   arrays.bodies.reserve(number_of_bodies(scene_));
@@ -107,9 +191,6 @@ bool JointArrays::gather_body(std::size_t id, stepper::Scene& arrays) {
   if (body.clumpId >= 0) refuse_scene(which() + " belongs to a clump");
   if (body.shape && !known_cast<const ThermalShape>(body.shape.get())) {
     refuse_scene("it does not know the shape of " + which() + ", " + body.shape->getClassName());
-  }
-  if (known_cast<const MeshBore>(body.shape.get())) {
-    refuse_scene(which() + " is a MeshBore, whose contacts the ordinary loop alone can follow");
   }
   if ((body.flags & aspherical) != 0 && engines_.exact_rotation &&
       (state.blockedDOFs & stepper::all_rotations) == 0) {
@@ -223,21 +304,51 @@ bool JointArrays::find_parts(const yade::Body& one, const yade::Body& two,
   return false;
 }
 
+// The bore where some functor of the scene knows the pair as one with a meshed bore.
+std::optional<stepper::Bore> JointArrays::find_bore(const yade::Body& one, const yade::Body& two,
+                                                    stepper::Contact& contact) const {
+  const auto* hole = known_cast<const MeshBore>(two.shape.get());
+  if (!hole) return std::nullopt;
+  stepper::Bore bore;
+  bore.mesh = hole->mesh() ? &*hole->mesh() : nullptr;
+  contact.joint = stepper::Joint::bore;
+  if (const auto* journal = known_cast<const Journal>(one.shape.get());
+      journal && engines_.bore_journal) {
+    contact.length_1 = journal->radius;
+    bore.patch_angle = engines_.bore_journal->patchAngle;
+    bore.largest_tilt = engines_.bore_journal->maxTilt;
+    return bore;
+  }
+  const auto* ball = known_cast<const Ball>(one.shape.get());
+  if (!ball || !engines_.bore_ball) return std::nullopt;
+  contact.length_1 = ball->radius;
+  bore.is_ball = true;
+  bore.patch_angle = engines_.bore_ball->patchAngle;
+  return bore;
+}
+
 bool JointArrays::gather_contact(std::size_t place, stepper::Scene& arrays) {
   const yade::Interaction& interaction = interaction_at(scene_, place);
   if (!exists(interaction.id1) || !exists(interaction.id2)) return false;
   const yade::Body& one = body(interaction.id1);
   const yade::Body& two = body(interaction.id2);
   stepper::Contact contact{};
-  if (!find_parts(one, two, contact)) return !interaction.isReal();
-  if (!interaction.isActive) return false;
+  std::optional<stepper::Bore> bore = find_bore(one, two, contact);
+  if (!bore && !find_parts(one, two, contact)) return !interaction.isReal();
+  const bool has_law = bore ? engines_.bore_law != nullptr && bore->mesh != nullptr
+                            : engines_.hertz_mindlin || engines_.joint_law;
+  if (!interaction.isActive || !has_law) return false;
   contact.body_1 = interaction.id1;
   contact.body_2 = interaction.id2;
   contact.strain_1 = strain_of(one, arrays);
   contact.strain_2 = strain_of(two, arrays);
   contact.real = interaction.isReal();
   contact.made = interaction.iterMadeReal;
-  if (contact.real) {
+  if (bore) {
+    if (!gather_bore(interaction, *bore)) return false;
+    contact.bore = arrays.bores.size();
+    arrays.bores.push_back(*std::move(bore));
+  } else if (contact.real) {
     const auto* geometry = known_cast<const JointGeom>(interaction.geom.get());
     const auto* kept = known_cast<const JointPhys>(interaction.phys.get());
     if (!geometry || !kept) return false;
@@ -319,7 +430,9 @@ std::optional<stepper::ContactPhysics> JointArrays::physics(std::size_t contact)
   return good ? std::optional<stepper::ContactPhysics>(made) : std::nullopt;
 }
 
-void JointArrays::scatter_contact(const stepper::Contact& from, yade::Interaction& to) {
+void JointArrays::scatter_contact(const stepper::Contact& from, const stepper::Scene& arrays,
+                                  yade::Interaction& to) {
+  if (from.joint == stepper::Joint::bore) return scatter_bore(from, arrays.bores[from.bore], to);
   if (!from.real) {
     if (!to.isReal()) return;
     to.geom.reset();
@@ -354,7 +467,7 @@ void JointArrays::scatter(const stepper::Scene& arrays) {
     shape->thermalStrainRate = arrays.strains[place].rate;
   }
   for (std::size_t i = 0; i < arrays.contacts.size(); ++i) {
-    scatter_contact(arrays.contacts[i], interaction_to_change(scene_, interactions_[i]));
+    scatter_contact(arrays.contacts[i], arrays, interaction_to_change(scene_, interactions_[i]));
   }
   for (std::size_t i = 0; i < engines_.stages.size(); ++i) {
     as_stage(*engines_.stages[i],
@@ -364,9 +477,14 @@ void JointArrays::scatter(const stepper::Scene& arrays) {
     engines_.joint_law->firstContactTime = arrays.begun.first;
     engines_.joint_law->contacts = arrays.begun.count;
   }
+  if (engines_.bore_law) {
+    engines_.bore_law->firstContactTime = arrays.begun_in_bores.first;
+    engines_.bore_law->contacts = arrays.begun_in_bores.count;
+  }
   if (!arrays.tracks_energy || !arrays.any_contact) return;
   if (engines_.joint_law) engines_.joint_law->name_energies(scene_);
   if (engines_.hertz_mindlin) engines_.hertz_mindlin->name_energies(scene_);
+  if (engines_.bore_law) engines_.bore_law->name_energies(scene_);
 }
 
 }  // namespace statejump::dem

@@ -35,11 +35,14 @@ class JointArrays {
   void gather_heaters(stepper::Scene& arrays);
   bool gather_contact(std::size_t place, stepper::Scene& arrays);
   bool find_parts(const yade::Body& one, const yade::Body& two, stepper::Contact& contact) const;
+  std::optional<stepper::Bore> find_bore(const yade::Body& one, const yade::Body& two,
+                                         stepper::Contact& contact) const;
   bool gather_stage(const ThermalLinks& group, stepper::Scene& arrays);
   bool gather_stage(const TorsionSprings& group, stepper::Scene& arrays);
   bool gather_stage(const PrismaticJoints& group, stepper::Scene& arrays);
   bool gather_stage(const GuidePlanes& group, stepper::Scene& arrays);
-  void scatter_contact(const stepper::Contact& from, yade::Interaction& to);
+  static void scatter_contact(const stepper::Contact& from, const stepper::Scene& arrays,
+                              yade::Interaction& to);
   std::size_t program_of(const ThermalProgram& program, stepper::Scene& arrays);
   std::size_t strain_of(const yade::Body& body, stepper::Scene& arrays);
   bool exists(int id) const { return scene_.bodies->exists(id); }

@@ -158,12 +158,14 @@ class Reader {
   void read_functors(const py::object& loop) {
     read_functors(loop, "geomDispatcher", [&](const py::object& one) {
       return take(one, engines_.revolute) || take(one, engines_.ball) ||
-             take(one, engines_.plane) || take(one, engines_.outer_balls);
+             take(one, engines_.plane) || take(one, engines_.outer_balls) ||
+             take(one, engines_.bore_journal) || take(one, engines_.bore_ball);
     });
     read_functors(loop, "physDispatcher",
                   [&](const py::object& one) { return take(one, engines_.physics); });
     read_functors(loop, "lawDispatcher", [&](const py::object& one) {
-      return take(one, engines_.hertz_mindlin) || take(one, engines_.joint_law);
+      return take(one, engines_.hertz_mindlin) || take(one, engines_.joint_law) ||
+             take(one, engines_.bore_law);
     });
     if (engines_.hertz_mindlin && engines_.joint_law) {
       refuse_scene("the InteractionLoop holds two laws for the same contacts");

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "bore.hpp"
 #include "joint.hpp"
 #include "state_recorder.hpp"
 #include "statejump/stepper/motion.hpp"
@@ -19,9 +20,12 @@ struct JointEngines {
   Ig2_Ball_Socket_JointGeom* ball = nullptr;
   Ig2_Ball_Ball_JointGeom* outer_balls = nullptr;
   Ig2_Slider_SlotFace_JointGeom* plane = nullptr;
+  Ig2_Journal_MeshBore_BoreGeom* bore_journal = nullptr;
+  Ig2_Ball_MeshBore_BoreGeom* bore_ball = nullptr;
   Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys* physics = nullptr;
   Law2_JointGeom_JointPhys_HertzMindlin* hertz_mindlin = nullptr;
   Law2_JointGeom_JointPhys_JointLaw* joint_law = nullptr;
+  Law2_BoreGeom_BorePhys_JointLaw* bore_law = nullptr;
   stepper::Newton newton;
   bool exact_rotation = true;  // of aspherical bodies
   bool has_collider = false;

@@ -11,7 +11,7 @@ from pathlib import Path
 import mixed
 import statejump_yade as sj
 
-from parts import PLANAR, R1, R2, O, body, engines, finish, material, reset, with_stepper
+from parts import PLANAR, R1, R2, O, body, bore_engines, engines, finish, material, reset, tube, with_stepper
 
 TOUCHING_WITHIN = 3000  # steps
 
@@ -44,6 +44,22 @@ def rolling(law, stepper):
     put(stepper)
 
 
+def bored(friction):
+    """A journal that rattles in a bore of triangles with lobes; laws are its own."""
+    def build(_law, stepper):
+        reset()
+        body(
+            (0.4e-4, 0.1e-4, 0), sj.Journal(radius=R1), material(expansion=23e-6), mass=0.02, inertia=3e-7,
+            blocked=PLANAR, velocity=(0.2, -0.1, 0), spin=(0, 0, 40),
+        )
+        body((0, 0, 0), tube(60, 6, lobes=[(3, 40e-6, 0.2)]), material(expansion=10e-6))
+        program = sj.ThermalProgram(shape="sine", temperatureChangeMax=60, period=1e-3, cycles=5)
+        bore_engines(program, damping=0.05, law=sj.Law2_BoreGeom_BorePhys_JointLaw(frictionLaw=friction))
+        O.dt = 2.5e-7
+        put(stepper)
+    return build
+
+
 def mixed_scene(*kind):
     """Links, torsion springs, journal, slider with two contacts; laws are its own."""
     def build(_law, stepper):
@@ -59,12 +75,14 @@ def put(stepper):
 
 SCENES = {
     "rattling": rattling, "rolling": rolling, "mixed": mixed_scene(False), "mixed_by_name": mixed_scene(True),
-    "mixed_partial_slip": mixed_scene(False, True),
+    "mixed_partial_slip": mixed_scene(False, True), "bored": bored("mindlin"),
+    "bored_partial_slip": bored("mindlin_deresiewicz"),
 }
 
 
 # On the first body. YADE saves no permanent forces: a script sets them again after O.load.
-LOADS = {"rattling": (3.0, -20.0, 0), "rolling": (0, -30.0, 5.0)}
+LOADS = {"rattling": (3.0, -20.0, 0), "rolling": (0, -30.0, 5.0), "bored": (3.0, -60.0, 0),
+         "bored_partial_slip": (3.0, -60.0, 0)}
 
 
 def load(case):

@@ -23,18 +23,18 @@ from typing import Any
 
 HERE = Path(__file__).resolve().parent
 FORMATS = (".yade", ".yade.gz", ".yade.bz2", ".xml", ".xml.gz", ".xml.bz2")
-MIXED = ("mixed", "mixed_by_name", "mixed_partial_slip")
+OF_THEIR_OWN = ("mixed", "mixed_by_name", "mixed_partial_slip", "bored", "bored_partial_slip")  # laws
 LAWS = {"normal": "normalLaw", "dissipation": "dissipationLaw", "friction": "frictionLaw",
         "tangential_velocity": "tangentialVelocity"}
 
 
 def scenes_of(python: Path) -> list[tuple[str, dict[str, Any]]]:
     """Return cases and their laws: every law of the catalogue with the others at their defaults, and none, which is
-    Hertz and Mindlin; a ball has no axis, mixed scenes have laws of their own."""
+    Hertz and Mindlin; a ball has no axis, mixed scenes and bores have laws of their own."""
     sys.path.insert(0, str(python))
     from statejump import _engine
 
-    found: list[tuple[str, dict[str, Any]]] = [(case, {}) for case in ("rattling", "rolling", *MIXED)]
+    found: list[tuple[str, dict[str, Any]]] = [(case, {}) for case in ("rattling", "rolling", *OF_THEIR_OWN)]
     for kind, attribute in LAWS.items():
         for law in _engine.laws(kind):
             values = {attribute: law["name"], "restitution": 0.7}

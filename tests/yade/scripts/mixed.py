@@ -70,6 +70,14 @@ def scene(by_name, partial_slip=False):
     O.dt = 3e-7
 
 
+def contacts_of(interaction):
+    """Return geometry and physics of each contact of a pair; in a bore of triangles there may be several."""
+    if not interaction.isReal:
+        return []
+    geom, phys = interaction.geom, interaction.phys
+    return list(zip(geom.contacts, phys.contacts)) if isinstance(geom, sj.BoreGeom) else [(geom, phys)]
+
+
 def state():
     """Every number of the scene that could differ; floats print so that they read back the same."""
     out = {"iter": O.iter, "time": O.time, "energy": energies(), "bodies": [], "contacts": [], "memory": []}
@@ -80,13 +88,13 @@ def state():
              list(O.forces.t(b.id, True)), getattr(b.shape, "thermalStrain", None)]
         )
     for i in sorted(O.interactions, key=lambda i: (i.id1, i.id2)):
-        if i.isReal:
+        for geom, phys in contacts_of(i):
             # normal is kept as Hertz left it; the rest of the geometry follows.
             out["contacts"].append(
-                [i.id1, i.id2, list(i.phys.normalForce), list(i.phys.shearForce), i.phys.kn,
-                 i.phys.ks, i.phys.slipping, i.geom.penetrationDepth, list(i.geom.normal)]
+                [i.id1, i.id2, list(phys.normalForce), list(phys.shearForce), phys.kn,
+                 phys.ks, phys.slipping, geom.penetrationDepth, list(geom.normal)]
             )
-            out["memory"].append([list(point) for point in i.phys.slipMemory])
+            out["memory"].append([list(point) for point in phys.slipMemory])
     for engine in O.engines:
         for spring in getattr(engine, "springs", []):
             out["contacts"].append([spring.angle, spring.moment, spring.frictionMoment, spring.slipAngle])
@@ -96,7 +104,8 @@ def state():
             out["contacts"].append([joint.slide, joint.slipPosition, joint.frictionForce, joint.stopForce])
         for functor in getattr(getattr(engine, "lawDispatcher", None), "functors", []):
             found = functor.dict()
-            out["law"] = [found[k] for k in sorted(found) if k not in ("label", "timingDeltas")]
+            numbers = [found[k] for k in sorted(found) if k not in ("label", "timingDeltas")]
+            out["law of bores" if isinstance(functor, sj.Law2_BoreGeom_BorePhys_JointLaw) else "law"] = numbers
         for link in getattr(engine, "links", []):
             out["contacts"].append(
                 [link.axialForce, link.previousTension, list(link.tipDirection), link.temperatureChange]

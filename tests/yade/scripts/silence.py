@@ -65,10 +65,10 @@ def go(steps):
     return sentence_of(O.step) if found[0] == "none" and O.iter < last else found
 
 
-def both(change, when="start", build=joint, steppers=(False, True)):
+def both(change, when="start", build=joint):
     """Return what ends the scene, both ways: class, text, step, the part and bodies that the plugin names."""
     found = []
-    for stepper in steppers:
+    for stepper in (False, True):
         build()
         if stepper:
             with_stepper(SUBSTEPS)
@@ -181,13 +181,13 @@ def by_name():
 
 
 def bore():
-    """The same questions in a bore of triangles, which YADE's own loop steps; it has no link, spring or third body."""
+    """The same questions in a bore of triangles; it has no link, spring or third body."""
     changes = {**CHANGES, **MATERIALS, **CONTACTS}
     named = [name for name in changes if "link" not in name and "spring" not in name]
     return {
-        when: {name: both(changes[name], when, bored, (False,))[0] for name in named if when != "start" or name not in CONTACTS}
+        when: {name: both(changes[name], when, bored) for name in named if when != "start" or name not in CONTACTS}
         for when in ("start", "between", "within")
-    } | {"good": both(nothing, build=bored, steppers=(False,))[0]}
+    } | {"good": both(nothing, build=bored)}
 
 
 def nothing():

@@ -1,89 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The same scenes with and without the JointStepper; `stepper.py PART` with the parts at the end."""
-import hashlib
-import json
 import struct
 import sys
-import tempfile
-from pathlib import Path
 
 import mixed
 import statejump_yade as sj
 
-from parts import *  # noqa: F403
+from both import *  # noqa: F403
 
 MAIN = __import__("__main__")
 Law = sj.Law2_JointGeom_JointPhys_JointLaw
-
-
-def counted():
-    """Count the steps that YADE's own loop makes."""
-    MAIN.ordinary_steps = 0
-    O.engines = [*O.engines, wrapper.PyRunner(command="ordinary_steps += 1", iterPeriod=1, initRun=True)]
-
-
-def bits(state):
-    """Return a state as text: floats print so that they read back the same, NaN equals NaN."""
-    return json.dumps(state, sort_keys=True, default=list)  # vectors in a list
-
-
-def digest(state):
-    """Return a hash of a state."""
-    return hashlib.sha256(bits(state).encode()).hexdigest()
-
-
-def differences(one, other):
-    """Return the keys in which two states differ."""
-    return sorted(key for key in {*one, *other} if bits(one.get(key)) != bits(other.get(key)))
-
-
-def in_one_go(steps):
-    O.run(steps, True)
-
-
-def recorded():
-    """Record what the scene has, in steps that are no multiples of substeps: contacts of other bodies than two are
-    strangers."""
-    parts = {name: [part for engine in O.engines for part in getattr(engine, name, [])]
-             for name in ("links", "springs", "joints")}
-    bodies = [number for number in (0, 1, 3, 4) if number < len(O.bodies)]
-    recorder = sj.StateRecorder(iterPeriod=7, bodies=bodies, contacts=[1, 0], **parts)
-    O.engines = [*O.engines[:-1], recorder, O.engines[-1]]
-
-
-def rows():
-    """Return what has been recorded, None where nothing is."""
-    found = [engine.take().hex() for engine in O.engines if isinstance(engine, sj.StateRecorder)]
-    return found[0] if found else None
-
-
-def run_both(build, steps, substeps, go=in_one_go, record=False):
-    """Run a scene both ways; how many steps the ordinary loop made of them, and what differs."""
-    found = {}
-    for way in ("ordinary", "stepper"):
-        build()
-        if record:
-            recorded()
-        if way == "stepper":
-            with_stepper(substeps)
-        counted()
-        go(steps)
-        found[way] = mixed.state() | {
-            "geometry": [
-                [i.id1, i.id2, i.iterMadeReal, list(i.geom.contactPoint), i.geom.refR1, i.geom.refR2,
-                 i.phys.dict() | {"label": 0}] for i in O.interactions if i.isReal
-            ],
-            "interactions": [[i.id1, i.id2, i.isReal] for i in O.interactions],
-            "bounds": [[b.bound.lastUpdateIter, list(b.bound.min)] for b in O.bodies if b.bound],
-            "rate": O.dt, "rows": rows(),
-        }
-        for row in found[way]["geometry"]:
-            row[-1] = {key: list(v) if isinstance(v, Vector3) else v for key, v in row[-1].items()}
-    ordinary, stepper = found["ordinary"], found["stepper"]
-    return {
-        "differences": differences(ordinary, stepper), "hashes": [digest(ordinary), digest(stepper)], "steps": O.iter, "made_by_yade": MAIN.ordinary_steps,
-        "touching": len(ordinary["geometry"]), "energy": ordinary["energy"], "law": ordinary.get("law"),
-    }
 
 
 def joint(law=None, inertia=3e-7, blocked=PLANAR, newton=None, energy=True, load=(3.0, -20.0, 0), hot=60, **keywords):
@@ -208,16 +134,6 @@ def in_pieces(steps):
     O.run(steps - O.iter, True)
 
 
-def saved(steps):
-    """Saved and loaded on the way."""
-    O.run(steps // 2, True)
-    with tempfile.TemporaryDirectory() as folder:
-        name = str(Path(folder) / "scene.yade.gz")
-        O.save(name, quiet=True)
-        O.load(name, quiet=True)
-    O.run(steps - O.iter, True)
-
-
 def erased(steps):
     """A body more, and one less, on the way."""
     O.run(steps // 3, True)
@@ -263,7 +179,7 @@ def scenes():
         "crowd": (crowd, 2000, 1000),
         "mixed_saved": (lambda: mixed.scene(True), 1500, 130, saved),
     }
-    found |= {f"{name}_recorded": run_both(*case, record=True) for name, case in cases.items()}
+    found |= {f"{name}_recorded": run_both(*case, record=(1, 0)) for name, case in cases.items()}
     found["in_pieces"] = run_both(joint, 2000, 130, in_pieces)
     found["saved"] = run_both(lambda: mixed.scene(True), 1500, 130, saved)
     found["balls_saved"] = run_both(lambda: balls(Law(frictionLaw="mindlin_deresiewicz")), 8000, 300, saved)
@@ -283,24 +199,6 @@ def laws():
         for name in _engine.law_names(kind):
             law = {attribute: name, "restitution": 0.7}
             found[f"{kind} {name}"] = run_both(lambda law=law: joint(Law(**law), hot=20), 2500, 250)
-    return found
-
-
-def error_of(build, steps=2000, substeps=100):
-    """Return class, text, step and time of what ends a run, both ways."""
-    found = []
-    for way in ("ordinary", "stepper"):
-        build()
-        if way == "stepper":
-            with_stepper(substeps)
-
-        def one_by_one():
-            while O.iter < steps:
-                O.step()
-
-        kind, text = sentence_of(one_by_one)
-        taken = sj.take_failure()
-        found.append([kind, text, O.iter, O.time, None if taken is None else taken["time"]])
     return found
 
 

@@ -30,7 +30,7 @@ struct Heater {
   std::vector<Target> targets;
 };
 
-enum class Joint : unsigned char { revolute, ball, plane, outer_balls };
+enum class Joint : unsigned char { revolute, ball, plane, outer_balls, bore };
 
 /// Two bodies that touch or may touch.
 struct Contact {
@@ -39,6 +39,7 @@ struct Contact {
   std::size_t strain_1, strain_2;         ///< places in Scene::strains
   Vector3 face_normal = Vector3::Zero();  ///< in the axes of body 2; of a plane
   Joint joint;
+  std::size_t bore = 0;  ///< of a meshed bore: place in Scene::bores, which has the rest
   bool real = false;     ///< it has geometry and physics
   bool renewed = false;  ///< since the arrays were filled
   long made = -1;        ///< step in which it became real

@@ -70,7 +70,7 @@ class Batches {
   };
 
   static bool allows(const Contact& contact) {
-    return !contact.turns && contact.joint != Joint::outer_balls &&
+    return !contact.turns && contact.joint != Joint::outer_balls && contact.joint != Joint::bore &&
            contact.physics.slipMemory.empty() &&
            !(contact.joint == Joint::revolute && contact.tilted);
   }

@@ -396,6 +396,11 @@ struct Begun {
     if (count == 0 || touched < first) first = touched;
     ++count;
   }
+  void add(const Begun& others) {
+    if (others.count == 0) return;
+    if (count == 0 || others.first < first) first = others.first;
+    count += others.count;
+  }
 };
 
 /// Laws by name, for a contact without a Misfit that has begun if it touches.

@@ -150,6 +150,7 @@ inline void Parts::fill(Part& part, std::vector<int>& places) const {
   scene.strains = whole_.strains;
   scene.heaters = whole_.heaters;
   scene.law = whole_.law;
+  scene.bore_law = whole_.bore_law;
   std::vector<std::size_t> taken;
   const auto place = [&](int& id) {
     const auto body = static_cast<std::size_t>(id);
@@ -168,6 +169,10 @@ inline void Parts::fill(Part& part, std::vector<int>& places) const {
     Contact contact = whole_.contacts[i];
     place(contact.body_1);
     place(contact.body_2);
+    if (contact.joint == Joint::bore) {
+      scene.bores.push_back(whole_.bores[contact.bore]);
+      contact.bore = scene.bores.size() - 1;
+    }
     scene.contacts.push_back(contact);
   }
   for (std::size_t s = 0; s < whole_.stages.size(); ++s) {
@@ -234,9 +239,12 @@ inline void Parts::collect(Scene& whole) const {
     for (std::size_t i = 0; i < part.contacts.size(); ++i) {
       Contact& to = whole.contacts[part.contacts[i]];
       const int body_1 = to.body_1, body_2 = to.body_2;
+      const std::size_t bore = to.bore;
       to = part.scene.contacts[i];
+      if (to.joint == Joint::bore) whole.bores[bore] = part.scene.bores[to.bore];
       to.body_1 = body_1;
       to.body_2 = body_2;
+      to.bore = bore;
     }
     for (std::size_t s = 0; s < part.stages.size(); ++s) {
       for (std::size_t i = 0; i < part.stages[s].size(); ++i) {
@@ -260,12 +268,8 @@ inline void Parts::collect(Scene& whole) const {
       }
     }
     whole.any_contact = whole.any_contact || part.scene.any_contact;
-    if (part.scene.begun.count > 0) {
-      if (whole.begun.count == 0 || part.scene.begun.first < whole.begun.first) {
-        whole.begun.first = part.scene.begun.first;
-      }
-      whole.begun.count += part.scene.begun.count;
-    }
+    whole.begun.add(part.scene.begun);
+    whole.begun_in_bores.add(part.scene.begun_in_bores);
   }
 }
 

@@ -17,6 +17,7 @@
 #include "statejump/kernel/laws/joint_law.hpp"
 #include "statejump/stepper/arrays.hpp"
 #include "statejump/stepper/batches.hpp"
+#include "statejump/stepper/bore.hpp"
 #include "statejump/stepper/numbers.hpp"
 #include "statejump/stepper/stable_link.hpp"
 #include "statejump/thermal/program.hpp"
@@ -40,11 +41,13 @@ class Scene {
   std::vector<Heater> heaters;
   std::vector<Body> bodies;
   std::vector<Contact> contacts;
+  std::vector<Bore> bores;
   std::vector<Stage> stages;
   std::variant<HertzMindlin, NamedLaw> law;
+  NamedLaw bore_law;  ///< of contacts with meshed bores
   Energies energies;
   StoredEnergies stored;  ///< of the last step of a run
-  Begun begun;
+  Begun begun, begun_in_bores;
   bool any_contact = false;  ///< a contact has been computed since the arrays were filled
 
   /// Physics of a contact that begins, by its place; none where the materials allow none.
@@ -108,6 +111,10 @@ class Scene {
   void heat();
   template <class Law>
   bool step_contact(const Law& law, std::size_t place, const Make& make);
+  bool step_named(const NamedLaw& named, const Contact& contact, const ContactGeometry& geometry,
+                  ContactPhysics& physics, Begun& begun_contacts, bool& touches);
+  bool step_in_bore(std::size_t place, const Make& make);
+  InBore find(const Contact& contact, Bore& bore);
   bool accepts(const ContactPhysics& physics) const;
   Found find(Contact& contact);
   bool act(Links& group);
@@ -254,6 +261,11 @@ inline bool Scene::is_sound() const {
                        return is_finite(each.physics.normalForce) &&
                               is_finite(each.physics.shearForce);
                      }) &&
+         std::all_of(bores.begin(), bores.end(),
+                     [](const Bore& each) {
+                       return is_finite(each.physics.normalForce) &&
+                              is_finite(each.physics.shearForce);
+                     }) &&
          std::all_of(stages.begin(), stages.end(),
                      [&](const Stage& stage) { return std::visit(of_links, stage); });
 }
@@ -324,6 +336,7 @@ inline Found Scene::find(Contact& contact) {
     case Joint::outer_balls:
       return find_outer_balls(part_1, part_2, one.motion, two.motion, contact.real, time_step,
                               geometry);
+    case Joint::bore:  // step_in_bore()
     case Joint::plane:
       break;
   }
@@ -335,6 +348,7 @@ inline Found Scene::find(Contact& contact) {
 template <class Law>
 bool Scene::step_contact(const Law& one, std::size_t place, const Make& make) {
   Contact& contact = contacts[place];
+  if (contact.joint == Joint::bore) return step_in_bore(place, make);
   const Found found = find(contact);
   if (found == Found::apart) return true;
   if (found != Found::contact) return false;
@@ -347,27 +361,94 @@ bool Scene::step_contact(const Law& one, std::size_t place, const Make& make) {
     contact.made = iteration;
   }
   any_contact = true;
-  Host host{*this, contact};
-  const ContactPhysics& physics = contact.physics;
   // Asked behind all that is computed, which is quicker; a step that cannot be made is left half
   // made anyway. A force that is no number stays none: is_sound() sees it when the steps are made.
   if constexpr (std::is_same_v<Law, HertzMindlin>) {
-    contact.real = hertz_mindlin_step(contact.geometry, contact.physics, host);
+    const ContactPhysics& physics = contact.physics;
+    contact.real = hertz_mindlin_step(contact.geometry, contact.physics, Host{*this, contact});
     return !contact.real || is_below(physics.kn, contact.plain_stiffness) || accepts(physics);
   } else {
-    if (misfit(one, contact.geometry) != Misfit::none) return false;
-    if (contact.geometry.penetrationDepth > 0 && !contact.physics.begun) {
-      begun.add(begin(contact.geometry, contact.physics, time, time_step));
-    }
-    try {
-      contact.real = joint_law_step(one.law, contact.geometry, contact.physics,
-                                    body(contact.body_1).motion, body(contact.body_2).motion, host);
-    } catch (const std::exception&) {
-      return false;
-    }
-    // A law of one's own may answer anything.
-    return !contact.real || is_plain_stiffness(physics.kn, physics, time_step) || accepts(physics);
+    return step_named(one, contact, contact.geometry, contact.physics, begun, contact.real);
   }
+}
+
+// @param touches becomes whether the contact is not open
+inline bool Scene::step_named(const NamedLaw& named, const Contact& contact,
+                              const ContactGeometry& geometry, ContactPhysics& physics,
+                              Begun& begun_contacts, bool& touches) {
+  if (misfit(named, geometry) != Misfit::none) return false;
+  if (geometry.penetrationDepth > 0 && !physics.begun) {
+    begun_contacts.add(begin(geometry, physics, time, time_step));
+  }
+  try {
+    touches = joint_law_step(named.law, geometry, physics, body(contact.body_1).motion,
+                             body(contact.body_2).motion, Host{*this, contact});
+  } catch (const std::exception&) {
+    return false;
+  }
+  // A law of one's own may answer anything.
+  return !touches || is_plain_stiffness(physics.kn, physics, time_step) || accepts(physics);
+}
+
+// What the wall's geometry and the kernel throw is for the ordinary loop to tell, as all that is
+// neither apart nor contact.
+inline InBore Scene::find(const Contact& contact, Bore& bore) {
+  const Body& one = body(contact.body_1);
+  const Body& two = body(contact.body_2);
+  const Strain& strain_1 = strains[contact.strain_1];
+  const Strain& strain_2 = strains[contact.strain_2];
+  const Part part{contact.length_1, 1 + strain_1.strain, strain_1.rate};
+  const BoreProbe probe{bore.is_ball, part.expanded(), part.length * part.strain_rate,
+                        bore.is_ball ? Vector3(Vector3::Zero()) : axis_of(one.orientation)};
+  if (!bore.is_ball && tilted_in_bore(probe.axis, *bore.mesh, two.orientation, bore.largest_tilt)) {
+    return InBore::nowhere;
+  }
+  const auto geometry = [&]() -> BoreGeometry& {
+    if (!bore.has_geometry) {
+      bore.geometry = {};
+      bore.has_geometry = bore.renewed = true;
+    }
+    return bore.geometry;
+  };
+  try {
+    return find_in_bore(probe, {*bore.mesh, 1 + strain_2.strain, strain_2.rate, bore.patch_angle},
+                        one.motion, two.motion, two.orientation,
+                        one.motion.position - two.motion.position, contact.real, time_step,
+                        geometry)
+        .found;
+  } catch (const std::exception&) {
+    return InBore::nowhere;
+  }
+}
+
+inline bool Scene::step_in_bore(std::size_t place, const Make& make) {
+  Contact& contact = contacts[place];
+  Bore& bore = bores[contact.bore];
+  const InBore found = find(contact, bore);
+  if (found == InBore::apart) return true;
+  if (found != InBore::contact) return false;
+  if (!contact.real) {
+    std::optional<ContactPhysics> made = make(place);
+    if (!made) return false;
+    bore.physics = {};
+    static_cast<ContactPhysics&>(bore.physics) = *std::move(made);
+    contact.real = contact.renewed = true;
+    contact.made = iteration;
+  }
+  any_contact = true;
+  bool good = true;
+  contact.real = bore_law_step(
+      bore.geometry, bore.physics, [&](const ContactGeometry& here, ContactPhysics& physics) {
+        bool touches = false;
+        good = good && step_named(bore_law, contact, here, physics, begun_in_bores, touches);
+        return touches;
+      });
+  if (!contact.real) {
+    bore.geometry = {};
+    bore.physics = {};
+    bore.has_geometry = false;
+  }
+  return good;
 }
 
 // Whether what a contact keeps of its step is good after all.
