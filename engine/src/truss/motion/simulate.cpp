@@ -72,126 +72,190 @@ double attempt(detail::Stepper& stepper, double to, bool give_up, bool is_last) 
   }
 }
 
+/// A motion that is being made.
+class Run {
+ public:
+  Run(const Model& model, const Inertia& inertia, const MotionOptions& options)
+      : model_(model),
+        options_(options),
+        duration_(model.programs.front().duration()),
+        system_(model),
+        bodies_(system_, inertia),
+        stepper_(system_, bodies_, options) {}
+
+  Motion make() &&;
+
+ private:
+  bool begin();
+  void make_equal_steps();
+  void make_steps_within_tolerance();
+  /// From one sample to the next. @param level halvings of the span for its first step; out: for
+  /// the first of the next
+  void make_span(long first, long count, int& level);
+  /// Makes a step as long as the ladder says, or shortens it. @param to where it ends, and the
+  /// length of the whole span [s]; @param unsettled tries in the span that found no solution
+  void try_step(double to, double span, detail::Ladder& ladder, int& unsettled);
+
+  /// Changes of joints and their heat in a step that is taken. @param length of it [s]
+  template <class Take>
+  void note(double length, const Take& take);
+  void sample();
+  void watch(long step);
+  /// Tells how far it is. @param time [s]; @return whether to go on
+  bool go_on(double time);
+  /// Time of a step of the options [s]; of the whole, for a sum of steps would not end at the end.
+  double time_of(double steps) const {
+    return duration_ * (steps / static_cast<double>(options_.steps));
+  }
+
+  const Model& model_;
+  const MotionOptions& options_;
+  const double duration_;  // [s]
+  const detail::System system_;
+  const detail::Bodies bodies_;
+  detail::Stepper stepper_;
+  Motion motion_;
+};
+
+bool Run::begin() {
+  if (options_.start) {
+    stepper_.begin(bodies_.free_part(options_.start->displacement),
+                   bodies_.free_part(options_.start->velocity), nullptr);
+    return true;
+  }
+  const std::optional<State> start = equilibrium(model_, options_);
+  if (!start) return false;
+  stepper_.begin(bodies_.free_part(start->displacement), VectorXd::Zero(system_.displacements()),
+                 &*start);
+  return true;
+}
+
+void Run::sample() {
+  State state;
+  stepper_.describe(state);
+  motion_.states.push_back(std::move(state));
+  motion_.moving.push_back({bodies_.of_nodes(stepper_.velocity()), stepper_.kinetic_energy(),
+                            stepper_.account().damping, stepper_.account().impact,
+                            stepper_.account().drives, stepper_.drive_moment()});
+}
+
+void Run::watch(long step) {
+  if (options_.watched_node < 0) return;
+  motion_.watched_velocity.col(step) =
+      system_.displacement(options_.watched_node, stepper_.velocity());
+}
+
+bool Run::go_on(double time) {
+  const double share = time / duration_;
+  motion_.complete = !options_.progress || options_.progress(share) || share == 1.0;
+  return motion_.complete;
+}
+
+template <class Take>
+void Run::note(double length, const Take& take) {
+  detail::Statuses before;
+  before = stepper_.statuses();  // a copy: the step changes them
+  const auto heat = [&] { return stepper_.account().friction.sum() + stepper_.account().impact; };
+  const double heat_before = heat();
+  take();
+  ++motion_.steps;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const JointStatus after = stepper_.statuses()[i];
+    if (before[i] == after) continue;
+    const double time = stepper_.time();
+    motion_.events.push_back({time, length, model_.temperature_change(0, 1.0, time),
+                              static_cast<int>(i), before[i], after});
+    motion_.event_heat.push_back(heat() - heat_before);
+  }
+}
+
+void Run::make_equal_steps() {
+  if (options_.watched_node >= 0) motion_.watched_velocity.resize(3, options_.steps + 1);
+  watch(0);
+  for (long k = 1; k <= options_.steps && motion_.complete; ++k) {
+    const double to = time_of(static_cast<double>(k));
+    note(motion_.time_step, [&] { stepper_.advance(to); });
+    watch(k);
+    if (k == options_.steps || k % options_.sample_every == 0) sample();
+    go_on(to);
+  }
+}
+
+void Run::make_steps_within_tolerance() {
+  motion_.time_step = duration_;
+  int level = 0;
+  for (long k = 0; k < options_.steps && motion_.complete; k += options_.sample_every) {
+    make_span(k, std::min(options_.sample_every, options_.steps - k), level);
+  }
+}
+
+void Run::make_span(long first, long count, int& level) {
+  const double span = time_of(static_cast<double>(count));
+  const int most = std::max(static_cast<int>(std::log2(span / (shortest * duration_))), 0);
+  detail::Ladder ladder(level, most);
+  int unsettled = 0;
+  while (!ladder.done()) {
+    const long steps_before = motion_.steps;
+    const auto time_at = [&](double share) {
+      return time_of(static_cast<double>(first) + share * static_cast<double>(count));
+    };
+    try_step(time_at(ladder.to()), span, ladder, unsettled);
+    const bool made = motion_.steps > steps_before;
+    if (made && !ladder.done() && !go_on(stepper_.time())) return;
+  }
+  level = ladder.level();
+  sample();
+  go_on(time_of(static_cast<double>(first + count)));
+}
+
+void Run::try_step(double to, double span, detail::Ladder& ladder, int& unsettled) {
+  const bool give_up = unsettled < most_unsettled && !ladder.is_shortest();
+  const double off = attempt(stepper_, to, give_up, ladder.is_shortest());
+  if (!std::isfinite(off)) ++unsettled;
+  const bool too_far = off > options_.displacement_tolerance;
+  if (too_far && !ladder.is_shortest()) {
+    ++motion_.rejected_steps;
+    // A force that turns up in a step puts it off by its square, a jump of the velocity by its
+    // first power: then there is another try.
+    const double halvings = 0.5 * std::log2(off / options_.displacement_tolerance);
+    ladder.shorten(std::isfinite(off) ? std::max(static_cast<int>(std::ceil(halvings)), 1) : 1);
+    return;
+  }
+  if (too_far) ++motion_.inexact_steps;
+  const double length = span * ladder.length();
+  note(length, [&] { stepper_.accept(); });
+  motion_.time_step = std::min(motion_.time_step, length);
+  // Of second order: a step of twice the length is eight times as far off.
+  ladder.accept(8.0 * off <= options_.displacement_tolerance);
+}
+
+Motion Run::make() && {
+  motion_.unknowns = system_.displacements();
+  motion_.time_step = duration_ / static_cast<double>(options_.steps);
+  if (!begin()) {
+    motion_.complete = false;
+    return std::move(motion_);
+  }
+  sample();
+  if (options_.displacement_tolerance > 0.0) {
+    make_steps_within_tolerance();
+  } else {
+    make_equal_steps();
+  }
+  motion_.iterations = stepper_.iterations();
+  motion_.factorizations = stepper_.factorizations();
+  motion_.largest_contact_merit = stepper_.largest_merit();
+  motion_.undetermined = stepper_.undetermined();
+  motion_.jammed = stepper_.jammed();
+  motion_.negative_dissipation = stepper_.account().negative;
+  return std::move(motion_);
+}
+
 }  // namespace
 
 Motion simulate(const Model& model, const Inertia& inertia, const MotionOptions& options) {
   check(model, options);
-  const detail::System system(model);
-  const detail::Bodies bodies(system, inertia);
-  detail::Stepper stepper(system, bodies, options);
-  Motion motion;
-  motion.unknowns = system.displacements();
-  const double duration = model.programs.front().duration();
-  motion.time_step = duration / static_cast<double>(options.steps);
-  if (options.start) {
-    stepper.begin(bodies.free_part(options.start->displacement),
-                  bodies.free_part(options.start->velocity), nullptr);
-  } else {
-    const std::optional<State> start = equilibrium(model, options);
-    if (!start) {
-      motion.complete = false;
-      return motion;
-    }
-    stepper.begin(bodies.free_part(start->displacement), VectorXd::Zero(system.displacements()),
-                  &*start);
-  }
-  const auto sample = [&] {
-    State state;
-    stepper.describe(state);
-    motion.states.push_back(std::move(state));
-    motion.moving.push_back({bodies.of_nodes(stepper.velocity()), stepper.kinetic_energy(),
-                             stepper.account().damping, stepper.account().impact,
-                             stepper.account().drives, stepper.drive_moment()});
-  };
-  if (options.watched_node >= 0) motion.watched_velocity.resize(3, options.steps + 1);
-  const auto watch = [&](long step) {
-    if (options.watched_node < 0) return;
-    motion.watched_velocity.col(step) =
-        system.displacement(options.watched_node, stepper.velocity());
-  };
-  sample();
-  watch(0);
-  // From the whole: a sum of steps would not end at the end.
-  const auto time_of = [&](double steps) {
-    return duration * (steps / static_cast<double>(options.steps));
-  };
-  const auto go_on = [&](double steps) {
-    const double share = steps / static_cast<double>(options.steps);
-    motion.complete = !options.progress || options.progress(share) || share == 1.0;
-    return motion.complete;
-  };
-  const auto noted = [&](double length, const auto& take) {
-    detail::Statuses before;
-    before = stepper.statuses();  // a copy: the step changes them
-    const auto heat = [&] { return stepper.account().friction.sum() + stepper.account().impact; };
-    const double heat_before = heat();
-    take();
-    ++motion.steps;
-    for (std::size_t i = 0; i < before.size(); ++i) {
-      const JointStatus after = stepper.statuses()[i];
-      if (before[i] == after) continue;
-      const double time = stepper.time();
-      motion.events.push_back({time, length, model.temperature_change(0, 1.0, time),
-                               static_cast<int>(i), before[i], after});
-      motion.event_heat.push_back(heat() - heat_before);
-    }
-  };
-  if (options.displacement_tolerance > 0.0) {
-    motion.time_step = duration;
-    int level = 0;
-    for (long k = 0; k < options.steps && motion.complete; k += options.sample_every) {
-      const long span = std::min(options.sample_every, options.steps - k);
-      const double length = time_of(static_cast<double>(span));
-      const int most = std::max(static_cast<int>(std::log2(length / (shortest * duration))), 0);
-      detail::Ladder ladder(level, most);
-      int unsettled = 0;
-      while (!ladder.done()) {
-        const auto place = [&](double share) {
-          return static_cast<double>(k) + share * static_cast<double>(span);
-        };
-        const bool give_up = unsettled < most_unsettled && !ladder.is_shortest();
-        const double off =
-            attempt(stepper, time_of(place(ladder.to())), give_up, ladder.is_shortest());
-        if (!std::isfinite(off)) ++unsettled;
-        const bool too_far = off > options.displacement_tolerance;
-        if (too_far && !ladder.is_shortest()) {
-          ++motion.rejected_steps;
-          // A force that turns up in a step puts it off by its square, a jump of the velocity by
-          // its first power: then there is another try.
-          const double halvings = 0.5 * std::log2(off / options.displacement_tolerance);
-          ladder.shorten(std::isfinite(off) ? std::max(static_cast<int>(std::ceil(halvings)), 1)
-                                            : 1);
-          continue;
-        }
-        if (too_far) ++motion.inexact_steps;
-        const double step = length * ladder.length();
-        noted(step, [&] { stepper.accept(); });
-        motion.time_step = std::min(motion.time_step, step);
-        const double to = place(ladder.to());
-        // Of second order: a step of twice the length is eight times as far off.
-        ladder.accept(8.0 * off <= options.displacement_tolerance);
-        if (!ladder.done() && !go_on(to)) break;
-      }
-      if (!motion.complete) break;
-      level = ladder.level();
-      sample();
-      go_on(static_cast<double>(k + span));
-    }
-  } else {
-    for (long k = 1; k <= options.steps; ++k) {
-      noted(motion.time_step, [&] { stepper.advance(time_of(static_cast<double>(k))); });
-      watch(k);
-      if (k == options.steps || k % options.sample_every == 0) sample();
-      if (!go_on(static_cast<double>(k))) break;
-    }
-  }
-  motion.iterations = stepper.iterations();
-  motion.factorizations = stepper.factorizations();
-  motion.largest_contact_merit = stepper.largest_merit();
-  motion.undetermined = stepper.undetermined();
-  motion.jammed = stepper.jammed();
-  motion.negative_dissipation = stepper.account().negative;
-  return motion;
+  return Run(model, inertia, options).make();
 }
 
 }  // namespace statejump::truss
