@@ -9,7 +9,7 @@ namespace statejump::dem {
 
 /// dynamic_cast to a class derived from From, null where the object is of another class. The
 /// answers of the last classes that were asked for are remembered, for dynamic_cast compares names
-/// of classes: a microsecond, of each of ten thousand bodies.
+/// of classes each time.
 template <class To, class From>
 To* known_cast(From* from) {
   struct Answer {

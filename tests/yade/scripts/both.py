@@ -112,6 +112,17 @@ def saved(steps):
     O.run(steps - O.iter, True)
 
 
+def erased(number):
+    """A body more, and one less, on the way."""
+    def go(steps):
+        O.run(steps // 3, True)
+        body((9, 0, 0))
+        O.run(steps // 3, True)
+        O.bodies.erase(number)
+        O.run(steps - O.iter, True)
+    return go
+
+
 def error_of(build, steps=2000, substeps=100):
     """Return class, text, step and time of what ends a run, both ways."""
     found = []

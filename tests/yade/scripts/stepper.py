@@ -134,15 +134,6 @@ def in_pieces(steps):
     O.run(steps - O.iter, True)
 
 
-def erased(steps):
-    """A body more, and one less, on the way."""
-    O.run(steps // 3, True)
-    body((9, 0, 0))
-    O.run(steps // 3, True)
-    O.bodies.erase(2)
-    O.run(steps - O.iter, True)
-
-
 def scenes():
     by_name = dict(normalLaw="hertz_paper", dissipationLaw="flores", restitution=0.8)
     cases = {
@@ -184,7 +175,7 @@ def scenes():
     found["saved"] = run_both(lambda: mixed.scene(True), 1500, 130, saved)
     found["balls_saved"] = run_both(lambda: balls(Law(frictionLaw="mindlin_deresiewicz")), 8000, 300, saved)
     found["prismatic_saved"] = run_both(prismatic, 3000, 130, saved)
-    found["erased"] = run_both(crowd, 1500, 250, erased)
+    found["erased"] = run_both(crowd, 1500, 250, erased(2))
     return found
 
 

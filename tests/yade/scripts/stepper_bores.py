@@ -150,15 +150,6 @@ def pushed_on(steps):
     O.run(steps - O.iter, True)
 
 
-def erased(steps):
-    """A body more, and one less, on the way."""
-    O.run(steps // 3, True)
-    body((9, 0, 0))
-    O.run(steps // 3, True)
-    O.bodies.erase(3)
-    O.run(steps - O.iter, True)
-
-
 def scenes():
     cases = {
         "lobed": (lobed, 8000, 500),
@@ -180,7 +171,7 @@ def scenes():
         "bumps": (bumps, 10000, 300),
         "crowd": (crowd, 3000, 250),
         "crowd_in_parts": (lambda: crowd(False), 3000, 500),
-        "crowd_erased": (crowd, 1200, 200, erased),
+        "crowd_erased": (crowd, 1200, 200, erased(3)),
     }
     found = {name: run_both(*case) for name, case in cases.items()}
     found["sliding"]["facets"] = len(MAIN.facets)

@@ -94,7 +94,8 @@ class Run {
   void make_span(long first, long count, int& level);
   /// Makes a step as long as the ladder says, or shortens it. @param to where it ends, and the
   /// length of the whole span [s]; @param unsettled tries in the span that found no solution
-  void try_step(double to, double span, detail::Ladder& ladder, int& unsettled);
+  /// @return whether the step is made
+  bool try_step(double to, double span, detail::Ladder& ladder, int& unsettled);
 
   /// Changes of joints and their heat in a step that is taken. @param length of it [s]
   template <class Take>
@@ -194,13 +195,11 @@ void Run::make_span(long first, long count, int& level) {
   const int most = std::max(static_cast<int>(std::log2(span / (shortest * duration_))), 0);
   detail::Ladder ladder(level, most);
   int unsettled = 0;
+  const auto time_at = [&](double share) {
+    return time_of(static_cast<double>(first) + share * static_cast<double>(count));
+  };
   while (!ladder.done()) {
-    const long steps_before = motion_.steps;
-    const auto time_at = [&](double share) {
-      return time_of(static_cast<double>(first) + share * static_cast<double>(count));
-    };
-    try_step(time_at(ladder.to()), span, ladder, unsettled);
-    const bool made = motion_.steps > steps_before;
+    const bool made = try_step(time_at(ladder.to()), span, ladder, unsettled);
     if (made && !ladder.done() && !go_on(stepper_.time())) return;
   }
   level = ladder.level();
@@ -208,7 +207,7 @@ void Run::make_span(long first, long count, int& level) {
   go_on(time_of(static_cast<double>(first + count)));
 }
 
-void Run::try_step(double to, double span, detail::Ladder& ladder, int& unsettled) {
+bool Run::try_step(double to, double span, detail::Ladder& ladder, int& unsettled) {
   const bool give_up = unsettled < most_unsettled && !ladder.is_shortest();
   const double off = attempt(stepper_, to, give_up, ladder.is_shortest());
   if (!std::isfinite(off)) ++unsettled;
@@ -219,7 +218,7 @@ void Run::try_step(double to, double span, detail::Ladder& ladder, int& unsettle
     // first power: then there is another try.
     const double halvings = 0.5 * std::log2(off / options_.displacement_tolerance);
     ladder.shorten(std::isfinite(off) ? std::max(static_cast<int>(std::ceil(halvings)), 1) : 1);
-    return;
+    return false;
   }
   if (too_far) ++motion_.inexact_steps;
   const double length = span * ladder.length();
@@ -227,6 +226,7 @@ void Run::try_step(double to, double span, detail::Ladder& ladder, int& unsettle
   motion_.time_step = std::min(motion_.time_step, length);
   // Of second order: a step of twice the length is eight times as far off.
   ladder.accept(8.0 * off <= options_.displacement_tolerance);
+  return true;
 }
 
 Motion Run::make() && {
