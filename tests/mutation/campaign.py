@@ -4,8 +4,9 @@
 
 Mutants of C++ stand beside the original in one build, from which a variable of the environment chooses (switched.py);
 those that cannot are compiled alone. Headers are compiled with the tests that include them, files of a library are
-linked before it into the built test program. Mutants of Python are tried by their test files in a process forked from
-one that has the heavy imports behind it. Mutants that do not compile are not counted. The unmutated sources must pass.
+linked before it into the built test program. Mutants of Python are tried by the test files that execute their
+statement, in a process forked from one that has the heavy imports behind it. Mutants that do not compile are not
+counted. The unmutated sources must pass.
 
 The sample is that of the seed; a result is kept in the journal, so that what was noticed once is not tried again
 while its file stays as it was. Survivors that no test can notice are listed in equivalent.toml with the reason.
@@ -15,6 +16,7 @@ Exit status: 0 every module has its score, 1 one has not, 2 the set-up is wrong.
 from __future__ import annotations
 
 import argparse
+import ast
 import hashlib
 import importlib
 import json
@@ -28,11 +30,14 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import FrameType
+from typing import Any
 
 from modules import MODULES, Module
 from operators import Mutant, mutants
@@ -43,6 +48,8 @@ EQUIVALENT = HERE / "equivalent.toml"
 KILLED, SURVIVED, INVALID = "killed", "survived", "does not compile"
 # A mutant that takes longer than this many times the unmutated test has been noticed.
 PATIENCE, LEAST_SECONDS = 10, 60
+# Test files of Python that are asked of one mutant beside its module's own.
+MOST_OTHERS = 6
 # Of what a mutant asks beyond the end of an array the assertions of the libraries tell.
 ASSERTING = ("-UNDEBUG", "-D_GLIBCXX_ASSERTIONS")
 # What tests include and no mutant changes.
@@ -119,9 +126,9 @@ class Guards:
             raise SetUp(f"{self.module.name}: {guard} fails with the unmutated sources")
         self.patience[guard] = max(LEAST_SECONDS, PATIENCE * (time.monotonic() - start))
 
-    def order(self, file: str) -> list[str]:
-        """Return the guards of a file, that of the same name first."""
-        stem = Path(file).stem
+    def order(self, mutant: Mutant) -> list[str]:
+        """Return the guards of a mutant, that of the same name as its file first."""
+        stem = Path(mutant.file).stem
         return sorted(self.module.guards, key=lambda guard: Path(guard).stem.removesuffix("_test") != stem)
 
     def prepare(self, wanted: list[Mutant]) -> None:
@@ -135,7 +142,7 @@ class Guards:
         """Change the sources for this mutant and try it."""
         path = self.folder / mutant.file
         text = path.read_text(encoding="utf-8")
-        for guard in self.order(mutant.file):
+        for guard in self.order(mutant):
             if guard not in self.patience:
                 self.check(guard)
             path.write_text(mutant.applied(text), encoding="utf-8")
@@ -237,7 +244,7 @@ class Compiled(Guards):
         number = next((number for number, one in self.ready.items() if one == mutant), None)
         if number is None:
             return self.tried_alone(mutant)
-        for guard in self.order(mutant.file):
+        for guard in self.order(mutant):
             if not self.passes(self.programs[guard], guard, number):
                 return KILLED, guard
         return SURVIVED, ""
@@ -254,12 +261,12 @@ class HeaderGuards(Compiled):
         if run([*command, "-O0", "-x", "c++-header", str(self.prefix), "-o", f"{self.prefix}.gch"], cwd=build) != 0:
             raise SetUp("the common headers do not compile")
 
-    def order(self, file: str) -> list[str]:
-        return [guard for guard in super().order(file) if self._includes(self.folder / guard, Path(file).name)]
+    def order(self, mutant: Mutant) -> list[str]:
+        return [guard for guard in super().order(mutant) if self._includes(self.folder / guard, mutant.file)]
 
-    def _includes(self, source: Path, name: str) -> bool:
+    def _includes(self, source: Path, file: str) -> bool:
         """Does a test include a header, itself or by others?"""
-        seen: set[Path] = set()
+        name, seen = Path(file).name, set[Path]()
         waiting = [source]
         while waiting:
             text = waiting.pop().read_text(encoding="utf-8")
@@ -276,7 +283,7 @@ class HeaderGuards(Compiled):
 
     def build_programs(self, files: list[str]) -> str | None:
         for place, guard in enumerate(self.module.guards):
-            if any(guard in self.order(file) for file in files):
+            if any(self._includes(self.folder / guard, file) for file in files):
                 said = self._program(guard, self.folder / f"guard{place}")
                 if said is not None:
                     return said
@@ -361,11 +368,37 @@ class LibraryGuards(Compiled):
                 or f'"{name}"' in path.read_text()]
 
 
-class PythonGuards(Guards):
-    """The test files run in a fork of this process, on a copy of the built package."""
+def statement_lines(text: str, place: int) -> range:
+    """Return the lines of the statement of Python at a place, of a compound one those of its head."""
+    line, found = text.count("\n", 0, place) + 1, range(0)
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.stmt) and node.end_lineno is not None and node.lineno <= line <= node.end_lineno:
+            body = getattr(node, "body", None)
+            lines = range(node.lineno, max(node.lineno, body[0].lineno - 1) + 1 if body else node.end_lineno + 1)
+            if line in lines and (not found or len(lines) <= len(found)):
+                found = lines
+    return found or range(line, line + 1)
 
-    def __init__(self, module: Module, root: Path, folder: Path, build: Path) -> None:
+
+class PythonGuards(Guards):
+    """The test files run in a fork of this process, on a copy of the built package.
+
+    Each runs once under a trace, which tells the lines of all such modules that it executes; the journal keeps that
+    while package and test are as they were. A command in a process of its own is not traced.
+    """
+
+    def __init__(self, module: Module, root: Path, folder: Path, build: Path, journal: Journal) -> None:
         super().__init__(module, root, folder)
+        self.journal = journal
+        self.traced = [file.relative_to(root) for one in MODULES if one.guards[0].endswith(".py")
+                       for file in one.files(root)]
+        digest = hashlib.sha256()
+        digest.update(repr(self.traced).encode())
+        for file in (*sorted((root / "python").rglob("*.py")),
+                     *sorted((build / "python/statejump").glob("_engine*.so")),
+                     root / "tests/python/conftest.py"):
+            digest.update(file.read_bytes())
+        self.package = digest.hexdigest()
         for name in HEAVY:
             importlib.import_module(name)
         ignored = shutil.ignore_patterns("__pycache__", "_engine*")
@@ -382,11 +415,42 @@ class PythonGuards(Guards):
         self.command = folder / "statejump"
         self.command.write_text(command)
         self.command.chmod(0o755)
+        self.executed: dict[str, dict[str, list[int]]] = {}
+        self.seconds: dict[str, float] = {}
+
+    def prepare(self, wanted: list[Mutant]) -> None:
+        for guard in self.module.guards:
+            text = self.package + (self.root / guard).read_text(encoding="utf-8")
+            key = f"executed by {guard} {hashlib.sha256(text.encode()).hexdigest()[:16]}"
+            if key not in self.journal.known:
+                start = time.monotonic()
+                self.check(guard)
+                self.journal.add(key, json.dumps([time.monotonic() - start, json.loads(self._trace.read_text())]))
+            self.seconds[guard], self.executed[guard] = json.loads(self.journal.known[key])
+            self.patience[guard] = max(LEAST_SECONDS, PATIENCE * self.seconds[guard])
+
+    def order(self, mutant: Mutant) -> list[str]:
+        """Return the guards to ask, the quickest first: of those that execute a mutant the module's own and the few
+        that execute most of its file in a second. What no trace has seen may be executed by any that executes the file.
+        """
+        if not self.executed:
+            self.prepare([mutant])
+        lines = set(statement_lines((self.folder / mutant.file).read_text(encoding="utf-8"), mutant.start))
+        whole = {guard: seen[mutant.file] for guard, seen in self.executed.items() if seen[mutant.file]}
+        able = [guard for guard, seen in whole.items() if lines.intersection(seen)] or list(whole)
+        able.sort(key=lambda guard: self.seconds[guard] / len(whole[guard]))
+        own = [guard for guard in able if guard in self.module.own]
+        others = [guard for guard in able if guard not in own]
+        return sorted(own + others[:MOST_OTHERS], key=self.seconds.__getitem__)
+
+    @property
+    def _trace(self) -> Path:
+        return self.folder / "executed.json"
 
     def fails(self, guard: str, file: str | None) -> bool | None:
         child = os.fork()
         if child == 0:
-            self._test(guard)
+            self._test(guard, traced=file is None)
         patience = time.monotonic() + self.patience.get(guard, 1200)
         while True:
             done, status = os.waitpid(child, os.WNOHANG)
@@ -398,29 +462,54 @@ class PythonGuards(Guards):
                 return True
             time.sleep(0.05)
 
-    def _test(self, guard: str) -> None:
+    def _test(self, guard: str, traced: bool) -> None:
         """Run a test file; the fork ends here."""
         status = 70
+        executed = {str(self.folder / file): set[int]() for file in self.traced}
+
+        def line_of(frame: FrameType, event: str, value: Any) -> Any:
+            executed[frame.f_code.co_filename].add(frame.f_lineno)
+            return line_of
+
+        def call_of(frame: FrameType, event: str, value: Any) -> Any:
+            return line_of(frame, event, value) if frame.f_code.co_filename in executed else None
+
+        class Again:
+            """Recursion without end ends a trace: each test begins one."""
+
+            @staticmethod
+            def pytest_runtest_setup() -> None:
+                sys.settrace(call_of if traced else None)
+
         try:
             os.setsid()
+            # A shell has what runs in its background ignore interrupts, and what that starts inherits it.
+            signal.signal(signal.SIGINT, signal.default_int_handler)
             with open(os.devnull, "r+b") as nowhere:
                 for stream in (0, 1, 2):
                     os.dup2(nowhere.fileno(), stream)
             os.environ.update(STATEJUMP_PYTHON_DIR=str(self.folder / "python"), STATEJUMP_COMMAND=str(self.command),
                               PYTHONDONTWRITEBYTECODE="1", MPLBACKEND="Agg")
             sys.dont_write_bytecode = True
+            if traced:
+                threading.settrace(call_of)
+                sys.settrace(call_of)
             with tempfile.TemporaryDirectory(dir=self.folder) as scratch:
                 pytest = importlib.import_module("pytest")
                 status = int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", f"--basetemp={scratch}/t",
-                                          "--rootdir", str(self.root), str(self.root / guard)]))
+                                          "--rootdir", str(self.root), str(self.root / guard)], plugins=[Again()]))
+            if traced:
+                sys.settrace(None)
+                self._trace.write_text(json.dumps({
+                    str(Path(file).relative_to(self.folder)): sorted(lines) for file, lines in executed.items()}))
         finally:
             os._exit(status)
 
 
-def guards_of(module: Module, root: Path, folder: Path, build: Path) -> Guards:
+def guards_of(module: Module, root: Path, folder: Path, build: Path, journal: Journal) -> Guards:
     """Return what tries the mutants of a module."""
     if module.guards[0].endswith(".py"):
-        return PythonGuards(module, root, folder, build)
+        return PythonGuards(module, root, folder, build, journal)
     return (HeaderGuards if module.guards[0].endswith(".cpp") else LibraryGuards)(module, root, folder, build)
 
 
@@ -526,7 +615,7 @@ def main() -> int:
         for module in chosen(options.module):
             with tempfile.TemporaryDirectory(prefix="statejump-mutants-") as name:
                 def ready(module: Module = module, folder: Path = Path(name)) -> Guards:
-                    return guards_of(module, options.root.resolve(), folder, options.build.resolve())
+                    return guards_of(module, options.root.resolve(), folder, options.build.resolve(), journal)
 
                 score = campaign(module, ready, options.root.resolve(), options.sample, options.seed, journal,
                                  lambda text: print(text, flush=True))

@@ -2,6 +2,7 @@
 """What a campaign of mutants breaks, and which tests have to notice."""
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,15 +15,17 @@ class Module:
     """Files that are broken one at a time, and the tests that guard them, those that cost least first.
 
     :param sources: patterns of the files, from the repository
-    :param guards: test files of headers (each is compiled with the mutant) and of Python; names of the built test
-        programs of a library, into which the mutant is linked
+    :param guards: test files of headers (each is compiled with the mutant) and of Python (the campaign chooses among
+        those that execute a mutant); names of the built test programs of a library, into which the mutant is linked
     :param wanted: least share of mutants that has to be noticed
+    :param own: guards of Python that are asked of each mutant that they execute
     """
 
     name: str
     sources: tuple[str, ...]
     guards: tuple[str, ...]
     wanted: float = 0.85
+    own: tuple[str, ...] = ()
 
     def files(self, root: Path) -> list[Path]:
         """Return the files, in order."""
@@ -44,9 +47,19 @@ def _engine(name: str, *more: str) -> Module:
     return Module(name, (f"engine/src/{name}/**/*.cpp", *more), (f"{name}_tests",))
 
 
-def _python(name: str, sources: tuple[str, ...], *tests: str) -> Module:
-    return Module(name, tuple(f"python/statejump/{source}" for source in sources),
-                  tuple(f"tests/python/test_{test}.py" for test in tests))
+def _quick() -> tuple[str, ...]:
+    """Return the test files of tests/python that ctest labels quick."""
+    folder = ROOT / "tests" / "python"
+    slow = re.findall(r"python_(\w+)", (folder / "CMakeLists.txt").read_text(encoding="utf-8"))
+    return tuple(name for name in sorted(file.stem.removeprefix("test_") for file in folder.glob("test_*.py"))
+                 if name not in slow)
+
+
+def _python(name: str, sources: tuple[str, ...], *own: str) -> Module:
+    """Return a module that these test files guard, and every quick one."""
+    files, others = ([f"tests/python/test_{test}.py" for test in tests]
+                     for tests in (own, (test for test in _quick() if test not in own)))
+    return Module(name, tuple(f"python/statejump/{source}" for source in sources), (*files, *others), own=tuple(files))
 
 
 MODULES = [
@@ -59,10 +72,8 @@ MODULES = [
     _engine("complementarity"),
     _engine("truss"),
     Module("geometry", ("geometry/src/**/*.cpp",), ("geometry_tests",)),
-    _python("schema", ("schema/*.py",), "schema", "bad_input", "properties", "case_as_dict", "limits",
-            "truss_campaign"),
-    _python("validation", ("kinds/*/case.py", "kinds/truss/checks.py", "kinds/fclib/case.py"), "bad_input", "schema",
-            "truss_case", "umbrella_case", "thermal_tables", "fclib", "statics"),
-    _python("verdicts", ("kinds/*/compare.py", "core/comparison.py", "results/difference.py"), "verdict_rows",
-            "not_finite", "result_file", "truss_compare", "end_to_end", "umbrella_compare"),
+    _python("schema", ("schema/*.py",), "schema_rules", "schema", "limits"),
+    _python("validation", ("kinds/*/case.py", "kinds/truss/checks.py"), "case_checks", "schema", "statics"),
+    _python("verdicts", ("kinds/*/compare.py", "core/comparison.py", "results/difference.py"), "comparisons",
+            "verdict_rows"),
 ]

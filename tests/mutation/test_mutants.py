@@ -11,7 +11,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from campaign import Journal, Score, campaign, explained  # noqa: E402
+from campaign import Journal, Score, campaign, explained, statement_lines  # noqa: E402
 from modules import MODULES, Module  # noqa: E402
 from operators import Mutant, mutants  # noqa: E402
 from switched import SWITCH, VARIABLE, switched  # noqa: E402
@@ -57,6 +57,17 @@ def test_changes_of_python() -> None:
     }
     for one in mutants("f.py", PYTHON):
         compile(one.applied(PYTHON), "f.py", "exec")
+
+
+def test_lines_of_a_statement_of_python() -> None:
+    """Of a compound statement the head alone, or a test of the rest of its body would be asked in vain."""
+    text = "x = (1 +\n     2)\ndef f(a=3,\n      b=4):\n    if a < 5: return 6\n    return 7\n"
+
+    def lines(what: str) -> list[int]:
+        return list(statement_lines(text, text.index(what)))
+
+    assert [lines(what) for what in ("1 +", "2)", "3,", "4)", "< 5", "6", "7")] == [
+        [1, 2], [1, 2], [3, 4], [3, 4], [5], [5], [6]]
 
 
 def test_build_with_all_mutants_is_each_of_them(tmp_path: Path) -> None:

@@ -199,8 +199,11 @@ class Run:
             if column.labels:
                 return replace(column, values=column.values[before])
             shape = (-1,) + (1,) * (column.values.ndim - 1)
-            here, there = column.values[before], column.values[after]
-            return replace(column, values=here + np.clip(weight, 0, 1).reshape(shape) * (there - here))
+            here, there, way = column.values[before], column.values[after], np.clip(weight, 0, 1).reshape(shape)
+            with np.errstate(invalid="ignore"):  # of two that are infinite
+                between = here + way * (there - here)
+            # A sample is itself beside one that is no number.
+            return replace(column, values=np.where(way > 0, between, here))
 
         groups: dict[str, Any] = {
             group: {name: moved(column) for name, column in getattr(self, group).items()} for group in GROUPS

@@ -16,7 +16,7 @@ import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed, UnknownKey
 from statejump.schema.fields import Section, default_of, fields_of, is_required, rule_of
-from statejump.schema.rules import NUMBER, NUMBERS, TEXTS, Rule, suggestion
+from statejump.schema.rules import NUMBER, NUMBERS, TEXTS, WHOLE, Rule, suggestion
 
 ItemType = TypeVar("ItemType", bound=Section)
 
@@ -220,6 +220,8 @@ def _checked(section: str, table: ItemTable, key: str, field: attrs.Attribute[An
         if wrong.any():
             _refuse(section, table, key, rule, int(np.argmax(wrong)))
         return values
+    if rule.form == WHOLE and values.dtype.kind == "f":
+        values = _whole(values)
     if rule.form == TEXTS and values.ndim == 1:
         # One text each, or none.
         values = values.reshape(-1, 1)
@@ -244,6 +246,14 @@ def _checked(section: str, table: ItemTable, key: str, field: attrs.Attribute[An
     if plain and default is not None:
         values = np.array([default if value is None else value for value in values], dtype=object)
     return values
+
+
+def _whole(values: np.ndarray) -> np.ndarray:
+    """Return a column of numbers with whole ones as such and None for NaN; what is neither stays for its rule."""
+    found = np.empty(values.shape, dtype=object)
+    for place, value in np.ndenumerate(values):
+        found[place] = None if np.isnan(value) else int(value) if value.is_integer() else float(value)
+    return found
 
 
 def _where(section: str, table: ItemTable, place: int) -> str:

@@ -74,8 +74,8 @@ def with_keys_moved(model: type[Section], data: Mapping[str, Any], file: str = "
             continue  # whoever reads the section refuses it
         if name in target:
             raise NotAllowed(old, part[key], f"the case has {now} as well", remedy=f"leave {old} out")
-        data = {**data, section: {name: value for name, value in part.items() if name != key},
-                there: {**target, name: part[key]}}
+        data = {**data, section: {name: value for name, value in part.items() if name != key}}
+        data[there] = {**data.get(there, {}), name: part[key]}  # which may be the same section
     return data
 
 

@@ -1,0 +1,509 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What case files are made of, on a file that is made up: every rule at its ends, with its whole sentence."""
+from __future__ import annotations
+
+import copy
+import json
+import re
+from math import inf, nan
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+import conftest  # noqa: F401  where the built package is
+from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, Unreadable
+from statejump.schema import json_schema, toml
+from statejump.schema.fields import (
+    Attached, Section, attached, attached_to_json, choice, default_of, definition, fields_of, numbers, optional_section,
+    parameter, rule_of, section, structure, switch, tables, text, texts, whole,
+)
+from statejump.schema.item_tables import BLOCK, ItemColumns, ItemTable, by_name, each, with_rows
+from statejump.schema.items import Item
+from statejump.schema.paths import attribute_of, filled, keys_of, set_value, value_of, with_keys_moved, with_values
+from statejump.schema.rules import check_name, is_finite_number, suggestion
+
+
+class Arrays(Attached):
+    """What was read from elsewhere."""
+
+    def to_json(self) -> dict[str, Any]:
+        return {"rows": 3}
+
+
+@definition
+class Part(Section):
+    """A part."""
+
+    GOES_WITH = {"sort": {"late_s": ("two",), "word": ("two", "three")}}
+    ONE_OF = {"sort": {"one": (("count", "on"), ("best",))}}
+
+    size_m: float = parameter(..., "m", 0, 10, "how large", above=True)
+    share: float = parameter(0.5, "-", 0, 1, "of all")
+    late_s: float | None = parameter(None, "s", -5, 5, "when")
+    count: int = whole(3, 1, 9, "how many")
+    best: int | None = whole(None, 1, 9, "")
+    on: bool = switch(True, "whether")
+    word: str | None = text(None, "what", pattern="[a-z]+")
+    sort: str = choice("one", ("one", "two", "three"), "which")
+    place_m: list[float] = numbers([0.0, 1.0], "m", -1, 1, "where", length=2)
+    bounds: list[float] | None = numbers(None, "-", -2, 2, "ends")
+    tags: list[str] = texts([], "marks", ("red", "blue"))
+    notes: list[str] = texts([], "anything")
+    arrays: Any = attached("it is read from elsewhere")
+
+
+@definition
+class Thing(Item):
+    """A thing."""
+
+    mass_kg: float = parameter(..., "kg", 0, 10, "its mass", above=True)
+    load_N: float | None = parameter(None, "N", 0, 10, "on it")
+    force_N: float = parameter(2.0, "N", 0, 10, "along it")
+    ends_m: list[float] | None = numbers(None, "m", -1, 1, "where it ends", length=2)
+    turns: int | None = whole(None, 1, 9, "how often")
+    count: int = whole(1, 1, 9, "how many")
+    sort: str = choice("near", ("near", "far"), "where")
+    on: bool = switch(False, "whether")
+    tags: list[str] = texts([], "marks", ("red", "blue"))
+
+
+@definition
+class Book(Section):
+    """A file."""
+
+    MOVED: ClassVar[dict[str, str]] = {"part.old_m": "part.size_m", "more.old_share": "part.share"}
+
+    part: Part = section(Part, required=True)
+    more: Part | None = optional_section(Part)
+    thing: list[Thing] = tables(Thing, "things", required=True)
+    other: list[Thing] = tables(Thing, "others")
+
+
+PART: dict[str, Any] = {"size_m": 1.0}
+THING: dict[str, Any] = {"name": "A", "mass_kg": 1.0}
+
+
+def book(part: Any = None, **more: Any) -> Book:
+    """A file with these values of its part, and these sections."""
+    return structure(Book, {"part": {**PART, **(part or {})}, "thing": [dict(THING)], **more})
+
+
+def refused(act: Any, *given: Any, **keys: Any) -> str:
+    with pytest.raises(StatejumpError) as found:
+        act(*given, **keys)
+    return str(found.value)
+
+
+TAKEN = [("size_m", 10), ("size_m", 1e-300), ("share", 0), ("share", 1), ("late_s", None), ("late_s", -5), ("count", 1),
+         ("count", 9), ("best", None), ("on", False), ("word", None), ("word", "abc"), ("sort", "two"),
+         ("place_m", [-1, 1]), ("place_m", (0.5, 0.25)), ("bounds", None), ("bounds", []), ("bounds", [-2.0, 0.0, 2.0]),
+         ("tags", ["blue", "red"]), ("tags", ()), ("notes", ["a"]), ("arrays", None), ("arrays", Arrays())]
+REFUSED: list[tuple[str, Any, str]] = [
+    ("size_m", 0, "must be above 0 and at most 10 [m]"),
+    ("size_m", 10.5, "must be above 0 and at most 10 [m]"),
+    ("size_m", None, "must be a number, above 0 and at most 10 [m]"),
+    ("size_m", "1", "must be a number, above 0 and at most 10 [m]"),
+    ("size_m", True, "must be a number, above 0 and at most 10 [m]"),
+    ("size_m", nan, "must be finite, above 0 and at most 10 [m]"),
+    ("size_m", inf, "must be finite, above 0 and at most 10 [m]"),
+    ("size_m", 10**400, "must be above 0 and at most 10 [m]"),
+    ("share", -1e-9, "must be between 0 and 1 [-]"),
+    ("share", None, "must be a number, between 0 and 1 [-]"),
+    ("late_s", -5.1, "must be between -5 and 5 [s]"),
+    ("count", 0, "must be between 1 and 9 [-]"),
+    ("count", 10, "must be between 1 and 9 [-]"),
+    ("count", 2.0, "must be a whole number, between 1 and 9 [-]"),
+    ("count", True, "must be a whole number, between 1 and 9 [-]"),
+    ("count", None, "must be a whole number, between 1 and 9 [-]"),
+    ("best", 0, "must be between 1 and 9 [-]"),
+    ("on", 1, "must be true or false"),
+    ("on", None, "must be true or false"),
+    ("word", 3, "must be a text in quotes"),
+    ("word", "ab1", "must consist of letters, digits, '_' and '-'"),
+    ("word", "a\x07", "must have no control characters"),
+    ("sort", None, "must be a text in quotes"),
+    ("sort", "tow", "must be 'one' or 'two' or 'three'; did you mean 'two'?"),
+    ("sort", "x", "must be 'one' or 'two' or 'three'"),
+    ("place_m", 3, "must be a list of numbers [m]"),
+    ("place_m", None, "must be a list of numbers [m]"),
+    ("place_m", [1], "must be a list of 2 numbers [m]"),
+    ("place_m", [0, 1.5], "must be between -1 and 1 [m]"),
+    ("place_m", [0, "a"], "must be a number, between -1 and 1 [m]"),
+    ("bounds", [nan], "must be finite, between -2 and 2 [-]"),
+    ("tags", "red", "must be a list of texts in quotes"),
+    ("tags", ["red", 1], "must be a list of texts in quotes"),
+    ("tags", ["red", "bleu"], "must be 'red' or 'blue'"),
+    ("arrays", [1.0], "it is read from elsewhere"),
+]
+
+
+@pytest.mark.parametrize("key, value", TAKEN)
+def test_what_a_key_takes(key: str, value: Any) -> None:
+    made = getattr(book({key: value}).part, key)
+    assert made == (list(value) if isinstance(value, tuple) and key == "place_m" else value)
+    if key in ("size_m", "share"):
+        assert type(made) is float
+    assert getattr(Part(**{**PART, key: value}), key) == made
+
+
+@pytest.mark.parametrize("key, value, why", REFUSED)
+def test_what_a_key_refuses(key: str, value: Any, why: str) -> None:
+    given = str(value).lower() if isinstance(value, bool) else repr(value)
+    assert refused(book, {key: value}) == f"part.{key} = {given} is not allowed: {why}"  # as the file has it
+    assert re.fullmatch(f"{key} = .* is not allowed: {re.escape(why)}", refused(Part, **{**PART, key: value}))
+
+
+def test_what_is_refused_says_what_is_allowed() -> None:
+    for key, value, names in (("sort", "x", ("one", "two", "three")), ("tags", ["x"], ("red", "blue"))):
+        with pytest.raises(NotAllowed) as found:
+            book({key: value})
+        assert (found.value.key, found.value.value, found.value.allowed) == (f"part.{key}", value, names)
+    with pytest.raises(NotAllowed) as found:
+        book({"place_m": [0, 2]})
+    allowed = found.value.allowed
+    assert (found.value.value, allowed.low, allowed.high, allowed.unit) == ([0, 2], -1, 1, "m")  # type: ignore
+
+
+def test_a_control_character_is_not_what_cannot_be_seen() -> None:
+    assert Thing(**{**THING, "name": "a\N{NO-BREAK SPACE}b"}).name == "a\N{NO-BREAK SPACE}b"
+
+
+def test_what_a_file_lacks_or_has_too_much() -> None:
+    part, things = dict(PART), [dict(THING)]
+    assert refused(structure, Book, {"part": part, "thing": things, "mroe": {}}) == (
+        "section [mroe] is unknown: did you mean [more]?")
+    assert refused(structure, Book, {"part": part, "thing": things, "zzz": {}}) == (
+        "section [zzz] is unknown: known are part, more, thing, other")
+    # What is unknown comes before what is missing, of any section.
+    assert refused(structure, Book, {"more": {"siez_m": 1}, "thing": things}) == (
+        "more.siez_m is unknown: did you mean more.size_m?")
+    assert refused(structure, Book, {"thing": things}) == "section [part] is missing"
+    assert refused(structure, Book, {"part": part}) == "section [[thing]] is missing"
+    assert refused(structure, Book, {"part": {}, "thing": things}) == (
+        "part.size_m is missing: must be above 0 and at most 10 [m]")
+    assert refused(structure, Book, {"part": part, "more": {"share": 1}, "thing": things}).startswith(
+        "more.size_m is missing")
+    assert refused(structure, Book, {"part": 3, "thing": things}) == "part = 3 is not allowed: must be a section [part]"
+    assert refused(structure, Book, {"part": None, "thing": things}).endswith("must be a section [part]")
+    assert refused(structure, Book, {"part": part, "more": [1], "thing": things}).endswith("must be a section [more]")
+    made = structure(Book, {"part": part, "more": None, "thing": things})
+    assert made.more is None and made.other == [] and made.part.place_m == [0, 1]
+
+
+def test_needs_of_every_form() -> None:
+    needs = {key: rule_of(field).needs() for key, field in fields_of(Part).items()}
+    assert needs == {
+        "size_m": "must be above 0 and at most 10 [m]", "share": "must be between 0 and 1 [-]",
+        "late_s": "must be between -5 and 5 [s]", "count": "must be between 1 and 9 [-]",
+        "best": "must be between 1 and 9 [-]", "on": "true or false is needed", "word": "a text in quotes is needed",
+        "sort": "must be 'one' or 'two' or 'three'", "place_m": "a list of numbers [m] is needed",
+        "bounds": "a list of numbers [-] is needed", "tags": "a list of texts in quotes is needed",
+        "notes": "a list of texts in quotes is needed", "arrays": "a text in quotes is needed",
+    }
+    assert rule_of(fields_of(Part)["on"]).unit is None and rule_of(fields_of(Part)["notes"]).names == ()
+
+
+def test_plain_values() -> None:
+    made = book({"tags": ["red"]}, more={**PART, "word": "ab"})
+    found = made.to_dict()
+    assert list(found) == ["part", "more", "thing", "other"]
+    assert found["part"]["tags"] == ["red"] and found["more"]["word"] == "ab" and found["other"] == []
+    assert found["thing"] == [{"name": "A", "mass_kg": 1.0, "load_N": None, "force_N": 2.0, "ends_m": None,
+                               "turns": None, "count": 1, "sort": "near", "on": False, "tags": []}]
+    assert attached_to_json(Arrays()) == {"rows": 3}
+    with pytest.raises(TypeError, match="dict is no value of a case"):
+        attached_to_json({})
+    # A default that is a list is nobody's own.
+    first = Part(**PART)
+    first.place_m.append(3.0)
+    assert Part(**PART).place_m == [0, 1] == default_of(fields_of(Part)["place_m"])
+
+
+def test_numbers_names_suggestions() -> None:
+    assert [is_finite_number(value) for value in (1, 1.5, True, nan, inf, -inf, 10**400, "1", None, 1.7976931348623157e308)
+            ] == [True, True, False, False, False, False, False, False, False, True]
+    assert check_name("key", "one", ("one", "two")) == "one"
+    assert refused(check_name, "key", None, ("one",)) == "key is not allowed: must be 'one'"
+    assert refused(check_name, "key", 1, ("one",)) == "key = 1 is not allowed: must be 'one'"
+    assert suggestion("siez", ["size", "share"], "part.", "]") == {"remedy": "did you mean part.size]?"}
+    assert suggestion("zzz", ["size", "share"]) == {"cause": "known are size, share"}
+    assert suggestion(1, ["a"]) == {"cause": "known are a"}  # type: ignore[arg-type]
+
+
+# Lists of tables, one by one and by columns: the same items, the same sentences.
+THINGS = [{"name": "A", "mass_kg": 1.0}, {"name": "B.b", "mass_kg": 10.0, "load_N": 0.0, "force_N": 3.0, "ends_m": [0.0, 1.0],
+                                          "turns": 3, "count": 4, "sort": "far", "tags": ["red", "blue"]}]
+COLUMNS: dict[str, Any] = {
+    "name": ["A", "B.b"], "mass_kg": [1.0, 10.0], "load_N": [nan, 0.0], "force_N": [nan, 3.0],
+    "ends_m": [[nan, nan], [0, 1]], "turns": [nan, 3.0], "count": [nan, 4], "sort": [None, "far"], "tags": [["", ""], ["red", "blue"]]}
+
+
+def things_of(items: Any) -> Any:
+    return book(thing=items).thing
+
+
+def test_items_by_columns_are_those_one_by_one() -> None:
+    table = ItemTable(**COLUMNS)
+    listed, columns = things_of(THINGS), things_of(table)
+    assert len(table) == len(columns) == 2 and columns == listed and listed == list(columns)
+    assert columns != listed[:1] and columns != listed[::-1] and columns != 3
+    assert [dict(item.to_dict()) for item in columns] == [dict(item.to_dict()) for item in listed]
+    assert columns[-1] == columns[1] == listed[1] and columns[0:1] == listed[:1] and columns[1:] == listed[1:]
+    with pytest.raises(IndexError):
+        columns[2]
+    assert table.row(0) == table.rows()[0] == {"name": "A", "mass_kg": 1.0, "tags": []}
+    assert table.row(1) == table.rows()[1] == THINGS[1]
+    assert with_rows({"thing": table, "part": PART}) == {"thing": table.rows(), "part": PART}
+    for key in COLUMNS:
+        assert [columns.value(key, place) for place in (0, 1)] == list(columns.values(key)) == [
+            getattr(item, key) for item in listed]
+    assert columns.value("on", 1) is False and list(columns.values("on")) == [False, False]
+    # A default is there, what is not given is none.
+    assert columns.numbers("force_N").tolist() == [2, 3] and np.isnan(columns.numbers("load_N")).tolist() == [True, False]
+    bare = things_of(ItemTable(name=["A"], mass_kg=[1]))
+    assert bare.numbers("force_N").tolist() == [2] and np.isnan(bare.numbers("load_N")).all() and bare.numbers("load_N").shape == (1,)
+    named = by_name(columns)
+    assert list(named) == ["A", "B.b"] and len(named) == 2 and "A" in named and "C" not in named
+    assert named["B.b"].mass_kg == 10 and named["A"].force_N == 2 and by_name(listed)["A"] is listed[0]
+    with pytest.raises(AttributeError):
+        named["A"].colour
+    assert [(one.name, one.load_N) for one in each(columns, "name", "load_N")] == [("A", None), ("B.b", 0.0)]
+    assert each(listed, "name") is listed
+
+
+def test_items_by_columns_are_made_block_by_block() -> None:
+    count = 2 * BLOCK + 3
+    columns = things_of(ItemTable(name=[f"N{place}" for place in range(count)], mass_kg=np.linspace(1, 2, count)))
+    names = [item.name for item in columns]
+    assert names == [f"N{place}" for place in range(count)] == list(columns.values("name"))
+    assert columns[BLOCK + 1].name == f"N{BLOCK + 1}" and isinstance(columns, ItemColumns)
+
+
+@pytest.mark.parametrize("columns, why", [
+    ({"name": ["A", "B"], "mass_kg": [1.0]}, "mass_kg = 1 is not allowed: all columns must have 2 rows"),
+    ({"name": ["A"], "mass_kg": 1.0}, "mass_kg = 0 is not allowed: all columns must have 1 rows"),
+    ({"name": [[["A"]]]}, "name = 1 is not allowed: all columns must have 1 rows"),
+    ({}, "thing is not allowed: must be one or more sections [[thing]]"),
+    ({"name": [], "mass_kg": []}, "thing is not allowed: must be one or more sections [[thing]]"),
+    ({"name": ["A"], "mas_kg": [1.0]}, "tables.thing: mas_kg is unknown: did you mean mass_kg?"),
+    ({"name": ["A"]}, "tables.thing: mass_kg is missing: must be above 0 and at most 10 [kg]"),
+    ({"mass_kg": [1.0]}, "tables.thing: name is missing: a text in quotes is needed"),
+    ({"name": ["A", "B"], "mass_kg": [1.0, 0.0]}, "thing 'B': mass_kg = 0.0 is not allowed: must be above 0 and at most 10 [kg]"),
+    ({"name": ["A", "B"], "mass_kg": [1.0, nan]}, "thing 'B': mass_kg is missing: must be above 0 and at most 10 [kg]"),
+    ({"name": ["A"], "mass_kg": [11.0]}, "thing 'A': mass_kg = 11.0 is not allowed: must be above 0 and at most 10 [kg]"),
+    ({"name": ["A"], "mass_kg": [inf]}, "thing 'A': mass_kg = inf is not allowed: must be finite, above 0 and at most 10 [kg]"),
+    ({"name": ["A"], "mass_kg": [[1.0, 2.0]]}, "thing 'A': mass_kg = [1.0, 2.0] is not allowed: must be a number, above 0 and at "
+     "most 10 [kg]"),
+    ({"name": ["A"], "mass_kg": [1.0], "load_N": [-1.0]}, "thing 'A': load_N = -1.0 is not allowed: must be between 0 and 10 [N]"),
+    ({"name": ["A"], "mass_kg": ["x"]}, "thing 'A': mass_kg = 'x' is not allowed: must be a number, above 0 and at most 10 [kg]"),
+    ({"name": ["A"], "mass_kg": [1.0], "ends_m": [[0.0, 2.0]]}, "thing 'A': ends_m = [0.0, 2.0] is not allowed: must be between -1 "
+     "and 1 [m]"),
+    ({"name": ["A"], "mass_kg": [1.0], "ends_m": [[0.0, nan]]}, "thing 'A': ends_m = [0.0, nan] is not allowed: must be finite, "
+     "between -1 and 1 [m]"),
+    ({"name": ["A"], "mass_kg": [1.0], "ends_m": [1.0]}, "thing 'A': ends_m = 1.0 is not allowed: must be a list of numbers [m]"),
+    ({"name": ["A", "B"], "mass_kg": [1.0, 1.0], "sort": ["near", "fra"]}, "thing 'B': sort = 'fra' is not allowed: must be 'near' "
+     "or 'far'; did you mean 'far'?"),
+    ({"name": ["A"], "mass_kg": [1.0], "tags": [["red", "bleu"]]}, "thing 'A': tags = ['red', 'bleu'] is not allowed: must be 'red' "
+     "or 'blue'"),
+    ({"name": ["A"], "mass_kg": [1.0], "tags": ["green"]}, "thing 'A': tags = ['green'] is not allowed: must be 'red' or 'blue'"),
+    ({"name": ["A", None], "mass_kg": [1.0, 1.0]}, "thing 2: name is missing: a text in quotes is needed"),
+    ({"name": ["A", ""], "mass_kg": [1.0, 1.0]}, "thing 2: name = '' is not allowed: must be a text in quotes that is not empty"),
+    ({"name": ["A"], "mass_kg": [1.0], "turns": [2.5]}, "thing 'A': turns = 2.5 is not allowed: must be a whole number, between 1 and "
+     "9 [-]"),
+    ({"name": ["A"], "mass_kg": [1.0], "turns": [10.0]}, "thing 'A': turns = 10 is not allowed: must be between 1 and 9 [-]"),
+    ({"name": ["A"], "mass_kg": [1.0], "turns": [inf]}, "thing 'A': turns = inf is not allowed: must be a whole number, between 1 and "
+     "9 [-]"),
+    ({"name": ["A"], "mass_kg": [1.0], "on": [1.0]}, "thing 'A': on = 1.0 is not allowed: must be true or false"),
+])
+def test_columns_that_are_refused(columns: dict[str, Any], why: str) -> None:
+    found = refused(lambda: things_of(ItemTable(**columns)))
+    assert found == why
+
+
+def test_columns_of_texts_and_of_truth() -> None:
+    turned = things_of(ItemTable(name=["A", "B"], mass_kg=[1, 2], turns=[2, 3]))
+    assert [(item.turns, type(item.turns)) for item in turned] == [(2, int), (3, int)]
+    made = things_of(ItemTable(name=["A", "B"], mass_kg=[1, 2], on=[True, False], tags=["red", None], load_N=[10.0, 0.0]))
+    assert [item.on for item in made] == [True, False] and [item.tags for item in made] == [["red"], []]
+    assert [item.mass_kg for item in made] == [1, 2] and type(made[0].mass_kg) is float
+
+
+@pytest.mark.parametrize("value, why", [
+    (3, "thing = 3 is not allowed: must be one or more sections [[thing]]"),
+    ([], "thing is not allowed: must be one or more sections [[thing]]"),
+    ({}, "thing is not allowed: must be one or more sections [[thing]]"),
+    ([dict(THING), 3], "thing is not allowed: must be one or more sections [[thing]]"),
+    ([dict(THING), {"mass_kg": 1.0}], "thing 2: name is missing: a text in quotes is needed"),
+    ([{"name": "A"}], "thing 'A': mass_kg is missing: must be above 0 and at most 10 [kg]"),
+    ([{**THING, "mas_kg": 1.0}], "thing 'A': mas_kg is unknown: did you mean mass_kg?"),
+    ([{**THING, "name": ""}], "thing 1: name = '' is not allowed: must be a text in quotes that is not empty"),
+    ([{**THING, "name": 3}], "thing 1: name = 3 is not allowed: must be a text in quotes"),
+    ([{**THING, "mass_kg": 0.0}], "thing 'A': mass_kg = 0.0 is not allowed: must be above 0 and at most 10 [kg]"),
+    ([{**THING, "mass_kg": 11}], "thing 'A': mass_kg = 11 is not allowed: must be above 0 and at most 10 [kg]"),
+    ([{**THING, "mass_kg": nan}], "thing 'A': mass_kg = nan is not allowed: must be finite, above 0 and at most 10 [kg]"),
+    ([{**THING, "load_N": -0.5}], "thing 'A': load_N = -0.5 is not allowed: must be between 0 and 10 [N]"),
+    ([{**THING, "ends_m": [0, 2]}], "thing 'A': ends_m = [0, 2] is not allowed: must be between -1 and 1 [m]"),
+])
+def test_items_that_are_refused(value: Any, why: str) -> None:
+    assert refused(things_of, value) == why
+
+
+def test_items_at_the_ends_of_their_ranges() -> None:
+    made = things_of([{**THING, "mass_kg": 10.0, "load_N": 0.0, "force_N": 10}])[0]
+    assert (made.mass_kg, made.load_N, made.force_N, type(made.force_N)) == (10, 0, 10, float)
+    assert made == Thing(name="A", mass_kg=10, load_N=0, force_N=10)
+    assert refused(Thing, name="", mass_kg=1) == "name = '' is not allowed: must be a text in quotes that is not empty"
+
+
+# Keys by their path.
+def test_keys_by_path() -> None:
+    known = keys_of(Book)
+    assert "part.arrays" not in known and "more.size_m" in known and "thing.*.mass_kg" in known and "thing.mass_kg" not in known
+    assert attribute_of(Book, "thing.B.b.mass_kg").name == "mass_kg"
+    assert refused(attribute_of, Book, "part.siez_m") == "part.siez_m is unknown: did you mean part.size_m?"
+    assert refused(attribute_of, Book, "part.old_m") == "part.old_m is unknown: it is part.size_m now"
+
+
+def test_values_are_set_by_path() -> None:
+    data: dict[str, Any] = {"part": {"size_m": 1.0, "share": 1.0}, "thing": copy.deepcopy(THINGS)}
+    set_value(Book, data, "part.size_m", 2.0)
+    set_value(Book, data, "part.share", None)
+    set_value(Book, data, "more.count", 4)
+    set_value(Book, data, "thing.B.b.mass_kg", 7.0)
+    set_value(Book, data, "thing.*.sort", "far")
+    set_value(Book, data, "thing.A.load_N", None)
+    assert data["part"] == {"size_m": 2.0} and data["more"] == {"count": 4}
+    assert [(one["mass_kg"], one["sort"]) for one in data["thing"]] == [(1.0, "far"), (7.0, "far")]
+    with pytest.warns(FutureWarning, match="^part.old_m is part.size_m now; the old place is still understood$"):
+        set_value(Book, data, "part.old_m", 3.0)
+    assert data["part"] == {"size_m": 3.0}
+    assert refused(set_value, Book, data, "part.zzzz", 1).startswith("part.zzzz is unknown")
+    assert refused(set_value, Book, data, "thing.Q.mass_kg", 1) == "thing.Q.mass_kg is unknown: known are A, B.b"
+    assert refused(set_value, Book, data, "other.Q.mass_kg", 1) == "other.Q.mass_kg is unknown: the case has no [[other]]"
+
+
+def test_many_values_are_filled_in_a_copy() -> None:
+    data = {"part": dict(PART), "thing": copy.deepcopy(THINGS)}
+    before = copy.deepcopy(data)
+    made = filled(data, [("part.size_m", 2), ("more.count", 4), ("thing.B.b.mass_kg", 7), ("thing.*.load_N", 1),
+                         ("thing.A.force_N", 9)])
+    assert data == before and made["part"] == {"size_m": 2} and made["more"] == {"count": 4}
+    assert [(one["mass_kg"], one["load_N"], one.get("force_N")) for one in made["thing"]] == [(1.0, 1, 9), (7, 1, 3.0)]
+
+
+def test_values_are_read_by_path() -> None:
+    made = book({"count": 5}, thing=copy.deepcopy(THINGS))
+    assert value_of(made, "part.count") == 5 and value_of(made, "thing.B.b.mass_kg") == 10
+    assert value_of(made, "thing.*.on") is False
+    assert refused(value_of, made, "thing.*.mass_kg") == "thing.*.mass_kg has several values"
+    assert refused(value_of, made, "thing.Q.mass_kg") == "thing.Q.mass_kg is unknown: known are A, B.b"
+    with pytest.warns(FutureWarning, match="part.old_m is part.size_m now"):
+        assert value_of(made, "part.old_m") == 1
+
+
+def test_values_are_changed_without_the_case() -> None:
+    made = book()
+    changed = with_values(made, {"part.size_m": 2, "part.count": 4})
+    assert (changed.part.size_m, changed.part.count, made.part.size_m) == (2, 4, 1)
+    assert refused(with_values, made, {"part.size_m": 20}).startswith("part.size_m = 20.0 is not allowed")
+
+
+def test_keys_that_moved() -> None:
+    data = {"part": {"old_m": 1.0, "count": 2}, "thing": [dict(THING)]}
+    with pytest.warns(FutureWarning, match="^a.toml: part.old_m is part.size_m now; the old place is still understood$"):
+        moved = with_keys_moved(Book, data, "a.toml")
+    assert moved == {"part": {"count": 2, "size_m": 1.0}, "thing": [dict(THING)]} and "old_m" in data["part"]
+    with pytest.warns(FutureWarning):
+        assert with_keys_moved(Book, {"more": {"old_share": 1}}) == {"more": {}, "part": {"share": 1}}
+    with pytest.warns(FutureWarning):
+        assert refused(with_keys_moved, Book, {"part": {"old_m": 1.0, "size_m": 2.0}}) == (
+            "part.old_m = 1.0 is not allowed: the case has part.size_m as well; leave part.old_m out")
+    with pytest.warns(FutureWarning):
+        assert with_keys_moved(Book, {"more": {"old_share": 1}, "part": 3}) == {"more": {"old_share": 1}, "part": 3}
+    for untouched in ({"part": 3}, {"part": {"size_m": 1}}, {}):
+        assert with_keys_moved(Book, untouched) == untouched
+
+
+# The schema that editors read.
+def test_schema_of_every_form() -> None:
+    found = json_schema.section_schema(Part)
+    keys = found["properties"]
+    assert "arrays" not in keys and found["required"] == ["size_m"] and found["additionalProperties"] is False
+    assert keys["size_m"] == {
+        "type": "number", "exclusiveMinimum": 0, "maximum": 10, "x-unit": "m", "x-source": "how large",
+        "description": "Must be above 0 and at most 10 [m]. Required (how large)."}
+    assert keys["share"]["minimum"] == 0 and keys["share"]["default"] == 0.5
+    assert keys["share"]["description"] == "Must be between 0 and 1 [-]. Default 0.5 (of all)."
+    assert keys["count"]["type"] == "integer"
+    assert keys["best"]["description"] == "Must be between 1 and 9 [-]. Optional." and "default" not in keys["best"]
+    assert keys["on"] == {"type": "boolean", "default": True, "x-source": "whether",
+                          "description": "True or false. Default true (whether)."}
+    assert keys["word"] == {"type": "string", "pattern": "^[a-z]+$", "description": "Optional: what.", "x-source": "what"}
+    assert keys["sort"]["enum"] == ["one", "two", "three"] and keys["sort"]["description"].startswith("Must be 'one' or ")
+    assert (keys["place_m"]["type"], keys["place_m"]["minItems"], keys["place_m"]["maxItems"]) == ("array", 2, 2)
+    assert keys["place_m"]["items"] == {"type": "number", "minimum": -1, "maximum": 1}
+    assert "minItems" not in keys["bounds"] and keys["tags"]["items"] == {"type": "string", "enum": ["red", "blue"]}
+    assert keys["notes"]["description"] == "A list of texts in quotes is needed. Optional: anything."
+    assert json_schema.section_schema(Thing)["properties"]["name"]["minLength"] == 1
+    assert "allOf" not in json_schema.section_schema(Thing)
+    if_one = {"properties": {"sort": {"const": "one"}}, "required": ["sort"]}
+    conditions = [(one["if"]["properties"]["sort"]["const"], one["then"]) for one in found["allOf"]]
+    assert found["allOf"][0]["if"] == if_one and found["allOf"][3]["if"] == if_one
+    free = {"properties": {"count": False, "on": False, "best": False}}
+    assert conditions == [
+        ("one", {"properties": {"late_s": False, "word": False}}), ("two", {"required": ["late_s", "word"]}),
+        ("three", {"required": ["word"], "properties": {"late_s": False}}),
+        ("one", {"anyOf": [{"required": ["count", "on"]}, {"required": ["best"]}]}), ("two", free), ("three", free)]
+
+
+def test_schemas_by_name(tmp_path: Path) -> None:
+    assert refused(json_schema.schema, "trus") == (
+        "KIND = 'trus' is not allowed: must be " + " or ".join(map(repr, json_schema.names())) + "; did you mean 'truss'?")
+    written = json_schema.write_all(tmp_path)
+    assert [path.name for path in written] == [f"{name}.schema.json" for name in json_schema.names()]
+    for path in written:
+        assert json.loads(path.read_text()) == json_schema.schema(path.name.partition(".")[0], alone=False)
+    # What may stand in a file beside a case is not required in it.
+    truss = json_schema.schema("truss")
+    assert truss["required"] == ["case", "thermal", "truss"] and truss["properties"]["node"]["minItems"] == 1
+    assert json_schema.head_line("truss", tmp_path / "a.toml").startswith("#:schema file://")
+    inside = json_schema._paths.SCHEMA.parent / "cases/deep/a.toml"
+    assert json_schema.head_line("truss", inside) == "#:schema ../../schema/truss.schema.json"
+
+
+# TOML.
+@pytest.mark.parametrize("content, why", [
+    (b"a = [", "not TOML, line 1: Invalid value"),
+    (b"a = 1\nb = =\nc = 2\n", "not TOML, line 2: Invalid value"),
+    (b"a = 1\n\na = 2\n", "not TOML, line 3: Cannot overwrite a value"),
+    (b'a = """\n\n', "not TOML, line 2: Unterminated string"),
+    (b"a = '\xff'", "not TOML: the file is not UTF-8 text"),
+    (b"a = " + 9000 * b"[", "not TOML: tables or lists stand too deeply in each other"),
+    (b"a = " + 5000 * b"9", "not TOML: Exceeds the limit (4300 digits) for integer string conversion: value has 5000 digits"),
+])
+def test_what_is_no_toml(content: bytes, why: str, tmp_path: Path) -> None:
+    file = tmp_path / "a.toml"
+    file.write_bytes(content)
+    assert refused(toml.read_toml, file, "case") == f"{file}: {why}"
+
+
+def test_files_of_toml(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "a.toml"
+    file.write_text("a = 1\n")
+    assert toml.read_toml(file, "case") == ("a = 1\n", {"a": 1})
+    assert refused(toml.read_toml, tmp_path / "b.toml", "campaign") == f"{tmp_path}/b.toml: no such campaign file"
+    assert refused(toml.read_toml, tmp_path, "case") == f"{tmp_path}: cannot be read: Is a directory"
+    monkeypatch.setattr(toml, "LARGEST_BYTES", 6)
+    assert toml.read_toml(file, "case")[1] == {"a": 1}
+    monkeypatch.setattr(toml, "LARGEST_BYTES", 5)
+    assert refused(toml.read_toml, file, "case") == f"{file}: cannot be read: it is larger than 5 bytes"
+
+
+def test_errors_are_what_they_say() -> None:
+    with pytest.raises(MissingKey) as missing:
+        things_of([{"name": "A"}])
+    assert missing.value.allowed.high == 10 and missing.value.item == "thing 'A'"  # type: ignore[union-attr]
+    with pytest.raises(Unreadable):
+        toml.read_toml("/nowhere/a.toml", "case")
