@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from conftest import REPOSITORY
+from statejump import _engine
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import parse_case
 from statejump.kinds.spring_slider import stable_step
@@ -203,6 +204,14 @@ def test_checks_of_the_joint_of_a_rib() -> None:
     assert message.startswith(f"joint.normal_law = '{LINE_LAW}' is not allowed with joint.friction_law = 'mindlin_deresiewicz': "
                               "must be one of ")
     made("umbrella_damped", joint__normal_law=LINE_LAW)
+
+
+def test_a_law_that_cannot_be_used(monkeypatch: pytest.MonkeyPatch) -> None:
+    for kind, key in (("normal", "normal_law"), ("dissipation", "dissipation_law"), ("friction", "friction_law"),
+                      ("tangential_velocity", "tangential_velocity")):
+        monkeypatch.setattr(_engine, "law_problem", lambda asked, name: "it is of another version" if asked == kind else "")
+        assert refused("umbrella_damped") == (
+            f"joint.{key} = {DOCUMENTS['umbrella_damped']['joint'][key]!r} is not allowed: it is of another version")
 
 
 def test_checks_of_the_start_of_a_rib() -> None:
