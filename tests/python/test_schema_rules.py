@@ -482,7 +482,7 @@ def test_schemas_by_name(tmp_path: Path) -> None:
     (b"a = '\xff'", "not TOML: the file is not UTF-8 text"),
     (b"a = " + 9000 * b"[", "not TOML: tables or lists stand too deeply in each other"),
     (b"a = " + 5000 * b"9", "not TOML: Exceeds the limit (4300 digits) for integer string conversion: value has 5000 digits"),
-])
+], ids=["list", "value", "twice", "open", "bytes", "deep", "digits"])
 def test_what_is_no_toml(content: bytes, why: str, tmp_path: Path) -> None:
     file = tmp_path / "a.toml"
     file.write_bytes(content)
