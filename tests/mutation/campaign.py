@@ -190,8 +190,9 @@ class Compiled(Guards):
         return None if done.returncode == 0 else done.stderr
 
     def passes(self, program: Path, guard: str, chosen: int = 0) -> bool:
-        """Run a test program with a mutant chosen, 0 for none."""
-        return run([str(program), "--gtest_brief=1", "--gtest_fail_fast"], self.patience.get(guard, 600),
+        """Run a test program, or those of its tests that the guard names, with a mutant chosen, 0 for none."""
+        wanted = [f"--gtest_filter={tests}" for _, found, tests in [guard.partition(":")] if found]
+        return run([str(program), "--gtest_brief=1", "--gtest_fail_fast", *wanted], self.patience.get(guard, 600),
                    chosen=chosen) == 0
 
     def prepare(self, wanted: list[Mutant]) -> None:
@@ -224,7 +225,8 @@ class Compiled(Guards):
         if said is None:
             return True
         bad: set[int] = set()
-        for name, line in re.findall(r"^(\S+?):(\d+):\d+: error:", said, re.M):
+        # Of an error within a library the compiler tells which line asked for it.
+        for name, line in re.findall(r"^(\S+?):(\d+):\d+: +(?:error:|required from here)", said, re.M):
             file = str(Path(name).resolve()).removeprefix(f"{self.folder.resolve()}/")
             held = lines.get(file, {})
             near = [number for number, (first, last) in held.items() if first <= int(line) <= last]
@@ -342,7 +344,8 @@ class LibraryGuards(Compiled):
 
     def _link(self, guard: str, made: list[Path], program: Path) -> None:
         """Link a test program of the build with other objects of its library."""
-        told = subprocess.run(["ninja", "-t", "commands", guard], cwd=self.build, capture_output=True, text=True)
+        told = subprocess.run(["ninja", "-t", "commands", guard.partition(":")[0]], cwd=self.build,
+                              capture_output=True, text=True)
         link = shlex.split(told.stdout.strip().splitlines()[-1].split("&&")[1])
         first = next(place for place, word in enumerate(link) if word.endswith(".a"))
         link[first:first] = map(str, made)
