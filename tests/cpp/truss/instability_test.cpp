@@ -188,6 +188,32 @@ TEST(Instability, SlipThatTheTrussOvertakesEndsThePathAtTheLimitPoint) {
   expect_end(footed(stiffness), footed_at(stiffness, inner), 1e-6, 50);
 }
 
+TEST(Instability, AStrutThatStaysStraightBeyondItsBucklingLoadIsRefused) {
+  // Two bars in line, pressed by heat; their pin buckles sideways where 2 P / L is the stiffness of
+  // the spring that guides it: 2400 N/m at 100 K. Nothing pushes the pin aside.
+  const auto strut = [](double stiffness) {
+    Model model;
+    model.programs = {triangle(100.0)};
+    model.nodes = {node("left", -1.0, 0.0, 0), node("pin", 0.0, 0.0, 2), node("right", 1.0, 0.0, 0),
+                   node("sky", 0.0, 1.0, 0)};
+    for (int i = 0; i < 2; ++i) {
+      model.links.push_back({"bar", i, i + 1, 6e5, 1.0, 2e-5, 0, 1.0});
+    }
+    model.springs = {{"guide", 1, 3, stiffness, 1.0, false}};
+    return model;
+  };
+  EXPECT_TRUE(solve(strut(2600.0)).complete);
+  try {
+    solve(strut(2200.0));
+    ADD_FAILURE();
+  } catch (const Failure& failed) {
+    EXPECT_EQ(failed.fields().kind, FailureKind::buckled) << failed.what();
+    EXPECT_EQ(failed.fields().time, 0.5);  // looked for where the temperature turns
+    ASSERT_FALSE(failed.fields().modes.empty());
+    EXPECT_EQ(failed.fields().modes[0][0].node, "pin");
+  }
+}
+
 /// Arch of one freedom, without joints, that its load presses through when its bars have become
 /// short.
 Model loaded_arch() {

@@ -9,6 +9,7 @@
 #include "parts.hpp"
 #include "statejump/failure.hpp"
 #include "statejump/kernel/mindlin.hpp"
+#include "truss/system.hpp"
 
 namespace statejump::truss {
 namespace {
@@ -290,6 +291,40 @@ TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
   }
 }
 
+TEST(Truss, ContactThatComesAndGoesWithinAStepIsLocated) {
+  // A journal between two bars, held across them by a third: at both ends of a branch it is in the
+  // middle of its bearing, which it touches in between.
+  Model model;
+  model.programs = {triangle(100.0), triangle(100.0)};
+  model.programs[1].shape = thermal::Shape::half_sine;
+  model.nodes = {node("left", 0, 0, 0), node("journal", 0.5, 0, 2), node("right", 1.0, 0, 0),
+                 node("bearing", 0.5, 0, 0), node("sky", 0.5, 0.5, 0)};
+  model.links = {{"first", 0, 1, 1e6, 0.5, 2e-5, 0, 1.0},
+                 {"second", 1, 2, 1e6, 0.5, 2e-5, 1, 1.0},
+                 {"third", 1, 4, 1e6, 0.5, 0.0, 0, 1.0}};
+  ClearanceRevolute joint = rib_joint();
+  joint.journal_node = 1;
+  joint.bearing_node = 3;
+  joint.journal_link = joint.bearing_link = -1;
+  joint.radial_clearance = 8e-5;
+  joint.hertz_stiffness = 1e10;
+  model.joints = {joint};
+  Options options;
+  options.increments_per_branch = 400;
+  const Path fine = solve(model, options);
+  ASSERT_EQ(fine.events.size(), 4u);  // touches and leaves, in each branch
+  for (const int increments : {1, 2, 5}) {
+    options.increments_per_branch = increments;
+    const Path path = solve(model, options);
+    ASSERT_EQ(path.events.size(), fine.events.size()) << increments;
+    for (std::size_t i = 0; i < path.events.size(); ++i) {
+      // Located to 1e-9 of a branch of half a second.
+      EXPECT_NEAR(path.events[i].time, fine.events[i].time, 1e-9) << increments;
+      EXPECT_EQ(path.events[i].after == JointStatus::open, i % 2 == 1) << increments;
+    }
+  }
+}
+
 TEST(Truss, SlipEndsAtTheCornerHoweverLongTheIncrement) {
   // Between two increments of a whole branch the slide turns round: the short step after the corner
   // holds the block first, so that both slides and the stick between them are told.
@@ -386,6 +421,14 @@ TEST(Truss, ItemsOutOfRangeAreNamed) {
   model = rib();
   revolute(model).bearing_thermal_expansion = -1e-3;
   EXPECT_NE(message(model).find("clearance at the program's worst temperature"), std::string::npos);
+  // A journal that just fills its bore: powers of two, without rounding.
+  model = rib();
+  model.programs = {triangle(64.0)};
+  revolute(model).journal_radius = 0.5;
+  revolute(model).journal_thermal_expansion = std::ldexp(1.0, -16);
+  revolute(model).radial_clearance = std::ldexp(1.0, -11);
+  EXPECT_NE(message(model).find("clearance at the program's worst temperature = 0"),
+            std::string::npos);
 }
 
 FailureFields failure(const Model& model) {
@@ -407,7 +450,92 @@ TEST(Truss, MechanismIsNamed) {
   EXPECT_EQ(fields.kind, FailureKind::held_mechanism);
   EXPECT_EQ(static_cast<std::size_t>(fields.mode_count), fields.modes.size());
   ASSERT_FALSE(fields.modes.empty());
+  EXPECT_FALSE(fields.more_modes);
   EXPECT_EQ(fields.time, 0.0);
+  // Of many free nodes six modes are found, and that there may be more is told.
+  model = bar();
+  for (int i = 0; i < 4; ++i) model.nodes.push_back(node("free" + std::to_string(i), i, 1, 2));
+  const FailureFields many = failure(model);
+  EXPECT_EQ(many.kind, FailureKind::held_mechanism);
+  EXPECT_EQ(many.mode_count, 6);
+  EXPECT_TRUE(many.more_modes);
+}
+
+TEST(Truss, EventsHaveTheStepInWhichTheyHappened) {
+  Options options;
+  options.event_tolerance = 1e-6;
+  const Path path = solve(bar(), options);
+  ASSERT_FALSE(path.events.empty());
+  for (const Event& event : path.events) {
+    // Half a second of heating or cooling, and the sum of a time and a step is rounded.
+    EXPECT_GT(event.interval, 0.0);
+    EXPECT_LE(event.interval, 1.5 * options.event_tolerance * 0.5);
+    EXPECT_NEAR(event.temperature_change, 200.0 * std::min(event.time, 1.0 - event.time), 1e-12);
+  }
+}
+
+TEST(Truss, ProgressEndsAPath) {
+  Options options;
+  double last = 0.0;
+  options.progress = [&](double share) {
+    EXPECT_GE(share, last);
+    last = share;
+    return share < 0.3;
+  };
+  const Path path = solve(bar(), options);
+  EXPECT_FALSE(path.complete);
+  EXPECT_GE(last, 0.3);
+  EXPECT_LT(last, 0.35);
+  EXPECT_LT(path.states.back().time, 0.35);
+  options.progress = [&](double share) {
+    last = share;
+    return true;
+  };
+  EXPECT_TRUE(solve(bar(), options).complete);
+  EXPECT_EQ(last, 1.0);
+}
+
+TEST(Truss, LocalProblemsAreThoseThatThePathSolves) {
+  Options options;
+  options.problem_times = {0.1, 0.6};
+  for (const Model& model : {bar(), elastic_rib()}) {
+    const Path path = solve(model, options);
+    ASSERT_EQ(path.problems.size(), 2u);
+    for (const LocalProblem& local : path.problems) {
+      const complementarity::Problem& problem = local.problem;
+      EXPECT_EQ(local.joints, std::vector<int>{0});
+      ASSERT_EQ(problem.contacts(), 1);
+      // Forces balance to 1e-12 of themselves, motions close to 1e-13 of the displacements, which
+      // are a hundred times those of a step.
+      EXPECT_LT(complementarity::merit(problem, local.reactions).largest(), 1e-9);
+      EXPECT_LT((complementarity::velocities(problem, local.reactions) - local.velocities).norm(),
+                1e-12 * problem.q.norm());
+      EXPECT_GT(std::abs(local.reactions[1]), 0.0);
+    }
+  }
+  // The block slides at 0.1 s and 20 K: what moves it is the compliance of the bar as it is heated,
+  // its friction is 30 N.
+  const LocalProblem local = solve(bar(), options).problems[0];
+  const auto& w = std::get<Eigen::MatrixXd>(local.problem.delassus);
+  EXPECT_NEAR(w(1, 1), 0.5 * (1.0 + 23.4e-6 * 20.0) / 6.3e5, 1e-12 / 6.3e5);
+  EXPECT_NEAR(std::abs(local.reactions[1]), 30.0, 1e-9);
+  EXPECT_EQ(local.reactions[0] * local.problem.mu[0], 30.0);
+}
+
+TEST(Truss, RoundingGoesWithTheLargestDisplacement) {
+  const Model model = bar();
+  const detail::System system(model);
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(system.unknowns());
+  z[0] = -1e-3;
+  z.tail(system.unknowns() - 1).setConstant(30.0);  // forces do not count
+  const detail::Rounding by = system.rounding(z);
+  // A few units in its last place, and the stiffness of the bar times as much.
+  EXPECT_GT(by.length, 1e-3 * 2.2e-16);
+  EXPECT_LT(by.length, 1e-3 * 2.2e-16 * 10);
+  EXPECT_GT(by.force, 1.26e6 * by.length);
+  EXPECT_LT(by.force, 1.26e6 * by.length * 100);
+  z[0] *= 4.0;
+  EXPECT_EQ(system.rounding(z).length, 4.0 * by.length);
 }
 
 TEST(Truss, JointThatNothingLoadsIsNamed) {

@@ -82,17 +82,16 @@ void Stepper::solve_contacts(const Trial& step, const VectorXd& free, bool first
   options.guess = local.impulses;
   const complementarity::Solution solution = complementarity::solve(problem, options);
   if (solution.status != complementarity::Status::solved) {
-    fail(FailureKind::not_converged, step.to, worst(problem, solution.reactions, local));
+    const Eigen::Index worst = worst_contact(problem, solution.reactions);
+    fail(FailureKind::not_converged, step.to, local.contacts[static_cast<std::size_t>(worst)]);
   }
   largest_merit_ = std::max(largest_merit_, solution.merit.largest());
   local.impulses = solution.reactions;
 }
 
-/// The contact whose law is violated most.
-const Contact* Stepper::worst(const Problem& problem, const VectorXd& impulses,
-                              const Local& local) const {
+Eigen::Index worst_contact(const Problem& problem, const VectorXd& impulses) {
   const VectorXd u = complementarity::velocities(problem, impulses);
-  const Contact* found = nullptr;
+  Eigen::Index found = -1;
   double most = -1.0;
   for (Eigen::Index i = 0; i < problem.mu.size(); ++i) {
     const double weight = std::get<Eigen::MatrixXd>(problem.delassus)(2 * i, 2 * i);
@@ -102,7 +101,7 @@ const Contact* Stepper::worst(const Problem& problem, const VectorXd& impulses,
     const double along = weight * std::abs(impulses[2 * i + 1] - std::clamp(pulled, -bound, bound));
     if (normal + along > most) {
       most = normal + along;
-      found = local.contacts[static_cast<std::size_t>(i)];
+      found = i;
     }
   }
   return found;

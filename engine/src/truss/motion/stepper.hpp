@@ -29,6 +29,10 @@ struct Account {
 /// the largest velocity in it, which a stiff contact turns into much more of a force.
 constexpr double on_law = 1e-6;
 
+/// The contact of a planar problem whose law is violated most [unit of u], W_nn times what its
+/// impulses lack; −1 without contacts.
+Eigen::Index worst_contact(const complementarity::Problem& problem, const VectorXd& impulses);
+
 /// A truss in motion, one step of Moreau and Jean's scheme after the other; see simulate().
 class Stepper {
  public:
@@ -183,8 +187,6 @@ class Stepper {
   static std::vector<Branch> branches_of(const Local& local);
   void book(const Trial& step, const Local& local);
   [[noreturn]] void fail(FailureKind kind, double when, const Contact* contact) const;
-  const Contact* worst(const complementarity::Problem& problem, const VectorXd& impulses,
-                       const Local& local) const;
 
   const System* system_;
   const Bodies* bodies_;

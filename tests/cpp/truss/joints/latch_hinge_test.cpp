@@ -41,5 +41,26 @@ TEST(LatchHinge, GradientsAreThoseOfItsForces) {
   }
 }
 
+TEST(LatchHinge, EdgesOfItsPlayAreDistancesOfTheEndOfItsLink) {
+  Model model;
+  model.programs = {testing::triangle(100.0)};
+  model.nodes = {node("A", 0.0, 0.0, 0), node("B", 0.4, 0.0, 2)};
+  model.links = {{"AB", 0, 1, 1e2, 0.4, 0.0, 0, 1.0}};
+  LatchHinge hinge;
+  hinge.name = "H";
+  hinge.stiffness = 0.3;
+  hinge.deadband = 0.02;
+  model.joints = {hinge};
+  const detail::System system(model);
+  const double turned = 0.03;
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(system.unknowns());
+  const detail::StepStart start = system.begin(z, 0.0, system.all_stick(), 1.0);
+  z.head<2>() << 0.4 * (std::cos(turned) - 1.0), 0.4 * std::sin(turned);
+  const Eigen::VectorXd beyond = system.beyond_edges(z, 0.1, start);
+  ASSERT_EQ(beyond.size(), 2);
+  EXPECT_NEAR(beyond[0], 0.4 * (turned - 0.02), 1e-15);
+  EXPECT_NEAR(beyond[1], 0.4 * (turned + 0.02), 1e-15);
+}
+
 }  // namespace
 }  // namespace statejump::truss

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <utility>
+
 #include "../parts.hpp"
 #include "gradients.hpp"
 
@@ -29,9 +31,15 @@ Model rib() {
 }
 
 TEST(Revolute, GradientsAreThoseOfItsForces) {
-  for (const int partial_slip : {0, 1}) {
+  // Either link may be the first one.
+  for (const auto& [partial_slip, first] : {std::pair{0, 0}, std::pair{1, 0}, std::pair{0, 1}}) {
     Model model = rib();
-    std::get<ClearanceRevolute>(model.joints[0]).partial_slip = partial_slip;
+    ClearanceRevolute& joint = std::get<ClearanceRevolute>(model.joints[0]);
+    joint.partial_slip = partial_slip;
+    if (first == 1) {
+      std::swap(model.links[0], model.links[1]);
+      std::swap(joint.journal_link, joint.bearing_link);
+    }
     const detail::System system(model);
     Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(system.unknowns(), 1e-5, 6e-5);
     z[6] += 9e-5;  // in contact

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <vector>
 
@@ -184,6 +185,98 @@ TEST(Motion, SlidingBlockStopsWhereFrictionHasTakenItsEnergy) {
   };
   const double exact = 2.0 * 0.01 / (2.0 * 30.0);
   EXPECT_NEAR(slid(1000), exact, 0.1 * 2e-5);  // the step in which it stops
+}
+
+TEST(Motion, ContactProblemsAreSolvedOnlyWhereBranchesAreNotFound) {
+  // A block that slides and then sticks, and a journal that bounces off an elastic contact with
+  // friction: every step is found on branches.
+  Model block = bar(0.02);
+  block.programs = {lasting(0.02)};
+  block.links.clear();
+  MotionOptions options;
+  options.steps = 1000;
+  options.start = at_rest(block);
+  options.start->velocity(0, 1) = 0.1;
+  Model journal = falling_journal();
+  ClearanceRevolute& joint = std::get<ClearanceRevolute>(journal.joints[0]);
+  joint.hertz_stiffness = 1e9;
+  joint.friction_coefficient = 0.2;
+  for (const double mindlin : {std::numeric_limits<double>::infinity(), 1e9}) {
+    joint.mindlin_stiffness = mindlin;
+    for (const Model* model : {&block, &journal}) {
+      const Motion motion = simulate(*model, {{}, Vector2d(0.0, 1.0), {}, {}, {}}, options);
+      EXPECT_EQ(motion.iterations, 0);
+      EXPECT_EQ(motion.largest_contact_merit, 0.0);
+      EXPECT_LT(motion.factorizations, motion.steps / 4);  // else every other step has its own
+    }
+  }
+  // Friction that bends where the bar reaches its stop is not; how well it is solved is told.
+  Model heated = bar(0.1);
+  std::get<Slider>(heated.joints[0]).tangential_stiffness = 1e6;
+  options = {};
+  options.steps = 2000;
+  const Motion motion = simulate(heated, {Vector2d(0.1, 0.0).head(1), {}, {}, {}, {}}, options);
+  EXPECT_GT(motion.iterations, 0);
+  EXPECT_GT(motion.largest_contact_merit, 0.0);
+  EXPECT_LT(motion.largest_contact_merit, 1e-10);  // what a contact problem is solved to
+}
+
+TEST(Motion, BarsBesideEachOtherMoveAsEachAlone) {
+  // Two bars that share nothing but the contact problem, the second with other friction, play and
+  // springs.
+  const auto heated = [](int which) {
+    Model model = bar(0.1);
+    Slider& slider = std::get<Slider>(model.joints[0]);
+    slider.tangential_stiffness = which == 0 ? 1e6 : 3e6;
+    if (which == 1) {
+      slider.friction_force = 50.0;
+      slider.clearance_plus = 0.8e-3;
+      model.links[0].axial_stiffness *= 2.0;
+    }
+    return model;
+  };
+  const auto moved = [](const Model& model, const Inertia& inertia) {
+    MotionOptions options;
+    options.steps = 2000;
+    options.sample_every = 100;
+    options.start = at_rest(model);
+    return simulate(model, inertia, options);
+  };
+  const Vector2d masses(0.1, 0.25);
+  Model both = heated(0);
+  const Model other = heated(1);
+  both.nodes.insert(both.nodes.end(), other.nodes.begin(), other.nodes.end());
+  both.links.push_back(other.links[0]);
+  both.links[1].first += 2;
+  both.links[1].second += 2;
+  both.joints.push_back(other.joints[0]);
+  std::get<Slider>(both.joints[1]).first += 2;
+  const Motion together = moved(both, {masses, {}, {}, {}, {}});
+  EXPECT_GT(together.iterations, 0);
+  for (int which : {0, 1}) {
+    const Motion alone = moved(heated(which), {masses.segment<1>(which), {}, {}, {}, {}});
+    ASSERT_EQ(alone.states.size(), together.states.size());
+    for (std::size_t i = 0; i < alone.states.size(); ++i) {
+      // Contact problems are solved to 1e-10 of their sizes; a millionth of the millimetres here.
+      EXPECT_NEAR(together.states[i].displacement(0, 1 + 2 * which),
+                  alone.states[i].displacement(0, 1), 1e-9)
+          << which << " " << i;
+    }
+  }
+}
+
+TEST(Motion, ProgressEndsAMotion) {
+  const Model model = falling_journal();
+  MotionOptions options;
+  options.steps = 100;
+  options.start = at_rest(model);
+  for (const double share : {0.3, 1.0}) {
+    // At the very end there is nothing left to be ended.
+    options.progress = [share](double done) { return done < share; };
+    const Motion motion = simulate(model, {{}, Vector2d(0.0, 1.0), {}, {}, {}}, options);
+    EXPECT_EQ(motion.complete, share == 1.0);
+    EXPECT_NEAR(motion.states.back().time, share * 0.1, 1e-3 + 1e-15);
+  }
 }
 
 TEST(Motion, SlowHeatingFollowsTheQuasiStaticPath) {
