@@ -9,6 +9,7 @@
 
 #include "complementarity/block_system.hpp"
 #include "complementarity/interior_point.hpp"
+#include "complementarity/lemke.hpp"
 #include "complementarity/newton.hpp"
 #include "complementarity/one_contact.hpp"
 #include "support.hpp"
@@ -111,6 +112,44 @@ TEST(Parts, ContactThatDoesNotApproachCarriesNothing) {
       ASSERT_TRUE(solve_one_contact(w, Block(apart, sliding, 0.0), 4.0, 1e-12, r));
       EXPECT_EQ(r.norm(), 0.0) << apart << " " << sliding;
     }
+  }
+}
+
+TEST(Parts, OneContactIsSolvedByItself) {
+  // Open, stuck and sliding; of a W of full rank the solution is exact to rounding.
+  std::mt19937 random(6);
+  int held[3] = {0, 0, 0};
+  for (int run = 0; run < 300; ++run) {
+    Problem problem = random_problem(3, 1, 9, 1.5, random);
+    problem.q *= std::pow(10.0, run % 7 - 3);  // reactions of any size
+    const BlockMatrix w = std::get<Eigen::MatrixXd>(problem.delassus);
+    Block r;
+    ASSERT_TRUE(solve_one_contact(w, problem.q, problem.mu[0], 0.0, r));
+    EXPECT_LT(merit(problem, r).largest(), 1e-13) << run;
+    const bool sticks = (w * r + problem.q).norm() < 1e-12 * problem.q.norm();
+    ++held[r[0] == 0.0 ? 0 : sticks ? 1 : 2];
+  }
+  for (const int count : held) EXPECT_GT(count, 20);
+}
+
+TEST(Parts, LemkeSolvesByItself) {
+  std::mt19937 random(9);
+  for (int run = 0; run < 40; ++run) {
+    Problem problem = random_problem(2, 6, run % 2 == 0 ? 24 : 7, 1.0, random);
+    const ScaledProblem scaled(problem);
+    int pivots = 0;
+    const auto reactions = lemke(scaled, 200, pivots);
+    ASSERT_TRUE(reactions) << run;
+    // Some twenty pivots of a table with numbers of order 1, whose conditions multiply.
+    EXPECT_LT(Iterate(scaled, *reactions).merit, 1e-9) << run;
+    EXPECT_GT(pivots, 0);
+    // Contacts that leave without friction's help carry nothing, which takes no pivot.
+    for (Eigen::Index i = 0; i < 6; ++i) problem.q.segment<2>(2 * i) = Eigen::Vector2d::UnitX();
+    pivots = 0;
+    const auto none = lemke(ScaledProblem(problem), 200, pivots);
+    ASSERT_TRUE(none);
+    EXPECT_EQ(none->norm(), 0.0);
+    EXPECT_EQ(pivots, 0);
   }
 }
 

@@ -120,10 +120,16 @@ TEST(Problem, refuses_what_does_not_fit) {
 
 TEST(Problem, without_a_solution_is_said_to_be_not_converged) {
   // Pressed together at a place that no force moves.
-  const Solution solution = solve({2, Eigen::MatrixXd(Eigen::Matrix2d::Zero()),
-                                   Eigen::Vector2d(-1.0, 0.0), Eigen::VectorXd::Constant(1, 0.5)});
-  EXPECT_EQ(solution.status, Status::not_converged);
-  EXPECT_GT(solution.merit.largest(), 1e-3);
+  for (const int dimension : {2, 3}) {
+    const Solution solution =
+        solve({dimension, Eigen::MatrixXd(Eigen::MatrixXd::Zero(dimension, dimension)),
+               -Eigen::VectorXd::Unit(dimension, 0), Eigen::VectorXd::Constant(1, 0.5)});
+    EXPECT_EQ(solution.status, Status::not_converged);
+    EXPECT_GT(solution.merit.largest(), 1e-3);
+    // Every method was tried that there is.
+    EXPECT_GT(solution.iterations.interior_point, 0);
+    EXPECT_EQ(solution.iterations.pivots > 0, dimension == 2);
+  }
 }
 
 TEST(Problem, dense_and_sparse_agree) {

@@ -40,6 +40,7 @@ TEST(RestOnCurve, ImplicitCircleIsTheClearanceCircle) {
       const Part& part = set.parts[0];
       EXPECT_NEAR(angle_to(part.points.front(), direction), std::atan(mu), 1e-12);
       EXPECT_NEAR(angle_to(part.points.back(), direction), std::atan(mu), 1e-12);
+      for (const Vector3d& point : part.points) EXPECT_EQ(point.z(), 0.0);
       EXPECT_NEAR(set.length / (2.0 * c * std::atan(mu)), 1.0, 1e-5);
       EXPECT_NEAR(set.diameter / (2.0 * c * std::sin(std::atan(mu))), 1.0, 1e-11);
     }
@@ -142,6 +143,26 @@ TEST(RestOnCurve, LobedBore) {
   EXPECT_EQ(rest_on_curves({lobed_curve(c, 0.2, 3)}, {to_crest}, 0.5).any.parts.size(), 1u);
 }
 
+TEST(RestOnCurve, LobedCurveIsClosed) {
+  // Without lobes a circle, all the way round; the force points to where it begins and ends.
+  const Curve curve = lobed_curve(c, 0.0, 1);
+  EXPECT_TRUE(curve.closed);
+  const RestSet set = rest_on_curves({curve}, {Vector2d(1.0, 0.0)}, 0.3).any;
+  ASSERT_EQ(set.parts.size(), 1u);
+  EXPECT_NEAR(set.length, 2.0 * c * std::atan(0.3), 1e-9 * c);
+}
+
+TEST(RestOnCurve, FarthestPairOfOppositeArcsIsADiameter) {
+  // Between nodes, where the search along both arcs has to find it.
+  const auto curves = circle(11);
+  for (const double direction : {0.1, 0.7, 1.3}) {
+    const Vector2d force(std::cos(direction), std::sin(direction));
+    const RestSet set = rest_on_curves(curves, {force, -force}, 0.4).any;
+    EXPECT_NEAR(set.diameter, 2.0 * c, 1e-10 * c);
+    EXPECT_NEAR((set.farthest[0] - set.farthest[1]).norm(), set.diameter, 1e-14 * c);
+  }
+}
+
 TEST(RestOnCurve, LobedCurveAsImplicitFunction) {
   const double eps = 0.2;
   const auto gamma = [eps](const Vector2d& p) {
@@ -173,6 +194,32 @@ TEST(RestOnCurve, CurveThatLeavesTheBox) {
   EXPECT_NEAR(rest_on_curves(floor, {Vector2d(0.1, -1.0)}, 0.2).any.length, 3.0, 1e-12);
   EXPECT_TRUE(rest_on_curves(floor, {Vector2d(0.3, -1.0)}, 0.2).any.parts.empty());
   EXPECT_TRUE(rest_on_curves(floor, {Vector2d(0.0, 1.0)}, 0.2).any.parts.empty());
+}
+
+TEST(RestOnCurve, CurveThatComesBackToTheSideItEntersByIsOnePiece) {
+  // x = y², free to the right: entered and left at x = 1, farthest from there in its middle.
+  const auto curves = implicit_curves([](const Vector2d& p) { return p.y() * p.y() - p.x(); },
+                                      [](const Vector2d& p) -> Vector2d {
+                                        return {-1.0, 2.0 * p.y()};
+                                      },
+                                      Vector2d(-0.53, -2.0), Vector2d(1.0, 2.0), 80);
+  ASSERT_EQ(curves.size(), 1u);
+  EXPECT_FALSE(curves[0].closed);
+  for (const CurvePoint* end : {&curves[0].nodes.front(), &curves[0].nodes.back()}) {
+    EXPECT_NEAR(end->position.x(), 1.0, 1e-12);
+    EXPECT_NEAR(std::abs(end->position.y()), 1.0, 1e-12);
+  }
+}
+
+TEST(RestOnCurve, PointsOfTheGridOnTheCurveAreOneNodeEach) {
+  // A diagonal: the roots on both grid lines through such a point are it.
+  const auto curves = implicit_curves([](const Vector2d& p) { return p.x() - p.y(); },
+                                      [](const Vector2d&) -> Vector2d {
+                                        return {1.0, -1.0};
+                                      },
+                                      Vector2d(-1.0, -1.0), Vector2d(1.0, 1.0), 10);
+  ASSERT_EQ(curves.size(), 1u);
+  EXPECT_EQ(curves[0].nodes.size(), 11u);
 }
 
 TEST(JournalInProfile, RoundBoreGivesTheClearanceCircle) {
@@ -245,6 +292,9 @@ TEST(RestOnCurve, Refusals) {
   EXPECT_EQ(refusal([&] { journal_in_profile([](double) { return 4e-3; }, 5e-3); }),
             "rho(0.000000) = 0.004, allowed is above journal_radius [m]: the journal must fit at "
             "the origin");
+  // Where it does not is told: a quarter of the way round.
+  const auto dented = [](double theta) { return theta < 1.57 ? 5.1e-3 : 4e-3; };
+  EXPECT_EQ(refusal([&] { journal_in_profile(dented, 5e-3); }).find("rho(1.570796) = 0.004"), 0u);
   EXPECT_EQ(refusal([&] {
               rest_on_curves({lobed_curve(c, 0.1, 3)}, {{0, 0}}, 0.1);
             }),

@@ -171,6 +171,11 @@ TEST(RestInSocket, TwoForcesAtBeta) {
   EXPECT_TRUE(apart.all.parts.empty());
   EXPECT_EQ(apart.any.parts.size(), 2u);
   EXPECT_NEAR(apart.any.area, 2.0 * apart.each[0].area, 1e-20);
+  // Each is a cap of its own, however far it is from the other.
+  for (const Part& part : apart.any.parts) {
+    EXPECT_NEAR(part.angle, 2.0 * phi, 1e-15);
+    EXPECT_NEAR(part.diameter, 2.0 * c * std::sin(phi), 1e-18);
+  }
 }
 
 TEST(RestInSocket, ManyForcesAgainstCounting) {
@@ -212,8 +217,15 @@ TEST(RestInBore, Band) {
   EXPECT_NEAR(across.parts[0].area, 4.0 * b * c * std::atan(mu), 1e-20);
   EXPECT_GE(across.diameter, std::hypot(2.0 * c * std::sin(std::atan(mu)), 2.0 * b));
   ASSERT_EQ(across.parts[0].rims.size(), 2u);
+  double beyond = 0.0;
   for (const auto& rim : across.parts[0].rims) {
     ASSERT_GE(rim.size(), 2u);
+    // Its points follow the arc: chords of a sixtieth of a radian are it to 2e-5.
+    double along = 0.0;
+    for (std::size_t i = 1; i < rim.size(); ++i) along += (rim[i] - rim[i - 1]).norm();
+    const double turned = 2.0 * std::asin(0.5 * (rim.back() - rim.front()).norm() / c);
+    EXPECT_NEAR(along, c * turned, 1e-4 * c * turned);
+    beyond += c * (turned - 2.0 * std::atan(mu));
     const double height = rim.front().z();
     EXPECT_EQ(std::abs(height), b);
     for (const Vector3d& point : rim) {
@@ -223,6 +235,7 @@ TEST(RestInBore, Band) {
     // As wide as the arc of the wall at least.
     EXPECT_GE((rim.back() - rim.front()).norm(), 2.0 * c * std::sin(std::atan(mu)) - 1e-19);
   }
+  EXPECT_NEAR(across.length, beyond, 1e-14 * c);
   EXPECT_EQ(across.parts[0].rims[0][0].z(), -across.parts[0].rims[1][0].z());
 }
 
@@ -292,10 +305,21 @@ TEST(RestSets, Refusals) {
       "size of forces[1] = 0, allowed is finite, > 0 N: without a force every position is at rest";
   EXPECT_EQ(refusal([] { rest_in_bearing(c, {at(0), {0, 0}}, 0.3); }), none);
   EXPECT_EQ(refusal([] { rest_in_slot(c, {{1, 0, 0}, {0, 0, 0}}, 0.3); }), none);
-  EXPECT_EQ(refusal([] {
-              rest_in_socket(c, {{1, 0, 0}}, -0.1);
-            }),
-            "mu = -0.1, allowed is finite, >= 0");
+  EXPECT_EQ(refusal([] { rest_in_bore(c, c, {{1, 0, 0}, {0, 0, 0}}, 0.3); }), none);
+  EXPECT_EQ(refusal([] { rest_in_socket(c, {{1, 0, 0}, {0, 0, 0}}, 0.3); }), none);
+  for (const std::function<void()>& call :
+       std::vector<std::function<void()>>{[] {
+                                            rest_in_slot(c, {{1, 0, 0}}, -0.1);
+                                          },
+                                          [] { rest_in_bearing(c, {at(0)}, -0.1); },
+                                          [] {
+                                            rest_in_socket(c, {{1, 0, 0}}, -0.1);
+                                          },
+                                          [] {
+                                            rest_in_bore(c, c, {{1, 0, 0}}, -0.1);
+                                          }}) {
+    EXPECT_EQ(refusal(call), "mu = -0.1, allowed is finite, >= 0");
+  }
   EXPECT_EQ(refusal([] {
               rest_in_socket(0.0, {{1, 0, 0}}, 0.1);
             }),

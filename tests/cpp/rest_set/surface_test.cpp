@@ -251,6 +251,21 @@ TEST(RestOnMesh, VertexOfNoTriangleNeedsNoNormal) {
   EXPECT_EQ(rest_on_mesh(mesh, {Vector3d::UnitX()}, 0.3).study.any.area, area);
 }
 
+TEST(RestOnMesh, WithoutFrictionALineHasALengthAndNoArea) {
+  // A tube along y, pressed down: its lowest line.
+  const auto tube = implicit_surface(
+      [](const Vector3d& p) { return p.x() * p.x() + p.z() * p.z() - c * c; },
+      [](const Vector3d& p) -> Vector3d {
+        return {2.0 * p.x(), 0.0, 2.0 * p.z()};
+      },
+      Vector3d(-1.31 * c, -2.0 * c, -1.27 * c), Vector3d(1.31 * c, 2.0 * c, 1.27 * c), 24);
+  const RestSet set = rest_on_mesh(tube, {-Vector3d::UnitZ()}, 0.0).study.any;
+  ASSERT_EQ(set.parts.size(), 1u);
+  EXPECT_EQ(set.area, 0.0);
+  EXPECT_NEAR(set.length, 4.0 * c, 1e-3 * c);
+  EXPECT_EQ(set.length, set.parts[0].length);
+}
+
 TEST(RestOnMesh, Refusals) {
   const auto refusal = [](const Mesh& mesh, const Vector3d& force) -> std::string {
     try {
@@ -271,6 +286,14 @@ TEST(RestOnMesh, Refusals) {
   EXPECT_EQ(refusal(mesh, Vector3d::UnitX()), "size of normals[11] = 0, allowed is finite, > 0");
   mesh.triangles[3][1] = 12;
   EXPECT_EQ(refusal(mesh, Vector3d::UnitX()), "triangles[3] = 12, allowed is an index of a vertex");
+  mesh.triangles[0][2] = -1;
+  EXPECT_EQ(refusal(mesh, Vector3d::UnitX()), "triangles[0] = -1, allowed is an index of a vertex");
+  for (const std::size_t far : {0u, 11u}) {
+    mesh = clearance_sphere(c, 0);
+    mesh.vertices[far].y() = INFINITY;
+    EXPECT_EQ(refusal(mesh, Vector3d::UnitX()),
+              "vertices[" + std::to_string(far) + "] = inf, allowed is finite [m]");
+  }
   EXPECT_EQ(refusal(Mesh{}, Vector3d::UnitX()), "number of triangles = 0, allowed is at least 1");
 }
 
