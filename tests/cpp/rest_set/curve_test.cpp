@@ -8,6 +8,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace statejump::rest_set {
 namespace {
@@ -292,6 +293,11 @@ TEST(RestOnCurve, Refusals) {
   EXPECT_EQ(refusal([&] { journal_in_profile([](double) { return 4e-3; }, 5e-3); }),
             "rho(0.000000) = 0.004, allowed is above journal_radius [m]: the journal must fit at "
             "the origin");
+  for (const auto& [radius, told] :
+       {std::pair{-1.0, "rho(0.000000) = -1, "}, std::pair{HUGE_VAL, "rho(0.000000) = inf, "}}) {
+    EXPECT_EQ(refusal([&, r = radius] { journal_in_profile([r](double) { return r; }, 5e-3); }),
+              std::string(told) + "allowed is finite, > 0 m");
+  }
   // Where it does not is told: a quarter of the way round.
   const auto dented = [](double theta) { return theta < 1.57 ? 5.1e-3 : 4e-3; };
   EXPECT_EQ(refusal([&] { journal_in_profile(dented, 5e-3); }).find("rho(1.570796) = 0.004"), 0u);
