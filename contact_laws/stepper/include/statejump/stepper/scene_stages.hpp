@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Links, torsion springs, sliders and guides of a scene in one step. Part of scene.hpp.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "statejump/stepper/scene.hpp"
+
+namespace statejump::stepper {
+
+inline bool Scene::act(Links& group) {
+  auto& links = group.places;
+  if (group.needs_moments) {
+    sum();
+    kept_.resize(links.size());
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      if (links[i].link.tipTurnsWithLink) kept_[i] = body(links[i].link.id2).torque;
+    }
+  }
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    auto& [link, program, inverse, damping, last_softening] = links[i];
+    Body& root = body(link.id1);
+    Body& tip = body(link.id2);
+    const Span span = span_of(root.motion.position, tip.motion.position);
+    if (!span.is_proper()) return false;
+    const LinkStep now = link_step(
+        link, span, root.motion.velocity, tip.motion.velocity, changes_[program],
+        [&, place = program] { return programs[place].temperature_rate(time); }, damping, time);
+    if (inverse > 0 && !is_stable(now, inverse, time_step)) return false;
+    Vector3 force = force_on_tip(now);
+    if (link.tipTurnsWithLink) {
+      if ((tip.blocked & all_rotations) != all_rotations) return false;
+      force += turn_tip(link, now, kept_[i], tip.orientation, tip.motion.angular_velocity);
+    }
+    // A force that is no number stays none in what it moves, where is_sound() sees it.
+    if (tip.moves) {
+      tip.added_force += force;
+    } else if (!root.moves && !is_plain(force)) {
+      return false;
+    }
+    if (root.moves) root.added_force += -force;
+    if (tracks_energy) {
+      const LinkEnergy step = energy(link, now, time_step, last_softening);
+      stored.link += step.elastic;
+      energies.link_damping += step.damping;
+      energies.pin_damping += step.pin_damping;
+      if (step.works) energies.link_thermal_work += step.thermal_work;
+    }
+    keep(link, now, time);
+  }
+  return true;
+}
+
+inline bool Scene::act(std::vector<TorsionPlace>& springs) {
+  for (TorsionPlace& place : springs) {
+    const auto span = [&](const std::array<int, 2>& ends) {
+      return span_of(body(ends[0]).motion.position, body(ends[1]).motion.position);
+    };
+    const auto mobility = [&](const std::array<int, 2>& ends) {
+      return body(ends[0]).inverse_mass + body(ends[1]).inverse_mass;
+    };
+    const Span first = span(place.first);
+    const Span second = span(place.second);
+    Torsion& spring = place.spring;
+    if (!first.is_proper() || !second.is_proper() || !is_planar(first, spring.axis) ||
+        !is_planar(second, spring.axis) || has_friction_without_stiffness(spring)) {
+      return false;
+    }
+    const TorsionEnergy energy = torsion_step(spring, first, second);
+    const double inverse = inverse_inertia(first, mobility(place.first)) +
+                           inverse_inertia(second, mobility(place.second));
+    if (inverse > 0 &&
+        !(time_step <= kernel::critical_time_step(1 / inverse, largest_stiffness(spring)))) {
+      return false;
+    }
+    if (!std::isfinite(spring.moment)) return false;
+    const auto add = [&](const std::array<int, 2>& ends, const Vector3& force) {
+      if (body(ends[1]).moves) body(ends[1]).added_force += force;
+      if (body(ends[0]).moves) body(ends[0]).added_force += -force;
+    };
+    add(place.first, couple(first, spring.axis, spring.moment));
+    add(place.second, couple(second, spring.axis, -spring.moment));
+    if (tracks_energy) {
+      stored.torsion += energy.elastic;
+      energies.torsion_friction += energy.friction;
+    }
+  }
+  return true;
+}
+
+inline bool Scene::act(std::vector<Prismatic>& joints) {
+  for (Prismatic& joint : joints) {
+    Body& one = body(joint.id1);
+    Body& two = body(joint.id2);
+    if (has_friction_without_stiffness(joint) || has_stop_without_stiffness(joint)) return false;
+    const double inverse = one.inverse_mass + two.inverse_mass;
+    const PrismaticStep step =
+        prismatic_step(joint,
+                       {one.motion.position - two.motion.position,
+                        one.motion.velocity - two.motion.velocity, inverse > 0 ? 1 / inverse : 0},
+                       time_step);
+    if (!(time_step <= step.largest_step) || !is_plain(step.force)) return false;
+    if (one.moves) one.added_force += step.force;
+    if (two.moves) two.added_force += -step.force;
+    if (tracks_energy) {
+      stored.prismatic += step.elastic;
+      energies.prismatic_friction += step.friction;
+      energies.prismatic_damping += step.damping;
+    }
+  }
+  return true;
+}
+
+inline bool Scene::act(std::vector<Guide>& guides) {
+  sum();
+  kept_.resize(guides.size());
+  for (std::size_t i = 0; i < guides.size(); ++i) {
+    Body& held = body(guides[i].body);
+    const Vector3& normal = guides[i].normal;
+    kept_[i] = held.force.dot(normal) * normal;
+    if (!is_plain(kept_[i])) return false;
+    held.motion.velocity -= held.motion.velocity.dot(normal) * normal;
+  }
+  for (std::size_t i = 0; i < guides.size(); ++i) body(guides[i].body).added_force += -kept_[i];
+  return true;
+}
+
+}  // namespace statejump::stepper
