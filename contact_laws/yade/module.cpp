@@ -3,6 +3,8 @@
 // Adding a class is one entry in the list below.
 #include <boost/archive/basic_archive.hpp>
 #include <boost/make_shared.hpp>
+#include <string>
+#include <vector>
 
 #include "bore.hpp"
 #include "failure.hpp"
@@ -14,6 +16,7 @@
 #include "state_recorder.hpp"
 #include "statejump/kernel/elastic_pair.hpp"
 #include "statejump/kernel/hertz.hpp"
+#include "statejump/kernel/laws/joint_law.hpp"
 #include "statejump/law_loader/load.hpp"
 #include "statejump/yade_abi/guard.hpp"
 #include "stepper.hpp"
@@ -81,6 +84,22 @@ double hertz_depth(double force, double effectiveRadius, double young, double po
   return kernel::hertz_depth(
       kernel::elastic_pair(young, poisson, young, poisson).effective_young_modulus, effectiveRadius,
       force);
+}
+
+// By the attribute that takes them.
+boost::python::dict law_names() {
+  namespace laws = kernel::laws;
+  boost::python::dict names;
+  const auto add = [&](const char* attribute, const std::vector<std::string>& known) {
+    boost::python::list list;
+    for (const std::string& name : known) list.append(name);
+    names[attribute] = list;
+  };
+  add("normalLaw", laws::law_names<laws::NormalLaw>());
+  add("dissipationLaw", laws::law_names<laws::DissipationLaw>());
+  add("frictionLaw", laws::law_names<laws::FrictionLaw>());
+  add("tangentialVelocity", laws::law_names<laws::TangentialVelocityLaw>());
+  return names;
 }
 
 // Of the files that this YADE's O.save writes; it changes with the version of Boost.
@@ -156,6 +175,11 @@ BOOST_PYTHON_MODULE(_native) {
   py::def("built_for", &statejump::yade_abi::built_for);
   py::def("archive_version", &statejump::dem::archive_version);
   py::def("class_names", &statejump::dem::OurClasses::names);
+  py::def(
+      "law_names", &statejump::dem::law_names,
+      "Names of laws by the attribute of Law2_JointGeom_JointPhys_JointLaw that takes them, those "
+      "of one's own last: {'normalLaw': [...], 'dissipationLaw': [...], 'frictionLaw': [...], "
+      "'tangentialVelocity': [...]}.");
   py::def(
       "bore_triangles", &statejump::dem::bore_triangles,
       (py::arg("radius"), py::arg("length"), py::arg("around"), py::arg("along"),

@@ -37,9 +37,9 @@ from .saved_files import explained as _explained  # noqa: E402
 _wrapper.Omega.load = _explained(_wrapper.Omega.load, _native.archive_version(), _native.built_for())
 
 stable_time_step, hertz_depth, take_failure = _native.stable_time_step, _native.hertz_depth, _native.take_failure
-bore_triangles, socket_triangles = _native.bore_triangles, _native.socket_triangles
+bore_triangles, socket_triangles, law_names = _native.bore_triangles, _native.socket_triangles, _native.law_names
 __all__ = [
-    "slot", "stable_time_step", "hertz_depth", "take_failure", "bore_triangles", "socket_triangles",
+    "slot", "stable_time_step", "hertz_depth", "take_failure", "bore_triangles", "socket_triangles", "law_names",
     *_native.class_names(),
 ]
 for _name in _native.class_names():

@@ -181,15 +181,11 @@ def scenes():
 
 def laws():
     """Every law of the catalogue, each with the others at their defaults."""
-    from statejump import _engine
-
-    attributes = {"normal": "normalLaw", "dissipation": "dissipationLaw", "friction": "frictionLaw",
-                  "tangential_velocity": "tangentialVelocity"}
     found = {}
-    for kind, attribute in attributes.items():
-        for name in _engine.law_names(kind):
+    for attribute, names in sj.law_names().items():
+        for name in names:
             law = {attribute: name, "restitution": 0.7}
-            found[f"{kind} {name}"] = run_both(lambda law=law: joint(Law(**law), hot=20), 2500, 250)
+            found[f"{attribute} {name}"] = run_both(lambda law=law: joint(Law(**law), hot=20), 2500, 250)
     return found
 
 
