@@ -158,7 +158,9 @@ TEST(Hertz, LimitsOfTheEffectiveRadius) {
 }
 
 TEST(Hertz, ElasticPairRefusesBadMaterials) {
+  EXPECT_DOUBLE_EQ(elastic_pair(0.5, 0.3, 0.5, 0.3).effective_young_modulus, 0.25 / 0.91);  // soft
   EXPECT_THROW(elastic_pair(0.0, 0.3, 70e9, 0.3), std::invalid_argument);
+  EXPECT_THROW(elastic_pair(70e9, 0.3, 0.0, 0.3), std::invalid_argument);
   EXPECT_THROW(elastic_pair(70e9, 0.3, -1.0, 0.3), std::invalid_argument);
   EXPECT_THROW(elastic_pair(nan, 0.3, 70e9, 0.3), std::invalid_argument);
   EXPECT_THROW(elastic_pair(infinity, 0.3, infinity, 0.3), std::invalid_argument);

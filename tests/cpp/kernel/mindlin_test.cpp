@@ -24,6 +24,8 @@ TEST(Mindlin, StickIsASpringThatOpposesTheSlide) {
   EXPECT_FALSE(history.slipping);
   EXPECT_DOUBLE_EQ(energy.elastic, 2.5e-6);  // 1/2 (2^2 + 1^2) / 1e6
   EXPECT_EQ(energy.dissipation, 0.0);
+  EXPECT_DOUBLE_EQ(elastic_energy(history), 2.5e-6);  // what is remembered holds it
+  EXPECT_EQ(elastic_energy(ContactHistory()), 0.0);
   // There and back is reversible.
   mindlin_step(1e6, 100.0, Vector3(-2e-6, 1e-6, 0), history);
   EXPECT_NEAR(history.tangential_force.norm(), 0.0, 1e-15);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "partial_slip_histories.hpp"
@@ -74,6 +75,22 @@ TEST(PartialSlipLine, AtABoundThatWasMetRingsStick) {
   EXPECT_NEAR(line.by_slide, k, 1e-14 * k);
   EXPECT_NEAR(line.by_limit, 0.0, 1e-14);
   EXPECT_NEAR(line.centre, -line.bound, 1e-14 * line.bound);
+}
+
+TEST(PartialSlipLine, CountsPiecesThatStickAndSlip) {
+  // A contact without slip before: the rim slips the way of the slide, the centre sticks.
+  PartialSlipMemory memory;
+  const double k = stiffness(1e-6);
+  const double most = limit(1e-6);
+  partial_slip_step(k, most, {0.0, 0.0}, memory);
+  const double slide = 0.25 * gross(1e-6);
+  const auto counts = [](const PartialSlipLine& line) {
+    return std::array{line.stuck, line.plus, line.minus};
+  };
+  EXPECT_EQ(counts(partial_slip_line(k, most, slide, memory)), (std::array{1, 1, 0}));
+  EXPECT_EQ(counts(partial_slip_line(k, most, -slide, memory)), (std::array{1, 0, 1}));
+  EXPECT_EQ(counts(partial_slip_line(k, most, 0.0, memory)), (std::array{1, 0, 0}));
+  EXPECT_EQ(counts(partial_slip_line(k, most, 2.0 * gross(1e-6), memory)), (std::array{0, 1, 0}));
 }
 
 TEST(PartialSlipLine, WithoutContactOrFrictionAllIsZero) {

@@ -300,9 +300,10 @@ class PartialSlipStep {
     bends_ = size_ > 1 && turned(point_[static_cast<std::size_t>(size_ - 2)].u, last().u);
   }
 
-  /// The same of a piece inside the bound, mostly without a look at the points before.
+  /// The same of a piece inside the bound, mostly without a look at the points before, of which
+  /// there is one at least.
   void add_stuck(double x, const Tangent& u) {
-    if (bends_ || size_ == 0 || !(x > last().x) || turned(last().u, u)) {
+    if (bends_ || !(x > last().x) || turned(last().u, u)) {
       add(x, u, false);
       return;
     }
@@ -313,7 +314,6 @@ class PartialSlipStep {
   void look_and_add(double x, const Tangent& u, bool on_bound) {
     if (size_ > 0 && !(x > last().x)) {
       if (on_bound) last().u = u;
-      follows_ = follows_ && on_bound;
       return;
     }
     if (on_bound && follows_ && size_ > 1) {
