@@ -322,6 +322,13 @@ def test_columns_that_are_refused(columns: dict[str, Any], why: str) -> None:
     assert found == why
 
 
+def test_a_number_of_numpy_is_told_as_what_it_holds() -> None:
+    for given, told in ((np.float64(1.5), "1.5"), (np.bool_(True), "true"), (np.array([1.0, 2.0]), "[1.0, 2.0]")):
+        wrong = NotAllowed("turns", given, "must be a whole number")
+        assert str(wrong) == f"turns = {told} is not allowed: must be a whole number"
+        assert json.loads(json.dumps(wrong.fields()))["value"] == given.tolist()
+
+
 def test_columns_of_texts_and_of_truth() -> None:
     turned = things_of(ItemTable(name=["A", "B"], mass_kg=[1, 2], turns=[2, 3]))
     assert [(item.turns, type(item.turns)) for item in turned] == [(2, int), (3, int)]

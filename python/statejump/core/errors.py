@@ -92,8 +92,15 @@ class Range:
         return {key: end for key, end in ends.items() if isfinite(end)} | {"unit": self.unit}
 
 
+def _without_type(value: Any) -> Any:
+    """Return a number or array of numpy as what it holds: numpy 2 says the type of a number with it."""
+    held = getattr(value, "tolist", None)
+    return held() if callable(held) else value
+
+
 def shown(value: Any) -> str:
     """Return a value as one would write it in a case file."""
+    value = _without_type(value)
     if isinstance(value, bool):
         return str(value).lower()
     return repr(value)
@@ -215,6 +222,7 @@ def _plain(value: Any) -> Any:
     """Return a value if JSON can hold it, else as text."""
     import json  # not to start the command
 
+    value = _without_type(value)
     try:
         json.dumps(value, allow_nan=False)
     except (TypeError, ValueError):
