@@ -11,9 +11,11 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from campaign import Journal, Score, campaign, explained, statement_lines  # noqa: E402
+from campaign import Score, campaign, explained  # noqa: E402
+from journal import Journal  # noqa: E402
 from modules import MODULES, Module  # noqa: E402
 from operators import Mutant, mutants  # noqa: E402
+from python_guards import statement_lines  # noqa: E402
 from switched import SWITCH, VARIABLE, switched  # noqa: E402
 
 REPOSITORY = Path(__file__).resolve().parents[2]
