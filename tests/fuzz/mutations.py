@@ -113,7 +113,7 @@ def spoiled_document(document: dict[str, Any], chance: random.Random) -> dict[st
             case 1 if isinstance(node, list):
                 node += [deepcopy(node[key]) for _ in range(chance.choice((1, 1, 1000)))]
             case 2 if isinstance(node, dict):
-                node[chance.choice((f"{key}x", key.upper(), "", "a.b", "\x00"))] = node.pop(key)
+                node[chance.choice((f"{key}x", str(key).upper(), "", "a.b", "\x00"))] = node.pop(key)
             case 3:
                 other, there = chance.choice(places)
                 node[key] = deepcopy(other[there])
@@ -121,7 +121,7 @@ def spoiled_document(document: dict[str, Any], chance: random.Random) -> dict[st
                 with suppress(OverflowError):
                     node[key] *= chance.choice((-1, 0, 1e-12, 1e-3, 0.5, 2, 10, 1e3, 1e12))
             case _:
-                node[key] = chance.choice(ODD_VALUES)
+                node[key] = deepcopy(chance.choice(ODD_VALUES))  # a later change may be one within it
     return made
 
 
