@@ -340,19 +340,13 @@ std::vector<BoreContact> find_ball_contacts(const BoreMesh::Impl& m, const Vecto
     distance[i] = d >= 0 ? d : infinity;
     if (survey && d >= 0) survey->look_at(d, grid.hollow[i], grid.sag);
   }
-  const auto neighbours = [&](int cell, const auto& use) {
-    const int row = cell / grid.columns, column = cell % grid.columns;
-    for (int dr = -1; dr <= 1; ++dr) {
-      if (row + dr < 0 || row + dr >= grid.rows) continue;
-      for (int dc = -1; dc <= 1; ++dc)
-        if (dr != 0 || dc != 0)
-          use((row + dr) * grid.columns + (column + dc + grid.columns) % grid.columns);
-    }
-  };
-  // Cells near enough, and one ring more: the wall may be nearer between samples.
+  // Cells of whose own wall the nearest point may be near enough: it lies across the way to the
+  // centre, by the cell's reach at most, and is nearer than a plane there by what the wall sags.
+  const double within = limit + 0.01 * m.wall.radius + grid.sag;
   std::vector<int> order;
   for (int i = 0; i < cells; ++i)
-    if (distance[i] < limit + 0.01 * m.wall.radius) order.push_back(i);
+    if (distance[i] * distance[i] < within * within + grid.reach[i] * grid.reach[i])
+      order.push_back(i);
   if (order.empty()) return {};
   std::sort(order.begin(), order.end(), [&](int a, int b) {
     return distance[a] < distance[b] || (distance[a] == distance[b] && a < b);
@@ -367,7 +361,7 @@ std::vector<BoreContact> find_ball_contacts(const BoreMesh::Impl& m, const Vecto
   };
   for (const int cell : order) {
     int own = -1;
-    neighbours(cell, [&](int other) {
+    grid.for_neighbours(cell, [&](int other) {
       if (basin[other] < 0) return;
       const int b = find(basin[other]);
       if (own < 0) {

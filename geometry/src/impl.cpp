@@ -257,6 +257,23 @@ void BoreMesh::Impl::make_grid() {
         if (std::abs(other - here) > largest_step) largest_step = std::abs(other - here);
     }
   grid.least = least - largest_step - prominence;
+  make_reach();
+}
+
+/// Half-way to its neighbours the wall is a sample's own; all the way where one of them is missing.
+void BoreMesh::Impl::make_reach() {
+  grid.reach.assign(grid.radius.size(), 0);
+  for (int cell = 0; cell < static_cast<int>(grid.radius.size()); ++cell) {
+    if (std::isnan(grid.radius[cell])) continue;
+    double farthest = 0, share = 0.5;
+    grid.for_neighbours(cell, [&](int other) {
+      if (std::isnan(grid.radius[other]))
+        share = 1;
+      else
+        farthest = std::max(farthest, (grid.point[other] - grid.point[cell]).norm());
+    });
+    grid.reach[cell] = share * farthest;
+  }
 }
 
 /// Refuses facets that leave open where the surface between them is. Known it must be to a fiftieth

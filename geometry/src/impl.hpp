@@ -38,11 +38,21 @@ struct Grid {
   double low = 0, step = 0;    ///< of the rows
   std::vector<double> radius;  ///< [row * columns + column] from axis or centre; NaN: no wall
   std::vector<Vector3> point;
-  std::vector<int> face;  ///< of the wall
+  std::vector<int> face;      ///< of the wall
+  std::vector<double> reach;  ///< no wall of this sample's own is farther from it, but for sag [m]
   std::vector<double> cosine, sine;
   double least = 0;            ///< no wall is nearer to the axis (centre) [m]
   std::vector<double> hollow;  ///< largest hollow curvature of the faces around [1/m]
   double sag = 0;              ///< what straight interpolation between the rows leaves, at most [m]
+
+  /// Uses the cells around one, up to eight of them: rows end, columns close.
+  template <class Use>
+  void for_neighbours(int cell, const Use& use) const {
+    const int row = cell / columns, column = cell % columns;
+    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, rows - 1); ++r)
+      for (int turn = -1; turn <= 1; ++turn)
+        if (r != row || turn != 0) use(r * columns + (column + turn + columns) % columns);
+  }
 };
 
 struct BoreMesh::Impl {
@@ -92,6 +102,7 @@ struct BoreMesh::Impl {
  private:
   void make_jets(int degree);
   void make_grid();
+  void make_reach();
   void make_hollow();
   void estimate_error();
   void refuse_coarse(const std::string& name) const;

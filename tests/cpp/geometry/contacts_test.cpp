@@ -46,7 +46,7 @@ std::vector<double> brute_minima(const BoreShape& shape, const Vector3d& centre)
 TEST(BoreContacts, RoundBoreIsTheAnalyticJoint) {
   const BoreMesh mesh(bore_triangles(round_bore(), 200, 10));
   Random random;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 500; ++i) {
     const double eccentricity = random.uniform(0.5e-4, 1.2e-4), angle = random.uniform(-4, 4);
     const Vector3d centre(eccentricity * std::cos(angle), eccentricity * std::sin(angle),
                           random.uniform(-4.9e-3, 4.9e-3));
@@ -197,6 +197,59 @@ TEST(BallContacts, BallInALobedBore) {
   for (const auto& contact : found) {
     EXPECT_NEAR(contact.depth, 1e-7, 1e-11);
     EXPECT_NEAR(contact.point.z(), 1e-3, 1e-6);
+  }
+}
+
+TEST(BallContacts, BetweenTheSamplesOfAWall) {
+  // Samples are far apart along a long bore, and for a thin journal or a small ball.
+  const BoreShape shapes[] = {round_bore(), {bearing_radius, 100e-3}};
+  for (const BoreShape& shape : shapes) {
+    const BoreMesh mesh(bore_triangles(shape, 120, 40));
+    for (const double share : {0.02, 0.3, 0.98})
+      for (int i = 0; i < 60; ++i) {
+        const double radius = share * bearing_radius, depth = 1e-3 * radius;
+        const double angle = 0.37 * i, z = shape.length * (i / 60.0 - 0.49);
+        const Vector3d way(std::cos(angle), std::sin(angle), 0);
+        const Vector3d centre = (bearing_radius - radius + depth) * way + z * z_axis;
+        for (const auto& found :
+             {mesh.ball_contacts(centre, radius, 0), mesh.contacts(centre, z_axis, radius, 0)}) {
+          ASSERT_EQ(found.size(), 1u) << "length " << shape.length << " radius " << radius;
+          EXPECT_NEAR(found[0].depth, depth, 1e-8);
+          EXPECT_NEAR((found[0].normal - way).norm(), 0, 1e-3);
+        }
+      }
+  }
+}
+
+TEST(BoreContacts, AtTheEndOfAWallThatNarrowsThere) {
+  Triangles wall = bore_triangles(round_bore(), 120, 40);
+  for (Vector3d& v : wall.vertices) {
+    const double down = std::max(0.0, -v.z() / 5e-3);
+    v.head<2>() *= 1 - 0.1 * down * down;
+  }
+  const BoreMesh mesh(wall);
+  const double narrowest = 0.9 * bearing_radius;
+  const auto found = mesh.contacts({0, 0, -5e-3}, z_axis, narrowest + 1e-7, 0);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].depth, 1e-7, 1e-9);
+  EXPECT_TRUE(mesh.contacts({0, 0, -5e-3}, z_axis, narrowest - 1e-7, 0).empty());
+}
+
+TEST(BallContacts, OnePlaceIsOneContact) {
+  // Where rows are much closer than columns, a minimum aslant to them shows twice in the samples.
+  BoreShape shape{bearing_radius, 5e-3};
+  shape.lobes = {{8, 1e-4, 0.3}, {7, 6e-5, 1.1}};
+  const BoreMesh mesh(bore_triangles(shape, 150, 5));
+  Random random;
+  for (int i = 0; i < 500; ++i) {
+    const double radius = random.uniform(0.1, 0.95) * bearing_radius, angle = random.uniform(0, 7);
+    const double off = random.uniform(0.5, 1) * (bearing_radius - radius);
+    const Vector3d centre(off * std::cos(angle), off * std::sin(angle),
+                          random.uniform(-0.4, 0.4) * shape.length);
+    const auto found = mesh.ball_contacts(centre, radius, 0.5 * bearing_radius);
+    for (std::size_t a = 0; a < found.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        EXPECT_GT((found[a].point - found[b].point).norm(), 1e-4 * bearing_radius) << i;
   }
 }
 
