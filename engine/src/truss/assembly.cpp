@@ -64,13 +64,8 @@ class NodeWriter {
   /// direction of the displacement)`.
   template <class Value>
   void block(int row_node, int column_node, Value&& value) {
-    const Node& row_part = model_.nodes[index(row_node)];
-    const Node& column_part = model_.nodes[index(column_node)];
-    for (int j = 0; j < column_part.freedoms; ++j) {
-      for (int i = 0; i < row_part.freedoms; ++i) {
-        to_.add(rows_[index(row_node)] + i, rows_[index(column_node)] + j, value(i, j));
-      }
-    }
+    to_.block(rows_[index(row_node)], model_.nodes[index(row_node)].freedoms,
+              rows_[index(column_node)], model_.nodes[index(column_node)].freedoms, value);
   }
   /// A vector along the directions in which a node moves.
   Vector3d seen(int node, const Vector3d& vector) const {
@@ -85,7 +80,7 @@ class NodeWriter {
 
 }  // namespace
 
-void System::assemble_bars(const VectorXd& z, double time, Assembly& to) const {
+void System::assemble_bars(double time, Assembly& to) const {
   const Model& model = *model_;
   NodeWriter nodes(model, node_row_, to);
   std::vector<double> changes;
@@ -96,6 +91,13 @@ void System::assemble_bars(const VectorXd& z, double time, Assembly& to) const {
     to.largest_force = std::max(to.largest_force, model.nodes[n].load.lpNorm<Eigen::Infinity>());
   }
 
+  const auto moved_between = [&](int first, int second) -> Vector3d {
+    return to.moved.col(second) - to.moved.col(first);
+  };
+  const auto lengths_of = [&](int first, int second) {
+    return lengths(model.nodes[index(second)].position - model.nodes[index(first)].position,
+                   moved_between(first, second));
+  };
   const auto bar = [&](int first, int second, const Vector3d& direction, double length,
                        const Axial& axial) {
     nodes.force(first, -axial.tension * direction);
@@ -104,29 +106,33 @@ void System::assemble_bars(const VectorXd& z, double time, Assembly& to) const {
     if (to.residual_only()) return;
     // Along the bar its stiffness, across it that of the tension.
     const double across = axial.tension / length;
-    const std::array<int, 2> ends{first, second};
-    const std::array<Vector3d, 2> along{nodes.seen(first, direction),
-                                        nodes.seen(second, direction)};
-    for (std::size_t a = 0; a < 2; ++a) {
-      const Matrix3d& of_force = model.nodes[index(ends[a])].free_directions;
-      for (std::size_t b = 0; b < 2; ++b) {
-        const Matrix3d& moved = model.nodes[index(ends[b])].free_directions;
-        const double sense = a == b ? 1.0 : -1.0;
-        nodes.block(ends[a], ends[b], [&](int i, int j) {
-          return sense * ((axial.stiffness - across) * along[a][i] * along[b][j] +
-                          across * of_force.col(i).dot(moved.col(j)));
-        });
-      }
-    }
+    const double more = axial.stiffness - across;
+    const Vector3d at_first = nodes.seen(first, direction);
+    const Vector3d at_second = nodes.seen(second, direction);
+    const auto own = [&](int node, const Vector3d& along) {
+      nodes.block(node, node, [&](int i, int j) {
+        return more * along[i] * along[j] + (i == j ? across : 0.0);
+      });
+    };
+    const Matrix3d both = model.nodes[index(first)].free_directions.transpose() *
+                          model.nodes[index(second)].free_directions;
+    own(first, at_first);
+    nodes.block(first, second, [&](int i, int j) {
+      return -(more * at_first[i] * at_second[j] + across * both(i, j));
+    });
+    nodes.block(second, first, [&](int i, int j) {
+      return -(more * at_second[i] * at_first[j] + across * both(j, i));
+    });
+    own(second, at_second);
   };
   for (const Link& link : model.links) {
-    const Lengths length = lengths_between(link.first, link.second, z);
+    const Lengths length = lengths_of(link.first, link.second);
     const double change = link.temperature_fraction * changes[index(link.program)];
     bar(link.first, link.second, length.along / length.now, length.now,
         link_axial(link, length.growth, length.drawn, change));
   }
   for (const AxialSpring& spring : model.springs) {
-    const Lengths length = lengths_between(spring.first, spring.second, z);
+    const Lengths length = lengths_of(spring.first, spring.second);
     bar(spring.first, spring.second, length.along / length.now, length.now,
         spring_axial(spring, length));
   }
@@ -139,16 +145,15 @@ void System::assemble_bars(const VectorXd& z, double time, Assembly& to) const {
     std::array<double, 2> sign{-1.0, 1.0};
     if (spring.second_link < 0) sign[0] = 1.0;
     double angle = 0.0;
-    std::array<AngleDerivatives, 2> turn;
+    std::array<Vector2d, 2> now;
     for (std::size_t k = 0; k < 2; ++k) {
       if (links[k] < 0) continue;
       const Link& link = model.links[index(links[k])];
       const Vector2d drawn = plane.transpose() * (model.nodes[index(link.second)].position -
                                                   model.nodes[index(link.first)].position);
-      const Vector2d moved =
-          plane.transpose() * (displacement(link.second, z) - displacement(link.first, z));
-      angle += sign[k] * std::atan2(cross(drawn, moved), drawn.dot(drawn + moved));
-      turn[k] = angle_derivatives(drawn + moved, plane);
+      const Vector2d moved = plane.transpose() * moved_between(link.first, link.second);
+      now[k] = drawn + moved;
+      angle += sign[k] * std::atan2(cross(drawn, moved), drawn.dot(now[k]));
     }
     const double moment = spring.stiffness * (angle - spring.free_angle);
     // The angle by the places of the ends: that of the second of a link as turn, of the first
@@ -156,35 +161,34 @@ void System::assemble_bars(const VectorXd& z, double time, Assembly& to) const {
     struct End {
       std::size_t link;
       int node;
-      bool is_second;
-      Vector3d along;
+      Vector3d turns;    ///< Derivative of the angle along the node's directions [rad/m].
+      Vector3d outward;  ///< Direction of the link over its length, along the same [1/m].
     };
     std::array<End, 4> ends;
     std::size_t count = 0;
     for (std::size_t k = 0; k < 2; ++k) {
       if (links[k] < 0) continue;
       const Link& link = model.links[index(links[k])];
-      const Vector3d by_place = sign[k] * turn[k].gradient;
-      nodes.force(link.second, moment * by_place);
-      nodes.force(link.first, -moment * by_place);
-      to.largest_force = std::max(to.largest_force, std::abs(moment) * by_place.norm());
-      ends[count++] = {k, link.second, true, nodes.seen(link.second, by_place)};
-      ends[count++] = {k, link.first, false, nodes.seen(link.first, -by_place)};
+      const double squared = now[k].squaredNorm();
+      const Vector3d turns = plane * (sign[k] / squared * turned_left(now[k]));
+      nodes.force(link.second, moment * turns);
+      nodes.force(link.first, -moment * turns);
+      to.largest_force = std::max(to.largest_force, std::abs(moment) * turns.norm());
+      if (to.residual_only()) continue;
+      const Vector3d outward = plane * (now[k] / squared);
+      ends[count++] = {k, link.second, nodes.seen(link.second, turns),
+                       nodes.seen(link.second, outward)};
+      ends[count++] = {k, link.first, -nodes.seen(link.first, turns),
+                       -nodes.seen(link.first, outward)};
     }
-    if (to.residual_only()) continue;
     for (std::size_t a = 0; a < count; ++a) {
-      const Matrix3d& of_force = model.nodes[index(ends[a].node)].free_directions;
+      const End& by = ends[a];
       for (std::size_t b = 0; b < count; ++b) {
-        const Matrix3d& moved = model.nodes[index(ends[b].node)].free_directions;
-        Matrix3d bends = Matrix3d::Zero();
-        if (ends[a].link == ends[b].link) {
-          bends = moment * sign[ends[a].link] *
-                  (ends[a].is_second == ends[b].is_second ? 1.0 : -1.0) *
-                  turn[ends[a].link].hessian;
-        }
-        nodes.block(ends[a].node, ends[b].node, [&](int m, int n) {
-          return spring.stiffness * ends[a].along[m] * ends[b].along[n] +
-                 of_force.col(m).dot(bends * moved.col(n));
+        const End& of = ends[b];
+        const double bends = by.link == of.link ? moment : 0.0;
+        nodes.block(by.node, of.node, [&](int m, int n) {
+          return spring.stiffness * by.turns[m] * of.turns[n] -
+                 bends * (by.outward[m] * of.turns[n] + by.turns[m] * of.outward[n]);
         });
       }
     }
@@ -197,7 +201,7 @@ void System::assemble_joints(const VectorXd& z, double time, const StepStart& st
   const Model& model = *model_;
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     JointWriter to_joint = writer(static_cast<int>(i), to);
-    const Trial at = trial(static_cast<int>(i), z, time, start, joints, opening);
+    const Trial at = trial(static_cast<int>(i), z, to.moved, time, start, joints, opening);
     std::visit([&](const auto& one) { one.evaluate(at, statuses[i], to_joint); }, model.joints[i]);
   }
 }
@@ -292,18 +296,21 @@ void System::evaluate(const VectorXd& z, double time, const StepStart& start,
                       const Statuses& statuses, JointModel joints, double opening,
                       Assembly& to) const {
   to.clear();
-  assemble_bars(z, time, to);
+  displacements(z, to.moved);
+  assemble_bars(time, to);
   assemble_joints(z, time, start, statuses, joints, opening, to);
 }
 
 void System::evaluate_bars(const VectorXd& z, double time, Assembly& to) const {
   to.clear();
-  assemble_bars(z, time, to);
+  displacements(z, to.moved);
+  assemble_bars(time, to);
 }
 
 void System::evaluate_joints(const VectorXd& z, double time, const StepStart& start,
                              const Statuses& statuses, Assembly& to) const {
   to.clear();
+  displacements(z, to.moved);
   assemble_joints(z, time, start, statuses, JointModel::friction, 1.0, to);
 }
 
@@ -311,7 +318,8 @@ Assembly System::recorded(Parts parts) const {
   Assembly made(unknowns_);
   const VectorXd z = VectorXd::Zero(unknowns_);
   const Statuses statuses = all_stick();
-  if (parts != Parts::joints) assemble_bars(z, 0.0, made);
+  displacements(z, made.moved);
+  if (parts != Parts::joints) assemble_bars(0.0, made);
   if (parts != Parts::bars) {
     assemble_joints(z, 0.0, begin(z, 0.0, statuses, 1.0), statuses, JointModel::pins, 1.0, made);
   }

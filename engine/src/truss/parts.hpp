@@ -78,6 +78,18 @@ struct AngleDerivatives {
   Matrix3d hessian;
 };
 
+/// The same along the two directions of the plane.
+struct PlanarAngle {
+  Vector2d gradient;
+  Eigen::Matrix2d hessian;
+};
+
+inline PlanarAngle planar_angle(const Vector2d& v) {
+  const double squared = v.squaredNorm();
+  const Vector2d left = turned_left(v);
+  return {left / squared, -(v * left.transpose() + left * v.transpose()) / (squared * squared)};
+}
+
 inline AngleDerivatives angle_derivatives(const Vector2d& v, const Matrix32& plane) {
   const double length = v.norm();
   const Vector3d along = plane * (v / length);

@@ -54,6 +54,11 @@ Vector3d System::displacement(int node, const VectorXd& z) const {
   return moved;
 }
 
+void System::displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const {
+  moved.resize(3, static_cast<Eigen::Index>(model_->nodes.size()));
+  for (int i = 0; i < moved.cols(); ++i) moved.col(i) = displacement(i, z);
+}
+
 Lengths System::lengths_between(int from, int to, const VectorXd& z) const {
   return lengths(model_->nodes[index(to)].position - model_->nodes[index(from)].position,
                  displacement(to, z) - displacement(from, z));
@@ -64,16 +69,19 @@ int System::node_of(int displacement) const {
   return static_cast<int>(after - node_row_.begin()) - 1;
 }
 
-Trial System::trial(int joint, const VectorXd& z, double time, const StepStart& start,
-                    JointModel joints, double opening) const {
-  const JointFrame& frame = frames_[index(joint)];
+namespace {
+
+template <class Moved>
+Trial asked(const Model& model, const JointFrame& frame, const double* force, const double* history,
+            double time, double temperature_change, int joint, const StepStart& start,
+            JointModel joints, double opening, Moved&& moved) {
   Trial trial{.frame = frame,
               .drawn = {},
               .moved = {},
               .force = {},
-              .history = history(joint, start),
+              .history = history,
               .before = start.statuses[index(joint)],
-              .temperature_change = temperature_change(frame, time),
+              .temperature_change = temperature_change,
               .model = joints,
               .opening = opening};
   if (start.owed.cols() > 0) {
@@ -82,11 +90,34 @@ Trial System::trial(int joint, const VectorXd& z, double time, const StepStart& 
   }
   for (std::size_t k = 0; k < most_joint_nodes; ++k) {
     const int node = frame.nodes[k];
-    trial.drawn[k] = node < 0 ? Vector3d::Zero() : model_->nodes[index(node)].position;
-    trial.moved[k] = node < 0 ? Vector3d::Zero() : displacement(node, z);
+    if (node < 0) {
+      trial.drawn[k].setZero();
+      trial.moved[k].setZero();
+      continue;
+    }
+    trial.drawn[k] = model.nodes[index(node)].position;
+    trial.moved[k] = moved(node);
   }
-  for (int k = 0; k < frame.forces; ++k) trial.force[index(k)] = z[force_row_[index(joint)] + k];
+  std::copy_n(force, frame.forces, trial.force.begin());
   return trial;
+}
+
+}  // namespace
+
+Trial System::trial(int joint, const VectorXd& z, double time, const StepStart& start,
+                    JointModel joints, double opening) const {
+  const JointFrame& frame = frames_[index(joint)];
+  return asked(*model_, frame, z.data() + force_row_[index(joint)], history(joint, start), time,
+               temperature_change(frame, time), joint, start, joints, opening,
+               [&](int node) { return displacement(node, z); });
+}
+
+Trial System::trial(int joint, const VectorXd& z, const Eigen::Matrix3Xd& moved, double time,
+                    const StepStart& start, JointModel joints, double opening) const {
+  const JointFrame& frame = frames_[index(joint)];
+  return asked(*model_, frame, z.data() + force_row_[index(joint)], history(joint, start), time,
+               temperature_change(frame, time), joint, start, joints, opening,
+               [&](int node) -> Vector3d { return moved.col(node); });
 }
 
 JointStatus System::decide(int joint, const VectorXd& z, double time, const StepStart& start,

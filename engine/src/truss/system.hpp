@@ -214,12 +214,17 @@ class System {
   /// Heat of a step of every joint [J], as if all were straight between its ends.
   VectorXd heat(const VectorXd& z, double time, const StepStart& start, const StepStart& after,
                 const VectorXd& slips) const;
-  void assemble_bars(const VectorXd& z, double time, Assembly& to) const;
+  void assemble_bars(double time, Assembly& to) const;
   void assemble_joints(const VectorXd& z, double time, const StepStart& start,
                        const Statuses& statuses, JointModel joints, double opening,
                        Assembly& to) const;
   Assembly recorded(Parts parts) const;
   Lengths lengths_between(int from, int to, const VectorXd& z) const;
+  /// Displacements of all nodes.
+  void displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const;
+  /// The same as trial(), where these are known.
+  Trial trial(int joint, const VectorXd& z, const Eigen::Matrix3Xd& moved, double time,
+              const StepStart& start, JointModel joints, double opening) const;
   Axial axial(const Link& link, const VectorXd& z, double time) const;
   JointWriter writer(int joint, Assembly& to) const;
   JointWriter::Place place(int node) const;

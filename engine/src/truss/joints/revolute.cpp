@@ -14,14 +14,15 @@
 namespace statejump::truss {
 
 using detail::angle_derivatives;
-using detail::AngleDerivatives;
 using detail::ByNormal;
 using detail::cross;
 using detail::HertzContact;
 using detail::index;
 using detail::Matrix32;
+using detail::planar_angle;
+using detail::PlanarAngle;
 using detail::turned_left;
-using Eigen::Matrix3d;
+using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -134,11 +135,14 @@ struct Motion {
   double slide = 0.0;           ///< Δσ [m].
 };
 
+double contact_turned(const Geometry& g, const Memory& start) {
+  const bool known = start.eccentricity.squaredNorm() > 0.0 && g.eccentricity.squaredNorm() > 0.0;
+  return known ? turn_from(start.eccentricity, g.eccentricity) : 0.0;
+}
+
 Motion motion_of(const Geometry& g, const Memory& start) {
   Motion motion;
-  if (start.eccentricity.squaredNorm() > 0.0 && g.eccentricity.squaredNorm() > 0.0) {
-    motion.contact_turned = turn_from(start.eccentricity, g.eccentricity);
-  }
+  motion.contact_turned = contact_turned(g, start);
   motion.journal_turned = turn_from(start.journal_direction, g.journal_direction);
   motion.bearing_turned = turn_from(start.bearing_direction, g.bearing_direction);
   motion.slide = 0.5 * (start.eccentricity.norm() + g.eccentricity.norm()) * motion.contact_turned +
@@ -198,42 +202,40 @@ kernel::PartialSlipResponse rub(const ClearanceRevolute& joint, const Trial& tri
                                    memory);
 }
 
-/// Gradients of the two forces' work, of the slide, and what bends them.
+/// Gradients of the two forces' work, of the slide, and what bends them, along the two directions
+/// of the joint's plane.
 struct Gradients {
-  std::array<Vector3d, 4> normal;
-  std::array<Vector3d, 4> friction;  ///< Virtual work of friction.
-  std::array<Vector3d, 4> slide;     ///< Derivative of Δσ.
-  std::array<std::array<Matrix3d, 4>, 4> hessian;
-  Gradients() {
-    normal.fill(Vector3d::Zero());
-    friction.fill(Vector3d::Zero());
-    slide.fill(Vector3d::Zero());
-    for (auto& line : hessian) line.fill(Matrix3d::Zero());
+  std::array<Vector2d, 4> normal;
+  std::array<Vector2d, 4> friction;  ///< Virtual work of friction.
+  std::array<Vector2d, 4> slide;     ///< Derivative of Δσ.
+  std::array<std::array<Matrix2d, 4>, 4> hessian;
+  explicit Gradients(bool with_hessian) {
+    normal.fill(Vector2d::Zero());
+    friction.fill(Vector2d::Zero());
+    slide.fill(Vector2d::Zero());
+    if (!with_hessian) return;
+    for (auto& line : hessian) line.fill(Matrix2d::Zero());
   }
 };
 
-Gradients pinned(const Trial& trial) {
-  Gradients of;
+void pinned(Gradients& of) {
   for (const auto& [at, sign] : {std::pair{journal, 1.0}, std::pair{bearing, -1.0}}) {
-    of.normal[at] = sign * trial.frame.axes.col(0);
-    of.friction[at] = sign * trial.frame.axes.col(1);
+    of.normal[at] = sign * Vector2d::UnitX();
+    of.friction[at] = sign * Vector2d::UnitY();
     of.slide[at] = of.friction[at];
   }
-  return of;
 }
 
-Gradients in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geometry& g,
-                     const Memory& start, const Motion& motion) {
-  Gradients of;
-  const Matrix32 plane = plane_of(trial);
+/// @param motion that of the step if the slide's derivative is asked, else nothing
+/// @param bends whether the second derivatives are asked
+void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geometry& g,
+                const Memory& start, const Motion& motion, bool bends, Gradients& of) {
   const double distance = g.eccentricity.norm();
-  const Vector2d n = g.eccentricity / distance;
-  const Vector3d along = plane * n;
-  const Vector3d left = plane * turned_left(n);
+  const Vector2d along = g.eccentricity / distance;
+  const Vector2d left = turned_left(along);
   // Names, not a structured binding: a lambda below takes one of them.
   const double normal = trial.force[0];
   const double friction = trial.force[1];
-  const Matrix3d bend = (normal * left - friction * along) * left.transpose() / distance;
   const double lever = 0.5 * (start.eccentricity.norm() / distance + 1.0);
   const double deeper = g.depth > 0.0 ? 0.5 : 0.0;  // −dr1/d|d| = dr2/d|d|
   // By the distance of the centres, the radii change as well.
@@ -243,18 +245,24 @@ Gradients in_contact(const ClearanceRevolute& joint, const Trial& trial, const G
     of.normal[at] = sign * along;
     of.friction[at] = sign * left;
     of.slide[at] = sign * (lever * left + slide_by_distance * along);
-    of.hessian[at][journal] += sign * bend;
-    of.hessian[at][bearing] -= sign * bend;
+  }
+  if (bends) {
+    const Matrix2d bend = (normal * left - friction * along) * left.transpose() / distance;
+    of.hessian[journal][journal] = of.hessian[bearing][bearing] = bend;
+    of.hessian[journal][bearing] = of.hessian[bearing][journal] = -bend;
   }
   // A link that turns: its surface slides by the radius times its angle.
   const auto turn = [&](std::size_t at, std::size_t far, const Vector2d& direction, double radius,
                         double mean_radius) {
-    const AngleDerivatives angle = angle_derivatives(direction, plane);
-    const Matrix3d own = friction * radius * angle.hessian;
-    const Matrix3d by_distance = -friction * deeper * angle.gradient * along.transpose();
+    const PlanarAngle angle = planar_angle(direction);
     for (const auto& [node, sign] : {std::pair{at, 1.0}, std::pair{far, -1.0}}) {
       of.friction[node] += sign * radius * angle.gradient;
       of.slide[node] += sign * mean_radius * angle.gradient;
+    }
+    if (!bends) return;
+    const Matrix2d own = friction * radius * angle.hessian;
+    const Matrix2d by_distance = -friction * deeper * angle.gradient * along.transpose();
+    for (const auto& [node, sign] : {std::pair{at, 1.0}, std::pair{far, -1.0}}) {
       of.hessian[node][at] += sign * own;
       of.hessian[node][far] -= sign * own;
       of.hessian[node][journal] += sign * by_distance;
@@ -269,7 +277,6 @@ Gradients in_contact(const ClearanceRevolute& joint, const Trial& trial, const G
     turn(bearing, bearing_far, g.bearing_direction, -g.bearing_radius,
          -0.5 * (start.bearing_radius + g.bearing_radius));
   }
-  return of;
 }
 
 }  // namespace
@@ -368,22 +375,26 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
   double corner[2][2] = {{0.0, 0.0}, {0.0, 0.0}};  // by λ_n and λ_t
   bool holds_normal = false;
   double slides = 0.0;  // derivative of the second row by the slide
-  Gradients of;
+  const bool bends = !writer.residual_only();
+  Gradients of(bends);
   if (status == JointStatus::open) {
     // Without forces; the journal may be in the middle, where no normal is defined.
     writer.balance(0, normal);
     writer.balance(1, friction);
     corner[0][0] = corner[1][1] = 1.0;
   } else if (trial.model == JointModel::pins) {
-    of = pinned(trial);
+    pinned(of);
     writer.closure(0, g.eccentricity.x());
     writer.closure(1, g.eccentricity.y());
     holds_normal = true;
     slides = 1.0;
   } else {
     const Memory start = Memory::of(trial.history);
-    const Motion motion = motion_of(g, start);
-    of = in_contact(*this, trial, g, start, motion);
+    // One that slips freely or at the bound of friction is not asked how far.
+    const bool measures =
+        trial.model == JointModel::friction && (partial_slip || status == JointStatus::stick);
+    const Motion motion = measures ? motion_of(g, start) : Motion{};
+    in_contact(*this, trial, g, start, motion, bends, of);
     holds_normal = true;
     const ByNormal depth = contact_of(*this).depth(normal);
     writer.closure(0, g.eccentricity.norm() - g.clearance - depth.value);
@@ -413,13 +424,16 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
       corner[1][1] = 1.0;
     }
   }
+  PlanarWriter planar(writer, plane_of(trial));
   for (std::size_t a = 0; a < 4; ++a) {
-    writer.force(a, normal * of.normal[a] + friction * of.friction[a]);
-    writer.column(a, 0, of.normal[a]);
-    writer.column(a, 1, of.friction[a]);
-    writer.row(0, a, (holds_normal ? 1.0 : 0.0) * of.normal[a]);
-    writer.row(1, a, slides * of.slide[a]);
-    for (std::size_t b = 0; b < 4; ++b) writer.block(a, b, of.hessian[a][b]);
+    planar.force(a, normal * of.normal[a] + friction * of.friction[a]);
+  }
+  for (std::size_t a = 0; a < 4 && bends; ++a) {
+    planar.column(a, 0, of.normal[a]);
+    planar.column(a, 1, of.friction[a]);
+    planar.row(0, a, (holds_normal ? 1.0 : 0.0) * of.normal[a]);
+    planar.row(1, a, slides * of.slide[a]);
+    for (std::size_t b = 0; b < 4; ++b) planar.block(a, b, of.hessian[a][b]);
   }
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 2; ++j) writer.corner(i, j, corner[i][j]);
@@ -477,10 +491,10 @@ double lag_at(const ClearanceRevolute& joint, const Trial& trial, const Geometry
 
 JointStatus ClearanceRevolute::decide(const Trial& trial, JointStatus status) const {
   if (trial.model == JointModel::pins) return status;
-  const Geometry g = geometry_of(*this, trial);
   const double mu = trial.model == JointModel::friction ? friction_coefficient : 0.0;
   const auto [normal, friction, axial] = trial.force;
   if (status == JointStatus::open) {
+    const Geometry g = geometry_of(*this, trial);
     if (g.eccentricity.norm() <= g.clearance + trial.length_rounding) return status;
     return mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
   }
@@ -494,7 +508,8 @@ JointStatus ClearanceRevolute::decide(const Trial& trial, JointStatus status) co
   }
   const double sense = status == JointStatus::slip_plus ? 1.0 : -1.0;
   const double rounding = slide_rounding(trial, trial.length_rounding, trial.force_rounding);
-  return sense * lag_at(*this, trial, g) < -rounding ? JointStatus::stick : status;
+  return sense * lag_at(*this, trial, geometry_of(*this, trial)) < -rounding ? JointStatus::stick
+                                                                             : status;
 }
 
 void ClearanceRevolute::begin(const Trial& trial, JointStatus status, double* now) const {
@@ -608,8 +623,8 @@ Seat ClearanceRevolute::seat(const Trial& trial, double opened, double next,
 
 bool ClearanceRevolute::jumps(const Trial& trial, JointStatus status) const {
   if (trial.before == JointStatus::open || status == JointStatus::open) return false;
-  const Motion motion = motion_of(geometry_of(*this, trial), Memory::of(trial.history));
-  return std::abs(motion.contact_turned) > most_turned;
+  return std::abs(contact_turned(geometry_of(*this, trial), Memory::of(trial.history))) >
+         most_turned;
 }
 
 }  // namespace statejump::truss

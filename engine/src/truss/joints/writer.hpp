@@ -68,10 +68,28 @@ class Assembly {
       places_.emplace_back(row, column);
     }
   }
+  /// A block of places, column by column: `value(row of it, column of it)`.
+  template <class Value>
+  void block(int row, int rows, int column, int columns, Value&& value) {
+    if (residual_only_) return;
+    if (slots_ == nullptr) {
+      for (int j = 0; j < columns; ++j) {
+        for (int i = 0; i < rows; ++i) add(row + i, column + j, value(i, j));
+      }
+      return;
+    }
+    double* entries_of_jacobian = jacobian.valuePtr();
+    const int* slot = slots_->data() + next_;
+    for (int j = 0; j < columns; ++j) {
+      for (int i = 0; i < rows; ++i) entries_of_jacobian[*slot++] += value(i, j);
+    }
+    next_ += static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
+  }
   /// Makes the pattern of what was written.
   void record();
 
   Eigen::VectorXd residual;
+  Eigen::Matrix3Xd moved;  ///< Displacements of all nodes, where it is evaluated [m].
   Eigen::SparseMatrix<double> jacobian;
   Eigen::VectorXd product;                      ///< Jacobian times the vector.
   std::vector<Eigen::Triplet<double>> entries;  ///< Of the Jacobian, where they are listed.
@@ -109,17 +127,16 @@ class JointWriter {
       to_->residual[at.row + i] += at.directions->col(i).dot(value);
     }
   }
+  bool residual_only() const { return to_->residual_only(); }
   /// Derivative of a node's force by another node's displacement [N/m].
   void block(std::size_t by_node, std::size_t of_node, const Eigen::Matrix3d& value) {
     if (to_->residual_only()) return;
     const Place& rows = places[by_node];
     const Place& columns = places[of_node];
-    for (int j = 0; j < columns.freedoms; ++j) {
-      const Eigen::Vector3d image = value * columns.directions->col(j);
-      for (int i = 0; i < rows.freedoms; ++i) {
-        to_->add(rows.row + i, columns.row + j, rows.directions->col(i).dot(image));
-      }
-    }
+    Eigen::Matrix3d image;
+    for (int j = 0; j < columns.freedoms; ++j) image.col(j) = value * columns.directions->col(j);
+    to_->block(rows.row, rows.freedoms, columns.row, columns.freedoms,
+               [&](int i, int j) { return rows.directions->col(i).dot(image.col(j)); });
   }
   /// Derivative of a row by a node's displacement.
   void row(int row, std::size_t node, const Eigen::Vector3d& gradient) {
@@ -163,11 +180,56 @@ class JointWriter {
   }
 
  private:
+  friend class PlanarWriter;
   void set(int row, double value, RowUnit unit) {
     to_->residual[first_force + row] += value;
     to_->units[static_cast<std::size_t>(first_force + row)] = unit;
   }
   Assembly* to_;
+};
+
+/// The same of a joint whose forces and slides lie in a plane: vectors are components along its two
+/// directions.
+class PlanarWriter {
+ public:
+  PlanarWriter(JointWriter& to, const Eigen::Matrix<double, 3, 2>& plane) : to_(&to) {
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      const JointWriter::Place& at = to.places[k];
+      for (int i = 0; i < at.freedoms; ++i) {
+        seen_[k].col(i) = plane.transpose() * at.directions->col(i);
+      }
+    }
+  }
+
+  void force(std::size_t node, const Eigen::Vector2d& value) {
+    const JointWriter::Place& at = to_->places[node];
+    for (int i = 0; i < at.freedoms; ++i) {
+      to_->to_->residual[at.row + i] += seen_[node].col(i).dot(value);
+    }
+  }
+  void block(std::size_t by_node, std::size_t of_node, const Eigen::Matrix2d& value) {
+    const JointWriter::Place& rows = to_->places[by_node];
+    const JointWriter::Place& columns = to_->places[of_node];
+    Directions image;
+    for (int j = 0; j < columns.freedoms; ++j) image.col(j) = value * seen_[of_node].col(j);
+    to_->to_->block(rows.row, rows.freedoms, columns.row, columns.freedoms,
+                    [&](int i, int j) { return seen_[by_node].col(i).dot(image.col(j)); });
+  }
+  void row(int row, std::size_t node, const Eigen::Vector2d& gradient) {
+    const JointWriter::Place& at = to_->places[node];
+    to_->to_->block(to_->first_force + row, 1, at.row, at.freedoms,
+                    [&](int, int j) { return seen_[node].col(j).dot(gradient); });
+  }
+  void column(std::size_t node, int force, const Eigen::Vector2d& gradient) {
+    const JointWriter::Place& at = to_->places[node];
+    to_->to_->block(at.row, at.freedoms, to_->first_force + force, 1,
+                    [&](int i, int) { return seen_[node].col(i).dot(gradient); });
+  }
+
+ private:
+  using Directions = Eigen::Matrix<double, 2, 3>;
+  JointWriter* to_;
+  std::array<Directions, most_joint_nodes> seen_;  ///< In which its nodes are free.
 };
 
 }  // namespace statejump::truss
