@@ -87,6 +87,7 @@ void System::assemble_bars(double time, Assembly& to) const {
   for (const auto& program : model.programs) changes.push_back(program.temperature_change(time));
 
   for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+    if (model.nodes[n].load.isZero(0.0)) continue;
     nodes.force(static_cast<int>(n), -model.nodes[n].load);
     to.largest_force = std::max(to.largest_force, model.nodes[n].load.lpNorm<Eigen::Infinity>());
   }

@@ -34,19 +34,47 @@ double torsion_angle(const Model& model, const TorsionSpring& spring, const Matr
   return spring.second_link < 0 ? first : turned(spring.second_link) - first;
 }
 
-/// Integral of a function of share and time of a step by the temperature of a program [K]: by the
-/// trapezoidal rule of a straight way, else of fourth order.
-template <class Function>
-double along(const Way& way, const thermal::Program& program, Function&& function) {
-  if (way.is_straight()) {
-    const double warmed =
-        program.temperature_change(way.to_time) - program.temperature_change(way.from_time);
-    return 0.5 * (function(0.0, way.from_time) + function(1.0, way.to_time)) * warmed;
+/// Where in a step the work of a program's temperature is asked: what the program says there.
+struct Quadrature {
+  struct Point {
+    double share;
+    double temperature_change;  ///< [K]
+    double warmed;              ///< Weight, a change of the temperature [K].
+  };
+  std::array<Point, gauss_legendre.size()> points{};
+  std::size_t count = 0;
+};
+
+/// By the trapezoidal rule of a straight way, else of fourth order.
+std::vector<Quadrature> quadratures(const Way& way, const Model& model) {
+  std::vector<Quadrature> made;
+  for (const thermal::Program& program : model.programs) {
+    Quadrature of;
+    const auto add = [&](double share, double when, double warmed) {
+      of.points[of.count++] = {share, program.temperature_change(when), warmed};
+    };
+    if (way.is_straight()) {
+      const double warmed =
+          program.temperature_change(way.to_time) - program.temperature_change(way.from_time);
+      add(0.0, way.from_time, 0.5 * warmed);
+      add(1.0, way.to_time, 0.5 * warmed);
+    } else {
+      for (const auto& [share, weight] : gauss_legendre) {
+        const double when = way.from_time + share * way.step();
+        add(share, when, weight * way.step() * program.temperature_rate(when));
+      }
+    }
+    made.push_back(of);
   }
+  return made;
+}
+
+/// Integral of a function of share and temperature of a step by the temperature of a program [K].
+template <class Function>
+double along(const Quadrature& of, Function&& function) {
   double sum = 0.0;
-  for (const auto& [share, weight] : gauss_legendre) {
-    const double when = way.from_time + share * way.step();
-    sum += weight * way.step() * program.temperature_rate(when) * function(share, when);
+  for (std::size_t k = 0; k < of.count; ++k) {
+    sum += of.points[k].warmed * function(of.points[k].share, of.points[k].temperature_change);
   }
   return sum;
 }
@@ -189,8 +217,8 @@ void System::account(const Way& way, const std::optional<Halves>& halves, const 
 
 double System::work_on_links(const Way& way) const {
   const Model& model = *model_;
-  const auto growth_rate = [&](const Link& link, const VectorXd& at, const VectorXd& moving) {
-    const Lengths length = lengths_between(link.first, link.second, at);
+  const std::vector<Quadrature> asked = quadratures(way, model);
+  const auto growth_rate = [&](const Link& link, const Lengths& length, const VectorXd& moving) {
     return way.step() *
            length.along.dot(displacement(link.second, moving) - displacement(link.first, moving)) /
            length.now;
@@ -200,28 +228,28 @@ double System::work_on_links(const Way& way) const {
     const double expansion =
         link.stress_free_length * link.thermal_expansion * link.temperature_fraction;
     if (expansion == 0.0) continue;
-    const thermal::Program& program = model.programs[index(link.program)];
     const Lengths first = lengths_between(link.first, link.second, way.from);
     const Lengths last = lengths_between(link.first, link.second, way.to);
     // ∂V/∂l_T = −N − N²/(2 E A)
-    const auto by_length = [&](double growth, double when) {
-      const double change = link.temperature_fraction * program.temperature_change(when);
-      const double tension = link_axial(link, growth, last.drawn, change).tension;
+    const auto by_length = [&](double growth, double warmer) {
+      const double tension =
+          link_axial(link, growth, last.drawn, link.temperature_fraction * warmer).tension;
       return -tension * (1.0 + 0.5 * tension / link.axial_stiffness);
     };
     Cubic growth{first.growth, last.growth, 0.0, 0.0};
     if (!way.is_straight()) {
-      growth.first_rate = growth_rate(link, way.from, *way.from_rate);
-      growth.last_rate = growth_rate(link, way.to, *way.to_rate);
+      growth.first_rate = growth_rate(link, first, *way.from_rate);
+      growth.last_rate = growth_rate(link, last, *way.to_rate);
     }
-    work += expansion * along(way, program, [&](double share, double when) {
-              return by_length(growth.at(share), when);
+    work += expansion * along(asked[index(link.program)], [&](double share, double warmer) {
+              return by_length(growth.at(share), warmer);
             });
   }
   return work;
 }
 
 double System::work_on_joints(const Way& way, const StepStart& start) const {
+  const std::vector<Quadrature> asked = quadratures(way, *model_);
   double work = 0.0;
   for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
     std::visit(
@@ -241,7 +269,7 @@ double System::work_on_joints(const Way& way, const StepStart& start) const {
                                                   at(*way.to_rate), way.step(), share));
             };
             // A contact whose clearance grows gives way: ∂V/∂c = −N.
-            work -= growth * along(way, model_->programs[index(frame.program)], force);
+            work -= growth * along(asked[index(frame.program)], force);
           }
         },
         model_->joints[index(i)]);

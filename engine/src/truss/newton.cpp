@@ -143,6 +143,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   // Pivots that wander lead far away, where the equations are others: they begin anew from here.
   const VectorXd first_z = z;
   const Statuses first_statuses = statuses;
+  if (ahead && kept && keeps(statuses, joints)) z = ahead->foreseen;
   bool condensed = false;
   /// Takes the step from the start that pivots on its factors lead to; false: there is none.
   const auto condense = [&] {
@@ -376,7 +377,7 @@ int Newton::stability_index() {
   return current_ ? index_of(factor_.determinant_sign(), at_) : 0;
 }
 
-std::optional<VectorXd> Newton::rate(const VectorXd& by_time) {
+std::optional<VectorXd> Newton::rate(const VectorXd& by_time, const VectorXd& guess) {
   // The factors are those of the state before the last step: what that leaves is refined away, and
   // where it is not (the branches have changed since), there are new factors.
   for (const bool fresh : {false, true}) {
@@ -384,10 +385,16 @@ std::optional<VectorXd> Newton::rate(const VectorXd& by_time) {
       current_ = factorize(solved_on_, solved_model_);
       if (!current_) return std::nullopt;
     }
-    VectorXd found = factor_.solve(-by_time);
-    double last = found.lpNorm<Eigen::Infinity>();
+    VectorXd found, first;
+    if (fresh || guess.size() == 0) {
+      found = first = factor_.solve(-by_time);
+    } else {
+      first = factor_.solve(-by_time - at_.jacobian * guess);
+      found = guess + first;
+    }
+    double last = first.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(last)) continue;
-    const double rounding = epsilon * last;
+    const double rounding = epsilon * found.lpNorm<Eigen::Infinity>();
     double left = last;
     while (left > rounding) {
       const VectorXd change = factor_.solve(-by_time - at_.jacobian * found);

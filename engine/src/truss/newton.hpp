@@ -33,6 +33,9 @@ struct Ahead {
   double from_time;  ///< [s]
   double now;        ///< Share of the step within which a change counts as one at its start.
   bool stop;         ///< End the solve there instead of passing it.
+  /// Where the rates of the start lead: a nearer guess by old factors, whose first step is not
+  /// asked what lies ahead.
+  VectorXd foreseen;
 };
 
 /// Newton's method on the equations of a truss, in two layers; keeps the memory of the factors.
@@ -93,8 +96,9 @@ class Newton {
 
   /// Rates of the unknowns along the path from where the last solve converged, by its factors.
   /// @param by_time derivative of the residual by time, see System::heating()
+  /// @param guess of them, or empty; it saves solutions and changes the rates by rounding only
   /// @returns nothing where the equations are singular
-  std::optional<VectorXd> rate(const VectorXd& by_time);
+  std::optional<VectorXd> rate(const VectorXd& by_time, const VectorXd& guess);
 
   /// Index of the equations where the last solve converged, see RateProblem; 0: singular.
   int stability_index();

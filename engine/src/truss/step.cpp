@@ -47,7 +47,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
   Statuses trial_statuses = origin.statuses;
   const StepStart& begin = origin;
   // The first change ahead: passed where it need not be located, or no location is asked.
-  const Ahead ahead{time, tolerance / (target - time), options.locate_events};
+  const Ahead ahead{time, tolerance / (target - time), options.locate_events,
+                    rate.size() == 0 ? z : VectorXd(z + (target - time) * rate)};
   SolveReport report =
       newton.solve(target, begin, JointModel::friction, 1.0, options.most_iterations, trial,
                    trial_statuses, is_short ? std::optional<Ahead>() : ahead);
@@ -140,8 +141,12 @@ StepEnd Walker::step_to(double target, double tolerance) {
   }
   VectorXd rate_after;
   VectorXd slide_rate_after = VectorXd::Zero(joints);
+  // On a smooth piece of the path they are nearly those of the parabola that leads here.
+  const bool follows = !is_short && rate.size() > 0 && trial_statuses == origin.statuses;
+  const VectorXd guess =
+      follows ? VectorXd(2.0 / (target - time) * (trial - z) - rate) : VectorXd();
   if (const auto found =
-          newton.rate(system.heating(trial, target, begin, trial_statuses, program_rates))) {
+          newton.rate(system.heating(trial, target, begin, trial_statuses, program_rates), guess)) {
     rate_after = *found;
     slide_rate_after =
         system.slide_rates(trial, target, begin, trial_statuses, rate_after, program_rates);

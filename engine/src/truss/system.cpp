@@ -47,11 +47,18 @@ System::System(const Model& model) : model_(&model) {
 
 Vector3d System::displacement(int node, const VectorXd& z) const {
   const Node& part = model_->nodes[index(node)];
-  Vector3d moved = Vector3d::Zero();
-  for (int i = 0; i < part.freedoms; ++i) {
-    moved += z[node_row_[index(node)] + i] * part.free_directions.col(i);
+  const double* along = z.data() + node_row_[index(node)];
+  switch (part.freedoms) {
+    case 3:
+      return along[0] * part.free_directions.col(0) + along[1] * part.free_directions.col(1) +
+             along[2] * part.free_directions.col(2);
+    case 2:
+      return along[0] * part.free_directions.col(0) + along[1] * part.free_directions.col(1);
+    case 1:
+      return along[0] * part.free_directions.col(0);
+    default:
+      return Vector3d::Zero();
   }
-  return moved;
 }
 
 void System::displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const {
