@@ -61,9 +61,11 @@ def _names(kind: str, lateral: int) -> list[str]:
     return [f"{kind}{axis}" for axis in range(lateral)]
 
 
-def _residual(points: np.ndarray, values: dict[str, float]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Distances [m] (n,) along the normal, points turned by -tilt and then compared; their derivatives by every
-    parameter."""
+def _residual(
+    points: np.ndarray, values: dict[str, float], with_slopes: bool = False
+) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Distances [m] (n,) along the normal, points turned by -tilt and then compared; where asked for, their
+    derivatives by every parameter."""
     lateral = points.shape[1] - 1
     across, along = points[:, :lateral], points[:, lateral]
     tilt = np.array([values[name] for name in _names("tilt", lateral)])
@@ -83,12 +85,15 @@ def _residual(points: np.ndarray, values: dict[str, float]) -> tuple[np.ndarray,
     squared = np.sum(away**2, axis=1)
     curvature = values["curvature"]
     below = 1 + 4 * curvature**2 * squared
-    found = (turned_along - values["depth"] - curvature * squared) / np.sqrt(below)
+    root = np.sqrt(below)
+    found = (turned_along - values["depth"] - curvature * squared) / root
+    if not with_slopes:
+        return found, {}
 
     def slope(height: np.ndarray | float, by_squared: np.ndarray | float, by_curvature: float = 0.0) -> np.ndarray:
         """What a parameter changes that changes height, square of the distance and curvature by that much."""
         lower = 4 * curvature * (2 * squared * by_curvature + curvature * by_squared)
-        return np.asarray((height - by_curvature * squared - curvature * by_squared) / np.sqrt(below)
+        return np.asarray((height - by_curvature * squared - curvature * by_squared) / root
                           - found * lower / (2 * below))
 
     slopes = {"depth": slope(-1.0, 0.0), "curvature": slope(0.0, 0.0, 1.0)}
@@ -112,7 +117,7 @@ def _fit(points: np.ndarray, free: tuple[str, ...], held: dict[str, float]):  # 
         return _residual(points, values(x))[0] / size
 
     def jacobian(x: np.ndarray) -> np.ndarray:
-        slopes = _residual(points, values(x))[1]
+        slopes = _residual(points, values(x), with_slopes=True)[1]
         return np.stack([slopes[name] for name in free], axis=1) * scale / size
 
     found = least_squares(residual, np.zeros(len(free)), method="lm", jac=jacobian, xtol=1e-15, ftol=1e-15, gtol=1e-15)
