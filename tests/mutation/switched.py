@@ -70,7 +70,7 @@ def _doubled(kind: str, changed: str, was: str, number: int) -> str:
     if kind == "value":
         return f"({on}) ? ({changed}) : ({was})"
     if kind == "removed":
-        return f"if (!({on})) {{ {was} }}"
+        return f"{{ if (!({on})) {{ {was} }} }}"  # an else that follows is not its own
     if kind == "return":
         return f"{{ if ({on}) {changed} {was} }}"
     if kind == "statement":

@@ -29,6 +29,8 @@ double f(double a, const double* b) {
   return std::max(c, a);
 }
 """
+# An else behind a statement that is removed stays that of its if.
+BRANCHED = CPP.replace("  c *= 0.5;\n", "  if (text)\n    c *= 0.5;\n  else\n    c *= 0.5;\n")
 PYTHON = '''"""1 < 2 in a text"""
 def f(a: int = 3, b: "int | None" = None) -> float:
     if a < 2 and b is None:
@@ -74,7 +76,7 @@ def test_lines_of_a_statement_of_python() -> None:
 
 def test_build_with_all_mutants_is_each_of_them(tmp_path: Path) -> None:
     """f(1, &3) of the original, and of every mutant in one build, against the mutants compiled alone."""
-    numbered = dict(enumerate(mutants("f.cpp", CPP), start=1))
+    numbered = dict(enumerate(mutants("f.cpp", BRANCHED), start=1))
     main = ('#include <cstdio>\nint main() {\n  const double b = 3;\n'
             '  for (double a : {1.0, 2.0, 5.0}) std::printf("%g ", f(a, &b));\n}\n')
 
@@ -90,12 +92,12 @@ def test_build_with_all_mutants_is_each_of_them(tmp_path: Path) -> None:
 
     left, rounds, seen = dict(numbered), 0, set()
     while left and rounds < 6:  # mutants of one statement exclude each other
-        text, lines = switched(CPP, left)
-        assert text.count("\n") == CPP.count("\n")
+        text, lines = switched(BRANCHED, left)
+        assert text.count("\n") == BRANCHED.count("\n")
         program = built(text, f"all{rounds}")
-        assert told(program) == told(built(CPP, "original"))
+        assert told(program) == told(built(BRANCHED, "original"))
         for number in lines:
-            assert told(program, number) == told(built(numbered[number].applied(CPP), f"one{number}")), numbered[number]
+            assert told(program, number) == told(built(numbered[number].applied(BRANCHED), f"one{number}")), numbered[number]
         seen |= set(lines)
         left = {number: one for number, one in left.items() if number not in lines}
         rounds += bool(lines) or 6
