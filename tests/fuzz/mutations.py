@@ -131,7 +131,8 @@ def spoil_hdf5(file: h5py.File, chance: random.Random) -> None:
         names: list[str] = []
         file.visit(names.append)
         name = chance.choice(names) if names else "/"
-        with suppress(ValueError, TypeError, KeyError, RuntimeError, OSError, MemoryError):  # what h5py does not write
+        # What h5py does not write, and what has no values.
+        with suppress(ValueError, TypeError, KeyError, RuntimeError, OSError, MemoryError, AttributeError):
             chance.choice(HDF5_CHANGES)(file, name, file[name], chance)
 
 

@@ -97,7 +97,8 @@ def test_build_with_all_mutants_is_each_of_them(tmp_path: Path) -> None:
         program = built(text, f"all{rounds}")
         assert told(program) == told(built(BRANCHED, "original"))
         for number in lines:
-            assert told(program, number) == told(built(numbered[number].applied(BRANCHED), f"one{number}")), numbered[number]
+            alone = built(numbered[number].applied(BRANCHED), f"one{number}")
+            assert told(program, number) == told(alone), numbered[number]
         seen |= set(lines)
         left = {number: one for number, one in left.items() if number not in lines}
         rounds += bool(lines) or 6

@@ -116,7 +116,7 @@ def test_no_number_comes_back_as_none(folder: Path, tmp_path: Path) -> None:
     result = read(folder / "answers.h5")
     assert result.answers is not None
     rows = [{**row, "elasticity": None, "verdict": "failed: ∞"} for row in result.answers.tables["sensitivities"]]
-    changed = replace(result.answers, tables={"sensitivities": rows, "surface": []})
+    changed = replace(result.answers, tables={**result.answers.tables, "sensitivities": rows, "surface": []})
     write(replace(result, answers=changed), tmp_path / "changed.h5")
     assert read(tmp_path / "changed.h5").answers == changed
 
@@ -134,9 +134,9 @@ def test_answers_that_lack_a_number_are_refused(folder: Path, tmp_path: Path, na
 
 
 @pytest.mark.parametrize("column, value, said", [
-    ("answers/node_jumps/jump_x_m", np.nan, "truss.largest_m is not finite"),
-    ("models/reduced/contacts/tangential_force_N", 1e308, "places or forces are not finite, or too large"),
-    ("models/reduced/history/position_m", 1e308, "places or forces are not finite, or too large"),
+    ("answers/node_jumps/jump_x_m", np.nan, "damaged: /answers/node_jumps/jump_x_m has a value that is no number"),
+    ("models/reduced/contacts/tangential_force_N", 1e308, "cannot be drawn: places or forces are not finite, or too large"),
+    ("models/reduced/history/position_m", 1e308, "cannot be drawn: places or forces are not finite, or too large"),
 ])
 def test_what_cannot_be_drawn_is_one_sentence(folder: Path, tmp_path: Path, column: str, value: float, said: str) -> None:
     path = tmp_path / "bad.h5"
@@ -145,5 +145,5 @@ def test_what_cannot_be_drawn_is_one_sentence(folder: Path, tmp_path: Path, colu
         file[column][-1] = value
     sealed(path)
     done = run(tmp_path, "report", path)
-    assert done.returncode == 2 and done.stderr.count("\n") == 1 and f"cannot be drawn: {said}" in done.stderr, done.stderr
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and said in done.stderr, done.stderr
     assert not list(tmp_path.rglob("*.html"))

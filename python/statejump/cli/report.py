@@ -10,7 +10,6 @@ import click
 from statejump.cli.terminal import QUIET, loaded, make_console
 from statejump.core.errors import Unreadable
 from statejump.results.layout import SUFFIX
-from statejump.results.read import read
 
 PAGE = "report.html"
 BUDGET_BYTES = 7e6  # of the histories of all runs; a page stays below 10 MB
@@ -64,7 +63,7 @@ def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> 
     """
     from statejump.report import page  # the template engine takes a while to load: only here
     from statejump.report.campaign import CampaignDocument, is_campaign
-    from statejump.report.document import Document
+    from statejump.report.document import Document, of_file
     from statejump.report.unsolved import UnsolvedDocument, is_case
 
     console = make_console(quiet)
@@ -72,7 +71,7 @@ def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> 
     documents: list[Document | CampaignDocument | UnsolvedDocument] = [
         UnsolvedDocument(loaded(path), _source(path, files), f"run{place}") if is_case(path)
         else CampaignDocument(path, f"run{place}", _source(path, files)) if is_campaign(path)
-        else Document(read(path), _source(path, files), f"run{place}", BUDGET_BYTES / len(files))
+        else of_file(path, _source(path, files), f"run{place}", BUDGET_BYTES / len(files))
         for place, path in enumerate(files, start=1)
     ]
     target = _target(output, runs, files)

@@ -292,6 +292,10 @@ class Unreadable(StatejumpError):
     """A file cannot be read, or is not what it should be."""
 
 
+class MissingPart(Unreadable, KeyError):
+    """A part of a file that is asked for is not there; a KeyError, as of any mapping."""
+
+
 class FailedRun(StatejumpError):
     """The input is right as far as it can be judged; the run could not be finished."""
 

@@ -131,7 +131,24 @@ def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]
             else:
                 _check_stored(item, place, size, path)
             found[place] = item
+    for place, item in {"/": file, **found}.items():
+        _check_texts(item, place, path)
     return found
+
+
+def _check_texts(item: h5py.Group | h5py.Dataset, place: str, path: Path) -> None:
+    """Raise Unreadable where a name or a text among the attributes is not UTF-8: no page could be written with it."""
+    import numpy as np
+
+    for key, value in item.attrs.items():
+        texts = value.ravel().tolist() if isinstance(value, np.ndarray) else [value]
+        try:
+            for one in (place, key, *texts):
+                if isinstance(one, str):
+                    one.encode()
+        except UnicodeEncodeError:
+            shown = f"{place}@{key}".encode("ascii", "backslashreplace").decode()
+            raise Unreadable("damaged", cause=f"{shown} is not UTF-8", file=path) from None
 
 
 def _check_stored(item: h5py.Dataset, place: str, size: int, path: Path) -> None:

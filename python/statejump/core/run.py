@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from statejump.core.errors import MissingPart
 from statejump.core.tables import write_columns
 from statejump.core.units import unit_of
 
@@ -30,6 +31,24 @@ MODELS = {"reduced": "reduced model", "dem": "DEM"}
 GROUPS = ("history", "energy", "links", "contacts")
 AXES = ("x", "y", "z")
 Columns = Mapping[str, np.ndarray]
+
+
+class Parts(dict[str, Any]):
+    """Parts of a file by name: what is asked for and is not there is missed in a sentence.
+
+    :param place: of the parts, within the file
+    """
+
+    def __init__(self, parts: Mapping[str, Any], place: str, file: object) -> None:
+        super().__init__(parts)
+        self.place, self.file = place, str(file)
+
+    def __missing__(self, name: str) -> Any:
+        raise MissingPart(f"{self.place}/{name} is missing", file=self.file)
+
+    def like(self, parts: Mapping[str, Any]) -> Parts:
+        """Return other parts of the same place."""
+        return Parts(parts, self.place, self.file)
 
 
 @dataclass(frozen=True)
@@ -168,9 +187,7 @@ class Run:
     def __getitem__(self, name: str) -> np.ndarray:
         """Return the values of a column of history or energy. :raises KeyError: there is none"""
         found = self._found(name)
-        if found is None:
-            raise KeyError(name)
-        return found.shown
+        return (self.history[name] if found is None else found).shown
 
     def column(self, path: str) -> Column:
         """Return a column by its path, as ``history/time_s``. :raises KeyError: there is none"""
@@ -205,9 +222,11 @@ class Run:
             # A sample is itself beside one that is no number.
             return replace(column, values=np.where(way > 0, between, here))
 
-        groups: dict[str, Any] = {
-            group: {name: moved(column) for name, column in getattr(self, group).items()} for group in GROUPS
-        }
+        groups: dict[str, Any] = {}
+        for group in GROUPS:
+            columns = getattr(self, group)
+            made = {name: moved(column) for name, column in columns.items()}
+            groups[group] = columns.like(made) if isinstance(columns, Parts) else made
         return replace(self, **groups, native=None)
 
     def flat(self, groups: Sequence[str] = ("history", "energy")) -> dict[str, np.ndarray]:

@@ -31,9 +31,12 @@ class StraightPart:
 def straight_part(x: Numbers, y: Numbers) -> StraightPart | None:
     """Return the straight line (least squares) that a loop hides behind; None: it is wide, or there is no loop."""
     size = float(np.ptp(y))
-    if not size > 0 or not np.ptp(x) > 0:
+    if not 0 < size < np.inf or not 0 < np.ptp(x) < np.inf:
         return None
-    slope, offset = np.polyfit(x, y, 1)
+    try:
+        slope, offset = np.polyfit(x, y, 1)
+    except np.linalg.LinAlgError:  # numbers whose squares are beyond any
+        return None
     line = StraightPart(float(slope), float(offset))
     largest = float(np.abs(line.taken_off(x, y)).max())
     return line if ROUNDING * size < largest < THIN * size else None

@@ -11,6 +11,7 @@ import base64
 import json
 import math
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,7 @@ from statejump.report.drawing import Drawing
 from statejump.report.energy import Account, account
 from statejump.report.inputs import sections_of
 from statejump.results.contents import Result
+from statejump.results.read import read
 
 TOLERANCE = 2e-4  # of a column's range, what decimation may cost
 MOST_SAMPLES = 4000  # of a model on a page
@@ -349,6 +351,15 @@ def _uncertainty(event: Event, run: Run) -> dict[str, str]:
     change = np.interp(around, run.time_s, run["temperature_change_K"])
     return {"uncertainty": text(event.time_uncertainty_s, "s", 2),
             "uncertainty_K": text(float(np.ptp(change) / 2), "K", 2)}
+
+
+def of_file(path: Path, source: str, identifier: str, budget_bytes: float) -> Document:
+    """Return what a page says of a result file. :raises Unreadable: the file or what the page needs of it"""
+    result = read(path)
+    try:
+        return Document(result, source, identifier, budget_bytes)
+    except StatejumpError as failure:
+        raise failure.located(file=path) from None
 
 
 def _case_of(result: Result) -> Case | None:

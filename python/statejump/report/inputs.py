@@ -2,6 +2,7 @@
 """The values of a case as a page lists them."""
 from __future__ import annotations
 
+from decimal import Decimal
 from typing import Any
 
 
@@ -38,5 +39,13 @@ def _summed_up(items: list[dict[str, Any]]) -> list[tuple[str, str]]:
         values = [item[key] for item in items if item.get(key) is not None]
         if values and all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
             low, high = min(values), max(values)
-            rows.append((key, f"{low:g}" if low == high else f"{low:g} to {high:g}"))
+            rows.append((key, _number(low) if low == high else f"{_number(low)} to {_number(high)}"))
     return rows
+
+
+def _number(value: float) -> str:
+    """Return a number in six digits; a whole one may be larger than any float."""
+    try:
+        return f"{value:g}"
+    except OverflowError:
+        return f"{Decimal(value):.6g}"

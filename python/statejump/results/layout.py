@@ -202,6 +202,12 @@ ATTRIBUTES = {
 }
 
 
+# Columns of these tables that are texts; all others are numbers.
+TEXTS = frozenset({"node", "joint", "kind", "state", "parameter", "verdict"})
+ALWAYS = ("cycles", "node_jumps", "joint_jumps")  # tables that all answers have
+WITHOUT_GAPS = (*ALWAYS, "contributions")  # tables in which no number lacks
+
+
 def entry_of(path: str) -> Entry | None:
     """Return the entry that a place in a file belongs to, the most special first."""
     found = [entry for entry in ENTRIES if entry.matches(path)]

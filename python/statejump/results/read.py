@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,10 +16,10 @@ from statejump.core.comparison import SIDES, Quantity
 from statejump.core.errors import Unreadable
 from statejump.core.hdf5 import is_ours, opened
 from statejump.core.temperature_files import Histories
-from statejump.core.run import Column, Event, Events, Run
+from statejump.core.run import Column, Event, Events, Parts, Run
 from statejump.results.check import check
 from statejump.results.contents import Answers, Mesh, Result, Scalar
-from statejump.results.layout import MODELS, SUFFIX, SUM_OF_CONTRIBUTIONS, TABLES
+from statejump.results.layout import ALWAYS, MODELS, SUFFIX, SUM_OF_CONTRIBUTIONS, TABLES, TEXTS, WITHOUT_GAPS
 from statejump.results.scene_check import problems
 
 
@@ -36,7 +37,7 @@ def read(path: str | Path) -> Result:
     try:
         with opened(path) as file:
             check(file, path)
-            result = _result(file)
+            result = _result(file, path)
     except RecursionError:
         raise Unreadable("damaged", cause="objects stand too deeply in each other", file=path) from None
     except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
@@ -46,16 +47,16 @@ def read(path: str | Path) -> Result:
     return result
 
 
-def _result(file: h5py.File) -> Result:
+def _result(file: h5py.File, path: Path) -> Result:
     case = file["case"]
     case_json = _text(case["resolved"])
     _parsed("/case/resolved", case_json)
-    names = {key: _texts(values) for key, values in file["names"].items()}
+    names = Parts({key: _texts(values) for key, values in file["names"].items()}, "/names", path)
     complete = bool(file.attrs["complete"])
     made: list[Result] = []  # a run of the file reads its case only when it is asked for
     runs = {
-        model: replace(_model(model, file["models"][model]), names=names, complete=complete, kind=case.attrs["kind"],
-                       case_of=lambda: made[0].definition)
+        model: replace(_model(model, file["models"][model], path), names=names, complete=complete,
+                       kind=case.attrs["kind"], case_of=lambda: made[0].definition)
         for model in MODELS if model in file["models"]
     }
     made.append(Result(
@@ -77,7 +78,7 @@ def _result(file: h5py.File) -> Result:
         meshes={
             name: _mesh(mesh) for name, mesh in file.get("meshes", {}).items()
         },
-        answers=_answers(file["answers"]) if "answers" in file else None,
+        answers=_answers(file["answers"], names) if "answers" in file else None,
         members=_members(case["members"]) if "members" in case else None,
     ))
     return made[0]
@@ -102,9 +103,9 @@ def _mesh(group: h5py.Group) -> Mesh:
     return mesh
 
 
-def _model(model: str, group: h5py.Group) -> Run:
+def _model(model: str, group: h5py.Group, path: Path) -> Run:
     columns = {
-        part: {name: _column(values) for name, values in group[part].items()}
+        part: Parts({name: _column(values) for name, values in group[part].items()}, f"{group.name}/{part}", path)
         for part in ("history", "energy", "links", "contacts")
     }
     events = group["events"]
@@ -118,7 +119,8 @@ def _model(model: str, group: h5py.Group) -> Run:
                 _texts(events["joint"]), events["time_uncertainty_s"][()], strict=True,
             )
         ]),
-        summary={name: float(value[()]) for name, value in group["summary"].items()},
+        summary=Parts({name: float(value[()]) for name, value in group["summary"].items()},
+                      f"{group.name}/summary", path),
     )
 
 
@@ -154,18 +156,26 @@ def _comparison(group: h5py.Group) -> tuple[Quantity, ...]:
     )
 
 
-def _answers(group: h5py.Group) -> Answers:
+def _answers(group: h5py.Group, names: Mapping[str, list[str]]) -> Answers:
     summary = _scalars(group["summary"])
     # A sum of contributions comes with its error.
     needed = ["jump", *(SUM_OF_CONTRIBUTIONS if any(name in summary for name in SUM_OF_CONTRIBUTIONS) else ())]
     missing = [name for name in needed if name not in summary]
     if missing:
         raise ValueError(f"{group.name}/summary/{missing[0]} is missing")
+    tables = {name: _rows(name, table) for name, table in group.items() if name not in ("notes", "summary")}
+    for name in ALWAYS:
+        if name not in tables:
+            raise ValueError(f"{group.name}/{name} is missing")
+    wanted = len(tables["cycles"]) * len(names["nodes"])
+    if not wanted or len(tables["node_jumps"]) != wanted:
+        raise ValueError(f"{group.name}/node_jumps has {len(tables['node_jumps'])} rows, must have one for each of "
+                         f"{len(names['nodes'])} nodes after each of {len(tables['cycles'])} cycles")
     return Answers(
         **{key: group.attrs[key] for key in ("output", "text", "unit", "verdict", "verdict_text")},
         notes=_texts(group["notes"]),
         summary=summary,
-        tables={name: _rows(name, table) for name, table in group.items() if name not in ("notes", "summary")},
+        tables=tables,
     )
 
 
@@ -177,6 +187,13 @@ def _rows(name: str, group: h5py.Group) -> list[dict[str, Any]]:
         raise ValueError(f"{group.name}/{missing[0]} is missing")
     keys = [*order, *(key for key in group if key not in order)] if len(group) else []
     columns = [_cells(group[key]) for key in keys]
+    for key, cells in zip(keys, columns):
+        if key not in order:
+            continue
+        if any(isinstance(cell, str) != (key in TEXTS) for cell in cells):
+            raise ValueError(f"{group.name}/{key} must be {'text' if key in TEXTS else 'numbers'}")
+        if name in WITHOUT_GAPS and any(cell is None or cell in (math.inf, -math.inf) for cell in cells):
+            raise ValueError(f"{group.name}/{key} has a value that is no number")
     return [dict(zip(keys, values)) for values in zip(*columns, strict=True)]
 
 

@@ -15,10 +15,12 @@ from typing import Any
 import numpy as np
 
 from statejump.core.charts import TEMPERATURE, Axis, Chart
+from statejump.core.errors import Unreadable
 from statejump.core.run import Run
 from statejump.core.units import scale_of, text, unit_of
 from statejump.kinds.truss.case import Link, Spring, TrussCase
 from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.result import names as names_of
 from statejump.kinds.truss.words import is_guided, is_held
 from statejump.report import words
 from statejump.report.drawing import round_down
@@ -78,6 +80,7 @@ class TrussPart:
             self.cycles = max(len(self._ends) - 1, 1)
             self.node_jumps = self._since_start(self._run, "history", "displacement_m")
         else:
+            self.cycles = len(self.answers.tables["cycles"])
             self.node_jumps = _vectors(self.answers.tables["node_jumps"], self.cycles)
         self._size_m = np.linalg.norm(self.node_jumps[-1], axis=1)
         self.joints = self._joints()
@@ -405,4 +408,7 @@ def page(result: Result, case: TrussCase) -> TrussPart | None:
     run = next(iter(result.models.values()))
     if not {"position_m", "displacement_m"} <= set(run.history) or not len(run.time_s):
         return None
+    for items, wanted in names_of(case).items():
+        if result.names.get(items, wanted) != wanted:
+            raise Unreadable("damaged", cause=f"/names/{items} has other names than the case")
     return TrussPart(result, case)
