@@ -69,6 +69,7 @@ TEST(BoreChecks, ShapesOutsideTheirRangeAreRefused) {
               s.lobes = {{0, 1e-6, 0.0}};
             }),
             "harmonic = 0, allowed is 1, 2, 3, ...");
+  EXPECT_EQ(refused([](BoreShape& s) { s.lobes = {{1, 1e-6, 0.0}}; }), "nothing was refused");
   EXPECT_EQ(refused([](BoreShape& s) { s.crown = 0.5 * s.radius; }),
             "crown = 0.00255, allowed is (-radius/2, radius/2) m");
   EXPECT_EQ(refused([](BoreShape& s) {

@@ -231,5 +231,26 @@ TEST(FollowedContacts, AWallThatIsNotFlatterThanTheJournalIsSearchedAnew) {
   }
 }
 
+TEST(FollowedContacts, ALabelStaysWithItsPlaceWhenAnotherComesFirst) {
+  // Pressed towards a wide place the journal rests on both flanks; the deeper contact comes first.
+  const BoreMesh mesh(bore_triangles(lobed({{3, 4e-5, 0}}), 240, 10));
+  std::vector<double> track;
+  std::vector<FollowedContact> found;
+  const auto at = [&](double aside) {
+    const Vector3d centre(1.15e-4, aside, 0);
+    return follow_contacts(mesh, {centre, Vector3d::UnitZ(), journal_radius}, 0, track, found);
+  };
+  EXPECT_EQ(at(-2e-7), Followed::search);
+  ASSERT_EQ(found.size(), 2u);
+  const Vector3d first = found[0].normal;
+  set_label(track, 0, 7);
+  set_label(track, 1, 8);
+  EXPECT_EQ(at(2e-7), Followed::search);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_LT(found[0].normal.y() * first.y(), 0);
+  EXPECT_EQ(found[0].label, 8);
+  EXPECT_EQ(found[1].label, 7);
+}
+
 }  // namespace
 }  // namespace statejump::geometry

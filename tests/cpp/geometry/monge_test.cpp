@@ -81,5 +81,33 @@ TEST(JetFit, AgreesWithCgalsMongeViaJetFitting) {
   }
 }
 
+TEST(JetFit, CurvatureIsTheChangeOfTheNormal) {
+  Random random;
+  for (int i = 0; i < 50; ++i) {
+    Jet jet;
+    jet.origin = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    jet.normal = Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 2).normalized();
+    jet.tangent_u = jet.normal.unitOrthogonal();
+    jet.tangent_v = jet.normal.cross(jet.tangent_u);
+    jet.scale_u = 1.3;
+    jet.scale_v = 0.7;
+    for (double& one : jet.coefficient) one = random.uniform(-0.2, 0.2);
+    const double u = random.uniform(-0.5, 0.5), v = random.uniform(-0.5, 0.5), step = 1e-5;
+    const auto at = [&](double along_u, double along_v) {
+      const Vector3d above = jet.origin + (u + along_u) * jet.tangent_u +
+                             (v + along_v) * jet.tangent_v + 3 * jet.normal;
+      JetHit hit = jet.hit(above, -jet.normal, 3);
+      return std::pair<Vector3d, JetHit>(above - hit.s * jet.normal, hit);
+    };
+    for (const auto& [du, dv] : {std::pair(step, 0.0), std::pair(0.0, step)}) {
+      const auto after = at(du, dv), before = at(-du, -dv);
+      const Vector3d way = (after.first - before.first) / (2 * step);
+      const Vector3d turn = (after.second.normal - before.second.normal) / (2 * step);
+      // Central differences: step^2 times third derivatives of some tens, rounding by the step.
+      EXPECT_NEAR((turn + at(0, 0).second.bend * way).norm(), 0, 2e-8) << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace statejump::geometry
