@@ -7,9 +7,9 @@
 Shipped files, and results made of them, are spoiled by chance and given to what reads them: the library for cases,
 campaigns, journals, temperatures and tables of items, the command itself for result files, files of FCLIB, histories
 of `laws --drive` and decks of other programs. A refusal is a failure of exit status 2 whose sentence is one printable
-line (or the documented status 1 of a command); any other exception, a signal, more than MEMORY_BYTES more memory or
-more than CPU_S seconds are faults. Each input depends on the seed, the reader and its number alone: `--only NAME
---first N --inputs 1` makes one again.
+line (or the documented status 1 of a command); any other exception, a warning of numpy, a signal, more than
+MEMORY_BYTES more memory or more than CPU_S seconds are faults. Each input depends on the seed, the reader and its
+number alone: `--only NAME --first N --inputs 1` makes one again.
 
 Meshes are another campaign's (fuzz_mesh.cpp). Bytes of HDF5 files of FCLIB, which have no checksum, are not spoiled:
 that would try the HDF5 library.
@@ -31,6 +31,7 @@ import sys
 import tempfile
 import tomllib
 import traceback
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -455,6 +456,7 @@ def main() -> int:
     given = parser.parse_args()
     sys.path.insert(0, str(given.python.resolve()))
     os.environ["MPLBACKEND"] = "agg"
+    warnings.simplefilter("error", RuntimeWarning)  # numpy's, which would stand beside the sentence
     faults = 0
     shared = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None  # nothing of it need outlive the machine
     with tempfile.TemporaryDirectory(prefix="parsers-", dir=shared) as root:

@@ -95,5 +95,13 @@ def test_numbers_without_an_end(statejump: Callable, tmp_path: Path, cases: Path
     sealed(path)
     done = statejump("report", path, "-o", "page.html")
     assert done.status == 2 and done.errors.startswith("error: ") and done.errors.count("\n") == 1, done
+    assert statejump("reduced", cases / "table1.toml", "--results", tmp_path, "--quiet").status == 0
+    path = tmp_path / "table1" / "reduced.h5"
+    with h5py.File(path, "r+") as file:
+        for energy in file["models/reduced/energy"].values():
+            energy[3] = np.inf
+    sealed(path)
+    done = statejump("report", path, "-o", "page.html")
+    assert done.errors.count("\n") == (done.status == 2), done
     assert straight_part(np.array([0.0, np.inf, 1.0]), np.array([0.0, 1.0, 2.0])) is None
     assert straight_part(np.array([0.0, 1e200, 1.0]), np.array([0.0, 1.0, 1e300])) is None

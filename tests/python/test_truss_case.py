@@ -366,6 +366,7 @@ SPATIAL_MISTAKES: dict[str, tuple[Callable[[dict[str, Any]], None], str]] = {
 }
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")  # of numpy, which would stand beside the sentence
 @pytest.mark.parametrize("name", MISTAKES)
 def test_mistakes_are_named(name: str) -> None:
     change, expected = MISTAKES[name]

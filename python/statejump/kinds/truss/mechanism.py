@@ -71,8 +71,9 @@ def resolve_bodies(links: Sequence[Link], length_m: np.ndarray, mass_kg: np.ndar
     said = np.array([centre is not None for centre in values(links, "centre_of_mass_m")], dtype=bool)
     middle = np.stack((length_m / 2, np.zeros(len(links))), axis=1)
     given = vectors(links, "centre_of_mass_m", 2)[:, :2]
+    length = np.where(length_m > 0, length_m, np.nan)  # a link without one is refused where geometry is checked
     return Bodies(
-        np.where(said[:, None], given, middle) / length_m[:, None],
+        np.where(said[:, None], given, middle) / length[:, None],
         np.where(np.isnan(moment), mass_kg * length_m**2 / 12, moment), said | ~np.isnan(moment),
     )
 
