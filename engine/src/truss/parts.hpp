@@ -91,11 +91,8 @@ inline PlanarAngle planar_angle(const Vector2d& v) {
 }
 
 inline AngleDerivatives angle_derivatives(const Vector2d& v, const Matrix32& plane) {
-  const double length = v.norm();
-  const Vector3d along = plane * (v / length);
-  const Vector3d left = plane * (turned_left(v) / length);
-  return {left / length,
-          -(along * left.transpose() + left * along.transpose()) / (length * length)};
+  const PlanarAngle flat = planar_angle(v);
+  return {plane * flat.gradient, plane * flat.hessian * plane.transpose()};
 }
 
 /// Two directions that make a right-handed frame with the axis; x and y for the z axis.
