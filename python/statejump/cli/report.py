@@ -61,6 +61,8 @@ def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> 
     Example:
       statejump report results/table1
     """
+    import numpy as np
+
     from statejump.report import page  # the template engine takes a while to load: only here
     from statejump.report.campaign import CampaignDocument, is_campaign
     from statejump.report.document import Document, of_file
@@ -68,14 +70,15 @@ def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> 
 
     console = make_console(quiet)
     files = list(dict.fromkeys(path for run in runs for path in result_files(run)))
-    documents: list[Document | CampaignDocument | UnsolvedDocument] = [
-        UnsolvedDocument(loaded(path), _source(path, files), f"run{place}") if is_case(path)
-        else CampaignDocument(path, f"run{place}", _source(path, files)) if is_campaign(path)
-        else of_file(path, _source(path, files), f"run{place}", BUDGET_BYTES / len(files))
-        for place, path in enumerate(files, start=1)
-    ]
-    target = _target(output, runs, files)
-    page.write(documents, target)
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused where it is drawn
+        documents: list[Document | CampaignDocument | UnsolvedDocument] = [
+            UnsolvedDocument(loaded(path), _source(path, files), f"run{place}") if is_case(path)
+            else CampaignDocument(path, f"run{place}", _source(path, files)) if is_campaign(path)
+            else of_file(path, _source(path, files), f"run{place}", BUDGET_BYTES / len(files))
+            for place, path in enumerate(files, start=1)
+        ]
+        target = _target(output, runs, files)
+        page.write(documents, target)
     for document in documents:
         if isinstance(document, UnsolvedDocument):
             continue

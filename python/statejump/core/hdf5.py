@@ -140,14 +140,13 @@ def _check_texts(item: h5py.Group | h5py.Dataset, place: str, path: Path) -> Non
     """Raise Unreadable where a name or a text among the attributes is not UTF-8: no page could be written with it."""
     import numpy as np
 
-    for key, value in item.attrs.items():
-        texts = value.ravel().tolist() if isinstance(value, np.ndarray) else [value]
+    texts = {place: place, **{f"{place}@{key}": value for key, value in item.attrs.items()}}
+    for called, value in texts.items():
         try:
-            for one in (place, key, *texts):
-                if isinstance(one, str):
-                    one.encode()
+            for text in (called, *np.ravel(value).tolist()):
+                str(text).encode()
         except UnicodeEncodeError:
-            shown = f"{place}@{key}".encode("ascii", "backslashreplace").decode()
+            shown = called.encode("ascii", "backslashreplace").decode()
             raise Unreadable("damaged", cause=f"{shown} is not UTF-8", file=path) from None
 
 

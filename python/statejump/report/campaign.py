@@ -105,8 +105,7 @@ class CampaignDocument:
         self.attributes = {key: value for key, value in attributes.items() if key not in ("campaign", "case")}
         # What the campaign is about comes first.
         self.outcomes.sort(key=lambda outcome: "jump" not in outcome.name)
-        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused where it is drawn
-            self.statistics = {outcome.name: statistics(outcome.values) for outcome in self.outcomes}
+        self.statistics = {outcome.name: statistics(outcome.values) for outcome in self.outcomes}
 
     def _variables(self, group: h5py.Group) -> list[Variable]:
         found = []
@@ -191,13 +190,12 @@ class CampaignDocument:
     def payload(self) -> dict[str, Any]:
         """Data for the page's script."""
         sweep = self.command == "sweep"
-        with np.errstate(over="ignore", invalid="ignore"):
-            return {
-                "id": self.identifier,
-                "histograms": [] if sweep else [self._histogram(outcome) for outcome in self.outcomes],
-                "curves": [self._curve(outcome) for outcome in self.outcomes] if sweep else [],
-                "ranks": [] if sweep else [self._ranks(outcome) for outcome in self.outcomes],
-            }
+        return {
+            "id": self.identifier,
+            "histograms": [] if sweep else [self._histogram(outcome) for outcome in self.outcomes],
+            "curves": [self._curve(outcome) for outcome in self.outcomes] if sweep else [],
+            "ranks": [] if sweep else [self._ranks(outcome) for outcome in self.outcomes],
+        }
 
     def _histogram(self, outcome: Variable) -> dict[str, Any]:
         scale, _ = outcome.shown

@@ -357,8 +357,7 @@ def of_file(path: Path, source: str, identifier: str, budget_bytes: float) -> Do
     """Return what a page says of a result file. :raises Unreadable: the file or what the page needs of it"""
     result = read(path)
     try:
-        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused where it is drawn
-            return Document(result, source, identifier, budget_bytes)
+        return Document(result, source, identifier, budget_bytes)
     except StatejumpError as failure:
         raise failure.located(file=path) from None
 
