@@ -59,7 +59,7 @@ def in_hdf5(items: list[dict[str, Any]], path: Path) -> None:
             elif isinstance(first, list):
                 file[key] = [[np.nan] * len(first) if value is None else value for value in values]
             elif isinstance(first, (str, bool)):
-                file[key] = values
+                file[key] = ["" if value is None else value for value in values]
             else:
                 file[key] = [np.nan if value is None else value for value in values]
 
@@ -80,6 +80,72 @@ def test_the_same_truss(made: str, form: str, tmp_path: Path) -> None:
     changes = {"link.*.young_modulus_Pa": 1e9, "thermal.cycles": 2}
     assert other.changed(changes).to_dict() == one.changed(changes).to_dict()
     assert load_case(file).to_dict() == one.to_dict()  # reading changes nothing
+
+
+# What a case of items one by one is refused for, it is refused for by columns.
+SPOILED: Mapping[str, tuple[str, int, Mapping[str, Any]]] = {
+    "ends that are one": ("link", 1, {"nodes": ["@0", "@0"]}),
+    "an end that is not there": ("link", 2, {"nodes": ["@0", "nothing"]}),
+    "one end": ("link", 2, {"nodes": ["@0"]}),
+    "an end of a cable": ("spring", 1, {"nodes": ["nothing", "@0"]}),
+    "a program of a link": ("link", 1, {"program": "nothing"}),
+    "a program of a joint": ("revolute", 1, {"program": "nothing"}),
+    "two expansions": ("link", 1, {"expansion": "nothing"}),
+    "no expansion": ("link", 1, {"thermal_expansion_per_K": None}),
+    "two masses": ("link", 1, {"mass_kg": 1.0, "density_kg_per_m3": 1.0}),
+    "a centre without a mass": ("link", 1, {"centre_of_mass_m": [0.1, 0.0], "mass_kg": None}),
+    "two lengths": ("spring", 1, {"preload_N": 1.0, "free_length_m": 1.0}),
+    "a bearing that is not there": ("revolute", 1, {"bearing_node": "nothing"}),
+    "a journal in its own place": ("revolute", 1, {"journal_node": "@bearing_node"}),
+    "a link that is not there": ("revolute", 2, {"bearing_link": "nothing"}),
+    "a link that ends elsewhere": ("revolute", 2, {"bearing_link": "@link 0"}),
+    "one link": ("revolute", 2, {"journal_link": "@bearing_link"}),
+    "no link": ("revolute", 2, {"journal_link": None, "journal_node": "@free"}),
+    "an axis of no direction": ("revolute", 1, {"axis": [0.0, 0.0, 0.0]}),
+    "a name twice": ("node", 3, {"name": "@1"}),
+    "a name of control characters": ("node", 3, {"name": "a\x1bb"}),
+    "a direction out of the plane": ("node", 2, {"fixed": ["z"]}),
+    "a direction that is none": ("node", 2, {"fixed": ["w"]}),
+    "a guide of no direction": ("node", 2, {"guide_normal": [0.0, 0.0, 0.0]}),
+    "a choice that is none": ("revolute", 1, {"contact": "soft"}),
+    "turned links that are one": ("torsion_spring", 1, {"links": ["@link 0", "@link 0"]}),
+    "turned links that are not there": ("torsion_spring", 1, {"links": ["nothing"]}),
+}
+
+
+@pytest.mark.parametrize("what", SPOILED)
+def test_the_same_refusal(what: str, tmp_path: Path) -> None:
+    document = generate.chain(3) if "plane" in what else generate.umbrella(4, cable_preload_N=1.0)
+    section, place, changes = SPOILED[what]
+    item = document[section][place]
+    names: dict[str, str] = {"@free": next(node["name"] for node in document["node"] if not node.get("fixed") or "plane" in what)}
+    names |= {f"@{number}": node["name"] for number, node in enumerate(document["node"])}
+    names |= {f"@link {number}": link["name"] for number, link in enumerate(document["link"])}
+    names |= {f"@{key}": value for key, value in item.items() if isinstance(value, str)}
+    for key, value in changes.items():
+        item.pop(key, None)
+        if value is not None:
+            item[key] = ([names.get(word, word) for word in value] if isinstance(value, list)
+                         else names.get(value, value))
+    with pytest.raises(StatejumpError) as one:
+        parse_case(document)
+    file = beside(document, tmp_path)
+    for table in tmp_path.glob("*.csv"):
+        in_hdf5(document[table.stem.removeprefix("case_")], table.with_suffix(".h5"))
+    file.write_text(file.read_text().replace(".csv", ".h5"))
+    with pytest.raises(StatejumpError) as other:
+        load_case(file)
+    assert str(other.value) == f"{file}: {one.value}"
+
+
+def test_texts_that_are_not_utf_8(tmp_path: Path) -> None:
+    file = beside(generate.chain(2), tmp_path)
+    file.write_text(file.read_text().replace("case_node.csv", "node.h5"))
+    with h5py.File(tmp_path / "node.h5", "w") as table:
+        table["name"] = np.array([b"A", b"\xff"])
+    with pytest.raises(StatejumpError) as refused:
+        load_case(file)
+    assert str(refused.value) == f"{tmp_path / 'node.h5'}: 'name' has texts that are not UTF-8"
 
 
 def test_a_table_of_arrays_is_a_list_of_items() -> None:

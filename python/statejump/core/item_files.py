@@ -22,12 +22,13 @@ from statejump.core.output import write_atomically
 from statejump.core.reading import check_size, finite_number, is_file, open_csv
 from statejump.core.temperature_columns import quoted
 from statejump.schema.fields import TABLES_BESIDE, Section, fields_of, rule_of, section_of, tables_of
-from statejump.schema.item_tables import BLOCK, ItemTable
+from statejump.schema.item_tables import BLOCK, ItemTable, Texts, Words
 from statejump.schema.rules import NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, suggestion
 from statejump.schema.toml import LARGEST_BYTES
 
 SUFFIXES = (".csv", ".h5", ".hdf5")
 MOST_IN_LIST = 16  # entries of a cell or row: what items list are ends, directions and components
+TEXTS_AT_ONCE = 1 << 16  # rows of a data set of texts: as objects they take ten times the memory of the file
 SWITCHES = {"true": True, "false": False}
 
 
@@ -43,6 +44,7 @@ def with_tables(data: Mapping[str, Any], folder: Path, case: type[Section]) -> M
         return data
     made = {section: part for section, part in data.items() if section != TABLES_BESIDE}
     lists = {name: items for name, field in known.items() if (items := tables_of(field)) is not None}
+    words = Words()  # items refer to each other by name
     for section, file in named.items():
         key = f"{TABLES_BESIDE}.{section}"
         if section not in lists or section not in fields_of(_declared(known)):
@@ -51,7 +53,7 @@ def with_tables(data: Mapping[str, Any], folder: Path, case: type[Section]) -> M
             raise NotAllowed(key, file, "must be a text in quotes")
         if section in made:
             raise NotAllowed(key, file, f"the case has [[{section}]] as well", remedy="leave one of them out")
-        made[section] = read_items(folder / file, key, lists[section])
+        made[section] = read_items(folder / file, key, lists[section], words)
     return made
 
 
@@ -61,19 +63,20 @@ def _declared(known: Mapping[str, attrs.Attribute[Any]]) -> type[Section]:
     return found
 
 
-def read_items(path: Path, key: str, model: type[Section]) -> ItemTable:
+def read_items(path: Path, key: str, model: type[Section], words: Words) -> ItemTable:
     """Return the columns of a file.
 
     :param model: what an item is
+    :param words: texts of files that were read before; those of an HDF5 file are added
     :raises StatejumpError: one sentence with the file, and line or column
     """
     if path.suffix.lower() not in SUFFIXES:
         raise NotAllowed(key, path.name, f"must end with {', '.join(SUFFIXES)}")
     if not is_file(path):
         raise Unreadable("no such file of tables", file=path)
-    columns = _csv(path, model) if path.suffix.lower() == ".csv" else _hdf5(path, model)
+    in_text = path.suffix.lower() == ".csv"
     try:
-        return ItemTable(**columns)
+        return ItemTable(**_csv(path, model)) if in_text else ItemTable(**_hdf5(path, model, words))
     except StatejumpError as failure:
         raise failure.located(file=path) from None
 
@@ -187,7 +190,7 @@ def _number(path: Path, name: str, line: int, cell: str) -> float:
     return value
 
 
-def _hdf5(path: Path, model: type[Section]) -> dict[str, np.ndarray]:
+def _hdf5(path: Path, model: type[Section], words: Words) -> dict[str, np.ndarray | Texts]:
     import h5py
 
     from statejump.core.hdf5 import objects
@@ -198,12 +201,12 @@ def _hdf5(path: Path, model: type[Section]) -> dict[str, np.ndarray]:
         with h5py.File(path, "r") as file:
             found = {name.removeprefix("/"): part for name, part in objects(file, path).items() if name != "/"}
             rules = _keys(path, list(found), model)
-            return {name: _of_data_set(path, name, rule, found[name]) for name, rule in rules.items()}
+            return {name: _of_data_set(path, name, rule, found[name], words) for name, rule in rules.items()}
     except (OSError, RuntimeError, MemoryError) as error:
         raise Unreadable("cannot be read", cause=" ".join(str(error).split()), file=path) from None
 
 
-def _of_data_set(path: Path, name: str, rule: Rule, data: Any) -> np.ndarray:
+def _of_data_set(path: Path, name: str, rule: Rule, data: Any, words: Words) -> np.ndarray | Texts:
     import h5py
 
     lists = rule.form in (NUMBERS, TEXTS)
@@ -220,11 +223,15 @@ def _of_data_set(path: Path, name: str, rule: Rule, data: Any) -> np.ndarray:
         return np.asarray(data[()].astype(bool if rule.form == SWITCH else int).tolist(), dtype=object)
     if h5py.check_string_dtype(data.dtype) is None:
         raise Unreadable(f"{quoted(name)} must be of texts", file=path)
-    texts: dict[str, str] = {}
-    made: np.ndarray = np.asarray(data.asstr()[()], dtype=object)
-    flat = made.reshape(-1)
-    flat[:] = [texts.setdefault(text, text) if text else None for text in flat.tolist()]
-    return made
+    numbers = np.zeros(data.shape, np.int32)
+    for start in range(0, len(data), TEXTS_AT_ONCE):
+        rows = data[start:start + TEXTS_AT_ONCE]
+        try:
+            texts = list(map(bytes.decode, rows.reshape(-1).tolist()))
+        except UnicodeDecodeError:
+            raise Unreadable(f"{quoted(name)} has texts that are not UTF-8", file=path) from None
+        numbers[start:start + TEXTS_AT_ONCE] = words.numbers(texts, rows.shape)
+    return Texts(numbers, words.listed)
 
 
 def to_cells(value: Any) -> str:

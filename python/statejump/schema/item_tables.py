@@ -6,8 +6,10 @@ list of dicts; :class:`ItemColumns` what a case keeps of it, in place of a list 
 """
 from __future__ import annotations
 
-from collections import namedtuple
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import defaultdict, namedtuple
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field as attribute, replace
+from functools import cached_property
 from itertools import repeat, starmap
 from typing import Any, Generic, TypeVar, overload
 
@@ -16,7 +18,7 @@ import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed, UnknownKey
 from statejump.schema.fields import Section, default_of, fields_of, is_required, rule_of
-from statejump.schema.rules import NUMBER, NUMBERS, TEXTS, WHOLE, Rule, suggestion
+from statejump.schema.rules import NUMBER, NUMBERS, TEXT, TEXTS, WHOLE, Rule, suggestion
 
 ItemType = TypeVar("ItemType", bound=Section)
 
@@ -24,8 +26,102 @@ ItemType = TypeVar("ItemType", bound=Section)
 BLOCK = 4096  # items that are turned into objects at once
 
 
-def _plain(values: np.ndarray) -> list[Any]:
+class Words:
+    """Texts by number, each kept once; columns that share them are held against each other by numbers alone.
+
+    Number 0 is no text, also that of an empty one.
+    """
+
+    def __init__(self) -> None:
+        self._number: defaultdict[str, int] = defaultdict()
+        self._number.default_factory = self._number.__len__
+        self._number[""] = 0
+        self.listed: list[Any] = [None]
+
+    def numbers(self, texts: Sequence[str], shape: tuple[int, ...]) -> np.ndarray:
+        """Return the numbers of texts in this shape, new ones for texts that are new."""
+        found = np.fromiter(map(self._number.__getitem__, texts), np.int32, len(texts)).reshape(shape)
+        if len(self._number) > len(self.listed):
+            new = len(self._number) - len(self.listed)
+            self.listed += [*reversed([text for text, _ in zip(reversed(self._number), range(new))])]
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Texts:
+    """A column of texts: where each stands, and every text once.
+
+    :param numbers: places in ``words`` (n,), or (n, k) of lists; 0: none
+    :param words: the texts, None at place 0
+    :param none: what stands for none, the default of the key
+    """
+
+    numbers: np.ndarray
+    words: list[Any] = attribute(repr=False)
+    none: str | None = None
+
+    def __post_init__(self) -> None:
+        assert self.words[0] is None
+
+    @property
+    def ndim(self) -> int:
+        """1 for texts, 2 for lists of them."""
+        return self.numbers.ndim
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of ``numbers``."""
+        return self.numbers.shape
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    def __getitem__(self, places: slice) -> Texts:
+        return replace(self, numbers=self.numbers[places])
+
+    def plain(self) -> list[Any]:
+        """Return the texts or lists as a document has them."""
+        word = self.words.__getitem__
+        if self.ndim == 2:
+            return [[word(number) for number in row if number] for row in self.numbers.tolist()]
+        found = list(map(word, self.numbers.tolist()))
+        return found if self.none is None else [self.none if text is None else text for text in found]
+
+    def given(self) -> np.ndarray:
+        """Return which are given, of the shape of ``numbers``."""
+        return np.asarray(self.numbers != 0)
+
+    def has(self, text: str) -> np.ndarray:
+        """Return which rows (n,) are this text, or lists with it."""
+        known = np.array([word == text for word in self.words]) if len(self.words) < BLOCK else None
+        if known is None:
+            known = np.zeros(len(self.words), dtype=bool)
+            known[[place for place in self.used() if self.words[place] == text]] = True
+        found: np.ndarray = known[self.numbers]
+        if self.ndim == 2:
+            return np.asarray(found.any(axis=1))
+        return np.asarray(found | (self.numbers == 0)) if self.none == text else found
+
+    def used(self) -> np.ndarray:
+        """Return the places of the words that stand in it, ascending; none is no word."""
+        found = np.zeros(len(self.words), dtype=bool)
+        found[self.numbers] = True
+        found[0] = False
+        return np.flatnonzero(found)
+
+
+def coded(values: np.ndarray) -> Texts:
+    """Return a column of texts as such; None and, in lists, "" stand for none."""
+    words: dict[Any, int] = {None: 0}
+    flat = [text if text or values.ndim == 1 else None for text in values.reshape(-1).tolist()]
+    numbers = np.fromiter((words.setdefault(text, len(words)) for text in flat), np.int32, len(flat))
+    return Texts(numbers.reshape(values.shape), list(words))
+
+
+def _plain(values: np.ndarray | Texts) -> list[Any]:
     """Return the elements of a column as a document has them; None where one is not given."""
+    if isinstance(values, Texts):
+        return values.plain()
     found: list[Any] = values.tolist()
     if values.dtype.kind == "f":
         none = np.isnan(values)
@@ -34,19 +130,23 @@ def _plain(values: np.ndarray) -> list[Any]:
     return [[text for text in row if text] for row in found] if values.ndim == 2 else found
 
 
+def _as_column(values: Any) -> np.ndarray | Texts:
+    if isinstance(values, Texts):
+        return values
+    made = np.asarray(values)
+    return made if made.dtype.kind in "fO" else made.astype(object if made.dtype.kind in "USTb" else float)
+
+
 class ItemTable:
     """Items as one column a key, all of one length.
 
     :param columns: by key: numbers (n,), NaN where there is none; vectors (n, k) of numbers; texts (n,), None where
-        there is none; lists of texts (n, k), "" or None behind their end
+        there is none; lists of texts (n, k), "" or None behind their end; either also as :class:`Texts`
     :raises NotAllowed: the columns are of several lengths
     """
 
     def __init__(self, **columns: Any) -> None:
-        self.columns = {
-            key: made if made.dtype.kind in "fO" else made.astype(object if made.dtype.kind in "USTb" else float)
-            for key, made in ((key, np.asarray(values)) for key, values in columns.items())
-        }
+        self.columns: dict[str, np.ndarray | Texts] = {key: _as_column(values) for key, values in columns.items()}
         lengths = {key: values.shape[0] if values.ndim else 0 for key, values in self.columns.items()}
         for key, length in lengths.items():
             if length != max(lengths.values()) or self.columns[key].ndim not in (1, 2):
@@ -140,6 +240,19 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
         if found is None:
             default = default_of(self._fields[key])
             return np.full(self._length, np.nan if default is None else default)
+        assert isinstance(found, np.ndarray)
+        return found
+
+    def texts(self, key: str) -> Texts:
+        """Return a text (n,) or a list of texts (n, k) of every item."""
+        found = self._given.get(key)
+        if found is None:
+            default = default_of(self._fields[key])
+            if not isinstance(default, list):
+                return Texts(np.zeros(self._length, np.int32), [None], default)
+            row = np.arange(1, 1 + max(len(default), 1), dtype=np.int32) * bool(default)
+            return Texts(np.broadcast_to(row, (self._length, len(row))), [None, *default])
+        assert isinstance(found, Texts)
         return found
 
     def value(self, key: str, place: int) -> Any:
@@ -173,7 +286,12 @@ class Named(Mapping[str, Any]):
     """Items of columns by their names."""
 
     def __init__(self, items: ItemColumns[Any]) -> None:
-        self._items, self._place = items, {name: place for place, name in enumerate(items.values("name"))}
+        self._items = items
+
+    @cached_property
+    def _place(self) -> dict[str, int]:
+        """Made when the first name is looked up: arrays are held against each other without it."""
+        return {name: place for place, name in enumerate(self._items.values("name"))}
 
     def __getitem__(self, name: str) -> Any:
         return _Place(self._items, self._place[name])
@@ -185,7 +303,88 @@ class Named(Mapping[str, Any]):
         return iter(self._place)
 
     def __len__(self) -> int:
-        return len(self._place)
+        return len(self._items)
+
+
+NONE, UNKNOWN = -1, -2  # places of what is not given, and of what no item is called
+
+
+class Places:
+    """The places of items by their names, which are all different.
+
+    :param items: one by one or by columns
+    """
+
+    def __init__(self, items: Sequence[Any]) -> None:
+        self._items = items
+
+    @cached_property
+    def _place(self) -> dict[str, int]:
+        items = self._items
+        named = items.values("name") if isinstance(items, ItemColumns) else (item.name for item in items)
+        return {name: place for place, name in enumerate(named)}
+
+    def __getitem__(self, name: str) -> int:
+        return self._place[name]
+
+    @cached_property
+    def _of_word(self) -> np.ndarray:
+        """Place of the item that a word of its own column of names calls."""
+        assert isinstance(self._items, ItemColumns)
+        names = self._items.texts("name")
+        found = np.full(len(names.words), UNKNOWN)
+        found[names.numbers] = np.arange(len(names))
+        found[0] = NONE
+        return found
+
+    def of(self, items: Sequence[Any], key: str) -> np.ndarray:
+        """Return the place that a key of every item names (n,), or (n, k) of lists; NONE, UNKNOWN. Lists have NONE
+        behind their end."""
+        if not isinstance(items, ItemColumns):
+            return self._of_each([getattr(item, key) for item in items])
+        given = items.texts(key)
+        if isinstance(self._items, ItemColumns) and self._items.texts("name").words is given.words:
+            found = self._of_word[given.numbers]
+        else:
+            of_word = np.full(len(given.words), UNKNOWN)
+            for number in given.used().tolist():
+                of_word[number] = self._place.get(given.words[number], UNKNOWN)
+            of_word[0] = NONE if given.none is None else self._place.get(given.none, UNKNOWN)
+            found = of_word[given.numbers]
+        if found.ndim == 2 and (gaps := (given.numbers[:, :-1] == 0) & (given.numbers[:, 1:] != 0)).any():
+            rows = gaps.any(axis=1)
+            order = np.argsort(given.numbers[rows] == 0, axis=1, kind="stable")
+            found[rows] = np.take_along_axis(found[rows], order, axis=1)
+        return np.asarray(found)
+
+    def _of_each(self, named: list[Any]) -> np.ndarray:
+        if not any(isinstance(value, (list, tuple)) for value in named):
+            return np.array([NONE if name is None else self._place.get(name, UNKNOWN) for name in named], dtype=int)
+        found = np.full((len(named), max(map(len, named))), NONE)
+        for row, listed in zip(found, named):
+            row[:len(listed)] = [self._place.get(name, UNKNOWN) for name in listed]
+        return found
+
+
+def where_wrong(
+    items: Sequence[ItemType], wrong: Callable[[ItemColumns[ItemType]], np.ndarray]
+) -> Iterable[ItemType]:
+    """Return the items that are to be looked at one by one: of a list all; of columns those that may be wrong, made
+    when they are asked for.
+
+    :param wrong: returns which of an :class:`ItemColumns` (n,) may be wrong; it must not miss one that is
+    """
+    if not isinstance(items, ItemColumns):
+        return items
+    return (items[place] for place in np.flatnonzero(wrong(items)).tolist())
+
+
+def repeated_names(items: Sequence[Any]) -> bool:
+    """Whether items by columns have a name twice; of a list True, it is to be looked at."""
+    if not isinstance(items, ItemColumns):
+        return True
+    names = items.texts("name")
+    return bool(len(names.used()) < len(items))
 
 
 def each(items: Sequence[Any], *keys: str) -> Iterable[Any]:
@@ -200,16 +399,21 @@ def by_name(items: Sequence[Any]) -> Mapping[str, Any]:
     return Named(items) if isinstance(items, ItemColumns) else {item.name: item for item in items}
 
 
-def _checked(section: str, table: ItemTable, key: str, field: attrs.Attribute[Any]) -> np.ndarray:
+def _checked(section: str, table: ItemTable, key: str, field: attrs.Attribute[Any]) -> np.ndarray | Texts:
     """Return a column with the default of its key where nothing is given, every value held against the rule."""
     rule, values = rule_of(field), table.columns[key]
     default = None if is_required(field) else default_of(field)
     allowed = rule.allowed
+    if isinstance(values, Texts):
+        refused_row = _wrong_texts(key, rule, values, is_required(field))
+        if refused_row is not None:
+            _refuse(section, table, key, rule, refused_row)
+        return values if values.ndim == 2 else replace(values, none=default)
     if rule.form in (NUMBER, NUMBERS) and values.dtype.kind == "f" and allowed is not None:
         none = np.isnan(values)
         if rule.form == NUMBERS:
             none = none.all(axis=-1) if values.ndim == 2 else none
-        elif default is not None:
+        elif default is not None and none.any():
             values, none = np.where(none, default, values), np.zeros_like(none)
         with np.errstate(invalid="ignore"):
             right = (values <= allowed.high) & ((values > allowed.low) if allowed.above else (values >= allowed.low))
@@ -243,9 +447,32 @@ def _checked(section: str, table: ItemTable, key: str, field: attrs.Attribute[An
         except NotAllowed as refused:
             refused.item = _where(section, table, place)
             raise
+    if rule.form in (TEXT, TEXTS):
+        return coded(values) if values.ndim == 2 else replace(coded(values), none=default)
     if plain and default is not None:
         values = np.array([default if value is None else value for value in values], dtype=object)
     return values
+
+
+def _wrong_texts(key: str, rule: Rule, texts: Texts, required: bool) -> int | None:
+    """Return the first row of a column of texts that its rule refuses."""
+    wrong = np.zeros(len(texts.words), dtype=bool)
+    wrong[0] = required and texts.ndim == 1
+    if rule.form != (TEXT if texts.ndim == 1 else TEXTS):
+        return 0
+    used = texts.used().tolist()
+    any_text = rule.known is None and rule.pattern is None
+    # Of a list of texts no more is asked than that they are some.
+    if not any_text or (rule.form == TEXT and not "".join(map(texts.words.__getitem__, used)).isprintable()):
+        for number in used:
+            word = texts.words[number]
+            try:
+                rule.check(key, word if rule.form == TEXT else [word])
+            except NotAllowed:
+                wrong[number] = True
+    refused = wrong[texts.numbers]
+    refused = refused.any(axis=1) if refused.ndim == 2 else refused
+    return int(np.argmax(refused)) if refused.any() else None
 
 
 def _whole(values: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from statejump.schema.item_tables import ItemColumns
+from statejump.schema.item_tables import ItemColumns, Places
 from statejump.schema.items import Item
 
 GROUND = -1
@@ -47,9 +47,20 @@ def names(items: Sequence[Item]) -> tuple[str, ...]:
     return tuple(values(items, "name"))
 
 
-def numbering(items: Sequence[Item]) -> dict[str | None, int]:
-    """Return the index of every name; that of no name is GROUND."""
-    return {None: GROUND, **{name: index for index, name in enumerate(values(items, "name"))}}
+def said(items: Sequence[Any], key: str) -> np.ndarray:
+    """Return which items (n,) have a number, or a vector, of a key."""
+    if not isinstance(items, ItemColumns):
+        return np.array([getattr(item, key) is not None for item in items], dtype=bool)
+    given = ~np.isnan(items.numbers(key))
+    return given if given.ndim == 1 else np.asarray(given.any(axis=1))
+
+
+def having(items: Sequence[Any], key: str, text: str) -> np.ndarray:
+    """Return which items (n,) have this text, or a list with it."""
+    if isinstance(items, ItemColumns):
+        return items.texts(key).has(text)
+    return np.array([text == value if isinstance(value, str) else text in (value or ())
+                     for value in values(items, key)], dtype=bool)
 
 
 def vectors(items: Sequence[Item], key: str, dimension: int) -> np.ndarray:
@@ -87,15 +98,18 @@ class References:
     """What names of a case stand for. References must be right: ``checks`` sees to it when a case is read."""
 
     dimension: int
-    node: dict[str | None, int]
-    link: dict[str | None, int]
-    program: dict[str | None, int]  # of [[program]]; 0 is the common one
+    node: Places
+    link: Places
+    program: Places  # of [[program]], one less than their index: 0 is the common one
     member: dict[str, int]  # programs of members that have histories of their own
 
     def programs_of(self, items: Sequence[Any]) -> np.ndarray:
         """Return the temperature program (items,) of items that may name one."""
-        return np.array([self.member.get(name, 0) if program is None else self.program[program]
-                         for name, program in zip(values(items, "name"), values(items, "program"))], dtype=int)
+        found = 1 + self.program.of(items, "program")
+        if self.member:
+            own = np.fromiter((self.member.get(name, 0) for name in values(items, "name")), int, len(items))
+            return np.where(found == 0, own, found)
+        return found
 
     def axes(self, items: Sequence[Any]) -> np.ndarray:
         """Return unit axes of rotation (items, 3): z in the plane."""
@@ -104,12 +118,15 @@ class References:
         return unit(vectors(items, "axis", self.dimension))
 
 
-def indices(items: Sequence[Any], key: str, number: dict[str | None, int]) -> np.ndarray:
-    """Return what a key of every item names (items,)."""
-    return np.array([number[name] for name in values(items, key)], dtype=int)
+def indices(items: Sequence[Any], key: str, among: Places) -> np.ndarray:
+    """Return what a key of every item names (items,), GROUND where it names none."""
+    return among.of(items, key)
 
 
-def pairs(items: Sequence[Any], key: str, number: dict[str | None, int]) -> np.ndarray:
+def pairs(items: Sequence[Any], key: str, among: Places) -> np.ndarray:
     """Return the one or two that a key of every item names (items, 2), GROUND in place of the second."""
-    found = ([number[name] for name in given] for given in values(items, key))
-    return np.array([(pair + [GROUND])[:2] for pair in found], dtype=int).reshape(-1, 2)
+    found = np.full((len(items), 2), GROUND)
+    if len(items):
+        given = among.of(items, key)[:, :2]
+        found[:, :given.shape[1]] = given
+    return found

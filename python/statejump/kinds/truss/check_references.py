@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
 from statejump.kinds.truss import mechanism
+from statejump.kinds.truss.arrays import having, said
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
-from statejump.kinds.truss.references import known_links, known_name, known_nodes
-from statejump.schema.item_tables import by_name, each
+from statejump.kinds.truss.references import Around, known_links, known_name, known_nodes, wrong_ends
+from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, Places, by_name, each, where_wrong
 
 if TYPE_CHECKING:
-    from statejump.kinds.truss.case import TrussCase
+    from statejump.kinds.truss.case import Link, TrussCase
 
 _WITH_TEMPERATURE = [joint for joint in JOINTS if joint.has_temperature]
 
@@ -22,18 +26,20 @@ _WITH_TEMPERATURE = [joint for joint in JOINTS if joint.has_temperature]
 def check_references(case: TrussCase) -> None:
     """Raise StatejumpError for the first name that is not there or does not fit."""
     nodes, links = by_name(case.node), by_name(case.link)
-    for link in each(case.link, "name", "nodes"):
+    node_places, link_places = Places(case.node), Places(case.link)
+    for link in where_wrong(case.link, lambda items: wrong_ends(node_places.of(items, "nodes"), 2)):
         known_nodes(link.nodes, 2, nodes, {"item": f"link {link.name!r}"})
-    for tie in each(case.spring, "name", "nodes"):
+    for tie in where_wrong(case.spring, lambda items: wrong_ends(node_places.of(items, "nodes"), 2)):
         known_nodes(tie.nodes, 2, nodes, {"item": f"spring {tie.name!r}"})
     _programs(case)
     _expansions(case)
     _members(case)
     _alternatives(case)
+    around = Around(node_places, link_places, _held(case), node_places.of(case.link, "nodes"))
     for joint in JOINTS:
-        for item in listed_joints(case, joint):
+        for item in where_wrong(listed_joints(case, joint), partial(joint.may_be_wrong_references, around=around)):
             joint.check_references(item, nodes, links)
-    for spring in each(case.torsion_spring, "name", "links"):
+    for spring in where_wrong(case.torsion_spring, lambda items: wrong_ends(link_places.of(items, "links"), 1)):
         known_links(spring.links, links, {"item": f"torsion_spring {spring.name!r}"})
     mechanism.check(case, links)
     if case.reflector is not None:
@@ -41,6 +47,14 @@ def check_references(case: TrussCase) -> None:
             raise NotAllowed("reflector.nodes", [], "must be one or more nodes")
         for name in case.reflector.nodes:
             known_name("reflector.nodes", ABSENT, name, nodes, "node", beside="as it is")
+
+
+def _held(case: TrussCase) -> np.ndarray:
+    """Return which nodes have a support."""
+    found = said(case.node, "guide_normal")
+    for axis in "xyz":
+        found |= having(case.node, "fixed", axis)
+    return found
 
 
 def _followers(case: TrussCase) -> Iterator[tuple[Any, dict[str, Any], bool]]:
@@ -52,16 +66,26 @@ def _followers(case: TrussCase) -> Iterator[tuple[Any, dict[str, Any], bool]]:
 
 
 def _programs(case: TrussCase) -> None:
-    programs = by_name(case.program)
-    for item, where, _ in _followers(case):
-        if item.program is not None and item.program not in programs:
-            known_name("program", item.program, item.program, programs, "program", **where)
+    programs, places = by_name(case.program), Places(case.program)
+    followers: Iterator[tuple[Any, Any]] = (
+        (items, where) for items, where in (
+            (case.link, lambda name: {"item": f"link {name!r}"}),
+            *((listed_joints(case, joint), joint.where) for joint in _WITH_TEMPERATURE)))
+    for items, where in followers:
+        for item in where_wrong(items, lambda items: places.of(items, "program") == UNKNOWN):
+            if item.program is not None:
+                known_name("program", item.program, item.program, programs, "program", **where(item.name))
 
 
 def _expansions(case: TrussCase) -> None:
     """Every link has a coefficient or names one that follows the temperature."""
-    expansions = by_name(case.expansion)
-    for link in each(case.link, "name", "expansion", "thermal_expansion_per_K"):
+    expansions, places = by_name(case.expansion), Places(case.expansion)
+
+    def wrong(links: ItemColumns[Link]) -> np.ndarray:
+        named = places.of(links, "expansion")
+        return np.asarray((named == UNKNOWN) | ((named != NONE) == said(links, "thermal_expansion_per_K")))
+
+    for link in where_wrong(case.link, wrong):
         where = {"item": f"link {link.name!r}"}
         if link.expansion is not None and link.thermal_expansion_per_K is not None:
             raise NotAllowed("thermal_expansion_per_K", link.thermal_expansion_per_K, "only without expansion", **where)
@@ -98,10 +122,10 @@ def _members(case: TrussCase) -> None:
 
 
 def _alternatives(case: TrussCase) -> None:
-    for link in each(case.link, "name", "density_kg_per_m3", "mass_kg"):
+    for link in where_wrong(case.link, lambda links: said(links, "density_kg_per_m3") & said(links, "mass_kg")):
         if link.density_kg_per_m3 is not None and link.mass_kg is not None:
             raise NotAllowed("mass_kg", link.mass_kg, "only without density_kg_per_m3", item=f"link {link.name!r}")
-    for spring in each(case.spring, "name", "preload_N", "free_length_m"):
+    for spring in where_wrong(case.spring, lambda ties: said(ties, "preload_N") & said(ties, "free_length_m")):
         if spring.preload_N is not None and spring.free_length_m is not None:
             raise NotAllowed("preload_N", spring.preload_N, "only without free_length_m",
                              item=f"spring {spring.name!r}")

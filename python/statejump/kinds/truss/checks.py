@@ -6,6 +6,7 @@ is the solver's to find: it depends on which joints are in contact.
 """
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from statejump.core import expansion, thermal
@@ -14,11 +15,13 @@ from statejump.kinds.truss.check_geometry import check_geometry
 from statejump.kinds.truss.check_references import check_references
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
-from statejump.kinds.truss.references import axis_of_rotation, vector
-from statejump.schema.item_tables import each
+from statejump.kinds.truss.references import axis_of_rotation, vector, wrong_axes, wrong_vectors
+from statejump.schema.item_tables import ItemColumns, each, repeated_names, where_wrong
 
 if TYPE_CHECKING:
-    from statejump.kinds.truss.case import TrussCase
+    import numpy as np
+
+    from statejump.kinds.truss.case import Node, TrussCase
 
 SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in JOINTS), "spring", "torsion_spring",
             "drive")
@@ -67,6 +70,8 @@ def _expansions(case: TrussCase) -> None:
 
 def _names(case: TrussCase) -> None:
     for section in SECTIONS:
+        if not repeated_names(getattr(case, section)):
+            continue
         seen: set[str] = set()
         for number, item in enumerate(each(getattr(case, section), "name"), start=1):
             if item.name in seen:
@@ -76,16 +81,25 @@ def _names(case: TrussCase) -> None:
 
 def _vectors(case: TrussCase) -> None:
     dimension = case.truss.dimension
-    for node in each(case.node, "name", "position_m", "guide_normal", "force_N", "fixed"):
-        for key, unit, direction in (("position_m", "m", False), ("guide_normal", "-", True), ("force_N", "N", False)):
+    keys = (("position_m", "m", False), ("guide_normal", "-", True), ("force_N", "N", False))
+
+    def wrong(nodes: ItemColumns[Node]) -> np.ndarray:
+        found = nodes.texts("fixed").has("z") & (dimension == 2)
+        for key, _, direction in keys:
+            found |= wrong_vectors(nodes, key, dimension, direction)
+        return found
+
+    for node in where_wrong(case.node, wrong):
+        for key, unit, direction in keys:
             vector(key, getattr(node, key), unit, dimension, direction, item=f"node {node.name!r}", nodes=(node.name,))
         if dimension == 2 and "z" in node.fixed:
             raise NotAllowed("fixed", node.fixed, "a planar truss has 'x' and 'y' only", item=f"node {node.name!r}",
                              nodes=(node.name,))
     for joint in JOINTS:
-        for item in listed_joints(case, joint):
+        for item in where_wrong(listed_joints(case, joint),
+                                partial(joint.may_be_wrong_vectors, dimension=dimension)):
             joint.check_vectors(item, dimension)
-    for spring in each(case.torsion_spring, "name", "axis"):
+    for spring in where_wrong(case.torsion_spring, partial(wrong_axes, dimension=dimension)):
         axis_of_rotation(spring.axis, dimension, {"item": f"torsion_spring {spring.name!r}"})
     if case.reflector is not None:
         axis = case.reflector.axis

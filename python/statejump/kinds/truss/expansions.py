@@ -10,6 +10,7 @@ import numpy as np
 from statejump.core.errors import NotAllowed
 from statejump.core.expansion import followed
 from statejump.kinds.truss.arrays import column, values
+from statejump.schema.item_tables import ItemColumns
 
 if TYPE_CHECKING:
     from statejump.core.temperature_files import MemberProgram
@@ -42,7 +43,8 @@ def link_temperatures(case: TrussCase, shown: np.ndarray, names: tuple[str, ...]
     fraction = column(case.link, "temperature_fraction")
     program, own_fraction, largest = shown.copy(), fraction.copy(), np.zeros(len(case.link))
     made: dict[tuple[int, float, str], int] = {}
-    for index, named_expansion in enumerate(values(case.link, "expansion")):
+    none_expands = isinstance(case.link, ItemColumns) and not case.link.texts("expansion").given().any()
+    for index, named_expansion in enumerate(() if none_expands else values(case.link, "expansion")):
         if named_expansion is None:
             continue
         expansion, number = expansions[named_expansion], int(shown[index])

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed
-from statejump.kinds.truss.arrays import References, column, indices, names, values, vectors
+from statejump.kinds.truss.arrays import References, column, indices, names, said, vectors
 from statejump.kinds.truss.references import known_name, vector
 from statejump.schema.fields import definition, numbers, parameter, text
-from statejump.schema.item_tables import each
+from statejump.schema.item_tables import ItemColumns, where_wrong
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
@@ -68,13 +68,13 @@ def _table(item: Drive) -> tuple[np.ndarray, np.ndarray]:
 def resolve_bodies(links: Sequence[Link], length_m: np.ndarray, mass_kg: np.ndarray) -> Bodies:
     """Return the shapes of links; those of which nothing is said are rods."""
     moment = column(links, "moment_of_inertia_kg_m2")
-    said = np.array([centre is not None for centre in values(links, "centre_of_mass_m")], dtype=bool)
+    own_centre = said(links, "centre_of_mass_m")
     middle = np.stack((length_m / 2, np.zeros(len(links))), axis=1)
     given = vectors(links, "centre_of_mass_m", 2)[:, :2]
     length = np.where(length_m > 0, length_m, np.nan)  # a link without one is refused where geometry is checked
     return Bodies(
-        np.where(said[:, None], given, middle) / length[:, None],
-        np.where(np.isnan(moment), mass_kg * length_m**2 / 12, moment), said | ~np.isnan(moment),
+        np.where(own_centre[:, None], given, middle) / length[:, None],
+        np.where(np.isnan(moment), mass_kg * length_m**2 / 12, moment), own_centre | ~np.isnan(moment),
     )
 
 
@@ -97,7 +97,17 @@ def check(case: TrussCase, links: Mapping[str, Any]) -> None:
     """Raise StatejumpError for gravity, bodies and drives that do not fit."""
     dimension = case.truss.dimension
     vector("truss.gravity_m_per_s2", case.truss.gravity_m_per_s2, "m/s2", dimension, False)
-    for link in each(case.link, "name", "mass_kg", "density_kg_per_m3", "centre_of_mass_m", "moment_of_inertia_kg_m2"):
+    heavy, lumped = any(case.truss.gravity_m_per_s2 or ()), case.motion.masses == "lumped"
+
+    def wrong(links: ItemColumns[Link]) -> np.ndarray:
+        mass, centre = said(links, "mass_kg"), said(links, "centre_of_mass_m")
+        body = centre | said(links, "moment_of_inertia_kg_m2")
+        off_line = centre & (dimension == 3)
+        if off_line.any():
+            off_line &= vectors(links, "centre_of_mass_m", 2)[:, 1] != 0
+        return np.asarray((body & (~mass | lumped)) | off_line | (heavy & ~mass & ~said(links, "density_kg_per_m3")))
+
+    for link in where_wrong(case.link, wrong):
         where = {"item": f"link {link.name!r}"}
         weighed = link.mass_kg is not None or link.density_kg_per_m3 is not None
         if not weighed and any(case.truss.gravity_m_per_s2 or ()):

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed
-from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
+from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION, said
+from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, Places
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.resolved import ResolvedTruss
@@ -55,6 +57,42 @@ def known_links(names: list[str], links: Mapping[str, Any], where: Mapping[str, 
         known_name("links", names, name, links, "link", **where)
     if len(names) == 2 and names[0] == names[1]:
         raise NotAllowed("links", names, "must be two different links", **where)
+
+
+@dataclass(frozen=True)
+class Around:
+    """What joints by columns are held against, as arrays."""
+
+    nodes: Places
+    links: Places
+    held: np.ndarray  # (nodes,) bool: it has a support
+    link_nodes: np.ndarray  # (links, k) places of the nodes that links name
+
+
+def wrong_ends(places: np.ndarray, least: int) -> np.ndarray:
+    """Return which items (n,) do not name two that are different, or one where the least is one.
+
+    :param places: what they name (n, k), as :class:`~statejump.schema.item_tables.Places` returns it
+    """
+    count = (places != NONE).sum(axis=1)
+    ends = np.sort(places, axis=1)[:, -2:]
+    alike = (ends[:, 0] == ends[:, -1]) & (count == 2)
+    return np.asarray((count < least) | (count > 2) | (places == UNKNOWN).any(axis=1) | alike)
+
+
+def wrong_vectors(items: ItemColumns[Any], key: str, dimension: int, direction: bool) -> np.ndarray:
+    """Return of which items (n,) :func:`vector` raises."""
+    given = items.numbers(key)
+    if given.ndim == 1:
+        return ~np.isnan(given)
+    there = ~np.isnan(given).all(axis=1)
+    return there if given.shape[1] != dimension else np.asarray(there & ~given.any(axis=1) & direction)
+
+
+def wrong_axes(items: ItemColumns[Any], dimension: int) -> np.ndarray:
+    """Return of which items (n,) :func:`axis_of_rotation` raises."""
+    there = said(items, "axis")
+    return there if dimension == 2 else ~there | wrong_vectors(items, "axis", dimension, True)
 
 
 def vector(key: str, value: list[float] | None, unit: str, dimension: int, direction: bool, **where: Any) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from statejump.core.thermal import range_K
 from statejump.kinds.truss.arrays import (
-    GROUND, References, column, columns, distances, in_space, names, numbering, pairs, unit, values, vectors,
+    GROUND, References, column, columns, distances, having, in_space, names, pairs, unit, values, vectors,
 )
 from statejump.kinds.truss.expansions import link_temperatures
 from statejump.kinds.truss.joints import JOINTS
@@ -23,6 +23,7 @@ from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.joints.revolute import Revolutes
 from statejump.kinds.truss.joints.slider import Sliders
 from statejump.kinds.truss.mechanism import Bodies, Drives, resolve_bodies, resolve_drives, weights_N
+from statejump.schema.item_tables import Places
 
 if TYPE_CHECKING:
     from statejump.core.temperature_files import MemberProgram
@@ -178,8 +179,7 @@ class ResolvedTruss:
 def resolve(case: TrussCase) -> ResolvedTruss:
     """Return the arrays of a case. References must be right: ``checks`` sees to it when a case is read."""
     dimension = case.truss.dimension
-    node_number, link_number = numbering(case.node), numbering(case.link)
-    program_number = {name: index + 1 for name, index in numbering(case.program).items()}
+    node_places, link_places = Places(case.node), Places(case.link)
     positions = vectors(case.node, "position_m", dimension)
 
     members = case.thermal.members
@@ -187,9 +187,9 @@ def resolve(case: TrussCase) -> ResolvedTruss:
         name: index for index, name in enumerate(members.names, start=1 + len(case.program))
     }
 
-    known = References(dimension, node_number, link_number, program_number, member_number)
+    known = References(dimension, node_places, link_places, Places(case.program), member_number)
 
-    fixed = np.array([[axis in held for axis in "xyz"] for held in values(case.node, "fixed")], dtype=bool)
+    fixed = np.stack([having(case.node, "fixed", axis) for axis in "xyz"], axis=1)
     fixed[:, dimension:] = True
     nodes = Nodes(
         names=names(case.node),
@@ -200,7 +200,7 @@ def resolve(case: TrussCase) -> ResolvedTruss:
         mass_kg=column(case.node, "mass_kg"),
     )
 
-    link_nodes = pairs(case.link, "nodes", node_number)
+    link_nodes = pairs(case.link, "nodes", node_places)
     length = column(case.link, "stress_free_length_m")
     length = np.where(np.isnan(length), distances(positions, link_nodes), length)
     link = columns(
@@ -224,7 +224,7 @@ def resolve(case: TrussCase) -> ResolvedTruss:
         ends=tuple(values(case.link, "ends")), yield_strength_Pa=np.where(np.isnan(strength), inf, strength),
     )
 
-    spring_nodes = pairs(case.spring, "nodes", node_number)
+    spring_nodes = pairs(case.spring, "nodes", node_places)
     drawn = distances(positions, spring_nodes)
     stiffness = column(case.spring, "stiffness_N_per_m")
     free, preload = column(case.spring, "free_length_m"), column(case.spring, "preload_N")
@@ -237,14 +237,14 @@ def resolve(case: TrussCase) -> ResolvedTruss:
         cable=np.array(list(values(case.spring, "cable")), dtype=bool),
     )
     torsion_springs = TorsionSprings(
-        names=names(case.torsion_spring), links=pairs(case.torsion_spring, "links", link_number),
+        names=names(case.torsion_spring), links=pairs(case.torsion_spring, "links", link_places),
         axis=known.axes(case.torsion_spring),
         **columns(case.torsion_spring, "stiffness_N_m_per_rad", "bias_rad"),
     )
     reflector = None
     if case.reflector is not None:
         reflector = ReflectorSurface(
-            nodes=np.array([node_number[name] for name in case.reflector.nodes], dtype=int),
+            nodes=np.array([node_places[name] for name in case.reflector.nodes], dtype=int),
             axis=unit(in_space(case.reflector.axis, dimension)),
             focal_length_m=case.reflector.focal_length_m,
         )

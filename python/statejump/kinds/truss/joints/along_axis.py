@@ -10,7 +10,8 @@ import numpy as np
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
 from statejump.kinds.truss.joints.protocol import JointType
-from statejump.kinds.truss.references import known_nodes, vector
+from statejump.kinds.truss.references import Around, known_nodes, vector, wrong_ends, wrong_vectors
+from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
@@ -48,6 +49,12 @@ class AlongAxis(JointType[ItemType, ArraysType]):
 
     def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
         known_nodes(getattr(item, "nodes"), 1, nodes, self.where(item.name))
+
+    def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
+        return wrong_vectors(items, "axis", dimension, True)
+
+    def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
+        return wrong_ends(around.nodes.of(items, "nodes"), 1)
 
     def check_geometry(self, truss: ResolvedTruss, joints: ArraysType, ranges_K: np.ndarray) -> None:
         nodes = truss.nodes

@@ -14,6 +14,7 @@ from statejump.kinds.truss.joints.protocol import BLACK, Contacts, JointColumn, 
 from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
 from statejump.schema.fields import CHOICE, definition, parameter, text
+from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
@@ -99,6 +100,9 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
         if dimension == 2:
             raise NotAllowed("truss.dimension", 2, "a ball joint needs 3: its friction has two directions; in a planar "
                              "truss a revolute does the same", **self.where(item.name))
+
+    def may_be_wrong_vectors(self, items: ItemColumns[BallJoint], dimension: int) -> np.ndarray:
+        return np.full(len(items), dimension == 2)
 
     def check_geometry(self, truss: ResolvedTruss, joints: BallJoints, ranges_K: np.ndarray) -> None:
         for index in np.flatnonzero((truss.sticking == "rigid") & (joints.friction_coefficient > 0))[:1]:

@@ -12,8 +12,11 @@ import numpy as np
 from statejump.kinds.truss.arrays import GROUND, References, columns, names, pairs
 from statejump.kinds.truss.joints.protocol import JointColumn, JointType, Symbol, Torsion
 from statejump.kinds.truss.joints.words import USER, count, scaled, spread
-from statejump.kinds.truss.references import axis_of_rotation, known_links, turned_links
+from statejump.kinds.truss.references import (
+    Around, axis_of_rotation, known_links, turned_links, wrong_axes, wrong_ends,
+)
 from statejump.schema.fields import definition, numbers, parameter, texts
+from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
@@ -72,6 +75,12 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
 
     def check_references(self, item: LatchHinge, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
         known_links(item.links, links, self.where(item.name))
+
+    def may_be_wrong_vectors(self, items: ItemColumns[LatchHinge], dimension: int) -> np.ndarray:
+        return wrong_axes(items, dimension)
+
+    def may_be_wrong_references(self, items: ItemColumns[LatchHinge], around: Around) -> np.ndarray:
+        return wrong_ends(around.links.of(items, "links"), 1)
 
     def resolve(self, items: Sequence[LatchHinge], known: References) -> LatchHinges:
         found = columns(items, "deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m",

@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from statejump.kinds.truss.arrays import References
+from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.case import TrussCase
     from statejump.kinds.truss.joints.friction_loads import Loads
+    from statejump.kinds.truss.references import Around
     from statejump.kinds.truss.resolved import ResolvedTruss
     from statejump.kinds.truss.solve import Course
 
@@ -137,6 +139,14 @@ class JointType(Generic[ItemType, ArraysType]):
 
     def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
         """Raise an error for a name that is not there or does not fit."""
+
+    def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
+        """Return which items (n,) :meth:`check_vectors` is to look at: it must not miss one that is wrong."""
+        return np.full(len(items), True)
+
+    def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
+        """Return which items (n,) :meth:`check_references` is to look at: it must not miss one that is wrong."""
+        return np.full(len(items), True)
 
     def expands(self, item: ItemType) -> bool:
         """Whether a joint that has a temperature follows it."""

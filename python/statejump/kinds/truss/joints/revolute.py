@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import References, columns, indices, names, values
+from statejump.kinds.truss.arrays import References, columns, having, indices, names
 from statejump.kinds.truss.joints.protocol import BLACK, Contacts, JointColumn, Sampled, Symbol
 from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
-from statejump.kinds.truss.references import axis_of_rotation
+from statejump.kinds.truss.references import axis_of_rotation, wrong_axes
 from statejump.schema.fields import CHOICE, choice, definition, numbers, parameter, text
+from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
@@ -89,6 +90,9 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
     def check_vectors(self, item: Revolute, dimension: int) -> None:
         axis_of_rotation(item.axis, dimension, self.where(item.name))
 
+    def may_be_wrong_vectors(self, items: ItemColumns[Revolute], dimension: int) -> np.ndarray:
+        return wrong_axes(items, dimension)
+
     def resolve(self, items: Sequence[Revolute], known: References) -> Revolutes:
         return Revolutes(
             names=names(items),
@@ -96,7 +100,7 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
             **{key: indices(items, key, known.link) for key in ("bearing_link", "journal_link")},
             axis=known.axes(items),
             program=known.programs_of(items),
-            rigid=np.array([contact == "rigid" for contact in values(items, "contact")], dtype=bool),
+            rigid=having(items, "contact", "rigid"),
             **columns(
                 items, "journal_radius_m", "radial_clearance_m", "friction_coefficient",
                 "journal_thermal_expansion_per_K", "bearing_thermal_expansion_per_K", "temperature_fraction",

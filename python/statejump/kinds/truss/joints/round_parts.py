@@ -12,7 +12,8 @@ from statejump.core import physics
 from statejump.core.errors import MissingKey, NotAllowed
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.joints.protocol import IMPACT, ContactPart, Contacts, Drawn, JointType, Sampled
-from statejump.kinds.truss.references import known_name
+from statejump.kinds.truss.references import Around, known_name
+from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
@@ -91,6 +92,15 @@ class RoundParts(JointType[ItemType, ArraysType]):
         inner, outer = (f"{part}_link" for part in (self.inner, self.outer))
         if getattr(item, outer) is not None and getattr(item, outer) == getattr(item, inner):
             raise NotAllowed(inner, getattr(item, inner), f"must be another link than {outer}", **where)
+
+    def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
+        nodes, links = ([places.of(items, f"{part}_{what}") for part in self.parts]
+                        for places, what in ((around.nodes, "node"), (around.links, "link")))
+        wrong = (nodes[0] == nodes[1]) | ((links[0] == links[1]) & (links[0] != NONE))
+        for node, link in zip(nodes, links):
+            wrong |= (node < 0) | (link == UNKNOWN)
+            wrong |= np.where(link == NONE, ~around.held[node], (around.link_nodes[link] != node[:, None]).all(axis=1))
+        return np.asarray(wrong)
 
     def expands(self, item: ItemType) -> bool:
         return any(getattr(item, f"{part}_thermal_expansion_per_K") for part in self.parts)
