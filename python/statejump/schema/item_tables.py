@@ -33,14 +33,15 @@ class Words:
     """
 
     def __init__(self) -> None:
-        self._number: defaultdict[str, int] = defaultdict()
-        self._number.default_factory = self._number.__len__
-        self._number[""] = 0
+        self._number: defaultdict[str, int] = defaultdict(None, {"": 0})
         self.listed: list[Any] = [None]
 
     def numbers(self, texts: Sequence[str], shape: tuple[int, ...]) -> np.ndarray:
         """Return the numbers of texts in this shape, new ones for texts that are new."""
+        # Only for now: a dict that holds its own method is a cycle, and stays long after the files are read.
+        self._number.default_factory = self._number.__len__
         found = np.fromiter(map(self._number.__getitem__, texts), np.int32, len(texts)).reshape(shape)
+        self._number.default_factory = None
         if len(self._number) > len(self.listed):
             new = len(self._number) - len(self.listed)
             self.listed += [*reversed([text for text, _ in zip(reversed(self._number), range(new))])]
