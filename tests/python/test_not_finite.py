@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -156,3 +157,17 @@ def test_two_files(cases: Path, tmp_path: Path, statejump) -> None:
         assert statejump("compare", path, path).status == 0
     found = difference(read(whole), read(whole))[0]
     assert found.missed == [] and found.lacking == [] and found.not_finite == []
+
+
+@pytest.mark.parametrize(("name", "group", "column"), [("table1", "history", "displacement_m"),
+                                                       ("trusses/chain_10", "links", "axial_force_N")])
+def test_numbers_without_an_end_are_compared_without_a_warning(
+        name: str, group: str, column: str, cases: Path, tmp_path: Path) -> None:
+    case = case_of(cases, name)
+    run = case.reduced()
+    for place, value in enumerate((math.inf, 1e200)):
+        path = written(case, spoilt(run, group, column, value), tmp_path / str(place))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            found = difference(read(path), read(path))[0]
+        assert not found.not_finite  # both files have the same

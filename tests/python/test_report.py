@@ -450,6 +450,7 @@ def test_numbers_for_terminals() -> None:
     assert units.plain(-2.38095e-05, "m") == "-23.8095 µm"
 
 
-@pytest.mark.parametrize(("value", "expected"), [(0.3, 1), (1, 1), (4.99, 2), (5, 5), (39, 20), (1999, 1000)])
+@pytest.mark.parametrize(("value", "expected"),
+                         [(0.3, 1), (1, 1), (4.99, 2), (5, 5), (39, 20), (1999, 1000), (math.inf, math.inf)])
 def test_default_magnification_is_round(value: float, expected: float) -> None:
     assert round_down(value) == expected

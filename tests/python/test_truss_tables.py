@@ -138,14 +138,20 @@ def test_the_same_refusal(what: str, tmp_path: Path) -> None:
     assert str(other.value) == f"{file}: {one.value}"
 
 
-def test_texts_that_are_not_utf_8(tmp_path: Path) -> None:
-    file = beside(generate.chain(2), tmp_path)
-    file.write_text(file.read_text().replace("case_node.csv", "node.h5"))
-    with h5py.File(tmp_path / "node.h5", "w") as table:
-        table["name"] = np.array([b"A", b"\xff"])
-    with pytest.raises(StatejumpError) as refused:
-        load_case(file)
-    assert str(refused.value) == f"{tmp_path / 'node.h5'}: 'name' has texts that are not UTF-8"
+def test_texts_that_call_themselves_ascii(tmp_path: Path, statejump: Callable[..., Any]) -> None:
+    document = generate.chain(3)
+    file = beside(document, tmp_path)
+    file.write_text(file.read_text().replace("case_node.csv", "case_node.h5"))
+    names = [node["name"] for node in document["node"]]
+    in_hdf5(document["node"], tmp_path / "case_node.h5")
+    for coded, refused in ("Träger".encode(), False), (b"\xff", True):
+        texts = [name.encode() for name in names]
+        texts[-1] = texts[-1] + coded
+        with h5py.File(tmp_path / "case_node.h5", "a") as table:
+            del table["name"]
+            table.create_dataset("name", data=texts, dtype=h5py.string_dtype("ascii", max(map(len, texts))))
+        told = statejump("reduced", file).errors
+        assert told.count("\n") == 1 and ("case_node.h5: 'name' has texts that are not UTF-8" in told) == refused, told
 
 
 def test_a_table_of_arrays_is_a_list_of_items() -> None:

@@ -31,9 +31,11 @@ AXES = "xyz"
 
 
 def round_down(value: float) -> float:
-    """Return the largest of 1, 2, 5, 10, 20, ... that is not above the value; at least 1."""
+    """Return the largest of 1, 2, 5, 10, 20, ... that is not above the value; at least 1, and infinity of itself."""
     if not value > 1:
         return 1.0
+    if math.isinf(value):
+        return value
     power = 10.0 ** math.floor(math.log10(value))
     return power * max(step for step in (1, 2, 5) if step * power <= value * (1 + 1e-9))
 

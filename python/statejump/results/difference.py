@@ -143,8 +143,7 @@ def _columns(first: Run, second: Run) -> list[ColumnDifference]:
         for name, column in getattr(first, group).items():
             if name == "time_s" or column.labels or name not in other:
                 continue
-            with np.errstate(invalid="ignore"):  # both are infinite
-                difference = np.abs(other[name].values - column.values).reshape(len(first.time_s), -1)
+            difference = np.abs(other[name].values - column.values).reshape(len(first.time_s), -1)
             over_items = np.where(np.isnan(difference), -1.0, difference).max(axis=1, initial=-1.0)
             place = int(np.argmax(over_items))
             if over_items[place] < 0:
@@ -195,9 +194,10 @@ def difference(first: Result, second: Result) -> list[RunDifference]:
             raise StatejumpError("not comparable", cause=f"the runs last {ends[0]:g} s and {ends[1]:g} s")
         times = one.time_s[one.time_s <= min(ends) * (1 + SAME_TIME)]
         left, right = one.at(times), other.at(times)
-        found.append(RunDifference(
-            names, _summary(one, other), _columns(left, right), _events(one, other),
-            of_two(judge(first.definition, left, right)) if complete else None,
-            _lacking(left, right), _not_finite(left, right),
-        ))
+        with np.errstate(over="ignore", invalid="ignore"):  # rows and columns name what is not finite
+            found.append(RunDifference(
+                names, _summary(one, other), _columns(left, right), _events(one, other),
+                of_two(judge(first.definition, left, right)) if complete else None,
+                _lacking(left, right), _not_finite(left, right),
+            ))
     return found
