@@ -5,6 +5,7 @@
 #include <string>
 
 #include "statejump/kernel/joint_kinematics.hpp"
+#include "statejump/stepper/arrays.hpp"
 #include "yade_api.hpp"
 
 namespace statejump::dem {
@@ -13,11 +14,7 @@ inline kernel::BodyMotion motion(const yade::State& state) {
   return {state.se3.position, state.vel, state.angVel};
 }
 
-// Local z axis in the world: orientation * (0, 0, 1) without the products with zero.
-inline yade::Vector3r axis_of(const yade::Quaternionr& q) {
-  return {2 * (q.x() * q.z() + q.w() * q.y()), 2 * (q.y() * q.z() - q.w() * q.x()),
-          1 - 2 * (q.x() * q.x() + q.y() * q.y())};
-}
+using stepper::axis_of;
 
 // Failures apart from the path of every step, which stays short and free of text. Lengths in m.
 [[gnu::cold]] void fail_closed(const char* inner, yade::Real inner_radius, const char* outer,

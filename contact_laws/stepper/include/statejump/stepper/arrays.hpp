@@ -123,8 +123,9 @@ const std::vector<Entry>& entries(const std::vector<Entry>& stage) {
 }
 
 inline Vector3 axis_of(const Quaternion& q) {
-  // Local z axis in the world: orientation * (0, 0, 1) without the products with zero.
-  return {2 * (q.x() * q.z() + q.w() * q.y()), 2 * (q.y() * q.z() - q.w() * q.x()),
+  // Local z axis in the world: orientation * (0, 0, 1) without the products with zero. A sum with
+  // +0 has no sign of its own: after any turn about z the axis has the same bits.
+  return {2 * (q.x() * q.z() + q.w() * q.y()) + 0.0, 2 * (q.y() * q.z() - q.w() * q.x()) + 0.0,
           1 - 2 * (q.x() * q.x() + q.y() * q.y())};
 }
 

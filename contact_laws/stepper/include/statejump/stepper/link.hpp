@@ -146,6 +146,27 @@ inline Quaternion smallest_turn(const Vector3& from, const Vector3& to) {
   return turn;
 }
 
+/// Whether a turn about z alone leads from an orientation about z to a direction across z.
+inline bool turns_in_plane(const Link& link, const Vector3& direction,
+                           const Quaternion& orientation) {
+  return orientation.x() == 0 && orientation.y() == 0 && link.tipDirection.z() == 0 &&
+         direction.z() == 0;
+}
+
+/// The turn about z from one unit vector across z to another, in the half of all quaternions in
+/// which another one is; it asks for no more of that.
+inline Quaternion turn_in_plane(const Vector3& from, const Vector3& to,
+                                const Quaternion& same_half) {
+  const double cosine = from.x() * to.x() + from.y() * to.y();
+  const double sine = from.x() * to.y() - from.y() * to.x();
+  // tan(a/2) = sin/(1 + cos) = (1 - cos)/sin, of which one does not cancel.
+  const double w = cosine >= 0 ? 1 + cosine : sine;
+  const double z = cosine >= 0 ? sine : 1 - cosine;
+  const double length = std::sqrt(w * w + z * z);
+  const double scale = (w * same_half.w() + z * same_half.z() < 0 ? -1 : 1) / length;
+  return {w * scale, 0, 0, z * scale};
+}
+
 /// Turns the tip with its link, and returns the force on the tip [N] that carries a moment on it.
 ///
 /// A couple of forces +-(M x u) / L carries the moment M of the step's contacts, its part along the
@@ -157,8 +178,12 @@ inline Vector3 turn_tip(Link& link, const LinkStep& step, const Vector3& moment,
   const double inverse_length = 1 / step.span.length;
   const Vector3 carrying = moment.cross(direction) * inverse_length;
   if (link.tipDirection.isZero()) link.tipDirection = orientation.conjugate() * direction;
-  orientation = smallest_turn(orientation * link.tipDirection, direction) * orientation;
-  orientation.coeffs() *= 1 / orientation.norm();
+  if (turns_in_plane(link, direction, orientation)) {
+    orientation = turn_in_plane(link.tipDirection, direction, orientation);
+  } else {
+    orientation = smallest_turn(orientation * link.tipDirection, direction) * orientation;
+    orientation.coeffs() *= 1 / orientation.norm();
+  }
   spin = direction.cross(step.relative_velocity) * inverse_length;
   return carrying;
 }

@@ -45,6 +45,10 @@ struct Body {
   bool bounded = false;
   bool turns = false;  ///< its orientation changes, or may
   bool moves = false;  ///< anything of it changes, or may
+  // A link that turns its tip in the plane asks for no more of how the tip lay than on which half
+  // of all quaternions: what the integrator would turn before is left out.
+  bool turn_may_wait = false;  ///< nothing but such a link and round joints asks how it lies
+  bool turn_waits = false;     ///< of the last step
 };
 
 /// Sums up what was added. @param first whether it is the first sum of the step
@@ -102,8 +106,31 @@ inline bool left_its_bound(const Body& body) {
   return most != 0 && !(most < body.bound_reach);
 }
 
+/// Turns a body by its spin, as the last part of a step. @param time_step [s]
+inline void turn(Body& body, double time_step) {
+  const Vector3& spin = body.motion.angular_velocity;
+  const double speed_squared = spin.squaredNorm();
+  if (speed_squared != 0) {
+    const double speed = std::sqrt(speed_squared);
+    const Quaternion by(Eigen::AngleAxisd(speed * time_step, spin / speed));
+    body.orientation = by * body.orientation;
+  }
+  body.orientation.normalize();
+}
+
+/// Whether the turn of this step can wait for a link that may make it needless: it is about z, as
+/// all turns of the body were, so that its axis stays where it is; and short, so that it stays on
+/// its half of all quaternions.
+inline bool can_wait(const Body& body, double time_step) {
+  const Quaternion& lies = body.orientation;
+  const Vector3& spin = body.motion.angular_velocity;
+  return body.turn_may_wait && lies.x() == 0 && lies.y() == 0 && spin.x() == 0 && spin.y() == 0 &&
+         std::abs(spin.z()) * time_step < 0.1;
+}
+
 /// One leapfrog step with the forces as they are summed up. @param time_step [s]
-inline void move(Body& body, const Newton& newton, double time_step) {
+/// @param last whether somebody may look at the body before its next step
+inline void move(Body& body, const Newton& newton, double time_step, bool last = true) {
   if (body.blocked != everything) {
     Vector3 acceleration = Vector3::Zero();
     if (body.blocked == 0) {
@@ -139,14 +166,8 @@ inline void move(Body& body, const Newton& newton, double time_step) {
   }
   body.motion.position += body.motion.velocity * time_step;
   if (!body.turns) return;
-  const Vector3& spin = body.motion.angular_velocity;
-  const double speed_squared = spin.squaredNorm();
-  if (speed_squared != 0) {
-    const double speed = std::sqrt(speed_squared);
-    const Quaternion turn(Eigen::AngleAxisd(speed * time_step, spin / speed));
-    body.orientation = turn * body.orientation;
-  }
-  body.orientation.normalize();
+  body.turn_waits = !last && can_wait(body, time_step);
+  if (!body.turn_waits) turn(body, time_step);
 }
 
 }  // namespace statejump::stepper

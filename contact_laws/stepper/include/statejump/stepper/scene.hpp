@@ -123,7 +123,7 @@ class Scene {
   bool act(std::vector<Guide>& guides);
   void sum();
   void account_motion(const Body& body);
-  bool move_all(const std::vector<std::size_t>& places);
+  bool move_all(const std::vector<std::size_t>& places, bool last);
 
   std::vector<std::size_t> moving_;
   std::vector<double> changes_;        // temperature changes of the programs in this step [K]
@@ -147,8 +147,12 @@ inline void Scene::prepare() {
       place.damping = damping_coefficient(place.link, place.inverse_mass);
       place.softening = previous_softening(place.link);
       if (!place.link.tipTurnsWithLink) continue;
-      tip.turns = tip.moves = true;
+      tip.turns = tip.moves = tip.turn_may_wait = true;
     }
+  }
+  for (const Contact& contact : contacts) {
+    if (contact.joint != Joint::plane && contact.joint != Joint::bore) continue;
+    for (const int id : bodies_of(contact)) body(id).turn_may_wait = false;
   }
   moving_.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -193,7 +197,6 @@ inline long Scene::run(long steps, const Make& make, const Observe& observe) {
   return std::visit(
       [&](const auto& one) {
         const auto contact = [&](std::size_t place) { return step_contact(one, place, make); };
-        const auto move = [&](const std::vector<std::size_t>& places) { return move_all(places); };
         long done = 0;
         if (steps > 1) {
           Batches batches({bodies, contacts, stages, strains, energies, newton, time_step,
@@ -202,7 +205,7 @@ inline long Scene::run(long steps, const Make& make, const Observe& observe) {
           // The last step is not made in batches: it leaves all that anybody may ask for.
           while (done < steps - 1 && batches.useful() &&
                  step([&] { return batches.step_contacts(contact); },
-                      [&] { return batches.move() && move(batches.others()); })) {
+                      [&] { return batches.move() && move_all(batches.others(), false); })) {
             ++done;
           }
           if (batches.useful() && done < steps - 1) return done;
@@ -215,11 +218,12 @@ inline long Scene::run(long steps, const Make& make, const Observe& observe) {
           return true;
         };
         const auto observed = [&] {
-          if (observe && done == steps - 1) {
+          const bool last = done == steps - 1;
+          if (observe && last) {
             sum();
             observe();
           }
-          return move(moving_);
+          return move_all(moving_, last);
         };
         while (done < steps && step(one_by_one, observed)) ++done;
         return done;
@@ -326,12 +330,12 @@ inline void Scene::account_motion(const Body& each) {
   energies.gravity_work += -newton.gravity.dot(motion.velocity) * each.mass * time_step;
 }
 
-inline bool Scene::move_all(const std::vector<std::size_t>& places) {
+inline bool Scene::move_all(const std::vector<std::size_t>& places, bool last) {
   for (const std::size_t i : places) {
     Body& each = bodies[i];
     sum_forces(each, !summed_);
     if (tracks_energy) account_motion(each);
-    move(each, newton, time_step);
+    move(each, newton, time_step, last);
     if (left_its_bound(each)) return false;
   }
   return true;

@@ -33,6 +33,10 @@ inline bool Scene::act(Links& group) {
     Vector3 force = force_on_tip(now);
     if (link.tipTurnsWithLink) {
       if ((tip.blocked & all_rotations) != all_rotations) return false;
+      if (tip.turn_waits && !turns_in_plane(link, span.direction, tip.orientation)) {
+        turn(tip, time_step);
+      }
+      tip.turn_waits = false;
       force += turn_tip(link, now, kept_[i], tip.orientation, tip.motion.angular_velocity);
     }
     // A force that is no number stays none in what it moves, where is_sound() sees it.

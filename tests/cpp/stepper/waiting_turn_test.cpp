@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tips that their links turn in the plane: the turn itself, and steps that leave out what the
+// integrator would turn before.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <variant>
+
+#include "../kernel/support.hpp"
+#include "bits.hpp"
+#include "scenes.hpp"
+#include "statejump/stepper/link.hpp"
+
+namespace statejump::stepper {
+namespace {
+
+Quaternion about_z(double angle) {
+  return Quaternion(std::cos(angle / 2), 0, 0, std::sin(angle / 2));
+}
+
+// Quotient, root and the two components round a few times each, and the directions are unit to
+// 2^-53 only.
+constexpr double rounding = 8 * 0x1p-53;
+
+TEST(Link, TheTurnInThePlaneIsThatOfTheAngle) {
+  kernel::testing::Random random;
+  const double pi = kernel::testing::pi;
+  for (int i = 0; i < 2000; ++i) {
+    const double start = random.uniform(-pi, pi);
+    // All decades from either end, a quarter turn from both sides, and half a turn.
+    const double small = std::pow(10.0, random.uniform(-15, 0)) * (i % 2 == 0 ? 1 : -1);
+    const double ends[] = {small, pi / 2 + small, pi + small, 0, pi};
+    const double angle = ends[i % 5];
+    const Vector3 from(std::cos(start), std::sin(start), 0);
+    const Vector3 to(std::cos(start + angle), std::sin(start + angle), 0);
+    const Quaternion near = about_z(angle + random.uniform(-1, 1));
+    const Quaternion turn = turn_in_plane(from, to, near);
+    EXPECT_NEAR(turn.norm(), 1, rounding);
+    EXPECT_EQ(turn.x(), 0);
+    EXPECT_EQ(turn.y(), 0);
+    EXPECT_GT(turn.dot(near), 0) << angle;
+    EXPECT_LE((turn * from - to).norm(), rounding) << angle;
+  }
+}
+
+// The rib in one piece, and as single steps, of which each turns its tips to the end.
+void expect_same_bits(const std::function<void(Scene&)>& change, bool may_wait) {
+  Scene whole = scenes::rib();
+  change(whole);
+  whole.prepare();
+  Scene single = whole;
+  const auto make = scenes::maker(1 / (3 / 0.5 + 3 / 1.0));
+  int waiting = 0;
+  for (const Body& body : whole.bodies) waiting += body.turn_may_wait;
+  EXPECT_EQ(waiting, may_wait ? 2 : 0);
+  for (const long steps : {2L, 3L, 60L}) {
+    ASSERT_EQ(whole.run(steps, make), steps);
+    for (long i = 0; i < steps; ++i) ASSERT_EQ(single.run(1, make), 1);
+    bits::expect_same(whole, single);
+  }
+}
+
+Body& tip(Scene& scene, std::size_t place) {
+  const Link& link = std::get<Links>(scene.stages.front()).places[place].link;
+  return scene.bodies[static_cast<std::size_t>(link.id2)];
+}
+
+TEST(Link, ATurnThatWaitsChangesNoBit) {
+  expect_same_bits([](Scene&) {}, true);
+}
+
+TEST(Link, ATurnThatWaitedIsMadeUpForWhereItsLinkLeavesThePlane) {
+  // Pushed along z, the tip turns about z in its first step and is out of the plane in the second.
+  expect_same_bits(
+      [](Scene& scene) {
+        tip(scene, 0).blocked &= ~4U;
+        tip(scene, 0).permanent_force[2] = 1e-3;
+        for (const std::size_t i : {0, 1}) tip(scene, i).motion.velocity = {4e-4, -3e-4, 0};
+      },
+      true);
+}
+
+TEST(Link, ATurnThatIsTooLongDoesNotWait) {
+  expect_same_bits([](Scene& scene) { scene.time_step = 1e-5; }, true);
+  Body body;
+  body.turn_may_wait = true;
+  body.motion.angular_velocity = Vector3(0, 0, 99);
+  EXPECT_TRUE(can_wait(body, 1e-3));
+  EXPECT_FALSE(can_wait(body, 2e-3));
+  body.motion.angular_velocity[0] = 1e-9;
+  EXPECT_FALSE(can_wait(body, 1e-3));
+}
+
+TEST(Link, ATurnDoesNotWaitWhereAFaceTurnsWithTheTip) {
+  const auto add_face = [](Scene& scene) {
+    Contact contact = scene.contacts.front();
+    contact.joint = Joint::plane;
+    contact.face_normal = Vector3::UnitX();
+    contact.length_2 = 1;  // far away
+    scene.contacts.push_back(contact);
+  };
+  expect_same_bits(add_face, false);
+}
+
+}  // namespace
+}  // namespace statejump::stepper
