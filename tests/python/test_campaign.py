@@ -208,6 +208,8 @@ MISTAKES = {
     "no spread": (("relative = 0.2\n", ""), "vary[1].standard_deviation is missing: either it or relative is needed"),
     "negative spread": (("relative = 0.2", "relative = -0.2"),
                         "vary[1].relative = -0.2 is not allowed: must be a finite number above 0"),
+    "spread that vanishes": (("relative = 0.2", "relative = 5e-324"),
+                             "vary[1].relative = 5e-324 is not allowed: times the mean it is 0, no number above 0"),
     "mean out of range": (("relative = 0.2", "mean = -0.3\nstandard_deviation = 1"),
                           "vary[1].mean = -0.3 is not allowed: must be between 0 and 10 [-]"),
     "mean not a number": (("relative = 0.2", 'mean = "0.3"\nrelative = 1'),

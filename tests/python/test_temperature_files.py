@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+import warnings
 from pathlib import Path
 from typing import Any, Callable
 
@@ -12,6 +13,7 @@ import pytest
 from conftest import REPOSITORY, Outcome
 
 import statejump as sj
+from statejump.core.errors import StatejumpError
 from statejump.kinds.truss.generate.document import to_toml
 from statejump.results.record import save
 
@@ -115,6 +117,19 @@ def test_hdf5_says_the_same_as_csv(chain: tuple[Path, list[str], np.ndarray]) ->
     assert ours.names == theirs.names
     # The rounding of °C into kelvin: some ulps of 300 K.
     assert np.abs(ours.temperature_change_K - theirs.temperature_change_K).max() < 1e-12 * 300
+
+
+@pytest.mark.parametrize("value", [np.inf, -np.inf, np.nan])
+def test_hdf5_times_that_are_none_are_one_sentence(value: float, chain: tuple[Path, list[str], np.ndarray]) -> None:
+    path, names, given = chain
+    with h5py.File(path.parent / "members.h5", "w") as file:
+        file["time_s"], file["temperature_degC"], file["members"] = TIMES, given - 273.15, names
+        file["time_s"][1:3] = value
+    path.write_text(path.read_text().replace("members.csv", "members.h5"))
+    with warnings.catch_warnings(), pytest.raises(StatejumpError) as refused:
+        warnings.simplefilter("error")
+        sj.load(path)
+    assert str(refused.value).endswith(f"members.h5: time_s[1] = {value:g}: times must be finite and rise")
 
 
 def test_a_result_file_keeps_the_histories(chain: tuple[Path, list[str], np.ndarray], tmp_path: Path) -> None:

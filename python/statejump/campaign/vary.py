@@ -218,6 +218,8 @@ def _distribution(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -
         if deviation is not None:
             raise NotAllowed("relative", beside="beside standard_deviation")
         deviation = relative * abs(mean)
+        if not 0 < deviation < math.inf:
+            raise NotAllowed("relative", relative, f"times the mean it is {deviation:g}, no number above 0")
     if deviation is None:
         raise MissingKey("standard_deviation", "either it or relative is needed, above 0")
     if kind_name == "uniform":

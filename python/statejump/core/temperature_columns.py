@@ -189,7 +189,7 @@ def _hdf5(path: Path) -> Read:
                          cause=f"there are {len(time_s)} times and {len(names)} members", file=path)
     read = Read(path, names, np.full(len(names), HDF5_TEMPERATURES[units[0]]), time_s, values)
     bad = ~np.isfinite(time_s)
-    bad[1:] |= ~(np.diff(time_s) > 0)
+    bad[1:] |= ~(time_s[1:] > time_s[:-1])
     if bad.any():
         place = int(np.argmax(bad))
         raise Unreadable(f"time_s[{place}] = {time_s[place]:g}", cause="times must be finite and rise", file=path)
