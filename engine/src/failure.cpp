@@ -96,6 +96,8 @@ const char* to_string(FailureKind kind) {
       return "several_continuations";
     case FailureKind::unsettled_joint:
       return "unsettled_joint";
+    case FailureKind::too_many_steps:
+      return "too_many_steps";
     case FailureKind::law_left_range:
       return "law_left_range";
     case FailureKind::not_finite:
@@ -140,6 +142,10 @@ std::string cause(const FailureFields& fields) {
     case FailureKind::unsettled_joint:
       return "its status changed from " + fields.before + " to " + fields.after +
              " again and again";
+    case FailureKind::too_many_steps:
+      return number_named(fields, "steps") +
+             " steps since the last change of a joint, the last of " +
+             number_named(fields, "last_step_s") + " s";
     case FailureKind::law_left_range:
       return fields.cause;
     case FailureKind::not_finite:
@@ -190,6 +196,8 @@ std::string sentence(const FailureFields& fields) {
       return "the path parts" + where + ": " + why;
     case FailureKind::unsettled_joint:
       return joint(fields) + " does not settle" + where + ": " + why;
+    case FailureKind::too_many_steps:
+      return "no equilibrium by longer steps" + where + ": " + why;
     case FailureKind::law_left_range:
       return why + where;
     case FailureKind::not_finite:

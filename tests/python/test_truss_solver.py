@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib.util
+import itertools
+import tomllib
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -12,7 +14,7 @@ import pytest
 
 from statejump import _engine
 from statejump.kinds.spring_slider import reduced
-from statejump.core.errors import StatejumpError
+from statejump.core.errors import FailedRun, StatejumpError
 from statejump.kinds.loading import load_case, parse_case
 from statejump.kinds.truss import generate, solve
 from statejump.kinds.truss.generate.document import document, finished, node
@@ -467,3 +469,24 @@ def test_quiet_increments_keep_the_factors() -> None:
     increment (86 factorizations, when each Newton step made its own)."""
     found = path(generate.ring(100), increments_per_branch=10, locate_events=False)
     assert len(found.events) == 0 and found.factorizations < found.solves
+
+
+def spoiled(case: str, section: str, item: int, key: str, value: float) -> dict[str, Any]:
+    """Return a shipped truss with one value of one item changed."""
+    given: dict[str, Any] = tomllib.loads((ROOT / "cases" / "trusses" / f"{case}.toml").read_text())
+    given[section][item][key] = value
+    return given
+
+
+@pytest.mark.parametrize(("given", "sentence"), [
+    # The soft bar's change of branch is foreseen at the end of whatever step is tried: steps that each end half of
+    # what events are located to before it never leave it.
+    (("chain_cable", "link", 1, "cross_section_area_m2", 9e-18), "the path parts"),
+    # Newton's method finds states only so near to each other that a branch would take millions of steps.
+    (("ball_tripod", "ball_joint", 0, "friction_coefficient", 1e-320),
+     "no equilibrium by longer steps at .* K .*: 10000 steps since the last change of a joint, the last of .* s"),
+])
+def test_no_step_is_divided_without_end(given: tuple[str, str, int, str, float], sentence: str) -> None:
+    told = itertools.count()
+    with pytest.raises(FailedRun, match=sentence):
+        path(spoiled(*given), progress=lambda share: next(told) < 100_000)

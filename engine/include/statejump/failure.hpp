@@ -25,6 +25,7 @@ enum class FailureKind : unsigned char {
   no_continuation,   ///< Truss: no slow continuation, slip runs away or the truss snaps through.
   several_continuations,  ///< Truss: statics does not choose between several.
   unsettled_joint,        ///< Truss: a joint's status changes without end.
+  too_many_steps,         ///< Truss: the path is found only in steps without number.
   law_left_range,         ///< Dynamics: a contact law is asked for what it does not cover.
   not_finite              ///< Dynamics: the steps are too long.
 };

@@ -95,6 +95,7 @@ Path solve(const Model& model, const Options& options) {
   kernel::require(options.event_tolerance > 0.0 && options.event_tolerance <= 1.0,
                   "event_tolerance", options.event_tolerance, "above 0 and at most 1");
   kernel::require(options.most_iterations >= 2, "most_iterations", options.most_iterations, ">= 2");
+  kernel::require(options.most_steps >= 1, "most_steps", options.most_steps, ">= 1");
   const System system(model);
   const double duration = model.programs.front().duration();
   double now = 0.0;
@@ -142,19 +143,27 @@ Path solve(const Model& model, const Options& options) {
       std::fill(changes.begin(), changes.end(), 0);
       double stride = std::min(target - walker.time, convergent);
       bool locating = false;
+      // How far before a foreseen change a step ends: half of what it is located to. One that is
+      // foreseen at the end of whatever step is tried stands nowhere; twice as far from it each
+      // time, the steps leave it.
+      double margin = 0.5 * tolerance;
+      int steps = 0;  // since the last change
       while (walker.time < target && walker.path.complete) {
         const double goal =
             std::max(std::nextafter(walker.time, target), std::min(target, walker.time + stride));
-        const double shortest = std::nextafter(walker.time, target) - walker.time;
+        const double from = walker.time;
+        const double shortest = std::nextafter(from, target) - from;
         const StepEnd end = walker.step_to(goal, std::max(tolerance, shortest));
         if (end == StepEnd::done) {
           convergent = std::max(2.0 * convergent, tolerance);
+          margin = 0.5 * tolerance;
           // While a change is being located, the next one may be near, and to pass it costs a pivot
           // for every joint that it moves. Where the one that was foreseen did not come, the
           // tangent of a long step does not tell what is near: steps grow little by little.
           const bool unchanged = counted == walker.path.events.size();
           const bool creeps = locating && (!options.locate_events || unchanged);
           stride = std::min(target - walker.time, creeps ? 8.0 * stride : convergent);
+          if (!unchanged) steps = 0;
           for (; counted < walker.path.events.size(); ++counted) {
             const Event& event = walker.path.events[counted];
             if (++changes[index(event.joint)] <= most_changes) continue;
@@ -166,14 +175,19 @@ Path solve(const Model& model, const Options& options) {
         } else if (end == StepEnd::stopped) {
           walker.path.complete = false;
         } else {
-          // Up to where the change is foreseen, and half of what it is located to before it; where
-          // nothing is foreseen, to an eighth.
+          // Up to the margin before where the change is foreseen; where nothing is, to an eighth.
           const bool foreseen = end == StepEnd::event_inside && walker.event_share < 1.0;
-          const double tried = goal - walker.time;
-          stride = std::max(foreseen ? walker.event_share * tried - 0.5 * tolerance : 0.125 * tried,
-                            tolerance);
+          const double tried = goal - from;
+          stride =
+              std::max(foreseen ? walker.event_share * tried - margin : 0.125 * tried, tolerance);
+          if (foreseen) margin *= 2.0;
           if (end == StepEnd::not_converged) convergent = stride;
           locating = end == StepEnd::event_inside;
+        }
+        if (++steps > options.most_steps) {
+          FailureFields fields = failure_at(FailureKind::too_many_steps, model, walker.time);
+          fields.numbers = {{"steps", options.most_steps}, {"last_step_s", goal - from}};
+          throw Failure(std::move(fields));
         }
         now = walker.time;
         walker.path.complete = walker.path.complete && going_on();

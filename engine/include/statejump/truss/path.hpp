@@ -26,6 +26,9 @@ struct Options {
   std::vector<double> problem_times;
   /// Newton iterations after the last change of a status, and of one that goes round in circles.
   int most_iterations = 40;
+  /// Steps that may be tried in an increment without a change of a joint's status, >= 1. One is the
+  /// rule, and a change is located in some ten; a path that takes as many as this is lost.
+  int most_steps = 10000;
   /// Called with the share of the program that is done (0 to 1); returning false ends the path
   /// there, with Path::complete false.
   std::function<bool(double)> progress;
