@@ -51,30 +51,31 @@ namespace {
 /// Adds forces on nodes and their derivatives, through the nodes' free directions.
 class NodeWriter {
  public:
-  NodeWriter(const Model& model, const std::vector<int>& rows, Assembly& to)
-      : model_(model), rows_(rows), to_(to) {}
+  NodeWriter(const std::vector<JointWriter::Place>& places, Assembly& to)
+      : places_(places), to_(to) {}
 
+  const JointWriter::Place& at(int node) const { return places_[index(node)]; }
   void force(int node, const Vector3d& value) {
-    const Node& part = model_.nodes[index(node)];
-    for (int i = 0; i < part.freedoms; ++i) {
-      to_.residual[rows_[index(node)] + i] += part.free_directions.col(i).dot(value);
+    const JointWriter::Place& place = at(node);
+    for (int i = 0; i < place.freedoms; ++i) {
+      to_.residual[place.row + i] += place.directions->col(i).dot(value);
     }
   }
   /// Derivative of a node's force by another node's displacement: `value(direction of the force,
   /// direction of the displacement)`.
   template <class Value>
   void block(int row_node, int column_node, Value&& value) {
-    to_.block(rows_[index(row_node)], model_.nodes[index(row_node)].freedoms,
-              rows_[index(column_node)], model_.nodes[index(column_node)].freedoms, value);
+    const JointWriter::Place& rows = at(row_node);
+    const JointWriter::Place& columns = at(column_node);
+    to_.block(rows.row, rows.freedoms, columns.row, columns.freedoms, value);
   }
   /// A vector along the directions in which a node moves.
   Vector3d seen(int node, const Vector3d& vector) const {
-    return model_.nodes[index(node)].free_directions.transpose() * vector;
+    return at(node).directions->transpose() * vector;
   }
 
  private:
-  const Model& model_;
-  const std::vector<int>& rows_;
+  const std::vector<JointWriter::Place>& places_;
   Assembly& to_;
 };
 
@@ -82,22 +83,21 @@ class NodeWriter {
 
 void System::assemble_bars(double time, Assembly& to) const {
   const Model& model = *model_;
-  NodeWriter nodes(model, node_row_, to);
+  NodeWriter nodes(place_, to);
   std::vector<double> changes;
   for (const auto& program : model.programs) changes.push_back(program.temperature_change(time));
 
-  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
-    if (model.nodes[n].load.isZero(0.0)) continue;
-    nodes.force(static_cast<int>(n), -model.nodes[n].load);
-    to.largest_force = std::max(to.largest_force, model.nodes[n].load.lpNorm<Eigen::Infinity>());
+  for (const int node : loaded_) {
+    const Vector3d& load = model.nodes[index(node)].load;
+    nodes.force(node, -load);
+    to.largest_force = std::max(to.largest_force, load.lpNorm<Eigen::Infinity>());
   }
 
   const auto moved_between = [&](int first, int second) -> Vector3d {
     return to.moved.col(second) - to.moved.col(first);
   };
   const auto lengths_of = [&](int first, int second) {
-    return lengths(model.nodes[index(second)].position - model.nodes[index(first)].position,
-                   moved_between(first, second));
+    return lengths(drawn_.col(second) - drawn_.col(first), moved_between(first, second));
   };
   const auto bar = [&](int first, int second, const Vector3d& direction, double length,
                        const Axial& axial) {
@@ -108,15 +108,23 @@ void System::assemble_bars(double time, Assembly& to) const {
     // Along the bar its stiffness, across it that of the tension.
     const double across = axial.tension / length;
     const double more = axial.stiffness - across;
-    const Vector3d at_first = nodes.seen(first, direction);
-    const Vector3d at_second = nodes.seen(second, direction);
     const auto own = [&](int node, const Vector3d& along) {
       nodes.block(node, node, [&](int i, int j) {
         return more * along[i] * along[j] + (i == j ? across : 0.0);
       });
     };
-    const Matrix3d both = model.nodes[index(first)].free_directions.transpose() *
-                          model.nodes[index(second)].free_directions;
+    const JointWriter::Place& one = nodes.at(first);
+    const JointWriter::Place& other = nodes.at(second);
+    // Of the places of a node that is fixed there are none.
+    if (one.freedoms == 0 || other.freedoms == 0) {
+      if (one.freedoms > 0) own(first, nodes.seen(first, direction));
+      if (other.freedoms > 0) own(second, nodes.seen(second, direction));
+      return;
+    }
+    const Vector3d at_first = nodes.seen(first, direction);
+    const Vector3d at_second =
+        one.directions == other.directions ? at_first : nodes.seen(second, direction);
+    const Matrix3d both = one.directions->transpose() * *other.directions;
     own(first, at_first);
     nodes.block(first, second, [&](int i, int j) {
       return -(more * at_first[i] * at_second[j] + across * both(i, j));
@@ -150,8 +158,7 @@ void System::assemble_bars(double time, Assembly& to) const {
     for (std::size_t k = 0; k < 2; ++k) {
       if (links[k] < 0) continue;
       const Link& link = model.links[index(links[k])];
-      const Vector2d drawn = plane.transpose() * (model.nodes[index(link.second)].position -
-                                                  model.nodes[index(link.first)].position);
+      const Vector2d drawn = plane.transpose() * (drawn_.col(link.second) - drawn_.col(link.first));
       const Vector2d moved = plane.transpose() * moved_between(link.first, link.second);
       now[k] = drawn + moved;
       angle += sign[k] * std::atan2(cross(drawn, moved), drawn.dot(now[k]));
@@ -223,7 +230,7 @@ VectorXd System::heating(const VectorXd& z, double time, const StepStart& start,
   const Model& model = *model_;
   Assembly to(unknowns_);
   to.residual.setZero();
-  NodeWriter nodes(model, node_row_, to);
+  NodeWriter nodes(place_, to);
   for (const Link& link : model.links) {
     const double growth = link.stress_free_length * link.thermal_expansion *
                           link.temperature_fraction * program_rates[index(link.program)];
@@ -281,16 +288,11 @@ VectorXd System::slide_rates(const VectorXd& z, double time, const StepStart& st
 JointWriter System::writer(int joint, Assembly& to) const {
   JointWriter made(to);
   for (std::size_t k = 0; k < most_joint_nodes; ++k) {
-    made.places[k] = place(frames_[index(joint)].nodes[k]);
+    const int node = frames_[index(joint)].nodes[k];
+    made.places[k] = node < 0 ? place_.back() : place_[index(node)];
   }
   made.first_force = force_row_[index(joint)];
   return made;
-}
-
-JointWriter::Place System::place(int node) const {
-  if (node < 0) return {};
-  const Node& part = model_->nodes[index(node)];
-  return {node_row_[index(node)], part.freedoms, &part.free_directions};
 }
 
 void System::evaluate(const VectorXd& z, double time, const StepStart& start,

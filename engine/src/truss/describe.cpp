@@ -123,7 +123,7 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
     state.elastic_energy += 0.5 * spring.stiffness * wound * wound;
   }
   for (int i = 0; i < size(model.joints); ++i) {
-    const Trial at = trial(i, z, time, now, JointModel::friction, 1.0);
+    const Trial at = trial(i, z, state.displacement, time, now, JointModel::friction, 1.0);
     double* outputs = state.joint_output.data() + output_begin_[index(i)];
     std::visit(
         [&](const auto& one) {
@@ -156,8 +156,9 @@ VectorXd System::beyond_edges(const VectorXd& z, double time, const StepStart& n
 VectorXd System::heat(const VectorXd& z, double time, const StepStart& start,
                       const StepStart& after, const VectorXd& slips) const {
   VectorXd found(slips.size());
+  const Eigen::Matrix3Xd moved = displacements(z);
   for (int i = 0; i < slips.size(); ++i) {
-    const Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
+    const Trial at = trial(i, z, moved, time, start, JointModel::friction, 1.0);
     // What a joint that sticks is off by is no slip.
     const double slip = after.statuses[index(i)] == JointStatus::stick ? 0.0 : slips[i];
     found[i] =

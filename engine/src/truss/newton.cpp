@@ -123,9 +123,10 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const auto violations = [&] {
     const Rounding slack = pivoting == Pivoting::strict ? Rounding{} : system_->rounding(z);
     Violations found{{}, statuses};
+    system_->displacements(z, at_.moved);
     for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
       JointStatus& status = found.corrected[index(i)];
-      status = system_->decide(i, z, time, start, joints, opening, status, slack);
+      status = system_->decide(i, z, at_.moved, time, start, joints, opening, status, slack);
       if (status != statuses[index(i)]) found.joints.push_back(i);
     }
     return found;

@@ -8,10 +8,21 @@
 namespace statejump::truss::detail {
 
 System::System(const Model& model) : model_(&model) {
+  drawn_.resize(3, static_cast<Eigen::Index>(model.nodes.size()));
+  const Matrix3d* directions = nullptr;
   for (const Node& node : model.nodes) {
+    // Neighbours mostly move in the same directions: one matrix of them stays at hand.
+    if (directions == nullptr || *directions != node.free_directions) {
+      directions = &node.free_directions;
+    }
+    const auto n = static_cast<int>(place_.size());
+    drawn_.col(n) = node.position;
+    if (!node.load.isZero(0.0)) loaded_.push_back(n);
+    place_.push_back({unknowns_, node.freedoms, directions});
     node_row_.push_back(unknowns_);
     unknowns_ += node.freedoms;
   }
+  place_.emplace_back();
   displacements_ = unknowns_;
   Eigen::AlignedBox3d box;
   for (const Node& node : model.nodes) box.extend(node.position);
@@ -46,16 +57,16 @@ System::System(const Model& model) : model_(&model) {
 }
 
 Vector3d System::displacement(int node, const VectorXd& z) const {
-  const Node& part = model_->nodes[index(node)];
-  const double* along = z.data() + node_row_[index(node)];
-  switch (part.freedoms) {
+  const JointWriter::Place& at = place_[index(node)];
+  const double* along = z.data() + at.row;
+  switch (at.freedoms) {
     case 3:
-      return along[0] * part.free_directions.col(0) + along[1] * part.free_directions.col(1) +
-             along[2] * part.free_directions.col(2);
+      return along[0] * at.directions->col(0) + along[1] * at.directions->col(1) +
+             along[2] * at.directions->col(2);
     case 2:
-      return along[0] * part.free_directions.col(0) + along[1] * part.free_directions.col(1);
+      return along[0] * at.directions->col(0) + along[1] * at.directions->col(1);
     case 1:
-      return along[0] * part.free_directions.col(0);
+      return along[0] * at.directions->col(0);
     default:
       return Vector3d::Zero();
   }
@@ -67,8 +78,7 @@ void System::displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const {
 }
 
 Lengths System::lengths_between(int from, int to, const VectorXd& z) const {
-  return lengths(model_->nodes[index(to)].position - model_->nodes[index(from)].position,
-                 displacement(to, z) - displacement(from, z));
+  return lengths(drawn_.col(to) - drawn_.col(from), displacement(to, z) - displacement(from, z));
 }
 
 int System::node_of(int displacement) const {
@@ -79,18 +89,15 @@ int System::node_of(int displacement) const {
 namespace {
 
 template <class Moved>
-Trial asked(const Model& model, const JointFrame& frame, const double* force, const double* history,
-            double time, double temperature_change, int joint, const StepStart& start,
-            JointModel joints, double opening, Moved&& moved) {
-  Trial trial{.frame = frame,
-              .drawn = {},
-              .moved = {},
-              .force = {},
-              .history = history,
-              .before = start.statuses[index(joint)],
-              .temperature_change = temperature_change,
-              .model = joints,
-              .opening = opening};
+Trial asked(const Eigen::Matrix3Xd& drawn, const JointFrame& frame, const double* force,
+            const double* history, double time, double temperature_change, int joint,
+            const StepStart& start, JointModel joints, double opening, Moved&& moved) {
+  Trial trial(frame);
+  trial.history = history;
+  trial.before = start.statuses[index(joint)];
+  trial.temperature_change = temperature_change;
+  trial.model = joints;
+  trial.opening = opening;
   if (start.owed.cols() > 0) {
     trial.owed = start.owed.col(joint) + start.foreseen(joint, time);
     trial.owed_rate = start.foreseen_rate(joint, time);
@@ -102,7 +109,7 @@ Trial asked(const Model& model, const JointFrame& frame, const double* force, co
       trial.moved[k].setZero();
       continue;
     }
-    trial.drawn[k] = model.nodes[index(node)].position;
+    trial.drawn[k] = drawn.col(node);
     trial.moved[k] = moved(node);
   }
   std::copy_n(force, frame.forces, trial.force.begin());
@@ -114,7 +121,7 @@ Trial asked(const Model& model, const JointFrame& frame, const double* force, co
 Trial System::trial(int joint, const VectorXd& z, double time, const StepStart& start,
                     JointModel joints, double opening) const {
   const JointFrame& frame = frames_[index(joint)];
-  return asked(*model_, frame, z.data() + force_row_[index(joint)], history(joint, start), time,
+  return asked(drawn_, frame, z.data() + force_row_[index(joint)], history(joint, start), time,
                temperature_change(frame, time), joint, start, joints, opening,
                [&](int node) { return displacement(node, z); });
 }
@@ -122,7 +129,7 @@ Trial System::trial(int joint, const VectorXd& z, double time, const StepStart& 
 Trial System::trial(int joint, const VectorXd& z, const Eigen::Matrix3Xd& moved, double time,
                     const StepStart& start, JointModel joints, double opening) const {
   const JointFrame& frame = frames_[index(joint)];
-  return asked(*model_, frame, z.data() + force_row_[index(joint)], history(joint, start), time,
+  return asked(drawn_, frame, z.data() + force_row_[index(joint)], history(joint, start), time,
                temperature_change(frame, time), joint, start, joints, opening,
                [&](int node) -> Vector3d { return moved.col(node); });
 }
@@ -131,6 +138,18 @@ JointStatus System::decide(int joint, const VectorXd& z, double time, const Step
                            JointModel joints, double opening, JointStatus status,
                            const Rounding& rounding) const {
   Trial at = trial(joint, z, time, start, joints, opening);
+  return decide(joint, at, status, rounding);
+}
+
+JointStatus System::decide(int joint, const VectorXd& z, const Eigen::Matrix3Xd& moved, double time,
+                           const StepStart& start, JointModel joints, double opening,
+                           JointStatus status, const Rounding& rounding) const {
+  Trial at = trial(joint, z, moved, time, start, joints, opening);
+  return decide(joint, at, status, rounding);
+}
+
+JointStatus System::decide(int joint, Trial& at, JointStatus status,
+                           const Rounding& rounding) const {
   at.length_rounding = rounding.length;
   at.force_rounding = rounding.force;
   return std::visit([&](const auto& one) { return one.decide(at, status); },
@@ -141,8 +160,9 @@ StepStart System::begin(const VectorXd& z, double time, const Statuses& statuses
                         double opening) const {
   StepStart start{statuses, VectorXd::Zero(history_), time, {}, {}, 0.0};
   StepStart made = start;
+  const Eigen::Matrix3Xd moved = displacements(z);
   for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
-    const Trial at = trial(i, z, time, start, JointModel::friction, opening);
+    const Trial at = trial(i, z, moved, time, start, JointModel::friction, opening);
     double* now = made.history.data() + history_begin_[index(i)];
     std::visit([&](const auto& one) { one.begin(at, statuses[index(i)], now); },
                model_->joints[index(i)]);
@@ -153,8 +173,9 @@ StepStart System::begin(const VectorXd& z, double time, const Statuses& statuses
 StepStart System::commit(const VectorXd& z, double time, const Statuses& statuses,
                          const StepStart& last) const {
   StepStart made{statuses, VectorXd(history_), time, {}, {}, 0.0};
+  const Eigen::Matrix3Xd moved = displacements(z);
   for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
-    const Trial at = trial(i, z, time, last, JointModel::friction, 1.0);
+    const Trial at = trial(i, z, moved, time, last, JointModel::friction, 1.0);
     double* after = made.history.data() + history_begin_[index(i)];
     std::visit([&](const auto& one) { one.commit(at, statuses[index(i)], after); },
                model_->joints[index(i)]);
@@ -165,8 +186,9 @@ StepStart System::commit(const VectorXd& z, double time, const Statuses& statuse
 VectorXd System::slips(const VectorXd& z, double time, const StepStart& start,
                        const StepStart& after) const {
   VectorXd found(static_cast<Eigen::Index>(model_->joints.size()));
+  const Eigen::Matrix3Xd moved = displacements(z);
   for (int i = 0; i < found.size(); ++i) {
-    const Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
+    const Trial at = trial(i, z, moved, time, start, JointModel::friction, 1.0);
     found[i] = std::visit([&](const auto& one) { return one.slip(at, history(i, after)); },
                           model_->joints[index(i)]);
   }
@@ -176,8 +198,9 @@ VectorXd System::slips(const VectorXd& z, double time, const StepStart& start,
 void System::settle(const VectorXd& z, double time, const StepStart& start,
                     Statuses& statuses) const {
   const Rounding by = rounding(z);
+  const Eigen::Matrix3Xd moved = displacements(z);
   for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
-    Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
+    Trial at = trial(i, z, moved, time, start, JointModel::friction, 1.0);
     at.length_rounding = by.length;
     JointStatus& status = statuses[index(i)];
     status = std::visit([&](const auto& one) { return one.settled(at, status); },

@@ -119,6 +119,10 @@ class System {
   Statuses all_stick() const { return Statuses(model_->joints.size(), JointStatus::stick); }
 
   /// The branch that a joint's inequalities ask for, from the branch whose rows hold at z.
+  /// @param moved displacements at z
+  JointStatus decide(int joint, const VectorXd& z, const Eigen::Matrix3Xd& moved, double time,
+                     const StepStart& start, JointModel joints, double opening, JointStatus status,
+                     const Rounding& rounding) const;
   JointStatus decide(int joint, const VectorXd& z, double time, const StepStart& start,
                      JointModel joints, double opening, JointStatus status,
                      const Rounding& rounding) const;
@@ -179,7 +183,18 @@ class System {
   /// Moves the first node of a joint and sets the joint's forces.
   void apply(int joint, const Seat& seat, VectorXd& z) const;
 
+  /// The same as trial(), where the displacements of all nodes are known.
+  Trial trial(int joint, const VectorXd& z, const Eigen::Matrix3Xd& moved, double time,
+              const StepStart& start, JointModel joints, double opening) const;
+
   Vector3d displacement(int node, const VectorXd& z) const;
+  /// Displacements of all nodes, for who asks many joints at one state [m].
+  void displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const;
+  Eigen::Matrix3Xd displacements(const VectorXd& z) const {
+    Eigen::Matrix3Xd moved;
+    displacements(z, moved);
+    return moved;
+  }
 
   /// Symmetric stiffness of links and springs at z with joints closed (penalty), for the search for
   /// mechanisms and instability; free displacements only. A joint listed as open or slipping does
@@ -220,14 +235,9 @@ class System {
                        Assembly& to) const;
   Assembly recorded(Parts parts) const;
   Lengths lengths_between(int from, int to, const VectorXd& z) const;
-  /// Displacements of all nodes.
-  void displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const;
-  /// The same as trial(), where these are known.
-  Trial trial(int joint, const VectorXd& z, const Eigen::Matrix3Xd& moved, double time,
-              const StepStart& start, JointModel joints, double opening) const;
   Axial axial(const Link& link, const VectorXd& z, double time) const;
   JointWriter writer(int joint, Assembly& to) const;
-  JointWriter::Place place(int node) const;
+  JointStatus decide(int joint, Trial& at, JointStatus status, const Rounding& rounding) const;
   double temperature_change(const JointFrame& frame, double time) const {
     return frame.program < 0
                ? 0.0
@@ -245,7 +255,10 @@ class System {
   bool slips_smoothly_ = false;
   double stiffness_scale_ = 0.0;
   double size_ = 0.0;
-  std::vector<int> node_row_;  // first free displacement of each node
+  std::vector<int> node_row_;              // first free displacement of each node
+  std::vector<JointWriter::Place> place_;  // of each node, then that of the ground
+  Eigen::Matrix3Xd drawn_;                 // places of the nodes at ΔT = 0 [m]
+  std::vector<int> loaded_;                // nodes with a load
   std::vector<JointFrame> frames_;
   std::vector<int> force_row_;      // first force of each joint
   std::vector<int> history_begin_;  // of each joint

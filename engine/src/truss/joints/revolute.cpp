@@ -209,12 +209,20 @@ struct Gradients {
   std::array<Vector2d, 4> friction;  ///< Virtual work of friction.
   std::array<Vector2d, 4> slide;     ///< Derivative of Δσ.
   std::array<std::array<Matrix2d, 4>, 4> hessian;
-  explicit Gradients(bool with_hessian) {
+  std::array<std::array<bool, 4>, 4> bent{};  ///< Which of the latter are not zero.
+  Gradients() {
     normal.fill(Vector2d::Zero());
     friction.fill(Vector2d::Zero());
     slide.fill(Vector2d::Zero());
-    if (!with_hessian) return;
-    for (auto& line : hessian) line.fill(Matrix2d::Zero());
+  }
+  void bend(std::size_t by, std::size_t of, const Matrix2d& value) {
+    if (bent[by][of]) {
+      hessian[by][of] += value;
+    } else {
+      // From +0, so that no zero has a sign.
+      hessian[by][of] = Matrix2d::Zero() + value;
+      bent[by][of] = true;
+    }
   }
 };
 
@@ -248,8 +256,10 @@ void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geomet
   }
   if (bends) {
     const Matrix2d bend = (normal * left - friction * along) * left.transpose() / distance;
-    of.hessian[journal][journal] = of.hessian[bearing][bearing] = bend;
-    of.hessian[journal][bearing] = of.hessian[bearing][journal] = -bend;
+    of.bend(journal, journal, bend);
+    of.bend(bearing, bearing, bend);
+    of.bend(journal, bearing, -bend);
+    of.bend(bearing, journal, -bend);
   }
   // A link that turns: its surface slides by the radius times its angle.
   const auto turn = [&](std::size_t at, std::size_t far, const Vector2d& direction, double radius,
@@ -263,10 +273,10 @@ void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geomet
     const Matrix2d own = friction * radius * angle.hessian;
     const Matrix2d by_distance = -friction * deeper * angle.gradient * along.transpose();
     for (const auto& [node, sign] : {std::pair{at, 1.0}, std::pair{far, -1.0}}) {
-      of.hessian[node][at] += sign * own;
-      of.hessian[node][far] -= sign * own;
-      of.hessian[node][journal] += sign * by_distance;
-      of.hessian[node][bearing] -= sign * by_distance;
+      of.bend(node, at, sign * own);
+      of.bend(node, far, -sign * own);
+      of.bend(node, journal, sign * by_distance);
+      of.bend(node, bearing, -sign * by_distance);
     }
   };
   if (joint.journal_link >= 0) {
@@ -376,7 +386,7 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
   bool holds_normal = false;
   double slides = 0.0;  // derivative of the second row by the slide
   const bool bends = !writer.residual_only();
-  Gradients of(bends);
+  Gradients of;
   if (status == JointStatus::open) {
     // Without forces; the journal may be in the middle, where no normal is defined.
     writer.balance(0, normal);
@@ -433,7 +443,13 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     planar.column(a, 1, of.friction[a]);
     planar.row(0, a, (holds_normal ? 1.0 : 0.0) * of.normal[a]);
     planar.row(1, a, slides * of.slide[a]);
-    for (std::size_t b = 0; b < 4; ++b) planar.block(a, b, of.hessian[a][b]);
+    for (std::size_t b = 0; b < 4; ++b) {
+      if (of.bent[a][b]) {
+        planar.block(a, b, of.hessian[a][b]);
+      } else {
+        planar.no_block(a, b);
+      }
+    }
   }
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 2; ++j) writer.corner(i, j, corner[i][j]);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -80,10 +81,27 @@ class Assembly {
     }
     double* entries_of_jacobian = jacobian.valuePtr();
     const int* slot = slots_->data() + next_;
-    for (int j = 0; j < columns; ++j) {
-      for (int i = 0; i < rows; ++i) entries_of_jacobian[*slot++] += value(i, j);
+    const auto add_up = [&](auto of_rows, auto of_columns) {
+      for (int j = 0; j < of_columns; ++j) {
+        for (int i = 0; i < of_rows; ++i) entries_of_jacobian[*slot++] += value(i, j);
+      }
+    };
+    // Nodes are mostly free in space or in a plane: loops of a known length.
+    if (rows == 2 && columns == 2) {
+      add_up(std::integral_constant<int, 2>(), std::integral_constant<int, 2>());
+    } else if (rows == 3 && columns == 3) {
+      add_up(std::integral_constant<int, 3>(), std::integral_constant<int, 3>());
+    } else {
+      add_up(rows, columns);
     }
     next_ += static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
+  }
+  /// A block that is zero: its places are passed. (A sum that begins at +0 is never −0, so that
+  /// adding zeros would change nothing.)
+  void zeros(int row, int rows, int column, int columns) {
+    if (slots_ == nullptr) return block(row, rows, column, columns, [](int, int) { return 0.0; });
+    if (!residual_only_)
+      next_ += static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
   }
   /// Makes the pattern of what was written.
   void record();
@@ -214,6 +232,11 @@ class PlanarWriter {
     for (int j = 0; j < columns.freedoms; ++j) image.col(j) = value * seen_[of_node].col(j);
     to_->to_->block(rows.row, rows.freedoms, columns.row, columns.freedoms,
                     [&](int i, int j) { return seen_[by_node].col(i).dot(image.col(j)); });
+  }
+  void no_block(std::size_t by_node, std::size_t of_node) {
+    const JointWriter::Place& rows = to_->places[by_node];
+    const JointWriter::Place& columns = to_->places[of_node];
+    to_->to_->zeros(rows.row, rows.freedoms, columns.row, columns.freedoms);
   }
   void row(int row, std::size_t node, const Eigen::Vector2d& gradient) {
     const JointWriter::Place& at = to_->places[node];

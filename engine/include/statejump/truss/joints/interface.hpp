@@ -98,13 +98,17 @@ struct JointFrame {
 
 /// State that a joint is asked about, and the one at the start of the step.
 struct Trial {
+  /// Places and displacements are left as they are, for who fills them: there is one of every joint
+  /// in every pass.
+  explicit Trial(const JointFrame& of) : frame(of) {}
+
   const JointFrame& frame;
   std::array<Eigen::Vector3d, most_joint_nodes> drawn;  ///< Places of its nodes at ΔT = 0 [m].
   std::array<Eigen::Vector3d, most_joint_nodes> moved;  ///< Their displacements [m].
-  std::array<double, most_joint_forces> force;          ///< Its unknowns [N].
-  const double* history;                                ///< Of the start of the step.
-  JointStatus before;                                   ///< Status at the start of the step.
-  double temperature_change;                            ///< [K]
+  std::array<double, most_joint_forces> force{};        ///< Its unknowns [N].
+  const double* history = nullptr;                      ///< Of the start of the step.
+  JointStatus before = JointStatus::stick;              ///< Status at the start of the step.
+  double temperature_change = 0.0;                      ///< [K]
   JointModel model = JointModel::friction;
   double opening = 1.0;  ///< Share of the clearances that is open (start).
   /// Asked how fast it slides: the row of the slide is that of a contact of which nothing slips.
