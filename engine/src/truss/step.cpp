@@ -106,8 +106,9 @@ StepEnd Walker::step_to(double target, double tolerance) {
         {target, target - time, model.temperature_change(0, 1.0, target), i, before, after});
     if (after == JointStatus::open) opened.push_back(named(model, i));
   }
+  const Eigen::Matrix3Xd moved = system.displacements(trial);
   for (int i = 0; i < joints; ++i) {
-    const Trial at = system.trial(i, trial, target, begin, JointModel::friction, 1.0);
+    const Trial at = system.trial(i, trial, moved, target, begin, JointModel::friction, 1.0);
     const JointStatus status = trial_statuses[index(i)];
     if (!joint(i, [&](const auto& one) { return one.jumps(at, status); })) continue;
     if (!is_short) {

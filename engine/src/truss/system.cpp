@@ -19,7 +19,6 @@ System::System(const Model& model) : model_(&model) {
     drawn_.col(n) = node.position;
     if (!node.load.isZero(0.0)) loaded_.push_back(n);
     place_.push_back({unknowns_, node.freedoms, directions});
-    node_row_.push_back(unknowns_);
     unknowns_ += node.freedoms;
   }
   place_.emplace_back();
@@ -82,8 +81,11 @@ Lengths System::lengths_between(int from, int to, const VectorXd& z) const {
 }
 
 int System::node_of(int displacement) const {
-  const auto after = std::upper_bound(node_row_.begin(), node_row_.end(), displacement);
-  return static_cast<int>(after - node_row_.begin()) - 1;
+  const auto nodes = place_.end() - 1;
+  const auto after =
+      std::upper_bound(place_.begin(), nodes, displacement,
+                       [](int row, const JointWriter::Place& place) { return row < place.row; });
+  return static_cast<int>(after - place_.begin()) - 1;
 }
 
 namespace {
@@ -239,9 +241,9 @@ Vector3d System::lag(int joint, const VectorXd& z, double time, const StepStart&
 
 void System::apply(int joint, const Seat& seat, VectorXd& z) const {
   const JointFrame& frame = frames_[index(joint)];
-  const Node& part = model_->nodes[index(frame.nodes[0])];
-  for (int i = 0; i < part.freedoms; ++i) {
-    z[node_row_[index(frame.nodes[0])] + i] += part.free_directions.col(i).dot(seat.moved);
+  const JointWriter::Place& place = place_[index(frame.nodes[0])];
+  for (int i = 0; i < place.freedoms; ++i) {
+    z[place.row + i] += place.directions->col(i).dot(seat.moved);
   }
   for (int k = 0; k < frame.forces; ++k) z[force_row_[index(joint)] + k] = seat.force[index(k)];
 }

@@ -81,7 +81,7 @@ class System {
 
   int unknowns() const { return unknowns_; }
   int displacements() const { return displacements_; }
-  int first_displacement(int node) const { return node_row_[index(node)]; }
+  int first_displacement(int node) const { return place_[index(node)].row; }
   const Model& model() const { return *model_; }
 
   /// Residual and rows of a joint alone, each entry of the Jacobian listed.
@@ -255,7 +255,6 @@ class System {
   bool slips_smoothly_ = false;
   double stiffness_scale_ = 0.0;
   double size_ = 0.0;
-  std::vector<int> node_row_;              // first free displacement of each node
   std::vector<JointWriter::Place> place_;  // of each node, then that of the ground
   Eigen::Matrix3Xd drawn_;                 // places of the nodes at ΔT = 0 [m]
   std::vector<int> loaded_;                // nodes with a load
