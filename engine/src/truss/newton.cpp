@@ -31,6 +31,11 @@ constexpr int share_halvings = 50;
 /// How often those who wait are told [s]: often enough for a bar of progress and for Ctrl-C.
 constexpr double told_every = 0.1;
 
+/// The larger of a number and those before it, or one that is none, which has to show.
+void raise(double& largest, double value) {
+  if (!(value <= largest) && !std::isnan(largest)) largest = value;
+}
+
 /// What is left of the equations, each kind in its own unit.
 struct Residuals {
   double balance = 0.0;  ///< Of the nodes [N].
@@ -45,11 +50,47 @@ Residuals residuals(const Assembly& at) {
     double& largest = unit == RowUnit::balance   ? found.balance
                       : unit == RowUnit::closure ? found.closure
                                                  : found.force;
-    // A residual that is not a number has to show.
-    const double value = std::abs(at.residual[i]);
-    if (!(value <= largest)) largest = value;
+    raise(largest, std::abs(at.residual[i]));
   }
   return found;
+}
+
+/// What rates leave of the linear equations of an assembly.
+struct LeftOver {
+  VectorXd residual;
+  /// The largest residual of a force over the largest sum of forces that are added up in a row, all
+  /// taken as positive, or that of a closure over the largest such sum, whatever is larger; nothing
+  /// moves in less than what these forces move the stiffest part by. No metres are compared with
+  /// newtons, and rounding alone leaves some 1e-16, however ill the condition (a backward error:
+  /// W. Oettli, W. Prager, Numer. Math. 6 (1964) 405-409).
+  double share = 0.0;
+};
+
+LeftOver left_over(const Assembly& of, const VectorXd& rate, const VectorXd& by_time,
+                   double stiffness) {
+  LeftOver left{by_time};
+  VectorXd added = by_time.cwiseAbs();
+  for (Eigen::Index column = 0; column < of.jacobian.outerSize(); ++column) {
+    const double by = rate[column];
+    for (Eigen::SparseMatrix<double>::InnerIterator it(of.jacobian, column); it; ++it) {
+      const double term = it.value() * by;
+      left.residual[it.row()] += term;
+      added[it.row()] += std::abs(term);
+    }
+  }
+  double force_left = 0.0, force_added = 0.0, closure_left = 0.0, closure_added = 0.0;
+  for (Eigen::Index row = 0; row < added.size(); ++row) {
+    const bool closes = of.units[index(static_cast<int>(row))] == RowUnit::closure;
+    raise(closes ? closure_left : force_left, std::abs(left.residual[row]));
+    raise(closes ? closure_added : force_added, added[row]);
+  }
+  if (stiffness > 0.0) closure_added = std::max(closure_added, force_added / stiffness);
+  const auto share = [](double most_left, double most_added) {
+    return most_left == 0.0 ? 0.0 : most_left / most_added;
+  };
+  raise(left.share, share(force_left, force_added));
+  raise(left.share, share(closure_left, closure_added));
+  return left;
 }
 
 /// The joints that violate their inequalities, and where they belong.
@@ -381,33 +422,23 @@ int Newton::stability_index() {
 std::optional<VectorXd> Newton::rate(const VectorXd& by_time, const VectorXd& guess) {
   // The factors are those of the state before the last step: what that leaves is refined away, and
   // where it is not (the branches have changed since), there are new factors.
+  const double rounding = 16.0 * epsilon;  // of a row, which has some fifteen entries
   for (const bool fresh : {false, true}) {
     if (fresh) {
       current_ = factorize(solved_on_, solved_model_);
       if (!current_) return std::nullopt;
     }
-    VectorXd found, first;
-    if (fresh || guess.size() == 0) {
-      found = first = factor_.solve(-by_time);
-    } else {
-      first = factor_.solve(-by_time - at_.jacobian * guess);
-      found = guess + first;
+    VectorXd found = fresh || guess.size() == 0 ? VectorXd(factor_.solve(-by_time)) : guess;
+    double last = std::numeric_limits<double>::infinity();
+    for (;;) {
+      const LeftOver left = left_over(at_, found, by_time, system_->stiffness_scale());
+      if (left.share <= rounding) return found;
+      // Refinement that no longer halves what is left is at rounding, or leads nowhere.
+      if (!(left.share <= 0.5 * last)) break;
+      last = left.share;
+      found -= factor_.solve(left.residual);
     }
-    double last = first.lpNorm<Eigen::Infinity>();
-    if (!std::isfinite(last)) continue;
-    const double rounding = epsilon * found.lpNorm<Eigen::Infinity>();
-    double left = last;
-    while (left > rounding) {
-      const VectorXd change = factor_.solve(-by_time - at_.jacobian * found);
-      const double size = change.lpNorm<Eigen::Infinity>();
-      if (!(size <= 0.5 * last)) break;
-      found += change;
-      // What is left shrinks by the same share.
-      left = size * (size / last);
-      last = size;
-    }
-    // Rounding ends it as well: the best that these factors give.
-    if (left <= std::sqrt(epsilon) * found.lpNorm<Eigen::Infinity>()) return found;
+    if (last <= (fresh ? std::sqrt(epsilon) : closure_tolerance)) return found;
   }
   return std::nullopt;
 }
