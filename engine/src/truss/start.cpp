@@ -137,7 +137,7 @@ void Walker::open_clearances() {
     if (modes) refuse_undetermined(FailureKind::unloaded_joint, std::move(modes));
   }
   // The clearances open little by little, each time from the last equilibrium, because the links
-  // turn as they open.
+  // turn as they open; farther where that goes well.
   double opened = 0.0;
   double share = 0.125;
   while (opened < 1.0) {
@@ -159,6 +159,7 @@ void Walker::open_clearances() {
       z = trial;
       origin.statuses = trial_statuses;
       opened = next;
+      share *= 2.0;
       continue;
     }
     share *= 0.5;
