@@ -2,14 +2,19 @@
 #include <klu.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
+#include "parallel.hpp"
 #include "sparse_factor.hpp"
 
 namespace statejump::linear {
 
 namespace {
+
+/// Columns that a thread takes at once.
+constexpr std::size_t columns_at_once = 20000;
 
 /// Whether a permutation is an odd one: a cycle of n takes n - 1 exchanges.
 bool odd(const int* permutation, int size) {
@@ -40,31 +45,41 @@ struct SparseFactor::Factors {
   Factors(const Factors&) = delete;
   Factors& operator=(const Factors&) = delete;
 
-  /// Whether every pivot is more than rounding of its column, within its diagonal block.
-  bool has_pivots(const Eigen::SparseMatrix<double>& matrix) {
-    // KLU divides every row by its largest entry.
-    row_size.setZero(size);
-    for (int j = 0; j < size; ++j) {
-      for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it) {
-        row_size[it.row()] = std::max(row_size[it.row()], std::abs(it.value()));
-      }
-    }
+  /// New factors, their pivots chosen anew.
+  bool choose_pivots(int* columns, int* rows, double* values) {
+    klu_free_numeric(&numeric, &common);
+    numeric = klu_factor(columns, rows, values, symbolic, &common);
+    if (numeric == nullptr || common.status != KLU_OK) return false;
     pivot_of_row.resize(static_cast<std::size_t>(size));
     for (int k = 0; k < size; ++k) {
       pivot_of_row[static_cast<std::size_t>(numeric->Pnum[k])] = k;
     }
-    const double* pivots = static_cast<const double*>(numeric->Udiag);
-    for (int block = 0; block < symbolic->nblocks; ++block) {
-      for (int k = symbolic->R[block]; k < symbolic->R[block + 1]; ++k) {
-        double largest = 0.0;
-        for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, symbolic->Q[k]); it; ++it) {
-          if (pivot_of_row[static_cast<std::size_t>(it.row())] < symbolic->R[block]) continue;
-          largest = std::max(largest, std::abs(it.value()) / row_size[it.row()]);
-        }
-        if (!(std::abs(pivots[k]) > singular_pivot * largest)) return false;
-      }
-    }
+    odd_permutation = odd(numeric->Pnum, size) != odd(symbolic->Q, size);
     return true;
+  }
+
+  /// Whether every pivot is more than rounding of its column, within its diagonal block.
+  bool has_pivots(const Eigen::SparseMatrix<double>& matrix) const {
+    const double* pivots = static_cast<const double*>(numeric->Udiag);
+    // KLU divides every row by its largest entry, in the order of the pivots.
+    const double* row_size = numeric->Rs;
+    std::atomic<bool> has = true;
+    for (int block = 0; block < symbolic->nblocks; ++block) {
+      const int first = symbolic->R[block];
+      each_in_parallel(static_cast<std::size_t>(symbolic->R[block + 1] - first), columns_at_once,
+                       [&](std::size_t in_block) {
+                         const int k = first + static_cast<int>(in_block);
+                         double largest = 0.0;
+                         for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, symbolic->Q[k]);
+                              it; ++it) {
+                           const int pivot = pivot_of_row[static_cast<std::size_t>(it.row())];
+                           if (pivot < first) continue;
+                           largest = std::max(largest, std::abs(it.value()) / row_size[pivot]);
+                         }
+                         if (!(std::abs(pivots[k]) > singular_pivot * largest)) has = false;
+                       });
+    }
+    return has;
   }
 
   /// Factors a matrix of the same pattern with the pivots that the last one had, which takes a
@@ -101,8 +116,8 @@ struct SparseFactor::Factors {
   klu_symbolic* symbolic = nullptr;
   klu_numeric* numeric = nullptr;
   int size = 0;
-  Eigen::VectorXd row_size;
   std::vector<int> pivot_of_row;
+  bool odd_permutation = false;  ///< Of rows and columns together.
 };
 
 SparseFactor::SparseFactor() : factors_(std::make_unique<Factors>()) {}
@@ -120,9 +135,7 @@ bool SparseFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
     if (f.symbolic == nullptr) return false;
   }
   if (f.keeps_pivots(columns, rows, values) && f.has_pivots(matrix)) return true;
-  klu_free_numeric(&f.numeric, &f.common);
-  f.numeric = klu_factor(columns, rows, values, f.symbolic, &f.common);
-  return f.numeric != nullptr && f.common.status == KLU_OK && f.has_pivots(matrix);
+  return f.choose_pivots(columns, rows, values) && f.has_pivots(matrix);
 }
 
 Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {
@@ -141,7 +154,7 @@ double SparseFactor::solutions_per_factorization() const {
 int SparseFactor::determinant_sign() const {
   const Factors& f = *factors_;
   // Rows are divided by positive numbers; both permutations make the matrix block triangular.
-  bool negative = odd(f.numeric->Pnum, f.size) != odd(f.symbolic->Q, f.size);
+  bool negative = f.odd_permutation;
   const double* pivots = static_cast<const double*>(f.numeric->Udiag);
   for (int k = 0; k < f.size; ++k) negative = negative != (pivots[k] < 0.0);
   return negative ? -1 : 1;

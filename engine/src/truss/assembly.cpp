@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "parallel.hpp"
 #include "system.hpp"
 
 namespace statejump::truss {
@@ -41,7 +42,7 @@ void Assembly::record() {
     slots.push_back(static_cast<int>(std::lower_bound(first, last, row) - inner));
   }
   places_ = {};
-  slots_ = std::make_shared<const std::vector<int>>(std::move(slots));
+  slots_ = std::make_shared<const Slots>(Slots{std::move(slots), std::move(begin_)});
 }
 
 namespace detail {
@@ -51,14 +52,14 @@ namespace {
 /// Adds forces on nodes and their derivatives, through the nodes' free directions.
 class NodeWriter {
  public:
-  NodeWriter(const std::vector<JointWriter::Place>& places, Assembly& to)
+  NodeWriter(const std::vector<JointWriter::Place>& places, AssemblyStrand& to)
       : places_(places), to_(to) {}
 
   const JointWriter::Place& at(int node) const { return places_[index(node)]; }
   void force(int node, const Vector3d& value) {
     const JointWriter::Place& place = at(node);
     for (int i = 0; i < place.freedoms; ++i) {
-      to_.residual[place.row + i] += place.directions->col(i).dot(value);
+      to_.residual(place.row + i, place.directions->col(i).dot(value));
     }
   }
   /// Derivative of a node's force by another node's displacement: `value(direction of the force,
@@ -76,25 +77,23 @@ class NodeWriter {
 
  private:
   const std::vector<JointWriter::Place>& places_;
-  Assembly& to_;
+  AssemblyStrand& to_;
 };
 
 }  // namespace
 
-void System::assemble_bars(double time, Assembly& to) const {
+void System::assemble_bars(const Region& region, const std::vector<double>& changes,
+                           AssemblyStrand& to) const {
   const Model& model = *model_;
   NodeWriter nodes(place_, to);
-  std::vector<double> changes;
-  for (const auto& program : model.programs) changes.push_back(program.temperature_change(time));
-
-  for (const int node : loaded_) {
+  for (const int node : region.loaded) {
     const Vector3d& load = model.nodes[index(node)].load;
     nodes.force(node, -load);
-    to.largest_force = std::max(to.largest_force, load.lpNorm<Eigen::Infinity>());
+    to.carries(load.lpNorm<Eigen::Infinity>());
   }
 
   const auto moved_between = [&](int first, int second) -> Vector3d {
-    return to.moved.col(second) - to.moved.col(first);
+    return to.moved().col(second) - to.moved().col(first);
   };
   const auto lengths_of = [&](int first, int second) {
     return lengths(drawn_.col(second) - drawn_.col(first), moved_between(first, second));
@@ -103,7 +102,7 @@ void System::assemble_bars(double time, Assembly& to) const {
                        const Axial& axial) {
     nodes.force(first, -axial.tension * direction);
     nodes.force(second, axial.tension * direction);
-    to.largest_force = std::max(to.largest_force, std::abs(axial.tension));
+    to.carries(axial.tension);
     if (to.residual_only()) return;
     // Along the bar its stiffness, across it that of the tension.
     const double across = axial.tension / length;
@@ -134,21 +133,23 @@ void System::assemble_bars(double time, Assembly& to) const {
     });
     own(second, at_second);
   };
-  for (const Link& link : model.links) {
+  for (const int i : region.links) {
+    const Link& link = model.links[index(i)];
     const Lengths length = lengths_of(link.first, link.second);
     const double change = link.temperature_fraction * changes[index(link.program)];
     bar(link.first, link.second, length.along / length.now, length.now,
         link_axial(link, length.growth, length.drawn, change));
   }
-  for (const AxialSpring& spring : model.springs) {
+  for (const int i : region.springs) {
+    const AxialSpring& spring = model.springs[index(i)];
     const Lengths length = lengths_of(spring.first, spring.second);
     bar(spring.first, spring.second, length.along / length.now, length.now,
         spring_axial(spring, length));
   }
 
-  for (std::size_t i = 0; i < model.torsion_springs.size(); ++i) {
-    const TorsionSpring& spring = model.torsion_springs[i];
-    const Matrix32& plane = torsion_plane_[i];
+  for (const int i : region.torsion_springs) {
+    const TorsionSpring& spring = model.torsion_springs[index(i)];
+    const Matrix32& plane = torsion_plane_[index(i)];
     std::array<int, 2> links{spring.first_link, spring.second_link};
     // The angle runs from the first link to the second; that of a single link from the ground.
     std::array<double, 2> sign{-1.0, 1.0};
@@ -181,7 +182,7 @@ void System::assemble_bars(double time, Assembly& to) const {
       const Vector3d turns = plane * (sign[k] / squared * turned_left(now[k]));
       nodes.force(link.second, moment * turns);
       nodes.force(link.first, -moment * turns);
-      to.largest_force = std::max(to.largest_force, std::abs(moment) * turns.norm());
+      to.carries(moment * turns.norm());
       if (to.residual_only()) continue;
       const Vector3d outward = plane * (now[k] / squared);
       ends[count++] = {k, link.second, nodes.seen(link.second, turns),
@@ -203,15 +204,43 @@ void System::assemble_bars(double time, Assembly& to) const {
   }
 }
 
-void System::assemble_joints(const VectorXd& z, double time, const StepStart& start,
-                             const Statuses& statuses, JointModel joints, double opening,
-                             Assembly& to) const {
-  const Model& model = *model_;
-  for (std::size_t i = 0; i < model.joints.size(); ++i) {
-    JointWriter to_joint = writer(static_cast<int>(i), to);
-    const Trial at = trial(static_cast<int>(i), z, to.moved, time, start, joints, opening);
-    std::visit([&](const auto& one) { one.evaluate(at, statuses[i], to_joint); }, model.joints[i]);
+template <class Write>
+void System::write_regions(Assembly& to, Write&& write) const {
+  const std::size_t regions = regions_.apart.size();
+  if (to.records()) {
+    // Places are written down one after the other.
+    for (std::size_t k = 0; k <= regions; ++k) {
+      AssemblyStrand strand(to, k);
+      write(k < regions ? regions_.apart[k] : regions_.between, strand);
+    }
+    return;
   }
+  std::vector<AssemblyStrand> strands;
+  for (std::size_t k = 0; k <= regions; ++k) strands.emplace_back(to, k);
+  in_parallel(regions, [&](std::size_t k) { write(regions_.apart[k], strands[k]); });
+  write(regions_.between, strands.back());
+  for (AssemblyStrand& strand : strands) strand.end();
+}
+
+void System::assemble(Parts parts, const VectorXd& z, double time, const StepStart& start,
+                      const Statuses& statuses, JointModel joints, double opening,
+                      Assembly& to) const {
+  to.clear();
+  displacements(z, to.moved);
+  std::vector<double> changes;
+  for (const auto& program : model_->programs) changes.push_back(program.temperature_change(time));
+  const auto write = [&](const Region& region, AssemblyStrand& strand) {
+    if (parts != Parts::joints) assemble_bars(region, changes, strand);
+    if (parts == Parts::bars) return;
+    for (const int i : region.joints) {
+      JointWriter to_joint = writer(i, strand);
+      const Trial at = trial(i, z, to.moved, time, start, joints, opening);
+      const JointStatus status = statuses[index(i)];
+      std::visit([&](const auto& one) { one.evaluate(at, status, to_joint); },
+                 model_->joints[index(i)]);
+    }
+  };
+  write_regions(to, write);
 }
 
 void System::evaluate_joint(int joint, const VectorXd& z, double time, const StepStart& start,
@@ -219,7 +248,8 @@ void System::evaluate_joint(int joint, const VectorXd& z, double time, const Ste
                             Assembly& to) const {
   to.entries.clear();
   to.residual.segment(force_row(joint), force_count(joint)).setZero();
-  JointWriter to_joint = writer(joint, to);
+  AssemblyStrand strand(to, 0);
+  JointWriter to_joint = writer(joint, strand);
   const Trial at = trial(joint, z, time, start, model, opening);
   std::visit([&](const auto& one) { one.evaluate(at, status, to_joint); },
              model_->joints[index(joint)]);
@@ -228,30 +258,34 @@ void System::evaluate_joint(int joint, const VectorXd& z, double time, const Ste
 VectorXd System::heating(const VectorXd& z, double time, const StepStart& start,
                          const Statuses& statuses, const std::vector<double>& program_rates) const {
   const Model& model = *model_;
-  Assembly to(unknowns_);
+  Assembly to = Assembly::without_jacobian(unknowns_);
   to.residual.setZero();
-  NodeWriter nodes(place_, to);
-  for (const Link& link : model.links) {
-    const double growth = link.stress_free_length * link.thermal_expansion *
-                          link.temperature_fraction * program_rates[index(link.program)];
-    if (growth == 0.0) continue;
-    // N = E A (L/l_T − 1) by l_T.
-    const Lengths length = lengths_between(link.first, link.second, z);
-    const double change = model.temperature_change(link.program, link.temperature_fraction, time);
-    const double free = thermal::length(link.stress_free_length, link.thermal_expansion, change);
-    const Vector3d tension = -link.axial_stiffness * growth / (free * free) * length.along;
-    nodes.force(link.first, -tension);
-    nodes.force(link.second, tension);
-  }
-  for (std::size_t i = 0; i < model.joints.size(); ++i) {
-    const JointFrame& frame = frames_[i];
-    if (frame.program < 0) continue;
-    JointWriter to_joint = writer(static_cast<int>(i), to);
-    const Trial at = trial(static_cast<int>(i), z, time, start, JointModel::friction, 1.0);
-    const double rate = frame.temperature_fraction * program_rates[index(frame.program)];
-    std::visit([&](const auto& one) { one.warm(at, statuses[i], rate, to_joint); },
-               model.joints[i]);
-  }
+  const auto write = [&](const Region& region, AssemblyStrand& strand) {
+    NodeWriter nodes(place_, strand);
+    for (const int i : region.links) {
+      const Link& link = model.links[index(i)];
+      const double growth = link.stress_free_length * link.thermal_expansion *
+                            link.temperature_fraction * program_rates[index(link.program)];
+      if (growth == 0.0) continue;
+      // N = E A (L/l_T − 1) by l_T.
+      const Lengths length = lengths_between(link.first, link.second, z);
+      const double change = model.temperature_change(link.program, link.temperature_fraction, time);
+      const double free = thermal::length(link.stress_free_length, link.thermal_expansion, change);
+      const Vector3d tension = -link.axial_stiffness * growth / (free * free) * length.along;
+      nodes.force(link.first, -tension);
+      nodes.force(link.second, tension);
+    }
+    for (const int i : region.joints) {
+      const JointFrame& frame = frames_[index(i)];
+      if (frame.program < 0) continue;
+      JointWriter to_joint = writer(i, strand);
+      const Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
+      const double rate = frame.temperature_fraction * program_rates[index(frame.program)];
+      std::visit([&](const auto& one) { one.warm(at, statuses[index(i)], rate, to_joint); },
+                 model.joints[index(i)]);
+    }
+  };
+  write_regions(to, write);
   return to.residual;
 }
 
@@ -260,32 +294,47 @@ VectorXd System::slide_rates(const VectorXd& z, double time, const StepStart& st
                              const std::vector<double>& program_rates) const {
   const Model& model = *model_;
   VectorXd rates = VectorXd::Zero(static_cast<Eigen::Index>(model.joints.size()));
-  // A joint that slips is asked for the rate of what would be closed if it stuck.
-  Assembly moving(rate);
-  Assembly heated(unknowns_);
-  for (std::size_t i = 0; i < model.joints.size(); ++i) {
-    if (!is_slip(statuses[i])) continue;
-    Trial at = trial(static_cast<int>(i), z, time, start, JointModel::friction, 1.0);
+  each_joint([&](int i) {
+    if (!is_slip(statuses[index(i)])) return;
+    // The joint alone: the unknowns of its nodes, then its forces.
+    constexpr int forces_from = 3 * most_joint_nodes;
+    const JointFrame& frame = frames_[index(i)];
+    std::array<JointWriter::Place, most_joint_nodes> places;
+    VectorXd own_rate = VectorXd::Zero(forces_from + most_joint_forces);
+    for (int k = 0; k < most_joint_nodes; ++k) {
+      const int node = frame.nodes[index(k)];
+      const JointWriter::Place& place = node < 0 ? place_.back() : place_[index(node)];
+      places[index(k)] = {3 * k, place.freedoms, place.directions};
+      own_rate.segment(3 * k, place.freedoms) = rate.segment(place.row, place.freedoms);
+    }
+    own_rate.segment(forces_from, frame.forces) = rate.segment(force_row_[index(i)], frame.forces);
+    Assembly moving(own_rate);
+    Assembly heated = Assembly::without_jacobian(own_rate.size());
+    heated.residual.setZero();
+    AssemblyStrand of_moving(moving, 0);
+    AssemblyStrand of_heated(heated, 0);
+    JointWriter to_moving(of_moving);
+    JointWriter to_heated(of_heated);
+    to_moving.places = to_heated.places = places;
+    to_moving.first_force = to_heated.first_force = forces_from;
+    // One that slips is asked for the rate of what would be closed if it stuck.
+    Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
     at.unslipped = true;
-    const JointFrame& frame = frames_[i];
     const double warming =
         frame.program < 0 ? 0.0 : frame.temperature_fraction * program_rates[index(frame.program)];
-    JointWriter to_moving = writer(static_cast<int>(i), moving);
-    JointWriter to_heated = writer(static_cast<int>(i), heated);
     std::visit(
         [&](const auto& one) {
-          const int row = force_row_[i] + one.slide_row;
-          heated.residual[row] = 0.0;
+          const int row = forces_from + one.slide_row;
           one.evaluate(at, JointStatus::stick, to_moving);
           one.warm(at, JointStatus::stick, warming, to_heated);
-          rates[static_cast<Eigen::Index>(i)] = moving.product[row] + heated.residual[row];
+          rates[i] = moving.product[row] + heated.residual[row];
         },
-        model.joints[i]);
-  }
+        model.joints[index(i)]);
+  });
   return rates;
 }
 
-JointWriter System::writer(int joint, Assembly& to) const {
+JointWriter System::writer(int joint, AssemblyStrand& to) const {
   JointWriter made(to);
   for (std::size_t k = 0; k < most_joint_nodes; ++k) {
     const int node = frames_[index(joint)].nodes[k];
@@ -298,34 +347,23 @@ JointWriter System::writer(int joint, Assembly& to) const {
 void System::evaluate(const VectorXd& z, double time, const StepStart& start,
                       const Statuses& statuses, JointModel joints, double opening,
                       Assembly& to) const {
-  to.clear();
-  displacements(z, to.moved);
-  assemble_bars(time, to);
-  assemble_joints(z, time, start, statuses, joints, opening, to);
+  assemble(Parts::all, z, time, start, statuses, joints, opening, to);
 }
 
 void System::evaluate_bars(const VectorXd& z, double time, Assembly& to) const {
-  to.clear();
-  displacements(z, to.moved);
-  assemble_bars(time, to);
+  assemble(Parts::bars, z, time, {}, {}, JointModel::friction, 1.0, to);
 }
 
 void System::evaluate_joints(const VectorXd& z, double time, const StepStart& start,
                              const Statuses& statuses, Assembly& to) const {
-  to.clear();
-  displacements(z, to.moved);
-  assemble_joints(z, time, start, statuses, JointModel::friction, 1.0, to);
+  assemble(Parts::joints, z, time, start, statuses, JointModel::friction, 1.0, to);
 }
 
 Assembly System::recorded(Parts parts) const {
   Assembly made(unknowns_);
   const VectorXd z = VectorXd::Zero(unknowns_);
   const Statuses statuses = all_stick();
-  displacements(z, made.moved);
-  if (parts != Parts::joints) assemble_bars(0.0, made);
-  if (parts != Parts::bars) {
-    assemble_joints(z, 0.0, begin(z, 0.0, statuses, 1.0), statuses, JointModel::pins, 1.0, made);
-  }
+  assemble(parts, z, 0.0, begin(z, 0.0, statuses, 1.0), statuses, JointModel::pins, 1.0, made);
   made.record();
   return made;
 }

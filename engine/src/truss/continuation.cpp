@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "parallel.hpp"
 #include "walker.hpp"
 
 namespace statejump::truss::detail {
@@ -106,9 +108,13 @@ SolveReport Walker::continue_from_event(double target, VectorXd& to, Statuses& s
 /// unstable there, or would be at its start.
 bool Walker::passes_instability(const Statuses& statuses) {
   if (!any_slips(statuses)) return false;
-  if (newton.stability_index() < 0) return true;
-  if (statuses == origin.statuses) return false;
-  return rates.index_at(z, time, origin, statuses) < 0;
+  if (statuses == origin.statuses) return newton.stability_index() < 0;
+  // Two factorizations beside each other.
+  std::array<int, 2> stability{};
+  in_parallel(2, [&](std::size_t k) {
+    stability[k] = k == 0 ? newton.stability_index() : rates.index_at(z, time, origin, statuses);
+  });
+  return stability[0] < 0 || stability[1] < 0;
 }
 
 /// Whether the rates at the ends of a step without events explain where it leads. A path that jumps

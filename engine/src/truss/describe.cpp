@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,9 @@
 namespace statejump::truss::detail {
 
 namespace {
+
+/// Integrating the work of as many takes some ten times as long as starting a thread.
+constexpr std::size_t links_at_once = 5000;
 
 /// Abscissae and weights on (0, 1) of the quadrature of order 8.
 constexpr std::array<std::pair<double, double>, 4> gauss_legendre{
@@ -122,16 +126,18 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
         torsion_angle(model, spring, torsion_plane_[i], *this, z) - spring.free_angle;
     state.elastic_energy += 0.5 * spring.stiffness * wound * wound;
   }
-  for (int i = 0; i < size(model.joints); ++i) {
+  VectorXd energy(size(model.joints));
+  each_joint([&](int i) {
     const Trial at = trial(i, z, state.displacement, time, now, JointModel::friction, 1.0);
     double* outputs = state.joint_output.data() + output_begin_[index(i)];
     std::visit(
         [&](const auto& one) {
           one.describe(at, outputs);
-          state.elastic_energy += one.elastic_energy(at, history(i, now));
+          energy[i] = one.elastic_energy(at, history(i, now));
         },
         model.joints[index(i)]);
-  }
+  });
+  state.elastic_energy = std::accumulate(energy.begin(), energy.end(), state.elastic_energy);
 }
 
 VectorXd System::beyond_edges(const VectorXd& z, double time, const StepStart& now) const {
@@ -157,14 +163,14 @@ VectorXd System::heat(const VectorXd& z, double time, const StepStart& start,
                       const StepStart& after, const VectorXd& slips) const {
   VectorXd found(slips.size());
   const Eigen::Matrix3Xd moved = displacements(z);
-  for (int i = 0; i < slips.size(); ++i) {
+  each_joint([&](int i) {
     const Trial at = trial(i, z, moved, time, start, JointModel::friction, 1.0);
     // What a joint that sticks is off by is no slip.
     const double slip = after.statuses[index(i)] == JointStatus::stick ? 0.0 : slips[i];
     found[i] =
         std::visit([&](const auto& one) { return one.dissipation(at, history(i, after), slip); },
                    model_->joints[index(i)]);
-  }
+  });
   return found;
 }
 
@@ -187,8 +193,9 @@ void System::note_slides(const Way& way, const std::optional<Halves>& halves,
   const auto joints = static_cast<Eigen::Index>(model_->joints.size());
   after.owed = after.lost = Eigen::Matrix3Xd::Zero(3, joints);
   if (halves) after.last_step = way.step();
-  for (const int i : rolling_) {
-    if (after.statuses[index(i)] != JointStatus::stick) continue;
+  each_in_parallel(rolling_.size(), joints_at_once, [&](std::size_t which) {
+    const int i = rolling_[which];
+    if (after.statuses[index(i)] != JointStatus::stick) return;
     const Vector3d foreseen = start.foreseen(i, way.to_time);
     if (halves) {
       // Both halves together are off by a quarter of what the whole step is.
@@ -198,7 +205,7 @@ void System::note_slides(const Way& way, const std::optional<Halves>& halves,
            lag(i, way.to, way.to_time, start));
     }
     after.owed.col(i) = after.lost.col(i) - foreseen;
-  }
+  });
 }
 
 void System::account(const Way& way, const std::optional<Halves>& halves, const StepStart& start,
@@ -224,11 +231,12 @@ double System::work_on_links(const Way& way) const {
            length.along.dot(displacement(link.second, moving) - displacement(link.first, moving)) /
            length.now;
   };
-  double work = 0.0;
-  for (const Link& link : model.links) {
+  VectorXd work = VectorXd::Zero(static_cast<Eigen::Index>(model.links.size()));
+  each_in_parallel(model.links.size(), links_at_once, [&](std::size_t i) {
+    const Link& link = model.links[i];
     const double expansion =
         link.stress_free_length * link.thermal_expansion * link.temperature_fraction;
-    if (expansion == 0.0) continue;
+    if (expansion == 0.0) return;
     const Lengths first = lengths_between(link.first, link.second, way.from);
     const Lengths last = lengths_between(link.first, link.second, way.to);
     // ∂V/∂l_T = −N − N²/(2 E A)
@@ -242,11 +250,12 @@ double System::work_on_links(const Way& way) const {
       growth.first_rate = growth_rate(link, first, *way.from_rate);
       growth.last_rate = growth_rate(link, last, *way.to_rate);
     }
-    work += expansion * along(asked[index(link.program)], [&](double share, double warmer) {
-              return by_length(growth.at(share), warmer);
-            });
-  }
-  return work;
+    work[static_cast<Eigen::Index>(i)] =
+        expansion * along(asked[index(link.program)], [&](double share, double warmer) {
+          return by_length(growth.at(share), warmer);
+        });
+  });
+  return std::accumulate(work.begin(), work.end(), 0.0);
 }
 
 double System::work_on_joints(const Way& way, const StepStart& start) const {

@@ -165,10 +165,12 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const Rounding slack = pivoting == Pivoting::strict ? Rounding{} : system_->rounding(z);
     Violations found{{}, statuses};
     system_->displacements(z, at_.moved);
-    for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
+    system_->each_joint([&](int i) {
       JointStatus& status = found.corrected[index(i)];
       status = system_->decide(i, z, at_.moved, time, start, joints, opening, status, slack);
-      if (status != statuses[index(i)]) found.joints.push_back(i);
+    });
+    for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
+      if (found.corrected[index(i)] != statuses[index(i)]) found.joints.push_back(i);
     }
     return found;
   };

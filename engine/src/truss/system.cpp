@@ -7,6 +7,13 @@
 
 namespace statejump::truss::detail {
 
+namespace {
+
+/// Copying as many displacements takes some ten times as long as starting a thread.
+constexpr std::size_t nodes_at_once = 50000;
+
+}  // namespace
+
 System::System(const Model& model) : model_(&model) {
   drawn_.resize(3, static_cast<Eigen::Index>(model.nodes.size()));
   const Matrix3d* directions = nullptr;
@@ -17,7 +24,6 @@ System::System(const Model& model) : model_(&model) {
     }
     const auto n = static_cast<int>(place_.size());
     drawn_.col(n) = node.position;
-    if (!node.load.isZero(0.0)) loaded_.push_back(n);
     place_.push_back({unknowns_, node.freedoms, directions});
     unknowns_ += node.freedoms;
   }
@@ -52,6 +58,7 @@ System::System(const Model& model) : model_(&model) {
   for (const AxialSpring& spring : model.springs) {
     stiffness_scale_ = std::max(stiffness_scale_, spring.stiffness);
   }
+  regions_ = regions_of(model, frames_);
   pattern_ = recorded(Parts::all);
 }
 
@@ -73,7 +80,9 @@ Vector3d System::displacement(int node, const VectorXd& z) const {
 
 void System::displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const {
   moved.resize(3, static_cast<Eigen::Index>(model_->nodes.size()));
-  for (int i = 0; i < moved.cols(); ++i) moved.col(i) = displacement(i, z);
+  each_in_parallel(model_->nodes.size(), nodes_at_once, [&](std::size_t i) {
+    moved.col(static_cast<Eigen::Index>(i)) = displacement(static_cast<int>(i), z);
+  });
 }
 
 Lengths System::lengths_between(int from, int to, const VectorXd& z) const {
@@ -163,12 +172,12 @@ StepStart System::begin(const VectorXd& z, double time, const Statuses& statuses
   StepStart start{statuses, VectorXd::Zero(history_), time, {}, {}, 0.0};
   StepStart made = start;
   const Eigen::Matrix3Xd moved = displacements(z);
-  for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
+  each_joint([&](int i) {
     const Trial at = trial(i, z, moved, time, start, JointModel::friction, opening);
     double* now = made.history.data() + history_begin_[index(i)];
     std::visit([&](const auto& one) { one.begin(at, statuses[index(i)], now); },
                model_->joints[index(i)]);
-  }
+  });
   return made;
 }
 
@@ -176,12 +185,12 @@ StepStart System::commit(const VectorXd& z, double time, const Statuses& statuse
                          const StepStart& last) const {
   StepStart made{statuses, VectorXd(history_), time, {}, {}, 0.0};
   const Eigen::Matrix3Xd moved = displacements(z);
-  for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
+  each_joint([&](int i) {
     const Trial at = trial(i, z, moved, time, last, JointModel::friction, 1.0);
     double* after = made.history.data() + history_begin_[index(i)];
     std::visit([&](const auto& one) { one.commit(at, statuses[index(i)], after); },
                model_->joints[index(i)]);
-  }
+  });
   return made;
 }
 
@@ -189,11 +198,11 @@ VectorXd System::slips(const VectorXd& z, double time, const StepStart& start,
                        const StepStart& after) const {
   VectorXd found(static_cast<Eigen::Index>(model_->joints.size()));
   const Eigen::Matrix3Xd moved = displacements(z);
-  for (int i = 0; i < found.size(); ++i) {
+  each_joint([&](int i) {
     const Trial at = trial(i, z, moved, time, start, JointModel::friction, 1.0);
     found[i] = std::visit([&](const auto& one) { return one.slip(at, history(i, after)); },
                           model_->joints[index(i)]);
-  }
+  });
   return found;
 }
 
@@ -201,13 +210,13 @@ void System::settle(const VectorXd& z, double time, const StepStart& start,
                     Statuses& statuses) const {
   const Rounding by = rounding(z);
   const Eigen::Matrix3Xd moved = displacements(z);
-  for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
+  each_joint([&](int i) {
     Trial at = trial(i, z, moved, time, start, JointModel::friction, 1.0);
     at.length_rounding = by.length;
     JointStatus& status = statuses[index(i)];
     status = std::visit([&](const auto& one) { return one.settled(at, status); },
                         model_->joints[index(i)]);
-  }
+  });
 }
 
 Rounding System::rounding(const VectorXd& z) const {

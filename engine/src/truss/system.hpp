@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "joints/writer.hpp"
+#include "parallel.hpp"
 #include "parts.hpp"
+#include "regions.hpp"
 #include "statejump/truss/path.hpp"
 
 namespace statejump::truss::detail {
@@ -115,6 +117,14 @@ class System {
   VectorXd slide_rates(const VectorXd& z, double time, const StepStart& start,
                        const Statuses& statuses, const VectorXd& rate,
                        const std::vector<double>& program_rates) const;
+
+  /// Calls `work(joint)` for every joint, many at a time in several threads: it may write what is
+  /// the joint's own.
+  template <class Work>
+  void each_joint(Work&& work) const {
+    each_in_parallel(model_->joints.size(), joints_at_once,
+                     [&](std::size_t i) { work(static_cast<int>(i)); });
+  }
 
   Statuses all_stick() const { return Statuses(model_->joints.size(), JointStatus::stick); }
 
@@ -229,14 +239,18 @@ class System {
   /// Heat of a step of every joint [J], as if all were straight between its ends.
   VectorXd heat(const VectorXd& z, double time, const StepStart& start, const StepStart& after,
                 const VectorXd& slips) const;
-  void assemble_bars(double time, Assembly& to) const;
-  void assemble_joints(const VectorXd& z, double time, const StepStart& start,
-                       const Statuses& statuses, JointModel joints, double opening,
-                       Assembly& to) const;
+  void assemble(Parts parts, const VectorXd& z, double time, const StepStart& start,
+                const Statuses& statuses, JointModel joints, double opening, Assembly& to) const;
+  /// Calls `write(region, strand)` for all regions, those apart at the same time.
+  template <class Write>
+  void write_regions(Assembly& to, Write&& write) const;
+  /// @param changes of the programs [K]
+  void assemble_bars(const Region& region, const std::vector<double>& changes,
+                     AssemblyStrand& to) const;
   Assembly recorded(Parts parts) const;
   Lengths lengths_between(int from, int to, const VectorXd& z) const;
   Axial axial(const Link& link, const VectorXd& z, double time) const;
-  JointWriter writer(int joint, Assembly& to) const;
+  JointWriter writer(int joint, AssemblyStrand& to) const;
   JointStatus decide(int joint, Trial& at, JointStatus status, const Rounding& rounding) const;
   double temperature_change(const JointFrame& frame, double time) const {
     return frame.program < 0
@@ -246,6 +260,9 @@ class System {
   const double* history(int joint, const StepStart& start) const {
     return start.history.data() + history_begin_[index(joint)];
   }
+
+  /// Asking as many takes some ten times as long as starting a thread.
+  static constexpr std::size_t joints_at_once = 2000;
 
   const Model* model_;
   int unknowns_ = 0;
@@ -257,13 +274,13 @@ class System {
   double size_ = 0.0;
   std::vector<JointWriter::Place> place_;  // of each node, then that of the ground
   Eigen::Matrix3Xd drawn_;                 // places of the nodes at ΔT = 0 [m]
-  std::vector<int> loaded_;                // nodes with a load
   std::vector<JointFrame> frames_;
   std::vector<int> force_row_;      // first force of each joint
   std::vector<int> history_begin_;  // of each joint
   std::vector<int> output_begin_;   // of each joint
   std::vector<int> rolling_;        // joints whose slides are integrals along the way
   std::vector<Matrix32> torsion_plane_;
+  Regions regions_;
   Assembly pattern_{0};  // of all parts, which others copy
 };
 

@@ -12,17 +12,17 @@ namespace statejump::truss::detail {
 /// for a while, or one that leaves its branch and comes back. 1: none does. The unknowns and the
 /// slides are cubics through both ends of the step and their rates.
 double Walker::first_turn(const Ends& ends) const {
-  double first = 1.0;
   const Rounding rounding = system.rounding(ends.to);
-  for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
+  VectorXd turn = VectorXd::Ones(static_cast<Eigen::Index>(model.joints.size()));
+  system.each_joint([&](int i) {
     const JointStatus status = ends.statuses[index(i)];
     if (is_slip(status)) {
-      first = std::min(first, turn_of_slip(i, ends, rounding));
+      turn[i] = turn_of_slip(i, ends, rounding);
     } else if (status == ends.start.statuses[index(i)]) {
-      first = std::min(first, turn_of_stick(i, ends, rounding));
+      turn[i] = turn_of_stick(i, ends, rounding);
     }
-  }
-  return first;
+  });
+  return turn.size() == 0 ? 1.0 : std::min(1.0, turn.minCoeff());
 }
 
 double Walker::turn_of_slip(int i, const Ends& ends, const Rounding& by) const {

@@ -20,6 +20,8 @@ enum class RowUnit : unsigned char { balance, closure, force };
 
 /// Residual and Jacobian of all equations while they are added up. The k-th place that is written
 /// is the same at every evaluation: the first one records the places, later ones look nothing up.
+/// What is written is cut into strands, see AssemblyStrand; those that share no place may be
+/// written at the same time.
 class Assembly {
  public:
   explicit Assembly(Eigen::Index unknowns)
@@ -48,60 +50,18 @@ class Assembly {
   /// From the next evaluation on: whether the Jacobian is added up, or stays as it is.
   void want_jacobian(bool wanted) { residual_only_ = !wanted; }
 
+  /// Whether places are still written down, one after the other.
+  bool records() const {
+    return slots_ == nullptr && !residual_only_ && !lists_ && along_ == nullptr;
+  }
+
   /// Begins an evaluation.
   void clear() {
     residual.setZero();
     if (slots_ != nullptr && !residual_only_)
       std::fill_n(jacobian.valuePtr(), jacobian.nonZeros(), 0.0);
-    next_ = 0;
     largest_force = 0.0;
     pieces = 0;
-  }
-  void add(int row, int column, double value) {
-    if (residual_only_) return;
-    if (slots_ != nullptr) {
-      jacobian.valuePtr()[(*slots_)[next_++]] += value;
-    } else if (lists_) {
-      entries.emplace_back(row, column, value);
-    } else if (along_ != nullptr) {
-      product[row] += value * (*along_)[column];
-    } else {
-      places_.emplace_back(row, column);
-    }
-  }
-  /// A block of places, column by column: `value(row of it, column of it)`.
-  template <class Value>
-  void block(int row, int rows, int column, int columns, Value&& value) {
-    if (residual_only_) return;
-    if (slots_ == nullptr) {
-      for (int j = 0; j < columns; ++j) {
-        for (int i = 0; i < rows; ++i) add(row + i, column + j, value(i, j));
-      }
-      return;
-    }
-    double* entries_of_jacobian = jacobian.valuePtr();
-    const int* slot = slots_->data() + next_;
-    const auto add_up = [&](auto of_rows, auto of_columns) {
-      for (int j = 0; j < of_columns; ++j) {
-        for (int i = 0; i < of_rows; ++i) entries_of_jacobian[*slot++] += value(i, j);
-      }
-    };
-    // Nodes are mostly free in space or in a plane: loops of a known length.
-    if (rows == 2 && columns == 2) {
-      add_up(std::integral_constant<int, 2>(), std::integral_constant<int, 2>());
-    } else if (rows == 3 && columns == 3) {
-      add_up(std::integral_constant<int, 3>(), std::integral_constant<int, 3>());
-    } else {
-      add_up(rows, columns);
-    }
-    next_ += static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
-  }
-  /// A block that is zero: its places are passed. (A sum that begins at +0 is never −0, so that
-  /// adding zeros would change nothing.)
-  void zeros(int row, int rows, int column, int columns) {
-    if (slots_ == nullptr) return block(row, rows, column, columns, [](int, int) { return 0.0; });
-    if (!residual_only_)
-      next_ += static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
   }
   /// Makes the pattern of what was written.
   void record();
@@ -116,18 +76,108 @@ class Assembly {
   std::size_t pieces = 0;  ///< Tells sets of pieces of branches that have several.
 
  private:
+  friend class AssemblyStrand;
+  /// Of every place that is written the entry of the Jacobian, and where the strands begin.
+  struct Slots {
+    std::vector<int> entries;
+    std::vector<std::size_t> begin;
+  };
   bool residual_only_ = false;
   bool lists_ = false;
   const Eigen::VectorXd* along_ = nullptr;
-  std::size_t next_ = 0;
   std::vector<std::pair<int, int>> places_;
-  std::shared_ptr<const std::vector<int>> slots_;  ///< Once recorded, the same of all copies.
+  std::vector<std::size_t> begin_;      // of the strands among the places
+  std::shared_ptr<const Slots> slots_;  ///< Once recorded, the same of all copies.
+};
+
+/// Writes a part of an assembly, always the same places in the same order.
+class AssemblyStrand {
+ public:
+  /// @param which number of the strand; while an assembly records, they come in their order
+  AssemblyStrand(Assembly& to, std::size_t which) : to_(&to) {
+    if (to.slots_ != nullptr) {
+      slot_ = to.slots_->entries.data() + to.slots_->begin[which];
+    } else if (to.records()) {
+      to.begin_.push_back(to.places_.size());
+    }
+  }
+  /// Tells the assembly what the strand saw; strands in their order.
+  void end() {
+    to_->largest_force = std::max(to_->largest_force, largest_force_);
+    to_->pieces = to_->pieces * hash_factor_ + pieces_;
+  }
+
+  bool residual_only() const { return to_->residual_only_; }
+  const Eigen::Matrix3Xd& moved() const { return to_->moved; }
+  void residual(int row, double value) { to_->residual[row] += value; }
+  void unit(int row, RowUnit unit) { to_->units[static_cast<std::size_t>(row)] = unit; }
+  /// A force that rounding and balance are measured by [N].
+  void carries(double force) { largest_force_ = std::max(largest_force_, std::abs(force)); }
+  /// On a branch that is piecewise linear: which piece it is.
+  void piece(std::size_t which) {
+    pieces_ = hash_base * pieces_ + which;
+    hash_factor_ *= hash_base;
+  }
+
+  void add(int row, int column, double value) {
+    if (residual_only()) return;
+    if (slot_ != nullptr) {
+      to_->jacobian.valuePtr()[*slot_++] += value;
+    } else if (to_->lists_) {
+      to_->entries.emplace_back(row, column, value);
+    } else if (to_->along_ != nullptr) {
+      to_->product[row] += value * (*to_->along_)[column];
+    } else {
+      to_->places_.emplace_back(row, column);
+    }
+  }
+  /// A block of places, column by column: `value(row of it, column of it)`.
+  template <class Value>
+  void block(int row, int rows, int column, int columns, Value&& value) {
+    if (residual_only()) return;
+    if (slot_ == nullptr) {
+      for (int j = 0; j < columns; ++j) {
+        for (int i = 0; i < rows; ++i) add(row + i, column + j, value(i, j));
+      }
+      return;
+    }
+    double* entries_of_jacobian = to_->jacobian.valuePtr();
+    const int* slot = slot_;
+    const auto add_up = [&](auto of_rows, auto of_columns) {
+      for (int j = 0; j < of_columns; ++j) {
+        for (int i = 0; i < of_rows; ++i) entries_of_jacobian[*slot++] += value(i, j);
+      }
+    };
+    // Nodes are mostly free in space or in a plane: loops of a known length.
+    if (rows == 2 && columns == 2) {
+      add_up(std::integral_constant<int, 2>(), std::integral_constant<int, 2>());
+    } else if (rows == 3 && columns == 3) {
+      add_up(std::integral_constant<int, 3>(), std::integral_constant<int, 3>());
+    } else {
+      add_up(rows, columns);
+    }
+    slot_ += rows * columns;
+  }
+  /// A block that is zero: its places are passed. (A sum that begins at +0 is never −0, so that
+  /// adding zeros would change nothing.)
+  void zeros(int row, int rows, int column, int columns) {
+    if (slot_ == nullptr) return block(row, rows, column, columns, [](int, int) { return 0.0; });
+    if (!residual_only()) slot_ += rows * columns;
+  }
+
+ private:
+  static constexpr std::size_t hash_base = 1000003;
+  Assembly* to_;
+  const int* slot_ = nullptr;  ///< Of the next place; none: nothing is recorded.
+  double largest_force_ = 0.0;
+  std::size_t pieces_ = 0;
+  std::size_t hash_factor_ = 1;
 };
 
 /// Takes what a joint adds, in the places of its own nodes and forces.
 class JointWriter {
  public:
-  explicit JointWriter(Assembly& assembly) : to_(&assembly) {}
+  explicit JointWriter(AssemblyStrand& strand) : to_(&strand) {}
 
   /// Place of one of the joint's nodes in the truss.
   struct Place {
@@ -142,7 +192,7 @@ class JointWriter {
   void force(std::size_t node, const Eigen::Vector3d& value) {
     const Place& at = places[node];
     for (int i = 0; i < at.freedoms; ++i) {
-      to_->residual[at.row + i] += at.directions->col(i).dot(value);
+      to_->residual(at.row + i, at.directions->col(i).dot(value));
     }
   }
   bool residual_only() const { return to_->residual_only(); }
@@ -181,9 +231,9 @@ class JointWriter {
   /// … or a force from what it must be [N].
   void balance(int row, double value) { set(row, value, RowUnit::force); }
   /// A force that rounding and balance are measured by [N].
-  void carries(double force) { to_->largest_force = std::max(to_->largest_force, std::abs(force)); }
+  void carries(double force) { to_->carries(force); }
   /// On a branch that is piecewise linear: which piece it is.
-  void piece(std::size_t which) { to_->pieces = 1000003 * to_->pieces + which; }
+  void piece(std::size_t which) { to_->piece(which); }
   /// Holds the first two nodes together along a direction by one of the joint's forces.
   void hold(int row, const Eigen::Vector3d& along, double force, double apart) {
     closure(row, apart);
@@ -200,10 +250,10 @@ class JointWriter {
  private:
   friend class PlanarWriter;
   void set(int row, double value, RowUnit unit) {
-    to_->residual[first_force + row] += value;
-    to_->units[static_cast<std::size_t>(first_force + row)] = unit;
+    to_->residual(first_force + row, value);
+    to_->unit(first_force + row, unit);
   }
-  Assembly* to_;
+  AssemblyStrand* to_;
 };
 
 /// The same of a joint whose forces and slides lie in a plane: vectors are components along its two
@@ -222,7 +272,7 @@ class PlanarWriter {
   void force(std::size_t node, const Eigen::Vector2d& value) {
     const JointWriter::Place& at = to_->places[node];
     for (int i = 0; i < at.freedoms; ++i) {
-      to_->to_->residual[at.row + i] += seen_[node].col(i).dot(value);
+      to_->to_->residual(at.row + i, seen_[node].col(i).dot(value));
     }
   }
   void block(std::size_t by_node, std::size_t of_node, const Eigen::Matrix2d& value) {

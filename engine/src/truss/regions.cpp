@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "regions.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+
+#include "parts.hpp"
+
+namespace statejump::truss::detail {
+
+namespace {
+
+/// Parts of a region: assembling them takes some ten times as long as starting a thread.
+constexpr std::size_t least_parts = 2000;
+/// Regions at most: enough to share them out evenly, few enough to have little between them.
+constexpr std::size_t most_regions = 64;
+
+/// Lists of numbers, one behind the other.
+class Lists {
+ public:
+  void end_list() { begin_.push_back(numbers_.size()); }
+  void push_back(int number) { numbers_.push_back(number); }
+  std::size_t size() const { return begin_.size() - 1; }
+  const int* begin(std::size_t list) const { return numbers_.data() + begin_[list]; }
+  const int* end(std::size_t list) const { return numbers_.data() + begin_[list + 1]; }
+  std::size_t numbers() const { return numbers_.size(); }
+
+  /// For every number below `count` the lists that it is in.
+  Lists inverted(std::size_t count) const {
+    Lists made;
+    made.begin_.assign(count + 1, 0);
+    for (const int number : numbers_) ++made.begin_[index(number) + 1];
+    std::partial_sum(made.begin_.begin(), made.begin_.end(), made.begin_.begin());
+    made.numbers_.resize(numbers_.size());
+    std::vector<std::size_t> next(made.begin_.begin(), made.begin_.end() - 1);
+    for (std::size_t list = 0; list < size(); ++list) {
+      for (const int* number = begin(list); number != end(list); ++number) {
+        made.numbers_[next[index(*number)]++] = static_cast<int>(list);
+      }
+    }
+    return made;
+  }
+
+ private:
+  std::vector<int> numbers_;
+  std::vector<std::size_t> begin_{0};
+};
+
+/// The nodes that move of every part: of links, springs, torsion springs, joints, in this order.
+Lists moving_nodes(const Model& model, const std::vector<JointFrame>& frames) {
+  Lists made;
+  const auto add = [&](int node) {
+    if (node >= 0 && model.nodes[index(node)].freedoms > 0) made.push_back(node);
+  };
+  for (const Link& link : model.links) {
+    add(link.first);
+    add(link.second);
+    made.end_list();
+  }
+  for (const AxialSpring& spring : model.springs) {
+    add(spring.first);
+    add(spring.second);
+    made.end_list();
+  }
+  for (const TorsionSpring& spring : model.torsion_springs) {
+    for (const int link : {spring.first_link, spring.second_link}) {
+      if (link < 0) continue;
+      add(model.links[index(link)].first);
+      add(model.links[index(link)].second);
+    }
+    made.end_list();
+  }
+  for (const JointFrame& frame : frames) {
+    for (const int node : frame.nodes) add(node);
+    made.end_list();
+  }
+  return made;
+}
+
+/// Region of every node: pieces of the order in which a breadth-first search meets the nodes, with
+/// equally many parts each. Nodes that do not move are in none.
+std::vector<int> cut(const Lists& nodes_of, std::size_t nodes, std::size_t regions) {
+  const Lists parts_of = nodes_of.inverted(nodes);
+  std::vector<int> order;
+  std::vector<bool> met(nodes, false);
+  for (std::size_t first = 0; first < nodes; ++first) {
+    if (met[first]) continue;
+    met[first] = true;
+    order.push_back(static_cast<int>(first));
+    for (std::size_t next = order.size() - 1; next < order.size(); ++next) {
+      const std::size_t node = index(order[next]);
+      for (const int* part = parts_of.begin(node); part != parts_of.end(node); ++part) {
+        for (const int* other = nodes_of.begin(index(*part)); other != nodes_of.end(index(*part));
+             ++other) {
+          if (met[index(*other)]) continue;
+          met[index(*other)] = true;
+          order.push_back(*other);
+        }
+      }
+    }
+  }
+  std::vector<int> region(nodes, -1);
+  std::size_t passed = 0;
+  for (const int node : order) {
+    const auto parts =
+        static_cast<std::size_t>(parts_of.end(index(node)) - parts_of.begin(index(node)));
+    if (parts > 0) region[index(node)] = static_cast<int>(passed * regions / nodes_of.numbers());
+    passed += parts;
+  }
+  return region;
+}
+
+}  // namespace
+
+Regions regions_of(const Model& model, const std::vector<JointFrame>& frames) {
+  const Lists nodes_of = moving_nodes(model, frames);
+  const std::size_t count = std::min(most_regions, nodes_of.size() / least_parts);
+  Regions made;
+  std::vector<int> region_of_node(model.nodes.size(), -1);
+  if (count > 1) {
+    made.apart.resize(count);
+    region_of_node = cut(nodes_of, model.nodes.size(), count);
+  }
+  const auto region = [&](int which) -> Region& {
+    return which < 0 ? made.between : made.apart[index(which)];
+  };
+  std::size_t part = 0;
+  const auto share_out = [&](std::size_t parts, std::vector<int> Region::*list) {
+    for (std::size_t i = 0; i < parts; ++i, ++part) {
+      int of = -1;
+      bool inside = true;
+      for (const int* node = nodes_of.begin(part); node != nodes_of.end(part); ++node) {
+        const int its = region_of_node[index(*node)];
+        inside = inside && (of < 0 || its == of);
+        of = its;
+      }
+      (region(inside ? of : -1).*list).push_back(static_cast<int>(i));
+    }
+  };
+  share_out(model.links.size(), &Region::links);
+  share_out(model.springs.size(), &Region::springs);
+  share_out(model.torsion_springs.size(), &Region::torsion_springs);
+  share_out(frames.size(), &Region::joints);
+  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+    if (model.nodes[n].load.isZero(0.0)) continue;
+    region(region_of_node[n]).loaded.push_back(static_cast<int>(n));
+  }
+  return made;
+}
+
+}  // namespace statejump::truss::detail

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A large truss is assembled by regions in several threads: the same equations, the same bits.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "parallel.hpp"
+#include "parts.hpp"
+#include "regions.hpp"
+#include "system.hpp"
+
+namespace statejump::truss {
+namespace {
+
+using detail::index;
+using detail::Region;
+using detail::Regions;
+using detail::regions_of;
+
+/// Rows of bars, each bar's far end on a block that slides on the ground.
+/// @param order numbers of the nodes of all rows, one row after the other
+Model rows_of_bars(int rows, int bars, const std::vector<int>& order) {
+  Model model;
+  model.programs = {testing::triangle(100.0)};
+  model.nodes.resize(order.size());
+  for (int r = 0; r < rows; ++r) {
+    for (int k = 0; k <= bars; ++k) {
+      const int number = order[index(r * (bars + 1) + k)];
+      const std::string name = std::to_string(r) + "-" + std::to_string(k);
+      model.nodes[index(number)] = testing::node(name, 0.5 * k, r, k == 0 ? 0 : 1);
+      if (k == 0) continue;
+      const int before = order[index(r * (bars + 1) + k - 1)];
+      model.links.push_back({name, before, number, 70e9 * 9e-6, 0.5, 23.4e-6, 0, 1.0});
+      Slider slider;
+      slider.name = name;
+      slider.first = number;
+      // So that no two blocks begin to slide at the same time.
+      slider.friction_force = 0.01 * (1.0 + 0.1 * k / bars);
+      model.joints.push_back(slider);
+    }
+  }
+  return model;
+}
+
+std::vector<int> counted(int count) {
+  std::vector<int> order(index(count));
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+
+std::vector<JointFrame> frames_of(const Model& model) {
+  std::vector<JointFrame> frames;
+  for (const Joint& joint : model.joints) {
+    frames.push_back(std::visit([&](const auto& one) { return one.frame(model); }, joint));
+  }
+  return frames;
+}
+
+/// As the variable of the environment says, while it lives.
+class Threads {
+ public:
+  explicit Threads(int number) {
+    if (const char* before = std::getenv("OMP_NUM_THREADS")) before_ = before;
+    setenv("OMP_NUM_THREADS", std::to_string(number).c_str(), 1);
+  }
+  ~Threads() {
+    if (before_.empty()) {
+      unsetenv("OMP_NUM_THREADS");
+    } else {
+      setenv("OMP_NUM_THREADS", before_.c_str(), 1);
+    }
+  }
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+
+ private:
+  std::string before_;
+};
+
+TEST(Regions, ShareNoNodeThatMovesHoweverNodesAreNumbered) {
+  constexpr int bars = 5000;
+  std::vector<int> order = counted(bars + 1);
+  std::shuffle(order.begin(), order.end(), std::mt19937(1));
+  Model model = rows_of_bars(1, bars, order);
+  model.nodes[index(order[bars])].load = {1.0, 0.0, 0.0};
+  const Regions found = regions_of(model, frames_of(model));
+  ASSERT_GT(found.apart.size(), 1u);
+  std::map<int, std::size_t> region_of_node;
+  const auto claim = [&](int node, std::size_t region) {
+    if (model.nodes[index(node)].freedoms == 0) return;
+    const auto [at, is_new] = region_of_node.try_emplace(node, region);
+    EXPECT_EQ(at->second, region) << "node " << node;
+  };
+  std::size_t links = found.between.links.size();
+  std::size_t joints = found.between.joints.size();
+  std::size_t loaded = found.between.loaded.size();
+  for (std::size_t k = 0; k < found.apart.size(); ++k) {
+    const Region& region = found.apart[k];
+    for (const int i : region.links) {
+      claim(model.links[index(i)].first, k);
+      claim(model.links[index(i)].second, k);
+    }
+    for (const int i : region.joints) claim(std::get<Slider>(model.joints[index(i)]).first, k);
+    EXPECT_TRUE(std::is_sorted(region.links.begin(), region.links.end()));
+    links += region.links.size();
+    joints += region.joints.size();
+    loaded += region.loaded.size();
+    // Evenly shared out: a part here or there is in no region.
+    EXPECT_NEAR(static_cast<double>(region.links.size() + region.joints.size()),
+                2.0 * bars / static_cast<double>(found.apart.size()), 3.0);
+  }
+  EXPECT_EQ(links, index(bars));
+  EXPECT_EQ(joints, index(bars));
+  EXPECT_EQ(loaded, 1u);
+  // The search goes both ways along the row: it is cut between two bars, or twice.
+  EXPECT_LE(found.between.links.size(), 2 * (found.apart.size() - 1));
+}
+
+TEST(Regions, OfASmallTrussThereAreNone) {
+  const Model model = rows_of_bars(1, 100, counted(101));
+  const Regions found = regions_of(model, frames_of(model));
+  EXPECT_TRUE(found.apart.empty());
+  EXPECT_EQ(found.between.links, counted(100));
+  EXPECT_EQ(found.between.joints, counted(100));
+}
+
+TEST(Regions, EquationsAreThoseOfTheWhole) {
+  // Rows that are alike, once each by itself, which is too small for regions, and all as one.
+  constexpr int rows = 8, bars = 700;
+  const Model one = rows_of_bars(1, bars, counted(bars + 1));
+  const Model all = rows_of_bars(rows, bars, counted(rows * (bars + 1)));
+  ASSERT_TRUE(regions_of(one, frames_of(one)).apart.empty());
+  ASSERT_GT(regions_of(all, frames_of(all)).apart.size(), 1u);
+  const detail::System small(one), large(all);
+  const auto evaluated = [](const detail::System& system, const Eigen::VectorXd& z) {
+    const detail::Statuses statuses = system.all_stick();
+    Assembly at = system.assembly();
+    system.evaluate(z, 0.3, system.begin(z, 0.0, statuses, 1.0), statuses, JointModel::friction,
+                    1.0, at);
+    return at;
+  };
+  // Unknowns: the bars' ends, then the forces of the blocks.
+  const auto place = [](int row, int i) {
+    return (i / bars) * rows * bars + row * bars + i % bars;
+  };
+  Eigen::VectorXd z(large.unknowns());
+  for (int i = 0; i < z.size(); ++i) z[i] = 1e-5 * std::sin(1.0 + 0.37 * i);
+  const Assembly whole = evaluated(large, z);
+  double largest = 0.0;
+  for (int row = 0; row < rows; ++row) {
+    Eigen::VectorXd own(small.unknowns());
+    for (int i = 0; i < own.size(); ++i) own[i] = z[place(row, i)];
+    const Assembly alone = evaluated(small, own);
+    largest = std::max(largest, alone.largest_force);
+    for (int i = 0; i < own.size(); ++i) {
+      // The sums of two bars and a block, in another order: some roundings of forces of 100 N.
+      ASSERT_NEAR(whole.residual[place(row, i)], alone.residual[i], 1e-12);
+      EXPECT_EQ(whole.units[index(place(row, i))], alone.units[index(i)]);
+      for (Eigen::SparseMatrix<double>::InnerIterator it(alone.jacobian, i); it; ++it) {
+        const double same =
+            whole.jacobian.coeff(place(row, static_cast<int>(it.row())), place(row, i));
+        ASSERT_NEAR(same, it.value(), 1e-15 * std::abs(it.value()) + 1e-12);
+      }
+    }
+  }
+  EXPECT_EQ(whole.largest_force, largest);
+}
+
+TEST(Regions, PathsHaveTheSameBitsWithAnyNumberOfThreads) {
+  constexpr int rows = 500, bars = 5;
+  const Model model = rows_of_bars(rows, bars, counted(rows * (bars + 1)));
+  ASSERT_GT(regions_of(model, frames_of(model)).apart.size(), 1u);
+  Options options;
+  options.increments_per_branch = 4;
+  options.locate_events = false;
+  std::vector<Eigen::Matrix3Xd> moved;
+  std::vector<double> work;
+  for (const int threads : {1, 2, 5}) {
+    const Threads told(threads);
+    const Path path = solve(model, options);
+    moved.push_back(path.states.back().displacement);
+    work.push_back(path.states.back().thermal_work);
+  }
+  for (std::size_t k = 1; k < moved.size(); ++k) {
+    EXPECT_EQ(moved[k], moved[0]);
+    EXPECT_EQ(work[k], work[0]);
+  }
+  // All blocks slide back: each bar carries the friction of every block beyond it.
+  double jump = 0.0, beyond = 0.0;
+  for (int k = bars; k > 0; --k) {
+    beyond += std::get<Slider>(model.joints[index(k - 1)]).friction_force;
+    jump += 0.5 / (70e9 * 9e-6) * beyond;
+  }
+  // Closures close to 1e-13 of the largest displacement, a bar's expansion by 100 K: 1.2 mm each.
+  for (int r = 0; r < rows; ++r) {
+    EXPECT_NEAR(moved[0](0, r * (bars + 1) + bars), jump, 1e-13 * bars * 1.2e-3);
+  }
+}
+
+TEST(InParallel, DoesAllAndThrowsWhatTheFirstThrew) {
+  for (const int threads : {1, 3}) {
+    const Threads told(threads);
+    std::vector<int> done(100, 0);
+    const auto work = [&](std::size_t k) {
+      done[k] += 1;
+      if (k == 17 || k == 60) throw std::runtime_error(std::to_string(k));
+    };
+    try {
+      in_parallel(done.size(), work);
+      FAIL() << "nothing thrown";
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "17");
+    }
+    EXPECT_EQ(done, std::vector<int>(100, 1));
+  }
+  in_parallel(0, [](std::size_t) { FAIL(); });
+}
+
+TEST(InParallel, PiecesAreAllOfIt) {
+  for (const std::size_t count : {0u, 1u, 9u, 10u, 11u, 25u}) {
+    std::vector<int> done(count, 0);
+    each_in_parallel(count, 10, [&](std::size_t i) { done[i] += 1; });
+    EXPECT_EQ(done, std::vector<int>(count, 1));
+  }
+}
+
+}  // namespace
+}  // namespace statejump::truss
