@@ -108,6 +108,7 @@ class Scene {
   bool sums_before_moving() const;
   bool change_temperatures();
   bool leaves_lengths(std::size_t program) const;
+  void measure_links();
   void heat();
   template <class Law>
   bool step_contact(const Law& law, std::size_t place, const Make& make);
@@ -246,6 +247,7 @@ template <class Contacts, class Move>
 bool Scene::step(const Contacts& contacts_of_all, const Move& move) {
   summed_ = false;
   stored = {};
+  measure_links();
   if (!change_temperatures()) return false;
   heat();
   if (!contacts_of_all()) return false;
