@@ -55,10 +55,11 @@ struct Contact {
 /// A link, with its program and what is known of it before the first step.
 struct LinkPlace {
   Link link;
-  std::size_t program;      ///< place in Scene::programs
-  double inverse_mass = 0;  ///< 1/m1 + 1/m2 [1/kg]
-  double damping = 0;       ///< damping_coefficient() [N s/m]
-  double softening = 0;     ///< previous_softening() [N]
+  std::size_t program;            ///< place in Scene::programs
+  double inverse_mass = 0;        ///< 1/m1 + 1/m2 [1/kg]
+  double damping = 0;             ///< damping_coefficient() [N s/m]
+  double softening = 0;           ///< previous_softening() [N]
+  Span span{Vector3::Zero(), 0};  ///< of this step
 };
 
 struct TorsionPlace {

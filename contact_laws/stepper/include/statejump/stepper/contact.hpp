@@ -359,14 +359,16 @@ bool hertz_mindlin_step(const Geometry& geometry, Physics& physics, Host&& host)
 /// Why a law by name does not fit a contact.
 enum class Misfit { none, bulging_wall, no_axis };
 
-/// Laws by name.
-struct NamedLaw {
-  kernel::laws::JointLaw law;
+/// Laws by name. @tparam Law a JointLaw or a KnownJointLaw
+template <class Law>
+struct Named {
+  Law law;
   bool needs_axis = false;  ///< some of the laws have no meaning without a bearing's axis
 };
+using NamedLaw = Named<kernel::laws::JointLaw>;
 
-template <class Geometry>
-Misfit misfit(const NamedLaw& named, const Geometry& geometry) {
+template <class Law, class Geometry>
+Misfit misfit(const Named<Law>& named, const Geometry& geometry) {
   if (geometry.bearingRadius < 0 &&
       !kernel::laws::has(named.law.normal, kernel::laws::Trait::accepts_bulging_wall)) {
     return Misfit::bulging_wall;
@@ -406,8 +408,8 @@ struct Begun {
 /// Laws by name, for a contact without a Misfit that has begun if it touches.
 /// @return false when the contact is open; true, without forces, when it failed
 /// @throws std::domain_error outside the range of a law
-template <class Geometry, class Physics, class Host>
-bool joint_law_step(const kernel::laws::JointLaw& law, const Geometry& geometry, Physics& physics,
+template <class Law, class Geometry, class Physics, class Host>
+bool joint_law_step(const Law& law, const Geometry& geometry, Physics& physics,
                     const kernel::BodyMotion& motion_1, const kernel::BodyMotion& motion_2,
                     Host&& host) {
   namespace laws = kernel::laws;
@@ -433,6 +435,11 @@ bool joint_law_step(const kernel::laws::JointLaw& law, const Geometry& geometry,
     host.add(account(
         contact, response.dissipation_force, geometry.journalRadius,
         [&](double& work) {  // V(delta, R1, R2) of any law is known by value only
+          if (geometry.journalRadius == physics.previousRadius &&
+              geometry.bearingRadius == physics.previousBearingRadius) {
+            work += 0.0;  // as for each depth
+            return;
+          }
           laws::NormalGeometry before = kinematics.geometry;
           before.journal_radius = physics.previousRadius;
           before.bearing_radius = physics.previousBearingRadius;

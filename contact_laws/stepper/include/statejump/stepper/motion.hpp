@@ -106,8 +106,9 @@ inline bool left_its_bound(const Body& body) {
   return most != 0 && !(most < body.bound_reach);
 }
 
-/// Turns a body by its spin, as the last part of a step. @param time_step [s]
-inline void turn(Body& body, double time_step) {
+/// Turns a body by its spin, as the last part of a step. Not a part of who calls it, where its
+/// loads would be made before it is known whether the turn can wait. @param time_step [s]
+[[gnu::noinline]] inline void turn(Body& body, double time_step) {
   const Vector3& spin = body.motion.angular_velocity;
   const double speed_squared = spin.squaredNorm();
   if (speed_squared != 0) {

@@ -14,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-#include "statejump/kernel/laws/joint_law.hpp"
+#include "statejump/kernel/laws/known_law.hpp"
 #include "statejump/stepper/arrays.hpp"
 #include "statejump/stepper/batches.hpp"
 #include "statejump/stepper/bore.hpp"
@@ -108,11 +108,15 @@ class Scene {
   bool sums_before_moving() const;
   bool change_temperatures();
   bool leaves_lengths(std::size_t program) const;
+  void measure_links();
   void heat();
   template <class Law>
   bool step_contact(const Law& law, std::size_t place, const Make& make);
-  bool step_named(const NamedLaw& named, const Contact& contact, const ContactGeometry& geometry,
+  template <class Law>
+  bool step_named(const Named<Law>& named, const Contact& contact, const ContactGeometry& geometry,
                   ContactPhysics& physics, Begun& begun_contacts, bool& touches);
+  template <class Act>
+  decltype(auto) with_law(Act&& act) const;
   bool step_in_bore(std::size_t place, const Make& make);
   InBore find(const Contact& contact, Bore& bore);
   bool accepts(const ContactPhysics& physics) const;
@@ -193,48 +197,57 @@ inline bool Scene::sums_before_moving() const {
   });
 }
 
+// Calls act with the law of contacts, as one of a known type where it can.
+template <class Act>
+decltype(auto) Scene::with_law(Act&& act) const {
+  const auto* named = std::get_if<NamedLaw>(&law);
+  if (!named) return act(std::get<HertzMindlin>(law));
+  return kernel::laws::with_usual_types(named->law, [&](const auto& known) {
+    return act(Named<std::decay_t<decltype(known)>>{known, named->needs_axis});
+  });
+}
+
 inline long Scene::run(long steps, const Make& make, const Observe& observe) {
-  return std::visit(
-      [&](const auto& one) {
-        const auto contact = [&](std::size_t place) { return step_contact(one, place, make); };
-        long done = 0;
-        if (steps > 1) {
-          Batches batches({bodies, contacts, stages, strains, energies, newton, time_step,
-                           tracks_energy, uses_avx2});
-          batches.fill(std::is_same_v<decltype(one), const HertzMindlin&>, !sums_before_moving());
-          // The last step is not made in batches: it leaves all that anybody may ask for.
-          while (done < steps - 1 && batches.useful() &&
-                 step([&] { return batches.step_contacts(contact); },
-                      [&] { return batches.move() && move_all(batches.others(), false); })) {
-            ++done;
-          }
-          if (batches.useful() && done < steps - 1) return done;
-          batches.unload();
-        }
-        const auto one_by_one = [&] {
-          for (std::size_t i = 0; i < contacts.size(); ++i) {
-            if (!contact(i)) return false;
-          }
-          return true;
-        };
-        const auto observed = [&] {
-          const bool last = done == steps - 1;
-          if (observe && last) {
-            sum();
-            observe();
-          }
-          return move_all(moving_, last);
-        };
-        while (done < steps && step(one_by_one, observed)) ++done;
-        return done;
-      },
-      law);
+  return with_law([&](const auto& one) {
+    const auto contact = [&](std::size_t place) { return step_contact(one, place, make); };
+    long done = 0;
+    if (steps > 1) {
+      Batches batches({bodies, contacts, stages, strains, energies, newton, time_step,
+                       tracks_energy, uses_avx2});
+      batches.fill(std::is_same_v<decltype(one), const HertzMindlin&>, !sums_before_moving());
+      // The last step is not made in batches: it leaves all that anybody may ask for.
+      while (done < steps - 1 && batches.useful() &&
+             step([&] { return batches.step_contacts(contact); },
+                  [&] { return batches.move() && move_all(batches.others(), false); })) {
+        ++done;
+      }
+      if (batches.useful() && done < steps - 1) return done;
+      batches.unload();
+    }
+    const auto one_by_one = [&] {
+      for (std::size_t i = 0; i < contacts.size(); ++i) {
+        if (!contact(i)) return false;
+      }
+      return true;
+    };
+    const auto observed = [&] {
+      const bool last = done == steps - 1;
+      if (observe && last) {
+        sum();
+        observe();
+      }
+      return move_all(moving_, last);
+    };
+    while (done < steps && step(one_by_one, observed)) ++done;
+    return done;
+  });
 }
 
 template <class Contacts, class Move>
 bool Scene::step(const Contacts& contacts_of_all, const Move& move) {
   summed_ = false;
   stored = {};
+  measure_links();
   if (!change_temperatures()) return false;
   heat();
   if (!contacts_of_all()) return false;

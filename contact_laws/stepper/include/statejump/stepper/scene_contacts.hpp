@@ -75,9 +75,10 @@ bool Scene::step_contact(const Law& one, std::size_t place, const Make& make) {
 }
 
 // @param touches becomes whether the contact is not open
-inline bool Scene::step_named(const NamedLaw& named, const Contact& contact,
-                              const ContactGeometry& geometry, ContactPhysics& physics,
-                              Begun& begun_contacts, bool& touches) {
+template <class Law>
+bool Scene::step_named(const Named<Law>& named, const Contact& contact,
+                       const ContactGeometry& geometry, ContactPhysics& physics,
+                       Begun& begun_contacts, bool& touches) {
   if (misfit(named, geometry) != Misfit::none) return false;
   if (geometry.penetrationDepth > 0 && !physics.begun) {
     begun_contacts.add(begin(geometry, physics, time, time_step));

@@ -75,9 +75,11 @@ inline double tangential_stiffness(const ElasticPair& elastic, double normal_sti
 }
 
 /// chi/K [s/m] of a contact that began at this approach speed [m/s]; see damped_force().
-inline double damping_ratio(const JointLaw& law, double impact_speed) {
-  return damping_ratio(law.dissipation,
-                       {law.restitution, std::max(impact_speed, law.smallest_impact_speed)});
+template <class Law>
+double damping_ratio(const Law& law, double impact_speed) {
+  return damping_ratio(
+      law.dissipation,
+      ImpactParameters{law.restitution, std::max(impact_speed, law.smallest_impact_speed)});
 }
 
 }  // namespace statejump::kernel::laws

@@ -38,18 +38,35 @@ struct JointResponse {
 
 namespace detail {
 
-/// Laws of the catalogue for contact_step().
+/// Laws of the catalogue for contact_step(). Nothing is set that is set again before it is read:
+/// this is the inner loop.
+template <class Law>
 struct CatalogueLaws {
-  const JointLaw& law;
+  const Law& law;
   const ContactParameters& parameters;
   const JointKinematics& at;
-  FrictionParameters friction_parameters;
-  NormalState normal_state;
-  Vector3 relative_velocity;
+  const FrictionParameters friction_parameters;
+  const NormalState normal_state;
+  const Vector3 relative_velocity;
   ImpactDamping damping;
   Vector3 tangential_force;
   static constexpr bool dissipates = true;
   static constexpr bool always_spring = false;
+
+  CatalogueLaws(const Law& its_law, const ContactParameters& its_parameters,
+                const JointKinematics& its_place)
+      : law(its_law),
+        parameters(its_parameters),
+        at(its_place),
+        friction_parameters{parameters.friction_coefficient, law.friction_parameters.v0,
+                            law.friction_parameters.v1},
+        normal_state(evaluate(law.normal, at.contact.penetration_depth, at.geometry,
+                              NormalMaterial{parameters.elastic.effective_young_modulus})),
+        relative_velocity(with(law.tangential_velocity,
+                               [&](const auto& l) {
+                                 return l.velocity(at.contact, at.motion_1, at.motion_2, at.axis);
+                               })),
+        damping{0.0, at.clearance_rate, 0.0} {}
 
   const NormalState& normal() const { return normal_state; }
   const Vector3& velocity() const { return relative_velocity; }
@@ -78,34 +95,23 @@ struct CatalogueLaws {
 /// hertz_internal + none + mindlin + material is hertz_mindlin() up to rounding of k_t.
 ///
 /// Velocity and wrench come from one tangential velocity law, never mixed. Energy: as there.
-/// @param law its friction coefficient is not read: that of the contact pair counts
+/// @param law a JointLaw or a KnownJointLaw; its friction coefficient is not read: that of the
+///        contact pair counts
 /// @param parameters see validate(); not checked here
 /// @param history of this contact, rotated into the present tangent plane by the caller; updated
 /// @throws std::domain_error when the depth is outside the range of the normal law
-inline JointResponse joint_response(const JointLaw& law, const ContactParameters& parameters,
-                                    const JointKinematics& at, ContactHistory& history) {
+template <class Law>
+JointResponse joint_response(const Law& law, const ContactParameters& parameters,
+                             const JointKinematics& at, ContactHistory& history) {
   const JointContact& contact = at.contact;
-  FrictionParameters friction_parameters = law.friction_parameters;
-  friction_parameters.friction_coefficient = parameters.friction_coefficient;
-  detail::CatalogueLaws laws{
-      law,
-      parameters,
-      at,
-      friction_parameters,
-      evaluate(law.normal, contact.penetration_depth, at.geometry,
-               NormalMaterial{parameters.elastic.effective_young_modulus}),
-      std::visit(
-          [&](const auto& l) { return l.velocity(contact, at.motion_1, at.motion_2, at.axis); },
-          law.tangential_velocity),
-      {0.0, at.clearance_rate, 0.0},
-      Vector3::Zero()};
+  detail::CatalogueLaws<Law> laws(law, parameters, at);
   const ContactResponse response = contact_step(laws, parameters, contact.normal,
                                                 contact.penetration_depth, at.time_step, history);
-  const Wrench wrench =
-      std::visit([&](const auto& l) { return l.wrench(contact, response.force_on_1, at.axis); },
-                 law.tangential_velocity);
+  const Wrench wrench = with(law.tangential_velocity, [&](const auto& l) {
+    return l.wrench(contact, response.force_on_1, at.axis);
+  });
   return {response, wrench, laws.damping.force, laws.damping.ratio * response.elastic_normal_force,
-          largest_slope(law.friction, friction_parameters, response.normal_force)};
+          largest_slope(law.friction, laws.friction_parameters, response.normal_force)};
 }
 
 /// Change of the potential V(delta, R1, R2) of the normal law when only the radii change, at fixed
@@ -113,9 +119,9 @@ inline JointResponse joint_response(const JointLaw& law, const ContactParameters
 /// difference along the change, with 1e-5 of the smaller of clearance and R1 as its step: the
 /// change of one time step itself is too small to subtract. Relative error about 1e-9.
 /// @param before, after radii [m]; @param depth [m]
-inline double radius_energy_change(const NormalLaw& law, const NormalMaterial& material,
-                                   double depth, const NormalGeometry& before,
-                                   const NormalGeometry& after) {
+template <class Law>
+double radius_energy_change(const Law& law, const NormalMaterial& material, double depth,
+                            const NormalGeometry& before, const NormalGeometry& after) {
   const bool flat = std::isinf(before.bearing_radius) || std::isinf(after.bearing_radius);
   const double change_1 = after.journal_radius - before.journal_radius;
   const double change_2 = flat ? 0.0 : after.bearing_radius - before.bearing_radius;

@@ -158,6 +158,16 @@ std::string law_problem(const std::string& name) {
   return detail::Catalogue<Law>::problem(name);
 }
 
+/// Calls act with the law that a variant holds, or with a law of a known type itself.
+template <class... Types, class Act>
+decltype(auto) with(const std::variant<Types...>& law, Act&& act) {
+  return std::visit(act, law);
+}
+template <class Law, class Act>
+decltype(auto) with(const Law& law, Act&& act) {
+  return act(law);
+}
+
 /// What a law says of itself.
 template <class... Types>
 const LawInfo& law_info(const std::variant<Types...>& law) {
@@ -165,9 +175,9 @@ const LawInfo& law_info(const std::variant<Types...>& law) {
 }
 
 /// Whether a law of any kind has a trait.
-template <class... Types>
-bool has(const std::variant<Types...>& law, Trait trait) {
-  return law_info(law).has(trait);
+template <class Law>
+bool has(const Law& law, Trait trait) {
+  return with(law, [&](const auto& l) { return detail::info_of(l).has(trait); });
 }
 
 /// Names of the laws of one kind with, or without, a trait, in the order of the catalogue and ready
@@ -200,16 +210,17 @@ inline bool go_together(const NormalLaw& normal, const FrictionLaw& friction) {
 }
 
 /// Largest slope of friction against velocity [N s/m]; see friction.hpp.
-inline double largest_slope(const FrictionLaw& law, const FrictionParameters& parameters,
-                            double normal_force) {
-  return std::visit([&](const auto& l) { return l.largest_slope(parameters, normal_force); }, law);
+template <class Law>
+double largest_slope(const Law& law, const FrictionParameters& parameters, double normal_force) {
+  return with(law, [&](const auto& l) { return l.largest_slope(parameters, normal_force); });
 }
 
 /// Normal contact by any law. @param depth delta [m], <= 0 gives zeros
 /// @throws std::domain_error outside the law's range
-inline NormalState evaluate(const NormalLaw& law, double depth, const NormalGeometry& geometry,
-                            const NormalMaterial& material) {
-  return std::visit([&](const auto& l) { return l(depth, geometry, material); }, law);
+template <class Law>
+NormalState evaluate(const Law& law, double depth, const NormalGeometry& geometry,
+                     const NormalMaterial& material) {
+  return with(law, [&](const auto& l) { return l(depth, geometry, material); });
 }
 
 /// First depth [m] that a law refuses; +infinity if none.
@@ -218,8 +229,9 @@ inline double largest_depth(const NormalLaw& law, const NormalGeometry& geometry
 }
 
 /// chi/K [s/m] of any dissipation law, for damped_force().
-inline double damping_ratio(const DissipationLaw& law, const ImpactParameters& impact) {
-  return std::visit([&](const auto& l) { return l(impact); }, law);
+template <class Law>
+double damping_ratio(const Law& law, const ImpactParameters& impact) {
+  return with(law, [&](const auto& l) { return l(impact); });
 }
 
 /// Lets a law solve once for what depends on e alone, where its answers are asked for in every
@@ -252,9 +264,10 @@ inline ContactHistory loaded_history(const FrictionLaw& law, const FrictionParam
 }
 
 /// Friction by any law; updates the history.
-inline FrictionResponse evaluate(const FrictionLaw& law, const FrictionParameters& parameters,
-                                 const FrictionKinematics& kinematics, ContactHistory& history) {
-  return std::visit([&](const auto& l) { return l(parameters, kinematics, history); }, law);
+template <class Law>
+FrictionResponse evaluate(const Law& law, const FrictionParameters& parameters,
+                          const FrictionKinematics& kinematics, ContactHistory& history) {
+  return with(law, [&](const auto& l) { return l(parameters, kinematics, history); });
 }
 
 }  // namespace statejump::kernel::laws
