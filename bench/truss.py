@@ -6,8 +6,9 @@
 Two trusses, one temperature cycle, ten points a branch: the ring with preload as
 `statejump truss ring` makes it, and the umbrella with cables between its ribs, whose friction scatters so
 that every joint slips at its own temperature. Items come from HDF5 tables beside the case file; of 100 000
-joints also as Python objects. Every row is measured in a process of its own, so that the memory is its own;
-the tables are made in another one. Writes results/bench/truss.md after every row.
+joints also as Python objects. OMP_NUM_THREADS says how many threads. Every row is measured in a process of its
+own, so that the memory is its own; the tables are made in another one. Writes results/bench/truss.md after every
+row.
 """
 from __future__ import annotations
 
@@ -36,15 +37,16 @@ ITEMS = ("node", "link", "revolute", "spring", "torsion_spring")
 BUSY_LOAD = 0.5  # above it others have their share of the cores
 HEAD = """# Quasi-static truss solver against the number of joints
 
-`PYTHONPATH=build/python /usr/bin/python3 bench/truss.py`: one cycle, ten points a branch, CPU time of one
-core (the solver is serial, so its results do not depend on threads). Events: changes of stick, slip and
-contact. The ring of many bays is stiff around each joint, and none slips from 100 on; in the umbrella every
-joint slips out and back, each at its own temperature. Items are read and checked from HDF5 tables beside the
-case file, or as Python objects; memory is the peak of the process, 50 MB of it Python itself. {machine}
+`PYTHONPATH=build/python /usr/bin/python3 bench/truss.py`: one cycle, ten points a branch, with {threads} (results
+have the same bits with any number of threads). `read` is CPU time, `solve` the time that passes, `CPU` that of
+all threads together. Events: changes of stick, slip and contact. The ring of many bays is stiff around each
+joint, and none slips from 100 on; in the umbrella every joint slips out and back, each at its own temperature.
+Items are read and checked from HDF5 tables beside the case file, or as Python objects; memory is the peak of the
+process, 50 MB of it Python itself. {machine}
 
-| truss | items as | joints | unknowns | events | solves | factorizations | read [s] | solve [s] | per joint [µs] | \
-peak memory [MB] |
-|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|
+| truss | items as | joints | unknowns | events | solves | factorizations | read [s] | solve [s] | CPU [s] | \
+per joint [µs] | peak memory [MB] |
+|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
 """
 
 
@@ -94,14 +96,14 @@ def measure(truss: str, joints: int, folder: Path | None) -> str:
     case = parse_case(given) if folder is None else load_case(folder / "case.toml")
     resolved = case.resolve()
     read = time.process_time() - started
-    started = time.process_time()
+    started, busy = time.perf_counter(), time.process_time()
     found = solve.path(resolved, increments_per_branch=10, locate_events=False, cycle_ends_only=True)
-    seconds = time.process_time() - started
+    seconds, busy = time.perf_counter() - started, time.process_time() - busy
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     return (
         f"| {truss} | {'objects' if folder is None else 'tables'} | {joints:,} | {found.unknowns:,} | "
         f"{len(found.events):,} | {found.solves} | {found.factorizations} | {read:.3g} | {seconds:.3g} | "
-        f"{1e6 * seconds / joints:.0f} | {peak:.0f} |"
+        f"{busy:.3g} | {1e6 * seconds / joints:.0f} | {peak:.0f} |"
     )
 
 
@@ -120,7 +122,8 @@ def main() -> None:
     given = options.parse_args()
     load = os.getloadavg()[0]
     machine = f"The machine was {'busy' if load > BUSY_LOAD else 'idle'} (load {load:.1f} before the first row)."
-    text = HEAD.format(machine=machine)
+    threads = int(os.environ.get("OMP_NUM_THREADS", len(os.sched_getaffinity(0))))
+    text = HEAD.format(machine=machine, threads="one thread" if threads == 1 else f"{threads} threads")
     print(text, end="", flush=True)
     for truss in given.trusses:
         for joints in (size for size in SIZES if size <= given.largest):

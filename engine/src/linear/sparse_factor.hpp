@@ -9,8 +9,8 @@ namespace statejump::linear {
 
 /// LU factors of a sparse square matrix whose pattern never changes. One source file per library:
 /// KLU where SuiteSparse is installed, else Eigen's SparseLU. (CHOLMOD factorises symmetric
-/// matrices only; Coulomb slip is not symmetric.) Serial: the result does not depend on a number of
-/// threads.
+/// matrices only; Coulomb slip is not symmetric.) The result does not depend on a number of threads:
+/// factors are made by one.
 class SparseFactor {
  public:
   SparseFactor();
