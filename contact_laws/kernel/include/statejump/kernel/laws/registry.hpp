@@ -158,14 +158,23 @@ std::string law_problem(const std::string& name) {
   return detail::Catalogue<Law>::problem(name);
 }
 
+namespace detail {
+
+template <class Law>
+inline constexpr bool is_variant = false;
+template <class... Types>
+inline constexpr bool is_variant<std::variant<Types...>> = true;
+
+}  // namespace detail
+
 /// Calls act with the law that a variant holds, or with a law of a known type itself.
-template <class... Types, class Act>
-decltype(auto) with(const std::variant<Types...>& law, Act&& act) {
-  return std::visit(act, law);
-}
 template <class Law, class Act>
 decltype(auto) with(const Law& law, Act&& act) {
-  return act(law);
+  if constexpr (detail::is_variant<Law>) {
+    return std::visit(act, law);
+  } else {
+    return act(law);
+  }
 }
 
 /// What a law says of itself.
