@@ -62,13 +62,17 @@ def key_targets() -> dict[str, list[tuple[str, str]]]:
 
 
 def cpp_targets(members: Path) -> dict[str, list[str]]:
-    """Return the qualified names of all C++ members by their last part."""
+    """Return the qualified names of all C++ members by their last part, without those of templates: Sphinx knows
+    such a member by its arguments only, and templates repeat what is documented where it belongs."""
     found: dict[str, list[str]] = {}
     for compound in xml.parse(members / "index.xml").getroot():
         if compound.get("kind") not in ("class", "struct", "namespace"):
             continue
         scope = compound.findtext("name") or ""
         if "<" in scope:
+            continue
+        details = xml.parse(members / f"{compound.get('refid')}.xml").getroot()
+        if details.find("compounddef/templateparamlist") is not None:
             continue
         for member in compound.findall("member"):
             name = member.findtext("name") or ""
