@@ -11,6 +11,24 @@
 
 namespace statejump::truss {
 
+namespace {
+
+/// Setting as many numbers to zero takes some ten times as long as starting a thread.
+constexpr std::size_t numbers_at_once = 500000;
+
+}  // namespace
+
+void Assembly::clear() {
+  residual.setZero();
+  if (slots_ != nullptr && !residual_only_) {
+    double* values = jacobian.valuePtr();
+    each_in_parallel(static_cast<std::size_t>(jacobian.nonZeros()), numbers_at_once,
+                     [values](std::size_t i) { values[i] = 0.0; });
+  }
+  largest_force = 0.0;
+  pieces = 0;
+}
+
 void Assembly::record() {
   // A million joints write some 1e8 places: beside them only their rows are held, column by column.
   const Eigen::Index n = residual.size();

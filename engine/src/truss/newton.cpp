@@ -93,6 +93,14 @@ LeftOver left_over(const Assembly& of, const VectorXd& rate, const VectorXd& by_
   return left;
 }
 
+/// Whether steps that go on shrinking as the last two did leave nothing more to do.
+bool is_last(const std::deque<double>& lengths, double enough) {
+  if (lengths.empty()) return false;
+  const double last = lengths.back();
+  const double before = lengths.size() < 2 ? last : lengths[lengths.size() - 2];
+  return last <= enough || last * last <= enough * before;
+}
+
 /// The joints that violate their inequalities, and where they belong.
 struct Violations {
   std::vector<int> joints;
@@ -181,6 +189,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   int halvings = 0;
   int iterations = 0;
   std::size_t pieces = 0;
+  bool settled = false;  // whether no joint violates its inequality where z is
   // Pivots of all joints since there were ever fewer violations, and the joints that had any.
   int idle = 0;
   std::set<int> wandering;
@@ -199,10 +208,10 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const VectorXd whole = factor_.solve(-at_.residual);
     const std::vector<int> in_play(wandering.begin(), wandering.end());
     const Linearized here{first_z, time, start, joints, opening, first_statuses, factor_, whole};
-    auto settled = condensed_pivots(*system_, here, in_play);
-    if (!settled || !seen.insert(fingerprint(settled->statuses)).second) return false;
-    statuses = std::move(settled->statuses);
-    z = first_z + settled->step;
+    auto answer = condensed_pivots(*system_, here, in_play);
+    if (!answer || !seen.insert(fingerprint(answer->statuses)).second) return false;
+    statuses = std::move(answer->statuses);
+    z = first_z + answer->step;
     return true;
   };
   /// False if the sets go round in a circle.
@@ -259,13 +268,17 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     // By factors that are there the residual is enough.
     bool old = kept && at_.pieces == 0 && halvings == 0 && keeps(statuses, joints);
     kept = may_keep;
+    bool differentiated = false;
     const auto evaluate = [&](bool jacobian) {
       at_.want_jacobian(jacobian);
       system_->evaluate(z, time, start, statuses, joints, opening, at_);
+      differentiated = jacobian;
     };
-    evaluate(!old);
+    // Where the solve is likely to end, the Jacobian is wanted: for the rates.
+    evaluate(!old || is_last(lengths, closure_tolerance * length(z)));
     const auto start_anew = [&] {
       z = first_z;
+      settled = false;
       lengths.clear();
       kept = false;
     };
@@ -291,9 +304,9 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const bool still = !lengths.empty() && lengths.back() <= closure_tolerance * reach &&
                        left.balance <= 1e3 * force_tolerance * largest;
     if (total > 0 && (closed || still)) {
-      Violations found = violations();
+      Violations found = settled ? Violations{} : violations();
       if (found.joints.empty()) {
-        if (old) evaluate(true);
+        if (!differentiated) evaluate(true);
         report.end = SolveEnd::converged;
         report.force_residual = largest > 0.0 ? left.balance / largest : 0.0;
         report.closure_residual = left.closure;
@@ -332,7 +345,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         old = false;  // it stands still
       }
       old = old && next.allFinite();
-      if (!old) evaluate(true);
+      if (!old && !differentiated) evaluate(true);
     }
     if (!old) {
       if (!factorize(statuses, joints)) {
@@ -353,6 +366,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     if (too_long) {
       if (++halvings > most_halvings) return report;
       z = from + std::ldexp(1.0, -halvings) * step;
+      settled = false;
       continue;
     }
     const bool damped = halvings > 0;
@@ -360,11 +374,13 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     from = z;
     step = next;
     z += next;
+    settled = false;
     lengths.push_back(next_length);
     if (lengths.size() > remembered_steps) lengths.pop_front();
     if (!damped && pivoting != Pivoting::single) {
       const Violations found = violations();
-      if (stale && !found.joints.empty()) {
+      settled = found.joints.empty();
+      if (stale && !settled) {
         start_anew();
         continue;
       }

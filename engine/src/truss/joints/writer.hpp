@@ -56,13 +56,7 @@ class Assembly {
   }
 
   /// Begins an evaluation.
-  void clear() {
-    residual.setZero();
-    if (slots_ != nullptr && !residual_only_)
-      std::fill_n(jacobian.valuePtr(), jacobian.nonZeros(), 0.0);
-    largest_force = 0.0;
-    pieces = 0;
-  }
+  void clear();
   /// Makes the pattern of what was written.
   void record();
 
