@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -111,6 +112,11 @@ Path solve(const Model& model, const Options& options) {
                 {},
                 0.0,
                 1.0,
+                std::numeric_limits<double>::infinity(),
+                0.0,
+                0.0,
+                0.0,
+                std::numeric_limits<double>::infinity(),
                 {},
                 {}};
   const auto joints = static_cast<Eigen::Index>(model.joints.size());
@@ -132,6 +138,8 @@ Path solve(const Model& model, const Options& options) {
   for (std::size_t b = 0; b + 1 < times.size() && walker.path.complete; ++b) {
     const double length = times[b + 1] - times[b];
     const double tolerance = options.event_tolerance * length;
+    walker.shortest_balanced =
+        length / (Walker::most_parts * static_cast<double>(options.increments_per_branch));
     double convergent = length;  // longest step that Newton is trusted with
     for (int k = 0; k <= options.increments_per_branch; ++k) {
       // k = 0: the short first step, within which slips turn into sticks after the corner.
@@ -141,7 +149,12 @@ Path solve(const Model& model, const Options& options) {
                                 : times[b] + length * k / options.increments_per_branch;
       std::size_t counted = walker.path.events.size();
       std::fill(changes.begin(), changes.end(), 0);
-      double stride = std::min(target - walker.time, convergent);
+      // In equal parts of what is left, none longer than energies balance over.
+      const auto balanced = [&] {
+        const double left = target - walker.time;
+        return left / std::ceil(std::max(1.0, left / walker.balanced_step));
+      };
+      double stride = std::min(balanced(), convergent);
       bool locating = false;
       // How far before a foreseen change a step ends: half of what it is located to. One that is
       // foreseen at the end of whatever step is tried stands nowhere; twice as far from it each
@@ -162,7 +175,7 @@ Path solve(const Model& model, const Options& options) {
           // tangent of a long step does not tell what is near: steps grow little by little.
           const bool unchanged = counted == walker.path.events.size();
           const bool creeps = locating && (!options.locate_events || unchanged);
-          stride = std::min(target - walker.time, creeps ? 8.0 * stride : convergent);
+          stride = std::min(balanced(), creeps ? 8.0 * stride : convergent);
           if (!unchanged) steps = 0;
           for (; counted < walker.path.events.size(); ++counted) {
             const Event& event = walker.path.events[counted];
@@ -174,6 +187,8 @@ Path solve(const Model& model, const Options& options) {
           }
         } else if (end == StepEnd::stopped) {
           walker.path.complete = false;
+        } else if (end == StepEnd::imprecise) {
+          stride = std::max(balanced(), tolerance);
         } else {
           // Up to the margin before where the change is foreseen; where nothing is, to an eighth.
           const bool foreseen = end == StepEnd::event_inside && walker.event_share < 1.0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -10,6 +11,13 @@
 #include "condense.hpp"
 
 namespace statejump::truss::detail {
+
+namespace {
+
+/// Of what is left of the energy that a path may lose the share that a step may.
+constexpr double share_of_an_event = 0.02;
+
+}  // namespace
 
 /// Whether a joint that stopped sliding before `target` may have slid by more than rounding until
 /// it did: slides of a step are lost when it ends in a stick. One that comes to rest smoothly
@@ -37,6 +45,42 @@ double Walker::first_edge(double target, const VectorXd& to, const StepStart& be
     share = std::min(share, before[i] / (before[i] - after[i]));
   }
   return share;
+}
+
+/// Whether energies balance over a step that leads to a state, or lose no less over shorter ones,
+/// which then is rounding. Half of what a path may lose is every step's by its share of the time;
+/// of the other half each may take a little, so that single events ask for no short steps.
+bool Walker::balances(const State& next, double step) {
+  const double duration = model.programs.front().duration();
+  const double heat = next.joint_dissipation.sum();
+  const double work = next.thermal_work - state.thermal_work;
+  const double gained = work - (next.elastic_energy - state.elastic_energy) -
+                        (next.load_potential - state.load_potential) -
+                        (heat - state.joint_dissipation.sum());
+  largest_work = std::max(largest_work, std::abs(next.thermal_work));
+  // At the start of a path its work is foreseen.
+  const double scale = std::max(largest_work, std::abs(work) * duration / step);
+  const double half = 0.5 * options.energy_tolerance * scale;
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() *
+                          (std::abs(next.elastic_energy) + std::abs(next.load_potential) +
+                           std::abs(next.thermal_work) + heat);
+  const double by_time = half * step / duration;
+  const double by_event = share_of_an_event * std::max(0.0, half - std::abs(energy_gained));
+  const double allowed = std::max(by_time, by_event) + rounding;
+  const double lost = std::abs(gained);
+  // The rules of work and heat lose the fourth power of a step, or more.
+  const double longer = step * std::sqrt(std::sqrt(0.5 * allowed / std::max(lost, rounding)));
+  const bool controlled =
+      options.locate_events && !system.slips_smoothly() && step > shortest_balanced;
+  if (controlled && lost > allowed && lost < 0.5 * refused_loss) {
+    refused_loss = lost;
+    balanced_step = std::max(std::clamp(longer, 0.1 * step, 0.7 * step), shortest_balanced);
+    return false;
+  }
+  refused_loss = std::numeric_limits<double>::infinity();
+  if (controlled) balanced_step = std::max(1.1 * balanced_step, longer);
+  energy_gained += gained;
+  return true;
 }
 
 /// One step, if it is converged and exact or no longer than `tolerance`; else nothing happens.
@@ -177,18 +221,24 @@ StepEnd Walker::step_to(double target, double tolerance) {
     origin.last_step = way.step();
     return step_to(target, tolerance);
   }
+  State next = state;
+  system.account(way, halves, begin, after, slips, next);
+  system.describe(trial, target, after, next);
+  if (!balances(next, way.step())) {
+    ++path.solves;
+    return StepEnd::imprecise;
+  }
   note(report);
   const std::vector<double>& asked = options.problem_times;
   if (path.problems.size() < asked.size() && target >= asked[path.problems.size()]) {
     path.problems.push_back(local_problem(system, trial, target, begin, trial_statuses));
   }
-  system.account(way, halves, begin, after, slips, state);
+  state = std::move(next);
   rate = rate_after;
   slide_rate = slide_rate_after;
   z = trial;
   origin = after;
   time = target;
-  system.describe(z, time, origin, state);
   path.events.insert(path.events.end(), events.begin(), events.end());
   if (!events.empty() && options.locate_events && !options.cycle_ends_only) {
     path.states.push_back(state);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -23,7 +24,7 @@ FailureFields failure_at(FailureKind kind, const Model& model, double time);
 [[noreturn]] void fail_joint(FailureFields fields, FailureJoint joint);
 
 /// How a step ended: with the state moved on, or back at its start.
-enum class StepEnd : unsigned char { done, event_inside, not_converged, stopped };
+enum class StepEnd : unsigned char { done, event_inside, not_converged, imprecise, stopped };
 
 /// Both ends of a step that has converged.
 struct Ends {
@@ -54,6 +55,15 @@ struct Walker {
   double time = 0.0;
   /// Share of the last step that was tried after which its first event comes; 1: unknown.
   double event_share = 1.0;
+  /// Steps at most into which an increment is cut for its energies.
+  static constexpr double most_parts = 64.0;
+  /// Longest step that energies are likely to balance over [s]; none known: as long as may be.
+  double balanced_step = std::numeric_limits<double>::infinity();
+  double shortest_balanced = 0.0;  ///< No shorter step is asked for [s].
+  double largest_work = 0.0;       ///< Of the temperature so far [J].
+  double energy_gained = 0.0;      ///< What does not balance so far [J].
+  /// What the last step lost, if it was refused for that [J].
+  double refused_loss = std::numeric_limits<double>::infinity();
   /// Rates of the unknowns at `time`; empty where they are not known.
   VectorXd rate;
   /// How fast every joint that slips slides at `time` [m/s].
@@ -77,6 +87,7 @@ struct Walker {
   bool slide_at_stake(int joint, JointStatus before, double target, const Rounding& rounding) const;
   double first_edge(double target, const VectorXd& to, const StepStart& begin,
                     const Rounding& rounding) const;
+  bool balances(const State& next, double step);
   double first_turn(const Ends& ends) const;
   double turn_of_slip(int joint, const Ends& ends, const Rounding& rounding) const;
   double turn_of_stick(int joint, const Ends& ends, const Rounding& rounding) const;

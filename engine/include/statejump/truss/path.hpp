@@ -19,6 +19,10 @@ struct Options {
   bool locate_events = true;
   /// Length of time [1/branch] within which changes are located.
   double event_tolerance = 1e-9;
+  /// Share of the temperature's work (of a program that works all the time as it does where it
+  /// works most) by which energies may fail to balance, where events are located: increments that
+  /// lose more are cut, into 64 steps at most. Laws that slip smoothly are not: they have chords.
+  double energy_tolerance = 2.5e-11;
   /// Keep the states at the ends of the cycles only.
   bool cycle_ends_only = false;
   /// When the frictional contact problem of a step is told, in order [s]: of the first step that
