@@ -467,14 +467,15 @@ void bind_truss(py::module_& module) {
       [](const py::dict& nodes, const py::dict& links, const py::dict& springs,
          const py::dict& torsion_springs, const py::dict& joints,
          std::vector<thermal::Program> programs, int increments_per_branch, bool locate_events,
-         double event_tolerance, bool cycle_ends_only, std::vector<double> problem_times,
-         const py::object& progress) {
+         double event_tolerance, double energy_tolerance, bool cycle_ends_only,
+         std::vector<double> problem_times, const py::object& progress) {
         const truss::Model model =
             make_model(nodes, links, springs, torsion_springs, joints, std::move(programs));
         truss::Options options;
         options.increments_per_branch = increments_per_branch;
         options.locate_events = locate_events;
         options.event_tolerance = event_tolerance;
+        options.energy_tolerance = energy_tolerance;
         options.cycle_ends_only = cycle_ends_only;
         options.problem_times = std::move(problem_times);
         options.progress = going_on(progress);
@@ -488,8 +489,8 @@ void bind_truss(py::module_& module) {
       py::arg("nodes"), py::arg("links"), py::arg("springs"), py::arg("torsion_springs"),
       py::arg("joints"), py::arg("programs"), py::kw_only(), py::arg("increments_per_branch") = 50,
       py::arg("locate_events") = true, py::arg("event_tolerance") = 1e-9,
-      py::arg("cycle_ends_only") = false, py::arg("problem_times") = std::vector<double>(),
-      py::arg("progress") = py::none(),
+      py::arg("energy_tolerance") = 2.5e-11, py::arg("cycle_ends_only") = false,
+      py::arg("problem_times") = std::vector<double>(), py::arg("progress") = py::none(),
       "Quasi-static path of a truss: exact Coulomb friction at every joint.\n\n"
       "Every kind of item is a dict of arrays, one entry per item, and 'names'. Index -1: ground.\n"
       "nodes: position_m (n, 3), fixed (n, 3), guide_normal (n, 3), force_N (n, 3)\n"

@@ -371,6 +371,7 @@ def truss_path(
     increments_per_branch: int = ...,
     locate_events: bool = ...,
     event_tolerance: float = ...,
+    energy_tolerance: float = ...,
     cycle_ends_only: bool = ...,
     problem_times: Sequence[float] = ...,
     progress: Callable[[float], bool | None] | None = ...,

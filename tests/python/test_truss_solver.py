@@ -192,17 +192,17 @@ def test_joints_that_slip_one_after_another_within_an_increment_cost_no_further_
     assert len(found.events) > 2 * 300
 
 
-@pytest.mark.parametrize("bays, most_changes", [(20, 12), (40, 16)])
-def test_tall_masts_pass_with_every_event_located(bays: int, most_changes: int) -> None:
+@pytest.mark.parametrize("bays", [20, 40])
+def test_tall_masts_pass_with_every_event_located(bays: int) -> None:
     """Both joints of a level slide at once near the top, one of them with a force that rounding could take for one
     that sticks: whoever is let off by rounding starts the next step beyond its bound, and flickers."""
     located, quick = (path(generate.mast(bays), locate_events=locate) for locate in (True, False))
     assert located.complete
     # Events of the quick path happen somewhere in increments of 1/50 of a branch.
     assert jump_m(located)[-1] == pytest.approx(jump_m(quick)[-1], rel=0, abs=1e-6 * np.abs(jump_m(quick)).max())
-    # No joint changes more than a few times in each of the two branches; one that flickers does so hundreds of times.
-    most = max(Counter(event.name for event in located.events).values())
-    assert most <= most_changes, most
+    # A joint slides when it heats, comes to rest when that ends and slides when it cools. Slides over the short step
+    # that has an event in it are lost in how far rounding moves so slender a truss: rates tell who slides on.
+    assert max(Counter(event.name for event in located.events).values()) == 3
 
 
 def test_every_state_keeps_to_coulomb_and_the_play() -> None:
@@ -231,9 +231,11 @@ def test_energies_of_shipped_cases_balance_at_every_state(case: str) -> None:
 
 def test_what_rolls_is_of_fourth_order_in_the_increment() -> None:
     """What the rule of a step leaves is made up for in the next one: twice the increments, a sixteenth of the error. The
-    reference has eight times the most of them, so that its own error is 1/4096 of theirs."""
+    reference has eight times the most of them, so that its own error is 1/4096 of theirs. None is cut for the
+    energies."""
     ring = load_case(ROOT / "cases" / "trusses" / "ring_12.toml").resolve()
-    ends = {k: solve.path(ring, increments_per_branch=k).states["displacement_m"][-1] for k in (20, 40, 320)}
+    ends = {k: solve.path(ring, increments_per_branch=k, energy_tolerance=1).states["displacement_m"][-1]
+            for k in (20, 40, 320)}
     coarse, fine = (np.abs(ends[k] - ends[320]).max() for k in (20, 40))
     assert coarse > 1e4 * 1e-16 * np.abs(ends[320]).max()  # else rounding tells nothing
     assert fine < coarse / 10

@@ -104,6 +104,55 @@ SolveReport Walker::continue_from_event(double target, VectorXd& to, Statuses& s
   return first;
 }
 
+/// Rates of the programs on this side of a corner that may be at `target` [K/s].
+std::vector<double> Walker::program_rates_before(double target) const {
+  std::vector<double> rates_before;
+  for (const thermal::Program& program : model.programs) {
+    const double near = std::min(Model::same_time * program.duration(), 0.5 * (target - time));
+    rates_before.push_back(program.temperature_rate(target - near));
+  }
+  return rates_before;
+}
+
+/// Lets joints slide on that were found to stop, where their rates say so. Slides of a short step
+/// may be lost in what Newton's method leaves of the equations, which a slender truss is moved
+/// farther by: then their signs say nothing.
+/// @param to, statuses where a step has converged, and where it does in the end
+/// @param first how it ended
+SolveReport Walker::slide_on(double target, bool is_short, VectorXd& to, Statuses& statuses,
+                             SolveReport first) {
+  const Rounding rounding = system.rounding(z);
+  std::vector<int> stopped;
+  Statuses sliding = statuses;
+  for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
+    const JointStatus before = origin.statuses[index(i)];
+    if (statuses[index(i)] != JointStatus::stick || !is_slip(before)) continue;
+    if (!system.remembers_when(i, before, JointStatus::stick)) continue;
+    // The step is to be divided.
+    if (!is_short && slide_at_stake(i, before, target, rounding)) return first;
+    stopped.push_back(i);
+    sliding[index(i)] = before;
+  }
+  if (stopped.empty()) return first;
+  const std::vector<double> heating = program_rates_before(target);
+  const auto rates_then = rates.rates_on(sliding, to, target, origin, heating);
+  if (!rates_then) return first;
+  const VectorXd slides = system.slide_rates(to, target, origin, sliding, *rates_then, heating);
+  for (const int i : stopped) {
+    const double sense = sliding[index(i)] == JointStatus::slip_plus ? 1.0 : -1.0;
+    if (!(sense * slides[i] > 0.0)) return first;
+  }
+  note(first);
+  const VectorXd found = to;
+  const SolveReport second = newton.solve_on(sliding, target, origin, options.most_iterations, to);
+  if (second.end == SolveEnd::converged || second.end == SolveEnd::stopped) {
+    statuses = std::move(sliding);
+    return second;
+  }
+  to = found;
+  return newton.solve_on(statuses, target, origin, options.most_iterations, to);
+}
+
 /// Whether a step that has converged passes an instability by slip: what slips at its end is
 /// unstable there, or would be at its start.
 bool Walker::passes_instability(const Statuses& statuses) {

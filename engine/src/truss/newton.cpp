@@ -150,6 +150,18 @@ Newton::Violation Newton::first_violation(const std::vector<int>& joints, const 
 SolveReport Newton::solve(double time, const StepStart& start, JointModel joints, double opening,
                           int most_iterations, VectorXd& z, Statuses& statuses,
                           const std::optional<Ahead>& ahead) {
+  return solve(time, start, joints, opening, most_iterations, z, statuses, ahead, false);
+}
+
+SolveReport Newton::solve_on(const Statuses& statuses, double time, const StepStart& start,
+                             int most_iterations, VectorXd& z) {
+  Statuses same = statuses;
+  return solve(time, start, JointModel::friction, 1.0, most_iterations, z, same, {}, true);
+}
+
+SolveReport Newton::solve(double time, const StepStart& start, JointModel joints, double opening,
+                          int most_iterations, VectorXd& z, Statuses& statuses,
+                          const std::optional<Ahead>& ahead, bool held) {
   SolveReport report;
   current_ = false;
   // Laws of several pieces have other equations on each; strict inequalities ask for states that
@@ -172,6 +184,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const auto violations = [&] {
     const Rounding slack = pivoting == Pivoting::strict ? Rounding{} : system_->rounding(z);
     Violations found{{}, statuses};
+    if (held) return found;
     system_->displacements(z, at_.moved);
     system_->each_joint([&](int i) {
       JointStatus& status = found.corrected[index(i)];

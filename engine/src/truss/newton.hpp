@@ -94,6 +94,10 @@ class Newton {
                     int most_iterations, VectorXd& z, Statuses& statuses,
                     const std::optional<Ahead>& ahead = {});
 
+  /// The same with friction and on this set of branches, whatever their inequalities say.
+  SolveReport solve_on(const Statuses& statuses, double time, const StepStart& start,
+                       int most_iterations, VectorXd& z);
+
   /// Rates of the unknowns along the path from where the last solve converged, by its factors.
   /// @param by_time derivative of the residual by time, see System::heating()
   /// @param guess of them, or empty; it saves solutions and changes the rates by rounding only
@@ -115,6 +119,10 @@ class Newton {
                             const VectorXd& to, double from_time, double time,
                             const StepStart& start, JointModel model,
                             const Statuses& statuses) const;
+
+  SolveReport solve(double time, const StepStart& start, JointModel joints, double opening,
+                    int most_iterations, VectorXd& z, Statuses& statuses,
+                    const std::optional<Ahead>& ahead, bool held);
 
   /// Factors the Jacobian at hand, which is one on this set of branches.
   bool factorize(const Statuses& statuses, JointModel joints);

@@ -95,6 +95,8 @@ Path solve(const Model& model, const Options& options) {
                   options.increments_per_branch, ">= 1");
   kernel::require(options.event_tolerance > 0.0 && options.event_tolerance <= 1.0,
                   "event_tolerance", options.event_tolerance, "above 0 and at most 1");
+  kernel::require(options.energy_tolerance > 0.0 && options.energy_tolerance <= 1.0,
+                  "energy_tolerance", options.energy_tolerance, "above 0 and at most 1");
   kernel::require(options.most_iterations >= 2, "most_iterations", options.most_iterations, ">= 2");
   kernel::require(options.most_steps >= 1, "most_steps", options.most_steps, ">= 1");
   const System system(model);

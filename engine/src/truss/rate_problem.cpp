@@ -85,6 +85,15 @@ int index_of(int determinant_sign, const Assembly& at) {
   return closures % 2 == 0 ? determinant_sign : -determinant_sign;
 }
 
+std::optional<VectorXd> RateProblem::rates_on(const Statuses& statuses, const VectorXd& z,
+                                              double time, const StepStart& start,
+                                              const std::vector<double>& program_rates) {
+  begin();
+  system_->evaluate(z, time, start, statuses, JointModel::friction, 1.0, at_);
+  if (!factor_.factorize(at_.jacobian)) return std::nullopt;
+  return factor_.solve(-system_->heating(z, time, start, statuses, program_rates));
+}
+
 int RateProblem::index_at(const VectorXd& z, double time, const StepStart& start,
                           const Statuses& statuses) {
   begin();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "linear/sparse_factor.hpp"
@@ -52,6 +53,12 @@ class RateProblem {
   /// changes
   RateAnswer solve(const VectorXd& z, double target, const StepStart& start, const Statuses& found,
                    const std::vector<int>& changing);
+
+  /// Rates of the unknowns at z on a set of branches; nothing where the equations are singular.
+  /// @param program_rates of the programs [K/s]
+  std::optional<VectorXd> rates_on(const Statuses& statuses, const VectorXd& z, double time,
+                                   const StepStart& start,
+                                   const std::vector<double>& program_rates);
 
   /// Index of the equations at z, see above; 0: singular to rounding.
   int index_at(const VectorXd& z, double time, const StepStart& start, const Statuses& statuses);

@@ -102,6 +102,9 @@ StepEnd Walker::step_to(double target, double tolerance) {
     return StepEnd::event_inside;
   }
   if (is_short) report = continue_from_event(target, trial, trial_statuses, report);
+  if (report.end == SolveEnd::converged && options.locate_events) {
+    report = slide_on(target, is_short, trial, trial_statuses, std::move(report));
+  }
   if (report.end == SolveEnd::stopped) return StepEnd::stopped;
   if (report.end != SolveEnd::converged) {
     ++path.solves;
@@ -178,12 +181,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
     events.push_back({target, target - time, model.temperature_change(0, 1.0, target), i,
                       decided[index(i)], status});
   }
-  // The rates on this side of a corner that may be at `target`.
-  std::vector<double> program_rates;
-  for (const thermal::Program& program : model.programs) {
-    const double near = std::min(Model::same_time * program.duration(), 0.5 * (target - time));
-    program_rates.push_back(program.temperature_rate(target - near));
-  }
+  const std::vector<double> program_rates = program_rates_before(target);
   VectorXd rate_after;
   VectorXd slide_rate_after = VectorXd::Zero(joints);
   // On a smooth piece of the path they are nearly those of the parabola that leads here.

@@ -80,6 +80,9 @@ struct Walker {
   StepEnd step_to(double target, double tolerance);
   SolveReport continue_from_event(double target, VectorXd& to, Statuses& statuses,
                                   SolveReport first);
+  SolveReport slide_on(double target, bool is_short, VectorXd& to, Statuses& statuses,
+                       SolveReport first);
+  std::vector<double> program_rates_before(double target) const;
   [[noreturn]] void fail_continuation(FailureKind kind, double when, std::vector<int> joints) const;
   bool follows_its_rates(const Ends& ends) const;
   bool any_slips(const Statuses& statuses) const;

@@ -192,6 +192,8 @@ class TrussReduced(Section):
     sticking: str = choice("rigid", STICKING, "Coulomb's law; elastic: gives way by k_t, as in the DEM; partial_slip: "
                            "slides at its rim first, as in the DEM with dem.friction_law = 'mindlin_deresiewicz'")
     event_tolerance: float = parameter(1e-9, "-", 0, 0.1, CHOICE + "; of a branch", above=True)
+    energy_tolerance: float = parameter(
+        2.5e-11, "-", 0, 1, CHOICE + "; of the work of the temperature: increments that lose more are cut", above=True)
 
 
 @definition

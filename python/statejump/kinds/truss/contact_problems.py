@@ -56,8 +56,8 @@ def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: No
     wanted = (np.arange(number) + 0.5) / number * case.duration_s
     found = whole_path(
         truss, tell, increments_per_branch=case.reduced.increments_per_branch,
-        locate_events=case.reduced.locate_events, event_tolerance=case.reduced.event_tolerance, cycle_ends_only=True,
-        problem_times=wanted,
+        locate_events=case.reduced.locate_events, event_tolerance=case.reduced.event_tolerance,
+        energy_tolerance=case.reduced.energy_tolerance, cycle_ends_only=True, problem_times=wanted,
     )
     problems = [_problem(case, problem) for problem in found.problems if problem["joints"]]
     if not problems:

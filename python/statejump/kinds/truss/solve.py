@@ -161,6 +161,7 @@ def path(
     increments_per_branch: int = 50,
     locate_events: bool = True,
     event_tolerance: float = 1e-9,
+    energy_tolerance: float = 2.5e-11,
     cycle_ends_only: bool = False,
     problem_times: Sequence[float] = (),
     progress: Callable[[float], bool | None] | None = None,
@@ -170,6 +171,8 @@ def path(
     :param increments_per_branch: points of the path per monotone branch of the temperature
     :param locate_events: locate every change of a joint's status, else only those that matter
     :param event_tolerance: share of a branch within which a change is located
+    :param energy_tolerance: share of the work of the temperature by which energies may fail to balance where events are
+        located: increments that lose more are cut; 1: none is
     :param cycle_ends_only: keep the states at the ends of cycles only
     :param problem_times: when the frictional contact problem of a step is kept, in order [s]
     :param progress: called with the share that is done; returning False ends the path
@@ -182,8 +185,8 @@ def path(
     try:
         found = _engine.truss_path(
             **engine_items(truss), increments_per_branch=increments_per_branch, locate_events=locate_events,
-            event_tolerance=event_tolerance, cycle_ends_only=cycle_ends_only, problem_times=problem_times,
-            progress=progress,
+            event_tolerance=event_tolerance, energy_tolerance=energy_tolerance, cycle_ends_only=cycle_ends_only,
+            problem_times=problem_times, progress=progress,
         )
     except _engine.EngineFailure as failure:
         raise _failed(truss, failure, locate_events) from None
@@ -237,5 +240,5 @@ def _solved(case: TrussCase, tell: Tell) -> TrussPath:
     return whole_path(
         truss, tell, increments_per_branch=case.reduced.increments_per_branch,
         locate_events=case.reduced.locate_events, event_tolerance=case.reduced.event_tolerance,
-        cycle_ends_only=8 * items * states > LARGEST_PATH,
+        energy_tolerance=case.reduced.energy_tolerance, cycle_ends_only=8 * items * states > LARGEST_PATH,
     )
