@@ -22,8 +22,9 @@ from statejump.core.output import write_atomically
 from statejump.core.reading import check_size, finite_number, is_file, open_csv
 from statejump.core.temperature_columns import quoted
 from statejump.schema.fields import TABLES_BESIDE, Section, fields_of, rule_of, section_of, tables_of
-from statejump.schema.item_tables import BLOCK, ItemTable, Texts, Words
+from statejump.schema.item_tables import ItemTable
 from statejump.schema.rules import NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, suggestion
+from statejump.schema.texts import BLOCK, Numbering, Texts
 from statejump.schema.toml import LARGEST_BYTES
 
 SUFFIXES = (".csv", ".h5", ".hdf5")
@@ -44,7 +45,7 @@ def with_tables(data: Mapping[str, Any], folder: Path, case: type[Section]) -> M
         return data
     made = {section: part for section, part in data.items() if section != TABLES_BESIDE}
     lists = {name: items for name, field in known.items() if (items := tables_of(field)) is not None}
-    words = Words()  # items refer to each other by name
+    words = Numbering()  # items refer to each other by name
     for section, file in named.items():
         key = f"{TABLES_BESIDE}.{section}"
         if section not in lists or section not in fields_of(_declared(known)):
@@ -63,7 +64,7 @@ def _declared(known: Mapping[str, attrs.Attribute[Any]]) -> type[Section]:
     return found
 
 
-def read_items(path: Path, key: str, model: type[Section], words: Words) -> ItemTable:
+def read_items(path: Path, key: str, model: type[Section], words: Numbering) -> ItemTable:
     """Return the columns of a file.
 
     :param model: what an item is
@@ -190,7 +191,7 @@ def _number(path: Path, name: str, line: int, cell: str) -> float:
     return value
 
 
-def _hdf5(path: Path, model: type[Section], words: Words) -> dict[str, np.ndarray | Texts]:
+def _hdf5(path: Path, model: type[Section], words: Numbering) -> dict[str, np.ndarray | Texts]:
     import h5py
 
     from statejump.core.hdf5 import objects
@@ -206,7 +207,7 @@ def _hdf5(path: Path, model: type[Section], words: Words) -> dict[str, np.ndarra
         raise Unreadable("cannot be read", cause=" ".join(str(error).split()), file=path) from None
 
 
-def _of_data_set(path: Path, name: str, rule: Rule, data: Any, words: Words) -> np.ndarray | Texts:
+def _of_data_set(path: Path, name: str, rule: Rule, data: Any, words: Numbering) -> np.ndarray | Texts:
     import h5py
 
     lists = rule.form in (NUMBERS, TEXTS)
@@ -227,11 +228,10 @@ def _of_data_set(path: Path, name: str, rule: Rule, data: Any, words: Words) -> 
     for start in range(0, len(data), TEXTS_AT_ONCE):
         rows = data[start:start + TEXTS_AT_ONCE]
         try:
-            texts = list(map(bytes.decode, rows.reshape(-1).tolist()))
+            numbers[start:start + TEXTS_AT_ONCE] = words.numbers(rows.reshape(-1).tolist()).reshape(rows.shape)
         except UnicodeDecodeError:
             raise Unreadable(f"{quoted(name)} has texts that are not UTF-8", file=path) from None
-        numbers[start:start + TEXTS_AT_ONCE] = words.numbers(texts, rows.shape)
-    return Texts(numbers, words.listed)
+    return Texts(numbers, words.words)
 
 
 def to_cells(value: Any) -> str:

@@ -14,6 +14,7 @@ import numpy as np
 
 from statejump.schema.item_tables import ItemColumns, Places
 from statejump.schema.items import Item
+from statejump.schema.texts import Names
 
 GROUND = -1
 # Directions that differ by less are one: far above rounding, far below what anybody means.
@@ -42,9 +43,9 @@ def columns(items: Sequence[Item], *keys: str) -> dict[str, np.ndarray]:
     return {key: column(items, key) for key in keys}
 
 
-def names(items: Sequence[Item]) -> tuple[str, ...]:
+def names(items: Sequence[Item]) -> Sequence[str]:
     """Return the names of the items."""
-    return tuple(values(items, "name"))
+    return Names(items.texts("name")) if isinstance(items, ItemColumns) else tuple(item.name for item in items)
 
 
 def said(items: Sequence[Any], key: str) -> np.ndarray:

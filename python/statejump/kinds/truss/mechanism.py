@@ -36,7 +36,7 @@ class Drive(Item):
 class Drives:
     """Driven links."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     link: np.ndarray  # int
     time_s: tuple[np.ndarray, ...]
     angular_velocity_rad_per_s: tuple[np.ndarray, ...]

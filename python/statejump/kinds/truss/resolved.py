@@ -6,7 +6,7 @@ Index -1 stands for ground.
 """
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from typing import TYPE_CHECKING, Any
@@ -42,7 +42,7 @@ STICKING = ("rigid", "elastic", "partial_slip")
 class Nodes:
     """Nodes, n of them."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     position_m: np.ndarray  # (n, 3), assembled shape at ΔT = 0
     fixed: np.ndarray  # (n, 3) bool: no motion along x, y, z; planar trusses: z everywhere
     guide_normal: np.ndarray  # (n, 3) unit, no motion along it; zero: none
@@ -54,7 +54,7 @@ class Nodes:
 class Links:
     """Bars, m of them."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     nodes: np.ndarray  # (m, 2) int
     young_modulus_Pa: np.ndarray
     cross_section_area_m2: np.ndarray
@@ -81,7 +81,7 @@ class Links:
 class Springs:
     """Springs and cables: tension stiffness · (length - free length), of a cable never below 0."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     nodes: np.ndarray  # (k, 2) int
     stiffness_N_per_m: np.ndarray
     free_length_m: np.ndarray  # below 0 when the preload exceeds stiffness · drawn length
@@ -94,7 +94,7 @@ class TorsionSprings:
     """Springs on the angle from the first link to the second, both from their first to their second node,
     anticlockwise about the axis; moment stiffness · (angle - drawn angle - bias)."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     links: np.ndarray  # (t, 2) int; (link, GROUND): the angle of one link, from ground to it
     stiffness_N_m_per_rad: np.ndarray
     bias_rad: np.ndarray
