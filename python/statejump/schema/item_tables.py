@@ -36,11 +36,23 @@ def _plain(values: np.ndarray | Texts) -> list[Any]:
     return [[text for text in row if text] for row in found] if values.ndim == 2 else found
 
 
+def once(values: np.ndarray) -> np.ndarray:
+    """Return numbers by rows; where all rows are one to the last bit, it is in memory once."""
+    if len(values) < 2 or values.dtype.kind not in "fiub" or values.dtype.itemsize > 8:
+        return values
+    bits = values.view(f"i{values.dtype.itemsize}")  # as numbers no NaN is another, and no zero of the other sign else
+    if any((bits[places] != bits[0]).any() for places in (slice(1, BLOCK), slice(BLOCK, None))):
+        return values
+    return np.broadcast_to(values[0].copy(), values.shape)
+
+
 def _as_column(values: Any) -> np.ndarray | Texts:
     if isinstance(values, Texts):
         return values
     made = np.asarray(values)
-    return made if made.dtype.kind in "fO" else made.astype(object if made.dtype.kind in "USTb" else float)
+    if made.dtype.kind not in "fO":
+        made = made.astype(object if made.dtype.kind in "USTb" else float)
+    return once(made) if made.ndim else made
 
 
 class ItemTable:
@@ -145,7 +157,7 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
         found = self._given.get(key)
         if found is None:
             default = default_of(self._fields[key])
-            return np.full(self._length, np.nan if default is None else default)
+            return np.broadcast_to(np.float64(np.nan if default is None else default), self._length)
         assert isinstance(found, np.ndarray)
         return found
 
