@@ -236,14 +236,19 @@ class Places:
     def __init__(self, items: Sequence[Any]) -> None:
         self._items = items
 
+    def _names(self) -> Iterable[str]:
+        items = self._items
+        return items.values("name") if isinstance(items, ItemColumns) else (item.name for item in items)
+
     @cached_property
     def _place(self) -> dict[str, int]:
-        items = self._items
-        named = items.values("name") if isinstance(items, ItemColumns) else (item.name for item in items)
-        return {name: place for place, name in enumerate(named)}
+        return {name: place for place, name in enumerate(self._names())}
 
-    def __getitem__(self, name: str) -> int:
-        return self._place[name]
+    def called(self, names: Sequence[str]) -> np.ndarray:
+        """Return the places of the items of these names; UNKNOWN. For it no names are kept but these."""
+        wanted = set(names)
+        found = {name: place for place, name in enumerate(self._names()) if name in wanted}
+        return np.array([found.get(name, UNKNOWN) for name in names], dtype=int)
 
     @cached_property
     def _of_word(self) -> np.ndarray:
@@ -273,12 +278,13 @@ class Places:
             rows = gaps.any(axis=1)
             order = np.argsort(given.numbers[rows] == 0, axis=1, kind="stable")
             found[rows] = np.take_along_axis(found[rows], order, axis=1)
-        return np.asarray(found, dtype=int)
+        return np.asarray(found)
 
     def _of_each(self, named: list[Any]) -> np.ndarray:
         if not any(isinstance(value, (list, tuple)) for value in named):
-            return np.array([NONE if name is None else self._place.get(name, UNKNOWN) for name in named], dtype=int)
-        found = np.full((len(named), max(map(len, named))), NONE)
+            return np.array([NONE if name is None else self._place.get(name, UNKNOWN) for name in named],
+                            dtype=np.int32)
+        found = np.full((len(named), max(map(len, named))), NONE, dtype=np.int32)
         for row, listed in zip(found, named):
             row[:len(listed)] = [self._place.get(name, UNKNOWN) for name in listed]
         return found

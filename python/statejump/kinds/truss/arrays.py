@@ -151,7 +151,7 @@ def indices(items: Sequence[Any], key: str, among: Places) -> np.ndarray:
 
 def pairs(items: Sequence[Any], key: str, among: Places) -> np.ndarray:
     """Return the one or two that a key of every item names (items, 2), GROUND in place of the second."""
-    found = np.full((len(items), 2), GROUND)
+    found = np.full((len(items), 2), GROUND, dtype=np.int32)
     if len(items):
         given = among.of(items, key)[:, :2]
         found[:, :given.shape[1]] = given

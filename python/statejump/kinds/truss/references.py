@@ -159,4 +159,4 @@ def _turned_links(truss: ResolvedTruss, section: str, items: Any, rows: slice, j
 
 def _pair_codes(truss: ResolvedTruss, ones: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Return one number for every pair of nodes, whichever comes first."""
-    return np.minimum(ones, others) * len(truss.nodes.names) + np.maximum(ones, others)
+    return np.minimum(ones, others, dtype=np.int64) * len(truss.nodes.names) + np.maximum(ones, others)

@@ -247,7 +247,7 @@ def resolve(case: TrussCase) -> ResolvedTruss:
     reflector = None
     if case.reflector is not None:
         reflector = ReflectorSurface(
-            nodes=np.array([node_places[name] for name in case.reflector.nodes], dtype=int),
+            nodes=node_places.called(case.reflector.nodes),
             axis=unit(in_space(case.reflector.axis, dimension)),
             focal_length_m=case.reflector.focal_length_m,
         )
