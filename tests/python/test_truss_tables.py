@@ -14,7 +14,7 @@ import pytest
 import statejump as sj
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import load_case, parse_case
-from statejump.kinds.truss import generate
+from statejump.kinds.truss import arrays, generate, references
 from statejump.kinds.truss.generate.document import write
 from statejump.schema.item_tables import ItemTable
 
@@ -86,6 +86,8 @@ def test_the_same_truss(made: str, form: str, tmp_path: Path) -> None:
 SPOILED: Mapping[str, tuple[str, int, Mapping[str, Any]]] = {
     "ends that are one": ("link", 1, {"nodes": ["@0", "@0"]}),
     "an end that is not there": ("link", 2, {"nodes": ["@0", "nothing"]}),
+    "an end that is misspelt": ("link", 2, {"nodes": ["@0", "Ä1"]}),
+    "an end of no letters": ("link", 2, {"nodes": ["@0", "\x1b"]}),
     "one end": ("link", 2, {"nodes": ["@0"]}),
     "an end of a cable": ("spring", 1, {"nodes": ["nothing", "@0"]}),
     "a program of a link": ("link", 1, {"program": "nothing"}),
@@ -114,7 +116,8 @@ SPOILED: Mapping[str, tuple[str, int, Mapping[str, Any]]] = {
 
 
 @pytest.mark.parametrize("what", SPOILED)
-def test_the_same_refusal(what: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("form", ["csv", "h5"])
+def test_the_same_refusal(form: str, what: str, tmp_path: Path) -> None:
     document = generate.chain(3) if "plane" in what else generate.umbrella(4, cable_preload_N=1.0)
     section, place, changes = SPOILED[what]
     item = document[section][place]
@@ -130,9 +133,10 @@ def test_the_same_refusal(what: str, tmp_path: Path) -> None:
     with pytest.raises(StatejumpError) as one:
         parse_case(document)
     file = beside(document, tmp_path)
-    for table in tmp_path.glob("*.csv"):
-        in_hdf5(document[table.stem.removeprefix("case_")], table.with_suffix(".h5"))
-    file.write_text(file.read_text().replace(".csv", ".h5"))
+    if form == "h5":
+        for table in tmp_path.glob("*.csv"):
+            in_hdf5(document[table.stem.removeprefix("case_")], table.with_suffix(".h5"))
+        file.write_text(file.read_text().replace(".csv", ".h5"))
     with pytest.raises(StatejumpError) as other:
         load_case(file)
     assert str(other.value) == f"{file}: {one.value}"
@@ -264,3 +268,28 @@ def test_events_are_a_sequence() -> None:
     assert len(found) > 2 and [found[0], found[1]] == found[:2] == list(found)[:2]
     assert found[-1].time_s >= found[0].time_s and found[0].joint_kind == "revolute"
     assert {event.before for event in found} <= {"stick", "slip_plus", "slip_minus"}
+
+
+@pytest.mark.parametrize("what, changes", [
+    ("lies along it", lambda document: {"axis": [
+        second - first for first, second in zip(*(node["position_m"] for node in document["node"]
+                                                  if node["name"] in document["link"][-1]["nodes"]))]}),
+    ("the links share no place", lambda document: {"links": [document["link"][0]["name"], document["link"][-1]["name"]]}),
+    ("", lambda document: {}),
+])
+def test_blocks_of_rows_are_checked_as_all_of_them(
+    what: str, changes: Callable[[dict[str, Any]], dict[str, Any]], monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    document = generate.umbrella(4, cable_preload_N=1.0)
+    document["torsion_spring"][-1] |= changes(document)
+    found = []
+    for rows in (4096, 1, 3):
+        monkeypatch.setattr(arrays, "BLOCK", rows)
+        monkeypatch.setattr(references, "BLOCK", rows)
+        try:
+            found.append(parse_case(document).resolve())
+        except StatejumpError as refused:
+            assert what and what in str(refused) and document["torsion_spring"][-1]["name"] in str(refused)
+            found.append(str(refused))
+    same(found[0], found[1])
+    same(found[0], found[2])

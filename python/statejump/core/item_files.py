@@ -22,13 +22,14 @@ from statejump.core.output import write_atomically
 from statejump.core.reading import check_size, finite_number, is_file, open_csv
 from statejump.core.temperature_columns import quoted
 from statejump.schema.fields import TABLES_BESIDE, Section, fields_of, rule_of, section_of, tables_of
-from statejump.schema.item_tables import BLOCK, ItemTable, Texts, Words
+from statejump.schema.item_tables import ItemTable, once
 from statejump.schema.rules import NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, suggestion
+from statejump.schema.texts import BLOCK, Numbering, Texts
 from statejump.schema.toml import LARGEST_BYTES
 
 SUFFIXES = (".csv", ".h5", ".hdf5")
 MOST_IN_LIST = 16  # entries of a cell or row: what items list are ends, directions and components
-TEXTS_AT_ONCE = 1 << 16  # rows of a data set of texts: as objects they take ten times the memory of the file
+TEXTS_AT_ONCE = 1 << 14  # of a data set: as objects they take ten times the memory of the file
 SWITCHES = {"true": True, "false": False}
 
 
@@ -44,7 +45,7 @@ def with_tables(data: Mapping[str, Any], folder: Path, case: type[Section]) -> M
         return data
     made = {section: part for section, part in data.items() if section != TABLES_BESIDE}
     lists = {name: items for name, field in known.items() if (items := tables_of(field)) is not None}
-    words = Words()  # items refer to each other by name
+    words = Numbering()  # items refer to each other by name
     for section, file in named.items():
         key = f"{TABLES_BESIDE}.{section}"
         if section not in lists or section not in fields_of(_declared(known)):
@@ -63,11 +64,11 @@ def _declared(known: Mapping[str, attrs.Attribute[Any]]) -> type[Section]:
     return found
 
 
-def read_items(path: Path, key: str, model: type[Section], words: Words) -> ItemTable:
+def read_items(path: Path, key: str, model: type[Section], words: Numbering) -> ItemTable:
     """Return the columns of a file.
 
     :param model: what an item is
-    :param words: texts of files that were read before; those of an HDF5 file are added
+    :param words: texts of files that were read before; those of this file are added
     :raises StatejumpError: one sentence with the file, and line or column
     """
     if path.suffix.lower() not in SUFFIXES:
@@ -76,7 +77,7 @@ def read_items(path: Path, key: str, model: type[Section], words: Words) -> Item
         raise Unreadable("no such file of tables", file=path)
     in_text = path.suffix.lower() == ".csv"
     try:
-        return ItemTable(**_csv(path, model)) if in_text else ItemTable(**_hdf5(path, model, words))
+        return ItemTable(**_csv(path, model, words)) if in_text else ItemTable(**_hdf5(path, model, words))
     except StatejumpError as failure:
         raise failure.located(file=path) from None
 
@@ -94,9 +95,8 @@ def _keys(path: Path, names: Sequence[str], model: type[Section]) -> dict[str, R
     return {name: rule_of(known[name]) for name in names}
 
 
-def _csv(path: Path, model: type[Section]) -> dict[str, np.ndarray]:
+def _csv(path: Path, model: type[Section], words: Numbering) -> dict[str, np.ndarray | Texts]:
     blocks: dict[str, list[np.ndarray]] = {}
-    texts: dict[str, str] = {}  # every text once, however often it stands in the file
     with open_csv(path) as stream:
         check_size(path, LARGEST_BYTES, "; HDF5 may be larger")
         reader = csv.reader(stream)
@@ -106,10 +106,17 @@ def _csv(path: Path, model: type[Section]) -> dict[str, np.ndarray]:
         rules = _keys(path, header, model)
         for rows in _blocks(path, reader, len(header)):
             for (name, rule), cells in zip(rules.items(), zip(*(row for _, row in rows))):
-                blocks.setdefault(name, []).append(_column(path, name, rule, cells, [line for line, _ in rows], texts))
+                blocks.setdefault(name, []).append(_column(path, name, rule, cells, [line for line, _ in rows], words))
     if not blocks:
         raise Unreadable("has no row below its header", file=path)
-    return {name: _joined(parts) for name, parts in blocks.items()}
+    joined = {name: _joined(blocks.pop(name)) for name in list(blocks)}  # no longer in memory than as blocks
+    return {name: _texts(joined[name], words) if rule.form in (TEXT, TEXTS) else joined[name]
+            for name, rule in rules.items()}
+
+
+def _texts(numbers: np.ndarray, words: Numbering) -> Texts:
+    """Return a column of texts, its numbers of no more bytes than they need."""
+    return Texts(once(numbers.astype(np.min_scalar_type(numbers.max(initial=0)))), words.words)
 
 
 def _blocks(path: Path, reader: Any, width: int) -> Iterator[list[tuple[int, list[str]]]]:
@@ -133,20 +140,20 @@ def _joined(parts: list[np.ndarray]) -> np.ndarray:
     if parts[0].ndim == 1:
         return np.concatenate(parts)
     width = max(part.shape[1] for part in parts)
-    empty: Any = np.nan if parts[0].dtype.kind == "f" else None
+    empty: Any = np.nan if parts[0].dtype.kind == "f" else 0
     return np.concatenate([
         np.pad(part, ((0, 0), (0, width - part.shape[1])), constant_values=empty) for part in parts
     ])
 
 
 def _column(
-    path: Path, name: str, rule: Rule, cells: Sequence[str], lines: Sequence[int], texts: dict[str, str]
+    path: Path, name: str, rule: Rule, cells: Sequence[str], lines: Sequence[int], words: Numbering
 ) -> np.ndarray:
+    """Return the values of some cells, of texts their numbers."""
     if rule.form == NUMBER:
         return np.array([_number(path, name, line, cell) for line, cell in zip(lines, cells)])
     if rule.form == TEXT:
-        found = [texts.setdefault(cell, cell) if cell else None for cell in map(str.strip, cells)]
-        return np.array(found, dtype=object)
+        return words.numbers([cell.strip().encode() for cell in cells])
     if rule.form == SWITCH:
         for line, cell in zip(lines, cells):
             if cell.strip() and cell.strip() not in SWITCHES:
@@ -161,21 +168,21 @@ def _column(
         raise Unreadable(f"column {quoted(name)}", cause="a table cannot have this key", file=path)
     split = [cell.split() for cell in cells]
     width = max(1, *map(len, split))
-    for line, words in zip(lines, split):
-        if len(words) > MOST_IN_LIST:
+    for line, entries in zip(lines, split):
+        if len(entries) > MOST_IN_LIST:
             raise Unreadable(f"line {line}, column {quoted(name)}",
-                             cause=f"{len(words)} entries, a cell has {MOST_IN_LIST} at most", file=path)
-        if rule.form == NUMBERS and words and len(words) != width:
+                             cause=f"{len(entries)} entries, a cell has {MOST_IN_LIST} at most", file=path)
+        if rule.form == NUMBERS and entries and len(entries) != width:
             raise Unreadable(f"line {line}, column {quoted(name)}",
-                             cause=f"{len(words)} numbers, other rows have {width}", file=path)
+                             cause=f"{len(entries)} numbers, other rows have {width}", file=path)
     if rule.form == TEXTS:
-        made = np.full((len(split), width), None, dtype=object)
-        for row, words in zip(made, split):
-            row[:len(words)] = [texts.setdefault(word, word) for word in words]
+        made = np.zeros((len(split), width), np.int32)
+        made[np.arange(width) < np.array([[len(entries)] for entries in split])] = words.numbers(
+            [entry.encode() for entries in split for entry in entries])
         return made
     return np.array([
-        [_number(path, name, line, word) for word in words] if words else [np.nan] * width
-        for line, words in zip(lines, split)
+        [_number(path, name, line, entry) for entry in entries] if entries else [np.nan] * width
+        for line, entries in zip(lines, split)
     ]).reshape(-1, width)
 
 
@@ -190,7 +197,7 @@ def _number(path: Path, name: str, line: int, cell: str) -> float:
     return value
 
 
-def _hdf5(path: Path, model: type[Section], words: Words) -> dict[str, np.ndarray | Texts]:
+def _hdf5(path: Path, model: type[Section], words: Numbering) -> dict[str, np.ndarray | Texts]:
     import h5py
 
     from statejump.core.hdf5 import objects
@@ -206,7 +213,7 @@ def _hdf5(path: Path, model: type[Section], words: Words) -> dict[str, np.ndarra
         raise Unreadable("cannot be read", cause=" ".join(str(error).split()), file=path) from None
 
 
-def _of_data_set(path: Path, name: str, rule: Rule, data: Any, words: Words) -> np.ndarray | Texts:
+def _of_data_set(path: Path, name: str, rule: Rule, data: Any, words: Numbering) -> np.ndarray | Texts:
     import h5py
 
     lists = rule.form in (NUMBERS, TEXTS)
@@ -224,14 +231,14 @@ def _of_data_set(path: Path, name: str, rule: Rule, data: Any, words: Words) -> 
     if h5py.check_string_dtype(data.dtype) is None:
         raise Unreadable(f"{quoted(name)} must be of texts", file=path)
     numbers = np.zeros(data.shape, np.int32)
-    for start in range(0, len(data), TEXTS_AT_ONCE):
-        rows = data[start:start + TEXTS_AT_ONCE]
+    step = TEXTS_AT_ONCE // data.shape[1] if lists and data.shape[1] else TEXTS_AT_ONCE
+    for start in range(0, len(data), step):
+        rows = data[start:start + step]
         try:
-            texts = list(map(bytes.decode, rows.reshape(-1).tolist()))
+            numbers[start:start + step] = words.numbers(rows.reshape(-1).tolist()).reshape(rows.shape)
         except UnicodeDecodeError:
             raise Unreadable(f"{quoted(name)} has texts that are not UTF-8", file=path) from None
-        numbers[start:start + TEXTS_AT_ONCE] = words.numbers(texts, rows.shape)
-    return Texts(numbers, words.listed)
+    return _texts(numbers, words)
 
 
 def to_cells(value: Any) -> str:

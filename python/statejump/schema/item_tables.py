@@ -6,9 +6,9 @@ list of dicts; :class:`ItemColumns` what a case keeps of it, in place of a list 
 """
 from __future__ import annotations
 
-from collections import defaultdict, namedtuple
+from collections import namedtuple
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field as attribute, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import repeat, starmap
 from typing import Any, Generic, TypeVar, overload
@@ -19,104 +19,9 @@ import numpy as np
 from statejump.core.errors import MissingKey, NotAllowed, UnknownKey
 from statejump.schema.fields import Section, default_of, fields_of, is_required, rule_of
 from statejump.schema.rules import NUMBER, NUMBERS, TEXT, TEXTS, WHOLE, Rule, suggestion
+from statejump.schema.texts import BLOCK, Texts, Words, coded
 
 ItemType = TypeVar("ItemType", bound=Section)
-
-
-BLOCK = 4096  # items that are turned into objects at once
-
-
-class Words:
-    """Texts by number, each kept once; columns that share them are held against each other by numbers alone.
-
-    Number 0 is no text, also that of an empty one.
-    """
-
-    def __init__(self) -> None:
-        self._number: defaultdict[str, int] = defaultdict(None, {"": 0})
-        self.listed: list[Any] = [None]
-
-    def numbers(self, texts: Sequence[str], shape: tuple[int, ...]) -> np.ndarray:
-        """Return the numbers of texts in this shape, new ones for texts that are new."""
-        # Only for now: a dict that holds its own method is a cycle, and stays long after the files are read.
-        self._number.default_factory = self._number.__len__
-        found = np.fromiter(map(self._number.__getitem__, texts), np.int32, len(texts)).reshape(shape)
-        self._number.default_factory = None
-        if len(self._number) > len(self.listed):
-            new = len(self._number) - len(self.listed)
-            self.listed += [*reversed([text for text, _ in zip(reversed(self._number), range(new))])]
-        return found
-
-
-@dataclass(frozen=True, eq=False)
-class Texts:
-    """A column of texts: where each stands, and every text once.
-
-    :param numbers: places in ``words`` (n,), or (n, k) of lists; 0: none
-    :param words: the texts, None at place 0
-    :param none: what stands for none, the default of the key
-    """
-
-    numbers: np.ndarray
-    words: list[Any] = attribute(repr=False)
-    none: str | None = None
-
-    def __post_init__(self) -> None:
-        assert self.words[0] is None
-
-    @property
-    def ndim(self) -> int:
-        """1 for texts, 2 for lists of them."""
-        return self.numbers.ndim
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Of ``numbers``."""
-        return self.numbers.shape
-
-    def __len__(self) -> int:
-        return len(self.numbers)
-
-    def __getitem__(self, places: slice) -> Texts:
-        return replace(self, numbers=self.numbers[places])
-
-    def plain(self) -> list[Any]:
-        """Return the texts or lists as a document has them."""
-        word = self.words.__getitem__
-        if self.ndim == 2:
-            return [[word(number) for number in row if number] for row in self.numbers.tolist()]
-        found = list(map(word, self.numbers.tolist()))
-        return found if self.none is None else [self.none if text is None else text for text in found]
-
-    def given(self) -> np.ndarray:
-        """Return which are given, of the shape of ``numbers``."""
-        return np.asarray(self.numbers != 0)
-
-    def has(self, text: str) -> np.ndarray:
-        """Return which rows (n,) are this text, or lists with it."""
-        known = np.array([word == text for word in self.words]) if len(self.words) < BLOCK else None
-        if known is None:
-            known = np.zeros(len(self.words), dtype=bool)
-            known[[place for place in self.used() if self.words[place] == text]] = True
-        found: np.ndarray = known[self.numbers]
-        if self.ndim == 2:
-            return np.asarray(found.any(axis=1))
-        return np.asarray(found | (self.numbers == 0)) if self.none == text else found
-
-    def used(self) -> np.ndarray:
-        """Return the places of the words that stand in it, ascending; none is no word."""
-        found = np.zeros(len(self.words), dtype=bool)
-        found[self.numbers] = True
-        found[0] = False
-        return np.flatnonzero(found)
-
-
-def coded(values: np.ndarray) -> Texts:
-    """Return a column of texts as such; None and, in lists, "" stand for none."""
-    words: dict[Any, int] = {None: 0}
-    flat = [text if text or values.ndim == 1 else None for text in values.reshape(-1).tolist()]
-    numbers = np.fromiter((words.setdefault(text, len(words)) for text in flat), np.int32, len(flat))
-    return Texts(numbers.reshape(values.shape), list(words))
 
 
 def _plain(values: np.ndarray | Texts) -> list[Any]:
@@ -131,11 +36,23 @@ def _plain(values: np.ndarray | Texts) -> list[Any]:
     return [[text for text in row if text] for row in found] if values.ndim == 2 else found
 
 
+def once(values: np.ndarray) -> np.ndarray:
+    """Return numbers by rows; where all rows are one to the last bit, it is in memory once."""
+    if len(values) < 2 or values.dtype.kind not in "fiub" or values.dtype.itemsize > 8:
+        return values
+    bits = values.view(f"i{values.dtype.itemsize}")  # as numbers no NaN is another, and no zero of the other sign else
+    if any((bits[places] != bits[0]).any() for places in (slice(1, BLOCK), slice(BLOCK, None))):
+        return values
+    return np.broadcast_to(values[0].copy(), values.shape)
+
+
 def _as_column(values: Any) -> np.ndarray | Texts:
     if isinstance(values, Texts):
         return values
     made = np.asarray(values)
-    return made if made.dtype.kind in "fO" else made.astype(object if made.dtype.kind in "USTb" else float)
+    if made.dtype.kind not in "fO":
+        made = made.astype(object if made.dtype.kind in "USTb" else float)
+    return once(made) if made.ndim else made
 
 
 class ItemTable:
@@ -240,7 +157,7 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
         found = self._given.get(key)
         if found is None:
             default = default_of(self._fields[key])
-            return np.full(self._length, np.nan if default is None else default)
+            return np.broadcast_to(np.float64(np.nan if default is None else default), self._length)
         assert isinstance(found, np.ndarray)
         return found
 
@@ -250,9 +167,9 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
         if found is None:
             default = default_of(self._fields[key])
             if not isinstance(default, list):
-                return Texts(np.zeros(self._length, np.int32), [None], default)
+                return Texts(np.broadcast_to(np.int32(0), self._length), Words(), default)
             row = np.arange(1, 1 + max(len(default), 1), dtype=np.int32) * bool(default)
-            return Texts(np.broadcast_to(row, (self._length, len(row))), [None, *default])
+            return Texts(np.broadcast_to(row, (self._length, len(row))), Words(default))
         assert isinstance(found, Texts)
         return found
 
@@ -319,22 +236,27 @@ class Places:
     def __init__(self, items: Sequence[Any]) -> None:
         self._items = items
 
+    def _names(self) -> Iterable[str]:
+        items = self._items
+        return items.values("name") if isinstance(items, ItemColumns) else (item.name for item in items)
+
     @cached_property
     def _place(self) -> dict[str, int]:
-        items = self._items
-        named = items.values("name") if isinstance(items, ItemColumns) else (item.name for item in items)
-        return {name: place for place, name in enumerate(named)}
+        return {name: place for place, name in enumerate(self._names())}
 
-    def __getitem__(self, name: str) -> int:
-        return self._place[name]
+    def called(self, names: Sequence[str]) -> np.ndarray:
+        """Return the places of the items of these names; UNKNOWN. For it no names are kept but these."""
+        wanted = set(names)
+        found = {name: place for place, name in enumerate(self._names()) if name in wanted}
+        return np.array([found.get(name, UNKNOWN) for name in names], dtype=int)
 
     @cached_property
     def _of_word(self) -> np.ndarray:
         """Place of the item that a word of its own column of names calls."""
         assert isinstance(self._items, ItemColumns)
         names = self._items.texts("name")
-        found = np.full(len(names.words), UNKNOWN)
-        found[names.numbers] = np.arange(len(names))
+        found = np.full(len(names.words), UNKNOWN, np.int32)
+        found[names.numbers] = np.arange(len(names), dtype=np.int32)
         found[0] = NONE
         return found
 
@@ -347,9 +269,9 @@ class Places:
         if isinstance(self._items, ItemColumns) and self._items.texts("name").words is given.words:
             found = self._of_word[given.numbers]
         else:
-            of_word = np.full(len(given.words), UNKNOWN)
-            for number in given.used().tolist():
-                of_word[number] = self._place.get(given.words[number], UNKNOWN)
+            of_word = np.full(len(given.words), UNKNOWN, np.int32)
+            used = given.used()
+            of_word[used] = [self._place.get(str(word), UNKNOWN) for word in given.words.listed(used)]
             of_word[0] = NONE if given.none is None else self._place.get(given.none, UNKNOWN)
             found = of_word[given.numbers]
         if found.ndim == 2 and (gaps := (given.numbers[:, :-1] == 0) & (given.numbers[:, 1:] != 0)).any():
@@ -360,8 +282,9 @@ class Places:
 
     def _of_each(self, named: list[Any]) -> np.ndarray:
         if not any(isinstance(value, (list, tuple)) for value in named):
-            return np.array([NONE if name is None else self._place.get(name, UNKNOWN) for name in named], dtype=int)
-        found = np.full((len(named), max(map(len, named))), NONE)
+            return np.array([NONE if name is None else self._place.get(name, UNKNOWN) for name in named],
+                            dtype=np.int32)
+        found = np.full((len(named), max(map(len, named))), NONE, dtype=np.int32)
         for row, listed in zip(found, named):
             row[:len(listed)] = [self._place.get(name, UNKNOWN) for name in listed]
         return found
@@ -461,12 +384,13 @@ def _wrong_texts(key: str, rule: Rule, texts: Texts, required: bool) -> int | No
     wrong[0] = required and texts.ndim == 1
     if rule.form != (TEXT if texts.ndim == 1 else TEXTS):
         return 0
-    used = texts.used().tolist()
-    any_text = rule.known is None and rule.pattern is None
-    # Of a list of texts no more is asked than that they are some.
-    if not any_text or (rule.form == TEXT and not "".join(map(texts.words.__getitem__, used)).isprintable()):
-        for number in used:
-            word = texts.words[number]
+    used = texts.used()
+    if rule.known is None and rule.pattern is None:
+        # Of a list of texts no more is asked than that they are some.
+        used = np.intersect1d(used, texts.words.unprintable).astype(int) if rule.form == TEXT else used[:0]
+    for start in range(0, len(used), BLOCK):
+        numbers = used[start:start + BLOCK]
+        for number, word in zip(numbers.tolist(), texts.words.listed(numbers)):
             try:
                 rule.check(key, word if rule.form == TEXT else [word])
             except NotAllowed:

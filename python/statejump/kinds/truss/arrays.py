@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from statejump.schema.item_tables import ItemColumns, Places
+from statejump.schema.item_tables import ItemColumns, Places, once
 from statejump.schema.items import Item
+from statejump.schema.texts import BLOCK, Names
 
 GROUND = -1
 # Directions that differ by less are one: far above rounding, far below what anybody means.
@@ -42,9 +43,23 @@ def columns(items: Sequence[Item], *keys: str) -> dict[str, np.ndarray]:
     return {key: column(items, key) for key in keys}
 
 
-def names(items: Sequence[Item]) -> tuple[str, ...]:
+def texts(items: Sequence[Item], key: str) -> Sequence[str]:
+    """Return a text of every item."""
+    return Names(items.texts(key)) if isinstance(items, ItemColumns) else tuple(getattr(item, key) for item in items)
+
+
+def names(items: Sequence[Item]) -> Sequence[str]:
     """Return the names of the items."""
-    return tuple(values(items, "name"))
+    return texts(items, "name")
+
+
+def given_or(given: np.ndarray, other: np.ndarray | float) -> np.ndarray:
+    """Return numbers of items, where one is not given, NaN, the other. Not to be written to: as far as they are all of
+    one kind they are not copied."""
+    none = np.isnan(given)
+    if none.all():
+        return np.broadcast_to(other, given.shape)
+    return np.where(none, other, given) if none.any() else given
 
 
 def said(items: Sequence[Any], key: str) -> np.ndarray:
@@ -64,13 +79,18 @@ def having(items: Sequence[Any], key: str, text: str) -> np.ndarray:
 
 
 def vectors(items: Sequence[Item], key: str, dimension: int) -> np.ndarray:
-    """Return a vector of every item (n, 3), of 2 or 3 numbers each, zero where there is none."""
-    found = np.zeros((len(items), 3))
+    """Return a vector of every item (n, 3), of 2 or 3 numbers each, zero where there is none. Not to be written to."""
     if isinstance(items, ItemColumns):
         given = items.numbers(key)
-        if given.ndim == 2:
-            found[:, :dimension] = np.nan_to_num(given)
-        return found
+        none = np.isnan(given)
+        if none.all():
+            return np.broadcast_to(0.0, (len(items), 3))
+        if dimension == 3 and not none.any():
+            return given
+    found = np.zeros((len(items), 3))
+    if isinstance(items, ItemColumns):
+        found[:, :dimension] = given
+        return np.nan_to_num(found, copy=False)
     none = (0.0,) * dimension
     given = np.array([none if value is None else value for value in values(items, key)], dtype=float)
     found[:, :dimension] = given.reshape(-1, dimension)
@@ -84,13 +104,19 @@ def in_space(given: Sequence[float] | None, dimension: int) -> np.ndarray:
 
 def unit(given: np.ndarray) -> np.ndarray:
     """Return vectors (n, 3) of length 1; a zero vector stays."""
+    if not given.any():
+        return given
     lengths = np.linalg.norm(given, axis=-1, keepdims=True)
     return given / np.where(lengths > 0, lengths, 1.0)
 
 
 def distances(position_m: np.ndarray, pairs: np.ndarray) -> np.ndarray:
     """Return the distances [m] between the nodes of each pair."""
-    return np.linalg.norm(position_m[pairs[:, 1]] - position_m[pairs[:, 0]], axis=1)
+    found = np.empty(len(pairs))
+    for start in range(0, len(pairs), BLOCK):
+        first, second = pairs[start:start + BLOCK].T
+        found[start:start + BLOCK] = np.linalg.norm(position_m[second] - position_m[first], axis=1)
+    return found
 
 
 @dataclass(frozen=True)
@@ -105,7 +131,7 @@ class References:
 
     def programs_of(self, items: Sequence[Any]) -> np.ndarray:
         """Return the temperature program (items,) of items that may name one."""
-        found = 1 + self.program.of(items, "program")
+        found = once(1 + self.program.of(items, "program"))
         if self.member:
             own = np.fromiter((self.member.get(name, 0) for name in values(items, "name")), int, len(items))
             return np.where(found == 0, own, found)
@@ -125,7 +151,7 @@ def indices(items: Sequence[Any], key: str, among: Places) -> np.ndarray:
 
 def pairs(items: Sequence[Any], key: str, among: Places) -> np.ndarray:
     """Return the one or two that a key of every item names (items, 2), GROUND in place of the second."""
-    found = np.full((len(items), 2), GROUND)
+    found = np.full((len(items), 2), GROUND, dtype=np.int32)
     if len(items):
         given = among.of(items, key)[:, :2]
         found[:, :given.shape[1]] = given

@@ -77,16 +77,21 @@ def supported(truss: ResolvedTruss) -> np.ndarray:
 def _supports(truss: ResolvedTruss) -> None:
     names = truss.nodes.names
     held = supported(truss)
-    pairs = np.concatenate((truss.links.nodes, truss.springs.nodes, truss.joined()))
+    pairs = truss.links.nodes, truss.springs.nodes, truss.joined()
     used = held.copy()
-    used[pairs.ravel()] = True
+    for ends in pairs:
+        used[ends.ravel()] = True
     for node in np.flatnonzero(~used)[:1]:
         raise StatejumpError(f"node {names[node]!r} is not allowed", cause="no link, spring, joint or support uses it",
                              nodes=(names[node],))
     if not held.any():
         raise StatejumpError("no node has a support (fixed or guide_normal)", cause="the truss moves as a whole")
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(names), len(names)))
-    parts, part_of = connected_components(graph, directed=False)
+    parts, part_of = len(names), np.arange(len(names), dtype=np.int32)
+    for ends in pairs:  # one after the other, for a graph takes many times what they do
+        first, second = part_of[ends].T
+        graph = coo_matrix((np.ones(len(ends)), (first, second)), shape=(parts, parts))
+        parts, joined = connected_components(graph, directed=False)
+        part_of = joined[part_of]
     held_parts = np.zeros(parts, dtype=bool)
     held_parts[part_of[held]] = True
     if held_parts.all():

@@ -45,8 +45,8 @@ def check_references(case: TrussCase) -> None:
     if case.reflector is not None:
         if not case.reflector.nodes:
             raise NotAllowed("reflector.nodes", [], "must be one or more nodes")
-        for name in case.reflector.nodes:
-            known_name("reflector.nodes", ABSENT, name, nodes, "node", beside="as it is")
+        for place in np.flatnonzero(node_places.called(case.reflector.nodes) == UNKNOWN):
+            known_name("reflector.nodes", ABSENT, case.reflector.nodes[place], nodes, "node", beside="as it is")
 
 
 def _held(case: TrussCase) -> np.ndarray:

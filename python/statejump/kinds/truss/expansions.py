@@ -41,10 +41,12 @@ def link_temperatures(case: TrussCase, shown: np.ndarray, names: tuple[str, ...]
     programs, named = case.programs, list(names)
     expansions = {expansion.name: expansion for expansion in case.expansion}
     fraction = column(case.link, "temperature_fraction")
+    if isinstance(case.link, ItemColumns) and not case.link.texts("expansion").given().any():
+        none = np.broadcast_to(0.0, len(case.link))
+        return LinkTemperatures(tuple(programs), names, shown, fraction, none != 0, none, shown, fraction)
     program, own_fraction, largest = shown.copy(), fraction.copy(), np.zeros(len(case.link))
     made: dict[tuple[int, float, str], int] = {}
-    none_expands = isinstance(case.link, ItemColumns) and not case.link.texts("expansion").given().any()
-    for index, named_expansion in enumerate(() if none_expands else values(case.link, "expansion")):
+    for index, named_expansion in enumerate(values(case.link, "expansion")):
         if named_expansion is None:
             continue
         expansion, number = expansions[named_expansion], int(shown[index])

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed
-from statejump.kinds.truss.arrays import References, column, indices, names, said, vectors
+from statejump.kinds.truss.arrays import References, column, given_or, indices, names, said, vectors
 from statejump.kinds.truss.references import known_name, vector
 from statejump.schema.fields import definition, numbers, parameter, text
-from statejump.schema.item_tables import ItemColumns, where_wrong
+from statejump.schema.item_tables import ItemColumns, once, where_wrong
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class Drive(Item):
 class Drives:
     """Driven links."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     link: np.ndarray  # int
     time_s: tuple[np.ndarray, ...]
     angular_velocity_rad_per_s: tuple[np.ndarray, ...]
@@ -73,8 +73,8 @@ def resolve_bodies(links: Sequence[Link], length_m: np.ndarray, mass_kg: np.ndar
     given = vectors(links, "centre_of_mass_m", 2)[:, :2]
     length = np.where(length_m > 0, length_m, np.nan)  # a link without one is refused where geometry is checked
     return Bodies(
-        np.where(own_centre[:, None], given, middle) / length[:, None],
-        np.where(np.isnan(moment), mass_kg * length_m**2 / 12, moment), own_centre | ~np.isnan(moment),
+        once(np.where(own_centre[:, None], given, middle) / length[:, None]),
+        given_or(moment, mass_kg * length_m**2 / 12), own_centre | ~np.isnan(moment),
     )
 
 
@@ -83,8 +83,6 @@ def weights_N(gravity_m_per_s2: np.ndarray, link_nodes: np.ndarray, mass_kg: np.
     """Return the weights of all bodies on the nodes (n, 3) [N], which are dead: where a body's centre of mass is
     depends linearly on its nodes, also when it turns in the plane."""
     found = node_mass_kg[:, None] * gravity_m_per_s2
-    if not gravity_m_per_s2.any():
-        return found
     along, left = bodies.centre.T
     x, y, z = gravity_m_per_s2
     to_second = np.stack((along * x + left * y, along * y - left * x, along * z), axis=1) * mass_kg[:, None]

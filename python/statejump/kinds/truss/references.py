@@ -12,6 +12,7 @@ import numpy as np
 from statejump.core.errors import MissingKey, NotAllowed
 from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION, said
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, Places
+from statejump.schema.texts import BLOCK
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.resolved import ResolvedTruss
@@ -120,34 +121,42 @@ def turned_links(truss: ResolvedTruss, section: str, items: Any) -> None:
 
     :param items: arrays with names, links (k, 2) and axis (k, 3)
     """
-    links, pairs = truss.links, items.links
-    if not len(pairs):
-        return
+    joined = np.unique(_pair_codes(truss, *truss.joined().T))
+    for start in range(0, len(items.links), BLOCK):
+        _turned_links(truss, section, items, slice(start, start + BLOCK), joined)
+
+
+def _turned_links(truss: ResolvedTruss, section: str, items: Any, rows: slice, joined: np.ndarray) -> None:
+    """Do the same for some rows; ``joined`` are the codes of all pairs of nodes that joints hold together."""
+    links, pairs, axes = truss.links, items.links[rows], items.axis[rows]
     turned = pairs != GROUND
     ends = links.nodes[pairs]  # (k, 2 links, 2 ends)
     ones, others = ends[:, 0, :, None], ends[:, 1, None, :]
-    meet = (ones == others) | np.isin(_pair_codes(truss, ones, others), _pair_codes(truss, *truss.joined().T))
+    codes = _pair_codes(truss, ones, others)
+    meet = ones == others
+    if len(joined):
+        meet |= joined[np.minimum(np.searchsorted(joined, codes), len(joined) - 1)] == codes
     apart = turned.all(axis=1) & ~meet.any(axis=(1, 2))
     along = np.zeros_like(turned)
     if truss.dimension == 3:
         spans = np.diff(truss.nodes.position_m[ends], axis=2)[:, :, 0]
-        sines = np.linalg.norm(np.cross(spans, items.axis[:, None]), axis=2) / np.linalg.norm(spans, axis=2)
+        sines = np.linalg.norm(np.cross(spans, axes[:, None]), axis=2) / np.linalg.norm(spans, axis=2)
         along = turned & (sines < SAME_DIRECTION)
     wrong = apart | along.any(axis=1)
     if not wrong.any():
         return
     index = int(np.argmax(wrong))
-    where = f"{section} {items.names[index]!r}"
+    where = f"{section} {items.names[rows][index]!r}"
     if apart[index]:
         raise NotAllowed(
             "links", [links.names[link] for link in pairs[index]],
             "the links share no place, neither a node nor a joint between their ends", item=where,
         )
-    raise NotAllowed("axis", items.axis[index].tolist(),
+    raise NotAllowed("axis", axes[index].tolist(),
                      f"link {links.names[pairs[index, int(np.argmax(along[index]))]]!r} lies along it and has no angle "
                      "about it", item=where)
 
 
 def _pair_codes(truss: ResolvedTruss, ones: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Return one number for every pair of nodes, whichever comes first."""
-    return np.minimum(ones, others) * len(truss.nodes.names) + np.maximum(ones, others)
+    return np.minimum(ones, others, dtype=np.int64) * len(truss.nodes.names) + np.maximum(ones, others)

@@ -6,7 +6,7 @@ Index -1 stands for ground.
 """
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from typing import TYPE_CHECKING, Any
@@ -15,7 +15,8 @@ import numpy as np
 
 from statejump.core.thermal import range_K
 from statejump.kinds.truss.arrays import (
-    GROUND, References, column, columns, distances, having, in_space, names, pairs, unit, values, vectors,
+    GROUND, References, column, columns, distances, given_or, having, in_space, names, pairs, texts, unit, values,
+    vectors,
 )
 from statejump.kinds.truss.expansions import link_temperatures
 from statejump.kinds.truss.joints import JOINTS
@@ -23,7 +24,7 @@ from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.joints.revolute import Revolutes
 from statejump.kinds.truss.joints.slider import Sliders
 from statejump.kinds.truss.mechanism import Bodies, Drives, resolve_bodies, resolve_drives, weights_N
-from statejump.schema.item_tables import Places
+from statejump.schema.item_tables import Places, once
 
 if TYPE_CHECKING:
     from statejump.core.temperature_files import MemberProgram
@@ -42,7 +43,7 @@ STICKING = ("rigid", "elastic", "partial_slip")
 class Nodes:
     """Nodes, n of them."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     position_m: np.ndarray  # (n, 3), assembled shape at ΔT = 0
     fixed: np.ndarray  # (n, 3) bool: no motion along x, y, z; planar trusses: z everywhere
     guide_normal: np.ndarray  # (n, 3) unit, no motion along it; zero: none
@@ -54,7 +55,7 @@ class Nodes:
 class Links:
     """Bars, m of them."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     nodes: np.ndarray  # (m, 2) int
     young_modulus_Pa: np.ndarray
     cross_section_area_m2: np.ndarray
@@ -67,7 +68,7 @@ class Links:
     shown_program: np.ndarray  # of the temperature itself, where that of an [[expansion]] has the strain
     shown_fraction: np.ndarray
     second_moment_of_area_m4: np.ndarray  # smallest one of the section
-    ends: tuple[str, ...]  # keys of FIXITY
+    ends: Sequence[str]  # keys of FIXITY
     yield_strength_Pa: np.ndarray  # inf: none is given
 
     @property
@@ -81,7 +82,7 @@ class Links:
 class Springs:
     """Springs and cables: tension stiffness · (length - free length), of a cable never below 0."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     nodes: np.ndarray  # (k, 2) int
     stiffness_N_per_m: np.ndarray
     free_length_m: np.ndarray  # below 0 when the preload exceeds stiffness · drawn length
@@ -94,7 +95,7 @@ class TorsionSprings:
     """Springs on the angle from the first link to the second, both from their first to their second node,
     anticlockwise about the axis; moment stiffness · (angle - drawn angle - bias)."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     links: np.ndarray  # (t, 2) int; (link, GROUND): the angle of one link, from ground to it
     stiffness_N_m_per_rad: np.ndarray
     bias_rad: np.ndarray
@@ -202,38 +203,40 @@ def resolve(case: TrussCase) -> ResolvedTruss:
 
     link_nodes = pairs(case.link, "nodes", node_places)
     length = column(case.link, "stress_free_length_m")
-    length = np.where(np.isnan(length), distances(positions, link_nodes), length)
+    length = given_or(length, distances(positions, link_nodes))
     link = columns(
         case.link, "young_modulus_Pa", "cross_section_area_m2", "thermal_expansion_per_K", "poisson_ratio",
     )
     program_names = ("thermal", *names(case.program), *(() if members is None else members.names))
     warmed = link_temperatures(case, known.programs_of(case.link), program_names)
-    link["thermal_expansion_per_K"] = np.where(warmed.expanding, warmed.largest_per_K, link["thermal_expansion_per_K"])
+    if warmed.expanding.any():
+        link["thermal_expansion_per_K"] = np.where(
+            warmed.expanding, warmed.largest_per_K, link["thermal_expansion_per_K"])
     moment, strength = column(case.link, "second_moment_of_area_m4"), column(case.link, "yield_strength_Pa")
     mass = column(case.link, "mass_kg")
-    weighed = column(case.link, "density_kg_per_m3") * link["cross_section_area_m2"] * length
-    mass = np.where(np.isnan(mass), weighed, mass)
+    mass = given_or(mass, column(case.link, "density_kg_per_m3") * link["cross_section_area_m2"] * length)
     bodies = resolve_bodies(case.link, length, mass)
     gravity = in_space(case.truss.gravity_m_per_s2, dimension)
-    nodes = replace(nodes, force_N=nodes.force_N + weights_N(gravity, link_nodes, mass, bodies, nodes.mass_kg))
+    if gravity.any():
+        nodes = replace(nodes, force_N=nodes.force_N + weights_N(gravity, link_nodes, mass, bodies, nodes.mass_kg))
     links = Links(
         names=names(case.link), nodes=link_nodes, stress_free_length_m=length, mass_kg=mass, program=warmed.program,
         temperature_fraction=warmed.temperature_fraction, shown_program=warmed.shown_program,
         shown_fraction=warmed.shown_fraction, **link,
-        second_moment_of_area_m4=np.where(np.isnan(moment), link["cross_section_area_m2"] ** 2 / 12, moment),
-        ends=tuple(values(case.link, "ends")), yield_strength_Pa=np.where(np.isnan(strength), inf, strength),
+        second_moment_of_area_m4=once(given_or(moment, link["cross_section_area_m2"] ** 2 / 12)),
+        ends=texts(case.link, "ends"), yield_strength_Pa=given_or(strength, inf),
     )
 
     spring_nodes = pairs(case.spring, "nodes", node_places)
     drawn = distances(positions, spring_nodes)
     stiffness = column(case.spring, "stiffness_N_per_m")
     free, preload = column(case.spring, "free_length_m"), column(case.spring, "preload_N")
-    preload = np.where(np.isnan(free), np.nan_to_num(preload), stiffness * (drawn - free))
+    preload = once(np.where(np.isnan(free), np.nan_to_num(preload), stiffness * (drawn - free)))
     with np.errstate(over="ignore"):  # refused by the checks
         stretch = preload / stiffness
     springs = Springs(
         names=names(case.spring), nodes=spring_nodes, stiffness_N_per_m=stiffness,
-        free_length_m=np.where(np.isnan(free), drawn - stretch, free), preload_N=preload,
+        free_length_m=given_or(free, drawn - stretch), preload_N=preload,
         cable=np.array(list(values(case.spring, "cable")), dtype=bool),
     )
     torsion_springs = TorsionSprings(
@@ -244,7 +247,7 @@ def resolve(case: TrussCase) -> ResolvedTruss:
     reflector = None
     if case.reflector is not None:
         reflector = ReflectorSurface(
-            nodes=np.array([node_places[name] for name in case.reflector.nodes], dtype=int),
+            nodes=node_places.called(case.reflector.nodes),
             axis=unit(in_space(case.reflector.axis, dimension)),
             focal_length_m=case.reflector.focal_length_m,
         )

@@ -19,6 +19,7 @@ from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import JointType
 from statejump.kinds.truss.mechanism import refused_at_rest
 from statejump.kinds.truss.resolved import ResolvedTruss
+from statejump.schema.texts import InBlocks
 
 # Bytes of the states of a whole path beyond which only the ends of cycles are kept.
 LARGEST_PATH = 1 << 30
@@ -130,7 +131,7 @@ def engine_programs(truss: ResolvedTruss) -> list[_engine.ThermalProgram]:
 
 
 def _table(part: Any, *keys: str, **more: Any) -> dict[str, Any]:
-    return {"names": list(part.names), **{key: getattr(part, key) for key in keys}, **more}
+    return {"names": InBlocks(part.names), **{key: getattr(part, key) for key in keys}, **more}
 
 
 def _joints(truss: ResolvedTruss, joint: JointType[Any, Any]) -> dict[str, Any]:

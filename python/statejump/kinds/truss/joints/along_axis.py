@@ -2,7 +2,7 @@
 """Joints whose first node moves along an axis fixed in space, on ground or on a second node."""
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
@@ -23,7 +23,7 @@ class Axes(Protocol):
     """What their arrays have."""
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def names(self) -> Sequence[str]:
         """Of the joints."""
 
     @property

@@ -47,7 +47,7 @@ class BallJoint(Item):
 class BallJoints:
     """Ball joints with clearance."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     socket_node: np.ndarray  # int
     ball_node: np.ndarray  # int
     socket_link: np.ndarray  # int, GROUND: the socket does not turn

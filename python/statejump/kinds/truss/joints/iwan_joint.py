@@ -53,7 +53,7 @@ class IwanJoint(Item):
 class IwanJoints:
     """Iwan joints: axis · (motion of the first node - motion of the second) slides."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     nodes: np.ndarray  # (j, 2) int, the second GROUND or a node that is held to the first across the axis
     axis: np.ndarray  # (j, 3) unit
     tangent_stiffness_N_per_m: np.ndarray

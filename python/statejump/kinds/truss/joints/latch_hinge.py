@@ -49,7 +49,7 @@ class LatchHinge(Item):
 class LatchHinges:
     """Hinges with free play, stiffness beyond it and friction on the angle that torsion springs have."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     links: np.ndarray  # (h, 2) int; (link, GROUND): the angle of one link, from ground to it
     deadband_rad: np.ndarray
     stiffness_N_m_per_rad: np.ndarray

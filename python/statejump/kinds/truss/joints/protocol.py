@@ -100,7 +100,7 @@ class ContactPart:
 class Torsion:
     """Moments between two links, or one and the ground, as the DEM has them of torsion springs."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     links: np.ndarray  # (k, 2) int; (link, GROUND)
     axis: np.ndarray  # (k, 3) unit
     stiffness_N_m_per_rad: np.ndarray  # (k,) the greatest

@@ -50,7 +50,7 @@ class Revolute(Item):
 class Revolutes:
     """Clearance revolute joints."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     bearing_node: np.ndarray  # int
     journal_node: np.ndarray  # int
     bearing_link: np.ndarray  # int, GROUND: the bearing does not turn

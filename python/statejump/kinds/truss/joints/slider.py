@@ -52,7 +52,7 @@ class Sliders:
     """Prismatic joints: axis · (motion of the first node - motion of the second) slides, against friction
     friction_coefficient · normal_force_N, from -clearance_minus_m to clearance_plus_m."""
 
-    names: tuple[str, ...]
+    names: Sequence[str]
     nodes: np.ndarray  # (s, 2) int, the second GROUND or a node that is held to the first across the axis
     axis: np.ndarray  # (s, 3) unit
     friction_coefficient: np.ndarray
@@ -113,7 +113,7 @@ def with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
             "young_modulus_Pa": np.ones(count)}
     both: dict[str, Any] = {key: np.concatenate([value, more[key]]) for key, value in vars(sliders).items()
                             if key != "names"}
-    return truss.with_joints(slider=Sliders(names=sliders.names + joints.names, **both))
+    return truss.with_joints(slider=Sliders(names=(*sliders.names, *joints.names), **both))
 
 
 class SliderType(AlongAxis[Slider, Sliders]):
