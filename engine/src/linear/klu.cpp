@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "parallel.hpp"
@@ -12,6 +14,8 @@
 namespace statejump::linear {
 
 namespace {
+
+using Matrix = Eigen::Ref<const Eigen::SparseMatrix<double>>;
 
 /// Columns that a thread takes at once.
 constexpr std::size_t columns_at_once = 20000;
@@ -37,29 +41,27 @@ struct SparseFactor::Factors {
     // Columns ordered by COLAMD, whose fill stays bounded when rows are exchanged: lines of joints
     // have zeros on the diagonal. AMD, the default, filled a ring of 100 joints ten times as much.
     common.ordering = 1;
+    // Where factors begin, over entries of the matrix: KLU reserves ten times as much by default,
+    // gigabytes of a large truss, and lets factors grow where they need more.
+    common.initmem = 1.0;
   }
-  ~Factors() {
-    klu_free_numeric(&numeric, &common);
-    klu_free_symbolic(&symbolic, &common);
-  }
+  ~Factors() { klu_free_numeric(&numeric, &common); }
   Factors(const Factors&) = delete;
   Factors& operator=(const Factors&) = delete;
 
   /// New factors, their pivots chosen anew.
   bool choose_pivots(int* columns, int* rows, double* values) {
     klu_free_numeric(&numeric, &common);
-    numeric = klu_factor(columns, rows, values, symbolic, &common);
+    numeric = klu_factor(columns, rows, values, symbolic.get(), &common);
     if (numeric == nullptr || common.status != KLU_OK) return false;
-    pivot_of_row.resize(static_cast<std::size_t>(size));
-    for (int k = 0; k < size; ++k) {
-      pivot_of_row[static_cast<std::size_t>(numeric->Pnum[k])] = k;
-    }
-    odd_permutation = odd(numeric->Pnum, size) != odd(symbolic->Q, size);
+    odd_permutation.reset();
     return true;
   }
 
   /// Whether every pivot is more than rounding of its column, within its diagonal block.
-  bool has_pivots(const Eigen::SparseMatrix<double>& matrix) const {
+  /// @param growth largest number that a row was multiplied by before it was taken from another one
+  bool has_pivots(const Matrix& matrix, double growth) const {
+    const double least = singular_pivot * growth;
     const double* pivots = static_cast<const double*>(numeric->Udiag);
     // KLU divides every row by its largest entry, in the order of the pivots.
     const double* row_size = numeric->Rs;
@@ -69,61 +71,75 @@ struct SparseFactor::Factors {
       each_in_parallel(static_cast<std::size_t>(symbolic->R[block + 1] - first), columns_at_once,
                        [&](std::size_t in_block) {
                          const int k = first + static_cast<int>(in_block);
+                         // Beyond what it may be of a column whose entries are at most 1.
+                         if (std::abs(pivots[k]) > least) return;
                          double largest = 0.0;
-                         for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, symbolic->Q[k]);
-                              it; ++it) {
-                           const int pivot = pivot_of_row[static_cast<std::size_t>(it.row())];
+                         for (Matrix::InnerIterator it(matrix, symbolic->Q[k]); it; ++it) {
+                           const int pivot = numeric->Pinv[it.row()];
                            if (pivot < first) continue;
                            largest = std::max(largest, std::abs(it.value()) / row_size[pivot]);
                          }
-                         if (!(std::abs(pivots[k]) > singular_pivot * largest)) has = false;
+                         if (!(std::abs(pivots[k]) > least * largest)) has = false;
                        });
     }
     return has;
   }
 
-  /// Factors a matrix of the same pattern with the pivots that the last one had, which takes a
-  /// fraction of the time. Only where KLU could have chosen them itself: no entry of L is beyond
-  /// what its tolerance lets it take for a pivot.
-  bool keeps_pivots(int* columns, int* rows, double* values) {
+  /// Factors a matrix of the same pattern with the pivots that the last one had. Only where rows
+  /// are multiplied by no more than `most`, and pivots are more than what that makes of rounding:
+  /// new ones tell whether the matrix is singular.
+  bool keeps_pivots(int* columns, int* rows, double* values, const Matrix& matrix, double most) {
     if (numeric == nullptr) return false;
-    if (klu_refactor(columns, rows, values, symbolic, numeric, &common) == 0) return false;
+    if (klu_refactor(columns, rows, values, symbolic.get(), numeric, &common) == 0) return false;
     if (common.status != KLU_OK) return false;
-    return lower_within(1.0 / common.tol);
+    const double growth = std::max(1.0, largest_of_lower());
+    return growth <= most && has_pivots(matrix, growth);
   }
 
-  /// Whether no entry of L is beyond a bound. They are read where KLU has them, of every column
-  /// first the rows, then the entries: klu_extract() copies all of L.
-  bool lower_within(double most) const {
+  /// The largest entry of L; no number if one is none. They are read where KLU has them, of every
+  /// column first the rows, then the entries: klu_extract() copies all of L.
+  double largest_of_lower() const {
+    double largest = 0.0;
     for (int block = 0; block < symbolic->nblocks; ++block) {
-      if (symbolic->R[block + 1] - symbolic->R[block] < 2) continue;
+      const auto first = static_cast<std::size_t>(symbolic->R[block]);
+      const auto length = static_cast<std::size_t>(symbolic->R[block + 1]) - first;
+      if (length < 2) continue;
       const double* units = static_cast<const double*>(numeric->LUbx[block]);
-      for (int k = symbolic->R[block]; k < symbolic->R[block + 1]; ++k) {
-        const auto length = static_cast<std::size_t>(numeric->Llen[k]);
-        const std::size_t rows = (length * sizeof(int) + sizeof(double) - 1) / sizeof(double);
-        const double* entries = units + numeric->Lip[k] + rows;
-        if (!std::all_of(entries, entries + length,
-                         [most](double entry) { return std::abs(entry) <= most; })) {
-          return false;
-        }
-      }
+      std::vector<double> of_piece((length + columns_at_once - 1) / columns_at_once, 0.0);
+      in_parallel(of_piece.size(), [&](std::size_t piece) {
+        const std::size_t begin = first + piece * columns_at_once;
+        const std::size_t end = std::min(begin + columns_at_once, first + length);
+        for (std::size_t k = begin; k < end; ++k) raise(of_piece[piece], column_of_lower(units, k));
+      });
+      for (const double one : of_piece) raise(largest, one);
     }
-    return true;
+    return largest;
+  }
+  double column_of_lower(const double* units, std::size_t column) const {
+    const auto length = static_cast<std::size_t>(numeric->Llen[column]);
+    const std::size_t rows = (length * sizeof(int) + sizeof(double) - 1) / sizeof(double);
+    const double* entries = units + numeric->Lip[column] + rows;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < length; ++i) raise(largest, std::abs(entries[i]));
+    return largest;
+  }
+  /// The larger of a number and those before it, or one that is none.
+  static void raise(double& largest, double value) {
+    if (!(value <= largest) && !std::isnan(largest)) largest = value;
   }
 
-  // KLU's C interface allocates and frees these itself.
+  // KLU's C interface allocates and frees what it makes itself. Orders are shared and only read.
   klu_common common{};
-  klu_symbolic* symbolic = nullptr;
+  std::shared_ptr<klu_symbolic> symbolic;
   klu_numeric* numeric = nullptr;
   int size = 0;
-  std::vector<int> pivot_of_row;
-  bool odd_permutation = false;  ///< Of rows and columns together.
+  std::optional<bool> odd_permutation;  ///< Of rows and columns together, where it was asked for.
 };
 
 SparseFactor::SparseFactor() : factors_(std::make_unique<Factors>()) {}
 SparseFactor::~SparseFactor() = default;
 
-bool SparseFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
+bool SparseFactor::factorize(const Matrix& matrix, double most_growth) {
   Factors& f = *factors_;
   // KLU takes its arrays without const but writes to none of them.
   int* columns = const_cast<int*>(matrix.outerIndexPtr());
@@ -131,16 +147,30 @@ bool SparseFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
   double* values = const_cast<double*>(matrix.valuePtr());
   f.size = static_cast<int>(matrix.rows());
   if (f.symbolic == nullptr) {
-    f.symbolic = klu_analyze(f.size, columns, rows, &f.common);
-    if (f.symbolic == nullptr) return false;
+    klu_symbolic* made = klu_analyze(f.size, columns, rows, &f.common);
+    if (made == nullptr) return false;
+    f.symbolic = {made, [](klu_symbolic* of) {
+                    klu_common defaults;
+                    klu_defaults(&defaults);
+                    klu_free_symbolic(&of, &defaults);
+                  }};
   }
-  if (f.keeps_pivots(columns, rows, values) && f.has_pivots(matrix)) return true;
-  return f.choose_pivots(columns, rows, values) && f.has_pivots(matrix);
+  if (f.keeps_pivots(columns, rows, values, matrix, most_growth)) return true;
+  return f.choose_pivots(columns, rows, values) && f.has_pivots(matrix, 1.0);
+}
+
+void SparseFactor::order_like(const SparseFactor& other) {
+  if (other.factors_->symbolic == nullptr || factors_->numeric != nullptr) return;
+  factors_->symbolic = other.factors_->symbolic;
+}
+
+void SparseFactor::release() {
+  klu_free_numeric(&factors_->numeric, &factors_->common);
 }
 
 Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {
   Eigen::VectorXd result = right_side;
-  klu_solve(factors_->symbolic, factors_->numeric, factors_->size, 1, result.data(),
+  klu_solve(factors_->symbolic.get(), factors_->numeric, factors_->size, 1, result.data(),
             &factors_->common);
   return result;
 }
@@ -152,9 +182,12 @@ double SparseFactor::solutions_per_factorization() const {
 }
 
 int SparseFactor::determinant_sign() const {
-  const Factors& f = *factors_;
+  Factors& f = *factors_;
   // Rows are divided by positive numbers; both permutations make the matrix block triangular.
-  bool negative = f.odd_permutation;
+  if (!f.odd_permutation) {
+    f.odd_permutation = odd(f.numeric->Pnum, f.size) != odd(f.symbolic->Q, f.size);
+  }
+  bool negative = *f.odd_permutation;
   const double* pivots = static_cast<const double*>(f.numeric->Udiag);
   for (int k = 0; k < f.size; ++k) negative = negative != (pivots[k] < 0.0);
   return negative ? -1 : 1;

@@ -9,13 +9,15 @@ namespace statejump::linear {
 
 namespace {
 
+using Matrix = Eigen::Ref<const Eigen::SparseMatrix<double>>;
+
 /// Eigen's factors, whose pivots are inside.
 struct Lu : Eigen::SparseLU<Eigen::SparseMatrix<double>> {
   /// Whether every pivot is more than rounding of its column.
-  bool has_pivots(const Eigen::SparseMatrix<double>& matrix) const {
+  bool has_pivots(const Matrix& matrix) const {
     for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
       double largest = 0.0;
-      for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it) {
+      for (Matrix::InnerIterator it(matrix, j); it; ++it) {
         largest = std::max(largest, std::abs(it.value()));
       }
       const Eigen::Index k = m_perm_c.indices()[j];
@@ -39,11 +41,17 @@ struct SparseFactor::Factors {
 SparseFactor::SparseFactor() : factors_(std::make_unique<Factors>()) {}
 SparseFactor::~SparseFactor() = default;
 
-bool SparseFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
+bool SparseFactor::factorize(const Matrix& matrix, double /*most_growth*/) {
   if (!factors_->ordered) factors_->lu.analyzePattern(matrix);
   factors_->ordered = true;
   factors_->lu.factorize(matrix);
   return factors_->lu.info() == Eigen::Success && factors_->lu.has_pivots(matrix);
+}
+
+void SparseFactor::order_like(const SparseFactor& /*other*/) {}
+
+void SparseFactor::release() {
+  factors_ = std::make_unique<Factors>();
 }
 
 Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {

@@ -21,8 +21,9 @@ constexpr std::size_t numbers_at_once = 500000;
 void Assembly::clear() {
   residual.setZero();
   if (slots_ != nullptr && !residual_only_) {
-    double* values = jacobian.valuePtr();
-    each_in_parallel(static_cast<std::size_t>(jacobian.nonZeros()), numbers_at_once,
+    values_.resize(static_cast<Eigen::Index>(slots_->inner.size()));
+    double* values = values_.data();
+    each_in_parallel(static_cast<std::size_t>(values_.size()), numbers_at_once,
                      [values](std::size_t i) { values[i] = 0.0; });
   }
   largest_force = 0.0;
@@ -32,35 +33,38 @@ void Assembly::clear() {
 void Assembly::record() {
   // A million joints write some 1e8 places: beside them only their rows are held, column by column.
   const Eigen::Index n = residual.size();
-  std::vector<int> rows(places_.size()), next(static_cast<std::size_t>(n) + 1, 0);
-  for (const auto& place : places_) ++next[static_cast<std::size_t>(place.second) + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  for (const auto& [row, column] : places_) {
-    rows[static_cast<std::size_t>(next[static_cast<std::size_t>(column)]++)] = row;
+  std::vector<std::size_t> next(static_cast<std::size_t>(n) + 1, 0);
+  for (const Run& run : runs_) {
+    next[static_cast<std::size_t>(run.column) + 1] += static_cast<std::size_t>(run.length);
   }
-  jacobian.resize(n, n);
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<int> rows(next.back());
+  for (const Run& run : runs_) {
+    std::size_t& to = next[static_cast<std::size_t>(run.column)];
+    std::iota(rows.data() + to, rows.data() + to + run.length, run.row);
+    to += static_cast<std::size_t>(run.length);
+  }
+  Slots made{std::vector<int>(static_cast<std::size_t>(n) + 1, 0), {}, {}, std::move(begin_)};
   auto kept = rows.begin(), begin = rows.begin();
-  for (Eigen::Index column = 0; column < n; ++column) {
-    const auto end = rows.begin() + next[static_cast<std::size_t>(column)];
+  for (std::size_t column = 0; column < static_cast<std::size_t>(n); ++column) {
+    const auto end = rows.begin() + static_cast<std::ptrdiff_t>(next[column]);
     std::sort(begin, end);
     kept = std::copy(begin, std::unique(begin, end), kept);
-    jacobian.outerIndexPtr()[column + 1] = static_cast<int>(kept - rows.begin());
+    made.outer[column + 1] = static_cast<int>(kept - rows.begin());
     begin = end;
   }
-  jacobian.resizeNonZeros(kept - rows.begin());
-  std::copy(rows.begin(), kept, jacobian.innerIndexPtr());
-  std::fill_n(jacobian.valuePtr(), jacobian.nonZeros(), 0.0);
-  rows = {};
-  std::vector<int> slots;
-  slots.reserve(places_.size());
-  for (const auto& [row, column] : places_) {
-    const int* inner = jacobian.innerIndexPtr();
-    const int* first = inner + jacobian.outerIndexPtr()[column];
-    const int* last = inner + jacobian.outerIndexPtr()[column + 1];
-    slots.push_back(static_cast<int>(std::lower_bound(first, last, row) - inner));
+  made.inner.assign(rows.begin(), kept);
+  rows = std::vector<int>();
+  made.entries.reserve(runs_.size());
+  const int* inner = made.inner.data();
+  for (const Run& run : runs_) {
+    const int* first = inner + made.outer[static_cast<std::size_t>(run.column)];
+    const int* last = inner + made.outer[static_cast<std::size_t>(run.column) + 1];
+    made.entries.push_back(static_cast<int>(std::lower_bound(first, last, run.row) - inner));
   }
-  places_ = {};
-  slots_ = std::make_shared<const Slots>(Slots{std::move(slots), std::move(begin_)});
+  runs_ = std::vector<Run>();
+  slots_ = std::make_shared<const Slots>(std::move(made));
+  moved.resize(3, 0);
 }
 
 namespace detail {

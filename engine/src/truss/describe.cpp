@@ -287,24 +287,4 @@ double System::work_on_joints(const Way& way, const StepStart& start) const {
   return work;
 }
 
-Eigen::SparseMatrix<double> System::joined_stiffness(const VectorXd& z, double time,
-                                                     const Statuses& statuses, JointModel joints,
-                                                     double held) const {
-  // The forces of the joints are condensed: a direction that a joint holds becomes a stiff spring.
-  // Rows that hold nothing drop out.
-  Eigen::SparseMatrix<double> stiffness, rows;
-  {
-    Assembly at = assembly();
-    evaluate(z, time, begin(z, time, statuses, 1.0), statuses, joints, 1.0, at);
-    stiffness = at.jacobian.block(0, 0, displacements_, displacements_);
-    rows = at.jacobian.block(displacements_, 0, unknowns_ - displacements_, displacements_);
-  }
-  // Half of it and half of its transpose, in the place of both.
-  stiffness *= 0.5;
-  stiffness += Eigen::SparseMatrix<double>(stiffness.transpose());
-  // Rows in metres have gradients of order one, whatever lever arms they have.
-  stiffness += held * stiffness_scale_ * (rows.transpose() * rows);
-  return stiffness;
-}
-
 }  // namespace statejump::truss::detail

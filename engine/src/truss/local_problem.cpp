@@ -99,10 +99,11 @@ LocalProblem local_problem(const System& system, const VectorXd& z, double time,
 
   Assembly at = system.assembly();
   system.evaluate(z, time, start, branches, JointModel::friction, 1.0, at);
-  Sparse structure = block(at.jacobian, groups, false, false);
-  const Sparse columns = block(at.jacobian, groups, false, true);
-  const Sparse rows = block(at.jacobian, groups, true, false);
-  const Sparse own = block(at.jacobian, groups, true, true);
+  const Sparse jacobian = at.jacobian();
+  Sparse structure = block(jacobian, groups, false, false);
+  const Sparse columns = block(jacobian, groups, false, true);
+  const Sparse rows = block(jacobian, groups, true, false);
+  const Sparse own = block(jacobian, groups, true, true);
   const double scale = system.stiffness_scale();
   while (!is_stable(structure, displacements, scale, made.proximal_stiffness)) {
     made.proximal_stiffness = std::max(proximal_share * scale, 10.0 * made.proximal_stiffness);

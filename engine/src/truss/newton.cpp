@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "condensed_pivots.hpp"
+#include "parallel.hpp"
 #include "rate_problem.hpp"
 
 namespace statejump::truss::detail {
@@ -30,6 +31,9 @@ constexpr int most_halvings = 10;
 constexpr int share_halvings = 50;
 /// How often those who wait are told [s]: often enough for a bar of progress and for Ctrl-C.
 constexpr double told_every = 0.1;
+
+/// Multiplying as many columns takes some ten times as long as starting a thread.
+constexpr Eigen::Index halved_columns = 50000;
 
 /// The larger of a number and those before it, or one that is none, which has to show.
 void raise(double& largest, double value) {
@@ -70,13 +74,31 @@ LeftOver left_over(const Assembly& of, const VectorXd& rate, const VectorXd& by_
                    double stiffness) {
   LeftOver left{by_time};
   VectorXd added = by_time.cwiseAbs();
-  for (Eigen::Index column = 0; column < of.jacobian.outerSize(); ++column) {
-    const double by = rate[column];
-    for (Eigen::SparseMatrix<double>::InnerIterator it(of.jacobian, column); it; ++it) {
-      const double term = it.value() * by;
-      left.residual[it.row()] += term;
-      added[it.row()] += std::abs(term);
+  const linear::SparseView jacobian = of.jacobian();
+  const auto add_columns = [&](Eigen::Index begin, Eigen::Index end, VectorXd& sum,
+                               VectorXd& absolute) {
+    for (Eigen::Index column = begin; column < end; ++column) {
+      const double by = rate[column];
+      for (linear::SparseView::InnerIterator it(jacobian, column); it; ++it) {
+        const double term = it.value() * by;
+        sum[it.row()] += term;
+        absolute[it.row()] += std::abs(term);
+      }
     }
+  };
+  const Eigen::Index columns = jacobian.outerSize();
+  if (columns < halved_columns) {
+    add_columns(0, columns, left.residual, added);
+  } else {
+    // The same halves whatever threads there are.
+    LeftOver second{VectorXd::Zero(columns)};
+    VectorXd second_added = VectorXd::Zero(columns);
+    in_parallel(2, [&](std::size_t k) {
+      k == 0 ? add_columns(0, columns / 2, left.residual, added)
+             : add_columns(columns / 2, columns, second.residual, second_added);
+    });
+    left.residual += second.residual;
+    added += second_added;
   }
   double force_left = 0.0, force_added = 0.0, closure_left = 0.0, closure_added = 0.0;
   for (Eigen::Index row = 0; row < added.size(); ++row) {
@@ -170,7 +192,6 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   bool kept = std::exchange(quiet_, false) && may_keep;
   bool stale = true;  // no factors have been made yet
   bool pivoted = false;
-  const VectorXd origin = ahead ? z : VectorXd();
   bool looking = ahead.has_value();
   const int displacements = system_->displacements();
   const auto length = [displacements](const VectorXd& of) {
@@ -217,7 +238,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     idle = 0;
     at_.want_jacobian(true);
     system_->evaluate(first_z, time, start, first_statuses, joints, opening, at_);
-    if (!factorize(first_statuses, joints)) return false;
+    constexpr double stable = linear::SparseFactor::stable_growth;
+    if (!factorize(first_statuses, joints, stable)) return false;
     const VectorXd whole = factor_.solve(-at_.residual);
     const std::vector<int> in_play(wandering.begin(), wandering.end());
     const Linearized here{first_z, time, start, joints, opening, first_statuses, factor_, whole};
@@ -398,7 +420,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         continue;
       }
       if (looking && !found.joints.empty()) {
-        const Violation first = first_violation(found.joints, origin, z, ahead->from_time, time,
+        const Violation first = first_violation(found.joints, first_z, z, ahead->from_time, time,
                                                 start, joints, statuses);
         if (first.share > ahead->now) {
           looking = false;
@@ -426,9 +448,9 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   return report;
 }
 
-bool Newton::factorize(const Statuses& statuses, JointModel joints) {
+bool Newton::factorize(const Statuses& statuses, JointModel joints, double most_growth) {
   ++factorizations_;
-  factored_ = factor_.factorize(at_.jacobian);
+  factored_ = factor_.factorize(at_.jacobian(), most_growth);
   factored_on_ = statuses;
   factored_model_ = joints;
   return factored_;
@@ -440,7 +462,7 @@ bool Newton::keeping_pays(double decades) const {
   // a factorization tells, and those of the Jacobian.
   const double saved = factor_.solutions_per_factorization();
   const double factors = 4.0 * saved * system_->unknowns();
-  const auto jacobian = static_cast<double>(at_.jacobian.nonZeros());
+  const auto jacobian = static_cast<double>(at_.entries_of_jacobian());
   const double by_new = std::ceil(std::log2(0.5 * decades + 1.0));
   return std::ceil(decades) - by_new <= saved * factors / (factors + jacobian);
 }

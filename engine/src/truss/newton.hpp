@@ -108,6 +108,7 @@ class Newton {
   int stability_index();
 
   long factorizations() const { return factorizations_; }
+  const linear::SparseFactor& factor() const { return factor_; }
 
  private:
   struct Violation {
@@ -125,7 +126,8 @@ class Newton {
                     const std::optional<Ahead>& ahead, bool held);
 
   /// Factors the Jacobian at hand, which is one on this set of branches.
-  bool factorize(const Statuses& statuses, JointModel joints);
+  bool factorize(const Statuses& statuses, JointModel joints,
+                 double most_growth = linear::SparseFactor::refined_growth);
   /// Whether the factors are of equations on this set of branches.
   bool keeps(const Statuses& statuses, JointModel joints) const {
     return factored_ && joints == factored_model_ && statuses == factored_on_;

@@ -128,7 +128,7 @@ Path solve(const Model& model, const Options& options) {
   walker.start();
   walker.origin = system.begin(walker.z, 0.0, walker.origin.statuses, 1.0);
   system.describe(walker.z, 0.0, walker.origin, walker.state);
-  walker.path.states.push_back(walker.state);
+  if (!options.cycle_ends_only) walker.path.states.push_back(walker.state);
   walker.path.cycle_ends.push_back(walker.state);
 
   // In an increment a joint changes its status a few times, in a long chain as often as another one

@@ -90,7 +90,7 @@ std::optional<VectorXd> RateProblem::rates_on(const Statuses& statuses, const Ve
                                               const std::vector<double>& program_rates) {
   begin();
   system_->evaluate(z, time, start, statuses, JointModel::friction, 1.0, at_);
-  if (!factor_.factorize(at_.jacobian)) return std::nullopt;
+  if (!factor_.factorize(at_.jacobian())) return std::nullopt;
   return factor_.solve(-system_->heating(z, time, start, statuses, program_rates));
 }
 
@@ -98,7 +98,7 @@ int RateProblem::index_at(const VectorXd& z, double time, const StepStart& start
                           const Statuses& statuses) {
   begin();
   system_->evaluate(z, time, start, statuses, JointModel::friction, 1.0, at_);
-  if (!factor_.factorize(at_.jacobian)) return 0;
+  if (!factor_.factorize(at_.jacobian(), linear::SparseFactor::refined_growth)) return 0;
   return index_of(factor_.determinant_sign(), at_);
 }
 

@@ -63,6 +63,14 @@ class RateProblem {
   /// Index of the equations at z, see above; 0: singular to rounding.
   int index_at(const VectorXd& z, double time, const StepStart& start, const Statuses& statuses);
 
+  /// See SparseFactor::order_like().
+  void order_like(const linear::SparseFactor& other) { factor_.order_like(other); }
+  /// Lets go of the place of the equations and of their factors, until they are asked again.
+  void release() {
+    at_ = Assembly(0);
+    factor_.release();
+  }
+
  private:
   /// Makes the place of the equations, which many trusses never ask for.
   void begin() {

@@ -35,7 +35,7 @@ std::optional<Branches> prepare(const System& system, const VectorXd& z, double 
     made.base[index(one.joint)] = one.branches.front();
   }
   system.evaluate(z, target, start, made.base, JointModel::friction, 1.0, at);
-  if (!factor.factorize(at.jacobian)) return std::nullopt;
+  if (!factor.factorize(at.jacobian())) return std::nullopt;
   made.index = index_of(factor.determinant_sign(), at);
   made.step = factor.solve(-at.residual);
   made.response.resize(system.unknowns(), rows);
@@ -53,7 +53,7 @@ std::optional<Branches> prepare(const System& system, const VectorXd& z, double 
     }
     if (layer > 0) system.evaluate(z, target, start, statuses, JointModel::friction, 1.0, at);
     Layer added{Eigen::MatrixXd(rows, rows), VectorXd(rows), {}};
-    const RowMajor jacobian = at.jacobian;
+    const RowMajor jacobian = at.jacobian();
     for (const Candidate& one : made.candidates) {
       for (int k = 0; k < one.rows; ++k) {
         const int row = one.first_row + k;

@@ -31,8 +31,7 @@ void fail_joint(FailureFields fields, FailureJoint joint) {
   throw Failure(std::move(fields));
 }
 
-void Walker::fail(const SolveReport& report, JointModel joints, double when,
-                  const char* sought) const {
+void Walker::fail(const SolveReport& report, JointModel joints, double when, const char* sought) {
   refuse_mechanism(when, origin.statuses, joints);
   refuse_buckled(when);
   const FailureKind kind =
@@ -67,6 +66,7 @@ void Walker::start() {
   if (report.end != SolveEnd::converged) {
     fail(report, JointModel::pins, 0.0, "no equilibrium of the drawn shape");
   }
+  rates.order_like(newton.factor());
   refuse_buckled(0.0);
   open_clearances();
 }
@@ -79,7 +79,9 @@ void Walker::refuse_mechanism(double when, const Statuses& statuses, JointModel 
 }
 
 /// Throws if the state is unstable whatever the joints do.
-void Walker::refuse_buckled(double when) const {
+void Walker::refuse_buckled(double when) {
+  // It takes as much memory as the factors of rates do.
+  rates.release();
   if (FoundModes modes = buckling(system, z, when, origin.statuses)) {
     fail_modes(failure_at(FailureKind::buckled, model, when), std::move(modes));
   }

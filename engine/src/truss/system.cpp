@@ -28,6 +28,7 @@ System::System(const Model& model) : model_(&model) {
     unknowns_ += node.freedoms;
   }
   place_.emplace_back();
+  frames_.reserve(model.joints.size());
   displacements_ = unknowns_;
   Eigen::AlignedBox3d box;
   for (const Node& node : model.nodes) box.extend(node.position);

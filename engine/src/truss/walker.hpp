@@ -70,13 +70,13 @@ struct Walker {
   VectorXd slide_rate;
 
   [[noreturn]] void fail(const SolveReport& report, JointModel joints, double when,
-                         const char* sought) const;
+                         const char* sought);
   void note(const SolveReport& report);
   void start();
   void open_clearances();
   [[noreturn]] void refuse_undetermined(FailureKind kind, FoundModes found) const;
   void refuse_mechanism(double when, const Statuses& statuses, JointModel joints) const;
-  void refuse_buckled(double when) const;
+  void refuse_buckled(double when);
   StepEnd step_to(double target, double tolerance);
   SolveReport continue_from_event(double target, VectorXd& to, Statuses& statuses,
                                   SolveReport first);

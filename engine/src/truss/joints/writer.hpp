@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "linear/sparse_factor.hpp"
 #include "statejump/truss/joints/interface.hpp"
 
 namespace statejump::truss {
@@ -55,6 +56,8 @@ class Assembly {
     return slots_ == nullptr && !residual_only_ && !lists_ && along_ == nullptr;
   }
 
+  std::size_t entries_of_jacobian() const { return slots_->inner.size(); }
+
   /// Begins an evaluation.
   void clear();
   /// Makes the pattern of what was written.
@@ -62,7 +65,12 @@ class Assembly {
 
   Eigen::VectorXd residual;
   Eigen::Matrix3Xd moved;  ///< Displacements of all nodes, where it is evaluated [m].
-  Eigen::SparseMatrix<double> jacobian;
+  /// The Jacobian as of the last evaluation that was to add it up; its pattern is the same of all
+  /// copies.
+  linear::SparseView jacobian() const {
+    return {residual.size(),      residual.size(),      values_.size(),
+            slots_->outer.data(), slots_->inner.data(), values_.data()};
+  }
   Eigen::VectorXd product;                      ///< Jacobian times the vector.
   std::vector<Eigen::Triplet<double>> entries;  ///< Of the Jacobian, where they are listed.
   std::vector<RowUnit> units;                   ///< Of every row.
@@ -71,17 +79,22 @@ class Assembly {
 
  private:
   friend class AssemblyStrand;
-  /// Of every place that is written the entry of the Jacobian, and where the strands begin.
   struct Slots {
-    std::vector<int> entries;
-    std::vector<std::size_t> begin;
+    std::vector<int> outer, inner;  ///< Of the Jacobian: begin of its columns, rows of its entries.
+    std::vector<int> entries;       ///< Where every run of places begins among the entries.
+    std::vector<std::size_t> begin;  ///< Where the strands begin.
   };
   bool residual_only_ = false;
   bool lists_ = false;
   const Eigen::VectorXd* along_ = nullptr;
-  std::vector<std::pair<int, int>> places_;
-  std::vector<std::size_t> begin_;      // of the strands among the places
+  /// Places one below the other, which are entries one behind the other: a column of a block.
+  struct Run {
+    int row, column, length;
+  };
+  std::vector<Run> runs_;
+  std::vector<std::size_t> begin_;      // of the strands among the runs
   std::shared_ptr<const Slots> slots_;  ///< Once recorded, the same of all copies.
+  Eigen::VectorXd values_;              ///< Of the entries of the Jacobian.
 };
 
 /// Writes a part of an assembly, always the same places in the same order.
@@ -91,8 +104,9 @@ class AssemblyStrand {
   AssemblyStrand(Assembly& to, std::size_t which) : to_(&to) {
     if (to.slots_ != nullptr) {
       slot_ = to.slots_->entries.data() + to.slots_->begin[which];
+      values_ = to.values_.data();
     } else if (to.records()) {
-      to.begin_.push_back(to.places_.size());
+      to.begin_.push_back(to.runs_.size());
     }
   }
   /// Tells the assembly what the strand saw; strands in their order.
@@ -115,31 +129,19 @@ class AssemblyStrand {
 
   void add(int row, int column, double value) {
     if (residual_only()) return;
-    if (slot_ != nullptr) {
-      to_->jacobian.valuePtr()[*slot_++] += value;
-    } else if (to_->lists_) {
-      to_->entries.emplace_back(row, column, value);
-    } else if (to_->along_ != nullptr) {
-      to_->product[row] += value * (*to_->along_)[column];
-    } else {
-      to_->places_.emplace_back(row, column);
-    }
+    if (slot_ == nullptr) return elsewhere(row, column, value);
+    values_[*slot_++] += value;
   }
   /// A block of places, column by column: `value(row of it, column of it)`.
   template <class Value>
   void block(int row, int rows, int column, int columns, Value&& value) {
-    if (residual_only()) return;
-    if (slot_ == nullptr) {
-      for (int j = 0; j < columns; ++j) {
-        for (int i = 0; i < rows; ++i) add(row + i, column + j, value(i, j));
-      }
-      return;
-    }
-    double* entries_of_jacobian = to_->jacobian.valuePtr();
+    if (residual_only() || rows == 0) return;
+    if (slot_ == nullptr) return block_elsewhere(row, rows, column, columns, value);
     const int* slot = slot_;
     const auto add_up = [&](auto of_rows, auto of_columns) {
       for (int j = 0; j < of_columns; ++j) {
-        for (int i = 0; i < of_rows; ++i) entries_of_jacobian[*slot++] += value(i, j);
+        double* run = values_ + *slot++;
+        for (int i = 0; i < of_rows; ++i) run[i] += value(i, j);
       }
     };
     // Nodes are mostly free in space or in a plane: loops of a known length.
@@ -150,18 +152,41 @@ class AssemblyStrand {
     } else {
       add_up(rows, columns);
     }
-    slot_ += rows * columns;
+    slot_ += columns;
   }
   /// A block that is zero: its places are passed. (A sum that begins at +0 is never −0, so that
   /// adding zeros would change nothing.)
   void zeros(int row, int rows, int column, int columns) {
     if (slot_ == nullptr) return block(row, rows, column, columns, [](int, int) { return 0.0; });
-    if (!residual_only()) slot_ += rows * columns;
+    if (!residual_only() && rows > 0) slot_ += columns;
   }
 
  private:
+  /// Where nothing is recorded yet, or no Jacobian added up.
+  [[gnu::noinline]] void elsewhere(int row, int column, double value) {
+    if (to_->lists_) {
+      to_->entries.emplace_back(row, column, value);
+    } else if (to_->along_ != nullptr) {
+      to_->product[row] += value * (*to_->along_)[column];
+    } else {
+      to_->runs_.push_back({row, column, 1});
+    }
+  }
+  template <class Value>
+  [[gnu::noinline]] void block_elsewhere(int row, int rows, int column, int columns,
+                                         Value&& value) {
+    for (int j = 0; j < columns; ++j) {
+      if (to_->records()) {
+        to_->runs_.push_back({row, column + j, rows});
+        continue;
+      }
+      for (int i = 0; i < rows; ++i) elsewhere(row + i, column + j, value(i, j));
+    }
+  }
+
   static constexpr std::size_t hash_base = 1000003;
   Assembly* to_;
+  double* values_ = nullptr;   ///< Of the entries of the Jacobian.
   const int* slot_ = nullptr;  ///< Of the next place; none: nothing is recorded.
   double largest_force_ = 0.0;
   std::size_t pieces_ = 0;
@@ -204,17 +229,15 @@ class JointWriter {
   void row(int row, std::size_t node, const Eigen::Vector3d& gradient) {
     if (to_->residual_only()) return;
     const Place& at = places[node];
-    for (int i = 0; i < at.freedoms; ++i) {
-      to_->add(first_force + row, at.row + i, at.directions->col(i).dot(gradient));
-    }
+    to_->block(first_force + row, 1, at.row, at.freedoms,
+               [&](int, int j) { return at.directions->col(j).dot(gradient); });
   }
   /// Derivative of a node's force by one of the joint's.
   void column(std::size_t node, int force, const Eigen::Vector3d& gradient) {
     if (to_->residual_only()) return;
     const Place& at = places[node];
-    for (int i = 0; i < at.freedoms; ++i) {
-      to_->add(at.row + i, first_force + force, at.directions->col(i).dot(gradient));
-    }
+    to_->block(at.row, at.freedoms, first_force + force, 1,
+               [&](int i, int) { return at.directions->col(i).dot(gradient); });
   }
   /// Derivative of a row by one of the joint's forces.
   void corner(int row, int force, double value) {

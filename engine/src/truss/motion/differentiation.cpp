@@ -59,11 +59,11 @@ bool Stepper::closes(const Local& local) {
 double Stepper::deepest(const Trial& step) const {
   double most = 0.0;
   const VectorXd way = step.q - step.q_middle;
+  const linear::SparseView jacobian = joints_.jacobian();
   for (const Contact& contact : contacts_.all()) {
     if (contact.active || contact.normal_column < 0 || contact.gap == Contact::infinite) continue;
     double gap = contact.gap;
-    for (Eigen::SparseMatrix<double>::InnerIterator it(joints_.jacobian, contact.normal_column); it;
-         ++it) {
+    for (linear::SparseView::InnerIterator it(jacobian, contact.normal_column); it; ++it) {
       if (it.row() < way.size()) gap += contact.normal_sign * it.value() * way[it.row()];
     }
     most = std::max(most, -gap);

@@ -82,10 +82,10 @@ Eigen::SparseMatrix<double> Stepper::iteration_matrix(const Trial& step) {
   middle.head(n) = step.q_middle;
   system_->evaluate_bars(middle, step.to, bars_);
   Eigen::SparseMatrix<double> matrix =
-      bodies_->mass() + (h * theta * h * theta) * bars_.jacobian.block(0, 0, n, n);
+      bodies_->mass() + (h * theta * h * theta) * bars_.jacobian().block(0, 0, n, n);
   if (contacts_.have_springs()) {
     evaluate_springs(step.q_middle, step.to);
-    matrix += (h * theta * h * theta) * springs_.jacobian.block(0, 0, n, n);
+    matrix += (h * theta * h * theta) * springs_.jacobian().block(0, 0, n, n);
   }
   if (bodies_->damped()) matrix += (h * theta) * bodies_->damping(step.q_middle);
   // Of the size of the rest, so that pivots compare.
@@ -119,9 +119,10 @@ void Stepper::hold_directions(const Trial& step, double scale) {
   held_speed_ = VectorXd::Zero(holds_.cols());
   if (holds_.cols() == 0) return;
   std::vector<Eigen::Triplet<double>> columns;
+  const linear::SparseView jacobian = joints_.jacobian();
   for (Eigen::Index k = 0; k < holding; ++k) {
     const int column = contacts_.holds()[static_cast<std::size_t>(k)];
-    for (Eigen::SparseMatrix<double>::InnerIterator it(joints_.jacobian, column); it; ++it) {
+    for (linear::SparseView::InnerIterator it(jacobian, column); it; ++it) {
       if (it.row() < n) columns.emplace_back(it.row(), k, scale * it.value());
     }
   }
@@ -140,9 +141,10 @@ Stepper::Local Stepper::local_problem(const Trial& step) {
   const Eigen::Index n = q_.size();
   const auto rows = static_cast<Eigen::Index>(2 * local.contacts.size());
   std::vector<Eigen::Triplet<double>> entries;
+  const linear::SparseView jacobian = joints_.jacobian();
   const auto take = [&](int column, double sign, Eigen::Index to) {
     if (column < 0) return;
-    for (Eigen::SparseMatrix<double>::InnerIterator it(joints_.jacobian, column); it; ++it) {
+    for (linear::SparseView::InnerIterator it(jacobian, column); it; ++it) {
       if (it.row() < n) entries.emplace_back(it.row(), to, sign * it.value());
     }
   };

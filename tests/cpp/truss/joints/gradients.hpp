@@ -40,7 +40,7 @@ inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
         return moved_to.residual;
       };
       system.evaluate(z, 0.3, start, statuses, joints, 1.0, at);
-      const Eigen::MatrixXd exact(at.jacobian);
+      const Eigen::MatrixXd exact(at.jacobian());
       for (int j = 0; j < system.unknowns(); ++j) {
         const bool moves = j < system.displacements();
         const double step = moves ? displacement_step : force_step;
