@@ -3,8 +3,8 @@
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -14,6 +14,10 @@
 #include "bindings.hpp"
 #include "statejump/truss/motion.hpp"
 #include "statejump/truss/path.hpp"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace py = pybind11;
 
@@ -90,6 +94,17 @@ void set_free_directions(const bool* fixed, Vector3d normal, truss::Node& node) 
     held.push_back(best.normalized());
     node.free_directions.col(node.freedoms++) = held.back();
   }
+}
+
+/// Nodes of a truss whose reading leaves megabytes.
+constexpr std::size_t many_nodes = 10000;
+
+/// Gives back to the system what the reading of a large truss has left free between what is kept:
+/// the solver's arrays are too large for it.
+void give_back_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 /// Adds the joints of a type, whose table has the arrays that its parameters are named by.
@@ -482,6 +497,7 @@ void bind_truss(py::module_& module) {
         truss::Path path;
         {
           py::gil_scoped_release unlocked;
+          if (model.nodes.size() >= many_nodes) give_back_memory();
           path = truss::solve(model, options);
         }
         return path_dict(model, path);

@@ -15,6 +15,8 @@ from statejump.core.progress import Tell
 
 # How long samples are run in this process, before workers are started for the others: about what starting them takes.
 HERE_S = 2.0
+# Samples that were run before the time of the others is foreseen: the first is no measure.
+FORESEEN_FROM = 3
 
 
 @dataclass
@@ -75,14 +77,20 @@ def run_missing(campaign: Plan, kept: Kept, scheduler: str | None, workers: int 
 
 
 def _here(campaign: Plan, missing: list[int], account: _Account) -> list[int]:
-    """Run samples in this process and return those that are left when its time is up."""
+    """Run samples in this process and return those that are left when its time is up, or when workers are foreseen to
+    have them done sooner, with the time to start them."""
     batches, started, done = Batches(missing, campaign.model, 1), time.perf_counter(), account.done
+    cores = len(os.sched_getaffinity(0))
     done.workers = 1
-    while batches.left and done.wall_time_s < HERE_S:
+    sooner = False
+    while batches.left and done.wall_time_s < HERE_S and not sooner:
         seconds, batch = run_samples(campaign.recipe, batches.next(1))
-        batches.learn(len(batch.indices), seconds)
+        count = len(batch.indices)
+        batches.learn(count, seconds)
         account.add(seconds, batch)
         done.wall_time_s = time.perf_counter() - started
+        left = seconds / count * batches.left
+        sooner = done.run_now >= FORESEEN_FROM and left > HERE_S + left / cores
     return missing[batches.given:]
 
 
