@@ -144,7 +144,7 @@ SolveReport Walker::slide_on(double target, bool is_short, VectorXd& to, Statuse
   }
   note(first);
   const VectorXd found = to;
-  const SolveReport second = newton.solve_on(sliding, target, origin, options.most_iterations, to);
+  SolveReport second = newton.solve_on(sliding, target, origin, options.most_iterations, to);
   if (second.end == SolveEnd::converged || second.end == SolveEnd::stopped) {
     statuses = std::move(sliding);
     return second;
