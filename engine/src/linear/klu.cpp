@@ -59,7 +59,7 @@ struct SparseFactor::Factors {
   }
 
   /// Whether every pivot is more than rounding of its column, within its diagonal block.
-  /// @param growth largest number that a row was multiplied by before it was taken from another one
+  /// @param growth how far rounding may have been multiplied before it was taken from a pivot
   bool has_pivots(const Matrix& matrix, double growth) const {
     const double least = singular_pivot * growth;
     const double* pivots = static_cast<const double*>(numeric->Udiag);
@@ -93,7 +93,8 @@ struct SparseFactor::Factors {
     if (klu_refactor(columns, rows, values, symbolic.get(), numeric, &common) == 0) return false;
     if (common.status != KLU_OK) return false;
     const double growth = std::max(1.0, largest_of_lower());
-    return growth <= most && has_pivots(matrix, growth);
+    // What one pivot has multiplied another one may multiply again.
+    return growth <= most && has_pivots(matrix, growth * growth);
   }
 
   /// The largest entry of L; no number if one is none. They are read where KLU has them, of every
