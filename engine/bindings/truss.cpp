@@ -503,9 +503,12 @@ void bind_truss(py::module_& module) {
         return path_dict(model, path);
       },
       py::arg("nodes"), py::arg("links"), py::arg("springs"), py::arg("torsion_springs"),
-      py::arg("joints"), py::arg("programs"), py::kw_only(), py::arg("increments_per_branch") = 50,
-      py::arg("locate_events") = true, py::arg("event_tolerance") = 1e-9,
-      py::arg("energy_tolerance") = 2.5e-11, py::arg("cycle_ends_only") = false,
+      py::arg("joints"), py::arg("programs"), py::kw_only(),
+      py::arg("increments_per_branch") = truss::Options().increments_per_branch,
+      py::arg("locate_events") = truss::Options().locate_events,
+      py::arg("event_tolerance") = truss::Options().event_tolerance,
+      py::arg("energy_tolerance") = truss::Options().energy_tolerance,
+      py::arg("cycle_ends_only") = truss::Options().cycle_ends_only,
       py::arg("problem_times") = std::vector<double>(), py::arg("progress") = py::none(),
       "Quasi-static path of a truss: exact Coulomb friction at every joint.\n\n"
       "Every kind of item is a dict of arrays, one entry per item, and 'names'. Index -1: ground.\n"

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "numerics/raise.hpp"
 #include "parallel.hpp"
 #include "sparse_factor.hpp"
 
@@ -15,6 +16,7 @@ namespace statejump::linear {
 
 namespace {
 
+using numerics::raise;
 using Matrix = Eigen::Ref<const Eigen::SparseMatrix<double>>;
 
 /// Columns that a thread takes at once.
@@ -123,10 +125,6 @@ struct SparseFactor::Factors {
     double largest = 0.0;
     for (std::size_t i = 0; i < length; ++i) raise(largest, std::abs(entries[i]));
     return largest;
-  }
-  /// The larger of a number and those before it, or one that is none.
-  static void raise(double& largest, double value) {
-    if (!(value <= largest) && !std::isnan(largest)) largest = value;
   }
 
   // KLU's C interface allocates and frees what it makes itself. Orders are shared and only read.

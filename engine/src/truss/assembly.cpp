@@ -64,7 +64,7 @@ void Assembly::record() {
   }
   runs_ = std::vector<Run>();
   slots_ = std::make_shared<const Slots>(std::move(made));
-  moved.resize(3, 0);
+  moved.resize(3, 0);  // of which copies have no use
 }
 
 namespace detail {

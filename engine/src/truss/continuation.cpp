@@ -121,19 +121,21 @@ std::vector<double> Walker::program_rates_before(double target) const {
 /// @param first how it ended
 SolveReport Walker::slide_on(double target, bool is_short, VectorXd& to, Statuses& statuses,
                              SolveReport first) {
-  const Rounding rounding = system.rounding(z);
   std::vector<int> stopped;
-  Statuses sliding = statuses;
   for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
     const JointStatus before = origin.statuses[index(i)];
     if (statuses[index(i)] != JointStatus::stick || !is_slip(before)) continue;
-    if (!system.remembers_when(i, before, JointStatus::stick)) continue;
-    // The step is to be divided.
-    if (!is_short && slide_at_stake(i, before, target, rounding)) return first;
-    stopped.push_back(i);
-    sliding[index(i)] = before;
+    if (system.remembers_when(i, before, JointStatus::stick)) stopped.push_back(i);
   }
   if (stopped.empty()) return first;
+  const Rounding rounding = system.rounding(z);
+  Statuses sliding = statuses;
+  for (const int i : stopped) {
+    const JointStatus before = origin.statuses[index(i)];
+    // The step is to be divided.
+    if (!is_short && slide_at_stake(i, before, target, rounding)) return first;
+    sliding[index(i)] = before;
+  }
   const std::vector<double> heating = program_rates_before(target);
   const auto rates_then = rates.rates_on(sliding, to, target, origin, heating);
   if (!rates_then) return first;
@@ -143,14 +145,18 @@ SolveReport Walker::slide_on(double target, bool is_short, VectorXd& to, Statuse
     if (!(sense * slides[i] > 0.0)) return first;
   }
   note(first);
+  const auto solve_on = [&](Statuses& branches) {
+    return newton.solve(target, origin, JointModel::friction, 1.0, options.most_iterations, to,
+                        branches, {}, true);
+  };
   const VectorXd found = to;
-  SolveReport second = newton.solve_on(sliding, target, origin, options.most_iterations, to);
+  SolveReport second = solve_on(sliding);
   if (second.end == SolveEnd::converged || second.end == SolveEnd::stopped) {
     statuses = std::move(sliding);
     return second;
   }
   to = found;
-  return newton.solve_on(statuses, target, origin, options.most_iterations, to);
+  return solve_on(statuses);
 }
 
 /// Whether a step that has converged passes an instability by slip: what slips at its end is

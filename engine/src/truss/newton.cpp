@@ -11,12 +11,15 @@
 #include <utility>
 
 #include "condensed_pivots.hpp"
+#include "numerics/raise.hpp"
 #include "parallel.hpp"
 #include "rate_problem.hpp"
 
 namespace statejump::truss::detail {
 
 namespace {
+
+using numerics::raise;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Forces balance to this share of the largest one.
@@ -34,11 +37,6 @@ constexpr double told_every = 0.1;
 
 /// Multiplying as many columns takes some ten times as long as starting a thread.
 constexpr Eigen::Index halved_columns = 50000;
-
-/// The larger of a number and those before it, or one that is none, which has to show.
-void raise(double& largest, double value) {
-  if (!(value <= largest) && !std::isnan(largest)) largest = value;
-}
 
 /// What is left of the equations, each kind in its own unit.
 struct Residuals {
@@ -91,13 +89,12 @@ LeftOver left_over(const Assembly& of, const VectorXd& rate, const VectorXd& by_
     add_columns(0, columns, left.residual, added);
   } else {
     // The same halves whatever threads there are.
-    LeftOver second{VectorXd::Zero(columns)};
-    VectorXd second_added = VectorXd::Zero(columns);
+    VectorXd second = VectorXd::Zero(columns), second_added = second;
     in_parallel(2, [&](std::size_t k) {
       k == 0 ? add_columns(0, columns / 2, left.residual, added)
-             : add_columns(columns / 2, columns, second.residual, second_added);
+             : add_columns(columns / 2, columns, second, second_added);
     });
-    left.residual += second.residual;
+    left.residual += second;
     added += second_added;
   }
   double force_left = 0.0, force_added = 0.0, closure_left = 0.0, closure_added = 0.0;
@@ -167,18 +164,6 @@ Newton::Violation Newton::first_violation(const std::vector<int>& joints, const 
     }
   }
   return first;
-}
-
-SolveReport Newton::solve(double time, const StepStart& start, JointModel joints, double opening,
-                          int most_iterations, VectorXd& z, Statuses& statuses,
-                          const std::optional<Ahead>& ahead) {
-  return solve(time, start, joints, opening, most_iterations, z, statuses, ahead, false);
-}
-
-SolveReport Newton::solve_on(const Statuses& statuses, double time, const StepStart& start,
-                             int most_iterations, VectorXd& z) {
-  Statuses same = statuses;
-  return solve(time, start, JointModel::friction, 1.0, most_iterations, z, same, {}, true);
 }
 
 SolveReport Newton::solve(double time, const StepStart& start, JointModel joints, double opening,

@@ -90,13 +90,10 @@ class Newton {
   /// Solves for z and statuses at `time`, from the guess in them. On failure they are unspecified.
   /// @param most_iterations on one set of branches
   /// @param ahead whether and from where changes are looked for; else they are not
+  /// @param held whether the joints stay on these branches, whatever their inequalities say
   SolveReport solve(double time, const StepStart& start, JointModel joints, double opening,
                     int most_iterations, VectorXd& z, Statuses& statuses,
-                    const std::optional<Ahead>& ahead = {});
-
-  /// The same with friction and on this set of branches, whatever their inequalities say.
-  SolveReport solve_on(const Statuses& statuses, double time, const StepStart& start,
-                       int most_iterations, VectorXd& z);
+                    const std::optional<Ahead>& ahead = {}, bool held = false);
 
   /// Rates of the unknowns along the path from where the last solve converged, by its factors.
   /// @param by_time derivative of the residual by time, see System::heating()
@@ -120,10 +117,6 @@ class Newton {
                             const VectorXd& to, double from_time, double time,
                             const StepStart& start, JointModel model,
                             const Statuses& statuses) const;
-
-  SolveReport solve(double time, const StepStart& start, JointModel joints, double opening,
-                    int most_iterations, VectorXd& z, Statuses& statuses,
-                    const std::optional<Ahead>& ahead, bool held);
 
   /// Factors the Jacobian at hand, which is one on this set of branches.
   bool factorize(const Statuses& statuses, JointModel joints,

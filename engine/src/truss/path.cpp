@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -103,24 +102,11 @@ Path solve(const Model& model, const Options& options) {
   const double duration = model.programs.front().duration();
   double now = 0.0;
   const auto going_on = [&] { return !options.progress || options.progress(now / duration); };
-  Walker walker{model,
-                system,
-                options,
-                Newton(system, options.locate_events, going_on),
-                detail::RateProblem(system),
-                {},
-                {},
-                {},
-                {},
-                0.0,
-                1.0,
-                std::numeric_limits<double>::infinity(),
-                0.0,
-                0.0,
-                0.0,
-                std::numeric_limits<double>::infinity(),
-                {},
-                {}};
+  Walker walker{.model = model,
+                .system = system,
+                .options = options,
+                .newton = Newton(system, options.locate_events, going_on),
+                .rates = detail::RateProblem(system)};
   const auto joints = static_cast<Eigen::Index>(model.joints.size());
   walker.slide_rate = VectorXd::Zero(joints);
   walker.path.unknowns = system.unknowns();

@@ -207,8 +207,8 @@ class System {
   }
 
   /// Symmetric stiffness of links and springs at z with joints closed (penalty), for the search for
-  /// mechanisms and instability; free displacements only, the lower triangle. A joint listed as open or slipping does
-  /// not hold there.
+  /// mechanisms and instability; free displacements only, the lower triangle. A joint listed as
+  /// open or slipping does not hold there.
   /// @param held stiffness of a direction that a joint holds, in that of the stiffest part
   Eigen::SparseMatrix<double> joined_stiffness(const VectorXd& z, double time,
                                                const Statuses& statuses, JointModel joints,

@@ -48,10 +48,10 @@ struct Walker {
   const Options& options;
   Newton newton;
   RateProblem rates;
-  Path path;
-  VectorXd z;
-  StepStart origin;  ///< The state as the start of the next step.
-  State state;
+  Path path = {};
+  VectorXd z = {};
+  StepStart origin = {};  ///< The state as the start of the next step.
+  State state = {};
   double time = 0.0;
   /// Share of the last step that was tried after which its first event comes; 1: unknown.
   double event_share = 1.0;
@@ -65,9 +65,9 @@ struct Walker {
   /// What the last step lost, if it was refused for that [J].
   double refused_loss = std::numeric_limits<double>::infinity();
   /// Rates of the unknowns at `time`; empty where they are not known.
-  VectorXd rate;
+  VectorXd rate = {};
   /// How fast every joint that slips slides at `time` [m/s].
-  VectorXd slide_rate;
+  VectorXd slide_rate = {};
 
   [[noreturn]] void fail(const SolveReport& report, JointModel joints, double when,
                          const char* sought);

@@ -79,6 +79,7 @@ class Assembly {
 
  private:
   friend class AssemblyStrand;
+  /// Pattern of the Jacobian, and where in it what is written stands.
   struct Slots {
     std::vector<int> outer, inner;  ///< Of the Jacobian: begin of its columns, rows of its entries.
     std::vector<int> entries;       ///< Where every run of places begins among the entries.

@@ -87,13 +87,13 @@ def vectors(items: Sequence[Item], key: str, dimension: int) -> np.ndarray:
             return np.broadcast_to(0.0, (len(items), 3))
         if dimension == 3 and not none.any():
             return given
+        given = np.nan_to_num(given)
+    else:
+        zero = (0.0,) * dimension
+        given = np.array([zero if value is None else value for value in values(items, key)],
+                         dtype=float).reshape(-1, dimension)
     found = np.zeros((len(items), 3))
-    if isinstance(items, ItemColumns):
-        found[:, :dimension] = given
-        return np.nan_to_num(found, copy=False)
-    none = (0.0,) * dimension
-    given = np.array([none if value is None else value for value in values(items, key)], dtype=float)
-    found[:, :dimension] = given.reshape(-1, dimension)
+    found[:, :dimension] = given
     return found
 
 

@@ -11,7 +11,7 @@ from statejump.core.progress import Tell
 from statejump.fclib import Problem, Stored, merit
 from statejump.fclib.problem import Merit
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.solve import whole_path
+from statejump.kinds.truss.solve import settings, whole_path
 from statejump.schema.rules import WHOLE, Rule
 
 NUMBER = Rule(WHOLE, allowed=Range(1, 10_000))
@@ -54,11 +54,7 @@ def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: No
         raise StatejumpError(f"the truss has {joints} joints", case=case.name,
                              cause=f"the matrix of a contact problem is dense, so it must be 1 to {MOST_JOINTS}")
     wanted = (np.arange(number) + 0.5) / number * case.duration_s
-    found = whole_path(
-        truss, tell, increments_per_branch=case.reduced.increments_per_branch,
-        locate_events=case.reduced.locate_events, event_tolerance=case.reduced.event_tolerance,
-        energy_tolerance=case.reduced.energy_tolerance, cycle_ends_only=True, problem_times=wanted,
-    )
+    found = whole_path(truss, tell, cycle_ends_only=True, problem_times=wanted, **settings(case))
     problems = [_problem(case, problem) for problem in found.problems if problem["joints"]]
     if not problems:
         raise StatejumpError("no joint of the truss is a contact", case=case.name,

@@ -238,8 +238,10 @@ def _solved(case: TrussCase, tell: Tell) -> TrussPath:
     items = 3 * len(truss.nodes.names) + len(truss.links.names) + 8 * len(truss.revolutes.names)
     branches = max(2, *(len(program.table_time_s or ()) for program in (case.thermal, *case.program)))
     states = branches * case.thermal.cycles * case.reduced.increments_per_branch
-    return whole_path(
-        truss, tell, increments_per_branch=case.reduced.increments_per_branch,
-        locate_events=case.reduced.locate_events, event_tolerance=case.reduced.event_tolerance,
-        energy_tolerance=case.reduced.energy_tolerance, cycle_ends_only=8 * items * states > LARGEST_PATH,
-    )
+    return whole_path(truss, tell, cycle_ends_only=8 * items * states > LARGEST_PATH, **settings(case))
+
+
+def settings(case: TrussCase) -> dict[str, Any]:
+    """Return how the [reduced] of a case says that :func:`path` follows it."""
+    keys = "increments_per_branch", "locate_events", "event_tolerance", "energy_tolerance"
+    return {key: getattr(case.reduced, key) for key in keys}
