@@ -209,7 +209,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   int iterations = 0;
   std::size_t pieces = 0;
   bool settled = false;  // whether no joint violates its inequality where z is
-  // Pivots of all joints since there were ever fewer violations, and the joints that had any.
+  // Pivots of all joints since there were ever fewer violations, and the joints that had any since.
   int idle = 0;
   std::set<int> wandering;
   // Pivots that wander lead far away, where the equations are others: they begin anew from here.
@@ -217,17 +217,20 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const Statuses first_statuses = statuses;
   if (ahead && kept && keeps(statuses, joints)) z = ahead->foreseen;
   bool condensed = false;
-  /// Takes the step from the start that pivots on its factors lead to; false: there is none.
+  /// Takes the step from the start that pivots on its factors lead to; false: there is none. What
+  /// wanders is as it was at the start, everything else on the branches that were found.
   const auto condense = [&] {
     condensed = true;
     idle = 0;
+    Statuses begun = statuses;
+    for (const int i : wandering) begun[index(i)] = first_statuses[index(i)];
     at_.want_jacobian(true);
-    system_->evaluate(first_z, time, start, first_statuses, joints, opening, at_);
+    system_->evaluate(first_z, time, start, begun, joints, opening, at_);
     constexpr double stable = linear::SparseFactor::stable_growth;
-    if (!factorize(first_statuses, joints, stable)) return false;
+    if (!factorize(begun, joints, stable)) return false;
     const VectorXd whole = factor_.solve(-at_.residual);
     const std::vector<int> in_play(wandering.begin(), wandering.end());
-    const Linearized here{first_z, time, start, joints, opening, first_statuses, factor_, whole};
+    const Linearized here{first_z, time, start, joints, opening, begun, factor_, whole};
     auto answer = condensed_pivots(*system_, here, in_play);
     if (!answer || !seen.insert(fingerprint(answer->statuses)).second) return false;
     statuses = std::move(answer->statuses);
@@ -238,7 +241,6 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   /// @param stepped whether z is at the end of a full step on the present factors
   const auto pivot = [&](const Violations& found, bool stepped) {
     if (found.joints.empty()) return true;
-    wandering.insert(found.joints.begin(), found.joints.end());
     pivoted = true;
     const auto begin_anew = [&] {
       current_ = false;
@@ -252,11 +254,14 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     if (found.joints.size() < fewest) {
       fewest = found.joints.size();
       idle = 0;
+      wandering.clear();
+      condensed = false;
       if (pivoting == Pivoting::single) {
         pivoting = Pivoting::rounded;
         seen.clear();
       }
     }
+    wandering.insert(found.joints.begin(), found.joints.end());
     // While inequalities are strict, a set that comes back tells that rounding decides. Laws of
     // several pieces change them without a pivot: they are not condensed.
     const double paid = idle * factor_.solutions_per_factorization();
