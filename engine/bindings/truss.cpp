@@ -5,7 +5,9 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -71,8 +73,8 @@ Vector3d row(const Numbers& array, std::size_t i) {
   return Eigen::Map<const Vector3d>(array.data() + 3 * i);
 }
 
-/// Gives the node the directions that neither a fixed coordinate nor a guide plane takes away.
-void set_free_directions(const bool* fixed, Vector3d normal, truss::Node& node) {
+/// The directions that neither a fixed coordinate nor a guide plane takes away, and how many.
+std::pair<truss::Directions, int> free_directions(const bool* fixed, Vector3d normal) {
   std::vector<Vector3d> held;
   for (int k = 0; k < 3; ++k) {
     if (fixed[k]) held.push_back(Vector3d::Unit(k));
@@ -83,7 +85,8 @@ void set_free_directions(const bool* fixed, Vector3d normal, truss::Node& node) 
   };
   normal = remainder(normal);
   if (normal.norm() > 1e-9) held.push_back(normal.normalized());
-  node.freedoms = 0;
+  int freedoms = 0;
+  Eigen::Matrix3d columns = Eigen::Matrix3d::Identity();
   while (held.size() < 3) {
     // The coordinate direction of which most is left.
     Vector3d best = remainder(Vector3d::UnitX());
@@ -92,8 +95,9 @@ void set_free_directions(const bool* fixed, Vector3d normal, truss::Node& node) 
       if (direction.norm() > best.norm() + 1e-9) best = direction;
     }
     held.push_back(best.normalized());
-    node.free_directions.col(node.freedoms++) = held.back();
+    columns.col(freedoms++) = held.back();
   }
+  return {truss::Directions(columns), freedoms};
 }
 
 /// Nodes of a truss whose reading leaves megabytes.
@@ -128,6 +132,7 @@ void add_joints(const Table& table, truss::Model& model) {
     };
     std::visit(fill, parameter.member);
   }
+  model.joints.reserve(model.joints.size() + joints.size());
   for (Type& joint : joints) model.joints.emplace_back(std::move(joint));
 }
 
@@ -142,12 +147,23 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& links_, const py
     const auto fixed = table.flags("fixed", 3);
     const auto normal = table.numbers("guide_normal", 3);
     const auto force = table.numbers("force_N", 3);
+    // Few supports differ, and what is alike is kept once.
+    using Support = std::tuple<bool, bool, bool, double, double, double>;
+    std::map<Support, std::pair<truss::Directions, int>> supports;
+    model.nodes.reserve(table.size());
     for (std::size_t i = 0; i < table.size(); ++i) {
       truss::Node node;
       node.name = table.name(i);
       node.position = row(position, i);
       node.load = row(force, i);
-      set_free_directions(fixed.data() + 3 * i, row(normal, i), node);
+      const bool* held = fixed.data() + 3 * i;
+      const Vector3d guide = row(normal, i);
+      const Support support{held[0], held[1], held[2], guide.x(), guide.y(), guide.z()};
+      auto found = supports.find(support);
+      if (found == supports.end()) {
+        found = supports.emplace(support, free_directions(held, guide)).first;
+      }
+      std::tie(node.free_directions, node.freedoms) = found->second;
       model.nodes.push_back(std::move(node));
     }
   }
@@ -159,6 +175,7 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& links_, const py
     const auto expansion = table.numbers("thermal_expansion_per_K");
     const auto program = table.indices("program");
     const auto fraction = table.numbers("temperature_fraction");
+    model.links.reserve(table.size());
     for (std::size_t i = 0; i < table.size(); ++i) {
       model.links.push_back({table.name(i), ends.data()[2 * i], ends.data()[2 * i + 1],
                              stiffness.data()[i], length.data()[i], expansion.data()[i],
@@ -171,6 +188,7 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& links_, const py
     const auto stiffness = table.numbers("stiffness_N_per_m");
     const auto length = table.numbers("free_length_m");
     const auto cable = table.flags("cable");
+    model.springs.reserve(table.size());
     for (std::size_t i = 0; i < table.size(); ++i) {
       model.springs.push_back({table.name(i), ends.data()[2 * i], ends.data()[2 * i + 1],
                                stiffness.data()[i], length.data()[i], cable.data()[i]});
@@ -182,6 +200,7 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& links_, const py
     const auto stiffness = table.numbers("stiffness_N_m_per_rad");
     const auto bias = table.numbers("bias_rad");
     const auto axis = table.numbers("axis", 3);
+    model.torsion_springs.reserve(table.size());
     for (std::size_t i = 0; i < table.size(); ++i) {
       model.torsion_springs.push_back({table.name(i), links.data()[2 * i], links.data()[2 * i + 1],
                                        stiffness.data()[i], bias.data()[i], row(axis, i)});

@@ -118,7 +118,7 @@ void System::assemble_bars(const Region& region, const std::vector<double>& chan
     return to.moved().col(second) - to.moved().col(first);
   };
   const auto lengths_of = [&](int first, int second) {
-    return lengths(drawn_.col(second) - drawn_.col(first), moved_between(first, second));
+    return lengths(drawn(second) - drawn(first), moved_between(first, second));
   };
   const auto bar = [&](int first, int second, const Vector3d& direction, double length,
                        const Axial& axial) {
@@ -181,10 +181,10 @@ void System::assemble_bars(const Region& region, const std::vector<double>& chan
     for (std::size_t k = 0; k < 2; ++k) {
       if (links[k] < 0) continue;
       const Link& link = model.links[index(links[k])];
-      const Vector2d drawn = plane.transpose() * (drawn_.col(link.second) - drawn_.col(link.first));
+      const Vector2d before = plane.transpose() * (drawn(link.second) - drawn(link.first));
       const Vector2d moved = plane.transpose() * moved_between(link.first, link.second);
-      now[k] = drawn + moved;
-      angle += sign[k] * std::atan2(cross(drawn, moved), drawn.dot(now[k]));
+      now[k] = before + moved;
+      angle += sign[k] * std::atan2(cross(before, moved), before.dot(now[k]));
     }
     const double moment = spring.stiffness * (angle - spring.free_angle);
     // The angle by the places of the ends: that of the second of a link as turn, of the first

@@ -15,16 +15,9 @@ constexpr std::size_t nodes_at_once = 50000;
 }  // namespace
 
 System::System(const Model& model) : model_(&model) {
-  drawn_.resize(3, static_cast<Eigen::Index>(model.nodes.size()));
-  const Matrix3d* directions = nullptr;
+  place_.reserve(model.nodes.size() + 1);
   for (const Node& node : model.nodes) {
-    // Neighbours mostly move in the same directions: one matrix of them stays at hand.
-    if (directions == nullptr || *directions != node.free_directions) {
-      directions = &node.free_directions;
-    }
-    const auto n = static_cast<int>(place_.size());
-    drawn_.col(n) = node.position;
-    place_.push_back({unknowns_, node.freedoms, directions});
+    place_.push_back({unknowns_, node.freedoms, &node.free_directions.matrix()});
     unknowns_ += node.freedoms;
   }
   place_.emplace_back();
@@ -87,7 +80,7 @@ void System::displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const {
 }
 
 Lengths System::lengths_between(int from, int to, const VectorXd& z) const {
-  return lengths(drawn_.col(to) - drawn_.col(from), displacement(to, z) - displacement(from, z));
+  return lengths(drawn(to) - drawn(from), displacement(to, z) - displacement(from, z));
 }
 
 int System::node_of(int displacement) const {
@@ -101,7 +94,7 @@ int System::node_of(int displacement) const {
 namespace {
 
 template <class Moved>
-Trial asked(const Eigen::Matrix3Xd& drawn, const JointFrame& frame, const double* force,
+Trial asked(const std::vector<Node>& nodes, const JointFrame& frame, const double* force,
             const double* history, double time, double temperature_change, int joint,
             const StepStart& start, JointModel joints, double opening, Moved&& moved) {
   Trial trial(frame);
@@ -121,7 +114,7 @@ Trial asked(const Eigen::Matrix3Xd& drawn, const JointFrame& frame, const double
       trial.moved[k].setZero();
       continue;
     }
-    trial.drawn[k] = drawn.col(node);
+    trial.drawn[k] = nodes[index(node)].position;
     trial.moved[k] = moved(node);
   }
   std::copy_n(force, frame.forces, trial.force.begin());
@@ -133,16 +126,16 @@ Trial asked(const Eigen::Matrix3Xd& drawn, const JointFrame& frame, const double
 Trial System::trial(int joint, const VectorXd& z, double time, const StepStart& start,
                     JointModel joints, double opening) const {
   const JointFrame& frame = frames_[index(joint)];
-  return asked(drawn_, frame, z.data() + force_row_[index(joint)], history(joint, start), time,
-               temperature_change(frame, time), joint, start, joints, opening,
+  return asked(model_->nodes, frame, z.data() + force_row_[index(joint)], history(joint, start),
+               time, temperature_change(frame, time), joint, start, joints, opening,
                [&](int node) { return displacement(node, z); });
 }
 
 Trial System::trial(int joint, const VectorXd& z, const Eigen::Matrix3Xd& moved, double time,
                     const StepStart& start, JointModel joints, double opening) const {
   const JointFrame& frame = frames_[index(joint)];
-  return asked(drawn_, frame, z.data() + force_row_[index(joint)], history(joint, start), time,
-               temperature_change(frame, time), joint, start, joints, opening,
+  return asked(model_->nodes, frame, z.data() + force_row_[index(joint)], history(joint, start),
+               time, temperature_change(frame, time), joint, start, joints, opening,
                [&](int node) -> Vector3d { return moved.col(node); });
 }
 

@@ -251,6 +251,8 @@ class System {
   Lengths lengths_between(int from, int to, const VectorXd& z) const;
   Axial axial(const Link& link, const VectorXd& z, double time) const;
   JointWriter writer(int joint, AssemblyStrand& to) const;
+  /// Place of a node at ΔT = 0 [m].
+  const Vector3d& drawn(int node) const { return model_->nodes[index(node)].position; }
   JointStatus decide(int joint, Trial& at, JointStatus status, const Rounding& rounding) const;
   double temperature_change(const JointFrame& frame, double time) const {
     return frame.program < 0
@@ -273,7 +275,6 @@ class System {
   double stiffness_scale_ = 0.0;
   double size_ = 0.0;
   std::vector<JointWriter::Place> place_;  // of each node, then that of the ground
-  Eigen::Matrix3Xd drawn_;                 // places of the nodes at ΔT = 0 [m]
   std::vector<JointFrame> frames_;
   std::vector<int> force_row_;      // first force of each joint
   std::vector<int> history_begin_;  // of each joint

@@ -79,7 +79,9 @@ Model wheel(int blocks) {
     block.name = std::string("block").append(std::to_string(i));
     block.position = radial;
     block.freedoms = 1;
-    block.free_directions << radial, Vector3d::UnitZ().cross(radial), Vector3d::UnitZ();
+    block.free_directions =
+        (Eigen::Matrix3d() << radial, Vector3d::UnitZ().cross(radial), Vector3d::UnitZ())
+            .finished();
     model.nodes.push_back(block);
     model.links.push_back({block.name, 0, i + 1, rigidity, 1.0, expansion, 0, 1.0});
     Slider slider;

@@ -25,7 +25,8 @@ Model arch() {
   Model model;
   model.programs = {triangle(100.0)};
   Node apex = node("apex", 0.0, 0.01, 1);
-  apex.free_directions << Vector3d::UnitY(), Vector3d::UnitX(), Vector3d::UnitZ();
+  apex.free_directions =
+      (Eigen::Matrix3d() << Vector3d::UnitY(), Vector3d::UnitX(), Vector3d::UnitZ()).finished();
   model.nodes = {node("left", -1.0, 0.0, 0), apex, node("right", 1.0, 0.0, 0)};
   const double drawn = std::hypot(1.0, 0.01);
   for (int i = 0; i < 2; ++i) {
@@ -220,7 +221,8 @@ Model loaded_arch() {
   Model model;
   model.programs = {triangle(-20.0)};
   Node apex = node("apex", 0.0, 0.1, 1);
-  apex.free_directions << Vector3d::UnitY(), Vector3d::UnitX(), Vector3d::UnitZ();
+  apex.free_directions =
+      (Eigen::Matrix3d() << Vector3d::UnitY(), Vector3d::UnitX(), Vector3d::UnitZ()).finished();
   apex.load = {0.0, -100.0, 0.0};
   model.nodes = {node("left", -1.0, 0.0, 0), apex, node("right", 1.0, 0.0, 0)};
   for (int i = 0; i < 2; ++i) {

@@ -137,7 +137,7 @@ class MinimisingTruss {
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(unknowns_);
     Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(unknowns_, unknowns_);
     const auto directions = [&](int node) {
-      return model_->nodes[std::size_t(node)].free_directions.leftCols(
+      return model_->nodes[std::size_t(node)].free_directions.matrix().leftCols(
           model_->nodes[std::size_t(node)].freedoms);
     };
     for (std::size_t n = 0; n < model_->nodes.size(); ++n) {

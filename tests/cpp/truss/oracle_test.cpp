@@ -63,8 +63,9 @@ Model random_truss(unsigned seed, int sliders) {
     node.name = named("N", model.nodes.size());
     node.position = at;
     node.freedoms = freedoms;
-    node.free_directions << in_plane(angle), in_plane(angle + 0.5 * std::numbers::pi),
-        Vector3d::UnitZ();
+    node.free_directions = (Eigen::Matrix3d() << in_plane(angle),
+                            in_plane(angle + 0.5 * std::numbers::pi), Vector3d::UnitZ())
+                               .finished();
     if (freedoms > 0 && prestressed) node.load = draw.between(0.0, 100.0) * in_plane(angle + 1.0);
     model.nodes.push_back(node);
     return static_cast<int>(model.nodes.size()) - 1;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "statejump/thermal/program.hpp"
@@ -10,13 +12,35 @@
 
 namespace statejump::truss {
 
+/// Three directions, the columns of a matrix, kept once by all that copy them: the nodes of a truss
+/// mostly have the same.
+class Directions {
+ public:
+  /// Those of the coordinates.
+  Directions() : Directions(coordinates()) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): a matrix is three directions.
+  Directions(const Eigen::Matrix3d& columns)
+      : columns_(std::make_shared<const Eigen::Matrix3d>(columns)) {}
+
+  const Eigen::Matrix3d& matrix() const { return *columns_; }
+  auto col(Eigen::Index i) const { return columns_->col(i); }
+
+ private:
+  explicit Directions(std::shared_ptr<const Eigen::Matrix3d> columns)
+      : columns_(std::move(columns)) {}
+  static const std::shared_ptr<const Eigen::Matrix3d>& coordinates() {
+    static const auto kept = std::make_shared<const Eigen::Matrix3d>(Eigen::Matrix3d::Identity());
+    return kept;
+  }
+  std::shared_ptr<const Eigen::Matrix3d> columns_;
+};
+
 /// Point where links end.
 struct Node {
   std::string name;                                    ///< For messages.
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< Drawn shape, ΔT = 0 [m].
-  /// Orthonormal directions in which the node may move: the first `freedoms` columns.
-  Eigen::Matrix3d free_directions = Eigen::Matrix3d::Identity();
-  int freedoms = 3;                                ///< 0: fixed.
+  Directions free_directions;  ///< Orthonormal; the node may move in the first `freedoms` of them.
+  int freedoms = 3;            ///< 0: fixed.
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< Dead load [N].
 };
 
