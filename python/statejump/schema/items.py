@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf
+from math import inf, isfinite
 from typing import Any, TypeVar
 
 from statejump.core.errors import MissingKey, NotAllowed, UnknownKey
 from statejump.schema.fields import Section, default_of, definition, fields_of, is_required, rule_of, text
 from statejump.schema.item_tables import ItemColumns, ItemTable
-from statejump.schema.rules import NUMBER, suggestion
+from statejump.schema.rules import NUMBER, NUMBERS, TEXT, suggestion
 
 ItemType = TypeVar("ItemType", bound=Section)
 
@@ -50,20 +50,37 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
     fields = fields_of(model)
     rules = {key: rule_of(field) for key, field in fields.items()}
     needed = [key for key, field in fields.items() if is_required(field)]
-    optional = [(key, field) for key, field in fields.items() if not is_required(field)]
+    optional = {key: field for key, field in fields.items() if not is_required(field)}
     ranges = {
         key: (rule.allowed.low, rule.allowed.high, rule.allowed.above)
         for key, rule in rules.items() if rule.form == NUMBER and rule.allowed is not None
     }
+    lists = {
+        key: (rule.allowed.low, rule.allowed.high, rule.length) for key, rule in rules.items()
+        if rule.form == NUMBERS and rule.allowed is not None and not rule.allowed.above
+    }
+    # Of texts but names many items have the same: what a key took once, it takes again.
+    taken: dict[str, set[str]] = {key: set() for key, rule in rules.items() if rule.form == TEXT and key != "name"}
     set_value = object.__setattr__
     items = []
     for number, table in enumerate(value, start=1):
-        values = {key: default_of(field) for key, field in optional}
+        values = {}
         for key, given in table.items():
-            low, high, above = ranges.get(key, (inf, -inf, True))
-            if type(given) is float and low <= given <= high and not (above and given == low):
-                values[key] = given
-                continue
+            if type(given) is float:
+                low, high, above = ranges.get(key, (inf, -inf, True))
+                if low <= given <= high and not (above and given == low):
+                    values[key] = given
+                    continue
+            elif type(given) is str:
+                if given in taken.get(key, ()):
+                    values[key] = given
+                    continue
+            elif type(given) is list and key in lists and set(map(type, given)) == {float}:
+                low, high, length = lists[key]
+                # Of no number, wherever it stands, the sum tells.
+                if low <= min(given) and max(given) <= high and isfinite(sum(given)) and length in (None, len(given)):
+                    values[key] = given.copy()
+                    continue
             field = fields.get(key)
             if field is None:
                 raise UnknownKey(key, item=where(section, table, number), **suggestion(key, list(fields)))
@@ -78,6 +95,8 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
                 refused.item = where(section, table, number)
                 raise
             values[key] = converted
+            if type(given) is str and key in taken and converted is given:
+                taken[key].add(given)
         for key in needed:
             if key not in table:
                 raise MissingKey(key, rules[key].needs(), item=where(section, table, number),
@@ -85,6 +104,6 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
         item = model.__new__(model)
         # One by one and always in one order: then all items share the names of their keys, in a third of the memory.
         for key in fields:
-            set_value(item, key, values[key])
+            set_value(item, key, values[key] if key in values else default_of(optional[key]))
         items.append(item)
     return items

@@ -8,6 +8,7 @@ distances along the normal, to first order in the error. Least squares by scipy.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -144,11 +145,26 @@ def surface(truss: ResolvedTruss) -> Surface | None:
     positions = truss.nodes.position_m[reflector.nodes]
     origin = positions.mean(axis=0)
     drawn = (positions - origin) @ frame.T
+    parameters = _parameters(drawn.tobytes(), dimension, reflector.focal_length_m)
+    return None if parameters is None else Surface(reflector.nodes, frame, origin, drawn, *parameters)
+
+
+@lru_cache(maxsize=8)
+def _parameters(
+    drawn: bytes, dimension: int, focal_length_m: float | None
+) -> tuple[tuple[str, ...], dict[str, float], tuple[str, ...]] | None:
+    """Return which parameters nodes determine, those that are held, and why; None if they determine no plane.
+
+    Samples of a campaign mostly share their drawn shape, so that its fits are kept.
+
+    :param drawn: places of the nodes [m], (nodes, dimension) numbers
+    """
+    points = np.frombuffer(drawn).reshape(-1, dimension)
+    lateral = dimension - 1
     tilts, shifts = _names("tilt", lateral), _names("shift", lateral)
-    given = reflector.focal_length_m
     zero = {name: 0.0 for name in ("depth", "curvature", *tilts, *shifts)}
-    known = {**zero, **({} if given is None else {"curvature": 1 / (4 * given)})}
-    curvature = () if given is not None else ("curvature",)
+    known = {**zero, **({} if focal_length_m is None else {"curvature": 1 / (4 * focal_length_m)})}
+    curvature = () if focal_length_m is not None else ("curvature",)
     notes: list[str] = []
     flat = f"the nodes do not determine the focal length: the fit is a {'line' if lateral == 1 else 'plane'}"
     for free, note in (
@@ -160,10 +176,10 @@ def surface(truss: ResolvedTruss) -> Surface | None:
         if note:
             notes.append(note)
         held = {name: value for name, value in known.items() if name not in free}
-        if len(drawn) <= len(free):
+        if len(points) <= len(free):
             continue
-        jacobian = _fit(drawn, free, held).jac
+        jacobian = _fit(points, free, held).jac
         lengths = np.linalg.norm(jacobian, axis=0)
         if (lengths > 0).all() and np.linalg.svd(jacobian / lengths, compute_uv=False)[-1] > LEAST_SINGULAR_VALUE:
-            return Surface(reflector.nodes, frame, origin, drawn, free, held, tuple(notes))
+            return free, held, tuple(notes)
     return None
