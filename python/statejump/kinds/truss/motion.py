@@ -125,10 +125,6 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         return True
 
     truss, samples = case.resolve(), case.samples_per_cycle
-    for joint in JOINTS:
-        for name in truss.joints[joint.section].names[:1] if joint.not_in_motion else ():
-            raise StatejumpError(cause=f"{joint.section} {name!r} {joint.not_in_motion}", case=case.name,
-                                 remedy="'statejump reduced' without --dynamic can run the case", joint=name)
     if truss.sticking == "partial_slip":
         raise StatejumpError(cause='joints in motion have no partial slip (reduced.sticking = "partial_slip")',
                              case=case.name, remedy='set reduced.sticking to "elastic" or "rigid", or run '

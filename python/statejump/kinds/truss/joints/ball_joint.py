@@ -82,7 +82,6 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
     inner, outer = "ball", "socket"
     eccentricity, normal_force = "ball_eccentricity_m", "ball_normal_force_N"
     has_axis = False
-    not_in_motion = "is a joint of quasi-static paths only"
 
     def resolve(self, items: Sequence[BallJoint], known: References) -> BallJoints:
         return BallJoints(

@@ -116,7 +116,6 @@ class JointType(Generic[ItemType, ArraysType]):
     has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
     has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result
     not_in_dem: ClassVar[str] = ""  # what follows its name where the DEM refuses it; empty: the DEM has it
-    not_in_motion: ClassVar[str] = ""  # likewise for trusses in motion
 
     @property
     def items(self) -> str:
