@@ -152,4 +152,22 @@ struct Motion {
 /// [2] V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, Springer 2008.
 Motion simulate(const Model& model, const Inertia& inertia, const MotionOptions& options = {});
 
+/// The same truss as an ordinary differential equation at the scale of a DEM: contacts are the
+/// kernel's, Hertz's across and along the surface a law of friction by its name, with dashpots as
+/// in kernel::contact_step(). Steps are Runge and Kutta's of fourth order, all of one length. What
+/// a contact remembers changes at the end of a step only, by the slide of the whole step, which is
+/// integrated along the way with the places; where the stiffness of a contact changes within a
+/// step, or a contact begins or ends in it, that is of first order.
+///
+/// Explicit: a step of more than 2 √2 over the largest angular frequency grows what swings. Steps
+/// in which a contact alone is beyond that are counted, `Motion::inexact_steps`. Elastic revolutes
+/// and balls, and sliders on the ground without stops that stick elastically; masses are lumped.
+/// `theta`, `displacement_tolerance`, `restitution` and drives are of simulate() alone.
+///
+/// @param friction_law one of kernel::laws::law_names<FrictionLaw>()
+/// @throws as simulate(); std::invalid_argument for a law that is not known or a joint that has no
+/// such contact
+Motion simulate_regularised(const Model& model, const Inertia& inertia,
+                            const std::string& friction_law, const MotionOptions& options = {});
+
 }  // namespace statejump::truss

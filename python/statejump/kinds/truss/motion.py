@@ -41,12 +41,16 @@ class TrussMotion:
     negative_dissipation_J: float
     undetermined: tuple[float, list[str]] | None  # first step [s] whose reactions are not unique, and the joints
     jammed: tuple[float, list[str]] | None  # first step [s] that ends a slide which could not go on, and the joint
+    regularised: bool = False
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the motion leaves open, in sentences."""
         found = []
-        if self.inexact_steps:
+        if self.inexact_steps and self.regularised:
+            found.append(f"in {self.inexact_steps} of {self.steps} steps a contact was stiffer than explicit steps of "
+                         f"{self.time_step_s:.4g} s are stable with: set motion.steps_per_cycle to more")
+        elif self.inexact_steps:
             found.append(f"in {self.inexact_steps} of {self.steps} steps, as short as steps can be, displacements are "
                          "off by more than motion.displacement_tolerance_m")
         if self.jammed is not None:
@@ -125,10 +129,16 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         return True
 
     truss, samples = case.resolve(), case.samples_per_cycle
-    if truss.sticking == "partial_slip":
-        raise StatejumpError(cause='joints in motion have no partial slip (reduced.sticking = "partial_slip")',
-                             case=case.name, remedy='set reduced.sticking to "elastic" or "rigid", or run '
+    regularised = case.motion.scheme == "regularised"
+    if truss.sticking == "partial_slip" and not regularised:
+        raise StatejumpError(cause='joints in motion have no partial slip (reduced.sticking = "partial_slip") but with '
+                             'motion.scheme = "regularised"', case=case.name,
+                             remedy='set reduced.sticking to "elastic" or "rigid", or run '
                              "'statejump reduced' without --dynamic")
+    if regularised:
+        from statejump.kinds.truss import stable_steps
+
+        stable_steps.check(case)
     steps_per_sample = ceil(case.motion.steps_per_cycle / samples)
     try:
         found = _engine.truss_motion(
@@ -136,14 +146,14 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
             sample_every=steps_per_sample, theta=case.motion.theta,
             displacement_tolerance_m=case.motion.displacement_tolerance_m or 0.0, restitution=case.motion.restitution,
             watched_node=watched_node, drives=_drives(truss), start_drawn=case.motion.start == "drawn",
-            progress=going_on,
+            friction_law=case.dem.friction_law if regularised else "", progress=going_on,
         )
     except _engine.EngineFailure as failure:
         raise EngineFailed(failure, remedy=_remedy(case, failure), case=truss.name, place=truss.name) from None
     events = TrussEvents(truss, **found.pop("events"))
     if not found["complete"] and len(found["states"].get("time_s", ())) < 2:
         raise Interrupted("interrupted before a whole sample; nothing was written")
-    made = TrussMotion(truss=truss, events=events, **found)
+    made = TrussMotion(truss=truss, events=events, regularised=regularised, **found)
     if not made.complete:
         raise Interrupted(run=made)
     return made

@@ -111,6 +111,9 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
                              **self.where(joints.names[index]))
         self.check_parts(truss, joints, ranges_K, np.linalg.norm(self.offset_m(truss, joints), axis=1))
 
+    def regularised_refuses(self, joints: BallJoints) -> tuple[str, str] | None:
+        return None
+
     def engine_arrays(self, truss: ResolvedTruss, joints: BallJoints) -> dict[str, Any]:
         return {
             "hertz_stiffness_N_per_m15": self.hertz_stiffness(joints),

@@ -239,6 +239,10 @@ class JointType(Generic[ItemType, ArraysType]):
         """Return name and reason of a joint that the DEM does not have, though it has others of the type."""
         return None
 
+    def regularised_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
+        """Return name and reason of a joint that cannot move by ``motion.scheme = "regularised"``."""
+        return (joints.names[0], "has no contact of two bodies") if joints.names else None  # type: ignore[attr-defined]
+
     def contact_parts(self, joints: ArraysType) -> list[ContactPart]:
         """Return which nodes get which part."""
         return []
