@@ -11,10 +11,11 @@ import numpy as np
 from statejump import _engine
 from statejump.core import physics
 from statejump.core.engine_failures import EngineFailed
-from statejump.core.errors import Interrupted, StatejumpError
+from statejump.core.errors import Interrupted, NotAllowed, StatejumpError
 from statejump.core.progress import Tell
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.ball_joint import BALL_JOINT
 from statejump.kinds.truss.masses import lumped_mass_kg
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussEvents, engine_items
@@ -129,6 +130,10 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         return True
 
     truss, samples = case.resolve(), case.samples_per_cycle
+    for name in BALL_JOINT.rigid_ones(truss.joints[BALL_JOINT.section])[:1]:
+        if case.motion.start != "drawn":
+            raise NotAllowed("motion.start", case.motion.start, f"must be 'drawn' with ball_joint {name!r}, whose contact "
+                             "is rigid: no path says where it rests", case=case.name, joint=name)
     regularised = case.motion.scheme == "regularised"
     if truss.sticking == "partial_slip" and not regularised:
         raise StatejumpError(cause='joints in motion have no partial slip (reduced.sticking = "partial_slip") but with '
