@@ -218,7 +218,7 @@ kernel::ContactResponse KernelContacts::answer(const KernelContact& contact, con
     response.across = place.normal;
     rates[0] = speed;
     rates[1] = rates[2] = 0.0;
-    const kernel::ContactResponse found =
+    kernel::ContactResponse found =
         kernel::contact_step(response, contact.parameters, place.normal, 1.0, stage.since, history);
     push(contact.first, contact.axis * contact.axis.dot(found.tangential_force), force);
     return found;
@@ -276,9 +276,8 @@ void KernelContacts::commit(const Stage& stage, VectorXd& force, VectorXd& rates
     const auto first = static_cast<Eigen::Index>(3 * i);
     KernelContact& contact = all_[i];
     Place place;
-    const kernel::ContactResponse found =
-        answer(contact, stage, stage.way.data() + first, contact.history, force,
-               rates.data() + first, place);
+    kernel::ContactResponse found = answer(contact, stage, stage.way.data() + first,
+                                           contact.history, force, rates.data() + first, place);
     heat.friction[contact.joint] += found.friction_dissipation;
     heat.damping += found.damping_dissipation;
     if (!contact.is_pad() && contact.radius > 0.0) {
