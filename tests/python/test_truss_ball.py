@@ -106,6 +106,8 @@ def test_commands(statejump: Callable[..., Outcome], tmp_path: Path) -> None:
     assert np.all((normal * offset).sum(axis=1) < 0)
     assert np.abs((rubs * offset).sum(axis=1)).max() < 1e-9 * np.linalg.norm(rubs, axis=1).max()
     assert np.all(np.linalg.norm(rubs, axis=1) <= 0.1 * np.linalg.norm(normal, axis=1) * (1 + 1e-9))
+    moving = statejump("reduced", "--dynamic", case)
+    assert moving.status == 0, moving.errors
     told = parse_case(tripod())
     assert ("1 ball joint with clearance: radial clearance 100\u202fµm, ball radius 5\u202fmm, friction coefficient "
             "0.1.") in told.behaviour.describe(told)

@@ -142,7 +142,9 @@ struct Motion {
 /// **Drives.** The angular velocity of a driven link at the end of the step is prescribed, where
 /// its program puts it; angles follow to second order.
 ///
-/// Planar and spatial trusses; three-dimensional joints slide as the quasi-static ones do.
+/// Planar and spatial trusses; three-dimensional joints slide as the quasi-static ones do. Friction
+/// of a ball has the direction that it has at the end of the step: a step is solved again until it
+/// is found, `not_converged` names the joint where it is not.
 ///
 /// Throws std::invalid_argument for a model or option out of range; Failure for a step without
 /// solution (`not_converged`, `singular`, with the joint whose law is violated most), and
