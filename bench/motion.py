@@ -4,21 +4,25 @@
 
     PYTHONPATH=build/python /usr/bin/python3 bench/motion.py [--case NAME]
 
-Each case runs in the DEM, in motion with the DEM's masses and elastic sticking, and on the quasi-static path with
-elastic and with rigid sticking: point by point at the DEM's samples.
+Each case runs in the DEM, in motion with the DEM's masses and elastic sticking, in motion with the DEM's contacts in
+explicit steps, and on the quasi-static path with elastic and with rigid sticking: point by point at
+the DEM's samples. What a model has not is left out: latches in explicit steps, partial slip by sets, balls that stick
+rigidly.
 """
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from math import ceil
 from typing import Any
 
 import numpy as np
 import statejump as sj
 from run import parse_cases, publish, start
 from statejump.core.errors import StatejumpError
-from statejump.kinds.truss import compare
+from statejump.kinds.truss import compare, stable_steps
 
 STEPS, SAMPLES = 50_000, 2_000  # of a cycle
+EXPLICIT_STEPS = 4  # times as many as are just stable
 CASES: dict[str, tuple[Callable[[], Any], dict[str, Any]]] = {
     "chain_10": (lambda: sj.load("cases/trusses/chain_10.toml"), {}),
     "chain_10, ten times as fast": (lambda: sj.load("cases/trusses/chain_10.toml"), {"thermal.period_s": 0.1}),
@@ -35,6 +39,10 @@ CASES: dict[str, tuple[Callable[[], Any], dict[str, Any]]] = {
     "mast_6, 5 s, pins damped": (
         lambda: sj.load("cases/trusses/mast_6.toml"),
         {"thermal.period_s": 5.0, "dem.pin_damping_N_m_s_per_rad": 0.1}),
+    "ball_tripod": (lambda: sj.load("cases/trusses/ball_tripod.toml"), {}),
+    "ring_6, partial slip": (
+        lambda: sj.truss.ring(6),
+        {"reduced.sticking": "partial_slip", "dem.friction_law": "mindlin_deresiewicz"}),
 }
 COLUMNS = ("case", "model", "jump_m", "jump_node", "jump_difference_m", "rms_over_largest",
            "peak_acceleration_m_per_s2", "friction_J", "dashpots_J", "steps", "cpu_time_s")
@@ -52,7 +60,7 @@ def row(case: Any, name: str, model: str, run: Any, dem: Any, steps: float, seco
     jumps = compare.jumps_m(run)
     node = int(np.argmax(np.linalg.norm(compare.jumps_m(dem), axis=1)))
     apart = np.linalg.norm(run["displacement_m"] - dem["displacement_m"], axis=2)
-    moves = model in ("DEM", "in motion")
+    moves = model == "DEM" or model.startswith("in motion")
     return {
         "case": name, "model": model, "jump_m": float(np.linalg.norm(jumps[node])), "jump_node": case.node[node].name,
         "jump_difference_m": float(np.linalg.norm(jumps - compare.jumps_m(dem), axis=1).max()),
@@ -65,6 +73,24 @@ def row(case: Any, name: str, model: str, run: Any, dem: Any, steps: float, seco
     }
 
 
+def explicit(case: Any) -> Any:
+    """Return the case in explicit steps, as many between two samples as between all others."""
+    least, samples = stable_steps.least_steps_per_cycle(case.definition), case.output.samples_per_cycle
+    return case.changed({"motion.scheme": "regularised",
+                         "motion.steps_per_cycle": ceil(EXPLICIT_STEPS * least / samples) * samples})
+
+
+def models(case: Any, partial: bool) -> Iterator[tuple[str, Any, bool]]:
+    """Yield name and case of every model beside the DEM, and whether it moves."""
+    if not partial:
+        yield "in motion", case, True
+    if not case.latch_hinge:
+        yield "in motion, regularised", explicit(case), True
+    yield f"quasi-static, {'partial slip' if partial else 'elastic sticking'}", case, False
+    if not partial and not case.ball_joint:
+        yield "quasi-static, rigid sticking", case.changed({"reduced.sticking": "rigid"}), False
+
+
 def measure(names: list[str]) -> list[dict[str, Any]]:
     """Run all models of these cases."""
     from time import process_time
@@ -73,19 +99,16 @@ def measure(names: list[str]) -> list[dict[str, Any]]:
     for name in names:
         load, changes = CASES[name]
         case = load().changed({"motion.masses": "lumped", "motion.steps_per_cycle": STEPS,
-                               "output.samples_per_cycle": SAMPLES, **changes})
-        elastic, rigid = (case.changed({"reduced.sticking": sticking}) for sticking in ("elastic", "rigid"))
-        dem = elastic.dem()
+                               "output.samples_per_cycle": SAMPLES, "reduced.sticking": "elastic", **changes})
+        dem = case.dem()
         rows.append(row(case, name, "DEM", dem, dem, dem.about["steps"], dem.about["cpu_time_s"]))
-        for model, run in (("in motion", lambda: elastic.reduced(dynamic=True)),
-                           ("quasi-static, elastic sticking", elastic.reduced),
-                           ("quasi-static, rigid sticking", rigid.reduced)):
+        for model, one, moves in models(case, "reduced.sticking" in changes):
             begun = process_time()
-            found = run()
+            found = one.reduced(dynamic=moves)
             seconds = process_time() - begun
-            steps = STEPS if model == "in motion" else found.summary["solves"]
+            steps = found.summary["steps" if moves else "solves"]
             rows.append(row(case, name, model, found, dem, steps, seconds))
-        for done in rows[-4:]:
+        for done in (one for one in rows if one["case"] == name):
             print(done, flush=True)
     return rows
 
@@ -111,7 +134,8 @@ def report(rows: list[dict[str, Any]]) -> str:
 Cases as they are but for the changes that their names tell, {SAMPLES:,} samples a cycle. In motion: {STEPS:,} steps a
 cycle, masses as the DEM has them (`motion.masses = "lumped"`), sticking elastic as in the DEM. Jump: of the node that
 jumps most in the DEM; difference: the largest of all nodes; rms: the largest of all nodes over the run, over the
-largest displacement. Peak acceleration: largest second difference of the samples, m/s². Heat in J. Steps of a
+largest displacement. Regularised: the DEM's contacts in {EXPLICIT_STEPS} times as many explicit steps
+as are just stable. Peak acceleration: largest second difference of the samples, m/s². Heat in J. Steps of a
 quasi-static path are its systems. The CPU time is of one shared core; the DEM's includes its samples.
 
 | case | model | jump | difference | rms | peak acceleration | friction | dashpots | steps | CPU |

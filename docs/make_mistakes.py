@@ -65,6 +65,8 @@ GROUPS: dict[str, tuple[Mistake, ...]] = {
                 "pad_thermal_expansion_per_K = 5e-4\n\n[thermal]"),
         Mistake("links that cannot meet", "umbrella", "length_m = 0.12", "length_m = 0.16"),
         Mistake("force of zero", "statics_lobed", "[-100, 0, 0]", "[0, 0, 0]", "statics"),
+        Mistake("explicit steps of masses that the DEM has not", "trusses/chain_10", "[thermal]",
+                '[motion]\nscheme = "regularised"\n\n[thermal]', "reduced --dynamic"),
     ),
     "Lists of tables": (
         Mistake("misspelt key of an item", "trusses/chain_10", ITEM, ITEM + "\nyoung_modulus = 7e10", "truss draw"),

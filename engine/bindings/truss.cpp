@@ -552,7 +552,8 @@ void bind_truss(py::module_& module) {
          const py::dict& torsion_springs, const py::dict& joints,
          std::vector<thermal::Program> programs, const py::dict& inertia, long steps,
          long sample_every, double theta, double displacement_tolerance_m, double restitution,
-         int watched_node, const py::list& drives, bool start_drawn, const py::object& progress) {
+         int watched_node, const py::list& drives, bool start_drawn,
+         const std::string& friction_law, const py::object& progress) {
         const truss::Model model =
             make_model(nodes, links, springs, torsion_springs, joints, std::move(programs));
         const auto numbers = [&](const char* key) { return inertia[key].cast<Eigen::VectorXd>(); };
@@ -585,7 +586,9 @@ void bind_truss(py::module_& module) {
         truss::Motion motion;
         {
           py::gil_scoped_release unlocked;
-          motion = truss::simulate(model, masses, options);
+          motion = friction_law.empty()
+                       ? truss::simulate(model, masses, options)
+                       : truss::simulate_regularised(model, masses, friction_law, options);
         }
         return motion_dict(model, motion);
       },
@@ -593,7 +596,8 @@ void bind_truss(py::module_& module) {
       py::arg("joints"), py::arg("programs"), py::arg("inertia"), py::kw_only(), py::arg("steps"),
       py::arg("sample_every"), py::arg("theta") = 0.5, py::arg("displacement_tolerance_m") = 0.0,
       py::arg("restitution") = 0.0, py::arg("watched_node") = -1, py::arg("drives") = py::list(),
-      py::arg("start_drawn") = false, py::arg("progress") = py::none(),
+      py::arg("start_drawn") = false, py::arg("friction_law") = "",
+      py::arg("progress") = py::none(),
       "Motion of a truss from the equilibrium in which its quasi-static path begins, or from the\n"
       "drawn shape, at rest.\n\n"
       "Items as of truss_path(). inertia: link_mass_kg, link_damping_N_s_per_m,\n"
@@ -602,7 +606,8 @@ void bind_truss(py::module_& module) {
       "truss_joints()), link_centre (m, 2) shares along and to the left, link_moment_kg_m2.\n"
       "steps: of the whole program. displacement_tolerance_m: of a step, which is then as long as\n"
       "that allows; 0: equal steps. drives: dicts with name, link, time_s,\n"
-      "angular_velocity_rad_per_s; their moments and work are among the states.\n\n"
+      "angular_velocity_rad_per_s; their moments and work are among the states. friction_law: the\n"
+      "contacts of a DEM with friction of that name, in explicit steps; \"\": sets.\n\n"
       "Returns states as truss_path() with velocities and energies, events with the heat of their\n"
       "step, the watched node's velocity at every step. Ctrl-C, or progress(share) that returns\n"
       "False, ends it with what it has, complete is then False. Raises ValueError for items out of "

@@ -393,6 +393,7 @@ def truss_motion(
     watched_node: int = ...,
     drives: list[dict[str, Any]] = ...,
     start_drawn: bool = ...,
+    friction_law: str = ...,
     progress: Callable[[float], bool | None] | None = ...,
 ) -> _Fields: ...
 

@@ -90,6 +90,13 @@ std::vector<double> corners(const Model& model) {
 
 Path solve(const Model& model, const Options& options) {
   model.validate();
+  for (const Joint& joint : model.joints) {
+    const auto* ball = std::get_if<BallJoint>(&joint);
+    // Its rows are slides of what bends.
+    if (ball == nullptr || std::isfinite(ball->mindlin_stiffness)) continue;
+    throw kernel::OutOfRange("ball_joint '" + ball->name + "'", "mindlin_stiffness",
+                             ball->mindlin_stiffness, "finite but in motion");
+  }
   kernel::require(options.increments_per_branch >= 1, "increments_per_branch",
                   options.increments_per_branch, ">= 1");
   kernel::require(options.event_tolerance > 0.0 && options.event_tolerance <= 1.0,

@@ -142,7 +142,9 @@ struct Motion {
 /// **Drives.** The angular velocity of a driven link at the end of the step is prescribed, where
 /// its program puts it; angles follow to second order.
 ///
-/// Planar and spatial trusses; three-dimensional joints slide as the quasi-static ones do.
+/// Planar and spatial trusses; three-dimensional joints slide as the quasi-static ones do. Friction
+/// of a ball has the direction that it has at the end of the step: a step is solved again until it
+/// is found, `not_converged` names the joint where it is not.
 ///
 /// Throws std::invalid_argument for a model or option out of range; Failure for a step without
 /// solution (`not_converged`, `singular`, with the joint whose law is violated most), and
@@ -151,5 +153,23 @@ struct Motion {
 /// [1] M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235-257.
 /// [2] V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, Springer 2008.
 Motion simulate(const Model& model, const Inertia& inertia, const MotionOptions& options = {});
+
+/// The same truss as an ordinary differential equation at the scale of a DEM: contacts are the
+/// kernel's, Hertz's across and along the surface a law of friction by its name, with dashpots as
+/// in kernel::contact_step(). Steps are Runge and Kutta's of fourth order, all of one length. What
+/// a contact remembers changes at the end of a step only, by the slide of the whole step, which is
+/// integrated along the way with the places; where the stiffness of a contact changes within a
+/// step, or a contact begins or ends in it, that is of first order.
+///
+/// Explicit: a step of more than 2 √2 over the largest angular frequency grows what swings. Steps
+/// in which a contact alone is beyond that are counted, `Motion::inexact_steps`. Elastic revolutes
+/// and balls, and sliders on the ground without stops that stick elastically; masses are lumped.
+/// `theta`, `displacement_tolerance`, `restitution` and drives are of simulate() alone.
+///
+/// @param friction_law one of kernel::laws::law_names<FrictionLaw>()
+/// @throws as simulate(); std::invalid_argument for a law that is not known or a joint that has no
+/// such contact
+Motion simulate_regularised(const Model& model, const Inertia& inertia,
+                            const std::string& friction_law, const MotionOptions& options = {});
 
 }  // namespace statejump::truss

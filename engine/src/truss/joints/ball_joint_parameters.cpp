@@ -4,6 +4,8 @@
 
 #include "statejump/kernel/require.hpp"
 #include "statejump/truss/joints/ball_joint.hpp"
+
+#include <cmath>
 #include "statejump/truss/model.hpp"
 #include "truss/parts.hpp"
 
@@ -32,9 +34,9 @@ std::span<const Parameter<BallJoint>> BallJoint::parameters() {
        "the case", &B::socket_thermal_expansion},
       {"friction_coefficient", "friction_coefficient", "-", Allowed::not_negative, "the case",
        &B::friction_coefficient},
-      {"hertz_stiffness_N_per_m15", "hertz_stiffness", "N/m^1.5", Allowed::positive,
+      {"hertz_stiffness_N_per_m15", "hertz_stiffness", "N/m^1.5", Allowed::positive_or_infinite,
        "Hertz: 4/3 E* sqrt(R)", &B::hertz_stiffness},
-      {"mindlin_stiffness_N_per_m15", "mindlin_stiffness", "N/m^1.5", Allowed::positive,
+      {"mindlin_stiffness_N_per_m15", "mindlin_stiffness", "N/m^1.5", Allowed::positive_or_infinite,
        "Mindlin: 8 G* sqrt(R)", &B::mindlin_stiffness},
       {"partial_slip", "partial_slip", "-", Allowed::flag, "the case", &B::partial_slip},
   };
@@ -61,6 +63,10 @@ void BallJoint::validate(const Model& model) const {
   };
   check_link(ball_link, ball_node, "ball link");
   check_link(socket_link, socket_node, "socket link");
+  check(std::isfinite(hertz_stiffness) || std::isinf(mindlin_stiffness), "mindlin_stiffness",
+        mindlin_stiffness, "infinite, because hertz_stiffness is");
+  check(!partial_slip || std::isfinite(mindlin_stiffness), "partial_slip", partial_slip,
+        "0 where the contact is rigid");
   check(!partial_slip || friction_coefficient > 0.0, "partial_slip", partial_slip,
         "0 without friction");
   const double least =

@@ -86,7 +86,10 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
     const JointFrame frame =
         std::visit([&](const auto& one) { return one.frame(model); }, model.joints[index(i)]);
-    const auto held = static_cast<int>(std::count(frame.holds.begin(), frame.holds.end(), true));
+    // A ball is held by the pin that stands for it alone.
+    const bool is_ball = std::holds_alternative<BallJoint>(model.joints[index(i)]);
+    const auto held =
+        is_ball ? 0 : static_cast<int>(std::count(frame.holds.begin(), frame.holds.end(), true));
     for (int k = frame.forces - held; k < frame.forces; ++k) holds_.push_back(column + k);
     std::visit([&](const auto& one) { add(i, column, one); }, model.joints[index(i)]);
     column += frame.forces;
@@ -157,12 +160,40 @@ void Contacts::add(int joint, int first_column, const ClearanceRevolute& revolut
   all_.push_back(contact);
 }
 
+void Contacts::add(int joint, int first_column, const BallJoint& socketed) {
+  refuse_partial_slip(socketed);
+  Contact contact;
+  contact.joint = joint;
+  contact.first_column = contact.normal_column = first_column;
+  contact.tangential_column = first_column + 1;
+  contact.friction_coefficient = socketed.friction_coefficient;
+  contact.hertz_stiffness = socketed.hertz_stiffness;
+  contact.mindlin_stiffness = socketed.mindlin_stiffness;
+  contact.least_depth = 1e-6 * socketed.radial_clearance;
+  contact.ball = static_cast<int>(balls_.size());
+  BallFriction friction;
+  friction.joint = &socketed;
+  friction.place = all_.size();
+  friction.first_column = first_column;
+  balls_.push_back(friction);
+  all_.push_back(contact);
+  Contact beside;
+  beside.joint = joint;
+  beside.first_column = first_column;
+  beside.tangential_column = first_column + 2;
+  beside.friction_coefficient = 1.0;
+  beside.ball = contact.ball;
+  beside.beside = true;
+  all_.push_back(beside);
+}
+
 Statuses Contacts::closed(const VectorXd& z, double time, const StepStart& start) const {
   Statuses statuses = system_->all_stick();
   for (const Contact& contact : all_) {
     if (contact.normal_column < 0 || contact.stop != JointStatus::open) continue;
     const Trial at = system_->trial(contact.joint, z, time, start, JointModel::friction, 1.0);
-    if (eccentricity(at).squaredNorm() == 0.0) statuses[index(contact.joint)] = JointStatus::open;
+    const Vector3d apart = contact.ball < 0 ? eccentricity(at) : ball_normal(at);
+    if (apart.squaredNorm() == 0.0) statuses[index(contact.joint)] = JointStatus::open;
   }
   return statuses;
 }
@@ -184,12 +215,14 @@ double Contacts::friction_at_rest(const Contact& contact, const State& state) co
 
 void Contacts::begin(const State& state) {
   for (Contact& contact : all_) {
+    if (contact.beside) continue;
     if (contact.normal_column < 0) {
       contact.friction_force = contact.elastic_friction = friction_at_rest(contact, state);
       contact.compliance = contact.tangential_compliance(contact.given_force);
     }
     if (contact.normal_column < 0 || contact.stop != JointStatus::open) continue;
-    contact.normal_force = output(system_->model(), state, contact.joint, "normal_force_N")[0];
+    const char* key = contact.ball < 0 ? "normal_force_N" : "ball_normal_force_N";
+    contact.normal_force = output(system_->model(), state, contact.joint, key)[0];
     contact.elastic_normal = contact.normal_force;
   }
 }
@@ -203,6 +236,12 @@ void Contacts::measure(const VectorXd& z, double time, const StepStart& start,
       const double slide = at.frame.axes.col(0).dot(at.moved[0] - at.moved[1]);
       contact.gap = contact.clearance + contact.normal_sign * slide;
       contact.clearance_after = contact.clearance;
+    } else if (contact.ball >= 0) {
+      BallFriction& cone = balls_[index(contact.ball)];
+      cone.measure(at);
+      const bool has_normal = cone.now.distance > 0.0;
+      contact.gap = has_normal ? cone.now.clearance - cone.now.distance : Contact::infinite;
+      if (has_normal) contact.clearance_after = cone.now.clearance;
     } else {
       const Vector3d apart = eccentricity(at);
       const bool has_normal = apart.squaredNorm() > 0.0;
@@ -212,16 +251,30 @@ void Contacts::measure(const VectorXd& z, double time, const StepStart& start,
     contact.active =
         contact.gap <= rounding || (contact.is_elastic() && contact.gap < Contact::infinite);
   }
+  for (const BallFriction& cone : balls_) {
+    all_[cone.place + 1].active = all_[cone.place].active;
+    direct(cone);
+  }
 }
 
 void Contacts::remember_clearances() {
   for (Contact& contact : all_) contact.clearance = contact.clearance_after;
+  for (BallFriction& cone : balls_) cone.remember(friction(cone, false));
 }
 
 void Contacts::write(VectorXd& z, Statuses& statuses) const {
   z.tail(z.size() - system_->displacements()).setZero();
   int last = -1;
+  for (const BallFriction& cone : balls_) {
+    const Contact& contact = all_[cone.place];
+    write(cone, false, z);
+    const bool sticks = contact.sticks(contact.normal_force, contact.friction_force);
+    statuses[index(contact.joint)] = !(contact.normal_force > 0.0) ? JointStatus::open
+                                     : sticks                      ? JointStatus::stick
+                                                                   : JointStatus::slip_plus;
+  }
   for (const Contact& contact : all_) {
+    if (contact.ball >= 0) continue;
     JointStatus& status = statuses[index(contact.joint)];
     if (contact.normal_column < 0) {
       z[contact.tangential_column] += contact.elastic_friction;
@@ -244,7 +297,9 @@ void Contacts::write(VectorXd& z, Statuses& statuses) const {
 }
 
 VectorXd Contacts::with_dashpots(VectorXd z) const {
+  for (const BallFriction& cone : balls_) write(cone, true, z);
   for (const Contact& contact : all_) {
+    if (contact.ball >= 0) continue;
     if (contact.tangential_column >= 0) {
       z[contact.tangential_column] += contact.friction_force - contact.elastic_friction;
     }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "ball_friction.hpp"
 #include "statejump/complementarity/problem.hpp"
 #include "truss/system.hpp"
 
@@ -29,6 +32,8 @@ struct Contact {
   double tangential_stiffness = infinite;  ///< Of a slider [N/m].
   double damping = 0.0;                    ///< 2 ζ √m of its dashpots c = 2 ζ √(m k) [√kg].
   double least_depth = 0.0;                ///< Below which the elastic laws are taken as there [m].
+  int ball = -1;                           ///< Of the truss' balls; −1: it is in a plane.
+  bool beside = false;                     ///< Holds across the friction of the contact before it.
 
   // Remembered from step to step.
   double normal_force = 0.0;      ///< λ_n [N]
@@ -44,6 +49,14 @@ struct Contact {
   bool active = false;
   double opened = 0.0;  ///< What the gap at the end has beyond that of the middle at no speed [m].
   double slid = 0.0;    ///< Slide of the step that its speed at the end does not tell [m].
+  // Of a ball, whose columns are forces along three fixed directions.
+  Vector3d normal_shares = Vector3d::Zero();
+  Vector3d tangential_shares = Vector3d::Zero();
+
+  /// Columns whose sum is a direction, with their shares; −1: none.
+  using Columns = std::array<std::pair<int, double>, 3>;
+  Columns normal_columns() const { return columns(normal_column, normal_shares); }
+  Columns tangential_columns() const { return columns(tangential_column, tangential_shares); }
 
   bool is_elastic() const { return hertz_stiffness < infinite; }
   double depth(double force) const;
@@ -77,6 +90,15 @@ struct Contact {
   double tangential_energy() const {
     return 0.5 * compliance * elastic_friction * elastic_friction;
   }
+
+ private:
+  int first_column = -1;  ///< Of a ball's three.
+  Columns columns(int column, const Vector3d& shares) const {
+    if (column < 0 || ball < 0) return {{{column, 1.0}, {-1, 0.0}, {-1, 0.0}}};
+    return {
+        {{first_column, shares[0]}, {first_column + 1, shares[1]}, {first_column + 2, shares[2]}}};
+  }
+  friend class Contacts;
 };
 
 /// All contacts of a truss.
@@ -103,6 +125,10 @@ class Contacts {
   /// Takes what was measured as the end of a step.
   void remember_clearances();
 
+  std::vector<BallFriction>& balls() { return balls_; }
+  /// Gives the contacts of a ball the directions that it has now.
+  void direct(const BallFriction& cone);
+
   bool damped() const { return damped_; }
   /// Whether joints have forces on nodes besides their contacts'.
   bool have_springs() const { return springs_; }
@@ -115,6 +141,7 @@ class Contacts {
  private:
   void add(int joint, int first_column, const Slider& slider);
   void add(int joint, int first_column, const ClearanceRevolute& revolute);
+  void add(int joint, int first_column, const BallJoint& socketed);
   void add(int joint, int first_column, const LatchHinge& hinge);
   /// One contact for every element, all along one direction.
   void add(int joint, int first_column, const IwanJoint& iwan);
@@ -122,6 +149,10 @@ class Contacts {
   double friction_at_rest(const Contact& contact, const State& state) const;
   /// Dry friction of a given bound [N] behind a spring [N/m].
   void add_rubbing(int joint, int column, double bound, double stiffness);
+  /// Friction of a ball as its contacts have it, with their dashpots or without [N].
+  Vector3d friction(const BallFriction& cone, bool with_dashpots) const;
+  /// Writes its force where the ball is at z.
+  void write(const BallFriction& cone, bool with_dashpots, VectorXd& z) const;
   /// A type of joint whose contacts are not known here. @throws std::invalid_argument with its name
   template <class Type>
   void add(int, int, const Type& other) {
@@ -131,6 +162,7 @@ class Contacts {
 
   const System* system_;
   std::vector<Contact> all_;
+  std::vector<BallFriction> balls_;
   std::vector<int> holds_;
   bool damped_ = false;
   bool springs_ = false;

@@ -63,8 +63,11 @@ double Stepper::deepest(const Trial& step) const {
   for (const Contact& contact : contacts_.all()) {
     if (contact.active || contact.normal_column < 0 || contact.gap == Contact::infinite) continue;
     double gap = contact.gap;
-    for (linear::SparseView::InnerIterator it(jacobian, contact.normal_column); it; ++it) {
-      if (it.row() < way.size()) gap += contact.normal_sign * it.value() * way[it.row()];
+    for (const auto& [column, share] : contact.normal_columns()) {
+      if (column < 0) continue;
+      for (linear::SparseView::InnerIterator it(jacobian, column); it; ++it) {
+        if (it.row() < way.size()) gap += share * contact.normal_sign * it.value() * way[it.row()];
+      }
     }
     most = std::max(most, -gap);
   }

@@ -151,8 +151,10 @@ Stepper::Local Stepper::local_problem(const Trial& step) {
   local.impulses = VectorXd::Zero(rows);
   for (Eigen::Index i = 0; i < rows / 2; ++i) {
     const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
-    take(contact.normal_column, contact.normal_sign, 2 * i);
-    take(contact.tangential_column, 1.0, 2 * i + 1);
+    for (const auto& [column, share] : contact.normal_columns()) {
+      take(column, share * contact.normal_sign, 2 * i);
+    }
+    for (const auto& [column, share] : contact.tangential_columns()) take(column, share, 2 * i + 1);
     local.impulses[2 * i] =
         step.h * (contact.normal_column < 0 ? contact.given_force : contact.normal_force);
     local.impulses[2 * i + 1] = -step.h * contact.friction_force;
@@ -261,7 +263,9 @@ std::optional<Stepper::Local> Stepper::find(Trial& step, bool give_up) {
   middle.head(q_.size()) = step.q_middle;
   contacts_.measure(middle, step.to, origin_, joints_.residual, system_->rounding(middle).length);
   Local local = local_problem(step);
-  if (!on_branches(step, local)) {
+  for (int turns = 0; turn_balls(step, turns, local); ++turns) {
+    if (!contacts_.balls().empty()) local = local_problem(step);
+    if (on_branches(step, local)) continue;
     if (give_up) return {};
     step.v = v_;
     local = local_problem(step);

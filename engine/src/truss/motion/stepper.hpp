@@ -123,6 +123,12 @@ class Stepper {
   double deepest(const Trial& step) const;
   Eigen::SparseMatrix<double> iteration_matrix(const Trial& step);
   Local local_problem(const Trial& step);
+  /// Turns the friction of all balls to where an iterate of the step drives them, in
+  /// ball_turns.cpp.
+  /// @param turns how often that has been done in this step; 0: there is no iterate yet
+  /// @return whether the step is to be solved (again); false once their friction is where it points
+  /// @throws Failure with the joint if directions are not found
+  bool turn_balls(const Trial& step, int turns, const Local& local);
   /// Directions of what holds or drives, and the speeds along them, of the size of a matrix.
   void hold_directions(const Trial& step, double scale);
   /// Seeks the branches of all contacts from those of the step before, by block pivoting; each try

@@ -201,6 +201,8 @@ class TrussMotion(Section):
     """How a truss in motion is stepped: ``statejump reduced --dynamic``. Its dashpots are those of links, pins and
     contacts in [dem]."""
 
+    scheme: str = choice("set_valued", ("set_valued", "regularised"),
+                         "contacts as sets, implicit steps; regularised: the DEM's contacts, explicit steps")
     steps_per_cycle: int = whole(10_000, 10, 1_000_000_000, CHOICE)
     displacement_tolerance_m: float | None = parameter(
         None, "m", 0, LARGEST_LENGTH_M, "equal steps; else of a step, which is then as long as that allows", above=True)

@@ -40,6 +40,20 @@ def check(case: TrussCase) -> None:
     if case.motion.displacement_tolerance_m is not None and case.motion.theta != 0.5:
         raise NotAllowed("motion.theta", case.motion.theta, "it is of equal steps, which "
                          "motion.displacement_tolerance_m has not")
+    if case.motion.scheme == "regularised":
+        _regularised(case)
+
+
+def _regularised(case: TrussCase) -> None:
+    scheme = "with motion.scheme = 'regularised'"
+    for key, usual in (("displacement_tolerance_m", None), ("theta", 0.5), ("restitution", 0.0)):
+        if getattr(case.motion, key) != usual:
+            raise NotAllowed(f"motion.{key}", getattr(case.motion, key), f"it is not read {scheme}")
+    if case.motion.masses != "lumped":
+        raise NotAllowed("motion.masses", case.motion.masses, f"must be 'lumped' {scheme}, as in the DEM")
+    if case.reduced.sticking == "rigid":
+        raise NotAllowed("reduced.sticking", case.reduced.sticking,
+                         f"must be 'elastic' or 'partial_slip' {scheme}: its contacts bend, as in the DEM")
 
 
 def _programs(case: TrussCase) -> None:

@@ -29,6 +29,7 @@ from statejump.kinds.truss.mechanism import refused_at_rest
 from statejump.kinds.truss.motion import simulate
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import Course, TrussPath, solve
+from statejump.schema.paths import with_values
 
 CONTACT_GROUPS = 30  # bits of a body's mask in YADE that are free to use
 
@@ -261,17 +262,17 @@ def dem_input(case: TrussCase, tell: Tell = lambda share: None) -> dict[str, Any
     :param tell: takes the finished share of the path
     """
     check(case)
-    return resolved(case, _course(case, tell))
+    return resolved(case, course(case, tell))
 
 
-def _course(case: TrussCase, tell: Tell) -> Course:
+def course(case: TrussCase, tell: Tell) -> Course:
     """Return the quasi-static path; of a case that snaps its motion, since such a path ends at its limit point."""
     try:
         return solve(case, tell)
     except EngineFailed as failure:
         if failure.reason != "no_continuation":
             raise
-    return simulate(case, tell)
+    return simulate(with_values(case, {"motion.scheme": "set_valued"}), tell)
 
 
 def run(case: TrussCase, scene: str, make_run: Callable[..., Run], tell: Tell) -> Run:

@@ -10,6 +10,7 @@ import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed
 from statejump.kinds.truss.arrays import References, column, given_or, indices, names, said, vectors
+from statejump.kinds.truss.joints.ball_joint import BALL_JOINT
 from statejump.kinds.truss.references import known_name, vector
 from statejump.schema.fields import definition, numbers, parameter, text
 from statejump.schema.item_tables import ItemColumns, once, where_wrong
@@ -158,4 +159,7 @@ def refused_at_rest(truss: ResolvedTruss) -> str | None:
     """Return why a truss has no path without inertia."""
     for name in truss.drives.names[:1]:
         return f"drive {name!r} turns a link, which is motion: 'statejump reduced --dynamic' runs the case"
+    for name in BALL_JOINT.rigid_ones(truss.joints[BALL_JOINT.section])[:1]:
+        return (f"{BALL_JOINT.section} {name!r} has contact = 'rigid', of which a path does not say how it begins to slide: "
+                "'statejump reduced --dynamic' runs the case with motion.start = 'drawn'")
     return None

@@ -11,10 +11,11 @@ import numpy as np
 from statejump import _engine
 from statejump.core import physics
 from statejump.core.engine_failures import EngineFailed
-from statejump.core.errors import Interrupted, StatejumpError
+from statejump.core.errors import Interrupted, NotAllowed, StatejumpError
 from statejump.core.progress import Tell
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.ball_joint import BALL_JOINT
 from statejump.kinds.truss.masses import lumped_mass_kg
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussEvents, engine_items
@@ -41,12 +42,16 @@ class TrussMotion:
     negative_dissipation_J: float
     undetermined: tuple[float, list[str]] | None  # first step [s] whose reactions are not unique, and the joints
     jammed: tuple[float, list[str]] | None  # first step [s] that ends a slide which could not go on, and the joint
+    regularised: bool = False
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the motion leaves open, in sentences."""
         found = []
-        if self.inexact_steps:
+        if self.inexact_steps and self.regularised:
+            found.append(f"in {self.inexact_steps} of {self.steps} steps a contact was stiffer than explicit steps of "
+                         f"{self.time_step_s:.4g} s are stable with: set motion.steps_per_cycle to more")
+        elif self.inexact_steps:
             found.append(f"in {self.inexact_steps} of {self.steps} steps, as short as steps can be, displacements are "
                          "off by more than motion.displacement_tolerance_m")
         if self.jammed is not None:
@@ -125,14 +130,20 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         return True
 
     truss, samples = case.resolve(), case.samples_per_cycle
-    for joint in JOINTS:
-        for name in truss.joints[joint.section].names[:1] if joint.not_in_motion else ():
-            raise StatejumpError(cause=f"{joint.section} {name!r} {joint.not_in_motion}", case=case.name,
-                                 remedy="'statejump reduced' without --dynamic can run the case", joint=name)
-    if truss.sticking == "partial_slip":
-        raise StatejumpError(cause='joints in motion have no partial slip (reduced.sticking = "partial_slip")',
-                             case=case.name, remedy='set reduced.sticking to "elastic" or "rigid", or run '
+    for name in BALL_JOINT.rigid_ones(truss.joints[BALL_JOINT.section])[:1]:
+        if case.motion.start != "drawn":
+            raise NotAllowed("motion.start", case.motion.start, f"must be 'drawn' with ball_joint {name!r}, whose contact "
+                             "is rigid: no path says where it rests", case=case.name, joint=name)
+    regularised = case.motion.scheme == "regularised"
+    if truss.sticking == "partial_slip" and not regularised:
+        raise StatejumpError(cause='joints in motion have no partial slip (reduced.sticking = "partial_slip") but with '
+                             'motion.scheme = "regularised"', case=case.name,
+                             remedy='set reduced.sticking to "elastic" or "rigid", or run '
                              "'statejump reduced' without --dynamic")
+    if regularised:
+        from statejump.kinds.truss import stable_steps
+
+        stable_steps.check(case)
     steps_per_sample = ceil(case.motion.steps_per_cycle / samples)
     try:
         found = _engine.truss_motion(
@@ -140,14 +151,14 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
             sample_every=steps_per_sample, theta=case.motion.theta,
             displacement_tolerance_m=case.motion.displacement_tolerance_m or 0.0, restitution=case.motion.restitution,
             watched_node=watched_node, drives=_drives(truss), start_drawn=case.motion.start == "drawn",
-            progress=going_on,
+            friction_law=case.dem.friction_law if regularised else "", progress=going_on,
         )
     except _engine.EngineFailure as failure:
         raise EngineFailed(failure, remedy=_remedy(case, failure), case=truss.name, place=truss.name) from None
     events = TrussEvents(truss, **found.pop("events"))
     if not found["complete"] and len(found["states"].get("time_s", ())) < 2:
         raise Interrupted("interrupted before a whole sample; nothing was written")
-    made = TrussMotion(truss=truss, events=events, **found)
+    made = TrussMotion(truss=truss, events=events, regularised=regularised, **found)
     if not made.complete:
         raise Interrupted(run=made)
     return made

@@ -56,8 +56,11 @@ struct BallJoint {
   double ball_thermal_expansion = 0;    ///< [1/K].
   double socket_thermal_expansion = 0;  ///< [1/K].
   double friction_coefficient = 0.0;    ///< μ, >= 0.
-  double hertz_stiffness = 0.0;         ///< K of Hertz's F_N = K δ^1.5 [N/m^1.5], > 0.
-  double mindlin_stiffness = 0.0;  ///< 8 G* √R of Mindlin's k_t = 8 G* √(R δ) [N/m^1.5], > 0.
+  /// K of Hertz's F_N = K δ^1.5 [N/m^1.5], > 0; infinity: rigid, in motion only.
+  double hertz_stiffness = 0.0;
+  /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ) [N/m^1.5], > 0; infinity: sticks rigidly, in motion
+  /// only.
+  double mindlin_stiffness = 0.0;
   /// 1: slides at the rim of its contact first. Needs friction.
   int partial_slip = 0;
   int program = 0;

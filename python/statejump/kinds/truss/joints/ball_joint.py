@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import References, columns, indices, names
+from statejump.kinds.truss.arrays import References, columns, having, indices, names
 from statejump.kinds.truss.joints.protocol import BLACK, Contacts, JointColumn, Sampled, Symbol
 from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
-from statejump.schema.fields import CHOICE, definition, parameter, text
+from statejump.schema.fields import CHOICE, choice, definition, parameter, text
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
 
@@ -41,6 +42,7 @@ class BallJoint(Item):
     program: str | None = text(None, "name of a [[program]]; the common [thermal]")
     young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM, above=True)
     poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM)
+    contact: str = choice("hertz", ("hertz", "rigid"), CHOICE + "; rigid: in motion from the drawn shape only")
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,7 @@ class BallJoints:
     program: np.ndarray  # int, index into ResolvedTruss.programs
     young_modulus_Pa: np.ndarray
     poisson_ratio: np.ndarray
+    rigid: np.ndarray  # bool: contact = "rigid"
 
     @property
     def socket_radius_m(self) -> np.ndarray:
@@ -82,7 +85,6 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
     inner, outer = "ball", "socket"
     eccentricity, normal_force = "ball_eccentricity_m", "ball_normal_force_N"
     has_axis = False
-    not_in_motion = "is a joint of quasi-static paths only"
 
     def resolve(self, items: Sequence[BallJoint], known: References) -> BallJoints:
         return BallJoints(
@@ -90,6 +92,7 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
             **{key: indices(items, key, known.node) for key in ("socket_node", "ball_node")},
             **{key: indices(items, key, known.link) for key in ("socket_link", "ball_link")},
             program=known.programs_of(items),
+            rigid=having(items, "contact", "rigid"),
             **columns(
                 items, "ball_radius_m", "radial_clearance_m", "friction_coefficient", "ball_thermal_expansion_per_K",
                 "socket_thermal_expansion_per_K", "temperature_fraction", "young_modulus_Pa", "poisson_ratio",
@@ -105,18 +108,26 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
         return np.full(len(items), dimension == 2)
 
     def check_geometry(self, truss: ResolvedTruss, joints: BallJoints, ranges_K: np.ndarray) -> None:
-        for index in np.flatnonzero((truss.sticking == "rigid") & (joints.friction_coefficient > 0))[:1]:
+        rubs = (joints.friction_coefficient > 0) & ~joints.rigid
+        for index in np.flatnonzero((truss.sticking == "rigid") & rubs)[:1]:
             raise NotAllowed("reduced.sticking", truss.sticking,
                              'must be "elastic" or "partial_slip" with ball joints that have friction: a contact that '
                              "sticks rigidly does not say along which direction of its plane it begins to slide",
                              **self.where(joints.names[index]))
         self.check_parts(truss, joints, ranges_K, np.linalg.norm(self.offset_m(truss, joints), axis=1))
 
+    def regularised_refuses(self, joints: BallJoints) -> tuple[str, str] | None:
+        return next(((name, "has contact = 'rigid'") for name in self.rigid_ones(joints)), None)
+
+    def rigid_ones(self, joints: BallJoints) -> list[str]:
+        """Return the names of those whose contact is rigid."""
+        return [joints.names[index] for index in np.flatnonzero(joints.rigid)]
+
     def engine_arrays(self, truss: ResolvedTruss, joints: BallJoints) -> dict[str, Any]:
         return {
-            "hertz_stiffness_N_per_m15": self.hertz_stiffness(joints),
-            "mindlin_stiffness_N_per_m15": self.mindlin_stiffness(joints),
-            "partial_slip": (truss.sticking == "partial_slip") & (joints.friction_coefficient > 0),
+            "hertz_stiffness_N_per_m15": np.where(joints.rigid, inf, self.hertz_stiffness(joints)),
+            "mindlin_stiffness_N_per_m15": np.where(joints.rigid, inf, self.mindlin_stiffness(joints)),
+            "partial_slip": (truss.sticking == "partial_slip") & (joints.friction_coefficient > 0) & ~joints.rigid,
         }
 
     def contacts(self, run: Sampled, joints: BallJoints) -> Contacts:

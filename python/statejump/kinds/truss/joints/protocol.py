@@ -116,7 +116,6 @@ class JointType(Generic[ItemType, ArraysType]):
     has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
     has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result
     not_in_dem: ClassVar[str] = ""  # what follows its name where the DEM refuses it; empty: the DEM has it
-    not_in_motion: ClassVar[str] = ""  # likewise for trusses in motion
 
     @property
     def items(self) -> str:
@@ -239,6 +238,10 @@ class JointType(Generic[ItemType, ArraysType]):
     def dem_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
         """Return name and reason of a joint that the DEM does not have, though it has others of the type."""
         return None
+
+    def regularised_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
+        """Return name and reason of a joint that cannot move by ``motion.scheme = "regularised"``."""
+        return (joints.names[0], "has no contact of two bodies") if joints.names else None  # type: ignore[attr-defined]
 
     def contact_parts(self, joints: ArraysType) -> list[ContactPart]:
         """Return which nodes get which part."""

@@ -117,6 +117,11 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
         along = (offset * joints.axis).sum(axis=1, keepdims=True) * joints.axis
         self.check_parts(truss, joints, ranges_K, np.linalg.norm(offset - along, axis=1))
 
+    def regularised_refuses(self, joints: Revolutes) -> tuple[str, str] | None:
+        for index in np.flatnonzero(joints.rigid)[:1]:
+            return joints.names[index], "has contact = 'rigid'"
+        return None
+
     def engine_arrays(self, truss: ResolvedTruss, joints: Revolutes) -> dict[str, Any]:
         gives_way = truss.sticking != "rigid"
         return {

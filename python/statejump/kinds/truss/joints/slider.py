@@ -209,6 +209,13 @@ class SliderType(AlongAxis[Slider, Sliders]):
     def _stopped(state: Mapping[str, np.ndarray]) -> np.ndarray:
         return np.isin(state["slider_status"], AT_STOP)
 
+    def regularised_refuses(self, joints: Sliders) -> tuple[str, str] | None:
+        between = joints.nodes[:, 1] != GROUND
+        stops = np.isfinite(joints.clearance_minus_m) | np.isfinite(joints.clearance_plus_m)
+        for index in np.flatnonzero(between | stops)[:1]:
+            return joints.names[index], "is between two nodes" if between[index] else "has stops"
+        return None
+
     def dem_refuses(self, joints: Sliders) -> tuple[str, str] | None:
         loose = ~self.bodies_touch(joints) & (joints.normal_force_N == 0)
         for index in np.flatnonzero(loose)[:1]:

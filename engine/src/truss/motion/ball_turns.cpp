@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the friction of balls points at the end of a step.
+#include <algorithm>
+#include <cmath>
+
+#include "stepper.hpp"
+
+namespace statejump::truss::detail {
+
+namespace {
+
+/// A step turns friction by little, and what is left of a turn falls with its square.
+constexpr int most_turns = 50;
+/// Share of the bound that friction may have across its direction: its size is then off by half the
+/// square of it, which is where a contact is told to slip.
+constexpr double aside = 1e-4;
+/// The same for what a changed stiffness makes of it while it sticks.
+constexpr double stiffened = 1e-8;
+
+}  // namespace
+
+/// With the pull p that friction would have if it stuck, times the compliance C, friction at the
+/// end of the step is p min(1/C, μ λ_n/|p|). Along p that is Coulomb's law on a line, and its
+/// tangent across p is min(1/C, μ λ_n/|p|) itself: so the contact beside gets the inverse as
+/// compliance, and both together make a step of Newton's method for the direction. A rigid contact
+/// that slides has the way of the step as p, one that sticks its reaction.
+bool Stepper::turn_balls(const Trial& step, int turns, const Local& local) {
+  bool settled = turns > 0;
+  const Contact* last = nullptr;
+  for (std::size_t at = 0; at < local.contacts.size(); ++at) {
+    Contact& contact = *local.contacts[at];
+    if (contact.ball < 0 || contact.beside) continue;
+    BallFriction& cone = contacts_.balls()[index(contact.ball)];
+    Contact& beside = *local.contacts[at + 1];
+    const auto i = static_cast<Eigen::Index>(at);
+    const auto speed = [&](Eigen::Index row) { return local.directions.col(row).dot(step.v); };
+    const double bound = contact.friction_coefficient * local.impulses[2 * i] / step.h;
+    const double given = std::max(2.0 * bound, 0.0);
+    const Vector2d friction(-local.impulses[2 * i + 1] / step.h,
+                            -local.impulses[2 * i + 3] / step.h);
+    const bool rubbed = beside.given_force > 0.0;  // in this iterate
+    const auto set = [&](double force, double compliance) {
+      beside.given_force = force;
+      beside.tangential_stiffness = compliance > 0.0 ? 1.0 / compliance : Contact::infinite;
+      branches_[cone.place + 1] = branch(beside);
+    };
+    if (!(bound > 0.0)) {
+      if (rubbed) settled = false;
+      set(0.0, 0.0);
+      if (!settled) last = &contact;
+      continue;
+    }
+    const double compliance = contact.tangential_compliance(elastic_normal(step, local, i));
+    const Contact::Along law = contact.along(elastic_normal(step, local, i), step.h);
+    const double was = beside.tangential_compliance(given);
+    beside.compliance = std::min(contact.compliance, compliance);
+    Vector2d pull(step.h * speed(2 * i + 1), step.h * speed(2 * i + 3));
+    bool right = rubbed;
+    double across = 0.0;
+    if (compliance > 0.0) {
+      const double share = law.compliance / compliance;
+      const Vector2d kept(contact.elastic_friction, cone.across().dot(cone.kept));
+      pull += share * (beside.compliance * kept + Vector2d(contact.slid, beside.slid));
+      const bool sticks = pull.norm() <= bound * law.compliance;
+      across = sticks ? compliance : pull.norm() / (share * bound);
+      beside.damping = contact.damping * std::sqrt(compliance / across);
+      const double changed = std::abs(friction[1]) * std::abs(across / was - 1.0);
+      right = right && changed <= (sticks ? stiffened : aside) * bound;
+    } else {
+      const bool sticks = contact.sticks(bound / contact.friction_coefficient, friction.norm());
+      if (sticks && rubbed && was == 0.0) {
+        pull = friction;
+      } else if (contact.sticks(bound / contact.friction_coefficient, friction[0])) {
+        pull = friction;  // of an iterate that did not hold it across
+        right = false;
+        if (was == 0.0 && rubbed) across = pull.norm() > bound ? Contact::infinite : 0.0;
+      } else {
+        across = pull.norm() / bound;
+      }
+      right = right && (sticks || std::abs(friction[1]) <= aside * bound);
+    }
+    if (across == Contact::infinite) {
+      set(0.0, 0.0);
+    } else {
+      set(given, across);
+    }
+    if (right) continue;
+    settled = false;
+    last = &contact;
+    cone.point(cone.along * pull[0] + cone.across() * pull[1]);
+    contacts_.direct(cone);
+  }
+  if (settled || contacts_.balls().empty()) return !settled;
+  if (turns == most_turns) fail(FailureKind::not_converged, step.to, last);
+  return true;
+}
+
+}  // namespace statejump::truss::detail

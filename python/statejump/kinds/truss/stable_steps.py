@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether explicit steps of a truss in motion (``motion.scheme = "regularised"``) are short enough."""
+from __future__ import annotations
+
+from math import ceil
+from typing import Any
+
+import numpy as np
+
+from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.kinds.truss import dem
+from statejump.kinds.truss.arrays import SAME_DIRECTION
+from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.resolved import ResolvedTruss
+
+
+def _refuse(case: TrussCase, why: str, **fields: Any) -> StatejumpError:
+    return StatejumpError(cause=f"{why}, which motion.scheme = 'regularised' has not", case=case.name,
+                          remedy="leave motion.scheme out", **fields)
+
+
+def _moves_along(truss: ResolvedTruss, node: int, axis: np.ndarray) -> bool:
+    """Whether supports and guide leave a node free to move along an axis, at least in part."""
+    held = np.vstack((np.eye(3)[truss.nodes.fixed[node]], truss.nodes.guide_normal[node]))
+    held = held[np.abs(held).any(axis=1)]
+    across = axis - (np.linalg.lstsq(held.T, axis, rcond=None)[0] @ held if len(held) else 0)
+    return bool(np.linalg.norm(across) > SAME_DIRECTION)
+
+
+def least_steps_per_cycle(case: TrussCase) -> int:
+    """Return how many steps of a cycle are stable, by the bound that the DEM takes its own steps from.
+
+    It is that of a leapfrog, 2/ω; steps of Runge and Kutta's method may be √2 times as long where nothing is damped,
+    and no longer where dashpots are stiff.
+    """
+    return ceil(case.period_s / dem.stable_time_step(case, dem.course(case, lambda share: None)))
+
+
+def check(case: TrussCase) -> None:
+    """Raise StatejumpError for a joint that has no such contact, NotAllowed for steps that are too long for the largest
+    forces of the quasi-static path."""
+    truss = case.resolve()
+    for joint in JOINTS:
+        refused = joint.regularised_refuses(truss.joints[joint.section])
+        if refused is not None:
+            name, why = refused
+            raise _refuse(case, f"{joint.section} {name!r} {why}", joint=name)
+    revolutes = truss.joints["revolute"]
+    for name, axis, *ends in zip(revolutes.names, revolutes.axis, revolutes.journal_node, revolutes.bearing_node):
+        if any(_moves_along(truss, node, axis) for node in ends):
+            raise _refuse(case, f"revolute {name!r} holds its nodes together along its axis", joint=name)
+    if truss.drives.names:
+        raise _refuse(case, f"link {truss.drives.names[0]!r} is driven")
+    least = least_steps_per_cycle(case)
+    if case.motion.steps_per_cycle < least:
+        raise NotAllowed("motion.steps_per_cycle", case.motion.steps_per_cycle,
+                         f"must be at least {least} with motion.scheme = 'regularised': its steps are explicit",
+                         case=case.name)

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Trusses in motion with the contacts of a DEM, in explicit steps: orders, and the same motion as
+// by sets.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/numeric/odeint.hpp>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "../joints/ball_models.hpp"
+#include "scenes.hpp"
+#include "statejump/failure.hpp"
+
+namespace statejump::truss {
+namespace {
+
+using namespace scenes;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double mass = 2.0;
+constexpr const char* spring = "mindlin";
+
+Inertia masses(Eigen::VectorXd of_nodes) {
+  Inertia inertia;
+  inertia.node_mass = std::move(of_nodes);
+  return inertia;
+}
+
+MotionOptions from_rest(const Model& model, long steps) {
+  MotionOptions options;
+  options.steps = options.sample_every = steps;
+  options.start = at_rest(model);
+  return options;
+}
+
+/// A block on the ground that sticks by a spring.
+Model block(double bound, double seconds) {
+  Model model;
+  model.programs = {lasting(seconds)};
+  model.nodes = {node("A", 0, 0, 1)};
+  Slider slider;
+  slider.name = "S";
+  slider.first = 0;
+  slider.friction_force = bound;
+  slider.tangential_stiffness = 1e6;
+  model.joints = {slider};
+  return model;
+}
+
+TEST(MotionRegularised, BlockThatSticksSwingsAtFourthOrder) {
+  // Four swings on its spring, from its speed; friction never reaches its bound.
+  const double omega = std::sqrt(1e6 / mass);
+  const double seconds = 8.3 / omega;
+  const Model model = block(1e3, seconds);
+  const auto error = [&](long steps) {
+    MotionOptions options = from_rest(model, steps);
+    options.start->velocity(0, 0) = 0.1;
+    const Motion motion =
+        simulate_regularised(model, masses(Eigen::VectorXd::Constant(1, mass)), spring, options);
+    EXPECT_EQ(motion.states.back().joint_status[0], JointStatus::stick);
+    const double place =
+        motion.states.back().displacement(0, 0) - 0.1 / omega * std::sin(omega * seconds);
+    const double speed = motion.moving.back().velocity(0, 0) - 0.1 * std::cos(omega * seconds);
+    return std::hypot(omega * place, speed) / 0.1;
+  };
+  const double coarse = error(100);
+  const double fine = error(200);
+  // A turn by h ω = 0.042 is off by (h ω)^5/120, 200 times.
+  EXPECT_NEAR(fine, 200.0 * std::pow(8.3 / 200.0, 5) / 120.0, 0.1 * fine);
+  EXPECT_NEAR(coarse / fine, 16.0, 0.2);
+}
+
+TEST(MotionRegularised, CornersOfTheProgramKeepFourthOrder) {
+  // A bar with a dashpot, heated and cooled again, on a block that sticks: at the corner the
+  // dashpot takes another rate at once, at the end of one step and at the start of the next.
+  Model model = testing::sliding_bar(0.02);
+  model.programs = {lasting(0.02, 100.0)};
+  auto& slider = std::get<Slider>(model.joints[0]);
+  slider.friction_force = 1e5;
+  slider.tangential_stiffness = 1e6;
+  Inertia inertia = masses(Vector2d(0.0, 0.2));
+  inertia.link_damping = Eigen::VectorXd::Constant(1, 300.0);
+  const auto end = [&](long steps) {
+    MotionOptions options;
+    options.steps = options.sample_every = steps;
+    return simulate_regularised(model, inertia, spring, options).states.back().displacement(0, 1);
+  };
+  const double exact = end(12800);
+  const double coarse = std::abs(end(400) - exact);
+  const double fine = std::abs(end(800) - exact);
+  std::printf("corner %g %g %g\n", exact, coarse, fine);
+  EXPECT_NEAR(coarse / fine, 16.0, 2.0);
+}
+
+TEST(MotionRegularised, BlockThatSlidesGivesItsEnergyToFriction) {
+  const Model model = block(30.0, 0.02);
+  MotionOptions options = from_rest(model, 4000);
+  options.start->velocity(0, 0) = 0.1;
+  const Motion motion =
+      simulate_regularised(model, masses(Eigen::VectorXd::Constant(1, mass)), spring, options);
+  const State& end = motion.states.back();
+  const double energy = 0.5 * mass * 0.01;
+  // It slides until its energy is heat, but for the swing that is left on the spring: 30²/2e6 J.
+  EXPECT_NEAR(end.joint_dissipation[0], energy, 1.001 * 30.0 * 30.0 / 2e6);
+  EXPECT_NEAR(residue(motion), 0.0, 1e-4 * energy);
+  EXPECT_NEAR(end.displacement(0, 0), energy / 30.0, 2.0 * 30.0 / 1e6);
+}
+
+/// Place of the journal below the middle of its bearing, and its speed, by Hertz's law with a
+/// dashpot; integrated to 1e-12.
+std::vector<double> fallen(double seconds, double zeta, double hertz, std::vector<double> y) {
+  const auto rates = [&](const std::vector<double>& at, std::vector<double>& rate, double) {
+    const double depth = std::max(at[0] - 1e-3, 0.0);
+    const double dashpot = 2.0 * zeta * std::sqrt(mass * 1.5 * hertz * std::sqrt(depth));
+    const double force = hertz * std::pow(depth, 1.5) + dashpot * at[1];
+    rate[0] = at[1];
+    rate[1] = 9.81 - (depth > 0.0 ? std::max(force, 0.0) : 0.0) / mass;
+  };
+  namespace odeint = boost::numeric::odeint;
+  // In short pieces: a free fall is exact at any step, which would leap over the contact.
+  const int pieces = 2000;
+  for (int i = 0; i < pieces; ++i) {
+    odeint::integrate_adaptive(
+        odeint::make_controlled(1e-14, 1e-14, odeint::runge_kutta_dopri5<std::vector<double>>()),
+        rates, y, 0.0, seconds / pieces, 0.1 * seconds / pieces);
+  }
+  return y;
+}
+
+TEST(MotionRegularised, JournalReboundsAsItsEquationsSay) {
+  const double zeta = 0.1;
+  const double hertz = 1e9;
+  Model model = falling_journal();
+  model.programs = {lasting(0.02)};
+  model.nodes[1].load = {0.0, -9.81 * mass, 0.0};
+  auto& joint = std::get<ClearanceRevolute>(model.joints[0]);
+  joint.hertz_stiffness = joint.mindlin_stiffness = hertz;
+  Inertia inertia = masses(Vector2d(0.0, mass));
+  inertia.joint_damping = Eigen::VectorXd::Constant(1, 2.0 * zeta * std::sqrt(mass));
+  const std::vector<double> exact = fallen(0.02, zeta, hertz, {0.5e-3, 0.0});
+  const auto error = [&](long steps) {
+    MotionOptions options = from_rest(model, steps);
+    options.start->displacement(1, 1) = -0.5e-3;
+    const Motion motion = simulate_regularised(model, inertia, spring, options);
+    return std::hypot(-motion.states.back().displacement(1, 1) - exact[0],
+                      1e-2 * (-motion.moving.back().velocity(1, 1) - exact[1]));
+  };
+  const double coarse = error(10000);
+  const double fine = error(40000);
+  // A dashpot goes with the fourth root of the depth, so that a contact begins with nearly a jump:
+  // between first order, of a jump somewhere in a step, and second.
+  EXPECT_LT(fine, 1e-5 * 0.5e-3);
+  EXPECT_GT(coarse / fine, 4.0);
+}
+
+TEST(MotionRegularised, BallMovesAsTheJournalDoesInAPlane) {
+  const Matrix3d turned =
+      Eigen::AngleAxisd(2.1, Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
+  const auto run = [&](bool with_ball) {
+    const Model model = testing::rib(with_ball, with_ball ? turned : Matrix3d::Identity());
+    Inertia inertia = masses(Eigen::VectorXd::Constant(5, 0.05));
+    inertia.joint_damping = Eigen::VectorXd::Constant(1, 2.0 * 0.1 * std::sqrt(0.025));
+    inertia.pin_damping = Vector2d(1e-2, 1e-2);
+    MotionOptions options;
+    options.steps = 40000;
+    options.sample_every = 4000;
+    return simulate_regularised(model, inertia, spring, options);
+  };
+  const Motion ball = run(true);
+  const Motion journal = run(false);
+  ASSERT_EQ(ball.states.size(), journal.states.size());
+  const double largest = journal.states[5].displacement.norm();
+  for (std::size_t i = 0; i < ball.states.size(); ++i) {
+    const Eigen::Matrix3Xd apart =
+        turned.transpose() * ball.states[i].displacement - journal.states[i].displacement;
+    // One law in two dimensions and in three: rounding.
+    EXPECT_LT(apart.norm(), 1e-8 * largest) << "sample " << i;
+  }
+  const double heat = journal.states.back().joint_dissipation[0];
+  EXPECT_GT(heat, 0.0);
+  EXPECT_NEAR(ball.states.back().joint_dissipation[0], heat, 1e-6 * heat);
+}
+
+TEST(MotionRegularised, MeetsTheMotionBySets) {
+  // Two schemes for one law. What is left between them is that of implicit steps, first order.
+  const Model model = testing::tripod();
+  Inertia inertia = masses(Eigen::VectorXd::Constant(8, 0.5));
+  inertia.link_damping = Eigen::VectorXd::Constant(4, 60.0);
+  inertia.joint_damping = Eigen::VectorXd::Constant(1, 2.0 * 0.1 * std::sqrt(0.25));
+  MotionOptions options;
+  options.steps = options.sample_every = 80000;
+  const State exact = simulate_regularised(model, inertia, spring, options).states.back();
+  const auto apart = [&](long steps) {
+    options.steps = options.sample_every = steps;
+    const State by_sets = simulate(model, inertia, options).states.back();
+    return (by_sets.displacement - exact.displacement).norm() / exact.displacement.norm();
+  };
+  const double coarse = apart(4000);
+  const double fine = apart(16000);
+  EXPECT_LT(coarse, 1e-5);
+  EXPECT_LT(fine, 0.25 * coarse);
+}
+
+TEST(MotionRegularised, RefusesWhatHasNoContactOfTheKernel) {
+  Model model = falling_journal();
+  const Inertia inertia = masses(Vector2d(0.0, mass));
+  const MotionOptions options = from_rest(model, 10);
+  EXPECT_THROW(simulate_regularised(model, inertia, spring, options), std::invalid_argument);
+  auto& joint = std::get<ClearanceRevolute>(model.joints[0]);
+  joint.hertz_stiffness = joint.mindlin_stiffness = 1e9;
+  EXPECT_NO_THROW(simulate_regularised(model, inertia, spring, from_rest(model, 10000)));
+  EXPECT_THROW(simulate_regularised(model, inertia, "honey", options), std::invalid_argument);
+  EXPECT_THROW(simulate_regularised(model, masses(Vector2d(1.0, 0.0)), spring, options),
+               std::invalid_argument);
+  IwanJoint bolts;
+  bolts.name = "bolts";
+  bolts.first = 1;
+  model.joints = {bolts};
+  EXPECT_THROW(simulate_regularised(model, inertia, spring, options), std::invalid_argument);
+}
+
+TEST(MotionRegularised, StepsThatAreTooLongAreToldAndFail) {
+  const Model sticks = block(1e9, 1.0);
+  const MotionOptions at_once = from_rest(sticks, 10);
+  const Inertia inertia = masses(Eigen::VectorXd::Constant(1, mass));
+  EXPECT_EQ(simulate_regularised(sticks, inertia, spring, at_once).inexact_steps, 10);  // h ω = 71
+  Model falls = falling_journal();
+  auto& joint = std::get<ClearanceRevolute>(falls.joints[0]);
+  joint.hertz_stiffness = joint.mindlin_stiffness = 1e9;
+  EXPECT_THROW(
+      simulate_regularised(falls, masses(Vector2d(0.0, mass)), spring, from_rest(falls, 10)),
+      Failure);
+}
+
+}  // namespace
+}  // namespace statejump::truss
