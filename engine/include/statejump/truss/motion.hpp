@@ -55,8 +55,10 @@ struct MotionOptions {
   long steps = 10000;     ///< Over all cycles, >= 1.
   long sample_every = 1;  ///< Steps between samples, >= 1; start and end are samples as well.
   double theta = 0.5;     ///< θ of the scheme, 0.5 to 1.
-  /// What displacements may be off by in one step [m]; 0: equal steps. Above it steps are of
-  /// backward differentiation, as long as that allows, up to the time between samples.
+  /// What displacements may be off by in one step [m]; 0: equal steps. Above it steps are as long
+  /// as that allows, up to the time between samples: of backward differentiation, or, where joints
+  /// rub behind springs along fixed directions, of Radau IIA between changes of branches that are
+  /// sought.
   double displacement_tolerance = 0;
   double restitution = 0;  ///< e of Newton's impact law, 0 to 1; of rigid contacts only.
   int most_iterations = 50;

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 
 #include "ladder.hpp"
+#include "smooth_stepper.hpp"
 #include "statejump/failure.hpp"
 #include "statejump/kernel/require.hpp"
 #include "statejump/truss/motion.hpp"
@@ -23,6 +25,10 @@ constexpr double shortest = 1e6 * std::numeric_limits<double>::epsilon();
 /// Halvings between two samples because branches of many contacts were not found at once, down to a
 /// thousandth of a step. Forces that hold each other have no branches to be found, however short.
 constexpr int most_unsettled = 10;
+
+/// Tries without going on after which a step of sought changes has none: every try is shorter, or a
+/// contact changes its branch.
+constexpr int most_tries = 1000;
 
 /// State in which the quasi-static path begins; empty if the caller ended the search for it.
 std::optional<State> equilibrium(const Model& model, const MotionOptions& options) {
@@ -81,7 +87,11 @@ class Run {
         duration_(model.programs.front().duration()),
         system_(model),
         bodies_(system_, inertia),
-        stepper_(system_, bodies_, options) {}
+        stepper_(system_, bodies_, options) {
+    if (options.displacement_tolerance > 0.0) {
+      smooth_ = detail::SmoothStepper::of(system_, bodies_, inertia, options);
+    }
+  }
 
   Motion make() &&;
 
@@ -96,11 +106,15 @@ class Run {
   /// length of the whole span [s]; @param unsettled tries in the span that found no solution
   /// @return whether the step is made
   bool try_step(double to, double span, detail::Ladder& ladder, int& unsettled);
+  /// Steps of a truss whose branches change at times that are sought.
+  void make_smooth_steps();
+  [[noreturn]] void fail() const;
 
   /// Changes of joints and their heat in a step that is taken. @param length of it [s]
-  template <class Take>
-  void note(double length, const Take& take);
-  void sample();
+  template <class Stepper, class Take>
+  void note(const Stepper& stepper, double length, const Take& take);
+  template <class Stepper>
+  void sample(Stepper& stepper);
   void watch(long step);
   /// Tells how far it is. @param time [s]; @return whether to go on
   bool go_on(double time);
@@ -115,29 +129,37 @@ class Run {
   const detail::System system_;
   const detail::Bodies bodies_;
   detail::Stepper stepper_;
+  std::unique_ptr<detail::SmoothStepper> smooth_;  ///< Of a truss that can be stepped so.
   Motion motion_;
 };
 
 bool Run::begin() {
+  const auto at = [&](const VectorXd& q, const VectorXd& v, const State* equilibrium) {
+    if (smooth_) {
+      smooth_->begin(q, v, equilibrium);
+    } else {
+      stepper_.begin(q, v, equilibrium);
+    }
+  };
   if (options_.start) {
-    stepper_.begin(bodies_.free_part(options_.start->displacement),
-                   bodies_.free_part(options_.start->velocity), nullptr);
+    at(bodies_.free_part(options_.start->displacement), bodies_.free_part(options_.start->velocity),
+       nullptr);
     return true;
   }
   const std::optional<State> start = equilibrium(model_, options_);
   if (!start) return false;
-  stepper_.begin(bodies_.free_part(start->displacement), VectorXd::Zero(system_.displacements()),
-                 &*start);
+  at(bodies_.free_part(start->displacement), VectorXd::Zero(system_.displacements()), &*start);
   return true;
 }
 
-void Run::sample() {
+template <class Stepper>
+void Run::sample(Stepper& stepper) {
   State state;
-  stepper_.describe(state);
+  stepper.describe(state);
   motion_.states.push_back(std::move(state));
-  motion_.moving.push_back({bodies_.of_nodes(stepper_.velocity()), stepper_.kinetic_energy(),
-                            stepper_.account().damping, stepper_.account().impact,
-                            stepper_.account().drives, stepper_.drive_moment()});
+  motion_.moving.push_back({bodies_.of_nodes(stepper.velocity()), stepper.kinetic_energy(),
+                            stepper.account().damping, stepper.account().impact,
+                            stepper.account().drives, stepper_.drive_moment()});
 }
 
 void Run::watch(long step) {
@@ -152,18 +174,17 @@ bool Run::go_on(double time) {
   return motion_.complete;
 }
 
-template <class Take>
-void Run::note(double length, const Take& take) {
+template <class Stepper, class Take>
+void Run::note(const Stepper& stepper, double length, const Take& take) {
   detail::Statuses before;
-  before = stepper_.statuses();  // a copy: the step changes them
-  const auto heat = [&] { return stepper_.account().friction.sum() + stepper_.account().impact; };
+  before = stepper.statuses();  // a copy: the step changes them
+  const auto heat = [&] { return stepper.account().friction.sum() + stepper.account().impact; };
   const double heat_before = heat();
   take();
-  ++motion_.steps;
   for (std::size_t i = 0; i < before.size(); ++i) {
-    const JointStatus after = stepper_.statuses()[i];
+    const JointStatus after = stepper.statuses()[i];
     if (before[i] == after) continue;
-    const double time = stepper_.time();
+    const double time = stepper.time();
     motion_.events.push_back({time, length, model_.temperature_change(0, 1.0, time),
                               static_cast<int>(i), before[i], after});
     motion_.event_heat.push_back(heat() - heat_before);
@@ -175,9 +196,10 @@ void Run::make_equal_steps() {
   watch(0);
   for (long k = 1; k <= options_.steps && motion_.complete; ++k) {
     const double to = time_of(static_cast<double>(k));
-    note(motion_.time_step, [&] { stepper_.advance(to); });
+    note(stepper_, motion_.time_step, [&] { stepper_.advance(to); });
+    ++motion_.steps;
     watch(k);
-    if (k == options_.steps || k % options_.sample_every == 0) sample();
+    if (k == options_.steps || k % options_.sample_every == 0) sample(stepper_);
     go_on(to);
   }
 }
@@ -203,7 +225,7 @@ void Run::make_span(long first, long count, int& level) {
     if (made && !ladder.done() && !go_on(stepper_.time())) return;
   }
   level = ladder.level();
-  sample();
+  sample(stepper_);
   go_on(time_of(static_cast<double>(first + count)));
 }
 
@@ -222,11 +244,92 @@ bool Run::try_step(double to, double span, detail::Ladder& ladder, int& unsettle
   }
   if (too_far) ++motion_.inexact_steps;
   const double length = span * ladder.length();
-  note(length, [&] { stepper_.accept(); });
+  note(stepper_, length, [&] { stepper_.accept(); });
+  ++motion_.steps;
   motion_.time_step = std::min(motion_.time_step, length);
   // Of second order: a step of twice the length is eight times as far off.
   ladder.accept(8.0 * off <= options_.displacement_tolerance);
   return true;
+}
+
+void Run::make_smooth_steps() {
+  const double tolerance = options_.displacement_tolerance;
+  long next_sample = options_.sample_every;
+  const auto sample_time = [&] {
+    return time_of(static_cast<double>(std::min(next_sample, options_.steps)));
+  };
+  double length = sample_time();
+  double after_change = length;  // of the first step after a change of branches
+  bool has_changed = true;
+  int standing = 0;              // tries without going on
+  std::optional<double> change;  // where the step is to end
+  while (smooth_->time() < duration_ && motion_.complete) {
+    const double from = smooth_->time();
+    const double until = std::min(smooth_->smooth_until(), sample_time());
+    double to = from + length < until - shortest * duration_ ? from + length : until;
+    if (change) to = *change;
+    const double tried = to - from;
+    if (++standing > most_tries) fail();
+    const std::optional<double> off = smooth_->attempt(to);
+    // Of what was tried, by the leading term of its error.
+    constexpr double none = std::numeric_limits<double>::min();
+    const double best =
+        off ? std::pow(tolerance / std::max(*off, none), 1.0 / smooth_->error_power()) : 0.5;
+    const double share = std::clamp(0.9 * best, 0.1, 5.0);
+    const bool too_far = !off || *off > tolerance;
+    if (too_far && tried > shortest * duration_) {
+      ++motion_.rejected_steps;
+      length = tried * std::min(share, 0.9);
+      change.reset();
+      continue;
+    }
+    if (!off) fail();
+    change = smooth_->first_change();
+    if (change && *change <= from) {
+      // Nothing is stepped over.
+      int turned = 0;
+      note(*smooth_, 0.0, [&] { turned = smooth_->turn(); });
+      if (turned == 0) length = 0.25 * tried;
+      has_changed = true;
+      change.reset();
+      continue;
+    }
+    // What ends in rounding of the step's end ends there.
+    if (change && *change < to - 1e-6 * tried) {
+      ++motion_.rejected_steps;
+      continue;
+    }
+    if (too_far) ++motion_.inexact_steps;
+    motion_.time_step = std::min(motion_.time_step, tried);
+    int turned = 0;
+    note(*smooth_, tried, [&] {
+      smooth_->accept();
+      turned = smooth_->turn();
+    });
+    ++motion_.steps;
+    standing = 0;
+    change.reset();
+    if (has_changed) after_change = tried * share;  // what it could have been
+    // Of the same length factors are kept.
+    if (share > 1.25) length = std::max(length, tried * share);
+    has_changed = turned > 0;
+    if (has_changed) length = std::min(length, after_change);
+    if (smooth_->time() == sample_time()) {
+      sample(*smooth_);
+      next_sample += options_.sample_every;
+    }
+    go_on(smooth_->time());
+  }
+}
+
+void Run::fail() const {
+  FailureFields fields{FailureKind::not_converged};
+  fields.time = smooth_->time();
+  fields.temperature_change = model_.temperature_change(0, 1.0, smooth_->time());
+  fields.sought = "no step of the motion";
+  const Joint& joint = model_.joints[index(smooth_->turning_joint())];
+  fields.joints.push_back({kind_of(joint), name_of(joint)});
+  throw Failure(std::move(fields));
 }
 
 Motion Run::make() && {
@@ -236,7 +339,14 @@ Motion Run::make() && {
     motion_.complete = false;
     return std::move(motion_);
   }
-  sample();
+  if (smooth_) {
+    sample(*smooth_);
+    motion_.time_step = duration_;
+    make_smooth_steps();
+    motion_.factorizations = smooth_->factorizations();
+    return std::move(motion_);
+  }
+  sample(stepper_);
   if (options_.displacement_tolerance > 0.0) {
     make_steps_within_tolerance();
   } else {

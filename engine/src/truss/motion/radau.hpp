@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+namespace statejump::truss::detail {
+
+/// Radau IIA of s stages, s odd: collocation, order 2s − 1, L-stable, the last stage is the end of
+/// the step [1]. A⁻¹ = T Λ T⁻¹ has one real eigenvalue and pairs, of which one of each is kept.
+///
+/// [1] E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, Springer 1996, IV.5, IV.8.
+struct Radau {
+  explicit Radau(int stages);
+
+  Eigen::VectorXd c;  ///< Times of the stages, shares of the step.
+  Eigen::MatrixXd a;
+  Eigen::MatrixXd inverse;  ///< A⁻¹
+  /// Weights of the stages' increments in the difference to the embedded method of order s, which
+  /// takes h/λ of the rate at the start as well.
+  Eigen::VectorXd embedded;
+
+  double eigenvalue = 0.0;     ///< λ, the real one.
+  Eigen::VectorXd from_mode;   ///< Its column of T,
+  Eigen::RowVectorXd to_mode;  ///< its row of T⁻¹.
+  struct Pair {
+    std::complex<double> eigenvalue;  ///< The one above the real axis.
+    Eigen::VectorXcd from_mode;
+    Eigen::RowVectorXcd to_mode;
+  };
+  std::vector<Pair> pairs;
+};
+
+}  // namespace statejump::truss::detail

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "rods.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace statejump::truss::detail {
+
+struct Rods::State {
+  Vector3d direction;
+  Vector3d across;  ///< Of the speed of the second end from the first [m/s].
+  double length;
+  double tension;      ///< Elastic [N].
+  double growth_rate;  ///< Of the stress-free length [m/s].
+  double strain_rate;  ///< L' − l_T' [m/s]
+};
+
+Rods::Rods(const System& system, const Inertia& inertia) {
+  const Model& model = system.model();
+  const auto number = [](const Eigen::VectorXd& of, std::size_t i) {
+    return of.size() == 0 ? 0.0 : of[static_cast<Eigen::Index>(i)];
+  };
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    Rod rod;
+    for (const auto& [end, sign] : {std::pair{link.second, 1.0}, std::pair{link.first, -1.0}}) {
+      const Node& node = model.nodes[index(end)];
+      for (int k = 0; k < node.freedoms; ++k) {
+        const auto to = static_cast<std::size_t>(rod.count++);
+        rod.rows[to] = system.first_displacement(end) + k;
+        rod.moves[to] = sign * node.free_directions.col(k);
+      }
+    }
+    rod.drawn = model.nodes[index(link.second)].position - model.nodes[index(link.first)].position;
+    rod.drawn_length = rod.drawn.norm();
+    rod.stress_free_length = link.stress_free_length;
+    rod.axial_stiffness = link.axial_stiffness;
+    rod.expansion = link.thermal_expansion * link.temperature_fraction;
+    rod.program = index(link.program);
+    rod.axial_damping = number(inertia.link_damping, i);
+    rod.turning_damping = number(inertia.pin_damping, i);
+    rods_.push_back(rod);
+  }
+}
+
+inline Rods::State Rods::state(const Rod& rod, const double* q, const double* v, const Heat& heat) {
+  Vector3d moved = Vector3d::Zero();
+  Vector3d speed = Vector3d::Zero();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(rod.count); ++k) {
+    moved += q[rod.rows[k]] * rod.moves[k];
+    speed += v[rod.rows[k]] * rod.moves[k];
+  }
+  State now;
+  const Vector3d along = rod.drawn + moved;
+  now.length = along.norm();
+  now.direction = (1.0 / now.length) * along;
+  // As lengths() and link_axial(), without the difference of two lengths.
+  const double growth = moved.dot(2.0 * rod.drawn + moved) / (rod.drawn_length + now.length);
+  const double warmed = rod.expansion * heat.change[rod.program];
+  const double stretch =
+      growth + (rod.drawn_length - rod.stress_free_length) - rod.stress_free_length * warmed;
+  now.tension = rod.axial_stiffness / (rod.stress_free_length * (1.0 + warmed)) * stretch;
+  now.growth_rate = rod.stress_free_length * rod.expansion * heat.rate[rod.program];
+  const double length_rate = speed.dot(now.direction);
+  now.strain_rate = length_rate - now.growth_rate;
+  now.across = speed - length_rate * now.direction;
+  return now;
+}
+
+void Rods::add_force(const ConstColumn& q, const ConstColumn& v, const Heat& heat,
+                     Eigen::VectorXd& to) const {
+  double* force = to.data();
+  for (const Rod& rod : rods_) {
+    const State now = state(rod, q.data(), v.data(), heat);
+    Vector3d pull = (now.tension + rod.axial_damping * now.strain_rate) * now.direction;
+    if (rod.turning_damping > 0.0) {
+      pull += rod.turning_damping / (now.length * now.length) * now.across;
+    }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(rod.count); ++k) {
+      force[rod.rows[k]] -= rod.moves[k].dot(pull);
+    }
+  }
+}
+
+Rods::Power Rods::power(const ConstColumn& q, const ConstColumn& v, const Heat& heat) const {
+  Power sum;
+  for (const Rod& rod : rods_) {
+    const State now = state(rod, q.data(), v.data(), heat);
+    const double dashpot = rod.axial_damping * now.strain_rate;
+    sum.heat += dashpot * now.strain_rate +
+                rod.turning_damping / (now.length * now.length) * now.across.squaredNorm();
+    // ∂V/∂l_T = −N − N²/(2 E A), and the dashpot pulls at what grows.
+    sum.thermal -=
+        (now.tension * (1.0 + 0.5 * now.tension / rod.axial_stiffness) + dashpot) * now.growth_rate;
+  }
+  return sum;
+}
+
+}  // namespace statejump::truss::detail
