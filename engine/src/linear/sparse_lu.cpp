@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "complex_factor.hpp"
 #include "sparse_factor.hpp"
 
 namespace statejump::linear {
@@ -70,6 +71,32 @@ int SparseFactor::determinant_sign() const {
 
 const char* SparseFactor::library() {
   return "SparseLU";
+}
+
+struct ComplexFactor::Factors {
+  Eigen::SparseMatrix<std::complex<double>> matrix;
+  Eigen::SparseLU<Eigen::SparseMatrix<std::complex<double>>> lu;
+};
+
+ComplexFactor::ComplexFactor() : factors_(std::make_unique<Factors>()) {}
+ComplexFactor::~ComplexFactor() = default;
+ComplexFactor::ComplexFactor(ComplexFactor&&) noexcept = default;
+ComplexFactor& ComplexFactor::operator=(ComplexFactor&&) noexcept = default;
+
+bool ComplexFactor::analyze(const Eigen::SparseMatrix<double>& pattern) {
+  factors_->matrix = pattern.cast<std::complex<double>>();
+  factors_->lu.analyzePattern(factors_->matrix);
+  return true;
+}
+
+bool ComplexFactor::factorize(const std::complex<double>* values) {
+  std::copy_n(values, factors_->matrix.nonZeros(), factors_->matrix.valuePtr());
+  factors_->lu.factorize(factors_->matrix);
+  return factors_->lu.info() == Eigen::Success;
+}
+
+void ComplexFactor::solve(Eigen::VectorXcd& x) const {
+  x = Eigen::VectorXcd(factors_->lu.solve(x));
 }
 
 }  // namespace statejump::linear

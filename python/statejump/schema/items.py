@@ -64,7 +64,7 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
     set_value = object.__setattr__
     items = []
     for number, table in enumerate(value, start=1):
-        values = {}
+        values: dict[str, Any] = {}
         for key, given in table.items():
             if type(given) is float:
                 low, high, above = ranges.get(key, (inf, -inf, True))

@@ -69,7 +69,6 @@ void SmoothStepper::make_pattern(const Eigen::SparseMatrix<double>& damping) {
       }
     }
   }
-  factor_.analyze(stiffness_);
   for (auto& factor : pair_factors_) factor.analyze(stiffness_);
   renew_tangents();
 }
@@ -117,7 +116,10 @@ bool SmoothStepper::factorize(double h) {
   factor_h_ = 0.0;
   const double g = h / radau_.eigenvalue;
   const VectorXd real = mass_entries_ + g * sticking_damping_ + (g * g) * stiffness;
-  if (!factor_.factorize(real.data())) return false;
+  const linear::SparseView by_real(stiffness_.rows(), stiffness_.cols(), real.size(),
+                                   stiffness_.outerIndexPtr(), stiffness_.innerIndexPtr(),
+                                   real.data());
+  if (!factor_.factorize(by_real)) return false;
   for (std::size_t k = 0; k < radau_.pairs.size(); ++k) {
     const Complex of_pair = h / radau_.pairs[k].eigenvalue;
     const Eigen::VectorXcd values =

@@ -195,8 +195,7 @@ bool SmoothStepper::solve_stages() {
 }
 
 double SmoothStepper::correct(const Eigen::MatrixXd& residual) {
-  VectorXd real = residual * (radau_.to_mode / radau_.eigenvalue).transpose();
-  factor_.solve(real);
+  const VectorXd real = factor_.solve(residual * (radau_.to_mode / radau_.eigenvalue).transpose());
   Eigen::MatrixXd change = real * radau_.from_mode.transpose();
   for (std::size_t k = 0; k < radau_.pairs.size(); ++k) {
     const Radau::Pair& pair = radau_.pairs[k];
@@ -213,8 +212,7 @@ double SmoothStepper::error() {
   const VectorXd place = g * v_ + (stage_q_.colwise() - q_) * radau_.embedded;
   const VectorXd speed = g * a_ + (stage_v_.colwise() - v_) * radau_.embedded;
   // Through the matrix, so that what is fast counts with what is left of it [Hairer and Wanner].
-  VectorXd filtered = bodies_->mass() * speed - g * (stiffness_ * place);
-  factor_.solve(filtered);
+  const VectorXd filtered = factor_.solve(bodies_->mass() * speed - g * (stiffness_ * place));
   return (place + g * filtered).cwiseAbs().maxCoeff();
 }
 

@@ -8,8 +8,8 @@
 
 #include "bodies.hpp"
 #include "contacts.hpp"
+#include "linear/complex_factor.hpp"
 #include "linear/sparse_factor.hpp"
-#include "linear/symmetric_factor.hpp"
 #include "radau.hpp"
 #include "rods.hpp"
 #include "rubbing.hpp"
@@ -115,8 +115,8 @@ class SmoothStepper {
   std::vector<Eigen::Index> damping_places_;
   std::vector<Eigen::Index> stiffness_places_;
   std::vector<Eigen::Index> contact_places_;  ///< Of d dᵀ of one contact after the other.
-  linear::SymmetricFactor<double> factor_;
-  std::vector<linear::SymmetricFactor<Complex>> pair_factors_;
+  linear::SparseFactor factor_;
+  std::vector<linear::ComplexFactor> pair_factors_;
   double factor_h_ = 0.0;          ///< Of the factors [s]; 0: none.
   bool tangents_are_new_ = false;  ///< Of the start of this step.
   double contraction_ = 1.0;       ///< Of corrections, as measured last.

@@ -160,6 +160,6 @@ def refused_at_rest(truss: ResolvedTruss) -> str | None:
     for name in truss.drives.names[:1]:
         return f"drive {name!r} turns a link, which is motion: 'statejump reduced --dynamic' runs the case"
     for name in BALL_JOINT.rigid_ones(truss.joints[BALL_JOINT.section])[:1]:
-        return (f"{BALL_JOINT.section} {name!r} has contact = 'rigid', of which a path does not say how it begins to slide: "
-                "'statejump reduced --dynamic' runs the case with motion.start = 'drawn'")
+        return (f"{BALL_JOINT.section} {name!r} has contact = 'rigid', of which a path does not say how it begins to "
+                "slide: 'statejump reduced --dynamic' runs the case with motion.start = 'drawn'")
     return None

@@ -132,8 +132,8 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
     truss, samples = case.resolve(), case.samples_per_cycle
     for name in BALL_JOINT.rigid_ones(truss.joints[BALL_JOINT.section])[:1]:
         if case.motion.start != "drawn":
-            raise NotAllowed("motion.start", case.motion.start, f"must be 'drawn' with ball_joint {name!r}, whose contact "
-                             "is rigid: no path says where it rests", case=case.name, joint=name)
+            raise NotAllowed("motion.start", case.motion.start, f"must be 'drawn' with ball_joint {name!r}, whose "
+                             "contact is rigid: no path says where it rests", case=case.name, joint=name)
     regularised = case.motion.scheme == "regularised"
     if truss.sticking == "partial_slip" and not regularised:
         raise StatejumpError(cause='joints in motion have no partial slip (reduced.sticking = "partial_slip") but with '
