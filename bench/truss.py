@@ -42,10 +42,10 @@ have the same bits with any number of threads). `read` is CPU time, `solve` the 
 all threads together. Events: changes of stick, slip and contact. The ring of many bays is stiff around each
 joint, and none slips from 100 on; in the umbrella every joint slips out and back, each at its own temperature.
 Items are read and checked from HDF5 tables beside the case file, or as Python objects; memory is the peak of the
-process, 50 MB of it Python itself. {machine}
+process, 50 MiB of it Python itself. {machine}
 
 | truss | items as | joints | unknowns | events | solves | factorizations | read [s] | solve [s] | CPU [s] | \
-per joint [µs] | peak memory [MB] |
+per joint [µs] | peak memory [MiB] |
 |---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
 """
 
