@@ -2,10 +2,12 @@
 // A truss in motion as an ordinary differential equation, with the contact laws of a DEM.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "beginning.hpp"
 #include "bodies.hpp"
 #include "kernel_contacts.hpp"
 #include "statejump/failure.hpp"
@@ -28,19 +30,13 @@ constexpr double largest_turn_squared = 8.0;
 constexpr double orthogonal = 1e-12;
 
 void check(const Model& model, const MotionOptions& options) {
-  model.validate();
-  kernel::require(options.steps >= 1, "steps", static_cast<double>(options.steps), ">= 1");
-  kernel::require(options.sample_every >= 1, "sample_every",
-                  static_cast<double>(options.sample_every), ">= 1");
+  detail::check_motion(model, options);
   kernel::require(options.displacement_tolerance == 0.0, "displacement_tolerance",
                   options.displacement_tolerance, "0 m with the scheme 'regularised'");
   kernel::require(options.restitution == 0.0, "restitution", options.restitution,
                   "0 with the scheme 'regularised'");
   kernel::require(options.drives.empty(), "count of drives",
                   static_cast<double>(options.drives.size()), "0 with the scheme 'regularised'");
-  const auto nodes = static_cast<Eigen::Index>(model.nodes.size());
-  kernel::require(options.watched_node >= -1 && options.watched_node < nodes, "watched_node",
-                  options.watched_node, "a node, or -1");
 }
 
 /// A motion that is being made.
@@ -222,16 +218,9 @@ bool Run::begin() {
     q_ = bodies_.free_part(options_.start->displacement);
     v_ = bodies_.free_part(options_.start->velocity);
   } else {
-    Options statics;
-    bool ended = false;
-    // The path itself is not asked for: it ends after its first short step.
-    statics.progress = [&](double share) {
-      ended = options_.progress && !options_.progress(0.0);
-      return !ended && share <= 0.0;
-    };
-    const Path path = solve(model_, statics);
-    if (ended) return false;
-    q_ = bodies_.free_part(path.states.front().displacement);
+    const std::optional<State> start = detail::equilibrium(model_, options_);
+    if (!start) return false;
+    q_ = bodies_.free_part(start->displacement);
     v_ = VectorXd::Zero(q_.size());
   }
   const double h = duration_ / static_cast<double>(options_.steps);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "beginning.hpp"
 #include "ladder.hpp"
 #include "smooth_stepper.hpp"
 #include "statejump/failure.hpp"
@@ -30,25 +31,8 @@ constexpr int most_unsettled = 10;
 /// contact changes its branch.
 constexpr int most_tries = 1000;
 
-/// State in which the quasi-static path begins; empty if the caller ended the search for it.
-std::optional<State> equilibrium(const Model& model, const MotionOptions& options) {
-  Options statics;
-  bool ended = false;
-  // The path itself is not asked for: it ends after its first short step.
-  statics.progress = [&](double share) {
-    ended = options.progress && !options.progress(0.0);
-    return !ended && share <= 0.0;
-  };
-  Path path = solve(model, statics);
-  if (ended) return {};
-  return std::move(path.states.front());
-}
-
 void check(const Model& model, const MotionOptions& options) {
-  model.validate();
-  kernel::require(options.steps >= 1, "steps", static_cast<double>(options.steps), ">= 1");
-  kernel::require(options.sample_every >= 1, "sample_every",
-                  static_cast<double>(options.sample_every), ">= 1");
+  detail::check_motion(model, options);
   kernel::require(options.theta >= 0.5 && options.theta <= 1.0, "theta", options.theta, "0.5 to 1");
   kernel::require(options.restitution >= 0.0 && options.restitution <= 1.0, "restitution",
                   options.restitution, "0 to 1");
@@ -57,14 +41,6 @@ void check(const Model& model, const MotionOptions& options) {
   kernel::require(options.displacement_tolerance == 0.0 || options.watched_node < 0, "watched_node",
                   options.watched_node, "-1 where steps are not equal");
   kernel::require(options.most_iterations >= 1, "most_iterations", options.most_iterations, ">= 1");
-  const auto nodes = static_cast<Eigen::Index>(model.nodes.size());
-  kernel::require(options.watched_node >= -1 && options.watched_node < nodes, "watched_node",
-                  options.watched_node, "a node, or -1");
-  if (!options.start) return;
-  for (const auto* of_nodes : {&options.start->displacement, &options.start->velocity}) {
-    kernel::require(of_nodes->cols() == nodes, "nodes of the start",
-                    static_cast<double>(of_nodes->cols()), "as many as the truss has");
-  }
 }
 
 /// What an attempted step is off by [m]; infinite where it has no solution that is found.
@@ -146,7 +122,7 @@ bool Run::begin() {
        nullptr);
     return true;
   }
-  const std::optional<State> start = equilibrium(model_, options_);
+  const std::optional<State> start = detail::equilibrium(model_, options_);
   if (!start) return false;
   at(bodies_.free_part(start->displacement), VectorXd::Zero(system_.displacements()), &*start);
   return true;

@@ -54,17 +54,13 @@ SmoothStepper::SmoothStepper(const System& system, const Bodies& bodies, const I
       rubbings_(std::move(rubbings)),
       bars_(system.assembly(System::Parts::bars)),
       rods_(system, inertia),
-      loads_(VectorXd::Zero(system.displacements())),
       pair_factors_(radau_.pairs.size()),
       z_(VectorXd::Zero(system.unknowns())) {
   account_.friction = VectorXd::Zero(static_cast<Eigen::Index>(system.model().joints.size()));
-  for (std::size_t i = 0; i < system.model().nodes.size(); ++i) {
-    const Node& node = system.model().nodes[i];
-    for (int k = 0; k < node.freedoms; ++k) {
-      loads_[system.first_displacement(static_cast<int>(i)) + k] =
-          node.free_directions.col(k).dot(node.load);
-    }
-  }
+  Eigen::Matrix3Xd loads(3, static_cast<Eigen::Index>(system.model().nodes.size()));
+  Eigen::Index column = 0;
+  for (const Node& node : system.model().nodes) loads.col(column++) = node.load;
+  loads_ = bodies.free_part(loads);
   for (const thermal::Program& program : system.model().programs) {
     for (const thermal::Branch& branch : thermal::monotone_branches(program)) {
       corners_.push_back(branch.end_time);
@@ -223,16 +219,8 @@ void SmoothStepper::find_change() {
   std::vector<std::pair<double, std::size_t>> ends;
   for (std::size_t k = 0; k < rubbings_.size(); ++k) {
     const Rubbing& one = rubbings_[k];
-    const auto speed = [&](Eigen::Index i) {
-      double sum = 0.0;
-      for (std::size_t j = 0; j < one.count; ++j) sum += one.along[j] * stage_v_(one.rows[j], i);
-      return sum;
-    };
-    const auto slid = [&](Eigen::Index i) {
-      double sum = -slide_from_[static_cast<Eigen::Index>(k)];
-      for (std::size_t j = 0; j < one.count; ++j) sum += one.along[j] * stage_q_(one.rows[j], i);
-      return sum;
-    };
+    const auto speed = [&](Eigen::Index i) { return one.seen(stage_v_.col(i)); };
+    const auto slid = [&](Eigen::Index i) { return slide(k, stage_q_.col(i)); };
     bool suspect = false;
     for (Eigen::Index i = 0; i < stages && !suspect; ++i) {
       suspect = one.has_ended(slid(i), speed(i), h, level_[k]);

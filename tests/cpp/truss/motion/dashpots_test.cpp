@@ -2,7 +2,6 @@
 // Dashpots of contacts in motion, against their own equations.
 #include <gtest/gtest.h>
 
-#include <boost/numeric/odeint.hpp>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -17,27 +16,6 @@ using namespace scenes;
 constexpr double mass = 2.0;
 constexpr double zeta = 0.1;
 constexpr double hertz = 1e9;  // K [N/m^1.5]
-
-/// Place of the journal below the middle of its bearing, and its speed, by F = max(0, K δ^1.5 + c
-/// δ') with c = 2 ζ √(m k), k = 1.5 K √δ; integrated to 1e-12.
-std::vector<double> fallen(double seconds, double gravity, std::vector<double> y) {
-  const auto rates = [&](const std::vector<double>& at, std::vector<double>& rate, double) {
-    const double depth = std::max(at[0] - 1e-3, 0.0);
-    const double dashpot = 2.0 * zeta * std::sqrt(mass * 1.5 * hertz * std::sqrt(depth));
-    const double force = hertz * std::pow(depth, 1.5) + dashpot * at[1];
-    rate[0] = at[1];
-    rate[1] = gravity - (depth > 0.0 ? std::max(force, 0.0) : 0.0) / mass;
-  };
-  namespace odeint = boost::numeric::odeint;
-  // In short pieces: a free fall is exact at any step, which would leap over the contact.
-  const int pieces = 2000;
-  for (int i = 0; i < pieces; ++i) {
-    odeint::integrate_adaptive(
-        odeint::make_controlled(1e-14, 1e-14, odeint::runge_kutta_dopri5<std::vector<double>>()),
-        rates, y, 0.0, seconds / pieces, 0.1 * seconds / pieces);
-  }
-  return y;
-}
 
 Model falling(double seconds) {
   Model model = falling_journal();
@@ -56,7 +34,7 @@ Inertia damped_mass() {
 
 TEST(MotionDashpots, JournalReboundsAsItsEquationsSay) {
   const Model model = falling(0.02);
-  const std::vector<double> exact = fallen(0.02, 9.81, {0.5e-3, 0.0});
+  const std::vector<double> exact = fallen(0.02, 9.81, zeta, hertz, mass, {0.5e-3, 0.0});
   const auto run = [&](long steps) {
     MotionOptions options;
     options.steps = options.sample_every = steps;

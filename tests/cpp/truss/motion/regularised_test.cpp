@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <boost/numeric/odeint.hpp>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -110,27 +109,6 @@ TEST(MotionRegularised, BlockThatSlidesGivesItsEnergyToFriction) {
   EXPECT_NEAR(end.displacement(0, 0), energy / 30.0, 2.0 * 30.0 / 1e6);
 }
 
-/// Place of the journal below the middle of its bearing, and its speed, by Hertz's law with a
-/// dashpot; integrated to 1e-12.
-std::vector<double> fallen(double seconds, double zeta, double hertz, std::vector<double> y) {
-  const auto rates = [&](const std::vector<double>& at, std::vector<double>& rate, double) {
-    const double depth = std::max(at[0] - 1e-3, 0.0);
-    const double dashpot = 2.0 * zeta * std::sqrt(mass * 1.5 * hertz * std::sqrt(depth));
-    const double force = hertz * std::pow(depth, 1.5) + dashpot * at[1];
-    rate[0] = at[1];
-    rate[1] = 9.81 - (depth > 0.0 ? std::max(force, 0.0) : 0.0) / mass;
-  };
-  namespace odeint = boost::numeric::odeint;
-  // In short pieces: a free fall is exact at any step, which would leap over the contact.
-  const int pieces = 2000;
-  for (int i = 0; i < pieces; ++i) {
-    odeint::integrate_adaptive(
-        odeint::make_controlled(1e-14, 1e-14, odeint::runge_kutta_dopri5<std::vector<double>>()),
-        rates, y, 0.0, seconds / pieces, 0.1 * seconds / pieces);
-  }
-  return y;
-}
-
 TEST(MotionRegularised, JournalReboundsAsItsEquationsSay) {
   const double zeta = 0.1;
   const double hertz = 1e9;
@@ -141,7 +119,7 @@ TEST(MotionRegularised, JournalReboundsAsItsEquationsSay) {
   joint.hertz_stiffness = joint.mindlin_stiffness = hertz;
   Inertia inertia = masses(Vector2d(0.0, mass));
   inertia.joint_damping = Eigen::VectorXd::Constant(1, 2.0 * zeta * std::sqrt(mass));
-  const std::vector<double> exact = fallen(0.02, zeta, hertz, {0.5e-3, 0.0});
+  const std::vector<double> exact = fallen(0.02, 9.81, zeta, hertz, mass, {0.5e-3, 0.0});
   const auto error = [&](long steps) {
     MotionOptions options = from_rest(model, steps);
     options.start->displacement(1, 1) = -0.5e-3;

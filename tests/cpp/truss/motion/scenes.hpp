@@ -2,6 +2,11 @@
 // Parts of trusses in motion that several tests share.
 #pragma once
 
+#include <algorithm>
+#include <boost/numeric/odeint.hpp>
+#include <cmath>
+#include <vector>
+
 #include "../parts.hpp"
 #include "statejump/truss/motion.hpp"
 
@@ -43,6 +48,29 @@ inline Model falling_journal() {
   joint.radial_clearance = 1e-3;
   model.joints = {joint};
   return model;
+}
+
+/// Place of falling_journal() below the middle of its bearing, and its speed, by F = max(0, K δ^1.5
+/// + c δ') with c = 2 ζ √(m k), k = 1.5 K √δ; integrated to 1e-12. @param gravity [m/s²] @param
+/// hertz K [N/m^1.5] @param mass [kg] @param y both at first
+inline std::vector<double> fallen(double seconds, double gravity, double zeta, double hertz,
+                                  double mass, std::vector<double> y) {
+  const auto rates = [&](const std::vector<double>& at, std::vector<double>& rate, double) {
+    const double depth = std::max(at[0] - 1e-3, 0.0);
+    const double dashpot = 2.0 * zeta * std::sqrt(mass * 1.5 * hertz * std::sqrt(depth));
+    const double force = hertz * std::pow(depth, 1.5) + dashpot * at[1];
+    rate[0] = at[1];
+    rate[1] = gravity - (depth > 0.0 ? std::max(force, 0.0) : 0.0) / mass;
+  };
+  namespace odeint = boost::numeric::odeint;
+  // In short pieces: a free fall is exact at any step, which would leap over the contact.
+  const int pieces = 2000;
+  for (int i = 0; i < pieces; ++i) {
+    odeint::integrate_adaptive(
+        odeint::make_controlled(1e-14, 1e-14, odeint::runge_kutta_dopri5<std::vector<double>>()),
+        rates, y, 0.0, seconds / pieces, 0.1 * seconds / pieces);
+  }
+  return y;
 }
 
 }  // namespace statejump::truss::scenes

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "beginning.hpp"
+
+#include <utility>
+
+#include "statejump/kernel/require.hpp"
+#include "statejump/truss/path.hpp"
+
+namespace statejump::truss::detail {
+
+void check_motion(const Model& model, const MotionOptions& options) {
+  model.validate();
+  kernel::require(options.steps >= 1, "steps", static_cast<double>(options.steps), ">= 1");
+  kernel::require(options.sample_every >= 1, "sample_every",
+                  static_cast<double>(options.sample_every), ">= 1");
+  const auto nodes = static_cast<Eigen::Index>(model.nodes.size());
+  kernel::require(options.watched_node >= -1 && options.watched_node < nodes, "watched_node",
+                  options.watched_node, "a node, or -1");
+  if (!options.start) return;
+  for (const auto* of_nodes : {&options.start->displacement, &options.start->velocity}) {
+    kernel::require(of_nodes->cols() == nodes, "nodes of the start",
+                    static_cast<double>(of_nodes->cols()), "as many as the truss has");
+  }
+}
+
+std::optional<State> equilibrium(const Model& model, const MotionOptions& options) {
+  Options statics;
+  bool ended = false;
+  // The path itself is not asked for: it ends after its first short step.
+  statics.progress = [&](double share) {
+    ended = options.progress && !options.progress(0.0);
+    return !ended && share <= 0.0;
+  };
+  Path path = solve(model, statics);
+  if (ended) return {};
+  return std::move(path.states.front());
+}
+
+}  // namespace statejump::truss::detail

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "statejump/truss/motion.hpp"
+
+namespace statejump::truss::detail {
+
+/// What every scheme asks of a model and its options. Throws std::invalid_argument.
+void check_motion(const Model& model, const MotionOptions& options);
+
+/// State in which the quasi-static path begins; empty if the caller ended the search for it.
+std::optional<State> equilibrium(const Model& model, const MotionOptions& options);
+
+}  // namespace statejump::truss::detail
