@@ -184,7 +184,7 @@ void System::assemble_bars(const Region& region, const std::vector<double>& chan
       const Vector2d before = plane.transpose() * (drawn(link.second) - drawn(link.first));
       const Vector2d moved = plane.transpose() * moved_between(link.first, link.second);
       now[k] = before + moved;
-      angle += sign[k] * std::atan2(cross(before, moved), before.dot(now[k]));
+      angle += sign[k] * turn_by(before, moved);
     }
     const double moment = spring.stiffness * (angle - spring.free_angle);
     // The angle by the places of the ends: that of the second of a link as turn, of the first

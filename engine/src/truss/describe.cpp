@@ -32,7 +32,7 @@ double torsion_angle(const Model& model, const TorsionSpring& spring, const Matr
                                                 model.nodes[index(link.first)].position);
     const Vector2d moved = plane.transpose() * (system.displacement(link.second, z) -
                                                 system.displacement(link.first, z));
-    return std::atan2(cross(drawn, moved), drawn.dot(drawn + moved));
+    return turn_by(drawn, moved);
   };
   const double first = turned(spring.first_link);
   return spring.second_link < 0 ? first : turned(spring.second_link) - first;

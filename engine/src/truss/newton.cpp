@@ -215,7 +215,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   // Pivots that wander lead far away, where the equations are others: they begin anew from here.
   const VectorXd first_z = z;
   const Statuses first_statuses = statuses;
-  if (ahead && kept && keeps(statuses, joints)) z = ahead->foreseen;
+  if (ahead) z = ahead->foreseen;
   bool condensed = false;
   /// Takes the step from the start that pivots on its factors lead to; false: there is none. What
   /// wanders is as it was at the start, everything else on the branches that were found.
@@ -268,7 +268,9 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const bool wanders = at_.pieces == 0 && pivoting == Pivoting::rounded && stepped && idle > 0 &&
                          paid >= static_cast<double>(wandering.size());
     if (wanders && !condensed && condense()) return begin_anew();
-    if (wanders && ahead) return false;
+    // Blocks of many joints that change at once lead away from where the equations hold: a shorter
+    // step changes fewer.
+    if (ahead && (wanders || idle >= static_cast<int>(remembered_steps))) return false;
     const auto take = [&] {
       if (pivoting != Pivoting::single) return found.corrected;
       Statuses one = statuses;

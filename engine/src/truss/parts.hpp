@@ -84,6 +84,17 @@ struct PlanarAngle {
   Eigen::Matrix2d hessian;
 };
 
+/// Angle by which a direction turns when its end moves [rad]. Of a tangent t below a thousandth
+/// three terms of the arc tangent are left by t⁶/7 < 1.5e-19 of it, and cost a tenth of atan2.
+inline double turn_by(const Vector2d& direction, const Vector2d& moved) {
+  const double across = cross(direction, moved);
+  const double along = direction.dot(direction + moved);
+  if (!(std::abs(across) < 1e-3 * along)) return std::atan2(across, along);
+  const double tangent = across / along;
+  const double squared = tangent * tangent;
+  return tangent * (1.0 - squared * (1.0 / 3.0 - 0.2 * squared));
+}
+
 inline PlanarAngle planar_angle(const Vector2d& v) {
   const double squared = v.squaredNorm();
   const Vector2d left = turned_left(v);

@@ -13,9 +13,9 @@ namespace statejump::truss {
 
 using detail::angle_derivatives;
 using detail::AngleDerivatives;
-using detail::cross;
 using detail::index;
 using detail::Matrix32;
+using detail::turn_by;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -51,7 +51,7 @@ double rotation_of(const LatchHinge& hinge, const Trial& trial) {
     const Arm& arm = arms[k];
     const Vector2d drawn = plane.transpose() * (trial.drawn[arm.to] - trial.drawn[arm.from]);
     const Vector2d moved = plane.transpose() * (trial.moved[arm.to] - trial.moved[arm.from]);
-    rotation += arm.sign * std::atan2(cross(drawn, moved), drawn.dot(drawn + moved));
+    rotation += arm.sign * turn_by(drawn, moved);
   }
   return rotation;
 }

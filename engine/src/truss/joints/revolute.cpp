@@ -15,12 +15,12 @@ namespace statejump::truss {
 
 using detail::angle_derivatives;
 using detail::ByNormal;
-using detail::cross;
 using detail::HertzContact;
 using detail::index;
 using detail::Matrix32;
 using detail::planar_angle;
 using detail::PlanarAngle;
+using detail::turn_by;
 using detail::turned_left;
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
@@ -90,9 +90,9 @@ double tangential_compliance(const ClearanceRevolute& joint, double normal_force
   return contact_of(joint).tangential_compliance(normal_force).value;
 }
 
-/// Angle from one direction to another [rad]; exact for small ones.
+/// Angle from one direction to another [rad].
 double turn_from(const Vector2d& before, const Vector2d& now) {
-  return std::atan2(cross(before, now - before), before.dot(now));
+  return turn_by(before, now - before);
 }
 
 /// A revolute at one state.

@@ -45,7 +45,9 @@ TEST(BallJoint, InAPlaneHoweverTurnedItIsTheRevolute) {
 }
 
 TEST(BallJoint, TurnedInSpaceTheTrussIsTheSame) {
-  expect_the_same_turned(tripod(), 1e-7);
+  // Rounding may cut a step elsewhere: half the increments change displacements by 8e-8, friction
+  // by 6e-5.
+  expect_the_same_turned(tripod(), 1e-8, 1e-5);
 }
 
 TEST(BallJoint, FrictionTurnsIntoANewSlideAsATractrix) {
