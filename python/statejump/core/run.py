@@ -88,10 +88,17 @@ class Event:
 
 
 class Events(Sequence[Event]):
-    """Events of a run in order of time."""
+    """Events of a run in order of time.
 
-    def __init__(self, events: Sequence[Event]) -> None:
-        self._events = tuple(events)
+    :param events: what happened, or what returns it, called when somebody looks
+    """
+
+    def __init__(self, events: Sequence[Event] | Callable[[], Sequence[Event]]) -> None:
+        self._given = events
+
+    @cached_property
+    def _events(self) -> tuple[Event, ...]:
+        return tuple(self._given() if callable(self._given) else self._given)
 
     def __getitem__(self, place: Any) -> Any:
         return self._events[place]

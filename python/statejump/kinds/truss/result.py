@@ -2,7 +2,7 @@
 """What a result file says of a ``truss`` case: both models have the same columns, by item."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -115,7 +115,7 @@ def _changes(truss: ResolvedTruss, time_s: np.ndarray, part: Any) -> np.ndarray:
 
 def _run(
     case: TrussCase, model: str, plain: dict[str, Column], energy: dict[str, Column], items: dict[str, np.ndarray],
-    events: list[Event] | None, summary: Mapping[str, float], **more: Any,
+    events: Callable[[], list[Event]] | None, summary: Mapping[str, float], **more: Any,
 ) -> Run:
     truss, time = case.resolve(), plain["time_s"].values
     history = dict(plain)
@@ -134,15 +134,20 @@ def _run(
     }
     contacts = _contacts(truss, time, position, items)
     change = plain["temperature_change_K"].values
-    if events is None:
-        called = every_joint_name(truss)
-        states = np.concatenate([items[joint.state_column] for joint in STICKING], axis=1)
-        events = from_states(time, change, states, [called[joint.section, name] for joint in STICKING
-                                                    for name in truss.joints[joint.section].names])
-    events = sorted([*events, *_cable_events(truss, time, change, items["tension_N"])],
-                    key=lambda event: event.time_s)
+
+    def happened() -> list[Event]:
+        if events is None:
+            called = every_joint_name(truss)
+            states = np.concatenate([items[joint.state_column] for joint in STICKING], axis=1)
+            found = from_states(time, change, states, [called[joint.section, name] for joint in STICKING
+                                                       for name in truss.joints[joint.section].names])
+        else:
+            found = events()
+        return sorted([*found, *_cable_events(truss, time, change, items["tension_N"])],
+                      key=lambda event: event.time_s)
+
     jumps = np.linalg.norm(items["displacement_m"][-1] - items["displacement_m"][0], axis=1)
-    return Run(model, history, energy, links, contacts, Events(events),
+    return Run(model, history, energy, links, contacts, Events(happened),
                {"largest_jump_m": float(jumps.max()), **summary}, names(case), lambda: case, **more)
 
 
@@ -245,8 +250,8 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
     if len(at) == len(path.cycle_ends["time_s"]):
         beyond = (*beyond, "of this long path the ends of cycles are kept: loads of links between them are not checked")
     beyond = (*beyond, *_taken_together(case, path))
-    run = _run(case, "reduced", plain, energy, items, _events(case, path), summary, native=path, warnings=beyond,
-               sampler=lambda times: reduced_run(case, path, times))
+    run = _run(case, "reduced", plain, energy, items, lambda: _events(case, path), summary, native=path,
+               warnings=beyond, sampler=lambda times: reduced_run(case, path, times))
     others = _heat_columns({key: sampled(values) for key, values in _heat_without_contact(states).items()})
     heat_of_joints = Column(sampled(_heat(states)), "J", "contacts", note=HEAT)
     return replace(run, history={**run.history, **others}, contacts={**run.contacts, "dissipation_J": heat_of_joints})
@@ -257,11 +262,10 @@ def _taken_together(case: TrussCase, path: TrussPath) -> tuple[str, ...]:
     known which came first, nor whether a third slid to and fro between them."""
     # Changes that are located all the same are so within 1.5 tolerances of a branch.
     located = 2 * case.reduced.event_tolerance * float(path.states["time_s"][-1])
-    joints: dict[float, set[tuple[str, str]]] = {}
-    for event in path.events:
-        if event.interval_s > located:
-            joints.setdefault(event.time_s, set()).add((event.joint_kind, event.name))
-    together = sum(len(changed) > 1 for changed in joints.values())
+    found = path.events
+    within = found.interval_s > located
+    changed = np.unique(np.stack([part[within] for part in (found.time_s, found.kind, found.joint)]), axis=1)
+    together = np.count_nonzero(np.unique(changed[0], return_counts=True)[1] > 1)
     if not together:
         return ()
     increments = "1 increment" if together == 1 else f"{together} increments"
@@ -287,7 +291,7 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
         "unknowns": float(motion.unknowns), "steps": float(motion.steps),
         "rejected_steps": float(motion.rejected_steps),
     }
-    run = _run(case, "reduced", plain, energy, items, _events(case, motion), summary, native=motion,
+    run = _run(case, "reduced", plain, energy, items, lambda: _events(case, motion), summary, native=motion,
                warnings=(*motion.warnings, *_beyond(case, plain, items)))
     velocity = Column(states["velocity_m_per_s"], "m/s", "nodes")
     heat = Column(of_joints, "J", "contacts", note=HEAT)
