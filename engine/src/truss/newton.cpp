@@ -208,6 +208,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   int halvings = 0;
   int iterations = 0;
   std::size_t pieces = 0;
+  double first_largest = 0.0;  // force where the solve begins [N]
   bool settled = false;  // whether no joint violates its inequality where z is
   // Pivots of all joints since there were ever fewer violations, and the joints that had any since.
   int idle = 0;
@@ -215,7 +216,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   // Pivots that wander lead far away, where the equations are others: they begin anew from here.
   const VectorXd first_z = z;
   const Statuses first_statuses = statuses;
-  if (ahead) z = ahead->foreseen;
+  // Where a change is to be located it is sought along the tangent at the start.
+  if (ahead && (!ahead->stop || (kept && keeps(statuses, joints)))) z = ahead->foreseen;
   bool condensed = false;
   /// Takes the step from the start that pivots on its factors lead to; false: there is none. What
   /// wanders is as it was at the start, everything else on the branches that were found.
@@ -268,9 +270,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const bool wanders = at_.pieces == 0 && pivoting == Pivoting::rounded && stepped && idle > 0 &&
                          paid >= static_cast<double>(wandering.size());
     if (wanders && !condensed && condense()) return begin_anew();
-    // Blocks of many joints that change at once lead away from where the equations hold: a shorter
-    // step changes fewer.
-    if (ahead && (wanders || idle >= static_cast<int>(remembered_steps))) return false;
+    if (wanders && ahead) return false;
     const auto take = [&] {
       if (pivoting != Pivoting::single) return found.corrected;
       Statuses one = statuses;
@@ -323,6 +323,11 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       start_anew();
       continue;
     }
+    // Branches were asked for by equations that do not hold where they led to: of many joints that
+    // change at once, forces lack half of the largest one. A shorter step changes fewer.
+    if (total == 0) first_largest = largest;
+    const bool astray = left.balance > 0.5 * std::max(largest, first_largest);
+    if (pivoted && ahead && astray) return report;
     // Where rounding is larger than foreseen the iteration stands still: that is the end as well,
     // if forces balance at all.
     const bool closed = left.balance <= force_tolerance * largest + rounding &&
