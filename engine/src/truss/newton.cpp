@@ -209,7 +209,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   int iterations = 0;
   std::size_t pieces = 0;
   double first_largest = 0.0;  // force where the solve begins [N]
-  bool settled = false;  // whether no joint violates its inequality where z is
+  bool settled = false;        // whether no joint violates its inequality where z is
   // Pivots of all joints since there were ever fewer violations, and the joints that had any since.
   int idle = 0;
   std::set<int> wandering;
