@@ -218,6 +218,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const Statuses first_statuses = statuses;
   // Where a change is to be located it is sought along the tangent at the start.
   if (ahead && (!ahead->stop || (kept && keeps(statuses, joints)))) z = ahead->foreseen;
+  const VectorXd& begun_at = ahead && !ahead->stop ? ahead->foreseen : first_z;
   bool condensed = false;
   /// Takes the step from the start that pivots on its factors lead to; false: there is none. What
   /// wanders is as it was at the start, everything else on the branches that were found.
@@ -304,7 +305,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     // Where the solve is likely to end, the Jacobian is wanted: for the rates.
     evaluate(!old || is_last(lengths, closure_tolerance * length(z)));
     const auto start_anew = [&] {
-      z = first_z;
+      z = begun_at;
       settled = false;
       lengths.clear();
       kept = false;

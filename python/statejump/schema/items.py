@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 from statejump.core.errors import MissingKey, NotAllowed, UnknownKey
 from statejump.schema.fields import Section, default_of, definition, fields_of, is_required, rule_of, text
 from statejump.schema.item_tables import ItemColumns, ItemTable
-from statejump.schema.rules import NUMBER, NUMBERS, TEXT, suggestion
+from statejump.schema.rules import NUMBER, NUMBERS, TEXT, TEXTS, suggestion
 
 ItemType = TypeVar("ItemType", bound=Section)
 
@@ -59,6 +59,8 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
         key: (rule.allowed.low, rule.allowed.high, rule.length) for key, rule in rules.items()
         if rule.form == NUMBERS and rule.allowed is not None and not rule.allowed.above
     }
+    free = {key for key, rule in rules.items() if rule.form == TEXT and rule.known is None and rule.expression is None}
+    free_lists = {key for key, rule in rules.items() if rule.form == TEXTS and rule.known is None}
     # Of texts but names many items have the same: what a key took once, it takes again.
     taken: dict[str, set[str]] = {key: set() for key, rule in rules.items() if rule.form == TEXT and key != "name"}
     set_value = object.__setattr__
@@ -72,7 +74,7 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
                     values[key] = given
                     continue
             elif type(given) is str:
-                if given in taken.get(key, ()):
+                if given in taken.get(key, ()) or key in free and given and given.isprintable():
                     values[key] = given
                     continue
             elif type(given) is list and key in lists and set(map(type, given)) == {float}:
@@ -81,6 +83,9 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
                 if low <= min(given) and max(given) <= high and isfinite(sum(given)) and length in (None, len(given)):
                     values[key] = given.copy()
                     continue
+            elif type(given) is list and key in free_lists and set(map(type, given)) == {str}:
+                values[key] = given.copy()
+                continue
             field = fields.get(key)
             if field is None:
                 raise UnknownKey(key, item=where(section, table, number), **suggestion(key, list(fields)))
