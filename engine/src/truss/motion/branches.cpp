@@ -80,8 +80,11 @@ bool Stepper::on_branches(Trial& step, Local& local) {
       if (!guess.is_near) local.impulses = impulses;
       if (guess.is_near && tried.count(guess.branches) > 0) guess = {next, false};
       one_by_one = tried.count(guess.branches) > 0;
+      if (one_by_one) tried = {branches};
     }
     if (one_by_one) {
+      // The contact problem takes no more systems than that.
+      if (tried.size() > branches.size()) return false;
       guess = {branches, false};
       guess.branches[wrong.front()] = next[wrong.front()];
     }

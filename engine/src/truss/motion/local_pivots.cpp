@@ -38,6 +38,7 @@ class Stepper::LocalPivots {
         bodies_(stepper.q_.size() + stepper.holds_.cols()),
         held_(stepper.q_.size()),
         place_(static_cast<std::size_t>(matrix_.cols()), -1),
+        is_reached_(branches.size(), false),
         lacks_(VectorXd::Zero(bodies_)),
         left_(matrix_.cols()) {}
 
@@ -77,6 +78,15 @@ class Stepper::LocalPivots {
         if (!move()) return false;
       } while (grow_where_felt());
     }
+  }
+
+  /// Contacts of all neighbourhoods so far that ask for another branch.
+  std::vector<std::size_t> asking() const {
+    std::vector<std::size_t> found;
+    for (const std::size_t one : reached_) {
+      if (asked(one) != branches_[one]) found.push_back(one);
+    }
+    return found;
   }
 
   /// Whether it has cost as much as a system of the whole truss.
@@ -147,7 +157,10 @@ class Stepper::LocalPivots {
         const Index contact = (it.row() - bodies_) / 2;
         const auto n = static_cast<int>(bodies_ + 2 * contact);
         if (place_[index(n)] >= 0) continue;
-        contacts_.push_back(static_cast<std::size_t>(contact));
+        const auto one = static_cast<std::size_t>(contact);
+        contacts_.push_back(one);
+        if (!is_reached_[one]) reached_.push_back(one);
+        is_reached_[one] = true;
         see(n, fresh);
         see(n + 1, fresh);
       }
@@ -253,6 +266,8 @@ class Stepper::LocalPivots {
   std::vector<int> place_;   ///< Of an unknown in the neighbourhood, or −1.
   std::vector<int> inside_;  ///< Its unknowns.
   std::vector<std::size_t> contacts_;  ///< Its contacts.
+  std::vector<std::size_t> reached_;   ///< Contacts of all neighbourhoods so far.
+  std::vector<bool> is_reached_;
   int layers_ = 0;
   VectorXd lacks_;  ///< Right sides of all rows that are not contacts'.
   VectorXd moved_;  ///< By the last move.
@@ -269,13 +284,16 @@ Stepper::Guess Stepper::pivot_locally(const std::vector<Branch>& branches,
   std::vector<Branch> found = branches;
   LocalPivots pivots(*this, step, local, found);
   if (pivots.reach_of(wrong) > matrix_.matrix().cols()) return {next, false};
-  for (std::size_t k = 0; k < wrong.size(); ++k) {
-    if (pivots.settle(wrong[k])) continue;
-    if (!pivots.is_spent()) return {next, false};
-    for (std::size_t rest = k + 1; rest < wrong.size(); ++rest) {
-      if (found[wrong[rest]] == branches[wrong[rest]]) found[wrong[rest]] = next[wrong[rest]];
+  // Those that are settled may ask again when others are.
+  for (std::vector<std::size_t> asking = wrong; !asking.empty(); asking = pivots.asking()) {
+    for (const std::size_t contact : asking) {
+      if (pivots.settle(contact)) continue;
+      if (!pivots.is_spent()) return {next, false};
+      for (const std::size_t one : wrong) {
+        if (found[one] == branches[one]) found[one] = next[one];
+      }
+      return {found, true};
     }
-    break;
   }
   return {found, true};
 }
