@@ -325,7 +325,7 @@ Stepper::Branch Stepper::asked(const Trial& step, const Local& local, Eigen::Ind
     return branch == Branch::stick ? Branch::slip_plus : branch;  // slides freely either way
   }
   if (branch == Branch::stick) {
-    if (std::abs(tangential) <= bound * (1.0 - allowance)) return branch;
+    if (std::abs(tangential) <= bound * (1.0 + allowance)) return branch;
     return tangential < 0.0 ? Branch::slip_plus : Branch::slip_minus;
   }
   const Contact::Along friction = contact.along(elastic_normal(step, local, i), h);

@@ -131,6 +131,26 @@ TEST(MotionSize, SystemsOfAStepDoNotGrowWithTheJointsThatSlip) {
   }
 }
 
+TEST(MotionSize, FrictionJustWithinItsBoundHoldsWithoutAContactProblem) {
+  // One of ten thousand joints is there in some step: it must not ask for slip, which sends it
+  // back.
+  Model model;
+  model.programs = {lasting(0.1)};
+  model.nodes = {node("B", 0, 0, 1)};
+  model.nodes[0].load = {30.0 * (1.0 - 5e-11), 0.0, 0.0};
+  Slider slider;
+  slider.name = "S";
+  slider.first = 0;
+  slider.friction_force = 30.0;
+  model.joints = {slider};
+  MotionOptions options;
+  options.steps = options.sample_every = 10;
+  options.start = at_rest(model);
+  const Motion motion = simulate(model, {{}, VectorXd::Ones(1), {}, {}, {}}, options);
+  EXPECT_EQ(motion.iterations, 0);
+  EXPECT_EQ(motion.states.back().displacement.norm(), 0.0);
+}
+
 TEST(MotionSize, RefilledMatrixFindsItsPlacesAnewWhereTheyMove) {
   detail::RefilledMatrix made;
   const auto fill = [&](int column, double value) {
