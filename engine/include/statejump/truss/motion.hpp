@@ -121,9 +121,9 @@ struct Motion {
 ///
 /// solved by Newton's method with M + h θ C + (h θ)² K at the middle of the step; H is taken there
 /// too. Contacts are first taken on the branches of the step before and pivoted: one sparse system
-/// a try. What that does not settle is a local frictional contact problem (complementarity/) with
-/// W = Hᵀ (M + …)⁻¹ H, dense. Second order where no contact changes, first order over changes; θ =
-/// 1/2 has no numerical damping.
+/// a try, and small ones around the contacts that change between. What that does not settle is a
+/// local frictional contact problem (complementarity/) with W = Hᵀ (M + …)⁻¹ H, dense. Second order
+/// where no contact changes, first order over changes; θ = 1/2 has no numerical damping.
 ///
 /// **Contacts.** Velocities are those at the end of the step. Rigid contacts obey Newton's
 /// u1 + e min(u0, 0) >= 0 ⟂ r >= 0 once their gap is closed at the middle of the step, and

@@ -124,16 +124,16 @@ Bodies::Step Bodies::step(double from, double to) const {
   return made;
 }
 
-Bodies::Rate Bodies::rate(const Strut& strut, const VectorXd& q, const VectorXd& v,
-                          double growth_rate) const {
+Bodies::Rate Bodies::rate(const Strut& strut, const Eigen::Matrix3Xd& moved,
+                          const Eigen::Matrix3Xd& velocity, double growth_rate) const {
   const Model& model = system_->model();
   const Vector3d along =
       (model.nodes[index(strut.second)].position - model.nodes[index(strut.first)].position) +
-      (at(strut.second, q) - at(strut.first, q));
+      (moved.col(strut.second) - moved.col(strut.first));
   Rate found;
   found.length = along.norm();
   found.direction = along / found.length;
-  const Vector3d relative = at(strut.second, v) - at(strut.first, v);
+  const Vector3d relative = velocity.col(strut.second) - velocity.col(strut.first);
   const double length_rate = relative.dot(found.direction);
   found.strain_rate = length_rate - growth_rate;
   found.across = relative - length_rate * found.direction;
@@ -143,9 +143,11 @@ Bodies::Rate Bodies::rate(const Strut& strut, const VectorXd& q, const VectorXd&
 VectorXd Bodies::force(const VectorXd& q, const VectorXd& v, const Step& step) const {
   VectorXd found = VectorXd::Zero(mass_.rows());
   const Model& model = system_->model();
+  const Eigen::Matrix3Xd moved = system_->displacements(q);
+  const Eigen::Matrix3Xd velocity = system_->displacements(v);
   for (std::size_t k = 0; k < struts_.size(); ++k) {
     const Strut& strut = struts_[k];
-    const Rate now = rate(strut, q, v, step.growth_rate[k]);
+    const Rate now = rate(strut, moved, velocity, step.growth_rate[k]);
     const Vector3d pull = strut.axial * now.strain_rate * now.direction +
                           strut.turning / (now.length * now.length) * now.across;
     for (const auto& [node, sign] : {std::pair{strut.first, 1.0}, std::pair{strut.second, -1.0}}) {
@@ -158,12 +160,14 @@ VectorXd Bodies::force(const VectorXd& q, const VectorXd& v, const Step& step) c
   return found;
 }
 
-Eigen::SparseMatrix<double> Bodies::damping(const VectorXd& q) const {
+std::vector<Eigen::Triplet<double>> Bodies::damping_entries(const VectorXd& q) const {
   std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(36 * struts_.size());
   const auto add = [&](int i, int j, double value) { entries.emplace_back(i, j, value); };
-  const VectorXd none = VectorXd::Zero(q.size());
+  const Eigen::Matrix3Xd moved = system_->displacements(q);
+  const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, moved.cols());
   for (const Strut& strut : struts_) {
-    const Rate now = rate(strut, q, none, 0.0);
+    const Rate now = rate(strut, moved, none, 0.0);
     const Matrix3d along = now.direction * now.direction.transpose();
     const Matrix3d block = strut.axial * along + strut.turning / (now.length * now.length) *
                                                      (Matrix3d::Identity() - along);
@@ -172,6 +176,11 @@ Eigen::SparseMatrix<double> Bodies::damping(const VectorXd& q) const {
     spread(strut.first, strut.second, -block, add);
     spread(strut.second, strut.first, -block, add);
   }
+  return entries;
+}
+
+Eigen::SparseMatrix<double> Bodies::damping(const VectorXd& q) const {
+  const std::vector<Eigen::Triplet<double>> entries = damping_entries(q);
   Eigen::SparseMatrix<double> made(mass_.rows(), mass_.cols());
   made.setFromTriplets(entries.begin(), entries.end());
   return made;
@@ -181,11 +190,15 @@ Bodies::Work Bodies::work(const VectorXd& q0, const VectorXd& v0, const VectorXd
                           const VectorXd& v1, const Step& step, double theta) const {
   Work sum;
   const double h = step.to - step.from;
+  const Eigen::Matrix3Xd moved_before = system_->displacements(q0);
+  const Eigen::Matrix3Xd velocity_before = system_->displacements(v0);
+  const Eigen::Matrix3Xd moved_after = system_->displacements(q1);
+  const Eigen::Matrix3Xd velocity_after = system_->displacements(v1);
   for (std::size_t k = 0; k < struts_.size(); ++k) {
     const Strut& strut = struts_[k];
     const double growth = step.growth_rate[k];
-    const Rate before = rate(strut, q0, v0, growth);
-    const Rate after = rate(strut, q1, v1, growth);
+    const Rate before = rate(strut, moved_before, velocity_before, growth);
+    const Rate after = rate(strut, moved_after, velocity_after, growth);
     const double force =
         strut.axial * (theta * after.strain_rate + (1.0 - theta) * before.strain_rate);
     sum.heat += h * force * 0.5 * (before.strain_rate + after.strain_rate);

@@ -31,6 +31,8 @@ class Bodies {
   VectorXd force(const VectorXd& q, const VectorXd& v, const Step& step) const;
   /// −∂force/∂v at q.
   Eigen::SparseMatrix<double> damping(const VectorXd& q) const;
+  /// The same entry by entry, always in one order; those at one place add up.
+  std::vector<Eigen::Triplet<double>> damping_entries(const VectorXd& q) const;
   /// Heat of the dashpots over the step, and the temperature's work on them [J].
   struct Work {
     double heat = 0.0;
@@ -57,7 +59,9 @@ class Bodies {
     double strain_rate;  // L' − l_T' [m/s]
     Vector3d across;     // [m/s]
   };
-  Rate rate(const Strut& strut, const VectorXd& q, const VectorXd& v, double growth_rate) const;
+  /// Of places and velocities of all nodes.
+  Rate rate(const Strut& strut, const Eigen::Matrix3Xd& moved, const Eigen::Matrix3Xd& velocity,
+            double growth_rate) const;
   Vector3d at(int node, const VectorXd& free) const { return system_->displacement(node, free); }
   template <class Add>
   void spread(int row_node, int column_node, const Matrix3d& value, Add&& add) const;

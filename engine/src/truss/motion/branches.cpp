@@ -52,13 +52,16 @@ bool Stepper::on_branches(Trial& step, Local& local) {
   }
   active_ = std::move(active);
   // Block pivoting with single pivots as a safeguard (Judice and Pires 1994): all contacts that ask
-  // for another branch change, unless that has been tried; then only the first of them does, until
-  // fewer ask than ever before. Most changes are of one contact, found at the second try.
+  // for another branch change, with what follows from it near by, unless that has been tried; then
+  // only the first of them does, until fewer ask than ever before. Most changes are of one contact,
+  // found at the second try.
   std::set<std::vector<Branch>> tried{branches};
   std::size_t fewest = branches.size() + 1;
   bool one_by_one = false;
+  Guess guess{std::move(branches), false};
   for (;;) {
-    if (!solve_on(branches, step, local)) return false;
+    if (!solve_on(guess.branches, step, local, guess.is_near)) return false;
+    branches = std::move(guess.branches);
     std::vector<Branch> next = branches;
     std::vector<std::size_t> wrong;
     for (std::size_t i = 0; i < branches.size(); ++i) {
@@ -69,15 +72,23 @@ bool Stepper::on_branches(Trial& step, Local& local) {
     if (wrong.size() < fewest) {
       fewest = wrong.size();
       one_by_one = false;
+      tried = {branches};
     }
-    if (!one_by_one && tried.count(next) > 0) one_by_one = true;
+    if (!one_by_one) {
+      const VectorXd impulses = local.impulses;
+      guess = pivot_locally(branches, next, wrong, step, local);
+      if (!guess.is_near) local.impulses = impulses;
+      if (guess.is_near && tried.count(guess.branches) > 0) guess = {next, false};
+      one_by_one = tried.count(guess.branches) > 0;
+      if (one_by_one) tried = {branches};
+    }
     if (one_by_one) {
-      const Branch first = next[wrong.front()];
-      next = branches;
-      next[wrong.front()] = first;
+      // The contact problem takes no more systems than that.
+      if (tried.size() > branches.size()) return false;
+      guess = {branches, false};
+      guess.branches[wrong.front()] = next[wrong.front()];
     }
-    if (!tried.insert(next).second) return false;
-    branches = std::move(next);
+    if (!tried.insert(guess.branches).second) return false;
   }
 }
 
@@ -126,48 +137,70 @@ Stepper::Law Stepper::stick_law(const Trial& step, const Local& local, Eigen::In
   return {friction.bend / step.h, friction.compliance / (step.h * step.h)};
 }
 
-/// Rows: balance, what holds, then two of each active contact. A contact's impulses are unknowns on
-/// every branch, so that the pattern is the same on all of them.
 bool Stepper::factorize(OnBranches& on, const Trial& step, const Local& local) {
-  const Eigen::SparseMatrix<double> matrix = iteration_matrix(step);
-  const Eigen::Index bodies = matrix.rows();
+  assemble(on.branches, step, local);
   on.scale = hold_scale_;
-  const double scale = on.scale;
-  std::vector<Eigen::Triplet<double>> entries;
-  for (Eigen::Index j = 0; j < matrix.outerSize(); ++j) {
-    for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it) {
-      entries.emplace_back(it.row(), it.col(), it.value());
-    }
-  }
-  for (std::size_t k = 0; k < on.branches.size(); ++k) {
-    const Contact& contact = *local.contacts[k];
-    const auto i = static_cast<Eigen::Index>(k);
-    const Branch now = on.branches[k];
-    const Eigen::Index n = bodies + 2 * i;
-    const Eigen::Index t = n + 1;
-    // A row that is not asked says that its impulse is what it is.
-    const auto row = [&](Eigen::Index at, bool asked, const Law& law) {
-      for (Eigen::SparseMatrix<double>::InnerIterator it(local.directions, at - bodies); it; ++it) {
-        entries.emplace_back(at, it.row(), asked ? scale * it.value() : 0.0);
-        entries.emplace_back(it.row(), at, -scale * it.value());
-      }
-      entries.emplace_back(at, at, asked ? scale * scale * law.compliance : scale);
-    };
-    const bool touches = now != Branch::open && contact.normal_column >= 0;
-    const bool sticks = now == Branch::stick && contact.tangential_column >= 0;
-    row(n, touches, touches ? normal_law(step, local, i) : Law{});
-    row(t, sticks, sticks ? stick_law(step, local, i) : Law{});
-    entries.emplace_back(t, n, touches && !sticks ? -scale * slide(contact, now) : 0.0);
-  }
-  const Eigen::Index size = bodies + local.impulses.size();
-  Eigen::SparseMatrix<double> bordered(size, size);
-  bordered.setFromTriplets(entries.begin(), entries.end());
-  bordered.makeCompressed();
   ++factorizations_;
-  return on.factor.factorize(bordered);
+  return on.factor.factorize(matrix_.matrix());
 }
 
-bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& local) {
+/// Rows: balance, what holds, then two of each active contact. A contact's impulses are unknowns on
+/// every branch, so that the pattern is the same on all of them.
+void Stepper::assemble(const std::vector<Branch>& branches, const Trial& step, const Local& local) {
+  const bool is_new = matrix_of_ != step.number;
+  if (is_new) {
+    matrix_.begin(q_.size() + held_count() + local.impulses.size());
+    fill_bodies(step, matrix_);
+    matrix_scale_ = hold_scale_;
+    contact_entry_.resize(branches.size());
+  } else if (hold_scale_ != matrix_scale_) {
+    hold_directions(step, matrix_scale_);
+  }
+  for (std::size_t k = 0; k < branches.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (is_new) {
+      contact_entry_[k] = matrix_.next();
+      tell_contact(branches[k], step, local, i,
+                   [&](auto row, auto column, double value) { matrix_.add(row, column, value); });
+    } else {
+      retell(branches[k], step, local, i);
+    }
+  }
+  if (is_new) matrix_.end();
+  matrix_of_ = step.number;
+}
+
+void Stepper::retell(Branch branch, const Trial& step, const Local& local, Eigen::Index i) {
+  std::size_t entry = contact_entry_[static_cast<std::size_t>(i)];
+  tell_contact(branch, step, local, i,
+               [&](auto, auto, double value) { matrix_.set(entry++, value); });
+}
+
+template <class Tell>
+void Stepper::tell_contact(Branch now, const Trial& step, const Local& local, Eigen::Index i,
+                           Tell&& tell) const {
+  const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+  const double scale = hold_scale_;
+  const Eigen::Index n = q_.size() + holds_.cols() + 2 * i;
+  const Eigen::Index t = n + 1;
+  // A row that is not asked says that its impulse is what it is.
+  const auto row = [&](Eigen::Index at, bool asked, const Law& law) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(local.directions, 2 * i + at - n); it;
+         ++it) {
+      tell(at, it.row(), asked ? scale * it.value() : 0.0);
+      tell(it.row(), at, -scale * it.value());
+    }
+    tell(at, at, asked ? scale * scale * law.compliance : scale);
+  };
+  const bool touches = now != Branch::open && contact.normal_column >= 0;
+  const bool sticks = now == Branch::stick && contact.tangential_column >= 0;
+  row(n, touches, touches ? normal_law(step, local, i) : Law{});
+  row(t, sticks, sticks ? stick_law(step, local, i) : Law{});
+  tell(t, n, touches && !sticks ? -scale * slide(contact, now) : 0.0);
+}
+
+bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& local,
+                       bool is_near) {
   VectorXd begun = local.impulses;
   for (std::size_t k = 0; k < branches.size(); ++k) {
     const Contact& contact = *local.contacts[k];
@@ -179,17 +212,25 @@ bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& 
     }
   }
   OnBranches& on = factors_for(step.h, branches);
+  const VectorXd near = step.v;
+  const auto begin = [&](bool there) {
+    step.v = there ? near : v_;
+    local.impulses = begun;
+  };
   for (bool kept : {true, false}) {
     if (kept && on.outdated) continue;
     on.outdated = true;
-    step.v = v_;
-    local.impulses = begun;
+    begin(is_near);
     if (kept) {
       hold_directions(step, on.scale);
     } else if (!factorize(on, step, local)) {
       return false;
     }
-    const int iterations = iterate(on, step, local, kept);
+    int iterations = iterate(on, step, local, kept);
+    if (iterations > most_iterations && !kept && is_near) {
+      begin(false);
+      iterations = iterate(on, step, local, kept);
+    }
     if (iterations <= most_iterations) {
       on.outdated = iterations > few_iterations;
       return true;
@@ -284,7 +325,7 @@ Stepper::Branch Stepper::asked(const Trial& step, const Local& local, Eigen::Ind
     return branch == Branch::stick ? Branch::slip_plus : branch;  // slides freely either way
   }
   if (branch == Branch::stick) {
-    if (std::abs(tangential) <= bound * (1.0 - allowance)) return branch;
+    if (std::abs(tangential) <= bound * (1.0 + allowance)) return branch;
     return tangential < 0.0 ? Branch::slip_plus : Branch::slip_minus;
   }
   const Contact::Along friction = contact.along(elastic_normal(step, local, i), h);

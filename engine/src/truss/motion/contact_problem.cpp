@@ -24,8 +24,11 @@ constexpr double takes_part = 1e-3;
 /// What impulses do to the velocities.
 void Stepper::complete(const Trial& step, Local& local) {
   ++factorizations_;
-  if (!factor_.factorize(iteration_matrix(step))) fail(FailureKind::singular, step.to, nullptr);
   const Eigen::Index n = q_.size();
+  bodies_matrix_.begin(n + static_cast<Eigen::Index>(contacts_.holds().size()) + drives_.count());
+  fill_bodies(step, bodies_matrix_);
+  bodies_matrix_.end();
+  if (!factor_.factorize(bodies_matrix_.matrix())) fail(FailureKind::singular, step.to, nullptr);
   const Eigen::Index rows = local.directions.cols();
   local.answers = Eigen::MatrixXd::Zero(n + holds_.cols(), rows);
   VectorXd right = VectorXd::Zero(n + holds_.cols());

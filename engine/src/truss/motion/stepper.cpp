@@ -74,41 +74,45 @@ VectorXd Stepper::force(const VectorXd& q, const VectorXd& v, const Bodies::Step
   return found;
 }
 
-Eigen::SparseMatrix<double> Stepper::iteration_matrix(const Trial& step) {
+void Stepper::fill_bodies(const Trial& step, RefilledMatrix& to) {
   const Eigen::Index n = q_.size();
-  const double theta = step.theta;
-  const double h = step.h;
+  const double by_speed = step.h * step.theta;
+  const double by_place = by_speed * by_speed;
+  VectorXd diagonal = VectorXd::Zero(n);
+  const auto add = [&](Eigen::Index row, Eigen::Index column, double value) {
+    to.add(row, column, value);
+    if (row == column) diagonal[row] += value;
+  };
+  const auto add_block = [&](const auto& matrix, double share) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      for (typename std::decay_t<decltype(matrix)>::InnerIterator it(matrix, j); it; ++it) {
+        if (it.row() >= n) break;
+        add(it.row(), j, share * it.value());
+      }
+    }
+  };
   VectorXd middle = VectorXd::Zero(system_->unknowns());
   middle.head(n) = step.q_middle;
   system_->evaluate_bars(middle, step.to, bars_);
-  Eigen::SparseMatrix<double> matrix =
-      bodies_->mass() + (h * theta * h * theta) * bars_.jacobian().block(0, 0, n, n);
+  add_block(bodies_->mass(), 1.0);
+  add_block(bars_.jacobian(), by_place);
   if (contacts_.have_springs()) {
     evaluate_springs(step.q_middle, step.to);
-    matrix += (h * theta * h * theta) * springs_.jacobian().block(0, 0, n, n);
+    add_block(springs_.jacobian(), by_place);
   }
-  if (bodies_->damped()) matrix += (h * theta) * bodies_->damping(step.q_middle);
+  if (bodies_->damped()) {
+    for (const auto& one : bodies_->damping_entries(step.q_middle)) {
+      add(one.row(), one.col(), by_speed * one.value());
+    }
+  }
   // Of the size of the rest, so that pivots compare.
-  hold_directions(step, matrix.diagonal().maxCoeff());
-  const Eigen::Index held = holds_.cols();
-  if (held > 0) {
-    std::vector<Eigen::Triplet<double>> entries;
-    for (Eigen::Index j = 0; j < matrix.outerSize(); ++j) {
-      for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it) {
-        entries.emplace_back(it.row(), it.col(), it.value());
-      }
+  hold_directions(step, diagonal.maxCoeff());
+  for (Eigen::Index k = 0; k < holds_.cols(); ++k) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(holds_, k); it; ++it) {
+      to.add(it.row(), n + k, it.value());
+      to.add(n + k, it.row(), it.value());
     }
-    for (Eigen::Index k = 0; k < held; ++k) {
-      for (Eigen::SparseMatrix<double>::InnerIterator it(holds_, k); it; ++it) {
-        entries.emplace_back(it.row(), n + k, it.value());
-        entries.emplace_back(n + k, it.row(), it.value());
-      }
-    }
-    matrix.resize(n + held, n + held);
-    matrix.setFromTriplets(entries.begin(), entries.end());
   }
-  matrix.makeCompressed();
-  return matrix;
 }
 
 void Stepper::hold_directions(const Trial& step, double scale) {
@@ -241,9 +245,10 @@ bool Stepper::balanced(const Trial& step, const VectorXd& residual, const Vector
   return true;
 }
 
-Stepper::Trial Stepper::trial(double to) const {
+Stepper::Trial Stepper::trial(double to) {
   const double length = to - time_;
   Trial step;
+  step.number = ++trials_;
   step.h = step.length = length;
   step.to = to;
   step.theta = options_->theta;

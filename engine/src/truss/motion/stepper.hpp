@@ -10,6 +10,7 @@
 #include "contacts.hpp"
 #include "drives.hpp"
 #include "linear/sparse_factor.hpp"
+#include "refilled_matrix.hpp"
 #include "statejump/complementarity/solve.hpp"
 #include "statejump/failure.hpp"
 
@@ -77,6 +78,7 @@ class Stepper {
   /// (1 − θ) v0). After Moreau and Jean it begins where the last one ended; one of backward
   /// differentiation has θ = 1, begins where the last two point to, and its h is a part of it.
   struct Trial {
+    long number = 0;
     double h = 0.0;  ///< [s]; impulses are h times the forces at the end.
     double to = 0.0;
     double length = 0.0;  ///< [s]
@@ -114,14 +116,19 @@ class Stepper {
   /// Speed with which a rigid contact opens after an impact, with its sign turned [m/s].
   double leaving(const Trial& step, const Local& local, Eigen::Index contact) const;
 
-  Trial trial(double to) const;
+  Trial trial(double to);
   /// Finds the end of a step; none where its branches are not found and `give_up`.
   std::optional<Local> find(Trial& step, bool give_up);
   /// Whether a rigid contact closes in the step, so that velocities jump.
   static bool closes(const Local& local);
   /// Depth at the end of a step of rigid contacts that its middle did not know closed [m].
   double deepest(const Trial& step) const;
-  Eigen::SparseMatrix<double> iteration_matrix(const Trial& step);
+  /// M + h θ C + (h θ)² K at the middle of the step, bordered by what holds or drives; also sets
+  /// the directions of these.
+  void fill_bodies(const Trial& step, RefilledMatrix& to);
+  Eigen::Index held_count() const {
+    return static_cast<Eigen::Index>(contacts_.holds().size()) + drives_.count();
+  }
   Local local_problem(const Trial& step);
   /// Turns the friction of all balls to where an iterate of the step drives them, in
   /// ball_turns.cpp.
@@ -151,8 +158,28 @@ class Stepper {
   };
   OnBranches& factors_for(double h, const std::vector<Branch>& branches);
   bool factorize(OnBranches& on, const Trial& step, const Local& local);
+  /// The matrix of a step with its contacts on these branches at an iterate. What is not the
+  /// contacts' is filled once for a step.
+  void assemble(const std::vector<Branch>& branches, const Trial& step, const Local& local);
+  /// Gives the matrix a contact on a branch at an iterate.
+  void retell(Branch branch, const Trial& step, const Local& local, Eigen::Index i);
+  /// Tells the entries of a contact one after the other, on all branches at the same places.
+  template <class Tell>
+  void tell_contact(Branch branch, const Trial& step, const Local& local, Eigen::Index i,
+                    Tell&& tell) const;
   /// Solves the step with every active contact on a branch. False if it does not converge.
-  bool solve_on(const std::vector<Branch>& branches, Trial& step, Local& local);
+  /// @param is_near the iterate is where to begin; else that is the end of the last step
+  bool solve_on(const std::vector<Branch>& branches, Trial& step, Local& local, bool is_near);
+  class LocalPivots;
+  /// Branches that are tried next, and whether the iterate is near to what they make of it.
+  struct Guess {
+    std::vector<Branch> branches;
+    bool is_near = false;
+  };
+  /// Where few contacts of a solved step ask for other branches, pivots around each of them.
+  /// @param next branches that they ask for
+  Guess pivot_locally(const std::vector<Branch>& branches, const std::vector<Branch>& next,
+                      const std::vector<std::size_t>& wrong, Trial& step, Local& local);
   /// Newton's method with these factors; its iterations, more than allowed if it did not converge.
   /// @param kept the factors are of an earlier step
   int iterate(const OnBranches& on, Trial& step, Local& local, bool kept);
@@ -198,11 +225,17 @@ class Stepper {
   const Bodies* bodies_;
   const MotionOptions* options_;
   Contacts contacts_;
-  Assembly joints_;   ///< Gaps and directions at the middle of the step.
-  Assembly springs_;  ///< Forces of joints beside their contacts.
-  Assembly bars_;     ///< Stiffness there.
-  Assembly forces_;   ///< Forces where the step is; no Jacobian.
+  Assembly joints_;               ///< Gaps and directions at the middle of the step.
+  Assembly springs_;              ///< Forces of joints beside their contacts.
+  Assembly bars_;                 ///< Stiffness there.
+  Assembly forces_;               ///< Forces where the step is; no Jacobian.
+  RefilledMatrix bodies_matrix_;  ///< Of the contact problem.
   linear::SparseFactor factor_;
+  /// Of all active contacts on branches, see assemble().
+  RefilledMatrix matrix_;
+  long matrix_of_ = -1;                     ///< Trial::number of its bodies.
+  double matrix_scale_ = 1.0;               ///< Of what holds in it.
+  std::vector<std::size_t> contact_entry_;  ///< The first one of every active contact.
   std::vector<Branch> branches_;  ///< Of all contacts in the last step, at first where they rest.
   std::vector<int> active_;       ///< Places of the contacts that are active in this one.
   std::vector<std::unique_ptr<OnBranches>> kept_;  ///< The last ones used, the latest first.
@@ -225,6 +258,7 @@ class Stepper {
   std::optional<Undetermined> undetermined_;
   std::optional<Undetermined> jammed_;
   std::vector<Eigen::Index> holding_;  ///< Rows of contacts, see check_determined().
+  long trials_ = 0;
   long iterations_ = 0;
   long factorizations_ = 0;
   double largest_merit_ = 0.0;

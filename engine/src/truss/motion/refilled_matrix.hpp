@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace statejump::truss::detail {
+
+/// A square sparse matrix whose entries are given again and again in one order: where each of them
+/// goes is found once. Entries at one place add up.
+class RefilledMatrix {
+ public:
+  void begin(Eigen::Index size) {
+    moved_ = size != matrix_.rows();
+    size_ = size;
+    next_ = 0;
+  }
+  void add(Eigen::Index row, Eigen::Index column, double value) {
+    const Place place{static_cast<int>(row), static_cast<int>(column)};
+    if (next_ == places_.size()) {
+      places_.push_back(place);
+      values_.push_back(value);
+      moved_ = true;
+    } else {
+      moved_ = moved_ || places_[next_] != place;
+      places_[next_] = place;
+      values_[next_] = value;
+    }
+    ++next_;
+  }
+  /// Number of the next entry.
+  std::size_t next() const { return next_; }
+  /// Finds places where entries are not where they were last.
+  void end();
+
+  /// Gives an entry another value; it is alone at its place.
+  void set(std::size_t entry, double value) { matrix_.valuePtr()[slots_[entry]] = value; }
+
+  const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
+
+ private:
+  using Place = std::pair<int, int>;  // row, column
+
+  std::vector<Place> places_;
+  std::vector<double> values_;
+  std::vector<int> slots_;
+  std::size_t next_ = 0;
+  Eigen::Index size_ = 0;
+  bool moved_ = true;
+  Eigen::SparseMatrix<double> matrix_;
+};
+
+}  // namespace statejump::truss::detail
