@@ -438,8 +438,7 @@ def test_joint_that_loses_its_contact_is_reported_with_the_temperature(
         bias_rad: float, change_K: float, lost_K: float, increments: int) -> None:
     """The links open or close the flare angle beyond the spring's free one: nothing holds the journal then. As its
     force vanishes all that is left of it is rounding: whether the slipping joint is found a little before to have
-    run away, at last without contact, or not to be held by its vanishing force, depends on where the steps end; when
-    that is does not."""
+    run away, or at last without contact, depends on where the steps end; when that is does not."""
     case = generate.umbrella(1, temperature_change_K=change_K, bias_rad=bias_rad)
     with pytest.raises(StatejumpError) as caught:
         path(case, increments_per_branch=increments)
@@ -447,9 +446,8 @@ def test_joint_that_loses_its_contact_is_reported_with_the_temperature(
     told = re.search(r"at a temperature change of (\S+) K \(t = ", message)
     # Located to 1e-9 of a branch, some steps before or after the change.
     assert told and float(told[1]) == pytest.approx(lost_K, abs=20e-9 * abs(change_K))
-    said = ("jumps across its play", "becomes a mechanism", "slip runs away", "has buckled")
-    assert any(words in message for words in said)
-    assert "revolute" in message or "node 'J'" in message  # the joint, or its journal
+    assert "jumps across its play" in message or "becomes a mechanism" in message or "slip runs away" in message
+    assert "revolute" in message
 
 
 def test_path_ends_when_progress_says_so() -> None:

@@ -217,8 +217,9 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const VectorXd first_z = z;
   const Statuses first_statuses = statuses;
   // Where a change is to be located it is sought along the tangent at the start.
-  if (ahead && (!ahead->stop || (kept && keeps(statuses, joints)))) z = ahead->foreseen;
-  const VectorXd& begun_at = ahead && !ahead->stop ? ahead->foreseen : first_z;
+  const bool is_foreseen = ahead && !ahead->stop;
+  const VectorXd& begun_at = is_foreseen ? ahead->foreseen : first_z;
+  if (is_foreseen || (ahead && kept && keeps(statuses, joints))) z = ahead->foreseen;
   bool condensed = false;
   /// Takes the step from the start that pivots on its factors lead to; false: there is none. What
   /// wanders is as it was at the start, everything else on the branches that were found.
@@ -325,10 +326,11 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       continue;
     }
     // Branches were asked for by equations that do not hold where they led to: of many joints that
-    // change at once, forces lack half of the largest one. A shorter step changes fewer.
+    // change at once, forces lack half of the largest one. A shorter step changes fewer. Where
+    // changes are located none are passed together.
     if (total == 0) first_largest = largest;
     const bool astray = left.balance > 0.5 * std::max(largest, first_largest);
-    if (pivoted && ahead && astray) return report;
+    if (pivoted && is_foreseen && astray) return report;
     // Where rounding is larger than foreseen the iteration stands still: that is the end as well,
     // if forces balance at all.
     const bool closed = left.balance <= force_tolerance * largest + rounding &&

@@ -22,17 +22,13 @@ struct HertzContact {
   /// Normal force at which the depth is a millionth of the clearance [N]. Below it the depth is
   /// linear: a contact that just closes would else have an infinite compliance, from which Newton's
   /// method does not find away.
-  double least_force() const {
-    const double depth = 1e-6 * radial_clearance;
-    return hertz_stiffness * depth * std::sqrt(depth);
-  }
+  double least_force() const { return hertz_stiffness * std::pow(1e-6 * radial_clearance, 1.5); }
 
   /// Depth under a normal force [m].
   ByNormal depth(double normal_force) const {
     if (std::isinf(hertz_stiffness)) return {0.0, 0.0};
     const double least = least_force();
-    const double root = std::cbrt(std::max(normal_force, least) / hertz_stiffness);
-    const double depth = root * root;
+    const double depth = std::pow(std::max(normal_force, least) / hertz_stiffness, 2.0 / 3.0);
     if (normal_force < least) return {depth * (normal_force / least), depth / least};
     return {depth, 2.0 / 3.0 * depth / normal_force};
   }
