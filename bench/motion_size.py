@@ -9,23 +9,19 @@ steps and in steps as long as a tolerance allows. The largest ones take minutes 
 """
 from __future__ import annotations
 
-import argparse
 from math import log
-from pathlib import Path
 from time import process_time
 from typing import Any
 
-import numpy as np
 import statejump as sj
-from run import REPOSITORY, publish, start
+from run import parse_cases, publish, start
 from statejump.core.errors import StatejumpError
-from statejump.kinds.truss import generate, motion
+from statejump.kinds.truss import motion
 from statejump.kinds.truss.solve import heat_of_joints_J
+from truss import document
 
 SAMPLES = 20  # of a cycle
 STEPS = 2000  # of a cycle, where they are equal
-CABLE_PRELOAD_N = 1.0
-FRICTION = (0.1, 0.2)  # scattered between
 SIZES = (10, 100, 1000, 10_000)
 EQUAL = {"motion.steps_per_cycle": STEPS}
 # Blocks of a chain of 100 go by up to a decimetre, joints of the umbrella have a clearance of 0.1 mm.
@@ -40,21 +36,11 @@ COLUMNS = ("case", "joints", "unknowns", "slipped", "steps", "rejected_steps", "
            "contact_problems", "cpu_time_s", "us_per_joint_and_step")
 
 
-def truss(kind: str, joints: int) -> Any:
-    """Return the case."""
-    if kind == "chain":
-        return sj.truss.chain(joints)
-    made = generate.umbrella(joints, cable_preload_N=CABLE_PRELOAD_N)
-    random = np.random.default_rng(1)
-    for joint in made["revolute"]:
-        joint["friction_coefficient"] = float(random.uniform(*FRICTION))
-    return sj.load(made)
-
-
 def row(name: str, joints: int) -> dict[str, Any]:
     """Run one case."""
     kind, settings = CASES[name]
-    definition = truss(kind, joints).changed({"output.samples_per_cycle": SAMPLES, **settings}).definition
+    case = sj.truss.chain(joints) if kind == "chain" else sj.load(document(kind, joints))
+    definition = case.changed({"output.samples_per_cycle": SAMPLES, **settings}).definition
     definition.resolve()
     begun = process_time()
     found = motion.simulate(definition)
@@ -101,8 +87,8 @@ def report(rows: list[dict[str, Any]]) -> str:
     return f"""# Trusses in motion by the number of joints that slip
 
 One cycle of `sj.truss.chain(n)`, whose blocks go out one after the other, and of umbrellas of n ribs with cables of
-{CABLE_PRELOAD_N:g} N, whose clearance joints rub with coefficients scattered between {FRICTION[0]:g} and
-{FRICTION[1]:g}; with equal steps, or with `motion.displacement_tolerance_m`. Slipped: joints with heat of friction.
+1 N, whose clearance joints rub with coefficients scattered between 0.1 and
+0.2; with equal steps, or with `motion.displacement_tolerance_m`. Slipped: joints with heat of friction.
 Events: changes of a joint between open, stick and slip. Factorizations: of the whole truss. Frictional contact
 problems of all contacts, where branches are not found: {problems}. CPU time of the stepping on one shared core;
 power: of the number of joints with which the cost of a step goes, from 100 to the largest.
@@ -123,13 +109,10 @@ PYTHONPATH=build/python /usr/bin/python3 bench/motion_size.py [--case CASE] [--l
 
 def main() -> None:
     """Measure and write."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--case", action="append", choices=tuple(CASES), help="one of the cases; all")
-    parser.add_argument("--largest", type=int, default=SIZES[-1], help=f"most joints (default {SIZES[-1]})")
-    parser.add_argument("--output", type=Path, default=REPOSITORY / "results" / "motion")
-    arguments = parser.parse_args()
+    most = {"type": int, "default": SIZES[-1], "help": f"most joints (default {SIZES[-1]})"}
+    arguments = parse_cases(__doc__.splitlines()[0], CASES, largest=most)
     rows = []
-    for name in arguments.case or CASES:
+    for name in arguments.case:
         for joints in (size for size in SIZES if size <= arguments.largest):
             rows.append(row(name, joints))
             print(rows[-1], flush=True)

@@ -11,14 +11,13 @@ DEM take minutes of CPU; with --runs they are kept and taken from there.
 """
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 from time import process_time
 from typing import Any
 
 import numpy as np
 import statejump as sj
-from run import REPOSITORY, publish, start
+from run import parse_cases, publish, start
 from statejump.core.errors import StatejumpError
 from statejump.kinds.truss import motion
 
@@ -131,12 +130,9 @@ PYTHONPATH=build/python /usr/bin/python3 bench/motion_slow.py [--case CASE] [--r
 
 def main() -> None:
     """Measure and write."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--case", action="append", choices=tuple(PERIODS_S), help="period [s]; all if none is given")
-    parser.add_argument("--runs", type=Path, help="folder in which runs of the DEM are kept")
-    parser.add_argument("--output", type=Path, default=REPOSITORY / "results" / "motion")
-    arguments = parser.parse_args()
-    rows = measure(arguments.case or list(PERIODS_S), arguments.runs)
+    kept = {"type": Path, "help": "folder in which runs of the DEM are kept"}
+    arguments = parse_cases(__doc__.splitlines()[0], PERIODS_S, runs=kept)
+    rows = measure(arguments.case, arguments.runs)
     publish(arguments.output, "slow_heating", COLUMNS, rows, report(rows))
 
 

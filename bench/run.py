@@ -241,12 +241,17 @@ def parse(parser: argparse.ArgumentParser, repetitions: int) -> argparse.Namespa
     return arguments
 
 
-def parse_cases(description: str, cases: Iterable[str]) -> argparse.Namespace:
-    """Return the options of a benchmark of trusses in motion: ``case``, those to run, and the results folder."""
+def parse_cases(description: str, cases: Iterable[str], **more: dict[str, Any]) -> argparse.Namespace:
+    """Return the options of a benchmark of trusses in motion: ``case``, those to run, and the results folder.
+
+    :param more: further options by name, as ``add_argument`` takes them
+    """
     known = list(cases)
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--case", action="append", choices=known, help="one of the cases; all")
     parser.add_argument("--output", type=Path, default=REPOSITORY / "results" / "motion")
+    for name, option in more.items():
+        parser.add_argument(f"--{name}", **option)
     arguments = parser.parse_args()
     arguments.case = arguments.case or known
     return arguments

@@ -61,8 +61,8 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
     }
     free = {key for key, rule in rules.items() if rule.form == TEXT and rule.known is None and rule.expression is None}
     free_lists = {key for key, rule in rules.items() if rule.form == TEXTS and rule.known is None}
-    # Of texts but names many items have the same: what a key took once, it takes again.
-    taken: dict[str, set[str]] = {key: set() for key, rule in rules.items() if rule.form == TEXT and key != "name"}
+    # Of texts with rules of their own many items have the same: what a key took once, it takes again.
+    taken: dict[str, set[str]] = {key: set() for key, rule in rules.items() if rule.form == TEXT and key not in free}
     set_value = object.__setattr__
     items = []
     for number, table in enumerate(value, start=1):

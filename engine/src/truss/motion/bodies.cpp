@@ -143,8 +143,8 @@ Bodies::Rate Bodies::rate(const Strut& strut, const Eigen::Matrix3Xd& moved,
 VectorXd Bodies::force(const VectorXd& q, const VectorXd& v, const Step& step) const {
   VectorXd found = VectorXd::Zero(mass_.rows());
   const Model& model = system_->model();
-  const Eigen::Matrix3Xd moved = system_->displacements(q);
-  const Eigen::Matrix3Xd velocity = system_->displacements(v);
+  const Eigen::Matrix3Xd moved = of_nodes(q);
+  const Eigen::Matrix3Xd velocity = of_nodes(v);
   for (std::size_t k = 0; k < struts_.size(); ++k) {
     const Strut& strut = struts_[k];
     const Rate now = rate(strut, moved, velocity, step.growth_rate[k]);
@@ -164,7 +164,7 @@ std::vector<Eigen::Triplet<double>> Bodies::damping_entries(const VectorXd& q) c
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(36 * struts_.size());
   const auto add = [&](int i, int j, double value) { entries.emplace_back(i, j, value); };
-  const Eigen::Matrix3Xd moved = system_->displacements(q);
+  const Eigen::Matrix3Xd moved = of_nodes(q);
   const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, moved.cols());
   for (const Strut& strut : struts_) {
     const Rate now = rate(strut, moved, none, 0.0);
@@ -190,10 +190,10 @@ Bodies::Work Bodies::work(const VectorXd& q0, const VectorXd& v0, const VectorXd
                           const VectorXd& v1, const Step& step, double theta) const {
   Work sum;
   const double h = step.to - step.from;
-  const Eigen::Matrix3Xd moved_before = system_->displacements(q0);
-  const Eigen::Matrix3Xd velocity_before = system_->displacements(v0);
-  const Eigen::Matrix3Xd moved_after = system_->displacements(q1);
-  const Eigen::Matrix3Xd velocity_after = system_->displacements(v1);
+  const Eigen::Matrix3Xd moved_before = of_nodes(q0);
+  const Eigen::Matrix3Xd velocity_before = of_nodes(v0);
+  const Eigen::Matrix3Xd moved_after = of_nodes(q1);
+  const Eigen::Matrix3Xd velocity_after = of_nodes(v1);
   for (std::size_t k = 0; k < struts_.size(); ++k) {
     const Strut& strut = struts_[k];
     const double growth = step.growth_rate[k];
@@ -220,13 +220,6 @@ VectorXd Bodies::free_part(const Eigen::Matrix3Xd& of_nodes) const {
           model.nodes[n].free_directions.col(i).dot(of_nodes.col(static_cast<Eigen::Index>(n)));
     }
   }
-  return found;
-}
-
-Eigen::Matrix3Xd Bodies::of_nodes(const VectorXd& free) const {
-  const auto count = static_cast<Eigen::Index>(system_->model().nodes.size());
-  Eigen::Matrix3Xd found(3, count);
-  for (Eigen::Index n = 0; n < count; ++n) found.col(n) = at(static_cast<int>(n), free);
   return found;
 }
 

@@ -43,7 +43,7 @@ class Bodies {
 
   /// Free displacements of node vectors, and back.
   VectorXd free_part(const Eigen::Matrix3Xd& of_nodes) const;
-  Eigen::Matrix3Xd of_nodes(const VectorXd& free) const;
+  Eigen::Matrix3Xd of_nodes(const VectorXd& free) const { return system_->displacements(free); }
 
  private:
   struct Strut {  // link or spring with a dashpot
@@ -62,7 +62,6 @@ class Bodies {
   /// Of places and velocities of all nodes.
   Rate rate(const Strut& strut, const Eigen::Matrix3Xd& moved, const Eigen::Matrix3Xd& velocity,
             double growth_rate) const;
-  Vector3d at(int node, const VectorXd& free) const { return system_->displacement(node, free); }
   template <class Add>
   void spread(int row_node, int column_node, const Matrix3d& value, Add&& add) const;
 

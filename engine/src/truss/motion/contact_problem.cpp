@@ -25,7 +25,7 @@ constexpr double takes_part = 1e-3;
 void Stepper::complete(const Trial& step, Local& local) {
   ++factorizations_;
   const Eigen::Index n = q_.size();
-  bodies_matrix_.begin(n + static_cast<Eigen::Index>(contacts_.holds().size()) + drives_.count());
+  bodies_matrix_.begin(n + held_count());
   fill_bodies(step, bodies_matrix_);
   bodies_matrix_.end();
   if (!factor_.factorize(bodies_matrix_.matrix())) fail(FailureKind::singular, step.to, nullptr);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "entries.hpp"
+
 namespace statejump::truss::detail {
 
 void RefilledMatrix::end() {
@@ -22,11 +24,8 @@ void RefilledMatrix::end() {
   matrix_.setFromTriplets(entries.begin(), entries.end());
   matrix_.makeCompressed();
   slots_.resize(next_);
-  const int* inner = matrix_.innerIndexPtr();
   for (std::size_t k = 0; k < next_; ++k) {
-    const int* column = matrix_.outerIndexPtr() + places_[k].second;
-    slots_[k] = static_cast<int>(
-        std::lower_bound(inner + column[0], inner + column[1], places_[k].first) - inner);
+    slots_[k] = static_cast<int>(place(matrix_, places_[k].first, places_[k].second));
   }
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "entries.hpp"
+
 namespace statejump::truss::detail {
 
 namespace {
@@ -84,12 +86,9 @@ void Stepper::fill_bodies(const Trial& step, RefilledMatrix& to) {
     if (row == column) diagonal[row] += value;
   };
   const auto add_block = [&](const auto& matrix, double share) {
-    for (Eigen::Index j = 0; j < n; ++j) {
-      for (typename std::decay_t<decltype(matrix)>::InnerIterator it(matrix, j); it; ++it) {
-        if (it.row() >= n) break;
-        add(it.row(), j, share * it.value());
-      }
-    }
+    each_entry(matrix, n, [&](Eigen::Index row, Eigen::Index column, double value) {
+      add(row, column, share * value);
+    });
   };
   VectorXd middle = VectorXd::Zero(system_->unknowns());
   middle.head(n) = step.q_middle;
@@ -119,7 +118,7 @@ void Stepper::hold_directions(const Trial& step, double scale) {
   const Eigen::Index n = q_.size();
   const auto holding = static_cast<Eigen::Index>(contacts_.holds().size());
   hold_scale_ = scale;
-  holds_.resize(n, holding + drives_.count());
+  holds_.resize(n, held_count());
   held_speed_ = VectorXd::Zero(holds_.cols());
   if (holds_.cols() == 0) return;
   std::vector<Eigen::Triplet<double>> columns;

@@ -115,7 +115,7 @@ def _changes(truss: ResolvedTruss, time_s: np.ndarray, part: Any) -> np.ndarray:
 
 def _run(
     case: TrussCase, model: str, plain: dict[str, Column], energy: dict[str, Column], items: dict[str, np.ndarray],
-    events: Callable[[], list[Event]] | None, summary: Mapping[str, float], **more: Any,
+    events: Callable[[], list[Event]], summary: Mapping[str, float], **more: Any,
 ) -> Run:
     truss, time = case.resolve(), plain["time_s"].values
     history = dict(plain)
@@ -136,14 +136,7 @@ def _run(
     change = plain["temperature_change_K"].values
 
     def happened() -> list[Event]:
-        if events is None:
-            called = every_joint_name(truss)
-            states = np.concatenate([items[joint.state_column] for joint in STICKING], axis=1)
-            found = from_states(time, change, states, [called[joint.section, name] for joint in STICKING
-                                                       for name in truss.joints[joint.section].names])
-        else:
-            found = events()
-        return sorted([*found, *_cable_events(truss, time, change, items["tension_N"])],
+        return sorted([*events(), *_cable_events(truss, time, change, items["tension_N"])],
                       key=lambda event: event.time_s)
 
     jumps = np.linalg.norm(items["displacement_m"][-1] - items["displacement_m"][0], axis=1)
@@ -331,7 +324,16 @@ def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
         items[key] = values.reshape(samples, -1, 3) if vector else values
     plain, energy = columns_of({name: values for name, values in columns.items() if "[" not in name})
     summary = {**numbers_of(about), "energy_residue_J": compare.energy_residual(energy)}
-    return _run(case, "dem", plain, energy, items, None, summary, about=about, warnings=_beyond(case, plain, items))
+
+    def happened() -> list[Event]:
+        truss = case.resolve()
+        called = every_joint_name(truss)
+        found = np.concatenate([items[joint.state_column] for joint in STICKING], axis=1)
+        return from_states(plain["time_s"].values, plain["temperature_change_K"].values, found,
+                           [called[joint.section, name] for joint in STICKING
+                            for name in truss.joints[joint.section].names])
+
+    return _run(case, "dem", plain, energy, items, happened, summary, about=about, warnings=_beyond(case, plain, items))
 
 
 def _beyond(case: TrussCase, plain: Mapping[str, Column], items: Mapping[str, np.ndarray]) -> tuple[str, ...]:
