@@ -23,6 +23,10 @@ _QUIET = {
     # A cluster on this machine would give up a worker whose process is not back by then, and start no other: its nanny
     # starts it again however long that takes.
     "distributed.deploy.lost-worker-timeout": "365 days",
+    # Nobody looks at these: a profile of the workers, which stops the samples a hundred times per second, and how
+    # promptly their event loops answer.
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
 }
 dask.config.set(_QUIET)
 
