@@ -82,8 +82,7 @@ def explicit(case: Any) -> Any:
 
 def models(case: Any, partial: bool) -> Iterator[tuple[str, Any, bool]]:
     """Yield name and case of every model beside the DEM, and whether it moves."""
-    if not partial:
-        yield "in motion", case, True
+    yield "in motion", case, True
     if not case.latch_hinge:
         yield "in motion, regularised", explicit(case), True
     yield f"quasi-static, {'partial slip' if partial else 'elastic sticking'}", case, False

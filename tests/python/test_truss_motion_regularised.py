@@ -90,5 +90,5 @@ def test_partial_slip_moves_by_the_law_that_the_dem_names() -> None:
     assert rms(run, path) < 0.2 * rms(spring, path)
     heat = path["friction_dissipation_J"][-1]
     assert abs(run["friction_dissipation_J"][-1] - heat) < 0.2 * abs(spring["friction_dissipation_J"][-1] - heat)
-    with pytest.raises(StatejumpError, match="have no partial slip .* but with motion.scheme"):
-        case.changed({"motion.scheme": "set_valued"}).reduced(dynamic=True)
+    by_sets = case.changed({"motion.scheme": "set_valued", "motion.steps_per_cycle": 20_000}).reduced(dynamic=True)
+    assert rms(by_sets, run) < 0.1 * rms(spring, run)

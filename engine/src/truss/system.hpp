@@ -233,6 +233,14 @@ class System {
   double stiffness_scale() const { return stiffness_scale_; }
   double size() const { return size_; }  ///< Largest extent of the drawn shape [m].
 
+  /// What a joint remembers, of a type's history() many numbers.
+  const double* history(int joint, const StepStart& start) const {
+    return start.history.data() + history_begin_[index(joint)];
+  }
+  double* history(int joint, StepStart& start) const {
+    return start.history.data() + history_begin_[index(joint)];
+  }
+
  private:
   /// The temperature's work of a step on joints whose parts expand [J].
   double work_on_joints(const Way& way, const StepStart& start) const;
@@ -258,9 +266,6 @@ class System {
     return frame.program < 0
                ? 0.0
                : model_->temperature_change(frame.program, frame.temperature_fraction, time);
-  }
-  const double* history(int joint, const StepStart& start) const {
-    return start.history.data() + history_begin_[index(joint)];
   }
 
   /// Asking as many takes some ten times as long as starting a thread.

@@ -190,6 +190,10 @@ Vector3d gradient(const Dual& of, std::size_t node) {
 
 }  // namespace
 
+int BallJoint::slip_memory_begin() const {
+  return BallMemory::size;
+}
+
 int BallJoint::history() const {
   return partial_slip ? BallMemory::size + detail::partial_slip_history(2) : BallMemory::size;
 }

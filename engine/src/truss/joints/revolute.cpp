@@ -352,6 +352,10 @@ void ClearanceRevolute::validate(const Model& model) const {
   check(least > 0, "clearance at the program's worst temperature", least, "> 0 m");
 }
 
+int ClearanceRevolute::slip_memory_begin() const {
+  return Memory::size;
+}
+
 int ClearanceRevolute::history() const {
   return partial_slip ? Memory::size + detail::partial_slip_history(1) : Memory::size;
 }

@@ -157,6 +157,10 @@ void Slider::validate(const Model&) const {
   }
 }
 
+int Slider::slip_memory_begin() const {
+  return 1;
+}
+
 int Slider::history() const {
   return partial_slip ? 1 + detail::partial_slip_history(1) : 1;
 }

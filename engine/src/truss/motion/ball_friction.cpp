@@ -2,6 +2,7 @@
 #include "ball_friction.hpp"
 
 #include "contacts.hpp"
+#include "truss/joints/ball_rubbing.hpp"
 
 namespace statejump::truss::detail {
 
@@ -23,7 +24,13 @@ Vector3d ball_normal(const Trial& at) {
 
 void BallFriction::measure(const Trial& at) {
   now = state_of(*joint, at);
-  kept = ball_slide(now, memory).kept;
+  const BallSlide<double> moved = ball_slide(now, memory);
+  kept = moved.kept;
+  if (slips_in_part) {
+    along = any_across(now.normal);
+    point(moved.axis);
+    return;
+  }
   // Unknown yet: where it pointed, or anywhere.
   const Vector3d before = along;
   along = now.normal.isZero(0.0) ? Vector3d::Zero() : now.normal.unitOrthogonal();
@@ -42,6 +49,7 @@ void BallFriction::remember(const Vector3d& friction) {
   memory.ball_direction = now.ball_direction;
   memory.socket_direction = now.socket_direction;
   memory.friction = friction;
+  if (slips_in_part) memory.axis = along;
 }
 
 void Contacts::direct(const BallFriction& cone) {

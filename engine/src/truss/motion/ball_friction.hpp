@@ -14,11 +14,13 @@ using Eigen::Vector3d;
 /// them. The first rubs along `along`, where the friction of the step's end points to, and has
 /// Coulomb's bound; the one beside it holds across that as the law does, whose tangent there is the
 /// bound over the bend. What it holds vanishes as the direction is found; see
-/// Stepper::turn_balls().
+/// Stepper::turn_balls(). Where it slips in part both contacts are components of one law along and
+/// across a direction that is carried with the contact, and neither is turned.
 struct BallFriction {
   const BallJoint* joint = nullptr;
   std::size_t place = 0;  ///< Of its contact among all; the one beside is the next.
   int first_column = 0;   ///< Of the joint's three forces.
+  bool slips_in_part = false;
 
   // Remembered from step to step.
   /// Where its friction was found: places, directions, elastic friction.

@@ -44,6 +44,14 @@ bool Stepper::turn_balls(const Trial& step, int turns, const Local& local) {
       beside.tangential_stiffness = compliance > 0.0 ? 1.0 / compliance : Contact::infinite;
       branches_[cone.place + 1] = branch(beside);
     };
+    if (contact.slips_in_part) {
+      // The contact problem has friction within what is given; on branches there is only the law.
+      if (turns > 0 && friction.norm() < beside.given_force) continue;
+      beside.given_force = std::max(given, 2.0 * friction.norm());
+      if (turns > 0 && bound > 0.0) settled = false;
+      last = &contact;
+      continue;
+    }
     if (!(bound > 0.0)) {
       if (rubbed) settled = false;
       set(0.0, 0.0);

@@ -13,9 +13,8 @@ namespace {
 
 /// Newton's method converges in three or four iterations, or a contact is on another branch.
 constexpr int most_iterations = 8;
-/// Share of a contact's own force by which it may miss an inequality, as the contact problem's
-/// tolerance allows.
-constexpr double allowance = 1e-10;
+/// The same where contacts slip in part, whose tangents are taken anew every time.
+constexpr int most_tangents = 30;
 /// Kept factors that take more iterations than this are made again for the next step.
 constexpr int few_iterations = 3;
 /// With kept factors, corrections that do not fall to this share of the one before give them up.
@@ -27,9 +26,12 @@ constexpr std::size_t most_kept = 8;
 
 Stepper::Branch Stepper::branch(const Contact& contact) const {
   if (!contact.active) return Branch::open;
+  if (contact.slips_in_part && contact.beside) return Branch::stick;
   const double normal = contact.normal_column < 0 ? contact.given_force : contact.normal_force;
   if (!(normal > 0.0)) return Branch::open;
-  if (contact.sticks(normal, contact.friction_force)) return Branch::stick;
+  if (contact.slips_in_part || contact.sticks(normal, contact.friction_force)) {
+    return Branch::stick;
+  }
   return contact.friction_force >= 0.0 ? Branch::slip_plus : Branch::slip_minus;
 }
 
@@ -127,6 +129,7 @@ Stepper::Law Stepper::normal_law(const Trial& step, const Local& local, Eigen::I
 
 Stepper::Law Stepper::stick_law(const Trial& step, const Local& local, Eigen::Index i) const {
   const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+  if (contact.slips_in_part) return rings_law(step, local, i);
   double normal = contact.given_force;
   if (contact.normal_column >= 0 && contact.is_elastic()) {
     normal = tangent(step, local, i, local.directions.col(2 * i).dot(step.v)).elastic;
@@ -135,6 +138,18 @@ Stepper::Law Stepper::stick_law(const Trial& step, const Local& local, Eigen::In
   }
   const Contact::Along friction = contact.along(normal, step.h);
   return {friction.bend / step.h, friction.compliance / (step.h * step.h)};
+}
+
+double Stepper::lacks(const Law& law, const Trial& step, const Local& local, Eigen::Index i,
+                      bool across) const {
+  const Eigen::Index row = 2 * i + (across ? 0 : 1);
+  double sum = law.by_speed * local.directions.col(row).dot(step.v) + law.offset +
+               law.compliance * local.impulses[row];
+  if (law.by_normal != 0.0) sum += law.by_normal * local.impulses[2 * owner(local, i)];
+  if (law.by_beside != 0.0) {
+    sum += law.by_beside * local.directions.col(2 * partner(local, i) + 1).dot(step.v);
+  }
+  return sum;
 }
 
 bool Stepper::factorize(OnBranches& on, const Trial& step, const Local& local) {
@@ -183,20 +198,30 @@ void Stepper::tell_contact(Branch now, const Trial& step, const Local& local, Ei
   const double scale = hold_scale_;
   const Eigen::Index n = q_.size() + holds_.cols() + 2 * i;
   const Eigen::Index t = n + 1;
-  // A row that is not asked says that its impulse is what it is.
-  const auto row = [&](Eigen::Index at, bool asked, const Law& law) {
-    for (Eigen::SparseMatrix<double>::InnerIterator it(local.directions, 2 * i + at - n); it;
-         ++it) {
-      tell(at, it.row(), asked ? scale * it.value() : 0.0);
+  // A row that is not asked says that its impulse is what it is. @param beside the other tangent
+  const auto row = [&](Eigen::Index at, bool asked, const Law& law, Eigen::Index beside) {
+    using Column = Eigen::SparseMatrix<double>::InnerIterator;
+    Column other(local.directions, 2 * std::max<Eigen::Index>(beside, 0) + 1);
+    for (Column it(local.directions, 2 * i + at - n); it; ++it) {
+      double speed = law.by_speed * it.value();
+      // Both are sums of the same columns.
+      if (beside >= 0) {
+        speed += law.by_beside * other.value();
+        ++other;
+      }
+      tell(at, it.row(), asked ? scale * speed : 0.0);
       tell(it.row(), at, -scale * it.value());
     }
     tell(at, at, asked ? scale * scale * law.compliance : scale);
   };
   const bool touches = now != Branch::open && contact.normal_column >= 0;
   const bool sticks = now == Branch::stick && contact.tangential_column >= 0;
-  row(n, touches, touches ? normal_law(step, local, i) : Law{});
-  row(t, sticks, sticks ? stick_law(step, local, i) : Law{});
-  tell(t, n, touches && !sticks ? -scale * slide(contact, now) : 0.0);
+  row(n, touches, touches ? normal_law(step, local, i) : Law{}, -1);
+  const Law along = sticks ? stick_law(step, local, i) : Law{};
+  row(t, sticks, along, partner(local, i));
+  const double pressed = scale * scale * along.by_normal;
+  if (contact.slips_in_part && contact.beside) tell(t, n - 2, pressed);
+  tell(t, n, touches && !sticks ? -scale * slide(contact, now) : contact.beside ? 0.0 : pressed);
 }
 
 bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& local,
@@ -213,33 +238,36 @@ bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& 
   }
   OnBranches& on = factors_for(step.h, branches);
   const VectorXd near = step.v;
-  const auto begin = [&](bool there) {
+  const auto begin = [&](bool there, bool kept) {
     step.v = there ? near : v_;
     local.impulses = begun;
+    if (!contacts_.slip_in_part()) return;
+    see_rings(step, local, speeds_of_rings(step, local), true, there || kept);
   };
   for (bool kept : {true, false}) {
     if (kept && on.outdated) continue;
     on.outdated = true;
-    begin(is_near);
+    begin(is_near, kept);
     if (kept) {
       hold_directions(step, on.scale);
     } else if (!factorize(on, step, local)) {
       return false;
     }
-    int iterations = iterate(on, step, local, kept);
-    if (iterations > most_iterations && !kept && is_near) {
-      begin(false);
+    std::optional<int> iterations = iterate(on, step, local, kept);
+    if (!iterations && !kept && is_near) {
+      begin(false, false);
       iterations = iterate(on, step, local, kept);
     }
-    if (iterations <= most_iterations) {
-      on.outdated = iterations > few_iterations;
+    if (iterations) {
+      const bool is_fresh = !kept && contacts_.slip_in_part();
+      on.outdated = !is_fresh && *iterations > few_iterations;
       return true;
     }
   }
   return false;
 }
 
-int Stepper::iterate(const OnBranches& on, Trial& step, Local& local, bool kept) {
+std::optional<int> Stepper::iterate(OnBranches& on, Trial& step, Local& local, bool kept) {
   const Eigen::Index n = q_.size();
   const Eigen::Index held = holds_.cols();
   VectorXd z = z_;
@@ -249,7 +277,11 @@ int Stepper::iterate(const OnBranches& on, Trial& step, Local& local, bool kept)
   VectorXd right(n + held + local.impulses.size());
   step.held = VectorXd::Zero(held);
   double last = 0.0;
-  for (int k = 0; k <= most_iterations; ++k) {
+  const bool renews = !kept && contacts_.slip_in_part();
+  for (int k = 0; k <= (renews ? most_tangents : most_iterations); ++k) {
+    if (contacts_.slip_in_part() && k > 0) {
+      see_rings(step, local, speeds_of_rings(step, local), false, false);
+    }
     const VectorXd residual = move(step);
     if (!residual.allFinite()) break;
     right.head(n) = local.directions * local.impulses - residual;
@@ -278,16 +310,16 @@ int Stepper::iterate(const OnBranches& on, Trial& step, Local& local, bool kept)
           continue;
         }
         const Law law = across ? normal_law(step, local, i) : stick_law(step, local, i);
-        const double lacks = local.directions.col(row).dot(step.v) + law.offset +
-                             law.compliance * local.impulses[row];
-        to = -on.scale * lacks;
-        // An elastic normal law is for balanced() to judge.
-        if (across && contact.is_elastic()) continue;
+        const double off = lacks(law, step, local, i, across);
+        to = -on.scale * off;
+        // An elastic normal law and that of rings are for balanced() to judge.
+        if (across ? contact.is_elastic() : contact.slips_in_part) continue;
         const double friction = on_law * contact.friction_coefficient * std::abs(normal);
-        on_laws = on_laws && std::abs(lacks) <= bound + law.compliance * friction;
+        on_laws = on_laws && std::abs(off) <= bound + law.compliance * friction;
       }
     }
     if (k > 0 && on_laws && balanced(step, residual, step.held, local, true)) return k;
+    if (renews && k > 0 && !factorize(on, step, local)) break;
     const VectorXd found = on.factor.solve(right);
     const double length = found.head(n).cwiseAbs().maxCoeff();
     if (kept && k > 1 && length > falls_to * last) break;
@@ -296,7 +328,7 @@ int Stepper::iterate(const OnBranches& on, Trial& step, Local& local, bool kept)
     step.held += found.segment(n, held);
     local.impulses += on.scale * found.tail(local.impulses.size());
   }
-  return most_iterations + 1;
+  return {};
 }
 
 double Stepper::slide(const Contact& contact, Branch branch) {
@@ -313,6 +345,7 @@ Stepper::Branch Stepper::asked(const Trial& step, const Local& local, Eigen::Ind
   const double normal = local.impulses[2 * i];
   const double tangential = local.impulses[2 * i + 1];
   const double bound = contact.friction_coefficient * normal;
+  if (contact.slips_in_part && contact.beside) return branch;
   if (branch == Branch::open) {
     if (contact.normal_column < 0) return branch;
     const double speed = local.directions.col(2 * i).dot(step.v);
@@ -321,6 +354,7 @@ Stepper::Branch Stepper::asked(const Trial& step, const Local& local, Eigen::Ind
     return closes ? Branch::stick : branch;
   }
   if (!(normal > 0.0)) return Branch::open;
+  if (contact.slips_in_part) return Branch::stick;  // one law, from nothing to all that slips
   if (contact.tangential_column < 0 || bound == 0.0) {
     return branch == Branch::stick ? Branch::slip_plus : branch;  // slides freely either way
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Steps whose branches are not found: the frictional contact problem of all contacts that may
 // touch.
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -10,16 +9,6 @@
 namespace statejump::truss::detail {
 
 using complementarity::Problem;
-
-namespace {
-
-/// Share of the largest pivot of W below which a reaction follows from others. W comes of solves
-/// whose matrix has a condition of 1e4 at most: h²K is about as large as M.
-constexpr double dependent = 1e-10;
-/// Share of the largest reaction in a trade of reactions from which a joint is named.
-constexpr double takes_part = 1e-3;
-
-}  // namespace
 
 /// What impulses do to the velocities.
 void Stepper::complete(const Trial& step, Local& local) {
@@ -52,6 +41,10 @@ void Stepper::solve_contacts(const Trial& step, const VectorXd& free, bool first
   const double h = step.h;
   Problem problem{2, local.delassus, local.directions.transpose() * free,
                   VectorXd::Zero(static_cast<Eigen::Index>(local.contacts.size()))};
+  const VectorXd speeds =
+      first ? VectorXd(local.directions.transpose() * v_)
+            : VectorXd(local.directions.transpose() * free + local.delassus * local.impulses);
+  if (contacts_.slip_in_part()) see_rings(step, local, speeds, first, false);
   Eigen::MatrixXd& w = std::get<Eigen::MatrixXd>(problem.delassus);
   for (Eigen::Index i = 0; i < problem.mu.size(); ++i) {
     const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
@@ -62,15 +55,16 @@ void Stepper::solve_contacts(const Trial& step, const VectorXd& free, bool first
     if (contact.normal_column < 0) {
       problem.q[n] = -w(n, n) * h * contact.given_force;
     } else if (contact.is_elastic()) {
-      const double speed =
-          first ? local.directions.col(n).dot(v_)
-                : local.directions.col(n).dot(free) + local.delassus.row(n) * local.impulses;
-      const Tangent law = tangent(step, local, i, speed);
+      const Tangent law = tangent(step, local, i, speeds[n]);
       normal = law.elastic;
       w(n, n) += law.compliance / (h * h);
       problem.q[n] += law.gap / h;
     } else {
       problem.q[n] += leaving(step, local, i);
+    }
+    if (contact.slips_in_part) {
+      if (!contact.beside) add_rings(step, local, i, speeds[n], problem);
+      continue;
     }
     const Contact::Along friction = contact.along(normal, h);
     w(t, t) += friction.compliance / (h * h);
@@ -132,46 +126,6 @@ void Stepper::solve(Trial& step, Local& local) {
       step.v += answer.head(n);
       held += answer.tail(holds_.cols());
     }
-  }
-}
-
-void Stepper::check_determined(const Trial& step, const Local& local) {
-  if (undetermined_ || local.delassus.size() == 0) return;
-  // Rows of W that hold. How a slider's friction and its stop share a force is never determined:
-  // it is one force there.
-  std::vector<Eigen::Index> rows;
-  std::vector<Eigen::Index> key;
-  int sticking_slider = -1;
-  for (std::size_t i = 0; i < local.contacts.size(); ++i) {
-    const Contact& contact = *local.contacts[i];
-    const auto n = static_cast<Eigen::Index>(2 * i);
-    const double normal = local.impulses[n];
-    if (!(normal > 0.0)) continue;
-    const bool stops = contact.stop != JointStatus::open && contact.joint == sticking_slider;
-    if (contact.normal_column >= 0 && !contact.is_elastic() && !stops) {
-      rows.push_back(n);
-      key.push_back(contact.normal_column);
-    }
-    if (contact.sticks(normal, local.impulses[n + 1]) &&
-        contact.tangential_compliance(elastic_normal(step, local, n / 2)) == 0.0) {
-      rows.push_back(n + 1);
-      key.push_back(contact.tangential_column);
-      if (contact.normal_column < 0) sticking_slider = contact.joint;
-    }
-  }
-  if (key == holding_) return;
-  holding_ = key;
-  if (rows.size() < 2) return;
-  Eigen::FullPivLU<Eigen::MatrixXd> factors(Eigen::MatrixXd(local.delassus(rows, rows)));
-  factors.setThreshold(dependent);
-  if (factors.dimensionOfKernel() == 0) return;
-  const VectorXd trade = factors.kernel().col(0).cwiseAbs();
-  undetermined_ = Undetermined{step.to, {}};
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (trade[static_cast<Eigen::Index>(k)] < takes_part * trade.maxCoeff()) continue;
-    const int joint = local.contacts[static_cast<std::size_t>(rows[k] / 2)]->joint;
-    std::vector<int>& joints = undetermined_->joints;
-    if (std::find(joints.begin(), joints.end(), joint) == joints.end()) joints.push_back(joint);
   }
 }
 

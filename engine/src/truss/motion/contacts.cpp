@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
-#include "statejump/kernel/require.hpp"
+#include "truss/joints/partial_slip.hpp"
 
 namespace statejump::truss::detail {
 
@@ -21,18 +20,19 @@ Vector3d eccentricity(const Trial& at) {
   return apart - axis.dot(apart) * axis;
 }
 
-template <class Joint>
-void refuse_partial_slip(const Joint& joint) {
-  if (!joint.partial_slip) return;
-  throw kernel::OutOfRange(std::string(Joint::kind) + " '" + joint.name + "'", "partial_slip",
-                           joint.partial_slip, "0 in motion");
-}
-
 JointStatus sliding(double friction, double bound) {
   if (bound <= 0.0) return JointStatus::slip_plus;  // slips freely either way
   return friction >= at_bound * bound    ? JointStatus::slip_plus
          : friction <= -at_bound * bound ? JointStatus::slip_minus
                                          : JointStatus::stick;
+}
+
+/// How a contact with a bound of friction [N] rubs.
+JointStatus rubs(const Contact& contact, double bound) {
+  if (!contact.slips_in_part) return sliding(contact.friction_force, bound);
+  return !contact.rings.slip_all         ? JointStatus::stick
+         : contact.friction_force >= 0.0 ? JointStatus::slip_plus
+                                         : JointStatus::slip_minus;
 }
 
 }  // namespace
@@ -59,7 +59,8 @@ Contact::Across Contact::across(double depth, double speed, double h) const {
   // The dashpot goes with the fourth root of a depth, which no iteration likes: that of the middle.
   const double dashpot =
       damping * std::sqrt(1.5 * hertz_stiffness * std::sqrt(std::max(-gap, 0.0)));
-  return {elastic, elastic - dashpot * speed, h * stiffness + dashpot};
+  const double slope = h * stiffness + dashpot;
+  return {elastic, elastic - dashpot * speed, slope, h * stiffness / slope};
 }
 
 Contact::Along Contact::along(double normal, double h) const {
@@ -74,6 +75,14 @@ Contact::Along Contact::along(double normal, double h) const {
 double Contact::spring_friction(double normal, double slide, double limit) const {
   const double now = tangential_compliance(normal);
   return std::clamp((std::min(compliance, now) * elastic_friction + slide) / now, -limit, limit);
+}
+
+SlippingRings::Pressed Contact::pressed(double elastic, double normal, double share) const {
+  const double stiffness = 1.0 / tangential_compliance(elastic);
+  // k_t grows as the cube root of the force.
+  const bool stiffens = is_elastic() && depth(elastic) > least_depth;
+  return {stiffness, stiffens ? share * stiffness / (3.0 * elastic) : 0.0, friction_coefficient,
+          normal, damping * std::sqrt(stiffness)};
 }
 
 bool Contact::sticks(double normal, double tangential) const {
@@ -94,6 +103,8 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
     std::visit([&](const auto& one) { add(i, column, one); }, model.joints[index(i)]);
     column += frame.forces;
   }
+  slip_in_part_ = std::any_of(all_.begin(), all_.end(),
+                              [](const Contact& contact) { return contact.slips_in_part; });
   if (damping.size() == 0) return;
   for (Contact& contact : all_) {
     contact.damping = damping[contact.joint];
@@ -101,7 +112,7 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   }
 }
 
-void Contacts::add_rubbing(int joint, int column, double bound, double stiffness) {
+Contact& Contacts::add_rubbing(int joint, int column, double bound, double stiffness) {
   Contact rubbing;
   rubbing.joint = joint;
   rubbing.tangential_column = column;
@@ -110,6 +121,7 @@ void Contacts::add_rubbing(int joint, int column, double bound, double stiffness
   rubbing.tangential_stiffness = stiffness;
   rubbing.active = true;
   all_.push_back(rubbing);
+  return all_.back();
 }
 
 void Contacts::add(int joint, int first_column, const LatchHinge& hinge) {
@@ -131,8 +143,8 @@ void Contacts::add(int joint, int first_column, const IwanJoint& iwan) {
 }
 
 void Contacts::add(int joint, int first_column, const Slider& slider) {
-  refuse_partial_slip(slider);
-  add_rubbing(joint, first_column, slider.friction_force, slider.tangential_stiffness);
+  add_rubbing(joint, first_column, slider.friction_force, slider.tangential_stiffness)
+      .slips_in_part = slider.partial_slip != 0;
   const auto stop = [&](JointStatus which, double sign, double clearance) {
     if (std::isinf(clearance)) return;
     Contact end;
@@ -148,9 +160,7 @@ void Contacts::add(int joint, int first_column, const Slider& slider) {
 }
 
 void Contacts::add(int joint, int first_column, const ClearanceRevolute& revolute) {
-  refuse_partial_slip(revolute);
-  Contact contact;
-  contact.joint = joint;
+  Contact contact = made(joint, revolute);
   contact.normal_column = first_column;
   contact.tangential_column = first_column + 1;
   contact.friction_coefficient = revolute.friction_coefficient;
@@ -161,9 +171,7 @@ void Contacts::add(int joint, int first_column, const ClearanceRevolute& revolut
 }
 
 void Contacts::add(int joint, int first_column, const BallJoint& socketed) {
-  refuse_partial_slip(socketed);
-  Contact contact;
-  contact.joint = joint;
+  Contact contact = made(joint, socketed);
   contact.first_column = contact.normal_column = first_column;
   contact.tangential_column = first_column + 1;
   contact.friction_coefficient = socketed.friction_coefficient;
@@ -175,10 +183,10 @@ void Contacts::add(int joint, int first_column, const BallJoint& socketed) {
   friction.joint = &socketed;
   friction.place = all_.size();
   friction.first_column = first_column;
+  friction.slips_in_part = contact.slips_in_part;
   balls_.push_back(friction);
   all_.push_back(contact);
-  Contact beside;
-  beside.joint = joint;
+  Contact beside = made(joint, socketed);
   beside.first_column = first_column;
   beside.tangential_column = first_column + 2;
   beside.friction_coefficient = 1.0;
@@ -225,6 +233,25 @@ void Contacts::begin(const State& state) {
     contact.normal_force = output(system_->model(), state, contact.joint, key)[0];
     contact.elastic_normal = contact.normal_force;
   }
+  for (Contact& contact : all_) {
+    if (!contact.slips_in_part || contact.beside) continue;
+    const double normal = contact.normal_column < 0 ? contact.given_force : contact.normal_force;
+    contact.rings.take(contact.pressed(normal, normal, 1.0), Eigen::Vector2d::Zero());
+  }
+}
+
+void Contacts::tell_rings(StepStart& to) const {
+  for (const Contact& contact : all_) {
+    if (!contact.slips_in_part || contact.beside) continue;
+    double* const history = system_->history(contact.joint, to);
+    const auto tell = [&](const auto& joint) {
+      if constexpr (requires { joint.slip_memory_begin(); }) {
+        write_partial_slip(contact.rings.memory, history + joint.slip_memory_begin(),
+                           contact.ball < 0 ? 1 : 2);
+      }
+    };
+    std::visit(tell, system_->model().joints[index(contact.joint)]);
+  }
 }
 
 void Contacts::measure(const VectorXd& z, double time, const StepStart& start,
@@ -268,7 +295,9 @@ void Contacts::write(VectorXd& z, Statuses& statuses) const {
   for (const BallFriction& cone : balls_) {
     const Contact& contact = all_[cone.place];
     write(cone, false, z);
-    const bool sticks = contact.sticks(contact.normal_force, contact.friction_force);
+    const bool sticks = contact.slips_in_part
+                            ? !contact.rings.slip_all
+                            : contact.sticks(contact.normal_force, contact.friction_force);
     statuses[index(contact.joint)] = !(contact.normal_force > 0.0) ? JointStatus::open
                                      : sticks                      ? JointStatus::stick
                                                                    : JointStatus::slip_plus;
@@ -279,7 +308,7 @@ void Contacts::write(VectorXd& z, Statuses& statuses) const {
     if (contact.normal_column < 0) {
       z[contact.tangential_column] += contact.elastic_friction;
       // The contacts of a joint follow each other; it slips where any of them does.
-      const JointStatus now = sliding(contact.friction_force, contact.given_force);
+      const JointStatus now = rubs(contact, contact.given_force);
       if (contact.joint != last || now != JointStatus::stick) status = now;
       last = contact.joint;
     } else if (contact.stop != JointStatus::open) {
@@ -288,10 +317,9 @@ void Contacts::write(VectorXd& z, Statuses& statuses) const {
     } else {
       z[contact.normal_column] = contact.elastic_normal;
       z[contact.tangential_column] = contact.elastic_friction;
-      status =
-          contact.normal_force > 0.0
-              ? sliding(contact.friction_force, contact.friction_coefficient * contact.normal_force)
-              : JointStatus::open;
+      status = contact.normal_force > 0.0
+                   ? rubs(contact, contact.friction_coefficient * contact.normal_force)
+                   : JointStatus::open;
     }
   }
 }

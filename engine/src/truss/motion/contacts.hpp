@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ball_friction.hpp"
+#include "slipping_rings.hpp"
 #include "statejump/complementarity/problem.hpp"
 #include "truss/system.hpp"
 
@@ -34,6 +35,7 @@ struct Contact {
   double least_depth = 0.0;                ///< Below which the elastic laws are taken as there [m].
   int ball = -1;                           ///< Of the truss' balls; −1: it is in a plane.
   bool beside = false;                     ///< Holds across the friction of the contact before it.
+  bool slips_in_part = false;              ///< By its rings, one after the other.
 
   // Remembered from step to step.
   double normal_force = 0.0;      ///< λ_n [N]
@@ -42,6 +44,7 @@ struct Contact {
   double elastic_friction = 0.0;  ///< λ_t without the dashpot [N].
   double compliance = 0.0;        ///< Tangential, at `elastic_friction` [m/N]; 0: rigid or open.
   double clearance = 0.0;         ///< Free gap of its joint at the end of the last step [m].
+  SlippingRings rings;            ///< Of one that slips in part, but of one beside another.
 
   // Of the current step.
   double gap = 0.0;  ///< At the middle, radii of the end [m].
@@ -67,6 +70,7 @@ struct Contact {
     double elastic;  ///< Without the dashpot [N].
     double force;    ///< [N]; below 0 where the contact would pull, which it does not.
     double slope;    ///< −∂force/∂speed [N s/m]
+    double share;    ///< Of the elastic force in it.
   };
   /// @param depth at the end of the step of length h [m]; @param speed at which it opens [m/s]
   Across across(double depth, double speed, double h) const;
@@ -83,12 +87,16 @@ struct Contact {
   Along along(double normal, double h) const;
   /// Friction of its spring after a slide of h u within a limit [N]. @param normal elastic [N]
   double spring_friction(double normal, double slide, double limit) const;
+  /// What presses the rings of one that slips in part.
+  /// @param elastic normal force without the dashpot [N]; @param normal force [N]
+  /// @param share of its elastic part in the slope of the normal force
+  SlippingRings::Pressed pressed(double elastic, double normal, double share) const;
   /// Whether friction holds it at these impulses.
   bool sticks(double normal, double tangential) const;
   /// Stored across and along its surface [J].
   double normal_energy() const { return 0.4 * elastic_normal * depth(elastic_normal); }
   double tangential_energy() const {
-    return 0.5 * compliance * elastic_friction * elastic_friction;
+    return slips_in_part ? rings.energy : 0.5 * compliance * elastic_friction * elastic_friction;
   }
 
  private:
@@ -124,12 +132,16 @@ class Contacts {
                double rounding);
   /// Takes what was measured as the end of a step.
   void remember_clearances();
+  /// Writes what contacts that slip in part remember to where their joints do.
+  void tell_rings(StepStart& to) const;
 
   std::vector<BallFriction>& balls() { return balls_; }
   /// Gives the contacts of a ball the directions that it has now.
   void direct(const BallFriction& cone);
 
   bool damped() const { return damped_; }
+  /// Whether any of them does.
+  bool slip_in_part() const { return slip_in_part_; }
   /// Whether joints have forces on nodes besides their contacts'.
   bool have_springs() const { return springs_; }
 
@@ -139,6 +151,14 @@ class Contacts {
   VectorXd with_dashpots(VectorXd z) const;
 
  private:
+  /// A contact of a joint, which tells whether it slips in part.
+  template <class Joint>
+  static Contact made(int joint, const Joint& of) {
+    Contact contact;
+    contact.joint = joint;
+    contact.slips_in_part = of.partial_slip != 0;
+    return contact;
+  }
   void add(int joint, int first_column, const Slider& slider);
   void add(int joint, int first_column, const ClearanceRevolute& revolute);
   void add(int joint, int first_column, const BallJoint& socketed);
@@ -148,7 +168,7 @@ class Contacts {
   /// Friction that holds a joint of given normal force in a quasi-static state [N].
   double friction_at_rest(const Contact& contact, const State& state) const;
   /// Dry friction of a given bound [N] behind a spring [N/m].
-  void add_rubbing(int joint, int column, double bound, double stiffness);
+  Contact& add_rubbing(int joint, int column, double bound, double stiffness);
   /// Friction of a ball as its contacts have it, with their dashpots or without [N].
   Vector3d friction(const BallFriction& cone, bool with_dashpots) const;
   /// Writes its force where the ball is at z.
@@ -165,6 +185,7 @@ class Contacts {
   std::vector<BallFriction> balls_;
   std::vector<int> holds_;
   bool damped_ = false;
+  bool slip_in_part_ = false;
   bool springs_ = false;
 };
 

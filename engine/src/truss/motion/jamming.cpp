@@ -44,6 +44,11 @@ std::vector<Stepper::Branch> Stepper::branches_of(const Local& local) {
   for (std::size_t i = 0; i < local.contacts.size(); ++i) {
     const double normal = local.impulses[static_cast<Eigen::Index>(2 * i)];
     const double friction = -local.impulses[static_cast<Eigen::Index>(2 * i + 1)];
+    if (local.contacts[i]->slips_in_part) {
+      const bool open = !local.contacts[i]->beside && !(normal > 0.0);
+      found.push_back(open ? Branch::open : Branch::stick);
+      continue;
+    }
     found.push_back(!(normal > 0.0)                               ? Branch::open
                     : local.contacts[i]->sticks(normal, friction) ? Branch::stick
                     : friction >= 0.0                             ? Branch::slip_plus

@@ -204,8 +204,7 @@ class Stepper::LocalPivots {
     }
     const Law law =
         across ? stepper_.normal_law(step_, local_, i) : stepper_.stick_law(step_, local_, i);
-    return -stepper_.matrix_scale_ *
-           (local_.directions.col(row).dot(step_.v) + law.offset + law.compliance * impulse);
+    return -stepper_.matrix_scale_ * stepper_.lacks(law, step_, local_, i, across);
   }
 
   /// Goes to the solution of the neighbourhood on the present branches.

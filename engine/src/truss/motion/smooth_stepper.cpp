@@ -34,7 +34,7 @@ std::unique_ptr<SmoothStepper> SmoothStepper::of(const System& system, const Bod
                                                  const MotionOptions& options, int stages) {
   if (!system.model().springs.empty() || !system.model().torsion_springs.empty()) return {};
   const Contacts contacts(system, bodies.joint_damping());
-  if (!contacts.holds().empty() || !options.drives.empty()) return {};
+  if (!contacts.holds().empty() || !options.drives.empty() || contacts.slip_in_part()) return {};
   std::optional<std::vector<Rubbing>> found = rubbings(system, contacts);
   if (!found || found->empty() || found->size() > most_contacts) return {};
   std::unique_ptr<SmoothStepper> made(

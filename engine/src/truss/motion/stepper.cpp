@@ -44,6 +44,7 @@ void Stepper::begin(const VectorXd& q, const VectorXd& v, const State* equilibri
   contacts_.remember_clearances();
   internal_ = elastic_force(q, 0.0);
   origin_ = system_->begin(z_, 0.0, statuses, 1.0);
+  contacts_.tell_rings(origin_);
 }
 
 void Stepper::evaluate_contacts(const VectorXd& q, double time) {
@@ -227,6 +228,9 @@ bool Stepper::balanced(const Trial& step, const VectorXd& residual, const Vector
   const double bound = balance * largest + step.h * system_->rounding(z).force;
   if (!(left.cwiseAbs().maxCoeff() <= bound)) return false;
   // Elastic contacts are on their law, not only on its tangent.
+  if (contacts_.slip_in_part() && !on_rings(step, local, system_->rounding(z).length / step.h)) {
+    return false;
+  }
   for (std::size_t i = 0; i < local.contacts.size(); ++i) {
     const Contact& contact = *local.contacts[i];
     if (!contact.is_elastic()) continue;
@@ -293,55 +297,36 @@ void Stepper::book(const Trial& step, const Local& local) {
     if (contact.active) continue;
     contact.normal_force = contact.friction_force = contact.compliance = 0.0;
     contact.elastic_normal = contact.elastic_friction = 0.0;
+    contact.rings = {};
   }
   // Speeds by which impulses work.
   const VectorXd through =
       step.differentiates ? VectorXd((step.q - q_) / h) : VectorXd(0.5 * (v_ + step.v));
   const VectorXd along = local.directions.transpose() * through;
-  // A force that has turned up within a step of backward differentiation was half as large in the
-  // mean; one that is at its bound was so as long as it slid.
-  const auto in_mean = [&](double before, double after, bool slides) {
-    return step.differentiates && !slides ? 0.5 * (before + after) : after;
-  };
-  for (std::size_t i = 0; i < local.contacts.size(); ++i) {
-    Contact& contact = *local.contacts[i];
-    const auto n = static_cast<Eigen::Index>(2 * i);
-    const Contact before = contact;
-    const double normal = local.impulses[n] / h;
-    if (contact.normal_column >= 0) contact.normal_force = normal;
-    contact.friction_force = normal > 0.0 ? -local.impulses[n + 1] / h : 0.0;
-    const double elastic = elastic_normal(step, local, n / 2);
-    const double compliance = normal > 0.0 ? contact.tangential_compliance(elastic) : 0.0;
-    contact.elastic_friction =
-        contact.damping > 0.0 && compliance > 0.0
-            ? contact.spring_friction(elastic,
-                                      h * local.directions.col(n + 1).dot(step.v) + contact.slid,
-                                      contact.friction_coefficient * normal)
-            : contact.friction_force;
-    contact.compliance = compliance;
-    if (contact.normal_column >= 0) contact.elastic_normal = elastic;
-    if (contact.tangential_column >= 0) {
-      const bool slides = normal > 0.0 && !contact.sticks(normal, contact.friction_force);
-      const double force = in_mean(before.friction_force, contact.friction_force, slides);
-      const double elastic_force =
-          in_mean(before.elastic_friction, contact.elastic_friction, slides);
-      const double dashpot = (force - elastic_force) * h * along[n + 1];
-      account_.damping += dashpot;
-      const double heat = force * h * along[n + 1] - dashpot -
-                          (contact.tangential_energy() - before.tangential_energy());
-      account_.friction[contact.joint] += heat;
-      account_.negative += std::min(heat, 0.0);
+  for (std::size_t k = 0; k < local.contacts.size(); ++k) {
+    Contact& contact = *local.contacts[k];
+    const auto i = static_cast<Eigen::Index>(k);
+    const double normal_before = contact.normal_force;
+    const double elastic_before = contact.elastic_normal;
+    const double stored_before = contact.normal_energy();
+    if (contact.normal_column >= 0) {
+      contact.normal_force = local.impulses[2 * i] / h;
+      contact.elastic_normal = elastic_normal(step, local, i);
+    }
+    if (!contact.slips_in_part) {
+      book_friction(step, local, i, along);
+    } else if (!contact.beside) {
+      book_rings(step, local, i, along);
     }
     if (contact.normal_column >= 0) {
       const double growth = contact.clearance_after - contact.clearance;
       const bool rigid = !contact.is_elastic();
-      const double force = in_mean(before.normal_force, contact.normal_force, rigid);
-      const double elastic_force = in_mean(before.elastic_normal, contact.elastic_normal, rigid);
-      const double opened = h * along[n] + growth;
+      const double force = step.in_mean(normal_before, contact.normal_force, rigid);
+      const double elastic_force = step.in_mean(elastic_before, contact.elastic_normal, rigid);
+      const double opened = h * along[2 * i] + growth;
       const double dashpot = -(force - elastic_force) * opened;
       account_.damping += dashpot;
-      const double heat =
-          -force * opened - dashpot - (contact.normal_energy() - before.normal_energy());
+      const double heat = -force * opened - dashpot - (contact.normal_energy() - stored_before);
       account_.impact += heat;
       if (rigid) account_.negative += std::min(heat, 0.0);
       account_.thermal_work -= force * growth;
@@ -363,6 +348,7 @@ void Stepper::book(const Trial& step, const Local& local) {
   Statuses statuses = origin_.statuses;
   contacts_.write(z, statuses);
   StepStart after = system_->commit(z, step.to, statuses, origin_);
+  contacts_.tell_rings(after);
   account_.thermal_work += system_->work_on_links({z_, time_, z, step.to});
   note_branches();
   contacts_.remember_clearances();
@@ -372,6 +358,36 @@ void Stepper::book(const Trial& step, const Local& local) {
   z_ = std::move(z);
   time_ = step.to;
   origin_ = std::move(after);
+}
+
+void Stepper::book_friction(const Trial& step, const Local& local, Eigen::Index i,
+                            const VectorXd& along) {
+  Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+  const Eigen::Index t = 2 * i + 1;
+  const double h = step.h;
+  const double friction_before = contact.friction_force;
+  const double elastic_before = contact.elastic_friction;
+  const double stored_before = contact.tangential_energy();
+  const double normal = local.impulses[2 * i] / h;
+  const double elastic = elastic_normal(step, local, i);
+  contact.friction_force = normal > 0.0 ? -local.impulses[t] / h : 0.0;
+  const double compliance = normal > 0.0 ? contact.tangential_compliance(elastic) : 0.0;
+  contact.elastic_friction =
+      contact.damping > 0.0 && compliance > 0.0
+          ? contact.spring_friction(elastic, h * local.directions.col(t).dot(step.v) + contact.slid,
+                                    contact.friction_coefficient * normal)
+          : contact.friction_force;
+  contact.compliance = compliance;
+  if (contact.tangential_column < 0) return;
+  const bool slides = normal > 0.0 && !contact.sticks(normal, contact.friction_force);
+  const double force = step.in_mean(friction_before, contact.friction_force, slides);
+  const double spring = step.in_mean(elastic_before, contact.elastic_friction, slides);
+  const double dashpot = (force - spring) * h * along[t];
+  account_.damping += dashpot;
+  const double heat =
+      force * h * along[t] - dashpot - (contact.tangential_energy() - stored_before);
+  account_.friction[contact.joint] += heat;
+  account_.negative += std::min(heat, 0.0);
 }
 
 void Stepper::describe(State& state) const {

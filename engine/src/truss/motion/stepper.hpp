@@ -30,6 +30,10 @@ struct Account {
 /// the largest velocity in it, which a stiff contact turns into much more of a force.
 constexpr double on_law = 1e-6;
 
+/// Share of a contact's own force or of the largest speed by which it may miss an inequality, as
+/// the contact problem's tolerance allows.
+constexpr double allowance = 1e-10;
+
 /// The contact of a planar problem whose law is violated most [unit of u], W_nn times what its
 /// impulses lack; −1 without contacts.
 Eigen::Index worst_contact(const complementarity::Problem& problem, const VectorXd& impulses);
@@ -92,6 +96,12 @@ class Stepper {
     VectorXd q;
     VectorXd v;
     VectorXd held = {};  ///< Impulses of what holds or drives, against its scaled columns.
+
+    /// A force by which a step of it works. One that has turned up within a step of backward
+    /// differentiation was half as large in the mean; one at its bound was so as long as it slid.
+    double in_mean(double before, double after, bool slides) const {
+      return differentiates && !slides ? 0.5 * (before + after) : after;
+    }
   };
   /// The step before the next one, for backward differentiation.
   struct Before {
@@ -180,18 +190,55 @@ class Stepper {
   /// @param next branches that they ask for
   Guess pivot_locally(const std::vector<Branch>& branches, const std::vector<Branch>& next,
                       const std::vector<std::size_t>& wrong, Trial& step, Local& local);
-  /// Newton's method with these factors; its iterations, more than allowed if it did not converge.
+  /// Newton's method with these factors; its iterations, none if it did not converge.
   /// @param kept the factors are of an earlier step
-  int iterate(const OnBranches& on, Trial& step, Local& local, bool kept);
+  std::optional<int> iterate(OnBranches& on, Trial& step, Local& local, bool kept);
   /// Tangential over normal impulse of a contact that slides.
   static double slide(const Contact& contact, Branch branch);
-  /// What a contact's law on its branch says of its two rows: speed + offset + compliance r = 0.
+  /// What a contact's law on its branch says of one of its rows, with the speed u along it and its
+  /// impulse r: by_speed u + by_beside u' + offset + compliance r + by_normal r_n = 0.
   struct Law {
     double offset = 0.0;      ///< [m/s]
     double compliance = 0.0;  ///< [1/kg]
+    double by_speed = 1.0;
+    double by_beside = 0.0;  ///< By the speed along the other tangent of a ball.
+    double by_normal = 0.0;  ///< [1/kg]
   };
   Law normal_law(const Trial& step, const Local& local, Eigen::Index i) const;
   Law stick_law(const Trial& step, const Local& local, Eigen::Index i) const;
+  /// By how much a row is off its law [m/s]. @param across of the normal
+  double lacks(const Law& law, const Trial& step, const Local& local, Eigen::Index i,
+               bool across) const;
+  // Of contacts that slip in part, in rings.cpp. An owner is the contact that is pressed.
+  static Vector2d along(const Local& local, Eigen::Index owner, const VectorXd& speeds);
+  /// Slide of the step that its speed does not tell [m].
+  static Vector2d slid(const Local& local, Eigen::Index owner);
+  /// Speeds of the contacts that slip in part, of others 0 [m/s].
+  VectorXd speeds_of_rings(const Trial& step, const Local& local) const;
+  /// Chooses where tangents are taken. @param begins there is no iterate yet; @param is_near it is
+  /// near to where the tangents of the matrix were taken
+  void see_rings(const Trial& step, const Local& local, const VectorXd& speeds, bool begins,
+                 bool is_near);
+  /// What presses a contact that opens at a speed [m/s].
+  SlippingRings::Pressed pressed(const Trial& step, const Local& local, Eigen::Index owner,
+                                 double opens) const;
+  /// Its tangent, for a contact or the one beside it.
+  Law rings_law(const Trial& step, const Local& local, Eigen::Index i) const;
+  /// Whether impulses are on the law itself. @param drift rounding of speeds [m/s]
+  bool on_rings(const Trial& step, const Local& local, double drift) const;
+  /// The tangent for the contact problem.
+  void add_rings(const Trial& step, const Local& local, Eigen::Index owner, double opens,
+                 complementarity::Problem& problem) const;
+  /// Takes the friction of rings over. @param along speeds by which impulses work [m/s]
+  void book_rings(const Trial& step, const Local& local, Eigen::Index owner, const VectorXd& along);
+  /// The contact whose normal force presses one, and the other tangent of a ball.
+  static Eigen::Index owner(const Local& local, Eigen::Index i) {
+    return local.contacts[static_cast<std::size_t>(i)]->beside ? i - 1 : i;
+  }
+  static Eigen::Index partner(const Local& local, Eigen::Index i) {
+    const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
+    return !contact.slips_in_part || contact.ball < 0 ? -1 : contact.beside ? i - 1 : i + 1;
+  }
   /// The branch that a contact's inequalities ask for, from the one whose equations hold.
   Branch asked(const Trial& step, const Local& local, Eigen::Index i, Branch branch) const;
   /// Solves the step with its contact problem.
@@ -212,13 +259,20 @@ class Stepper {
   /// next
   bool balanced(const Trial& step, const VectorXd& residual, const VectorXd& held,
                 const Local& local, bool by_branches) const;
-  /// Notes the first step whose reactions are not unique.
+  /// Notes the first step whose reactions are not unique, in determined.cpp.
   void check_determined(const Trial& step, const Local& local);
+  /// Branches of the active contacts at the end of a step, where those whose inequality is an
+  /// equation as well hold.
+  std::vector<Branch> held_branches(const Trial& step, const Local& local) const;
+  /// Whether a contact does not bend where it sticks.
+  bool sticks_rigidly(const Trial& step, const Local& local, Eigen::Index i) const;
   /// Notes the first step in which a slide ends that could not go on.
   void check_slides(const Trial& step, const Local& local);
   /// Branches of the active contacts at the end of a step, by their impulses.
   static std::vector<Branch> branches_of(const Local& local);
   void book(const Trial& step, const Local& local);
+  /// Takes the friction of a contact over. @param along speeds by which impulses work [m/s]
+  void book_friction(const Trial& step, const Local& local, Eigen::Index i, const VectorXd& along);
   [[noreturn]] void fail(FailureKind kind, double when, const Contact* contact) const;
 
   const System* system_;
@@ -257,7 +311,8 @@ class Stepper {
   Account account_;
   std::optional<Undetermined> undetermined_;
   std::optional<Undetermined> jammed_;
-  std::vector<Eigen::Index> holding_;  ///< Rows of contacts, see check_determined().
+  std::vector<Branch> holding_;  ///< That check_determined() asked last …
+  std::vector<int> holding_of_;  ///< … and of which contacts.
   long trials_ = 0;
   long iterations_ = 0;
   long factorizations_ = 0;

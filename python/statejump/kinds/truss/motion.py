@@ -11,7 +11,7 @@ import numpy as np
 from statejump import _engine
 from statejump.core import physics
 from statejump.core.engine_failures import EngineFailed
-from statejump.core.errors import Interrupted, NotAllowed, StatejumpError
+from statejump.core.errors import Interrupted, NotAllowed
 from statejump.core.progress import Tell
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
@@ -135,11 +135,6 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
             raise NotAllowed("motion.start", case.motion.start, f"must be 'drawn' with ball_joint {name!r}, whose "
                              "contact is rigid: no path says where it rests", case=case.name, joint=name)
     regularised = case.motion.scheme == "regularised"
-    if truss.sticking == "partial_slip" and not regularised:
-        raise StatejumpError(cause='joints in motion have no partial slip (reduced.sticking = "partial_slip") but with '
-                             'motion.scheme = "regularised"', case=case.name,
-                             remedy='set reduced.sticking to "elastic" or "rigid", or run '
-                             "'statejump reduced' without --dynamic")
     if regularised:
         from statejump.kinds.truss import stable_steps
 

@@ -430,5 +430,26 @@ TEST(Motion, StepsWhoseReactionsAreOpenAreNamed) {
   }
 }
 
+TEST(Motion, ReactionsOfWhatComesToRestTogetherAreNamed) {
+  // The same two slide, and come to rest in one step: with one of them held the other has no slide,
+  // which is right for it on every branch.
+  Model model = bar(0.01);
+  model.programs = {lasting(0.01)};
+  Slider twin = std::get<Slider>(model.joints[0]);
+  twin.name = "T";
+  model.joints.push_back(twin);
+  MotionOptions options;
+  options.steps = 100;
+  options.start = at_rest(model);
+  options.start->velocity(0, 1) = 1.0;
+  const Motion motion = simulate(model, {Vector2d(0.1, 0.0).head(1), {}, {}, {}, {}}, options);
+  const auto rests = std::find_if(motion.events.begin(), motion.events.end(),
+                                  [](const Event& one) { return one.after == JointStatus::stick; });
+  ASSERT_NE(rests, motion.events.end());
+  ASSERT_TRUE(motion.undetermined);
+  EXPECT_EQ(motion.undetermined->joints, (std::vector<int>{0, 1}));
+  EXPECT_NEAR(motion.undetermined->time, rests->time, 1e-9);
+}
+
 }  // namespace
 }  // namespace statejump::truss

@@ -95,6 +95,8 @@ struct BallJoint {
   JointStatus settled(const Trial& trial, JointStatus status) const;
   /// Contact problems have one direction of friction: as a contact it is held.
   std::optional<LocalContact> contact(const Trial&, JointStatus) const { return {}; }
+  /// Where the memory of a contact with partial slip begins in its history().
+  int slip_memory_begin() const;
   bool slips_smoothly() const { return partial_slip != 0; }
   double least_slide() const { return radial_clearance; }
   JointStatus rest() const {

@@ -58,6 +58,8 @@ struct Slider {
   bool remembers_when(JointStatus before, JointStatus after) const;
   JointStatus settled(const Trial& trial, JointStatus status) const;
   std::optional<LocalContact> contact(const Trial& trial, JointStatus status) const;
+  /// Where the memory of a contact with partial slip begins in its history().
+  int slip_memory_begin() const;
   bool slips_smoothly() const { return partial_slip != 0; }
   double least_slide() const { return 0.0; }
   JointStatus rest() const { return JointStatus::stick; }

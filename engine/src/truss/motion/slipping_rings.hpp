@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+
+#include "statejump/kernel/partial_slip_plane.hpp"
+
+namespace statejump::truss::detail {
+
+/// Friction of a contact that slides at its rim first, as a row of rings each under its own bound.
+/// No branch of the contact tells which of them slip: the law is one function of the slide of a
+/// step, whose slope falls from k_t to 0, and its tangent is what a step is solved with.
+struct SlippingRings {
+  kernel::PartialSlipMemory memory;  ///< At the end of the last step.
+  double energy = 0.0;               ///< That it holds [J].
+  bool slip_all = false;             ///< None of them stuck there.
+
+  /// Where in a step the tangent of the law is taken: slide [m] and speed [m/s]. Away from where
+  /// the step began the slope falls, on either side. So from there, and from a slide that is too
+  /// short, a tangent falls short of where it leads to; one from the other side may leap over it
+  /// for ever.
+  Eigen::Vector2d seen_slide = Eigen::Vector2d::Zero();
+  Eigen::Vector2d seen_speed = Eigen::Vector2d::Zero();
+  /// Takes the tangent at an iterate, or where the step began if that was on the other side.
+  /// @param begins there is no iterate yet @param speed_at_rest without a slide [m/s]
+  void see(bool begins, const Eigen::Vector2d& slide, const Eigen::Vector2d& speed,
+           const Eigen::Vector2d& speed_at_rest);
+
+  /// What presses them at the end of a step.
+  struct Pressed {
+    double stiffness = 0.0;  ///< k_t [N/m]
+    double stiffens = 0.0;   ///< ∂k_t/∂λ_n [1/m]
+    double friction_coefficient = 0.0;
+    double normal_force = 0.0;  ///< λ_n [N]
+    double dashpot = 0.0;       ///< c_t while a ring sticks [N s/m]
+  };
+  /// Friction at the end of a step against the slide [N], with the dashpot within the bound of
+  /// Coulomb, and its derivatives.
+  struct Law {
+    Eigen::Vector2d friction = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d by_slide = Eigen::Matrix2d::Zero();   ///< [N/m]
+    Eigen::Vector2d by_normal = Eigen::Vector2d::Zero();  ///< [-]
+  };
+  /// @param slide of the step along both tangents [m]; @param speed at its end [m/s]
+  /// @param h by which speeds make slides [s]
+  Law law(const Pressed& by, const Eigen::Vector2d& slide, const Eigen::Vector2d& speed,
+          double h) const;
+  /// Takes a step over. @return friction without the dashpot [N]
+  Eigen::Vector2d take(const Pressed& by, const Eigen::Vector2d& slide);
+};
+
+}  // namespace statejump::truss::detail
