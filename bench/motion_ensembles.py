@@ -44,8 +44,10 @@ class Ensemble:
 
 CASES = {
     "umbrella_rib": Ensemble(lambda: sj.load("cases/trusses/umbrella_rib.toml"), 0.16, 50_000, (1e6, "µJ")),
+    "umbrella_8": Ensemble(lambda: sj.load("cases/trusses/umbrella_8.toml"), 0.16, 50_000, (1e6, "µJ")),
     "chain_10": Ensemble(lambda: sj.load("cases/trusses/chain_10.toml"), 0.1, 20_000, (1.0, "J")),
     "ring_6": Ensemble(lambda: sj.truss.ring(6), 0.2, 20_000, (1e3, "mJ")),
+    "mast_6": Ensemble(lambda: sj.load("cases/trusses/mast_6.toml"), 1.0, 50_000, (1e6, "µJ")),
 }
 DEM, REGULARISED, SETS, FINE = "DEM", "regularised", "by sets", "DEM, quarter step"
 MODELS = (DEM, REGULARISED, SETS, FINE)

@@ -14,7 +14,11 @@ namespace {
 /// Newton's method converges in three or four iterations, or a contact is on another branch.
 constexpr int most_iterations = 8;
 /// The same where contacts slip in part, whose tangents are taken anew every time.
-constexpr int most_tangents = 30;
+constexpr int most_tangents = 50;
+/// Share of an iteration that goes downhill, which is halved until what rows lack has fallen by
+/// this share of it, or it is short.
+constexpr double least_fall = 1e-4;
+constexpr double shortest_share = 1e-3;
 /// Kept factors that take more iterations than this are made again for the next step.
 constexpr int few_iterations = 3;
 /// With kept factors, corrections that do not fall to this share of the one before give them up.
@@ -238,95 +242,120 @@ bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& 
   }
   OnBranches& on = factors_for(step.h, branches);
   const VectorXd near = step.v;
-  const auto begin = [&](bool there, bool kept) {
+  const auto begin = [&](bool there, Seen seen) {
     step.v = there ? near : v_;
     local.impulses = begun;
-    if (!contacts_.slip_in_part()) return;
-    see_rings(step, local, speeds_of_rings(step, local), true, there || kept);
+    if (contacts_.slip_in_part()) {
+      see_rings(step, local, speeds_of_rings(step, local), seen);
+    }
   };
-  for (bool kept : {true, false}) {
-    if (kept && on.outdated) continue;
-    on.outdated = true;
-    begin(is_near, kept);
-    if (kept) {
-      hold_directions(step, on.scale);
-    } else if (!factorize(on, step, local)) {
-      return false;
-    }
-    std::optional<int> iterations = iterate(on, step, local, kept);
-    if (!iterations && !kept && is_near) {
-      begin(false, false);
-      iterations = iterate(on, step, local, kept);
-    }
-    if (iterations) {
-      const bool is_fresh = !kept && contacts_.slip_in_part();
-      on.outdated = !is_fresh && *iterations > few_iterations;
-      return true;
-    }
+  const auto is_solved = [&](Tangents tangents) {
+    const std::optional<int> iterations = iterate(on, step, local, tangents);
+    const bool fresh = tangents == Tangents::anew || tangents == Tangents::downhill;
+    on.outdated = !iterations || (!fresh && *iterations > few_iterations);
+    return iterations.has_value();
+  };
+  if (!on.outdated) {
+    begin(is_near, Seen::here);
+    hold_directions(step, on.scale);
+    if (is_solved(Tangents::kept)) return true;
   }
-  return false;
+  on.outdated = true;
+  if (contacts_.slip_in_part()) {
+    begin(true, Seen::here);
+    if (is_near && is_solved(Tangents::anew)) return true;
+    begin(false, Seen::kinks);
+    if (is_solved(Tangents::anew)) return true;
+    begin(false, Seen::here);
+    return is_solved(Tangents::downhill);
+  }
+  begin(is_near, Seen::here);
+  if (!factorize(on, step, local)) return false;
+  if (is_solved(Tangents::once)) return true;
+  if (!is_near) return false;
+  begin(false, Seen::here);
+  return is_solved(Tangents::once);
 }
 
-std::optional<int> Stepper::iterate(OnBranches& on, Trial& step, Local& local, bool kept) {
+Stepper::Lack Stepper::lack_of(const OnBranches& on, Trial& step, const Local& local,
+                               double drift) {
+  const Eigen::Index n = q_.size();
+  const Eigen::Index held = holds_.cols();
+  Lack found{VectorXd(n + held + local.impulses.size()), move(step), true};
+  VectorXd& right = found.right;
+  right.head(n) = local.directions * local.impulses - found.balance;
+  const double before = v_.size() == 0 ? 0.0 : v_.cwiseAbs().maxCoeff();
+  const double speed = std::max(step.v.cwiseAbs().maxCoeff(), before);
+  const double bound = allowance * speed + drift;
+  if (held > 0) {
+    right.head(n) -= holds_ * step.held;
+    right.segment(n, held) = held_speed_ - holds_.transpose() * step.v;
+    const VectorXd sizes = holds_.cwiseAbs().transpose() * step.v.cwiseAbs();
+    found.on_laws = ((right.segment(n, held).array().abs() <=
+                      allowance * (sizes.array() + held_speed_.array().abs()) + on.scale * drift))
+                        .all();
+  }
+  for (std::size_t j = 0; j < on.branches.size(); ++j) {
+    const auto i = static_cast<Eigen::Index>(j);
+    const Contact& contact = *local.contacts[j];
+    const double normal = local.impulses[2 * i];
+    for (const bool across : {true, false}) {
+      const Eigen::Index row = 2 * i + (across ? 0 : 1);
+      double& to = right[n + held + row];
+      to = 0.0;
+      if (on.branches[j] == Branch::open ||
+          (across ? contact.normal_column < 0
+                  : on.branches[j] != Branch::stick || contact.tangential_column < 0)) {
+        continue;
+      }
+      const Law law = across ? normal_law(step, local, i) : stick_law(step, local, i);
+      const double off = lacks(law, step, local, i, across);
+      to = -on.scale * off;
+      // An elastic normal law and that of rings are for balanced() to judge.
+      if (across ? contact.is_elastic() : contact.slips_in_part) continue;
+      const double friction = on_law * contact.friction_coefficient * std::abs(normal);
+      found.on_laws = found.on_laws && std::abs(off) <= bound + law.compliance * friction;
+    }
+  }
+  return found;
+}
+
+std::optional<int> Stepper::iterate(OnBranches& on, Trial& step, Local& local, Tangents tangents) {
+  const bool kept = tangents == Tangents::kept;
+  const bool downhill = tangents == Tangents::downhill;
+  const bool renews = downhill || tangents == Tangents::anew;
+  if (renews && !factorize(on, step, local)) return {};
   const Eigen::Index n = q_.size();
   const Eigen::Index held = holds_.cols();
   VectorXd z = z_;
   z.head(n) = step.q_middle;
   const double drift = system_->rounding(z).length / step.h;
-  const double before = v_.size() == 0 ? 0.0 : v_.cwiseAbs().maxCoeff();
-  VectorXd right(n + held + local.impulses.size());
   step.held = VectorXd::Zero(held);
   double last = 0.0;
-  const bool renews = !kept && contacts_.slip_in_part();
+  Lack lack = lack_of(on, step, local, drift);
   for (int k = 0; k <= (renews ? most_tangents : most_iterations); ++k) {
-    if (contacts_.slip_in_part() && k > 0) {
-      see_rings(step, local, speeds_of_rings(step, local), false, false);
-    }
-    const VectorXd residual = move(step);
-    if (!residual.allFinite()) break;
-    right.head(n) = local.directions * local.impulses - residual;
-    const double speed = std::max(step.v.cwiseAbs().maxCoeff(), before);
-    const double bound = allowance * speed + drift;
-    bool on_laws = true;
-    if (held > 0) {
-      right.head(n) -= holds_ * step.held;
-      right.segment(n, held) = held_speed_ - holds_.transpose() * step.v;
-      const VectorXd sizes = holds_.cwiseAbs().transpose() * step.v.cwiseAbs();
-      on_laws = ((right.segment(n, held).array().abs() <=
-                  allowance * (sizes.array() + held_speed_.array().abs()) + on.scale * drift))
-                    .all();
-    }
-    for (std::size_t j = 0; j < on.branches.size(); ++j) {
-      const auto i = static_cast<Eigen::Index>(j);
-      const Contact& contact = *local.contacts[j];
-      const double normal = local.impulses[2 * i];
-      for (const bool across : {true, false}) {
-        const Eigen::Index row = 2 * i + (across ? 0 : 1);
-        double& to = right[n + held + row];
-        to = 0.0;
-        if (on.branches[j] == Branch::open ||
-            (across ? contact.normal_column < 0
-                    : on.branches[j] != Branch::stick || contact.tangential_column < 0)) {
-          continue;
-        }
-        const Law law = across ? normal_law(step, local, i) : stick_law(step, local, i);
-        const double off = lacks(law, step, local, i, across);
-        to = -on.scale * off;
-        // An elastic normal law and that of rings are for balanced() to judge.
-        if (across ? contact.is_elastic() : contact.slips_in_part) continue;
-        const double friction = on_law * contact.friction_coefficient * std::abs(normal);
-        on_laws = on_laws && std::abs(off) <= bound + law.compliance * friction;
-      }
-    }
-    if (k > 0 && on_laws && balanced(step, residual, step.held, local, true)) return k;
+    if (k > 0 && lack.on_laws && balanced(step, lack.balance, step.held, local, true)) return k;
     if (renews && k > 0 && !factorize(on, step, local)) break;
-    const VectorXd found = on.factor.solve(right);
+    const VectorXd found = on.factor.solve(lack.right);
+    if (!found.allFinite()) break;
     const double length = found.head(n).cwiseAbs().maxCoeff();
     if (kept && k > 1 && length > falls_to * last) break;
     last = length;
-    step.v += found.head(n);
-    step.held += found.segment(n, held);
-    local.impulses += on.scale * found.tail(local.impulses.size());
+    const double allowed = downhill ? lack.right.norm() : Contact::infinite;
+    double by = 1.0;
+    for (double share = 1.0;; share *= 0.5) {
+      step.v += by * found.head(n);
+      step.held += by * found.segment(n, held);
+      local.impulses += by * on.scale * found.tail(local.impulses.size());
+      if (contacts_.slip_in_part()) {
+        see_rings(step, local, speeds_of_rings(step, local), downhill ? Seen::here : Seen::next);
+      }
+      lack = lack_of(on, step, local, drift);
+      if (lack.right.norm() <= (1.0 - least_fall * share) * allowed || share < shortest_share) {
+        break;
+      }
+      by = -0.5 * share;
+    }
   }
   return {};
 }

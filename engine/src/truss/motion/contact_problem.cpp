@@ -44,7 +44,9 @@ void Stepper::solve_contacts(const Trial& step, const VectorXd& free, bool first
   const VectorXd speeds =
       first ? VectorXd(local.directions.transpose() * v_)
             : VectorXd(local.directions.transpose() * free + local.delassus * local.impulses);
-  if (contacts_.slip_in_part()) see_rings(step, local, speeds, first, false);
+  if (contacts_.slip_in_part()) {
+    see_rings(step, local, speeds, first ? Seen::kinks : Seen::next);
+  }
   Eigen::MatrixXd& w = std::get<Eigen::MatrixXd>(problem.delassus);
   for (Eigen::Index i = 0; i < problem.mu.size(); ++i) {
     const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];

@@ -39,15 +39,15 @@ VectorXd Stepper::speeds_of_rings(const Trial& step, const Local& local) const {
   return speeds;
 }
 
-void Stepper::see_rings(const Trial& step, const Local& local, const VectorXd& speeds, bool begins,
-                        bool is_near) {
+void Stepper::see_rings(const Trial& step, const Local& local, const VectorXd& speeds, Seen seen) {
   for (Eigen::Index i = 0; i < speeds.size() / 2; ++i) {
     Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
     if (!contact.slips_in_part || contact.beside) continue;
-    const Vector2d now = along(local, i, speeds);
-    const Vector2d before = slid(local, i);
-    if (begins) contact.rings.seen_slide.setZero();
-    contact.rings.see(begins && !is_near, step.h * now + before, now, -before / step.h);
+    SlippingRings& rings = contact.rings;
+    const Vector2d speed = along(local, i, speeds);
+    if (seen == Seen::here) rings.seen_slide = step.h * speed + slid(local, i);
+    rings.see(seen == Seen::kinks, pressed(step, local, i, speeds[2 * i]), speed, slid(local, i),
+              step.h);
   }
 }
 
@@ -70,7 +70,8 @@ Stepper::Law Stepper::rings_law(const Trial& step, const Local& local, Eigen::In
   const SlippingRings::Pressed by =
       pressed(step, local, first, local.directions.col(2 * first).dot(step.v));
   const SlippingRings& rings = contact.rings;
-  const SlippingRings::Law now = rings.law(by, rings.seen_slide, rings.seen_speed, step.h);
+  const Vector2d& speed = rings.seen_speed;
+  const SlippingRings::Law now = rings.law(by, rings.seen_slide, speed, step.h);
   // As a speed: what the force lacks, moved in a step by a contact that sticks.
   const double unit = 1.0 / (by.stiffness * step.h);
   Law law;
@@ -78,9 +79,8 @@ Stepper::Law Stepper::rings_law(const Trial& step, const Local& local, Eigen::In
   law.by_speed = now.by_slide(row, row) / by.stiffness;
   if (partner(local, i) >= 0) law.by_beside = now.by_slide(row, 1 - row) / by.stiffness;
   if (contact.normal_column >= 0) law.by_normal = unit * now.by_normal[row] / step.h;
-  law.offset = unit * now.friction[row] - law.by_speed * rings.seen_speed[row] -
-               law.by_beside * rings.seen_speed[1 - row] -
-               law.by_normal * local.impulses[2 * first];
+  law.offset = unit * now.friction[row] - law.by_speed * speed[row] -
+               law.by_beside * speed[1 - row] - law.by_normal * local.impulses[2 * first];
   return law;
 }
 
@@ -107,12 +107,13 @@ void Stepper::add_rings(const Trial& step, const Local& local, Eigen::Index owne
   const int count = partner(local, owner) < 0 ? 1 : 2;
   const SlippingRings& rings = local.contacts[static_cast<std::size_t>(owner)]->rings;
   const SlippingRings::Pressed by = pressed(step, local, owner, opens);
-  const SlippingRings::Law now = rings.law(by, rings.seen_slide, rings.seen_speed, step.h);
+  const Vector2d& speed = rings.seen_speed;
+  const SlippingRings::Law now = rings.law(by, rings.seen_slide, speed, step.h);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> slopes(now.by_slide);
   const Vector2d slope = slopes.eigenvalues().cwiseMax(least_slope * by.stiffness);
   const Eigen::Matrix2d compliance =
       slopes.eigenvectors() * slope.cwiseInverse().asDiagonal() * slopes.eigenvectors().transpose();
-  const Vector2d bend = compliance * now.friction - step.h * rings.seen_speed;
+  const Vector2d bend = compliance * now.friction - step.h * speed;
   for (int a = 0; a < count; ++a) {
     problem.q[rows[a]] += bend[a] / step.h;
     for (int b = 0; b < count; ++b) {
@@ -123,11 +124,10 @@ void Stepper::add_rings(const Trial& step, const Local& local, Eigen::Index owne
 }
 
 void Stepper::book_rings(const Trial& step, const Local& local, Eigen::Index owner,
-                         const VectorXd& through) {
+                         const VectorXd& speeds, const VectorXd& through) {
   const auto at = static_cast<std::size_t>(owner);
   Contact& contact = *local.contacts[at];
   const Eigen::Index second = partner(local, owner);
-  const VectorXd speeds = speeds_of_rings(step, local);
   const SlippingRings::Pressed by = pressed(step, local, owner, speeds[2 * owner]);
   const double stored = contact.rings.energy;
   const Vector2d spring =

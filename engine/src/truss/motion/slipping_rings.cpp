@@ -31,7 +31,7 @@ SlippingRings::Law SlippingRings::law(const Pressed& by, const Vector2d& slide,
   law.by_slide << vector(rings.by_slide_a), vector(rings.by_slide_b);
   law.by_normal =
       by.friction_coefficient * vector(rings.by_limit) + by.stiffens * vector(rings.by_stiffness);
-  if (by.dashpot == 0.0 || rings.centre.norm() > rings.bound) return law;
+  if (by.dashpot == 0.0) return law;
   law.friction += by.dashpot * speed;
   law.by_slide += by.dashpot / h * Matrix2d::Identity();
   const double size = law.friction.norm();
@@ -43,11 +43,23 @@ SlippingRings::Law SlippingRings::law(const Pressed& by, const Vector2d& slide,
   return law;
 }
 
-void SlippingRings::see(bool begins, const Vector2d& slide, const Vector2d& speed,
-                        const Vector2d& speed_at_rest) {
-  const bool at_rest = begins || slide.dot(seen_slide) < 0.0;
-  seen_slide = at_rest ? Vector2d(Vector2d::Zero()) : slide;
-  seen_speed = at_rest ? speed_at_rest : speed;
+Vector2d SlippingRings::kink(const Pressed& by) const {
+  const double bound = bound_of(by);
+  if (!(bound > 0.0)) return Vector2d::Zero();
+  const kernel::PartialSlipPlane rings =
+      kernel::partial_slip_plane(by.stiffness, bound, {0.0, 0.0}, memory);
+  const double size = rings.centre.norm();
+  if (!(size > rings.bound)) return Vector2d::Zero();
+  return (rings.bound / size - 1.0) * vector(rings.centre);
+}
+
+void SlippingRings::see(bool begins, const Pressed& by, const Vector2d& speed, const Vector2d& slid,
+                        double h) {
+  const Vector2d slide = h * speed + slid;
+  const Vector2d from = kink(by);
+  const bool beyond = begins || (slide - from).dot(seen_slide - from) < 0.0;
+  seen_slide = beyond ? from : slide;
+  seen_speed = beyond ? Vector2d((from - slid) / h) : speed;
 }
 
 Vector2d SlippingRings::take(const Pressed& by, const Vector2d& slide) {

@@ -15,16 +15,9 @@ struct SlippingRings {
   double energy = 0.0;               ///< That it holds [J].
   bool slip_all = false;             ///< None of them stuck there.
 
-  /// Where in a step the tangent of the law is taken: slide [m] and speed [m/s]. Away from where
-  /// the step began the slope falls, on either side. So from there, and from a slide that is too
-  /// short, a tangent falls short of where it leads to; one from the other side may leap over it
-  /// for ever.
+  /// Where in a step the tangent of the law is taken: slide [m] and speed [m/s].
   Eigen::Vector2d seen_slide = Eigen::Vector2d::Zero();
   Eigen::Vector2d seen_speed = Eigen::Vector2d::Zero();
-  /// Takes the tangent at an iterate, or where the step began if that was on the other side.
-  /// @param begins there is no iterate yet @param speed_at_rest without a slide [m/s]
-  void see(bool begins, const Eigen::Vector2d& slide, const Eigen::Vector2d& speed,
-           const Eigen::Vector2d& speed_at_rest);
 
   /// What presses them at the end of a step.
   struct Pressed {
@@ -32,10 +25,12 @@ struct SlippingRings {
     double stiffens = 0.0;   ///< ∂k_t/∂λ_n [1/m]
     double friction_coefficient = 0.0;
     double normal_force = 0.0;  ///< λ_n [N]
-    double dashpot = 0.0;       ///< c_t while a ring sticks [N s/m]
+    double dashpot = 0.0;       ///< c_t [N s/m]
   };
   /// Friction at the end of a step against the slide [N], with the dashpot within the bound of
-  /// Coulomb, and its derivatives.
+  /// Coulomb, and its derivatives. (The kernel's has no dashpot where all rings slip: that differs
+  /// where they slip one way because less presses them and the slide goes the other way, and would
+  /// be a jump of the law.)
   struct Law {
     Eigen::Vector2d friction = Eigen::Vector2d::Zero();
     Eigen::Matrix2d by_slide = Eigen::Matrix2d::Zero();   ///< [N/m]
@@ -45,6 +40,15 @@ struct SlippingRings {
   /// @param h by which speeds make slides [s]
   Law law(const Pressed& by, const Eigen::Vector2d& slide, const Eigen::Vector2d& speed,
           double h) const;
+  /// Slide to the kink, on either side of which the slope falls from k_t to 0: none, or where all
+  /// slip because less presses them back until the last of them sticks [m].
+  Eigen::Vector2d kink(const Pressed& by) const;
+  /// Takes the tangent at an iterate, or in the kink if the last was taken beyond it. From there,
+  /// and from a slide that is too short, a tangent falls short of where it leads to; one from the
+  /// other side may leap over it for ever.
+  /// @param begins there is no iterate yet; @param slid of the slide, what no speed tells [m]
+  void see(bool begins, const Pressed& by, const Eigen::Vector2d& speed,
+           const Eigen::Vector2d& slid, double h);
   /// Takes a step over. @return friction without the dashpot [N]
   Eigen::Vector2d take(const Pressed& by, const Eigen::Vector2d& slide);
 };

@@ -303,6 +303,8 @@ void Stepper::book(const Trial& step, const Local& local) {
   const VectorXd through =
       step.differentiates ? VectorXd((step.q - q_) / h) : VectorXd(0.5 * (v_ + step.v));
   const VectorXd along = local.directions.transpose() * through;
+  VectorXd speeds;
+  if (contacts_.slip_in_part()) speeds = speeds_of_rings(step, local);
   for (std::size_t k = 0; k < local.contacts.size(); ++k) {
     Contact& contact = *local.contacts[k];
     const auto i = static_cast<Eigen::Index>(k);
@@ -316,7 +318,7 @@ void Stepper::book(const Trial& step, const Local& local) {
     if (!contact.slips_in_part) {
       book_friction(step, local, i, along);
     } else if (!contact.beside) {
-      book_rings(step, local, i, along);
+      book_rings(step, local, i, speeds, along);
     }
     if (contact.normal_column >= 0) {
       const double growth = contact.clearance_after - contact.clearance;

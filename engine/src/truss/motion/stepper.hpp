@@ -190,9 +190,18 @@ class Stepper {
   /// @param next branches that they ask for
   Guess pivot_locally(const std::vector<Branch>& branches, const std::vector<Branch>& next,
                       const std::vector<std::size_t>& wrong, Trial& step, Local& local);
-  /// Newton's method with these factors; its iterations, none if it did not converge.
-  /// @param kept the factors are of an earlier step
-  std::optional<int> iterate(OnBranches& on, Trial& step, Local& local, bool kept);
+  /// Which factors Newton's method takes: of an earlier step, of where it begins, or of every
+  /// iterate; these also only as far as they lead down.
+  enum class Tangents : unsigned char { kept, once, anew, downhill };
+  /// Newton's method; its iterations, none if it did not converge.
+  std::optional<int> iterate(OnBranches& on, Trial& step, Local& local, Tangents tangents);
+  /// What the rows of a system lack at an iterate [N s].
+  struct Lack {
+    VectorXd right;
+    VectorXd balance;      ///< What momentum lacks without impulses.
+    bool on_laws = false;  ///< Of contacts that are not elastic, and of what holds.
+  };
+  Lack lack_of(const OnBranches& on, Trial& step, const Local& local, double drift);
   /// Tangential over normal impulse of a contact that slides.
   static double slide(const Contact& contact, Branch branch);
   /// What a contact's law on its branch says of one of its rows, with the speed u along it and its
@@ -215,10 +224,11 @@ class Stepper {
   static Vector2d slid(const Local& local, Eigen::Index owner);
   /// Speeds of the contacts that slip in part, of others 0 [m/s].
   VectorXd speeds_of_rings(const Trial& step, const Local& local) const;
-  /// Chooses where tangents are taken. @param begins there is no iterate yet; @param is_near it is
-  /// near to where the tangents of the matrix were taken
-  void see_rings(const Trial& step, const Local& local, const VectorXd& speeds, bool begins,
-                 bool is_near);
+  /// Where tangents are taken: in the kinks of the laws; at an iterate; or there and, of those
+  /// whose slide has turned round, in the kink.
+  enum class Seen : unsigned char { kinks, here, next };
+  /// Chooses that. @param speeds of the contacts [m/s]
+  void see_rings(const Trial& step, const Local& local, const VectorXd& speeds, Seen seen);
   /// What presses a contact that opens at a speed [m/s].
   SlippingRings::Pressed pressed(const Trial& step, const Local& local, Eigen::Index owner,
                                  double opens) const;
@@ -226,11 +236,13 @@ class Stepper {
   Law rings_law(const Trial& step, const Local& local, Eigen::Index i) const;
   /// Whether impulses are on the law itself. @param drift rounding of speeds [m/s]
   bool on_rings(const Trial& step, const Local& local, double drift) const;
-  /// The tangent for the contact problem.
+  /// The tangent for the contact problem. @param opens speed at which it does [m/s]
   void add_rings(const Trial& step, const Local& local, Eigen::Index owner, double opens,
                  complementarity::Problem& problem) const;
-  /// Takes the friction of rings over. @param along speeds by which impulses work [m/s]
-  void book_rings(const Trial& step, const Local& local, Eigen::Index owner, const VectorXd& along);
+  /// Takes the friction of rings over. @param speeds of their contacts; @param through by which
+  /// impulses work [m/s]
+  void book_rings(const Trial& step, const Local& local, Eigen::Index owner, const VectorXd& speeds,
+                  const VectorXd& through);
   /// The contact whose normal force presses one, and the other tangent of a ball.
   static Eigen::Index owner(const Local& local, Eigen::Index i) {
     return local.contacts[static_cast<std::size_t>(i)]->beside ? i - 1 : i;
