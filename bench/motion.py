@@ -130,9 +130,9 @@ def report(rows: list[dict[str, Any]]) -> str:
     return f"""# Trusses in motion beside the DEM and the quasi-static solver
 
 Cases as they are but for the changes that their names tell, {SAMPLES:,} samples a cycle. In motion: {STEPS:,} steps a
-cycle, masses as the DEM has them (`motion.masses = "lumped"`), sticking elastic as in the DEM, or partial slip. Jump: of
-the node that jumps most in the DEM; difference: the largest of all nodes; rms: the largest of all nodes over the run,
-over the largest displacement. Regularised: the DEM's contacts in {EXPLICIT_STEPS} times as many explicit steps
+cycle, masses as the DEM has them (`motion.masses = "lumped"`), sticking elastic as in the DEM, or partial slip. Jump:
+of the node that jumps most in the DEM; difference: the largest of all nodes; rms: the largest of all nodes over the
+run, over the largest displacement. Regularised: the DEM's contacts in {EXPLICIT_STEPS} times as many explicit steps
 as are just stable. Peak acceleration: largest second difference of the samples, m/s². Heat in J. Steps of a
 quasi-static path are its systems. The CPU time is of one shared core; the DEM's includes its samples.
 

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "heated_bar.hpp"
-#include "statejump/truss/motion.hpp"
 #include "statejump/truss/path.hpp"
 
 namespace statejump::truss {
@@ -222,9 +221,6 @@ TEST(TrussPartialSlip, WithoutFrictionOrStiffnessItIsRefused) {
   Slider twice = rubbing();
   twice.partial_slip = 2;
   EXPECT_THROW(heated_bar(twice, 5.0, 1).validate(), std::invalid_argument);
-  Inertia inertia;
-  inertia.node_mass = Eigen::VectorXd::Ones(2);
-  EXPECT_THROW(simulate(heated_bar(rubbing(), 5.0, 1), inertia), std::invalid_argument);
 }
 
 }  // namespace
