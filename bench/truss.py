@@ -32,6 +32,7 @@ from statejump.kinds.truss import generate, solve
 
 SIZES = (10, 100, 1_000, 10_000, 100_000, 1_000_000)
 AS_OBJECTS = 100_000
+REPEATED = 3  # up to that size, from tables: the run of median time
 TRUSSES = ("ring", "umbrella")
 ITEMS = ("node", "link", "revolute", "spring", "torsion_spring")
 BUSY_LOAD = 0.5  # above it others have their share of the cores
@@ -42,7 +43,8 @@ have the same bits with any number of threads). `read` is CPU time, `solve` the 
 all threads together. Events: changes of stick, slip and contact. The ring of many bays is stiff around each
 joint, and none slips from 100 on; in the umbrella every joint slips out and back, each at its own temperature.
 Items are read and checked from HDF5 tables beside the case file, or as Python objects; memory is the peak of the
-process, 50 MiB of it Python itself. {machine}
+process, 50 MiB of it Python itself. From tables the median of {repeated} runs, but of a million joints one run.
+{machine}
 
 | truss | items as | joints | unknowns | events | solves | factorizations | read [s] | solve [s] | CPU [s] | \
 per joint [µs] | peak memory [MiB] |
@@ -86,8 +88,8 @@ def write(truss: str, joints: int, folder: Path) -> None:
     (folder / "case.toml").write_text(tomli_w.dumps({**made, "tables": beside}), encoding="utf-8")
 
 
-def measure(truss: str, joints: int, folder: Path | None) -> str:
-    """Return one row of the table.
+def measure(truss: str, joints: int, folder: Path | None) -> tuple[float, str]:
+    """Return how long a path takes [s], and a row of the table.
 
     :param folder: of the case file with tables; None: the items are Python objects
     """
@@ -100,7 +102,7 @@ def measure(truss: str, joints: int, folder: Path | None) -> str:
     found = solve.path(resolved, increments_per_branch=10, locate_events=False, cycle_ends_only=True)
     seconds, busy = time.perf_counter() - started, time.process_time() - busy
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return (
+    return seconds, (
         f"| {truss} | {'objects' if folder is None else 'tables'} | {joints:,} | {found.unknowns:,} | "
         f"{len(found.events):,} | {found.solves} | {found.factorizations} | {read:.3g} | {seconds:.3g} | "
         f"{busy:.3g} | {1e6 * seconds / joints:.0f} | {peak:.0f} |"
@@ -123,15 +125,17 @@ def main() -> None:
     load = os.getloadavg()[0]
     machine = f"The machine was {'busy' if load > BUSY_LOAD else 'idle'} (load {load:.1f} before the first row)."
     threads = int(os.environ.get("OMP_NUM_THREADS", len(os.sched_getaffinity(0))))
-    text = HEAD.format(machine=machine, threads="one thread" if threads == 1 else f"{threads} threads")
+    shown = "one thread" if threads == 1 else f"{threads} threads"
+    text = HEAD.format(machine=machine, repeated=REPEATED, threads=shown)
     print(text, end="", flush=True)
     for truss in given.trusses:
         for joints in (size for size in SIZES if size <= given.largest):
             with tempfile.TemporaryDirectory(prefix="statejump-bench-") as folder:
                 alone(write, truss, joints, Path(folder))
-                rows = [alone(measure, truss, joints, Path(folder))]
+                runs = range(REPEATED if joints <= AS_OBJECTS else 1)
+                rows = [sorted(alone(measure, truss, joints, Path(folder)) for _ in runs)[len(runs) // 2][1]]
             if joints == AS_OBJECTS:
-                rows.append(alone(measure, truss, joints, None))
+                rows.append(alone(measure, truss, joints, None)[1])
             text += "".join(f"{row}\n" for row in rows)
             print(*rows, sep="\n", flush=True)
             with write_atomically(given.output) as stream:
