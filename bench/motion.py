@@ -29,7 +29,10 @@ CASES: dict[str, tuple[Callable[[], Any], dict[str, Any]]] = {
     "umbrella_rib, hundred times as fast": (
         lambda: sj.load("cases/trusses/umbrella_rib.toml"), {"thermal.period_s": 0.16}),
     "umbrella_8": (lambda: sj.load("cases/trusses/umbrella_8.toml"), {}),
+    "umbrella_8, hundred times as fast": (
+        lambda: sj.load("cases/trusses/umbrella_8.toml"), {"thermal.period_s": 0.16}),
     "ring_6": (lambda: sj.truss.ring(6), {}),
+    "ring_6, five times as fast": (lambda: sj.truss.ring(6), {"thermal.period_s": 0.2}),
     "latch_lever": (lambda: sj.load("cases/trusses/latch_lever.toml"), {}),
     "latch_lever, twenty times as fast": (
         lambda: sj.load("cases/trusses/latch_lever.toml"), {"thermal.period_s": 0.05}),
