@@ -105,6 +105,14 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   }
   slip_in_part_ = std::any_of(all_.begin(), all_.end(),
                               [](const Contact& contact) { return contact.slips_in_part; });
+  // Across its friction a ball holds as it does along it.
+  hold_rigidly_ = std::any_of(all_.begin(), all_.end(), [](const Contact& contact) {
+    const bool along = contact.tangential_column >= 0 && !contact.beside &&
+                       contact.friction_coefficient > 0.0 &&
+                       contact.tangential_stiffness == Contact::infinite &&
+                       contact.mindlin_stiffness == Contact::infinite;
+    return along || (contact.normal_column >= 0 && !contact.is_elastic());
+  });
   if (damping.size() == 0) return;
   for (Contact& contact : all_) {
     contact.damping = damping[contact.joint];

@@ -142,6 +142,8 @@ class Contacts {
   bool damped() const { return damped_; }
   /// Whether any of them does.
   bool slip_in_part() const { return slip_in_part_; }
+  /// Whether any of them holds without giving way, across its surface or along.
+  bool hold_rigidly() const { return hold_rigidly_; }
   /// Whether joints have forces on nodes besides their contacts'.
   bool have_springs() const { return springs_; }
 
@@ -186,6 +188,7 @@ class Contacts {
   std::vector<int> holds_;
   bool damped_ = false;
   bool slip_in_part_ = false;
+  bool hold_rigidly_ = false;
   bool springs_ = false;
 };
 

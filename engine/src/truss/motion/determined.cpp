@@ -51,7 +51,7 @@ std::vector<Stepper::Branch> Stepper::held_branches(const Trial& step, const Loc
 /// neither pushes nor parts, or rubs at its bound and does not slide, the other branch is right as
 /// well: reactions are unique if those are where it holds.
 void Stepper::check_determined(const Trial& step, const Local& local) {
-  if (undetermined_) return;
+  if (undetermined_ || !contacts_.hold_rigidly()) return;
   const bool has_problem = local.delassus.size() > 0;
   const std::vector<Branch> held = held_branches(step, local);
   if (held == holding_ && active_ == holding_of_) return;
