@@ -195,7 +195,7 @@ int BallJoint::slip_memory_begin() const {
 }
 
 int BallJoint::history() const {
-  return partial_slip ? BallMemory::size + detail::partial_slip_history(2) : BallMemory::size;
+  return slip_memory_begin() + (partial_slip ? detail::partial_slip_history(2) : 0);
 }
 
 void BallJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const {

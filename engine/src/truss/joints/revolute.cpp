@@ -357,7 +357,7 @@ int ClearanceRevolute::slip_memory_begin() const {
 }
 
 int ClearanceRevolute::history() const {
-  return partial_slip ? Memory::size + detail::partial_slip_history(1) : Memory::size;
+  return slip_memory_begin() + (partial_slip ? detail::partial_slip_history(1) : 0);
 }
 
 JointFrame ClearanceRevolute::frame(const Model& model) const {

@@ -162,7 +162,7 @@ int Slider::slip_memory_begin() const {
 }
 
 int Slider::history() const {
-  return partial_slip ? 1 + detail::partial_slip_history(1) : 1;
+  return slip_memory_begin() + (partial_slip ? detail::partial_slip_history(1) : 0);
 }
 
 JointFrame Slider::frame(const Model& model) const {

@@ -26,7 +26,7 @@ void BallFriction::measure(const Trial& at) {
   now = state_of(*joint, at);
   const BallSlide<double> moved = ball_slide(now, memory);
   kept = moved.kept;
-  if (slips_in_part) {
+  if (slips_in_part()) {
     along = any_across(now.normal);
     point(moved.axis);
     return;
@@ -49,7 +49,7 @@ void BallFriction::remember(const Vector3d& friction) {
   memory.ball_direction = now.ball_direction;
   memory.socket_direction = now.socket_direction;
   memory.friction = friction;
-  if (slips_in_part) memory.axis = along;
+  if (slips_in_part()) memory.axis = along;
 }
 
 void Contacts::direct(const BallFriction& cone) {

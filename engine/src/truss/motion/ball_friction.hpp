@@ -20,7 +20,7 @@ struct BallFriction {
   const BallJoint* joint = nullptr;
   std::size_t place = 0;  ///< Of its contact among all; the one beside is the next.
   int first_column = 0;   ///< Of the joint's three forces.
-  bool slips_in_part = false;
+  bool slips_in_part() const { return joint->partial_slip != 0; }
 
   // Remembered from step to step.
   /// Where its friction was found: places, directions, elastic friction.

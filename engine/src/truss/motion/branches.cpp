@@ -39,8 +39,7 @@ bool Stepper::on_branches(Trial& step, Local& local) {
     const Contact& contact = contacts_.all()[place];
     if (!contact.active) continue;
     // A rigid contact that is active has closed.
-    const bool closes =
-        branches_[place] == Branch::open && contact.normal_column >= 0 && !contact.is_elastic();
+    const bool closes = branches_[place] == Branch::open && contact.is_rigid();
     branches.push_back(closes ? Branch::stick : branches_[place]);
     active.push_back(static_cast<int>(place));
   }

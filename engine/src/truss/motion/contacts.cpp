@@ -107,11 +107,7 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
                               [](const Contact& contact) { return contact.slips_in_part; });
   // Across its friction a ball holds as it does along it.
   hold_rigidly_ = std::any_of(all_.begin(), all_.end(), [](const Contact& contact) {
-    const bool along = contact.tangential_column >= 0 && !contact.beside &&
-                       contact.friction_coefficient > 0.0 &&
-                       contact.tangential_stiffness == Contact::infinite &&
-                       contact.mindlin_stiffness == Contact::infinite;
-    return along || (contact.normal_column >= 0 && !contact.is_elastic());
+    return contact.is_rigid() || (contact.sticks_rigidly() && !contact.beside);
   });
   if (damping.size() == 0) return;
   for (Contact& contact : all_) {
@@ -191,7 +187,6 @@ void Contacts::add(int joint, int first_column, const BallJoint& socketed) {
   friction.joint = &socketed;
   friction.place = all_.size();
   friction.first_column = first_column;
-  friction.slips_in_part = contact.slips_in_part;
   balls_.push_back(friction);
   all_.push_back(contact);
   Contact beside = made(joint, socketed);

@@ -62,6 +62,13 @@ struct Contact {
   Columns tangential_columns() const { return columns(tangential_column, tangential_shares); }
 
   bool is_elastic() const { return hertz_stiffness < infinite; }
+  /// Whether it keeps its gap closed without giving way.
+  bool is_rigid() const { return normal_column >= 0 && !is_elastic(); }
+  /// Whether it does not give way where it sticks.
+  bool sticks_rigidly() const {
+    return tangential_column >= 0 && friction_coefficient > 0.0 &&
+           tangential_stiffness == infinite && mindlin_stiffness == infinite;
+  }
   double depth(double force) const;
   double force_at(double depth) const;
 

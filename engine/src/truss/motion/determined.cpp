@@ -18,12 +18,6 @@ constexpr double takes_part = 1e-3;
 
 }  // namespace
 
-bool Stepper::sticks_rigidly(const Trial& step, const Local& local, Eigen::Index i) const {
-  const Contact& contact = *local.contacts[static_cast<std::size_t>(i)];
-  return contact.tangential_column >= 0 && contact.friction_coefficient > 0.0 &&
-         contact.tangential_compliance(elastic_normal(step, local, i)) == 0.0;
-}
-
 std::vector<Stepper::Branch> Stepper::held_branches(const Trial& step, const Local& local) const {
   std::vector<Branch> held = branches_of(local);
   if (held.empty()) return held;
@@ -37,12 +31,11 @@ std::vector<Stepper::Branch> Stepper::held_branches(const Trial& step, const Loc
   for (std::size_t k = 0; k < held.size(); ++k) {
     const Contact& contact = *local.contacts[k];
     const auto i = static_cast<Eigen::Index>(k);
-    const bool rigid = contact.normal_column >= 0 && !contact.is_elastic();
-    if (held[k] == Branch::open && rigid && rests(2 * i, leaving(step, local, i))) {
+    if (held[k] == Branch::open && contact.is_rigid() && rests(2 * i, leaving(step, local, i))) {
       held[k] = Branch::slip_plus;
     }
     const bool slips = held[k] == Branch::slip_plus || held[k] == Branch::slip_minus;
-    if (slips && sticks_rigidly(step, local, i) && rests(2 * i + 1, 0.0)) held[k] = Branch::stick;
+    if (slips && contact.sticks_rigidly() && rests(2 * i + 1, 0.0)) held[k] = Branch::stick;
   }
   return held;
 }
@@ -72,8 +65,8 @@ void Stepper::check_determined(const Trial& step, const Local& local) {
     const auto i = static_cast<Eigen::Index>(k);
     if (held[k] == Branch::open) continue;
     const bool stops = contact.stop != JointStatus::open && contact.joint == sticking_slider;
-    if (contact.normal_column >= 0 && !contact.is_elastic() && !stops) rows.push_back(2 * i);
-    if (held[k] == Branch::stick && sticks_rigidly(step, local, i)) {
+    if (contact.is_rigid() && !stops) rows.push_back(2 * i);
+    if (held[k] == Branch::stick && contact.sticks_rigidly()) {
       rows.push_back(2 * i + 1);
       if (contact.normal_column < 0) sticking_slider = contact.joint;
     }

@@ -48,8 +48,7 @@ bool Stepper::closes(const Local& local) {
   for (std::size_t i = 0; i < local.contacts.size(); ++i) {
     const Contact& contact = *local.contacts[i];
     const double impulse = local.impulses[static_cast<Eigen::Index>(2 * i)];
-    if (contact.normal_column >= 0 && !contact.is_elastic() && contact.normal_force == 0.0 &&
-        impulse > 0.0) {
+    if (contact.is_rigid() && contact.normal_force == 0.0 && impulse > 0.0) {
       return true;
     }
   }

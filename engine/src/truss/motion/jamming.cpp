@@ -16,8 +16,7 @@ void Stepper::check_slides(const Trial& step, const Local& local) {
     const Contact& contact = *local.contacts[i];
     const auto n = static_cast<Eigen::Index>(2 * i);
     const Branch before = branches_[static_cast<std::size_t>(active_[i])];
-    const bool rigid = contact.normal_column >= 0 && !contact.is_elastic();
-    if (!rigid || contact.tangential_column < 0 || before == Branch::stick) continue;
+    if (!contact.is_rigid() || contact.tangential_column < 0 || before == Branch::stick) continue;
     const double normal = local.impulses[n];
     const bool leaves = contact.normal_force > 0.0 && normal == 0.0;
     const bool stops = normal > 0.0 && contact.sticks(normal, local.impulses[n + 1]);

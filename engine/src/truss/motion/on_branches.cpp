@@ -89,8 +89,10 @@ bool Stepper::solve_on(const std::vector<Branch>& branches, Trial& step, Local& 
   }
   on.outdated = true;
   if (contacts_.slip_in_part()) {
-    begin(true, Seen::here);
-    if (is_near && is_solved(Tangents::anew)) return true;
+    if (is_near) {
+      begin(true, Seen::here);
+      if (is_solved(Tangents::anew)) return true;
+    }
     begin(false, Seen::kinks);
     if (is_solved(Tangents::anew)) return true;
     begin(false, Seen::here);
@@ -168,7 +170,7 @@ std::optional<int> Stepper::iterate(OnBranches& on, Trial& step, Local& local, T
     const double length = found.head(n).cwiseAbs().maxCoeff();
     if (kept && k > 1 && length > falls_to * last) break;
     last = length;
-    const double allowed = downhill ? lack.right.norm() : Contact::infinite;
+    const double allowed = downhill ? lack.right.norm() : 0.0;
     double by = 1.0;
     for (double share = 1.0;; share *= 0.5) {
       step.v += by * found.head(n);
@@ -178,9 +180,8 @@ std::optional<int> Stepper::iterate(OnBranches& on, Trial& step, Local& local, T
         see_rings(step, local, speeds_of_rings(step, local), downhill ? Seen::here : Seen::next);
       }
       lack = lack_of(on, step, local, drift);
-      if (lack.right.norm() <= (1.0 - least_fall * share) * allowed || share < shortest_share) {
-        break;
-      }
+      if (!downhill || share < shortest_share) break;
+      if (lack.right.norm() <= (1.0 - least_fall * share) * allowed) break;
       by = -0.5 * share;
     }
   }

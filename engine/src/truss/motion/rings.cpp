@@ -139,15 +139,15 @@ void Stepper::book_rings(const Trial& step, const Local& local, Eigen::Index own
     const double friction = by.normal_force > 0.0 ? -local.impulses[t] / step.h : 0.0;
     const bool slides = contact.rings.slip_all;
     const double force = step.in_mean(one.friction_force, friction, slides);
-    const double elastic = step.in_mean(one.elastic_friction, spring[row], slides);
+    const double bent = by.dashpot > 0.0 ? spring[row] : friction;
+    const double elastic = step.in_mean(one.elastic_friction, bent, slides);
     one.friction_force = friction;
-    one.elastic_friction = by.dashpot > 0.0 ? spring[row] : friction;
+    one.elastic_friction = bent;
     work += force * step.h * through[t];
     dashpots += (force - elastic) * step.h * through[t];
   };
   take(contact, 2 * owner + 1, 0);
   if (second >= 0) take(*local.contacts[at + 1], 2 * second + 1, 1);
-  if (contact.damping == 0.0) dashpots = 0.0;
   account_.damping += dashpots;
   const double heat = work - dashpots - (contact.rings.energy - stored);
   account_.friction[contact.joint] += heat;

@@ -276,8 +276,6 @@ class Stepper {
   /// Branches of the active contacts at the end of a step, where those whose inequality is an
   /// equation as well hold.
   std::vector<Branch> held_branches(const Trial& step, const Local& local) const;
-  /// Whether a contact does not bend where it sticks.
-  bool sticks_rigidly(const Trial& step, const Local& local, Eigen::Index i) const;
   /// Notes the first step in which a slide ends that could not go on.
   void check_slides(const Trial& step, const Local& local);
   /// Branches of the active contacts at the end of a step, by their impulses.

@@ -8,15 +8,13 @@
 #include <cmath>
 #include <limits>
 
-#include "../joints/ball_models.hpp"
-#include "scenes.hpp"
+#include "ball_scenes.hpp"
 #include "statejump/kernel/require.hpp"
 
 namespace statejump::truss {
 namespace {
 
 using namespace scenes;
-using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -137,33 +135,13 @@ TEST(MotionBall, SlidesAroundItsSocketByItsOwnEquation) {
 }
 
 TEST(MotionBall, MovesAsTheJournalDoesInAPlane) {
+  MotionOptions options;
+  options.steps = 4000;
+  options.sample_every = 400;
   // One law in two dimensions and in three: what is left is what friction may have across its
   // direction, and the linear start of the depth, which both have alike.
-  const Matrix3d turned =
-      Eigen::AngleAxisd(2.1, Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
-  const auto run = [&](bool with_ball) {
-    const Model model = testing::rib(with_ball, with_ball ? turned : Matrix3d::Identity());
-    Inertia inertia;
-    inertia.node_mass = Eigen::VectorXd::Constant(5, 0.05);
-    inertia.joint_damping = Eigen::VectorXd::Constant(1, 2.0 * 0.1 * std::sqrt(0.025));
-    inertia.pin_damping = Vector2d(1e-2, 1e-2);
-    MotionOptions options;
-    options.steps = 4000;
-    options.sample_every = 400;
-    return simulate(model, inertia, options);
-  };
-  const Motion ball = run(true);
-  const Motion journal = run(false);
-  ASSERT_EQ(ball.states.size(), journal.states.size());
-  const double largest = journal.states[5].displacement.norm();
-  for (std::size_t i = 0; i < ball.states.size(); ++i) {
-    const Eigen::Matrix3Xd apart =
-        turned.transpose() * ball.states[i].displacement - journal.states[i].displacement;
-    EXPECT_LT(apart.norm(), 1e-6 * largest) << "sample " << i;
-  }
-  EXPECT_GT(journal.states.back().joint_dissipation[0], 0.0);
-  EXPECT_NEAR(ball.states.back().joint_dissipation[0], journal.states.back().joint_dissipation[0],
-              1e-4 * journal.states.back().joint_dissipation[0]);
+  expect_ball_moves_as_journal(
+      [&](const Model& model) { return simulate(model, rib_inertia(), options); }, 1e-6, 1e-4);
 }
 
 TEST(MotionBall, SlowHeatingFollowsTheQuasiStaticPath) {

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../joints/ball_models.hpp"
-#include "scenes.hpp"
+#include "ball_scenes.hpp"
 
 namespace statejump::truss {
 namespace {
@@ -16,15 +15,8 @@ namespace {
 using namespace scenes;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 constexpr const char* law = "mindlin_deresiewicz";
-
-Inertia masses(Eigen::VectorXd of_nodes) {
-  Inertia inertia;
-  inertia.node_mass = std::move(of_nodes);
-  return inertia;
-}
 
 /// Every joint slips in part.
 Model in_part(Model model) {
@@ -36,20 +28,6 @@ Model in_part(Model model) {
         joint);
   }
   return model;
-}
-
-/// A block of 2 kg on the ground, k_t = 1e6 N/m.
-Model block(double bound, double seconds) {
-  Model model;
-  model.programs = {lasting(seconds)};
-  model.nodes = {node("A", 0, 0, 1)};
-  Slider slider;
-  slider.name = "S";
-  slider.first = 0;
-  slider.friction_force = bound;
-  slider.tangential_stiffness = 1e6;
-  model.joints = {slider};
-  return in_part(std::move(model));
 }
 
 Motion thrown(const Model& model, long steps, double tolerance = 0.0) {
@@ -64,7 +42,7 @@ Motion thrown(const Model& model, long steps, double tolerance = 0.0) {
 
 TEST(MotionRings, BlockSlidesAndSwingsAsInExplicitSteps) {
   // It slides as a whole at first, then swings within the bound, and loses heat in every swing.
-  const Model model = block(100.0, 0.03);
+  const Model model = in_part(block(100.0, 0.03));
   MotionOptions options;
   options.steps = options.sample_every = 40000;
   options.start = at_rest(model);
@@ -115,69 +93,50 @@ TEST(MotionRings, SlowlyHeatedBarIsItsPath) {
 
 /// A rib under a quick temperature cycle, in explicit steps or by sets.
 Motion quick(const Model& model, long steps, bool by_sets) {
-  Inertia inertia = masses(Eigen::VectorXd::Constant(5, 0.05));
-  inertia.joint_damping = Eigen::VectorXd::Constant(1, 2.0 * 0.1 * std::sqrt(0.025));
-  inertia.pin_damping = Vector2d(1e-2, 1e-2);
   MotionOptions options;
   options.steps = steps;
   options.sample_every = steps / 10;
-  return by_sets ? simulate(model, inertia, options)
-                 : simulate_regularised(model, inertia, law, options);
+  return by_sets ? simulate(model, rib_inertia(), options)
+                 : simulate_regularised(model, rib_inertia(), law, options);
+}
+
+/// Expects steps by sets to come to this state as their number grows. @param end of so many steps
+template <class End>
+void expect_to_go_to(const State& exact, End&& end, double coarse) {
+  const double off = apart(end(4000), exact);
+  EXPECT_LT(off, coarse);
+  EXPECT_LT(apart(end(16000), exact), 0.35 * off);
 }
 
 TEST(MotionRings, RevoluteGoesToExplicitStepsAsItsStepsFall) {
   const Model model = in_part(testing::rib(false, Matrix3d::Identity()));
-  const State exact = quick(model, 80000, false).states.back();
-  const auto apart = [&](long steps) {
-    const State end = quick(model, steps, true).states.back();
-    return (end.displacement - exact.displacement).norm() / exact.displacement.norm();
-  };
-  const double coarse = apart(4000);
-  const double fine = apart(16000);
-  EXPECT_LT(coarse, 3e-4);
-  EXPECT_LT(fine, 0.35 * coarse);
+  expect_to_go_to(
+      quick(model, 80000, false).states.back(),
+      [&](long steps) { return quick(model, steps, true).states.back(); }, 3e-4);
 }
 
 TEST(MotionRings, BallMovesAsTheJournalDoesInAPlane) {
-  const Matrix3d turned =
-      Eigen::AngleAxisd(2.1, Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
-  const Motion ball = quick(in_part(testing::rib(true, turned)), 8000, true);
-  const Motion journal = quick(in_part(testing::rib(false, Matrix3d::Identity())), 8000, true);
-  ASSERT_EQ(ball.states.size(), journal.states.size());
-  const double largest = journal.states[5].displacement.norm();
-  for (std::size_t i = 0; i < ball.states.size(); ++i) {
-    const Eigen::Matrix3Xd apart =
-        turned.transpose() * ball.states[i].displacement - journal.states[i].displacement;
-    EXPECT_LT(apart.norm(), 1e-6 * largest) << "sample " << i;
-  }
-  const double heat = journal.states.back().joint_dissipation[0];
-  EXPECT_GT(heat, 0.0);
-  EXPECT_NEAR(ball.states.back().joint_dissipation[0], heat, 1e-3 * heat);
+  expect_ball_moves_as_journal(
+      [](Model model) { return quick(in_part(std::move(model)), 8000, true); }, 1e-6, 1e-3);
 }
 
 TEST(MotionRings, TripodGoesToExplicitStepsAsItsStepsFall) {
   const Model model = in_part(testing::tripod());
-  Inertia inertia = masses(Eigen::VectorXd::Constant(8, 0.5));
-  inertia.link_damping = Eigen::VectorXd::Constant(4, 60.0);
-  inertia.joint_damping = Eigen::VectorXd::Constant(1, 2.0 * 0.1 * std::sqrt(0.25));
   MotionOptions options;
   options.steps = options.sample_every = 80000;
-  const State exact = simulate_regularised(model, inertia, law, options).states.back();
-  const auto apart = [&](long steps) {
-    options.steps = options.sample_every = steps;
-    const State by_sets = simulate(model, inertia, options).states.back();
-    return (by_sets.displacement - exact.displacement).norm() / exact.displacement.norm();
-  };
-  const double coarse = apart(4000);
-  const double fine = apart(16000);
-  EXPECT_LT(coarse, 1e-5);
-  EXPECT_LT(fine, 0.35 * coarse);
+  expect_to_go_to(
+      simulate_regularised(model, tripod_inertia(), law, options).states.back(),
+      [&](long steps) {
+        options.steps = options.sample_every = steps;
+        return simulate(model, tripod_inertia(), options).states.back();
+      },
+      1e-5);
 }
 
 TEST(MotionRings, ContactProblemHasTheSameLaw) {
   // Two rigid stops in one place share their force as they like: steps against them have no
   // branches that are found, and their contacts one problem.
-  Model model = block(20.0, 0.02);
+  Model model = in_part(block(20.0, 0.02));
   auto& slider = std::get<Slider>(model.joints[0]);
   slider.clearance_plus = 2e-5;
   model.nodes[0].load = {15.0, 0.0, 0.0};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "../parts.hpp"
@@ -16,6 +17,12 @@ using testing::node;
 
 inline thermal::Program lasting(double seconds, double largest = 0.0) {
   return testing::triangle(largest, seconds);
+}
+
+inline Inertia masses(Eigen::VectorXd of_nodes) {
+  Inertia inertia;
+  inertia.node_mass = std::move(of_nodes);
+  return inertia;
 }
 
 inline MotionStart at_rest(const Model& model) {
@@ -32,6 +39,20 @@ inline double residue(const Motion& motion) {
   };
   return sum(motion.states.back(), motion.moving.back()) -
          sum(motion.states.front(), motion.moving.front());
+}
+
+/// A block on the ground that sticks by a spring of 1e6 N/m. @param bound of its friction [N]
+inline Model block(double bound, double seconds) {
+  Model model;
+  model.programs = {lasting(seconds)};
+  model.nodes = {node("A", 0, 0, 1)};
+  Slider slider;
+  slider.name = "S";
+  slider.first = 0;
+  slider.friction_force = bound;
+  slider.tangential_stiffness = 1e6;
+  model.joints = {slider};
+  return model;
 }
 
 /// A journal that falls within its bearing, both rigid.
