@@ -117,9 +117,6 @@ void System::assemble_bars(const Region& region, const std::vector<double>& chan
   const auto moved_between = [&](int first, int second) -> Vector3d {
     return to.moved().col(second) - to.moved().col(first);
   };
-  const auto lengths_of = [&](int first, int second) {
-    return lengths(drawn(second) - drawn(first), moved_between(first, second));
-  };
   const auto bar = [&](int first, int second, const Vector3d& direction, double length,
                        const Axial& axial) {
     nodes.force(first, -axial.tension * direction);
@@ -157,14 +154,14 @@ void System::assemble_bars(const Region& region, const std::vector<double>& chan
   };
   for (const int i : region.links) {
     const Link& link = model.links[index(i)];
-    const Lengths length = lengths_of(link.first, link.second);
+    const Lengths length = lengths_between(link.first, link.second, to.moved());
     const double change = link.temperature_fraction * changes[index(link.program)];
     bar(link.first, link.second, length.along / length.now, length.now,
         link_axial(link, length.growth, length.drawn, change));
   }
   for (const int i : region.springs) {
     const AxialSpring& spring = model.springs[index(i)];
-    const Lengths length = lengths_of(spring.first, spring.second);
+    const Lengths length = lengths_between(spring.first, spring.second, to.moved());
     bar(spring.first, spring.second, length.along / length.now, length.now,
         spring_axial(spring, length));
   }
@@ -282,6 +279,9 @@ VectorXd System::heating(const VectorXd& z, double time, const StepStart& start,
   const Model& model = *model_;
   Assembly to = Assembly::without_jacobian(unknowns_);
   to.residual.setZero();
+  displacements(z, to.moved);
+  std::vector<double> changes;
+  for (const auto& program : model.programs) changes.push_back(program.temperature_change(time));
   const auto write = [&](const Region& region, AssemblyStrand& strand) {
     NodeWriter nodes(place_, strand);
     for (const int i : region.links) {
@@ -290,8 +290,8 @@ VectorXd System::heating(const VectorXd& z, double time, const StepStart& start,
                             link.temperature_fraction * program_rates[index(link.program)];
       if (growth == 0.0) continue;
       // N = E A (L/l_T − 1) by l_T.
-      const Lengths length = lengths_between(link.first, link.second, z);
-      const double change = model.temperature_change(link.program, link.temperature_fraction, time);
+      const Lengths length = lengths_between(link.first, link.second, to.moved);
+      const double change = link.temperature_fraction * changes[index(link.program)];
       const double free = thermal::length(link.stress_free_length, link.thermal_expansion, change);
       const Vector3d tension = -link.axial_stiffness * growth / (free * free) * length.along;
       nodes.force(link.first, -tension);
@@ -301,7 +301,7 @@ VectorXd System::heating(const VectorXd& z, double time, const StepStart& start,
       const JointFrame& frame = frames_[index(i)];
       if (frame.program < 0) continue;
       JointWriter to_joint = writer(i, strand);
-      const Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
+      const Trial at = trial(i, z, to.moved, time, start, JointModel::friction, 1.0);
       const double rate = frame.temperature_fraction * program_rates[index(frame.program)];
       std::visit([&](const auto& one) { one.warm(at, statuses[index(i)], rate, to_joint); },
                  model.joints[index(i)]);

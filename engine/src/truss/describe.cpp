@@ -13,8 +13,9 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Integrating the work of as many takes some ten times as long as starting a thread.
-constexpr std::size_t links_at_once = 5000;
+/// Integrating the work of as many links, or describing as many parts, takes some ten times as long
+/// as starting a thread.
+constexpr std::size_t parts_at_once = 5000;
 
 /// Abscissae and weights on (0, 1) of the quadrature of order 8.
 constexpr std::array<std::pair<double, double>, 4> gauss_legendre{
@@ -25,13 +26,13 @@ constexpr std::array<std::pair<double, double>, 4> gauss_legendre{
 
 /// Angle between two links from the drawn shape, or of one from the ground [rad].
 double torsion_angle(const Model& model, const TorsionSpring& spring, const Matrix32& plane,
-                     const System& system, const VectorXd& z) {
+                     const Eigen::Matrix3Xd& displacement) {
   const auto turned = [&](int i) {
     const Link& link = model.links[index(i)];
     const Vector2d drawn = plane.transpose() * (model.nodes[index(link.second)].position -
                                                 model.nodes[index(link.first)].position);
-    const Vector2d moved = plane.transpose() * (system.displacement(link.second, z) -
-                                                system.displacement(link.first, z));
+    const Vector2d moved =
+        plane.transpose() * (displacement.col(link.second) - displacement.col(link.first));
     return turn_by(drawn, moved);
   };
   const double first = turned(spring.first_link);
@@ -85,59 +86,64 @@ double along(const Quadrature& of, Function&& function) {
 
 }  // namespace
 
-Axial System::axial(const Link& link, const VectorXd& z, double time) const {
-  const Lengths length = lengths_between(link.first, link.second, z);
-  return link_axial(link, length.growth, length.drawn,
-                    model_->temperature_change(link.program, link.temperature_fraction, time));
-}
-
 void System::describe(const VectorXd& z, double time, const StepStart& now, State& state) const {
   const Model& model = *model_;
   const auto size = [](const auto& list) { return static_cast<Eigen::Index>(list.size()); };
   state.time = time;
   state.temperature_change = model.temperature_change(0, 1.0, time);
-  state.displacement.resize(3, size(model.nodes));
   state.axial_force.resize(size(model.links));
   state.tension.resize(size(model.springs));
   state.joint_output.resize(outputs_);
   state.joint_status = now.statuses;
-  state.elastic_energy = 0.0;
+  displacements(z, state.displacement);
+  const Eigen::Matrix3Xd& moved = state.displacement;
   state.load_potential = 0.0;
   for (int i = 0; i < size(model.nodes); ++i) {
-    state.displacement.col(i) = displacement(i, z);
-    state.load_potential -= model.nodes[index(i)].load.dot(state.displacement.col(i));
+    state.load_potential -= model.nodes[index(i)].load.dot(moved.col(i));
   }
-  for (int i = 0; i < size(model.links); ++i) {
-    const Axial force = axial(model.links[index(i)], z, time);
-    state.axial_force[i] = -force.tension;
-    state.elastic_energy += 0.5 * force.tension * force.tension / force.stiffness;
-  }
-  for (int i = 0; i < size(model.springs); ++i) {
-    const AxialSpring& spring = model.springs[index(i)];
-    const Axial force = spring_axial(spring, lengths_between(spring.first, spring.second, z));
-    state.tension[i] = force.tension;
-    if (force.stiffness > 0.0) {
-      state.elastic_energy += 0.5 * force.tension * force.tension / force.stiffness;
-    }
-  }
-  for (std::size_t i = 0; i < model.torsion_springs.size(); ++i) {
-    const TorsionSpring& spring = model.torsion_springs[i];
-    const double wound =
-        torsion_angle(model, spring, torsion_plane_[i], *this, z) - spring.free_angle;
-    state.elastic_energy += 0.5 * spring.stiffness * wound * wound;
-  }
-  VectorXd energy(size(model.joints));
-  each_joint([&](int i) {
-    const Trial at = trial(i, z, state.displacement, time, now, JointModel::friction, 1.0);
-    double* outputs = state.joint_output.data() + output_begin_[index(i)];
-    std::visit(
+  state.elastic_energy = 0.0;
+  // Energies are added up in the order of the parts, whatever threads there are.
+  const auto add_energies = [&](const auto& parts, std::size_t at_once, auto&& energy_of) {
+    VectorXd energies(size(parts));
+    each_in_parallel(parts.size(), at_once, [&](std::size_t i) {
+      energies[static_cast<Eigen::Index>(i)] = energy_of(i, parts[i]);
+    });
+    state.elastic_energy = std::accumulate(energies.begin(), energies.end(), state.elastic_energy);
+  };
+  const auto axial_energy = [](const Axial& force) {
+    return force.stiffness > 0.0 ? 0.5 * force.tension * force.tension / force.stiffness : 0.0;
+  };
+  std::vector<double> changes;
+  for (const auto& program : model.programs) changes.push_back(program.temperature_change(time));
+  add_energies(model.links, parts_at_once, [&](std::size_t i, const Link& link) {
+    const Lengths length = lengths_between(link.first, link.second, moved);
+    const double change = link.temperature_fraction * changes[index(link.program)];
+    const Axial force = link_axial(link, length.growth, length.drawn, change);
+    state.axial_force[static_cast<Eigen::Index>(i)] = -force.tension;
+    return axial_energy(force);
+  });
+  add_energies(model.springs, parts_at_once, [&](std::size_t i, const AxialSpring& spring) {
+    const Axial force = spring_axial(spring, lengths_between(spring.first, spring.second, moved));
+    state.tension[static_cast<Eigen::Index>(i)] = force.tension;
+    return axial_energy(force);
+  });
+  add_energies(model.torsion_springs, parts_at_once,
+               [&](std::size_t i, const TorsionSpring& spring) {
+                 const double wound =
+                     torsion_angle(model, spring, torsion_plane_[i], moved) - spring.free_angle;
+                 return 0.5 * spring.stiffness * wound * wound;
+               });
+  add_energies(model.joints, joints_at_once, [&](std::size_t i, const Joint& joint) {
+    const int which = static_cast<int>(i);
+    const Trial at = trial(which, z, moved, time, now, JointModel::friction, 1.0);
+    double* outputs = state.joint_output.data() + output_begin_[i];
+    return std::visit(
         [&](const auto& one) {
           one.describe(at, outputs);
-          energy[i] = one.elastic_energy(at, history(i, now));
+          return one.elastic_energy(at, history(which, now));
         },
-        model.joints[index(i)]);
+        joint);
   });
-  state.elastic_energy = std::accumulate(energy.begin(), energy.end(), state.elastic_energy);
 }
 
 VectorXd System::beyond_edges(const VectorXd& z, double time, const StepStart& now) const {
@@ -232,7 +238,7 @@ double System::work_on_links(const Way& way) const {
            length.now;
   };
   VectorXd work = VectorXd::Zero(static_cast<Eigen::Index>(model.links.size()));
-  each_in_parallel(model.links.size(), links_at_once, [&](std::size_t i) {
+  each_in_parallel(model.links.size(), parts_at_once, [&](std::size_t i) {
     const Link& link = model.links[i];
     const double expansion =
         link.stress_free_length * link.thermal_expansion * link.temperature_fraction;
@@ -260,8 +266,8 @@ double System::work_on_links(const Way& way) const {
 
 double System::work_on_joints(const Way& way, const StepStart& start) const {
   const std::vector<Quadrature> asked = quadratures(way, *model_);
-  double work = 0.0;
-  for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
+  VectorXd work = VectorXd::Zero(static_cast<Eigen::Index>(model_->joints.size()));
+  each_joint([&](int i) {
     std::visit(
         [&](const auto& one) {
           if constexpr (requires { one.clearance_growth(); }) {
@@ -275,16 +281,17 @@ double System::work_on_joints(const Way& way, const StepStart& start) const {
               if (way.is_straight()) {
                 return one.contact_force(at(share == 0.0 ? way.from : way.to));
               }
-              return one.contact_force(on_its_way(at(way.from), at(way.to), at(*way.from_rate),
-                                                  at(*way.to_rate), way.step(), share));
+              return one.contact_force(JointWay{at(way.from), at(way.to), at(*way.from_rate),
+                                                at(*way.to_rate), way.step()}
+                                           .at(share));
             };
             // A contact whose clearance grows gives way: ∂V/∂c = −N.
-            work -= growth * along(asked[index(frame.program)], force);
+            work[i] = -growth * along(asked[index(frame.program)], force);
           }
         },
         model_->joints[index(i)]);
-  }
-  return work;
+  });
+  return std::accumulate(work.begin(), work.end(), 0.0);
 }
 
 }  // namespace statejump::truss::detail

@@ -45,23 +45,29 @@ struct Cubic {
 
 /// A joint on its way between both ends of a step of a duration, by the cubics of its nodes and
 /// forces; the rest is that of the end.
-/// @param first_rate, last_rate the same joint, asked with the rates of the unknowns
-inline Trial on_its_way(const Trial& first, const Trial& last, const Trial& first_rate,
-                        const Trial& last_rate, double duration, double share) {
-  Trial at = last;
-  for (std::size_t k = 0; k < most_joint_nodes; ++k) {
-    for (Eigen::Index x = 0; x < 3; ++x) {
-      at.moved[k][x] = Cubic{first.moved[k][x], last.moved[k][x], duration * first_rate.moved[k][x],
-                             duration * last_rate.moved[k][x]}
-                           .at(share);
+struct JointWay {
+  Trial first;
+  Trial last;
+  Trial first_rate;  ///< The same joint, asked with the rates of the unknowns.
+  Trial last_rate;
+  double duration;
+
+  Trial at(double share) const {
+    Trial on = last;
+    for (std::size_t k = 0; k < most_joint_nodes; ++k) {
+      for (Eigen::Index x = 0; x < 3; ++x) {
+        on.moved[k][x] = Cubic{first.moved[k][x], last.moved[k][x],
+                               duration * first_rate.moved[k][x], duration * last_rate.moved[k][x]}
+                             .at(share);
+      }
     }
+    for (std::size_t k = 0; k < most_joint_forces; ++k) {
+      on.force[k] = Cubic{first.force[k], last.force[k], duration * first_rate.force[k],
+                          duration * last_rate.force[k]}
+                        .at(share);
+    }
+    return on;
   }
-  for (std::size_t k = 0; k < most_joint_forces; ++k) {
-    at.force[k] = Cubic{first.force[k], last.force[k], duration * first_rate.force[k],
-                        duration * last_rate.force[k]}
-                      .at(share);
-  }
-  return at;
-}
+};
 
 }  // namespace statejump::truss::detail

@@ -134,6 +134,18 @@ StepEnd Walker::step_to(double target, double tolerance) {
     ++path.solves;
     return StepEnd::event_inside;
   }
+  // Whether it matters when in the step a joint changed its status.
+  const auto matters = [&](int i) {
+    const JointStatus before = origin.statuses[index(i)];
+    const JointStatus after = trial_statuses[index(i)];
+    if (before == after) return false;
+    return system.remembers_when(i, before, after) ? slide_at_stake(i, before, target, rounding)
+                                                   : options.locate_events;
+  };
+  if (!is_short && system.first_joint(matters) >= 0) {
+    ++path.solves;
+    return StepEnd::event_inside;
+  }
   std::vector<Event> events;
   std::vector<FailureJoint> opened;
   const int joints = static_cast<int>(model.joints.size());
@@ -141,28 +153,22 @@ StepEnd Walker::step_to(double target, double tolerance) {
     const JointStatus before = origin.statuses[index(i)];
     const JointStatus after = trial_statuses[index(i)];
     if (before == after) continue;
-    const bool remembers =
-        joint(i, [&](const auto& one) { return one.remembers_when(before, after); });
-    const bool matters =
-        remembers ? slide_at_stake(i, before, target, rounding) : options.locate_events;
-    if (!is_short && matters) {
-      ++path.solves;
-      return StepEnd::event_inside;
-    }
     events.push_back(
         {target, target - time, model.temperature_change(0, 1.0, target), i, before, after});
     if (after == JointStatus::open) opened.push_back(named(model, i));
   }
   const Eigen::Matrix3Xd moved = system.displacements(trial);
-  for (int i = 0; i < joints; ++i) {
+  const int jumps = system.first_joint([&](int i) {
     const Trial at = system.trial(i, trial, moved, target, begin, JointModel::friction, 1.0);
     const JointStatus status = trial_statuses[index(i)];
-    if (!joint(i, [&](const auto& one) { return one.jumps(at, status); })) continue;
-    if (!is_short) {
-      ++path.solves;
-      return StepEnd::event_inside;
+    return joint(i, [&](const auto& one) { return one.jumps(at, status); });
+  });
+  if (jumps >= 0) {
+    if (is_short) {
+      fail_joint(failure_at(FailureKind::jump_across_play, model, target), named(model, jumps));
     }
-    fail_joint(failure_at(FailureKind::jump_across_play, model, target), named(model, i));
+    ++path.solves;
+    return StepEnd::event_inside;
   }
   if (!opened.empty()) {
     if (FoundModes modes = mechanism(system, trial, target, trial_statuses, JointModel::friction)) {

@@ -15,8 +15,10 @@ constexpr std::size_t nodes_at_once = 50000;
 }  // namespace
 
 System::System(const Model& model) : model_(&model) {
+  drawn_.reserve(model.nodes.size());
   place_.reserve(model.nodes.size() + 1);
   for (const Node& node : model.nodes) {
+    drawn_.push_back(node.position);
     place_.push_back({unknowns_, node.freedoms, &node.free_directions.matrix()});
     unknowns_ += node.freedoms;
   }
@@ -94,7 +96,7 @@ int System::node_of(int displacement) const {
 namespace {
 
 template <class Moved>
-Trial asked(const std::vector<Node>& nodes, const JointFrame& frame, const double* force,
+Trial asked(const std::vector<Vector3d>& drawn, const JointFrame& frame, const double* force,
             const double* history, double time, double temperature_change, int joint,
             const StepStart& start, JointModel joints, double opening, Moved&& moved) {
   Trial trial(frame);
@@ -114,7 +116,7 @@ Trial asked(const std::vector<Node>& nodes, const JointFrame& frame, const doubl
       trial.moved[k].setZero();
       continue;
     }
-    trial.drawn[k] = nodes[index(node)].position;
+    trial.drawn[k] = drawn[index(node)];
     trial.moved[k] = moved(node);
   }
   std::copy_n(force, frame.forces, trial.force.begin());
@@ -126,16 +128,16 @@ Trial asked(const std::vector<Node>& nodes, const JointFrame& frame, const doubl
 Trial System::trial(int joint, const VectorXd& z, double time, const StepStart& start,
                     JointModel joints, double opening) const {
   const JointFrame& frame = frames_[index(joint)];
-  return asked(model_->nodes, frame, z.data() + force_row_[index(joint)], history(joint, start),
-               time, temperature_change(frame, time), joint, start, joints, opening,
+  return asked(drawn_, frame, z.data() + force_row_[index(joint)], history(joint, start), time,
+               temperature_change(frame, time), joint, start, joints, opening,
                [&](int node) { return displacement(node, z); });
 }
 
 Trial System::trial(int joint, const VectorXd& z, const Eigen::Matrix3Xd& moved, double time,
                     const StepStart& start, JointModel joints, double opening) const {
   const JointFrame& frame = frames_[index(joint)];
-  return asked(model_->nodes, frame, z.data() + force_row_[index(joint)], history(joint, start),
-               time, temperature_change(frame, time), joint, start, joints, opening,
+  return asked(drawn_, frame, z.data() + force_row_[index(joint)], history(joint, start), time,
+               temperature_change(frame, time), joint, start, joints, opening,
                [&](int node) -> Vector3d { return moved.col(node); });
 }
 
@@ -221,7 +223,10 @@ Rounding System::rounding(const VectorXd& z) const {
 
 double System::slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start,
                               const Rounding& by) const {
-  const Trial at = trial(joint, z, time, start, JointModel::friction, 1.0);
+  return slide_rounding(joint, trial(joint, z, time, start, JointModel::friction, 1.0), by);
+}
+
+double System::slide_rounding(int joint, const Trial& at, const Rounding& by) const {
   return std::visit([&](const auto& one) { return one.slide_rounding(at, by.length, by.force); },
                     model_->joints[index(joint)]);
 }

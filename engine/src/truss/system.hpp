@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <atomic>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -126,6 +128,19 @@ class System {
                      [&](std::size_t i) { work(static_cast<int>(i)); });
   }
 
+  /// The first joint of which `is(joint)` holds, many asked at a time; −1: there is none.
+  template <class Is>
+  int first_joint(Is&& is) const {
+    constexpr int none = std::numeric_limits<int>::max();
+    std::atomic<int> first{none};
+    each_joint([&](int i) {
+      int before = first;
+      if (i > before || !is(i)) return;
+      while (i < before && !first.compare_exchange_weak(before, i)) continue;
+    });
+    return first == none ? -1 : first.load();
+  }
+
   Statuses all_stick() const { return Statuses(model_->joints.size(), JointStatus::stick); }
 
   /// The branch that a joint's inequalities ask for, from the branch whose rows hold at z.
@@ -219,6 +234,7 @@ class System {
   /// @param by rounding(z), which reads all of z and so is asked for once for many joints
   double slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start,
                         const Rounding& by) const;
+  double slide_rounding(int joint, const Trial& at, const Rounding& by) const;
   /// Node of a free displacement.
   int node_of(int displacement) const;
   /// First unknown of a joint's forces.
@@ -257,10 +273,12 @@ class System {
                      AssemblyStrand& to) const;
   Assembly recorded(Parts parts) const;
   Lengths lengths_between(int from, int to, const VectorXd& z) const;
-  Axial axial(const Link& link, const VectorXd& z, double time) const;
+  Lengths lengths_between(int from, int to, const Eigen::Matrix3Xd& moved) const {
+    return lengths(drawn(to) - drawn(from), moved.col(to) - moved.col(from));
+  }
   JointWriter writer(int joint, AssemblyStrand& to) const;
   /// Place of a node at ΔT = 0 [m].
-  const Vector3d& drawn(int node) const { return model_->nodes[index(node)].position; }
+  const Vector3d& drawn(int node) const { return drawn_[index(node)]; }
   JointStatus decide(int joint, Trial& at, JointStatus status, const Rounding& rounding) const;
   double temperature_change(const JointFrame& frame, double time) const {
     return frame.program < 0
@@ -279,6 +297,7 @@ class System {
   bool slips_smoothly_ = false;
   double stiffness_scale_ = 0.0;
   double size_ = 0.0;
+  std::vector<Vector3d> drawn_;            // of each node; the model's lie far apart in memory
   std::vector<JointWriter::Place> place_;  // of each node, then that of the ground
   std::vector<JointFrame> frames_;
   std::vector<int> force_row_;      // first force of each joint

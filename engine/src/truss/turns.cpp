@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hermite.hpp"
-
 namespace statejump::truss::detail {
 
 /// Share of a step after which the first joint turns round within it: one that slips the other way
@@ -13,19 +11,30 @@ namespace statejump::truss::detail {
 /// slides are cubics through both ends of the step and their rates.
 double Walker::first_turn(const Ends& ends) const {
   const Rounding rounding = system.rounding(ends.to);
+  const auto joints_at = [&](const VectorXd& unknowns, double then) {
+    return [&, then, moved = system.displacements(unknowns)](int i) {
+      return system.trial(i, unknowns, moved, then, ends.start, JointModel::friction, 1.0);
+    };
+  };
+  const auto first = joints_at(ends.from, ends.from_time);
+  const auto last = joints_at(ends.to, ends.to_time);
+  const auto first_rate = joints_at(ends.from_rate, ends.from_time);
+  const auto last_rate = joints_at(ends.to_rate, ends.to_time);
+  const double step = ends.to_time - ends.from_time;
   VectorXd turn = VectorXd::Ones(static_cast<Eigen::Index>(model.joints.size()));
   system.each_joint([&](int i) {
     const JointStatus status = ends.statuses[index(i)];
     if (is_slip(status)) {
-      turn[i] = turn_of_slip(i, ends, rounding);
+      turn[i] = turn_of_slip(i, ends, system.slide_rounding(i, last(i), rounding));
     } else if (status == ends.start.statuses[index(i)]) {
-      turn[i] = turn_of_stick(i, ends, rounding);
+      const JointWay way{first(i), last(i), first_rate(i), last_rate(i), step};
+      turn[i] = turn_of_stick(i, ends, way, rounding);
     }
   });
   return turn.size() == 0 ? 1.0 : std::min(1.0, turn.minCoeff());
 }
 
-double Walker::turn_of_slip(int i, const Ends& ends, const Rounding& by) const {
+double Walker::turn_of_slip(int i, const Ends& ends, double rounding) const {
   const JointStatus status = ends.statuses[index(i)];
   const bool matters =
       joint(i, [&](const auto& one) { return one.remembers_when(status, JointStatus::stick); });
@@ -36,31 +45,24 @@ double Walker::turn_of_slip(int i, const Ends& ends, const Rounding& by) const {
   const Cubic slide{0.0, sense * ends.slips[i],
                     slipped ? std::max(0.0, sense * step * ends.from_slide_rate[i]) : 0.0,
                     sense * step * ends.to_slide_rate[i]};
-  const double rounding = system.slide_rounding(i, ends.to, ends.to_time, ends.start, by);
   if (slide.last_rate < -rounding) return slipped ? slide.turn(1.0) : 0.5;
   const auto slowest = slide.slowest();
   if (slipped && slowest && slide.rate(*slowest) < -rounding) return slide.turn(*slowest);
   return 1.0;
 }
 
-double Walker::turn_of_stick(int i, const Ends& ends, const Rounding& rounding) const {
+double Walker::turn_of_stick(int i, const Ends& ends, const JointWay& way,
+                             const Rounding& rounding) const {
   const JointStatus status = ends.statuses[index(i)];
-  const double step = ends.to_time - ends.from_time;
-  const Trial first =
-      system.trial(i, ends.from, ends.from_time, ends.start, JointModel::friction, 1.0);
-  const Trial last = system.trial(i, ends.to, ends.to_time, ends.start, JointModel::friction, 1.0);
-  const Trial first_rate =
-      system.trial(i, ends.from_rate, ends.from_time, ends.start, JointModel::friction, 1.0);
-  const Trial last_rate =
-      system.trial(i, ends.to_rate, ends.to_time, ends.start, JointModel::friction, 1.0);
+  const auto& [first, last, first_rate, last_rate, step] = way;
   const auto leaves = [&](double share) {
-    Trial at = on_its_way(first, last, first_rate, last_rate, step, share);
+    Trial at = way.at(share);
     at.length_rounding = rounding.length;
     at.force_rounding = rounding.force;
     const JointFrame& frame = last.frame;
     if (frame.program >= 0) {
       at.temperature_change = model.temperature_change(frame.program, frame.temperature_fraction,
-                                                       ends.from_time + share * step);
+                                                       ends.from_time + share * way.duration);
     }
     return joint(i, [&](const auto& one) { return one.decide(at, status); }) != status;
   };
