@@ -223,10 +223,7 @@ Rounding System::rounding(const VectorXd& z) const {
 
 double System::slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start,
                               const Rounding& by) const {
-  return slide_rounding(joint, trial(joint, z, time, start, JointModel::friction, 1.0), by);
-}
-
-double System::slide_rounding(int joint, const Trial& at, const Rounding& by) const {
+  const Trial at = trial(joint, z, time, start, JointModel::friction, 1.0);
   return std::visit([&](const auto& one) { return one.slide_rounding(at, by.length, by.force); },
                     model_->joints[index(joint)]);
 }

@@ -234,9 +234,9 @@ class System {
   /// @param by rounding(z), which reads all of z and so is asked for once for many joints
   double slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start,
                         const Rounding& by) const;
-  double slide_rounding(int joint, const Trial& at, const Rounding& by) const;
   /// Node of a free displacement.
   int node_of(int displacement) const;
+  const JointFrame& frame(int joint) const { return frames_[index(joint)]; }
   /// First unknown of a joint's forces.
   int force_row(int joint) const { return force_row_[index(joint)]; }
   int force_count(int joint) const { return frames_[index(joint)].forces; }

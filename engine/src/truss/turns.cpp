@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "walker.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "hermite.hpp"
+#include "walker.hpp"
 
 namespace statejump::truss::detail {
 
@@ -11,30 +13,19 @@ namespace statejump::truss::detail {
 /// slides are cubics through both ends of the step and their rates.
 double Walker::first_turn(const Ends& ends) const {
   const Rounding rounding = system.rounding(ends.to);
-  const auto joints_at = [&](const VectorXd& unknowns, double then) {
-    return [&, then, moved = system.displacements(unknowns)](int i) {
-      return system.trial(i, unknowns, moved, then, ends.start, JointModel::friction, 1.0);
-    };
-  };
-  const auto first = joints_at(ends.from, ends.from_time);
-  const auto last = joints_at(ends.to, ends.to_time);
-  const auto first_rate = joints_at(ends.from_rate, ends.from_time);
-  const auto last_rate = joints_at(ends.to_rate, ends.to_time);
-  const double step = ends.to_time - ends.from_time;
   VectorXd turn = VectorXd::Ones(static_cast<Eigen::Index>(model.joints.size()));
   system.each_joint([&](int i) {
     const JointStatus status = ends.statuses[index(i)];
     if (is_slip(status)) {
-      turn[i] = turn_of_slip(i, ends, system.slide_rounding(i, last(i), rounding));
+      turn[i] = turn_of_slip(i, ends, rounding);
     } else if (status == ends.start.statuses[index(i)]) {
-      const JointWay way{first(i), last(i), first_rate(i), last_rate(i), step};
-      turn[i] = turn_of_stick(i, ends, way, rounding);
+      turn[i] = turn_of_stick(i, ends, rounding);
     }
   });
   return turn.size() == 0 ? 1.0 : std::min(1.0, turn.minCoeff());
 }
 
-double Walker::turn_of_slip(int i, const Ends& ends, double rounding) const {
+double Walker::turn_of_slip(int i, const Ends& ends, const Rounding& by) const {
   const JointStatus status = ends.statuses[index(i)];
   const bool matters =
       joint(i, [&](const auto& one) { return one.remembers_when(status, JointStatus::stick); });
@@ -45,44 +36,60 @@ double Walker::turn_of_slip(int i, const Ends& ends, double rounding) const {
   const Cubic slide{0.0, sense * ends.slips[i],
                     slipped ? std::max(0.0, sense * step * ends.from_slide_rate[i]) : 0.0,
                     sense * step * ends.to_slide_rate[i]};
+  const double rounding = system.slide_rounding(i, ends.to, ends.to_time, ends.start, by);
   if (slide.last_rate < -rounding) return slipped ? slide.turn(1.0) : 0.5;
   const auto slowest = slide.slowest();
   if (slipped && slowest && slide.rate(*slowest) < -rounding) return slide.turn(*slowest);
   return 1.0;
 }
 
-double Walker::turn_of_stick(int i, const Ends& ends, const JointWay& way,
-                             const Rounding& rounding) const {
+double Walker::turn_of_stick(int i, const Ends& ends, const Rounding& rounding) const {
   const JointStatus status = ends.statuses[index(i)];
-  const auto& [first, last, first_rate, last_rate, step] = way;
+  const double step = ends.to_time - ends.from_time;
+  const JointFrame& frame = system.frame(i);
+  std::optional<JointWay> way;  // few joints go to and fro
   const auto leaves = [&](double share) {
-    Trial at = way.at(share);
+    if (!way) {
+      const auto at = [&](const VectorXd& unknowns, double then) {
+        return system.trial(i, unknowns, then, ends.start, JointModel::friction, 1.0);
+      };
+      way.emplace(JointWay{at(ends.from, ends.from_time), at(ends.to, ends.to_time),
+                           at(ends.from_rate, ends.from_time), at(ends.to_rate, ends.to_time),
+                           step});
+    }
+    Trial at = way->at(share);
     at.length_rounding = rounding.length;
     at.force_rounding = rounding.force;
-    const JointFrame& frame = last.frame;
     if (frame.program >= 0) {
       at.temperature_change = model.temperature_change(frame.program, frame.temperature_fraction,
-                                                       ends.from_time + share * way.duration);
+                                                       ends.from_time + share * step);
     }
     return joint(i, [&](const auto& one) { return one.decide(at, status); }) != status;
   };
   // What goes to and fro is farthest where its rate is 0.
   double found = 1.0;
-  const auto ask = [&](double from, double to, double from_rate, double to_rate) {
+  const auto ask = [&](double from_rate, double to_rate, auto&& passed) {
     if (!(from_rate * to_rate < 0.0)) return;
-    const double sense = from_rate > 0.0 ? step : -step;
+    const double sense = from_rate > 0.0 ? 1.0 : -1.0;
     const double share =
-        Cubic{0.0, (from_rate > 0.0 ? 1.0 : -1.0) * (to - from), sense * from_rate, sense * to_rate}
-            .turn(1.0);
+        Cubic{0.0, sense * passed(), sense * step * from_rate, sense * step * to_rate}.turn(1.0);
     if (share < found && leaves(share)) found = share;
   };
-  for (std::size_t k = 0; k < most_joint_forces; ++k) {
-    ask(first.force[k], last.force[k], first_rate.force[k], last_rate.force[k]);
+  for (int k = 0; k < frame.forces; ++k) {
+    const int row = system.force_row(i) + k;
+    ask(ends.from_rate[row], ends.to_rate[row], [&] { return ends.to[row] - ends.from[row]; });
   }
+  const auto apart = [&](const VectorXd& unknowns) -> Vector3d {
+    const auto displacement = [&](int node) -> Vector3d {
+      return node < 0 ? Vector3d::Zero() : system.displacement(node, unknowns);
+    };
+    return displacement(frame.nodes[0]) - displacement(frame.nodes[1]);
+  };
+  const Vector3d from_rate = frame.axes.transpose() * apart(ends.from_rate);
+  const Vector3d to_rate = frame.axes.transpose() * apart(ends.to_rate);
   for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d along = last.frame.axes.col(k);
-    const auto apart = [&](const Trial& of) { return along.dot(of.moved[0] - of.moved[1]); };
-    ask(apart(first), apart(last), apart(first_rate), apart(last_rate));
+    ask(from_rate[k], to_rate[k],
+        [&] { return frame.axes.col(k).dot(apart(ends.to) - apart(ends.from)); });
   }
   return found;
 }

@@ -7,7 +7,6 @@
 #include <variant>
 #include <vector>
 
-#include "hermite.hpp"
 #include "newton.hpp"
 #include "rate_problem.hpp"
 #include "statejump/failure.hpp"
@@ -93,10 +92,8 @@ struct Walker {
                     const Rounding& rounding) const;
   bool balances(const State& next, double step);
   double first_turn(const Ends& ends) const;
-  /// @param rounding of its slide [m]
-  double turn_of_slip(int joint, const Ends& ends, double rounding) const;
-  double turn_of_stick(int joint, const Ends& ends, const JointWay& way,
-                       const Rounding& rounding) const;
+  double turn_of_slip(int joint, const Ends& ends, const Rounding& rounding) const;
+  double turn_of_stick(int joint, const Ends& ends, const Rounding& rounding) const;
 
   /// What the type of a joint says.
   template <class Ask>
