@@ -91,11 +91,14 @@ StepEnd Walker::step_to(double target, double tolerance) {
   Statuses trial_statuses = origin.statuses;
   const StepStart& begin = origin;
   // The first change ahead: passed where it need not be located, or no location is asked.
-  const Ahead ahead{time, tolerance / (target - time), options.locate_events,
-                    rate.size() == 0 ? z : VectorXd(z + (target - time) * rate)};
-  SolveReport report =
-      newton.solve(target, begin, JointModel::friction, 1.0, options.most_iterations, trial,
-                   trial_statuses, is_short ? std::optional<Ahead>() : ahead);
+  std::optional<Ahead> ahead;
+  if (!is_short) {
+    ahead = Ahead{time, tolerance / (target - time), options.locate_events,
+                  rate.size() == 0 ? z : VectorXd(z + (target - time) * rate)};
+  }
+  SolveReport report = newton.solve(target, begin, JointModel::friction, 1.0,
+                                    options.most_iterations, trial, trial_statuses, ahead);
+  ahead.reset();  // as long as all unknowns
   event_share = report.first_change;
   if (report.end == SolveEnd::event_ahead) {
     ++path.solves;
@@ -157,8 +160,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
         {target, target - time, model.temperature_change(0, 1.0, target), i, before, after});
     if (after == JointStatus::open) opened.push_back(named(model, i));
   }
-  const Eigen::Matrix3Xd moved = system.displacements(trial);
-  const int jumps = system.first_joint([&](int i) {
+  const int jumps = system.first_joint([&, moved = system.displacements(trial)](int i) {
     const Trial at = system.trial(i, trial, moved, target, begin, JointModel::friction, 1.0);
     const JointStatus status = trial_statuses[index(i)];
     return joint(i, [&](const auto& one) { return one.jumps(at, status); });
