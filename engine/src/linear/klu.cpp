@@ -6,8 +6,10 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "klu_halves.hpp"
 #include "numerics/raise.hpp"
 #include "parallel.hpp"
 #include "sparse_factor.hpp"
@@ -53,10 +55,12 @@ struct SparseFactor::Factors {
 
   /// New factors, their pivots chosen anew.
   bool choose_pivots(int* columns, int* rows, double* values) {
+    halves.end();
     klu_free_numeric(&numeric, &common);
-    numeric = klu_factor(columns, rows, values, symbolic.get(), &common);
+    numeric = klu_factor(columns, rows, values, order->symbolic, &common);
     if (numeric == nullptr || common.status != KLU_OK) return false;
     odd_permutation.reset();
+    halves.begin(*numeric, *order->symbolic, order->halves);
     return true;
   }
 
@@ -68,15 +72,15 @@ struct SparseFactor::Factors {
     // KLU divides every row by its largest entry, in the order of the pivots.
     const double* row_size = numeric->Rs;
     std::atomic<bool> has = true;
-    for (int block = 0; block < symbolic->nblocks; ++block) {
-      const int first = symbolic->R[block];
-      each_in_parallel(static_cast<std::size_t>(symbolic->R[block + 1] - first), columns_at_once,
-                       [&](std::size_t in_block) {
+    for (int block = 0; block < order->symbolic->nblocks; ++block) {
+      const int first = order->symbolic->R[block];
+      each_in_parallel(static_cast<std::size_t>(order->symbolic->R[block + 1] - first),
+                       columns_at_once, [&](std::size_t in_block) {
                          const int k = first + static_cast<int>(in_block);
                          // Beyond what it may be of a column whose entries are at most 1.
                          if (std::abs(pivots[k]) > least) return;
                          double largest = 0.0;
-                         for (Matrix::InnerIterator it(matrix, symbolic->Q[k]); it; ++it) {
+                         for (Matrix::InnerIterator it(matrix, order->symbolic->Q[k]); it; ++it) {
                            const int pivot = numeric->Pinv[it.row()];
                            if (pivot < first) continue;
                            largest = std::max(largest, std::abs(it.value()) / row_size[pivot]);
@@ -92,8 +96,12 @@ struct SparseFactor::Factors {
   /// new ones tell whether the matrix is singular.
   bool keeps_pivots(int* columns, int* rows, double* values, const Matrix& matrix, double most) {
     if (numeric == nullptr) return false;
-    if (klu_refactor(columns, rows, values, symbolic.get(), numeric, &common) == 0) return false;
-    if (common.status != KLU_OK) return false;
+    if (halves.are_halved()) {
+      if (!halves.refactor(columns, rows, values, *numeric, *order->symbolic)) return false;
+    } else {
+      const int made = klu_refactor(columns, rows, values, order->symbolic, numeric, &common);
+      if (made == 0 || common.status != KLU_OK) return false;
+    }
     const double growth = std::max(1.0, largest_of_lower());
     // What one pivot has multiplied another one may multiply again.
     return growth <= most && has_pivots(matrix, growth * growth);
@@ -103,9 +111,9 @@ struct SparseFactor::Factors {
   /// column first the rows, then the entries: klu_extract() copies all of L.
   double largest_of_lower() const {
     double largest = 0.0;
-    for (int block = 0; block < symbolic->nblocks; ++block) {
-      const auto first = static_cast<std::size_t>(symbolic->R[block]);
-      const auto length = static_cast<std::size_t>(symbolic->R[block + 1]) - first;
+    for (int block = 0; block < order->symbolic->nblocks; ++block) {
+      const auto first = static_cast<std::size_t>(order->symbolic->R[block]);
+      const auto length = static_cast<std::size_t>(order->symbolic->R[block + 1]) - first;
       if (length < 2) continue;
       const double* units = static_cast<const double*>(numeric->LUbx[block]);
       std::vector<double> of_piece((length + columns_at_once - 1) / columns_at_once, 0.0);
@@ -127,10 +135,32 @@ struct SparseFactor::Factors {
     return largest;
   }
 
-  // KLU's C interface allocates and frees what it makes itself. Orders are shared and only read.
+  /// Of a pattern. KLU's C interface allocates and frees what it makes itself.
+  struct Order {
+    Order(int size, int* columns, int* rows, klu_common common) {
+      if (size >= HalvedOrder::least_columns) {
+        common.ordering = 3;
+        common.user_order = order_in_halves;
+        common.user_data = &halves;
+      }
+      symbolic = klu_analyze(size, columns, rows, &common);
+    }
+    ~Order() {
+      klu_common defaults;
+      klu_defaults(&defaults);
+      klu_free_symbolic(&symbolic, &defaults);
+    }
+    Order(const Order&) = delete;
+    Order& operator=(const Order&) = delete;
+
+    HalvedOrder halves;
+    klu_symbolic* symbolic = nullptr;
+  };
+
   klu_common common{};
-  std::shared_ptr<klu_symbolic> symbolic;
+  std::shared_ptr<const Order> order;  ///< Shared and only read.
   klu_numeric* numeric = nullptr;
+  HalvedFactors halves;
   int size = 0;
   std::optional<bool> odd_permutation;  ///< Of rows and columns together, where it was asked for.
 };
@@ -145,32 +175,33 @@ bool SparseFactor::factorize(const Matrix& matrix, double most_growth) {
   int* rows = const_cast<int*>(matrix.innerIndexPtr());
   double* values = const_cast<double*>(matrix.valuePtr());
   f.size = static_cast<int>(matrix.rows());
-  if (f.symbolic == nullptr) {
-    klu_symbolic* made = klu_analyze(f.size, columns, rows, &f.common);
-    if (made == nullptr) return false;
-    f.symbolic = {made, [](klu_symbolic* of) {
-                    klu_common defaults;
-                    klu_defaults(&defaults);
-                    klu_free_symbolic(&of, &defaults);
-                  }};
+  if (f.order == nullptr) {
+    auto made = std::make_shared<const Factors::Order>(f.size, columns, rows, f.common);
+    if (made->symbolic == nullptr) return false;
+    f.order = std::move(made);
   }
   if (f.keeps_pivots(columns, rows, values, matrix, most_growth)) return true;
   return f.choose_pivots(columns, rows, values) && f.has_pivots(matrix, 1.0);
 }
 
 void SparseFactor::order_like(const SparseFactor& other) {
-  if (other.factors_->symbolic == nullptr || factors_->numeric != nullptr) return;
-  factors_->symbolic = other.factors_->symbolic;
+  if (other.factors_->order == nullptr || factors_->numeric != nullptr) return;
+  factors_->order = other.factors_->order;
 }
 
 void SparseFactor::release() {
+  factors_->halves.end();
   klu_free_numeric(&factors_->numeric, &factors_->common);
 }
 
 Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {
   Eigen::VectorXd result = right_side;
-  klu_solve(factors_->symbolic.get(), factors_->numeric, factors_->size, 1, result.data(),
-            &factors_->common);
+  Factors& f = *factors_;
+  if (f.halves.are_halved()) {
+    f.halves.solve(*f.numeric, *f.order->symbolic, result.data());
+  } else {
+    klu_solve(f.order->symbolic, f.numeric, f.size, 1, result.data(), &f.common);
+  }
   return result;
 }
 
@@ -184,7 +215,7 @@ int SparseFactor::determinant_sign() const {
   Factors& f = *factors_;
   // Rows are divided by positive numbers; both permutations make the matrix block triangular.
   if (!f.odd_permutation) {
-    f.odd_permutation = odd(f.numeric->Pnum, f.size) != odd(f.symbolic->Q, f.size);
+    f.odd_permutation = odd(f.numeric->Pnum, f.size) != odd(f.order->symbolic->Q, f.size);
   }
   bool negative = *f.odd_permutation;
   const double* pivots = static_cast<const double*>(f.numeric->Udiag);

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
 
-#include "parallel.hpp"
 #include "walker.hpp"
 
 namespace statejump::truss::detail {
@@ -90,7 +88,9 @@ SolveReport Walker::continue_from_event(double target, VectorXd& to, Statuses& s
     if (second.end == SolveEnd::stopped) return second;
     if (second.end != SolveEnd::converged) {
       for (const double steps : tangent_steps) {
-        if (rates.index_at(z + steps * answer.step, target, origin, answer.statuses) < 0) {
+        const VectorXd there = z + steps * answer.step;
+        const Assembly& at = rates.equations(there, target, origin, answer.statuses);
+        if (newton.stability_index(at, answer.statuses) < 0) {
           fail_continuation(FailureKind::no_continuation, target, {});
         }
       }
@@ -163,13 +163,9 @@ SolveReport Walker::slide_on(double target, bool is_short, VectorXd& to, Statuse
 /// unstable there, or would be at its start.
 bool Walker::passes_instability(const Statuses& statuses) {
   if (!any_slips(statuses)) return false;
-  if (statuses == origin.statuses) return newton.stability_index() < 0;
-  // Two factorizations beside each other.
-  std::array<int, 2> stability{};
-  in_parallel(2, [&](std::size_t k) {
-    stability[k] = k == 0 ? newton.stability_index() : rates.index_at(z, time, origin, statuses);
-  });
-  return stability[0] < 0 || stability[1] < 0;
+  if (newton.stability_index() < 0) return true;
+  if (statuses == origin.statuses) return false;
+  return newton.stability_index(rates.equations(z, time, origin, statuses), statuses) < 0;
 }
 
 /// Whether the rates at the ends of a step without events explain where it leads. A path that jumps

@@ -472,11 +472,20 @@ int Newton::stability_index() {
   return current_ ? index_of(factor_.determinant_sign(), at_) : 0;
 }
 
+int Newton::stability_index(const Assembly& at, const Statuses& statuses) {
+  current_ = false;
+  factored_ = factor_.factorize(at.jacobian(), linear::SparseFactor::refined_growth);
+  factored_on_ = statuses;
+  factored_model_ = JointModel::friction;
+  return factored_ ? index_of(factor_.determinant_sign(), at) : 0;
+}
+
 std::optional<VectorXd> Newton::rate(const VectorXd& by_time, const VectorXd& guess) {
-  // The factors are those of the state before the last step: what that leaves is refined away, and
-  // where it is not (the branches have changed since), there are new factors.
+  // The factors are those of the state before the last step, or of its start: what that leaves is
+  // refined away, and where it is not (the branches have changed since), there are new factors.
   const double rounding = 16.0 * epsilon;  // of a row, which has some fifteen entries
   for (const bool fresh : {false, true}) {
+    if (!fresh && !factored_) continue;
     if (fresh) {
       current_ = factorize(solved_on_, solved_model_);
       if (!current_) return std::nullopt;

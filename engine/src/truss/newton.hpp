@@ -103,6 +103,10 @@ class Newton {
 
   /// Index of the equations where the last solve converged, see RateProblem; 0: singular.
   int stability_index();
+  /// Index of the equations of another state with friction, on a set of branches. Their factors
+  /// take the place of those of the last solve: beside them they would be the largest part of the
+  /// memory.
+  int stability_index(const Assembly& at, const Statuses& statuses);
 
   long factorizations() const { return factorizations_; }
   const linear::SparseFactor& factor() const { return factor_; }

@@ -88,18 +88,15 @@ int index_of(int determinant_sign, const Assembly& at) {
 std::optional<VectorXd> RateProblem::rates_on(const Statuses& statuses, const VectorXd& z,
                                               double time, const StepStart& start,
                                               const std::vector<double>& program_rates) {
-  begin();
-  system_->evaluate(z, time, start, statuses, JointModel::friction, 1.0, at_);
-  if (!factor_.factorize(at_.jacobian())) return std::nullopt;
+  if (!factor_.factorize(equations(z, time, start, statuses).jacobian())) return std::nullopt;
   return factor_.solve(-system_->heating(z, time, start, statuses, program_rates));
 }
 
-int RateProblem::index_at(const VectorXd& z, double time, const StepStart& start,
-                          const Statuses& statuses) {
+const Assembly& RateProblem::equations(const VectorXd& z, double time, const StepStart& start,
+                                       const Statuses& statuses) {
   begin();
   system_->evaluate(z, time, start, statuses, JointModel::friction, 1.0, at_);
-  if (!factor_.factorize(at_.jacobian(), linear::SparseFactor::refined_growth)) return 0;
-  return index_of(factor_.determinant_sign(), at_);
+  return at_;
 }
 
 RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart& start,

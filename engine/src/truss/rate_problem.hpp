@@ -60,8 +60,9 @@ class RateProblem {
                                    const StepStart& start,
                                    const std::vector<double>& program_rates);
 
-  /// Index of the equations at z, see above; 0: singular to rounding.
-  int index_at(const VectorXd& z, double time, const StepStart& start, const Statuses& statuses);
+  /// The equations at z on a set of branches, until something else is asked.
+  const Assembly& equations(const VectorXd& z, double time, const StepStart& start,
+                            const Statuses& statuses);
 
   /// See SparseFactor::order_like().
   void order_like(const linear::SparseFactor& other) { factor_.order_like(other); }
