@@ -115,7 +115,7 @@ struct SparseFactor::Factors {
       const auto first = static_cast<std::size_t>(order->symbolic->R[block]);
       const auto length = static_cast<std::size_t>(order->symbolic->R[block + 1]) - first;
       if (length < 2) continue;
-      const double* units = static_cast<const double*>(numeric->LUbx[block]);
+      auto* units = static_cast<double*>(numeric->LUbx[block]);
       std::vector<double> of_piece((length + columns_at_once - 1) / columns_at_once, 0.0);
       in_parallel(of_piece.size(), [&](std::size_t piece) {
         const std::size_t begin = first + piece * columns_at_once;
@@ -126,12 +126,10 @@ struct SparseFactor::Factors {
     }
     return largest;
   }
-  double column_of_lower(const double* units, std::size_t column) const {
-    const auto length = static_cast<std::size_t>(numeric->Llen[column]);
-    const std::size_t rows = (length * sizeof(int) + sizeof(double) - 1) / sizeof(double);
-    const double* entries = units + numeric->Lip[column] + rows;
+  double column_of_lower(double* units, std::size_t column) const {
+    const FactorColumn lower(units, numeric->Lip, numeric->Llen, static_cast<int>(column));
     double largest = 0.0;
-    for (std::size_t i = 0; i < length; ++i) raise(largest, std::abs(entries[i]));
+    for (int i = 0; i < lower.length; ++i) raise(largest, std::abs(lower.entries[i]));
     return largest;
   }
 

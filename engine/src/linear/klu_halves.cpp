@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <numeric>
 
+#include "numerics/lists.hpp"
 #include "parallel.hpp"
 
 namespace statejump::linear {
@@ -22,63 +23,20 @@ std::size_t index(int i) {
   return static_cast<std::size_t>(i);
 }
 
-/// The columns of every row, one behind the other.
-struct Transposed {
-  std::vector<int> begins, columns;
-
-  Transposed(int size, const int* begins_of_columns, const int* rows)
-      : begins(index(size) + 1, 0), columns(index(begins_of_columns[size])) {
-    for (int p = 0; p < begins_of_columns[size]; ++p) ++begins[index(rows[p]) + 1];
-    std::partial_sum(begins.begin(), begins.end(), begins.begin());
-    std::vector<int> next(begins.begin(), begins.end() - 1);
-    for (int column = 0; column < size; ++column) {
-      for (int p = begins_of_columns[column]; p < begins_of_columns[column + 1]; ++p) {
-        columns[index(next[index(rows[p])]++)] = column;
-      }
-    }
-  }
-};
-
-/// The columns in the order in which a breadth-first search meets them by the rows they share.
-std::vector<int> met(int size, const int* columns, const int* rows, const Transposed& by_rows) {
-  std::vector<int> order;
-  order.reserve(index(size));
-  std::vector<bool> seen(index(size), false), seen_row(index(size), false);
-  for (int first = 0; first < size; ++first) {
-    if (seen[index(first)]) continue;
-    seen[index(first)] = true;
-    order.push_back(first);
-    for (std::size_t next = order.size() - 1; next < order.size(); ++next) {
-      const int column = order[next];
-      for (int p = columns[column]; p < columns[column + 1]; ++p) {
-        const std::size_t row = index(rows[p]);
-        if (seen_row[row]) continue;
-        seen_row[row] = true;
-        for (int q = by_rows.begins[row]; q < by_rows.begins[row + 1]; ++q) {
-          const int other = by_rows.columns[index(q)];
-          if (seen[index(other)]) continue;
-          seen[index(other)] = true;
-          order.push_back(other);
-        }
-      }
-    }
-  }
-  return order;
-}
-
 enum Part : unsigned char { first_half, second_half, separator };
 
 /// Which part every column is in: those of the second half that share a row with the first separate
 /// them.
 std::vector<Part> cut(int size, const int* columns, const int* rows) {
-  const Transposed by_rows(size, columns, rows);
-  const std::vector<int> order = met(size, columns, rows, by_rows);
+  const numerics::Lists rows_of({columns, columns + size + 1}, {rows, rows + columns[size]});
+  const numerics::Lists columns_of = rows_of.inverted(index(size));
+  const std::vector<int> order = numerics::breadth_first(rows_of, columns_of);
   std::vector<Part> part(index(size), second_half);
   for (int k = 0; k < size / 2; ++k) part[index(order[index(k)])] = first_half;
   const auto of_first = [&](int column) { return part[index(column)] == first_half; };
-  for (int row = 0; row < size; ++row) {
-    const int* begin = by_rows.columns.data() + by_rows.begins[index(row)];
-    const int* end = by_rows.columns.data() + by_rows.begins[index(row) + 1];
+  for (std::size_t row = 0; row < columns_of.size(); ++row) {
+    const int* begin = columns_of.begin(row);
+    const int* end = columns_of.end(row);
     if (std::none_of(begin, end, of_first)) continue;
     for (const int* column = begin; column != end; ++column) {
       if (!of_first(*column)) part[index(*column)] = separator;
@@ -109,20 +67,6 @@ int* order_columns(const std::vector<int>& which, int size, const int* columns, 
   for (int k = 0; k < count; ++k) order[places.indices()[k]] = which[index(k)];
   return order + count;
 }
-
-/// A column of L or U as KLU keeps it: first the rows, then the entries.
-struct FactorColumn {
-  int length;
-  const int* rows;
-  double* entries;
-
-  FactorColumn(double* units, const int* begins, const int* lengths, int column)
-      : length(lengths[column]) {
-    double* begin = units + begins[column];
-    rows = reinterpret_cast<const int*>(begin);
-    entries = begin + (index(length) * sizeof(int) + sizeof(double) - 1) / sizeof(double);
-  }
-};
 
 /// The factors of a matrix of one block.
 struct Factored {
@@ -164,11 +108,11 @@ int order_in_halves(int size, int* columns, int* rows, int* order, klu_common* c
   return -1;  // it is not known how many entries the factors will have
 }
 
-void HalvedFactors::begin(const klu_numeric& numeric, const klu_symbolic& symbolic,
+void HalvedFactors::begin(klu_numeric& numeric, const klu_symbolic& symbolic,
                           const HalvedOrder& order) {
   order_ = symbolic.nblocks == 1 ? order : HalvedOrder{};
   if (!order_.is_cut()) return;
-  const Factored of(const_cast<klu_numeric&>(numeric));
+  const Factored of(numeric);
   const auto keeps = [](const FactorColumn& column, auto&& is_own) {
     return std::all_of(column.rows, column.rows + column.length, is_own);
   };

@@ -3,6 +3,7 @@
 
 #include <klu.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace statejump::linear {
@@ -26,6 +27,21 @@ struct HalvedOrder {
 /// separator narrow. @param common whose `user_data` is a HalvedOrder that is told of the cut
 int order_in_halves(int size, int* columns, int* rows, int* order, klu_common* common);
 
+/// A column of L or U as KLU keeps it: first the rows, then the entries.
+struct FactorColumn {
+  int length;
+  const int* rows;
+  double* entries;
+
+  FactorColumn(double* units, const int* begins, const int* lengths, int column)
+      : length(lengths[column]) {
+    double* begin = units + begins[column];
+    rows = reinterpret_cast<const int*>(begin);
+    entries = begin + (static_cast<std::size_t>(length) * sizeof(int) + sizeof(double) - 1) /
+                          sizeof(double);
+  }
+};
+
 /// Makes and uses factors of a matrix that was ordered in halves, by the formulas and in the
 /// storage of KLU (T. A. Davis, E. Palamadai Natarajan, ACM Trans. Math. Softw. 37 (2010) 36):
 /// refactor() gives what klu_refactor() gives, to the last bit.
@@ -33,7 +49,7 @@ class HalvedFactors {
  public:
   /// Looks at factors that klu_factor() has made. Where pivots do not keep to the halves, or there
   /// are none, all is left to KLU.
-  void begin(const klu_numeric& numeric, const klu_symbolic& symbolic, const HalvedOrder& order);
+  void begin(klu_numeric& numeric, const klu_symbolic& symbolic, const HalvedOrder& order);
   void end() { order_ = {}; }
   bool are_halved() const { return order_.is_cut(); }
 

@@ -246,8 +246,7 @@ void System::assemble(Parts parts, const VectorXd& z, double time, const StepSta
                       Assembly& to) const {
   to.clear();
   displacements(z, to.moved);
-  std::vector<double> changes;
-  for (const auto& program : model_->programs) changes.push_back(program.temperature_change(time));
+  const std::vector<double> changes = temperature_changes(time);
   const auto write = [&](const Region& region, AssemblyStrand& strand) {
     if (parts != Parts::joints) assemble_bars(region, changes, strand);
     if (parts == Parts::bars) return;
@@ -280,8 +279,7 @@ VectorXd System::heating(const VectorXd& z, double time, const StepStart& start,
   Assembly to = Assembly::without_jacobian(unknowns_);
   to.residual.setZero();
   displacements(z, to.moved);
-  std::vector<double> changes;
-  for (const auto& program : model.programs) changes.push_back(program.temperature_change(time));
+  const std::vector<double> changes = temperature_changes(time);
   const auto write = [&](const Region& region, AssemblyStrand& strand) {
     NodeWriter nodes(place_, strand);
     for (const int i : region.links) {

@@ -113,8 +113,7 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
   const auto axial_energy = [](const Axial& force) {
     return force.stiffness > 0.0 ? 0.5 * force.tension * force.tension / force.stiffness : 0.0;
   };
-  std::vector<double> changes;
-  for (const auto& program : model.programs) changes.push_back(program.temperature_change(time));
+  const std::vector<double> changes = temperature_changes(time);
   add_energies(model.links, parts_at_once, [&](std::size_t i, const Link& link) {
     const Lengths length = lengths_between(link.first, link.second, moved);
     const double change = link.temperature_fraction * changes[index(link.program)];
@@ -277,16 +276,19 @@ double System::work_on_joints(const Way& way, const StepStart& start) const {
             const auto at = [&](const VectorXd& z) {
               return trial(i, z, way.to_time, start, JointModel::friction, 1.0);
             };
-            const auto force = [&](double share, double) {
-              if (way.is_straight()) {
-                return one.contact_force(at(share == 0.0 ? way.from : way.to));
-              }
-              return one.contact_force(JointWay{at(way.from), at(way.to), at(*way.from_rate),
-                                                at(*way.to_rate), way.step()}
-                                           .at(share));
-            };
             // A contact whose clearance grows gives way: ∂V/∂c = −N.
-            work[i] = -growth * along(asked[index(frame.program)], force);
+            const auto add = [&](auto&& joint_at) {
+              work[i] = -growth * along(asked[index(frame.program)], [&](double share, double) {
+                return one.contact_force(joint_at(share));
+              });
+            };
+            if (way.is_straight()) {
+              add([&](double share) { return at(share == 0.0 ? way.from : way.to); });
+            } else {
+              const JointWay on{at(way.from), at(way.to), at(*way.from_rate), at(*way.to_rate),
+                                way.step()};
+              add([&](double share) { return on.at(share); });
+            }
           }
         },
         model_->joints[index(i)]);

@@ -3,49 +3,20 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
 
+#include "numerics/lists.hpp"
 #include "parts.hpp"
 
 namespace statejump::truss::detail {
 
 namespace {
 
+using numerics::Lists;
+
 /// Parts of a region: assembling them takes some ten times as long as starting a thread.
 constexpr std::size_t least_parts = 2000;
 /// Regions at most: enough to share them out evenly, few enough to have little between them.
 constexpr std::size_t most_regions = 64;
-
-/// Lists of numbers, one behind the other.
-class Lists {
- public:
-  void end_list() { begin_.push_back(numbers_.size()); }
-  void push_back(int number) { numbers_.push_back(number); }
-  std::size_t size() const { return begin_.size() - 1; }
-  const int* begin(std::size_t list) const { return numbers_.data() + begin_[list]; }
-  const int* end(std::size_t list) const { return numbers_.data() + begin_[list + 1]; }
-  std::size_t numbers() const { return numbers_.size(); }
-
-  /// For every number below `count` the lists that it is in.
-  Lists inverted(std::size_t count) const {
-    Lists made;
-    made.begin_.assign(count + 1, 0);
-    for (const int number : numbers_) ++made.begin_[index(number) + 1];
-    std::partial_sum(made.begin_.begin(), made.begin_.end(), made.begin_.begin());
-    made.numbers_.resize(numbers_.size());
-    std::vector<std::size_t> next(made.begin_.begin(), made.begin_.end() - 1);
-    for (std::size_t list = 0; list < size(); ++list) {
-      for (const int* number = begin(list); number != end(list); ++number) {
-        made.numbers_[next[index(*number)]++] = static_cast<int>(list);
-      }
-    }
-    return made;
-  }
-
- private:
-  std::vector<int> numbers_;
-  std::vector<std::size_t> begin_{0};
-};
 
 /// The nodes that move of every part: of links, springs, torsion springs, joints, in this order.
 Lists moving_nodes(const Model& model, const std::vector<JointFrame>& frames) {
@@ -82,27 +53,9 @@ Lists moving_nodes(const Model& model, const std::vector<JointFrame>& frames) {
 /// equally many parts each. Nodes that do not move are in none.
 std::vector<int> cut(const Lists& nodes_of, std::size_t nodes, std::size_t regions) {
   const Lists parts_of = nodes_of.inverted(nodes);
-  std::vector<int> order;
-  std::vector<bool> met(nodes, false);
-  for (std::size_t first = 0; first < nodes; ++first) {
-    if (met[first]) continue;
-    met[first] = true;
-    order.push_back(static_cast<int>(first));
-    for (std::size_t next = order.size() - 1; next < order.size(); ++next) {
-      const std::size_t node = index(order[next]);
-      for (const int* part = parts_of.begin(node); part != parts_of.end(node); ++part) {
-        for (const int* other = nodes_of.begin(index(*part)); other != nodes_of.end(index(*part));
-             ++other) {
-          if (met[index(*other)]) continue;
-          met[index(*other)] = true;
-          order.push_back(*other);
-        }
-      }
-    }
-  }
   std::vector<int> region(nodes, -1);
   std::size_t passed = 0;
-  for (const int node : order) {
+  for (const int node : numerics::breadth_first(parts_of, nodes_of)) {
     const auto parts =
         static_cast<std::size_t>(parts_of.end(index(node)) - parts_of.begin(index(node)));
     if (parts > 0) region[index(node)] = static_cast<int>(passed * regions / nodes_of.numbers());

@@ -280,6 +280,14 @@ class System {
   /// Place of a node at ΔT = 0 [m].
   const Vector3d& drawn(int node) const { return drawn_[index(node)]; }
   JointStatus decide(int joint, Trial& at, JointStatus status, const Rounding& rounding) const;
+  /// Of all programs [K].
+  std::vector<double> temperature_changes(double time) const {
+    std::vector<double> changes;
+    for (const auto& program : model_->programs) {
+      changes.push_back(program.temperature_change(time));
+    }
+    return changes;
+  }
   double temperature_change(const JointFrame& frame, double time) const {
     return frame.program < 0
                ? 0.0

@@ -83,7 +83,7 @@ struct Klu {
 };
 
 TEST(KluHalves, ARingIsCutAtTwoPlaces) {
-  const Klu made(ring(5000, 1));
+  Klu made(ring(5000, 1));
   ASSERT_EQ(made.symbolic->nblocks, 1);
   ASSERT_TRUE(made.order.is_cut());
   EXPECT_EQ(made.order.second, made.size() / 2);
