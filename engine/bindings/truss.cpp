@@ -445,6 +445,21 @@ py::dict path_dict(const truss::Model& model, const truss::Path& path) {
     problems.append(one);
   }
   result["problems"] = problems;
+  py::list notes;
+  for (const truss::Note& note : path.notes) {
+    py::list joints;
+    for (const FailureJoint& joint : note.joints) {
+      joints.append(py::make_tuple(joint.kind, joint.name));
+    }
+    py::dict one;
+    one["kind"] = to_string(note.kind);
+    one["time_s"] = note.time;
+    one["temperature_change_K"] = note.temperature_change;
+    one["joints"] = joints;
+    one["value"] = note.value;
+    notes.append(one);
+  }
+  result["notes"] = notes;
   result["complete"] = path.complete;
   result["solves"] = path.solves;
   result["factorizations"] = path.factorizations;

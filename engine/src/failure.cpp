@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "statejump/failure.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <sstream>
 
 namespace statejump {
@@ -14,11 +16,15 @@ std::string text_of(const char* format, double value) {
   return text;
 }
 
-std::string number_named(const FailureFields& fields, const char* name) {
+double number_of(const FailureFields& fields, const std::string& name) {
   for (const auto& [key, value] : fields.numbers) {
-    if (key == name) return text_of("%g", value);
+    if (key == name) return value;
   }
-  return "?";
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string number_named(const FailureFields& fields, const char* name) {
+  return text_of("%g", number_of(fields, name));
 }
 
 /// " at a temperature change of 12.5 K (t = 0.25 s)"; "" where no instant is known.
@@ -59,11 +65,18 @@ std::string joint(const FailureFields& fields) {
   return fields.joints.front().kind + " '" + fields.joints.front().name + "'";
 }
 
+/// Joints that a sentence names; of more it gives the number.
+constexpr std::size_t most_named = 8;
+
 /// "slider 'A', revolute 'B'".
 std::string joints(const FailureFields& fields) {
   std::string text;
-  for (const FailureJoint& one : fields.joints) {
+  for (std::size_t i = 0; i < std::min(most_named, fields.joints.size()); ++i) {
+    const FailureJoint& one = fields.joints[i];
     text += (text.empty() ? "" : ", ") + one.kind + " '" + one.name + "'";
+  }
+  if (fields.joints.size() > most_named) {
+    text += " and " + std::to_string(fields.joints.size() - most_named) + " more";
   }
   return text.empty() ? "a joint" : text;
 }
@@ -76,14 +89,14 @@ const char* to_string(FailureKind kind) {
       return "mechanism";
     case FailureKind::held_mechanism:
       return "held_mechanism";
-    case FailureKind::opened_mechanism:
-      return "opened_mechanism";
+    case FailureKind::friction_exhausted:
+      return "friction_exhausted";
+    case FailureKind::overloaded:
+      return "overloaded";
     case FailureKind::buckled:
       return "buckled";
     case FailureKind::unloaded_joint:
       return "unloaded_joint";
-    case FailureKind::no_contact:
-      return "no_contact";
     case FailureKind::jump_across_play:
       return "jump_across_play";
     case FailureKind::singular:
@@ -110,12 +123,16 @@ std::string cause(const FailureFields& fields) {
   switch (fields.kind) {
     case FailureKind::mechanism:
     case FailureKind::held_mechanism:
-    case FailureKind::opened_mechanism:
       return free_modes(fields);
+    case FailureKind::friction_exhausted:
+      return "all its friction is at its bound and balances the rest exactly, " +
+             free_modes(fields);
+    case FailureKind::overloaded:
+      return "friction is exhausted at " +
+             text_of("%.3g", 100.0 * number_of(fields, "load_fraction")) + " % of them";
     case FailureKind::buckled:
       return "with every closed joint held its equilibrium is unstable, " + unstable_modes(fields);
     case FailureKind::unloaded_joint:
-    case FailureKind::no_contact:
       return "statics does not determine its position in the play" +
              (fields.modes.empty() ? std::string() : ", " + free_modes(fields));
     case FailureKind::jump_across_play:
@@ -158,6 +175,8 @@ std::string remedy(const FailureFields& fields) {
   switch (fields.kind) {
     case FailureKind::unloaded_joint:
       return "load it by a spring, a cable or a force";
+    case FailureKind::overloaded:
+      return "raise its friction, support the structure otherwise or reduce the loads";
     case FailureKind::no_continuation:
       return "reduced --dynamic follows the jump";
     case FailureKind::not_finite:
@@ -175,15 +194,16 @@ std::string sentence(const FailureFields& fields) {
       return "the truss is a mechanism" + where + ": " + why;
     case FailureKind::held_mechanism:
       return "the truss is a mechanism even with every joint held, " + why;
-    case FailureKind::opened_mechanism:
-      return "the truss becomes a mechanism" + where +
-             ", where a revolute loses its contact: " + why;
+    case FailureKind::friction_exhausted:
+      return joints(fields) +
+             (fields.joints.size() == 1 ? " cannot hold" : " cannot hold together") + where + ": " +
+             why;
+    case FailureKind::overloaded:
+      return joints(fields) + " cannot hold the loads: " + why + "; " + remedy(fields);
     case FailureKind::buckled:
       return "the truss has buckled" + where + ": " + why;
     case FailureKind::unloaded_joint:
       return joint(fields) + " carries no force at the start: " + why + "; " + remedy(fields);
-    case FailureKind::no_contact:
-      return joint(fields) + " has no contact at the start: " + why;
     case FailureKind::jump_across_play:
       return joint(fields) + " jumps across its play" + where + ": " + why;
     case FailureKind::singular:

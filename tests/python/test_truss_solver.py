@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.util
 import itertools
-import re
 import tomllib
 from collections import Counter
 from pathlib import Path
@@ -341,15 +340,22 @@ def test_generated_rings_start_in_contact_at_the_drawn_shape(bays: int, change_K
     assert np.linalg.norm(start[inner], axis=1).max() < bays * 6e-6 / (2 * np.pi)
 
 
-def test_joint_that_nothing_holds_at_the_start_is_refused_with_its_free_motion() -> None:
-    """The flare spring holds both links together, but not against the ground."""
-    made = generate.umbrella(1, bias_rad=0.0)
-    message = failure(made)
-    assert "revolute 'joint' carries no force at the start" in message
-    assert "1 free mode: node 'B' mostly along" in message or "1 free mode: node 'J' mostly along" in message
-    # Without that spring either link turns.
-    del made["torsion_spring"]
-    assert "2 free modes: node '" in failure(made)
+def slack_notes(found: solve.TrussPath) -> list[tuple[float, list[tuple[str, str]]]]:
+    """Temperature changes [K] and joints of the notes on slack elements."""
+    return [(note["temperature_change_K"], note["joints"]) for note in found.notes if note["kind"] == "slack"]
+
+
+@pytest.mark.parametrize("has_spring", [True, False])
+def test_joint_that_nothing_holds_at_the_start_is_slack(has_spring: bool) -> None:
+    """The flare spring holds both links together, but not against the ground; without it either link turns. Nothing is
+    carried, so every link has its free length, and both centres part along the line of the pins by its expansion."""
+    made = generate.umbrella(1, bias_rad=0.0, temperature_change_K=10.0)
+    if not has_spring:
+        del made["torsion_spring"]
+    found = path(made)
+    assert slack_notes(found) == [(0.0, [("revolute", "joint")])]
+    assert np.abs(found.states["axial_force_N"]).max() < 1e-6 and np.all(opened(found))
+    assert jump_m(found).max() < 1e-9
 
 
 def opened(found: solve.TrussPath) -> np.ndarray:
@@ -434,20 +440,15 @@ def test_load_that_brings_the_journal_to_its_bearing_starts_in_contact() -> None
 
 @pytest.mark.parametrize("bias_rad, change_K, lost_K", [(0.01, -200.0, -108.08375), (-0.02, 400.0, 255.649887)])
 @pytest.mark.parametrize("increments", [20, 50, 200])
-def test_joint_that_loses_its_contact_is_reported_with_the_temperature(
+def test_joint_that_loses_its_contact_is_slack_from_its_temperature_on(
         bias_rad: float, change_K: float, lost_K: float, increments: int) -> None:
-    """The links open or close the flare angle beyond the spring's free one: nothing holds the journal then. As its
-    force vanishes all that is left of it is rounding: whether the slipping joint is found a little before to have
-    run away, or at last without contact, depends on where the steps end; when that is does not."""
-    case = generate.umbrella(1, temperature_change_K=change_K, bias_rad=bias_rad)
-    with pytest.raises(StatejumpError) as caught:
-        path(case, increments_per_branch=increments)
-    message = str(caught.value)
-    told = re.search(r"at a temperature change of (\S+) K \(t = ", message)
-    # Located to 1e-9 of a branch, some steps before or after the change.
-    assert told and float(told[1]) == pytest.approx(lost_K, abs=20e-9 * abs(change_K))
-    assert "jumps across its play" in message or "becomes a mechanism" in message or "slip runs away" in message
-    assert "revolute" in message
+    """The links open or close the flare angle beyond the spring's free one: nothing holds the journal then."""
+    found = path(generate.umbrella(1, temperature_change_K=change_K, bias_rad=bias_rad),
+                 increments_per_branch=increments)
+    (lost, joints), = slack_notes(found)
+    # A contact is slack below 1e-8 of the links' stiffness times the clearance, 1e-5 N; the spring's force falls by 0.1 N/K.
+    assert lost == pytest.approx(lost_K, abs=2e-4) and joints == [("revolute", "joint")]
+    assert found.complete and np.linalg.norm(found.states["eccentricity_m"][:, 0], axis=1).max() < 1.01 * 1e-4
 
 
 def test_path_ends_when_progress_says_so() -> None:

@@ -13,12 +13,12 @@ namespace statejump {
 
 /// What kept a model, whose input is in range, from giving a result.
 enum class FailureKind : unsigned char {
-  mechanism,         ///< Truss: it has free modes though no joint slips.
-  held_mechanism,    ///< Truss: as drawn, with every joint held.
-  opened_mechanism,  ///< Truss: free modes from where a revolute loses its contact.
-  buckled,           ///< Truss: unstable whatever the joints do.
-  unloaded_joint,    ///< Joint without force at the start: its place in the play is undetermined.
-  no_contact,        ///< Truss: likewise, where its contact force vanishes on the way to the start.
+  mechanism,           ///< Truss: it has free modes though no joint slips.
+  held_mechanism,      ///< Truss: as drawn, with every joint held.
+  friction_exhausted,  ///< Truss: free modes once the friction of joints is at its bound.
+  overloaded,          ///< Truss: the loads need more friction at the start than a joint has.
+  buckled,             ///< Truss: unstable whatever the joints do.
+  unloaded_joint,      ///< Joint without force at the start: its place in the play is undetermined.
   jump_across_play,  ///< Revolute whose contact force vanishes on the way.
   singular,          ///< No equilibrium found: the equations are singular to rounding.
   not_converged,     ///< No equilibrium found: the iteration does not end.

@@ -162,8 +162,9 @@ void System::assemble_bars(const Region& region, const std::vector<double>& chan
   for (const int i : region.springs) {
     const AxialSpring& spring = model.springs[index(i)];
     const Lengths length = lengths_between(spring.first, spring.second, to.moved());
-    bar(spring.first, spring.second, length.along / length.now, length.now,
-        spring_axial(spring, length));
+    const Axial axial = spring_axial(spring, length);
+    if (spring.cable) to.piece(axial.stiffness > 0.0 ? 0 : 1);
+    bar(spring.first, spring.second, length.along / length.now, length.now, axial);
   }
 
   for (const int i : region.torsion_springs) {

@@ -50,9 +50,11 @@ class Column {
 
 Eigen::SparseMatrix<double> System::joined_stiffness(const VectorXd& z, double time,
                                                      const Statuses& statuses, JointModel joints,
-                                                     double held) const {
+                                                     double held, double slack) const {
   Assembly at = assembly();
-  evaluate(z, time, begin(z, time, statuses, 1.0), statuses, joints, 1.0, at);
+  StepStart start = begin(z, time, statuses, 1.0);
+  start.slack_stiffness = slack;
+  evaluate(z, time, start, statuses, joints, 1.0, at);
   const linear::SparseView jacobian = at.jacobian();
   const Eigen::Index n = displacements_;
   const ByRows above = jacobian.block(0, 0, n, n).triangularView<Eigen::StrictlyUpper>();

@@ -73,8 +73,9 @@ Modes lowest_modes(const Eigen::SparseMatrix<double>& matrix, const Factors& fac
 /// its stiffest part everywhere.
 Eigen::SparseMatrix<double> shifted_stiffness(const System& system, const VectorXd& z, double time,
                                               const Statuses& statuses, JointModel joints,
-                                              double held, double share) {
-  Eigen::SparseMatrix<double> shifted = system.joined_stiffness(z, time, statuses, joints, held);
+                                              double held, double slack, double share) {
+  Eigen::SparseMatrix<double> shifted =
+      system.joined_stiffness(z, time, statuses, joints, held, slack);
   // In place: entries of the diagonal are there, but of nodes that hang on nothing.
   for (Eigen::Index i = 0; i < shifted.rows(); ++i) {
     shifted.coeffRef(i, i) += share * system.stiffness_scale();
@@ -101,7 +102,7 @@ FoundModes modes_between(const System& system, const Modes& modes, double smalle
 std::pair<FoundModes, bool> free_modes(const System& system, const VectorXd& z, double time,
                                        const Statuses& statuses, JointModel joints) {
   const Eigen::SparseMatrix<double> shifted =
-      shifted_stiffness(system, z, time, statuses, joints, 1.0, 0.05 * free_share);
+      shifted_stiffness(system, z, time, statuses, joints, 1.0, 0.0, 0.05 * free_share);
   const Factors factors(shifted);
   if (factors.info() != Eigen::Success) return {FoundModes{}, false};
   const double least = free_share * system.stiffness_scale();
@@ -147,8 +148,8 @@ FoundModes buckling(const System& system, const VectorXd& z, double time,
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (statuses[i] == JointStatus::open) held[i] = JointStatus::open;
   }
-  const Eigen::SparseMatrix<double> shifted =
-      shifted_stiffness(system, z, time, held, JointModel::pins, stiff_joint, free_share);
+  const Eigen::SparseMatrix<double> shifted = shifted_stiffness(
+      system, z, time, held, JointModel::pins, stiff_joint, system.slack_stiffness(), free_share);
   const Factors factors(shifted);
   // Sylvester: as many negative pivots as negative eigenvalues.
   const Eigen::Index unstable =

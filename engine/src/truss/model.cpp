@@ -127,7 +127,8 @@ void Model::validate() const {
     check(node.position.allFinite(), item, "position", node.position.norm(), "finite [m]");
     check(node.load.allFinite(), item, "load", node.load.norm(), "finite [N]");
     check(node.freedoms >= 0 && node.freedoms <= 3, item, "freedoms", node.freedoms, "0 to 3");
-    const Eigen::Matrix3d product = node.free_directions.matrix().transpose() * node.free_directions.matrix();
+    const Eigen::Matrix3d product =
+        node.free_directions.matrix().transpose() * node.free_directions.matrix();
     for (int i = 0; i < node.freedoms; ++i) {
       for (int j = 0; j < node.freedoms; ++j) {
         check(std::abs(product(i, j) - (i == j ? 1.0 : 0.0)) < 1e-12, item,

@@ -24,14 +24,19 @@ using numerics::raise;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Forces balance to this share of the largest one.
 constexpr double force_tolerance = 1e-12;
-/// Closures close to this share of the largest displacement: some hundred roundings of it.
-constexpr double closure_tolerance = 1e-13;
 /// Steps that a step is compared with: M of Grippo, Lampariello and Lucidi.
 constexpr std::size_t remembered_steps = 10;
 /// Halvings of a step after which it is below a thousandth: Newton's direction leads nowhere.
 constexpr int most_halvings = 10;
 /// Halvings of the share of a step at which a joint changes: to rounding of the step.
 constexpr int share_halvings = 50;
+/// Compliance of a closure whose reaction is not unique, in that of the stiffest element. Rounding
+/// of a closure then changes reactions by a thousand roundings of them, and what is regularised
+/// wrongly in unique directions shrinks by a thousand in every iteration.
+constexpr double reaction_compliance = 1e-3;
+/// Length of a step along a displacement that only the regularisation resists, in the size of the
+/// truss: beyond it lengths and directions are no longer those of the equations.
+constexpr double proximal_share = 0.05;
 /// How often those who wait are told [s]: often enough for a bar of progress and for Ctrl-C.
 constexpr double told_every = 0.1;
 
@@ -127,7 +132,7 @@ struct Violations {
 };
 
 /// How the set of branches is changed.
-enum class Pivoting : unsigned char { strict, rounded, single };
+enum class Pivoting : unsigned char { block, single };
 
 }  // namespace
 
@@ -171,9 +176,10 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
                           const std::optional<Ahead>& ahead, bool held) {
   SolveReport report;
   current_ = false;
-  // Laws of several pieces have other equations on each; strict inequalities ask for states that
+  regularisation_ = Regularisation::none;
+  // Laws of several pieces have other equations on each; located changes ask for states that
   // only new factors make as exact.
-  const bool may_keep = !strict_ && !system_->slips_smoothly();
+  const bool may_keep = !locates_ && !system_->slips_smoothly();
   bool kept = std::exchange(quiet_, false) && may_keep;
   bool stale = true;  // no factors have been made yet
   bool pivoted = false;
@@ -184,11 +190,11 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   };
   auto told = std::chrono::steady_clock::now();
 
-  Pivoting pivoting = strict_ ? Pivoting::strict : Pivoting::rounded;
+  Pivoting pivoting = Pivoting::block;
   std::unordered_set<std::size_t> seen{fingerprint(statuses)};
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   const auto violations = [&] {
-    const Rounding slack = pivoting == Pivoting::strict ? Rounding{} : system_->rounding(z);
+    const Rounding slack = system_->rounding(z);
     Violations found{{}, statuses};
     if (held) return found;
     system_->displacements(z, at_.moved);
@@ -261,15 +267,14 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       wandering.clear();
       condensed = false;
       if (pivoting == Pivoting::single) {
-        pivoting = Pivoting::rounded;
+        pivoting = Pivoting::block;
         seen.clear();
       }
     }
     wandering.insert(found.joints.begin(), found.joints.end());
-    // While inequalities are strict, a set that comes back tells that rounding decides. Laws of
-    // several pieces change them without a pivot: they are not condensed.
+    // Laws of several pieces change them without a pivot: they are not condensed.
     const double paid = idle * factor_.solutions_per_factorization();
-    const bool wanders = at_.pieces == 0 && pivoting == Pivoting::rounded && stepped && idle > 0 &&
+    const bool wanders = at_.pieces == 0 && pivoting == Pivoting::block && stepped && idle > 0 &&
                          paid >= static_cast<double>(wandering.size());
     if (wanders && !condensed && condense()) return begin_anew();
     if (wanders && ahead) return false;
@@ -282,9 +287,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     Statuses next = take();
     while (!seen.insert(fingerprint(next)).second) {
       if (pivoting == Pivoting::single) return false;
-      pivoting = pivoting == Pivoting::strict ? Pivoting::rounded : Pivoting::single;
+      pivoting = Pivoting::single;
       seen = {fingerprint(statuses)};
-      if (pivoting == Pivoting::rounded) return true;  // decided anew, with rounding allowed for
       next = take();
     }
     statuses = next;
@@ -304,15 +308,15 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       differentiated = jacobian;
     };
     // Where the solve is likely to end, the Jacobian is wanted: for the rates.
-    evaluate(!old || is_last(lengths, closure_tolerance * length(z)));
+    evaluate(!old || is_last(lengths, closure_tolerance * system_->reach(z)));
     const auto start_anew = [&] {
       z = begun_at;
       settled = false;
       lengths.clear();
       kept = false;
     };
-    const double reach = length(z);
-    const double rounding = 64.0 * epsilon * system_->stiffness_scale() * reach;
+    const double reach = system_->reach(z);
+    const double rounding = system_->force_rounding(z);
     const Residuals left = residuals(at_);
     // Steps on other pieces of the branches say nothing of those on these.
     if (std::exchange(pieces, at_.pieces) != at_.pieces) {
@@ -329,15 +333,15 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     // change at once, forces lack half of the largest one. A shorter step changes fewer. Where
     // changes are located none are passed together.
     if (total == 0) first_largest = largest;
-    const bool astray = left.balance > 0.5 * std::max(largest, first_largest);
+    const bool astray = left.balance > 0.5 * std::max(largest, first_largest) + rounding;
     if (pivoted && is_foreseen && astray) return report;
     // Where rounding is larger than foreseen the iteration stands still: that is the end as well,
     // if forces balance at all.
     const bool closed = left.balance <= force_tolerance * largest + rounding &&
                         left.closure <= closure_tolerance * reach &&
-                        left.force <= 16.0 * epsilon * largest;
+                        left.force <= 16.0 * epsilon * largest + rounding;
     const bool still = !lengths.empty() && lengths.back() <= closure_tolerance * reach &&
-                       left.balance <= 1e3 * force_tolerance * largest;
+                       left.balance <= 1e3 * force_tolerance * largest + rounding;
     if (total > 0 && (closed || still)) {
       Violations found = settled ? Violations{} : violations();
       if (found.joints.empty()) {
@@ -354,12 +358,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         start_anew();
         continue;
       }
-      const Pivoting before = pivoting;
       if (!pivot(found, false)) return report;
-      if (before == Pivoting::strict && pivoting == Pivoting::rounded &&
-          !pivot(violations(), false)) {
-        return report;
-      }
       continue;
     }
     VectorXd next;
@@ -395,6 +394,11 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         return report;
       }
       next_length = length(next);
+      const double most = proximal_share * system_->size();
+      if (regularisation_ == Regularisation::displacements && next_length > most && most > 0.0) {
+        next *= most / next_length;
+        next_length = most;
+      }
     }
     const bool too_long = !lengths.empty() && next_length > closure_tolerance * reach &&
                           next_length > *std::max_element(lengths.begin(), lengths.end());
@@ -412,7 +416,11 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     settled = false;
     lengths.push_back(next_length);
     if (lengths.size() > remembered_steps) lengths.pop_front();
-    if (!damped && pivoting != Pivoting::single) {
+    // Of a law with several pieces a step on the tangent of another piece says nothing: elements
+    // that slip stand at their bound at the start of a step, where their tangent is that of
+    // sticking.
+    const bool on_piece = at_.pieces == 0 || lengths.size() > 1;
+    if (!damped && on_piece && pivoting != Pivoting::single) {
       const Violations found = violations();
       settled = found.joints.empty();
       if (stale && !settled) {
@@ -451,9 +459,55 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
 bool Newton::factorize(const Statuses& statuses, JointModel joints, double most_growth) {
   ++factorizations_;
   factored_ = factor_.factorize(at_.jacobian(), most_growth);
+  regularisation_ = Regularisation::none;
+  if (!factored_) {
+    regularisation_ = factor_regularised(*system_, at_, proximal_stiffness_, factor_);
+    factored_ = regularisation_ != Regularisation::none;
+  }
   factored_on_ = statuses;
   factored_model_ = joints;
   return factored_;
+}
+
+std::vector<int> Newton::dependent_joints() const {
+  // Reactions that balance each other outgrow all others by a thousand in a solution.
+  VectorXd reactions = VectorXd::Zero(system_->unknowns());
+  for (Eigen::Index row = system_->displacements(); row < reactions.size(); ++row) {
+    reactions[row] = std::sin(1.0 + 1.7 * static_cast<double>(row));
+  }
+  const Eigen::Index first = system_->displacements();
+  for (int round = 0; round < 2; ++round) {
+    reactions = factor_.solve(reactions);
+    reactions.head(first).setZero();
+    reactions /= std::max(reactions.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
+  }
+  std::vector<int> found;
+  for (int i = 0; i < static_cast<int>(solved_on_.size()); ++i) {
+    const Eigen::Index row = system_->force_row(i);
+    const Eigen::Index rows = system_->force_count(i);
+    if (reactions.segment(row, rows).lpNorm<Eigen::Infinity>() > 0.1) found.push_back(i);
+  }
+  return found;
+}
+
+Regularisation factor_regularised(const System& system, const Assembly& at,
+                                  double proximal_stiffness, linear::SparseFactor& factor) {
+  const double stiffness = system.stiffness_scale();
+  if (!(stiffness > 0.0)) return Regularisation::none;
+  Eigen::SparseMatrix<double> regular = at.jacobian();
+  const auto add = [&](Eigen::Index row, double value) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(regular, row); it; ++it) {
+      if (it.row() == row) it.valueRef() += value;
+    }
+  };
+  for (Eigen::Index row = system.displacements(); row < regular.rows(); ++row) {
+    const bool closes = at.units[index(static_cast<int>(row))] == RowUnit::closure;
+    if (closes) add(row, -reaction_compliance / stiffness);
+  }
+  if (factor.factorize(regular)) return Regularisation::reactions;
+  if (proximal_stiffness == 0.0) return Regularisation::none;
+  for (Eigen::Index row = 0; row < system.displacements(); ++row) add(row, proximal_stiffness);
+  return factor.factorize(regular) ? Regularisation::displacements : Regularisation::none;
 }
 
 bool Newton::keeping_pays(double decades) const {

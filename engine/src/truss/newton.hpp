@@ -28,6 +28,9 @@ struct SolveReport {
   std::optional<std::pair<int, JointStatus>> leaving;
 };
 
+/// What was singular in equations that a solve regularised.
+enum class Regularisation : unsigned char { none, reactions, displacements };
+
 /// From where to where a step goes, for the question when within it the first joint changes.
 struct Ahead {
   double from_time;  ///< [s]
@@ -54,13 +57,13 @@ struct Ahead {
 /// begins anew with factors of its start.
 ///
 /// **The set of branches** changes by block principal pivoting [3]: every joint that violates its
-/// inequality changes its branch at once, after each full step. Inequalities are strict at first: a
-/// joint that is let off because rounding might be the reason would start the next step beyond its
-/// bound, and flicker. If a set comes back, rounding is allowed for; if one comes back again, one
-/// joint at a time is changed, the lowest first and only where the smooth equations hold (Murty),
-/// until fewer joints than ever violate theirs. For a P-matrix that ends after finitely many
-/// pivots; friction that follows a normal force can make another one, where a set comes back once
-/// more and the solve ends without a solution.
+/// inequality by more than the solution is exact to (System::rounding()) changes its branch at
+/// once, after each full step. Strict inequalities would flicker: at a turning point of the
+/// temperature many joints are at their bound and at rest, and on which side of it rounding
+/// decides. If a set comes back, one joint at a time is changed, the lowest first and only where
+/// the smooth equations hold (Murty), until fewer joints than ever violate theirs. For a P-matrix
+/// that ends after finitely many pivots; friction that follows a normal force can make another one,
+/// where a set comes back once more and the solve ends without a solution.
 ///
 /// Many pivots of all joints may wander for long before a set comes back, and single ones take a
 /// factorization each. Pivots on one factorization (condensed_pivots()) settle those joints for the
@@ -75,17 +78,27 @@ struct Ahead {
 /// that do so at once change at the start of the step: that is the rate problem, solved by the same
 /// pivoting. Where none does so any more, the first one to follow is the next event.
 ///
+/// **Singular matrices.** Joints that stick may constrain a displacement more than once: reactions
+/// are then not unique, displacements are. The matrix is factored again with a compliance in every
+/// closure row, a thousandth of that of the stiffest element, while residuals stay exact. Newton's
+/// method then is the method of multipliers [5]: it converges to exact closures and to the
+/// reactions nearest to the last ones.
+///
 /// [1] P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2004, ch. 3.3.
 /// [2] L. Grippo, F. Lampariello, S. Lucidi, SIAM J. Numer. Anal. 23 (1986) 707-716.
 /// [3] J. J. Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587-596.
 /// [4] A. R. Karlin, M. S. Manasse, L. Rudolph, D. D. Sleator, Algorithmica 3 (1988) 79-119.
+/// [5] M. R. Hestenes, J. Optim. Theory Appl. 4 (1969) 303-320.
 class Newton {
  public:
-  /// @param strict whether inequalities are strict at first; else rounding is allowed for at once,
-  /// which lets a joint off that slides by less than that in the short step after a corner
+  /// @param locates whether changes are located in time, which asks for states as exact as only new
+  /// factors make them
   /// @param going_on asked now and then; false stops the solve
-  Newton(const System& system, bool strict, std::function<bool()> going_on)
-      : system_(&system), strict_(strict), going_on_(std::move(going_on)), at_(system.assembly()) {}
+  Newton(const System& system, bool locates, std::function<bool()> going_on)
+      : system_(&system),
+        locates_(locates),
+        going_on_(std::move(going_on)),
+        at_(system.assembly()) {}
 
   /// Solves for z and statuses at `time`, from the guess in them. On failure they are unspecified.
   /// @param most_iterations on one set of branches
@@ -94,6 +107,15 @@ class Newton {
   SolveReport solve(double time, const StepStart& start, JointModel joints, double opening,
                     int most_iterations, VectorXd& z, Statuses& statuses,
                     const std::optional<Ahead>& ahead = {}, bool held = false);
+
+  /// Whether the last solve needed the regularisation of regularise(), and why.
+  Regularisation regularisation() const { return regularisation_; }
+  /// Joints whose reactions share a constraint, by the factors of the last solve, which regularised
+  /// reactions.
+  std::vector<int> dependent_joints() const;
+  /// Lets free displacements be regularised as well, by this stiffness [N/m]: on the way to a first
+  /// equilibrium, where friction may be exhausted before a stop or another part carries.
+  void regularise_displacements(double stiffness) { proximal_stiffness_ = stiffness; }
 
   /// Rates of the unknowns along the path from where the last solve converged, by its factors.
   /// @param by_time derivative of the residual by time, see System::heating()
@@ -109,6 +131,7 @@ class Newton {
   int stability_index(const Assembly& at, const Statuses& statuses);
 
   long factorizations() const { return factorizations_; }
+  const std::function<bool()>& progress() const { return going_on_; }
   const linear::SparseFactor& factor() const { return factor_; }
 
  private:
@@ -122,7 +145,7 @@ class Newton {
                             const StepStart& start, JointModel model,
                             const Statuses& statuses) const;
 
-  /// Factors the Jacobian at hand, which is one on this set of branches.
+  /// Factors the Jacobian at hand, which is one on this set of branches; see Singular matrices.
   bool factorize(const Statuses& statuses, JointModel joints,
                  double most_growth = linear::SparseFactor::refined_growth);
   /// Whether the factors are of equations on this set of branches.
@@ -135,7 +158,7 @@ class Newton {
   bool keeping_pays(double decades) const;
 
   const System* system_;
-  bool strict_;
+  bool locates_;
   std::function<bool()> going_on_;
   Assembly at_;
   linear::SparseFactor factor_;
@@ -146,9 +169,17 @@ class Newton {
   bool factored_ = false;  ///< Whether there are factors, and of what:
   Statuses factored_on_;
   JointModel factored_model_ = JointModel::pins;
-  Statuses solved_on_;  ///< Where the last solve converged.
+  Regularisation regularisation_ = Regularisation::none;
+  double proximal_stiffness_ = 0.0;  ///< Of free displacements [N/m]; 0: they are not regularised.
+  Statuses solved_on_;               ///< Where the last solve converged.
   JointModel solved_model_ = JointModel::pins;
 };
+
+/// Factors equations that are singular with a compliance in their closures, or, if that is not
+/// enough and a stiffness is given, with that on all displacements; see Newton.
+/// @returns what was regularised; none: they stay singular
+Regularisation factor_regularised(const System& system, const Assembly& at,
+                                  double proximal_stiffness, linear::SparseFactor& factor);
 
 /// Modes of a truss that nothing resists.
 struct FoundModes {

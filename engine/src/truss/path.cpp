@@ -40,6 +40,18 @@ const char* to_string(JointStatus status) {
   return "unknown";
 }
 
+const char* to_string(NoteKind kind) {
+  switch (kind) {
+    case NoteKind::large_start:
+      return "large_start";
+    case NoteKind::slack:
+      return "slack";
+    case NoteKind::not_unique:
+      return "not_unique";
+  }
+  return "unknown";
+}
+
 Eigen::VectorXd output(const Model& model, const State& state, int joint, std::string_view key) {
   Eigen::Index at = 0;
   for (int i = 0; i <= joint; ++i) {
@@ -120,6 +132,7 @@ Path solve(const Model& model, const Options& options) {
   walker.state.joint_dissipation = VectorXd::Zero(joints);
   walker.start();
   walker.origin = system.begin(walker.z, 0.0, walker.origin.statuses, 1.0);
+  walker.origin.slack_stiffness = system.slack_stiffness();
   system.describe(walker.z, 0.0, walker.origin, walker.state);
   if (!options.cycle_ends_only) walker.path.states.push_back(walker.state);
   walker.path.cycle_ends.push_back(walker.state);

@@ -130,6 +130,7 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
     if (!found.empty() && candidates.size() > most_joints) return answer;
   }
   for (const int joint : changing) candidate(joint);
+  if (candidates.empty()) return answer;  // nothing to decide
 
   // Every round knows one more branch of one of at most so many joints.
   for (;;) {

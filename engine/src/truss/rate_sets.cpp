@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <set>
 
+#include "newton.hpp"
 #include "rate_problem.hpp"
 
 namespace statejump::truss::detail {
@@ -35,7 +36,10 @@ std::optional<Branches> prepare(const System& system, const VectorXd& z, double 
     made.base[index(one.joint)] = one.branches.front();
   }
   system.evaluate(z, target, start, made.base, JointModel::friction, 1.0, at);
-  if (!factor.factorize(at.jacobian())) return std::nullopt;
+  if (!factor.factorize(at.jacobian()) &&
+      factor_regularised(system, at, 0.0, factor) == Regularisation::none) {
+    return std::nullopt;
+  }
   made.index = index_of(factor.determinant_sign(), at);
   made.step = factor.solve(-at.residual);
   made.response.resize(system.unknowns(), rows);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "rate_sets.hpp"
 #include "walker.hpp"
 
 #include <algorithm>
@@ -53,29 +54,59 @@ void Walker::start() {
   origin.statuses = system.all_stick();
   z = VectorXd::Zero(system.unknowns());
   if (FoundModes modes = mechanism(system, z, 0.0, origin.statuses, JointModel::pins)) {
-    fail_modes(failure_at(FailureKind::held_mechanism, model, 0.0), std::move(modes));
+    // A load across elements in line may stiffen them; what nothing resists it does not.
+    const bool is_mechanism =
+        follow_loads() || mechanism(system, z, 0.0, origin.statuses, JointModel::pins);
+    if (is_mechanism) {
+      fail_modes(failure_at(FailureKind::held_mechanism, model, 0.0), std::move(modes));
+    }
+  } else {
+    const StepStart begin = system.begin(z, 0.0, origin.statuses, 1.0);
+    const SolveReport report = newton.solve(0.0, begin, JointModel::pins, 1.0,
+                                            options.most_iterations, z, origin.statuses);
+    note(report);
+    if (report.end == SolveEnd::stopped) {
+      path.complete = false;
+      return;
+    }
+    const bool near = report.end == SolveEnd::converged && is_near(z);
+    if (!near || newton.stability_index() < 0) {
+      if (near) refuse_buckled(0.0);
+      if (const auto stalled = follow_loads()) refuse_overload(*stalled);
+    }
   }
-  const StepStart begin = system.begin(z, 0.0, origin.statuses, 1.0);
-  const SolveReport report =
-      newton.solve(0.0, begin, JointModel::pins, 1.0, options.most_iterations, z, origin.statuses);
-  note(report);
-  if (report.end == SolveEnd::stopped) {
-    path.complete = false;
-    return;
-  }
-  if (report.end != SolveEnd::converged) {
-    fail(report, JointModel::pins, 0.0, "no equilibrium of the drawn shape");
-  }
+  if (!path.complete) return;
   rates.order_like(newton.factor());
   refuse_buckled(0.0);
+  note_not_unique(0.0);
   open_clearances();
+  if (is_near(z)) return;
+  note(NoteKind::large_start, 0.0, {}, length_of(z, system.displacements()));
 }
 
 /// Throws if the truss has free modes with its joints as the statuses say.
 void Walker::refuse_mechanism(double when, const Statuses& statuses, JointModel joints) const {
-  if (FoundModes modes = mechanism(system, z, when, statuses, joints)) {
-    fail_modes(failure_at(FailureKind::mechanism, model, when), std::move(modes));
+  FoundModes modes = mechanism(system, z, when, statuses, joints);
+  if (!modes) return;
+  FailureFields fields = failure_at(FailureKind::mechanism, model, when);
+  // With its joints held it is none: their friction is at its bound everywhere.
+  Statuses held = system.all_stick();
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (statuses[i] == JointStatus::open) held[i] = JointStatus::open;
   }
+  if (!mechanism(system, z, when, held, JointModel::pins)) {
+    fields.kind = FailureKind::friction_exhausted;
+    fields.joints = slipping(statuses);
+  }
+  fail_modes(std::move(fields), std::move(modes));
+}
+
+std::vector<FailureJoint> Walker::slipping(const Statuses& statuses) const {
+  std::vector<FailureJoint> found;
+  for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
+    if (is_slip(statuses[index(i)])) found.push_back(named(model, i));
+  }
+  return found;
 }
 
 /// Throws if the state is unstable whatever the joints do.
@@ -87,31 +118,30 @@ void Walker::refuse_buckled(double when) {
   }
 }
 
-/// Refuses a start at which joints that do not touch leave a motion free, named by the first of
-/// them that it moves.
-void Walker::refuse_undetermined(FailureKind kind, FoundModes found) const {
-  FailureFields fields = failure_at(kind, model, 0.0);
-  const auto moves = [&](int i) {
-    const Trial at = system.trial(i, z, 0.0, origin, JointModel::pins, 1.0);
-    for (const FailureMode& mode : found.modes) {
-      for (const ModeNode& moved : mode) {
-        for (const int node : {at.frame.nodes[0], at.frame.nodes[1]}) {
-          if (node >= 0 && model.nodes[index(node)].name == moved.node) return true;
-        }
-      }
-    }
-    return false;
-  };
-  int named_one = -1;
-  for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
-    if (origin.statuses[index(i)] != JointStatus::open) continue;
-    if (named_one < 0) named_one = i;
-    if (!moves(i)) continue;
-    named_one = i;
-    break;
+/// Adds a note about those of the joints that no note of its kind has named.
+void Walker::note(NoteKind kind, double when, const std::vector<int>& joints, double value) {
+  Note made{kind, when, model.temperature_change(0, 1.0, when), {}, value};
+  for (const int i : joints) {
+    if (noted[kind].insert(i).second) made.joints.push_back(named(model, i));
   }
-  fields.joints.push_back(named(model, named_one));
-  fail_modes(std::move(fields), std::move(found));
+  if (made.joints.empty() && !joints.empty()) return;
+  path.notes.push_back(std::move(made));
+}
+
+/// Notes the joints without contact whose elements nothing holds.
+void Walker::note_slack(double when, const VectorXd& at, const Statuses& statuses) {
+  std::vector<int> open;
+  for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
+    if (statuses[index(i)] == JointStatus::open) open.push_back(i);
+  }
+  if (open.empty() || !mechanism(system, at, when, statuses, JointModel::friction)) return;
+  note(NoteKind::slack, when, open);
+}
+
+/// Notes joints that stick and share a constraint, if the last solve met such.
+void Walker::note_not_unique(double when) {
+  if (newton.regularisation() != Regularisation::reactions) return;
+  note(NoteKind::not_unique, when, newton.dependent_joints());
 }
 
 void Walker::open_clearances() {
@@ -134,10 +164,6 @@ void Walker::open_clearances() {
     const bool touches = seat(i, z, 0.0, 1.0).touches;
     origin.statuses[index(i)] = touches ? JointStatus::slip_plus : JointStatus::open;
   }
-  if (std::any_of(with_play.begin(), with_play.end(), opens)) {
-    FoundModes modes = mechanism(system, z, 0.0, origin.statuses, JointModel::pins);
-    if (modes) refuse_undetermined(FailureKind::unloaded_joint, std::move(modes));
-  }
   // The clearances open little by little, each time from the last equilibrium, because the links
   // turn as they open; farther where that goes well.
   double opened = 0.0;
@@ -149,7 +175,8 @@ void Walker::open_clearances() {
     for (const int i : with_play) {
       if (!opens(i)) system.apply(i, seat(i, z, opened, next), trial);
     }
-    const StepStart begin = system.begin(trial, 0.0, trial_statuses, next);
+    StepStart begin = system.begin(trial, 0.0, trial_statuses, next);
+    begin.slack_stiffness = system.slack_stiffness();
     const SolveReport report = newton.solve(0.0, begin, JointModel::frictionless, next,
                                             options.most_iterations, trial, trial_statuses);
     note(report);
@@ -166,12 +193,7 @@ void Walker::open_clearances() {
     }
     share *= 0.5;
     if (share < 1e-4) {
-      // Contacts that the last try took away may be what it fails for.
       origin.statuses = trial_statuses;
-      if (std::any_of(with_play.begin(), with_play.end(), opens)) {
-        FoundModes modes = mechanism(system, z, 0.0, origin.statuses, JointModel::frictionless);
-        if (modes) refuse_undetermined(FailureKind::no_contact, std::move(modes));
-      }
       fail(report, JointModel::frictionless, 0.0, "no equilibrium in contact at the start");
     }
   }
@@ -179,8 +201,7 @@ void Walker::open_clearances() {
     if (!opens(i)) origin.statuses[index(i)] = joint(i, [](const auto& one) { return one.rest(); });
   }
   if (std::none_of(with_play.begin(), with_play.end(), opens)) return;
-  FoundModes modes = mechanism(system, z, 0.0, origin.statuses, JointModel::friction);
-  if (modes) refuse_undetermined(FailureKind::no_contact, std::move(modes));
+  note_slack(0.0, z, origin.statuses);
   refuse_buckled(0.0);
 }
 

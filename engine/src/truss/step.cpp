@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "condense.hpp"
+#include "rate_sets.hpp"
 
 namespace statejump::truss::detail {
 
@@ -25,7 +26,7 @@ constexpr double share_of_an_event = 0.02;
 bool Walker::slide_at_stake(int i, JointStatus before, double target,
                             const Rounding& rounding) const {
   if (before == JointStatus::open) return true;
-  double least = 1e3 * system.slide_rounding(i, z, time, origin, rounding);
+  double least = 10.0 * system.slide_rounding(i, z, time, origin, rounding);
   if (!options.locate_events) {
     least += options.event_tolerance * joint(i, [](const auto& one) { return one.least_slide(); });
   }
@@ -48,26 +49,32 @@ double Walker::first_edge(double target, const VectorXd& to, const StepStart& be
 }
 
 /// Whether energies balance over a step that leads to a state, or lose no less over shorter ones,
-/// which then is rounding. Half of what a path may lose is every step's by its share of the time;
-/// of the other half each may take a little, so that single events ask for no short steps.
-bool Walker::balances(const State& next, double step) {
+/// which then is rounding. What the dashpots of slack joints take is not lost. Half of what a path
+/// may lose is every step's by its share of the time; of the other half each may take a little, so
+/// that single events ask for no short steps.
+bool Walker::balances(const State& next, const VectorXd& to, double step, double taken) {
   const double duration = model.programs.front().duration();
   const double heat = next.joint_dissipation.sum();
   const double work = next.thermal_work - state.thermal_work;
   const double gained = work - (next.elastic_energy - state.elastic_energy) -
                         (next.load_potential - state.load_potential) -
-                        (heat - state.joint_dissipation.sum());
+                        (heat - state.joint_dissipation.sum()) - taken;
   largest_work = std::max(largest_work, std::abs(next.thermal_work));
   // At the start of a path its work is foreseen.
   const double scale = std::max(largest_work, std::abs(work) * duration / step);
   const double half = 0.5 * options.energy_tolerance * scale;
-  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() *
-                          (std::abs(next.elastic_energy) + std::abs(next.load_potential) +
-                           std::abs(next.thermal_work) + heat);
+  const double lost = std::abs(gained);
+  const double stored = std::abs(next.elastic_energy) + std::abs(next.load_potential) + heat;
+  // Of the energies, and of the work that rounding of the links' forces does on this step's way.
+  double rounding =
+      4.0 * std::numeric_limits<double>::epsilon() * (stored + std::abs(next.thermal_work)) +
+      system.force_rounding(to) * length_of(to - z, system.displacements()) *
+          std::sqrt(static_cast<double>(model.links.size()));
+  // Where parts expand freely all work is such, or of the chords that the way is made of.
+  if (stored < lost) rounding += system.force_rounding(to) * system.reach(to);
   const double by_time = half * step / duration;
   const double by_event = share_of_an_event * std::max(0.0, half - std::abs(energy_gained));
   const double allowed = std::max(by_time, by_event) + rounding;
-  const double lost = std::abs(gained);
   // The rules of work and heat lose the fourth power of a step, or more.
   const double longer = step * std::sqrt(std::sqrt(0.5 * allowed / std::max(lost, rounding)));
   const bool controlled =
@@ -150,7 +157,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
     return StepEnd::event_inside;
   }
   std::vector<Event> events;
-  std::vector<FailureJoint> opened;
+  bool opened = false;
   const int joints = static_cast<int>(model.joints.size());
   for (int i = 0; i < joints; ++i) {
     const JointStatus before = origin.statuses[index(i)];
@@ -158,7 +165,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
     if (before == after) continue;
     events.push_back(
         {target, target - time, model.temperature_change(0, 1.0, target), i, before, after});
-    if (after == JointStatus::open) opened.push_back(named(model, i));
+    opened = opened || after == JointStatus::open;
   }
   const int jumps = system.first_joint([&, moved = system.displacements(trial)](int i) {
     const Trial at = system.trial(i, trial, moved, target, begin, JointModel::friction, 1.0);
@@ -171,13 +178,6 @@ StepEnd Walker::step_to(double target, double tolerance) {
     }
     ++path.solves;
     return StepEnd::event_inside;
-  }
-  if (!opened.empty()) {
-    if (FoundModes modes = mechanism(system, trial, target, trial_statuses, JointModel::friction)) {
-      FailureFields fields = failure_at(FailureKind::opened_mechanism, model, target);
-      fields.joints = std::move(opened);
-      fail_modes(std::move(fields), std::move(modes));
-    }
   }
   // A smooth law has no event: what has begun or ceased to slide as a whole is told where it is
   // found, somewhere in the step.
@@ -230,11 +230,13 @@ StepEnd Walker::step_to(double target, double tolerance) {
   State next = state;
   system.account(way, halves, begin, after, slips, next);
   system.describe(trial, target, after, next);
-  if (!balances(next, way.step())) {
+  if (!balances(next, trial, way.step(), system.slack_work(trial, target, begin, trial_statuses))) {
     ++path.solves;
     return StepEnd::imprecise;
   }
   note(report);
+  if (opened) note_slack(target, trial, trial_statuses);
+  note_not_unique(target);
   const std::vector<double>& asked = options.problem_times;
   if (path.problems.size() < asked.size() && target >= asked[path.problems.size()]) {
     path.problems.push_back(local_problem(system, trial, target, begin, trial_statuses));

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace statejump::truss::detail {
@@ -54,8 +55,48 @@ System::System(const Model& model) : model_(&model) {
   for (const AxialSpring& spring : model.springs) {
     stiffness_scale_ = std::max(stiffness_scale_, spring.stiffness);
   }
+  path_scale_ = prescribed_displacement();
   regions_ = regions_of(model, frames_);
   pattern_ = recorded(Parts::all);
+}
+
+double System::prescribed_displacement() const {
+  const Model& model = *model_;
+  std::vector<double> hottest;  // largest |ΔT| of each program [K]
+  for (int i = 0; i < static_cast<int>(model.programs.size()); ++i) {
+    hottest.push_back(std::max(-model.lowest_strain(i, 1.0), -model.lowest_strain(i, -1.0)));
+  }
+  double strain = 0.0;
+  double force = 0.0;
+  const auto drawn_length = [&](const auto& part) {
+    return (drawn(part.second) - drawn(part.first)).norm();
+  };
+  for (const Link& link : model.links) {
+    strain = std::max(strain, std::abs(link.thermal_expansion * link.temperature_fraction) *
+                                  hottest[index(link.program)]);
+    const double misfit = std::abs(drawn_length(link) - link.stress_free_length);
+    force = std::max(force, link.axial_stiffness / link.stress_free_length * misfit);
+  }
+  for (const AxialSpring& spring : model.springs) {
+    force = std::max(force, spring.stiffness * std::abs(drawn_length(spring) - spring.free_length));
+  }
+  for (const TorsionSpring& spring : model.torsion_springs) {
+    const double arm = drawn_length(model.links[index(spring.first_link)]);
+    force = std::max(force, spring.stiffness * std::abs(spring.free_angle) / arm);
+  }
+  for (const Node& node : model.nodes) force = std::max(force, node.load.norm());
+  const double by_force = stiffness_scale_ > 0.0 ? force / stiffness_scale_ : 0.0;
+  return std::max(strain * size_, by_force);
+}
+
+double System::reach(const VectorXd& z) const {
+  const double largest =
+      displacements_ == 0 ? 0.0 : z.head(displacements_).lpNorm<Eigen::Infinity>();
+  return std::clamp(largest, path_scale_, std::max(size_, path_scale_));
+}
+
+double System::force_rounding(const VectorXd& z) const {
+  return 64.0 * std::numeric_limits<double>::epsilon() * stiffness_scale_ * reach(z);
 }
 
 Vector3d System::displacement(int node, const VectorXd& z) const {
@@ -109,6 +150,7 @@ Trial asked(const std::vector<Vector3d>& drawn, const JointFrame& frame, const d
     trial.owed = start.owed.col(joint) + start.foreseen(joint, time);
     trial.owed_rate = start.foreseen_rate(joint, time);
   }
+  trial.slack_stiffness = start.slack_stiffness;
   for (std::size_t k = 0; k < most_joint_nodes; ++k) {
     const int node = frame.nodes[k];
     if (node < 0) {
@@ -165,7 +207,7 @@ JointStatus System::decide(int joint, Trial& at, JointStatus status,
 
 StepStart System::begin(const VectorXd& z, double time, const Statuses& statuses,
                         double opening) const {
-  StepStart start{statuses, VectorXd::Zero(history_), time, {}, {}, 0.0};
+  StepStart start{statuses, VectorXd::Zero(history_), time, {}, {}, 0.0, 0.0};
   StepStart made = start;
   const Eigen::Matrix3Xd moved = displacements(z);
   each_joint([&](int i) {
@@ -179,7 +221,7 @@ StepStart System::begin(const VectorXd& z, double time, const Statuses& statuses
 
 StepStart System::commit(const VectorXd& z, double time, const Statuses& statuses,
                          const StepStart& last) const {
-  StepStart made{statuses, VectorXd(history_), time, {}, {}, 0.0};
+  StepStart made{statuses, VectorXd(history_), time, {}, {}, 0.0, last.slack_stiffness};
   const Eigen::Matrix3Xd moved = displacements(z);
   each_joint([&](int i) {
     const Trial at = trial(i, z, moved, time, last, JointModel::friction, 1.0);
@@ -216,9 +258,7 @@ void System::settle(const VectorXd& z, double time, const StepStart& start,
 }
 
 Rounding System::rounding(const VectorXd& z) const {
-  const double reach = displacements_ == 0 ? 0.0 : z.head(displacements_).lpNorm<Eigen::Infinity>();
-  const double length = 4.0 * std::numeric_limits<double>::epsilon() * reach;
-  return {length, 16.0 * stiffness_scale_ * length};
+  return {closure_tolerance * reach(z), force_rounding(z)};
 }
 
 double System::slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start,
@@ -242,6 +282,23 @@ Vector3d System::lag(int joint, const VectorXd& z, double time, const StepStart&
         return Vector3d::Zero();
       },
       model_->joints[index(joint)]);
+}
+
+double System::slack_work(const VectorXd& z, double time, const StepStart& start,
+                          const Statuses& statuses) const {
+  double work = 0.0;
+  for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
+    if (statuses[index(i)] != JointStatus::open) continue;
+    const Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.slack_motion(at); }) {
+            work += start.slack_stiffness * one.slack_motion(at).squaredNorm();
+          }
+        },
+        model_->joints[index(i)]);
+  }
+  return work;
 }
 
 void System::apply(int joint, const Seat& seat, VectorXd& z) const {

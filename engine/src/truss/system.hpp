@@ -37,6 +37,8 @@ struct StepStart {
   Eigen::Matrix3Xd owed;   ///< Slide that the steps before left over [m].
   Eigen::Matrix3Xd lost;   ///< What the rule of the slide left over in the last step [m].
   double last_step = 0.0;  ///< Its duration [s].
+  /// Of joints that are open [N/m], see System::slack_stiffness(); kept from step to step.
+  double slack_stiffness = 0.0;
 
   /// What the rule is going to leave in a step to a time [m]: it grows with the third power of the
   /// step, but of no longer step than the last one is it known.
@@ -50,6 +52,10 @@ struct StepStart {
     return 3.0 / (to - time) * foreseen(joint, to);
   }
 };
+
+/// Closures close to this share of System::reach(): some hundred roundings of it. What is less than
+/// that far from the bound of an inequality is not told from it.
+constexpr double closure_tolerance = 1e-13;
 
 /// What rounding may make of lengths [m] and forces [N].
 struct Rounding {
@@ -201,6 +207,10 @@ class System {
   /// @param now the state at z as the start of the next step
   void describe(const VectorXd& z, double time, const StepStart& now, State& state) const;
 
+  /// Work that the dashpots of slack joints take in a step [J].
+  double slack_work(const VectorXd& z, double time, const StepStart& start,
+                    const Statuses& statuses) const;
+
   /// A joint at z, as its type is asked about it.
   Trial trial(int joint, const VectorXd& z, double time, const StepStart& start, JointModel joints,
               double opening) const;
@@ -225,10 +235,38 @@ class System {
   /// mechanisms and instability; free displacements only, the lower triangle. A joint listed as
   /// open or slipping does not hold there.
   /// @param held stiffness of a direction that a joint holds, in that of the stiffest part
+  /// @param slack stiffness of a joint that is open [N/m]
   Eigen::SparseMatrix<double> joined_stiffness(const VectorXd& z, double time,
                                                const Statuses& statuses, JointModel joints,
-                                               double held) const;
-  /// Rounding of a displacement at z, and of the forces that come of it.
+                                               double held, double slack) const;
+  /// Displacement by which rounding at z is measured [m]: the largest one, but not below
+  /// path_scale() nor above the size of the truss. Both bounds matter: a truss that comes back to
+  /// its reference configuration has no displacement and no force, but the rounding of the path
+  /// that led there; and where an iteration runs away, its distance excuses no residual.
+  double reach(const VectorXd& z) const;
+  /// Displacement that the model prescribes before anything is solved [m]: the largest thermal
+  /// strain of a program times the size of the truss, or the largest force of a load, a spring or a
+  /// misfit over the stiffness of the stiffest part, whichever is larger.
+  double path_scale() const { return path_scale_; }
+  /// Stiffness that holds a joint without contact against its motion in a step [N/m].
+  ///
+  /// Statics does not determine where an element hangs whose joint is open: it is slack. Dashpots
+  /// in the pins choose: over a step Δt they are springs c/Δt on the motion since its start. As c
+  /// goes to zero no force is left, and the element goes to the admissible position nearest to the
+  /// last one: a proximal point step (R. T. Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898).
+  /// A stiffness of 1e-8 of the stiffest element is that limit in floating point: forces are below
+  /// 1e-8 of what a motion by the play would ask of that element, and what rounding leaves of the
+  /// forces moves a slack element by less than 1e-6 of the largest displacement.
+  double slack_stiffness() const { return 1e-8 * stiffness_scale_; }
+  /// What rounding at z leaves of the forces at a node [N]: some 64 terms are added up there, each
+  /// of a stiffness times a displacement.
+  double force_rounding(const VectorXd& z) const;
+  /// Rounding of a displacement at z [m].
+  double length_rounding(const VectorXd& z) const {
+    return 4.0 * std::numeric_limits<double>::epsilon() * reach(z);
+  }
+  /// What equations that count as solved leave undecided at z: of a displacement, see
+  /// closure_tolerance, and of the forces that come of its rounding.
   Rounding rounding(const VectorXd& z) const;
   /// Rounding of a joint's slide less what friction bends [m].
   /// @param by rounding(z), which reads all of z and so is asked for once for many joints
@@ -272,6 +310,7 @@ class System {
   void assemble_bars(const Region& region, const std::vector<double>& changes,
                      AssemblyStrand& to) const;
   Assembly recorded(Parts parts) const;
+  double prescribed_displacement() const;
   Lengths lengths_between(int from, int to, const VectorXd& z) const;
   Lengths lengths_between(int from, int to, const Eigen::Matrix3Xd& moved) const {
     return lengths(drawn(to) - drawn(from), moved.col(to) - moved.col(from));
@@ -305,6 +344,7 @@ class System {
   bool slips_smoothly_ = false;
   double stiffness_scale_ = 0.0;
   double size_ = 0.0;
+  double path_scale_ = 0.0;
   std::vector<Vector3d> drawn_;            // of each node; the model's lie far apart in memory
   std::vector<JointWriter::Place> place_;  // of each node, then that of the ground
   std::vector<JointFrame> frames_;

@@ -36,7 +36,8 @@ double Walker::turn_of_slip(int i, const Ends& ends, const Rounding& by) const {
   const Cubic slide{0.0, sense * ends.slips[i],
                     slipped ? std::max(0.0, sense * step * ends.from_slide_rate[i]) : 0.0,
                     sense * step * ends.to_slide_rate[i]};
-  const double rounding = system.slide_rounding(i, ends.to, ends.to_time, ends.start, by);
+  // What slides back by less is not told from rest, see slide_at_stake().
+  const double rounding = 10.0 * system.slide_rounding(i, ends.to, ends.to_time, ends.start, by);
   if (slide.last_rate < -rounding) return slipped ? slide.turn(1.0) : 0.5;
   const auto slowest = slide.slowest();
   if (slipped && slowest && slide.rate(*slowest) < -rounding) return slide.turn(*slowest);

@@ -3,6 +3,9 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <map>
+#include <optional>
+#include <set>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -41,6 +44,14 @@ struct Ends {
   const VectorXd& slips;
 };
 
+/// Where loads that are followed from none lead on no farther.
+struct Stall {
+  double fraction;     ///< Of the loads that is carried.
+  SolveReport report;  ///< Of the last try beyond, and where it ended:
+  Statuses statuses;
+  VectorXd z;
+};
+
 /// Equilibrium being followed.
 struct Walker {
   const Model& model;
@@ -49,6 +60,8 @@ struct Walker {
   Newton newton;
   RateProblem rates;
   Path path = {};
+  /// Joints that a note of each kind has named.
+  std::map<NoteKind, std::set<int>> noted = {};
   VectorXd z = {};
   StepStart origin = {};  ///< The state as the start of the next step.
   State state = {};
@@ -73,8 +86,14 @@ struct Walker {
                          const char* sought);
   void note(const SolveReport& report);
   void start();
+  std::optional<Stall> follow_loads();
+  bool is_near(const VectorXd& moved) const;
+  [[noreturn]] void refuse_overload(const Stall& at);
+  std::vector<FailureJoint> slipping(const Statuses& statuses) const;
   void open_clearances();
-  [[noreturn]] void refuse_undetermined(FailureKind kind, FoundModes found) const;
+  void note(NoteKind kind, double when, const std::vector<int>& joints, double value = 0.0);
+  void note_slack(double when, const VectorXd& at, const Statuses& statuses);
+  void note_not_unique(double when);
   void refuse_mechanism(double when, const Statuses& statuses, JointModel joints) const;
   void refuse_buckled(double when);
   StepEnd step_to(double target, double tolerance);
@@ -90,7 +109,7 @@ struct Walker {
   bool slide_at_stake(int joint, JointStatus before, double target, const Rounding& rounding) const;
   double first_edge(double target, const VectorXd& to, const StepStart& begin,
                     const Rounding& rounding) const;
-  bool balances(const State& next, double step);
+  bool balances(const State& next, const VectorXd& to, double step, double taken);
   double first_turn(const Ends& ends) const;
   double turn_of_slip(int joint, const Ends& ends, const Rounding& rounding) const;
   double turn_of_stick(int joint, const Ends& ends, const Rounding& rounding) const;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "statejump/failure.hpp"
 #include "statejump/truss/local_problem.hpp"
 #include "statejump/truss/model.hpp"
 
@@ -63,6 +64,24 @@ struct State {
   double load_potential = 0.0;        ///< −Σ load · displacement [J].
 };
 
+/// What a path found that a user has to know and that is no failure.
+enum class NoteKind : unsigned char {
+  large_start,  ///< The first equilibrium is far from the reference configuration: `value` [m].
+  slack,      ///< Joints without contact: where their elements hang in the play is not determined.
+  not_unique  ///< Joints that stick constrain a displacement more than once: one of many reactions.
+};
+
+/// "large_start", …: the enumerator's name.
+const char* to_string(NoteKind kind);
+
+struct Note {
+  NoteKind kind;
+  double time;                       ///< [s]
+  double temperature_change;         ///< ΔT of the first program [K].
+  std::vector<FailureJoint> joints;  ///< Those that it is about.
+  double value = 0.0;                ///< See NoteKind.
+};
+
 /// What a type of joint has at a state, by the key that its outputs() give it: one number or three.
 /// @throws std::out_of_range if the joint has no such output
 Eigen::VectorXd output(const Model& model, const State& state, int joint, std::string_view key);
@@ -73,6 +92,7 @@ struct Path {
   std::vector<State> cycle_ends;  ///< Start and end of every cycle.
   std::vector<Event> events;
   std::vector<LocalProblem> problems;  ///< At Options::problem_times.
+  std::vector<Note> notes;             ///< Each joint is named once for each kind.
   bool complete = true;                ///< False if Options::progress ended it.
   long solves = 0;                     ///< Newton solves.
   long factorizations = 0;
@@ -121,12 +141,20 @@ struct Path {
 /// **Start.** The drawn shape need not be in equilibrium: it is first relaxed at ΔT = 0 with
 /// bilateral pins in place of clearance revolutes; their pin forces say where each journal touches;
 /// then the clearances open with frictionless contacts. There friction begins, without force. A
-/// journal that no pin force pushes, or whose contact force vanishes on the way, starts open, if
-/// the tangent stiffness without it is regular: springs, loads and bars then determine its place.
+/// journal that no pin force pushes, or whose contact force vanishes on the way, starts open:
+/// springs, loads and bars determine its position, or it is slack.
+///
+/// Where the whole load leads nowhere near in one step, or to an unstable equilibrium, it is
+/// followed from none in steps that stay near (truss/loading.cpp). A start that moves the truss by
+/// more than a twentieth of its size is noted.
+///
+/// **Slack elements.** An element that hangs in the play of its joints carries nothing, and nothing
+/// depends on where it is. It stays at the admissible position nearest to its last one, as with
+/// vanishing dashpots in its pins (truss/system.hpp), until its clearance closes.
 ///
 /// Throws std::invalid_argument for a model or option out of range. Throws std::runtime_error that
-/// names joint or nodes and the temperature: for a mechanism (with its free modes), also one that a
-/// joint makes that opens, or that is open at the start; for an equilibrium of the start or at a
+/// names joint or nodes and the temperature: for a mechanism (with its free modes); for loads that
+/// need more friction at the start than a joint has; for an equilibrium of the start or at a
 /// corner of the programs that is unstable though every closed joint is held (buckled, with the
 /// modes); for a revolute that jumps across its play; where slip runs away or the path parts; where
 /// equilibrium is not found; and for a joint whose status changes without end.

@@ -202,6 +202,17 @@ void BallJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& wr
   const Response made = respond(*this, trial, status);
   if (partial_slip) writer.piece(made.piece);
   for (int k = 0; k < 3; ++k) writer.carries(trial.force[index(k)]);
+  // A contact that carries nothing holds nothing across its normal.
+  const bool sticks = status == JointStatus::stick && trial.model == JointModel::friction;
+  const bool holds =
+      trial.model == JointModel::pins || sticks ||
+      state_of(*this, trial).normal_force >= trial.slack_stiffness * radial_clearance;
+  const double slack = status == JointStatus::open || !holds ? trial.slack_stiffness : 0.0;
+  if (slack > 0.0) {
+    const Vector3d moved = trial.between(socket, ball) - BallMemory::of(trial.history).offset;
+    writer.force(ball, slack * moved);
+    writer.force(socket, -slack * moved);
+  }
   for (std::size_t a = 0; a < most_joint_nodes; ++a) {
     const Vector<Dual>& force = made.force[a];
     writer.force(a, {force[0].value(), force[1].value(), force[2].value()});
@@ -214,6 +225,8 @@ void BallJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& wr
     for (std::size_t b = 0; b < most_joint_nodes; ++b) {
       Matrix3d block;
       for (int i = 0; i < 3; ++i) block.row(i) = gradient(force[i], b);
+      const bool both = a <= socket && b <= socket;
+      if (both) block.diagonal().array() += a == b ? slack : -slack;
       writer.block(a, b, block);
     }
   }
@@ -247,6 +260,10 @@ void BallJoint::warm(const Trial& trial, JointStatus status, double temperature_
     const Dual row = trial.unslipped && k == slide_row ? slipped(*this, trial) : made.row[k];
     writer.closure(k, rate(row) + trial.frame.axes.col(k).dot(foreseen));
   }
+}
+
+Eigen::Vector3d BallJoint::slack_motion(const Trial& trial) const {
+  return trial.between(socket, ball) - BallMemory::of(trial.history).offset;
 }
 
 JointStatus BallJoint::decide(const Trial& trial, JointStatus status) const {

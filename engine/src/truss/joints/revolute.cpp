@@ -234,6 +234,18 @@ void pinned(Gradients& of) {
   }
 }
 
+/// Holds journal and bearing together where nothing else does, see System::slack_stiffness().
+/// @returns the force on the journal [N]
+Vector2d hold_slack(const Trial& trial, const Vector2d& eccentricity, Gradients& of) {
+  if (trial.slack_stiffness == 0.0) return Vector2d::Zero();
+  for (const std::size_t at : {journal, bearing}) {
+    for (const std::size_t by : {journal, bearing}) {
+      of.bend(at, by, (at == by ? 1.0 : -1.0) * trial.slack_stiffness * Matrix2d::Identity());
+    }
+  }
+  return trial.slack_stiffness * (eccentricity - Memory::of(trial.history).eccentricity);
+}
+
 /// @param motion that of the step if the slide's derivative is asked, else nothing
 /// @param bends whether the second derivatives are asked
 void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geometry& g,
@@ -391,8 +403,10 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
   double slides = 0.0;  // derivative of the second row by the slide
   const bool bends = !writer.residual_only();
   Gradients of;
+  Vector2d slack = Vector2d::Zero();
   if (status == JointStatus::open) {
-    // Without forces; the journal may be in the middle, where no normal is defined.
+    // Without contact forces; the journal may be in the middle, where no normal is defined.
+    slack = hold_slack(trial, g.eccentricity, of);
     writer.balance(0, normal);
     writer.balance(1, friction);
     corner[0][0] = corner[1][1] = 1.0;
@@ -436,12 +450,18 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
       writer.balance(1, friction - sense * mu * normal);
       corner[1][0] = -sense * mu;
       corner[1][1] = 1.0;
+      // A contact that carries nothing holds nothing across its normal.
+      if (normal < trial.slack_stiffness * g.clearance) {
+        slack = hold_slack(trial, g.eccentricity, of);
+      }
     }
   }
   PlanarWriter planar(writer, plane_of(trial));
   for (std::size_t a = 0; a < 4; ++a) {
     planar.force(a, normal * of.normal[a] + friction * of.friction[a]);
   }
+  planar.force(journal, slack);
+  planar.force(bearing, -slack);
   for (std::size_t a = 0; a < 4 && bends; ++a) {
     planar.column(a, 0, of.normal[a]);
     planar.column(a, 1, of.friction[a]);
@@ -508,6 +528,11 @@ double lag_at(const ClearanceRevolute& joint, const Trial& trial, const Geometry
 }
 
 }  // namespace
+
+Eigen::Vector3d ClearanceRevolute::slack_motion(const Trial& trial) const {
+  return plane_of(trial) *
+         (geometry_of(*this, trial).eccentricity - Memory::of(trial.history).eccentricity);
+}
 
 JointStatus ClearanceRevolute::decide(const Trial& trial, JointStatus status) const {
   if (trial.model == JointModel::pins) return status;

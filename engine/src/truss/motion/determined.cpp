@@ -24,7 +24,7 @@ std::vector<Stepper::Branch> Stepper::held_branches(const Trial& step, const Loc
   VectorXd z = z_;
   z.head(q_.size()) = step.q_middle;
   const double fastest = std::max(v_.cwiseAbs().maxCoeff(), step.v.cwiseAbs().maxCoeff());
-  const double rounding = allowance * fastest + system_->rounding(z).length / step.h;
+  const double rounding = allowance * fastest + system_->length_rounding(z) / step.h;
   const auto rests = [&](Eigen::Index row, double at) {
     return std::abs(local.directions.col(row).dot(step.v) + at) <= rounding;
   };

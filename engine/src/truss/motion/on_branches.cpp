@@ -158,7 +158,7 @@ std::optional<int> Stepper::iterate(OnBranches& on, Trial& step, Local& local, T
   const Eigen::Index held = holds_.cols();
   VectorXd z = z_;
   z.head(n) = step.q_middle;
-  const double drift = system_->rounding(z).length / step.h;
+  const double drift = system_->length_rounding(z) / step.h;
   step.held = VectorXd::Zero(held);
   double last = 0.0;
   Lack lack = lack_of(on, step, local, drift);

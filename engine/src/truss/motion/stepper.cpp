@@ -225,10 +225,10 @@ bool Stepper::balanced(const Trial& step, const VectorXd& residual, const Vector
   if (held.size() > 0) left += holds_ * held;
   VectorXd z = z_;
   z.head(step.q.size()) = step.q;
-  const double bound = balance * largest + step.h * system_->rounding(z).force;
+  const double bound = balance * largest + step.h * system_->force_rounding(z);
   if (!(left.cwiseAbs().maxCoeff() <= bound)) return false;
   // Elastic contacts are on their law, not only on its tangent.
-  if (contacts_.slip_in_part() && !on_rings(step, local, system_->rounding(z).length / step.h)) {
+  if (contacts_.slip_in_part() && !on_rings(step, local, system_->length_rounding(z) / step.h)) {
     return false;
   }
   for (std::size_t i = 0; i < local.contacts.size(); ++i) {
@@ -269,7 +269,7 @@ std::optional<Stepper::Local> Stepper::find(Trial& step, bool give_up) {
   evaluate_contacts(step.q_middle, step.to);
   VectorXd middle = z_;
   middle.head(q_.size()) = step.q_middle;
-  contacts_.measure(middle, step.to, origin_, joints_.residual, system_->rounding(middle).length);
+  contacts_.measure(middle, step.to, origin_, joints_.residual, system_->length_rounding(middle));
   Local local = local_problem(step);
   for (int turns = 0; turn_balls(step, turns, local); ++turns) {
     if (!contacts_.balls().empty()) local = local_problem(step);

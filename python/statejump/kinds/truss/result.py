@@ -12,7 +12,7 @@ from statejump.core.run import (
     AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Columns, Event, Events, Run, columns_of, numbers_of,
 )
 from statejump.core.units import unit_of
-from statejump.kinds.truss import compare, members
+from statejump.kinds.truss import compare, members, notes
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import Contacts, Sampled
@@ -242,7 +242,7 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
     beyond = members.warnings(path.truss.links, at, states["temperature_change_K"], states["axial_force_N"])
     if len(at) == len(path.cycle_ends["time_s"]):
         beyond = (*beyond, "of this long path the ends of cycles are kept: loads of links between them are not checked")
-    beyond = (*beyond, *_taken_together(case, path))
+    beyond = (*beyond, *_taken_together(case, path), *notes.sentences(path.truss, path.notes))
     run = _run(case, "reduced", plain, energy, items, lambda: _events(case, path), summary, native=path,
                warnings=beyond, sampler=lambda times: reduced_run(case, path, times))
     others = _heat_columns({key: sampled(values) for key, values in _heat_without_contact(states).items()})

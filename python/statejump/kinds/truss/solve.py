@@ -101,6 +101,7 @@ class TrussPath:
     problems: list[dict[str, Any]]  # frictional contact problems at the times that were asked for
     largest_force_residual: float
     largest_closure_residual_m: float
+    notes: list[dict[str, Any]]  # what is to be known of it and is no failure, as the engine's Path::notes
 
     @property
     def energy_residue_J(self) -> float:

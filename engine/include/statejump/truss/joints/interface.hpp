@@ -117,6 +117,9 @@ struct Trial {
   /// rate [m/s]: along its way, or a vector in the tangent plane.
   Eigen::Vector3d owed = Eigen::Vector3d::Zero();
   Eigen::Vector3d owed_rate = Eigen::Vector3d::Zero();
+  /// Stiffness of a joint that carries nothing against its motion since the start of the step
+  /// [N/m], see System::slack_stiffness(); 0: none.
+  double slack_stiffness = 0.0;
   /// What rounding may make of a length [m] and of a force [N]; 0 where inequalities are strict.
   double length_rounding = 0.0;
   double force_rounding = 0.0;

@@ -60,6 +60,8 @@ struct ClearanceRevolute {
   void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
   void warm(const Trial& trial, JointStatus status, double temperature_rate,
             JointWriter& writer) const;
+  /// Motion since the start of the step of a joint that is open [m].
+  Eigen::Vector3d slack_motion(const Trial& trial) const;
   JointStatus decide(const Trial& trial, JointStatus status) const;
   void begin(const Trial& trial, JointStatus status, double* now) const;
   void commit(const Trial& trial, JointStatus status, double* after) const;

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "rate_sets.hpp"
+#include "walker.hpp"
+
+namespace statejump::truss::detail {
+
+namespace {
+
+/// Displacement that counts as near, in the size of the truss: a deployed structure whose loads
+/// move it farther than that in one step is not the one that was drawn.
+constexpr double near_share = 0.05;
+/// Smallest step of the load fraction: what holds up to it is known to six digits.
+constexpr double least_step = 1e-6;
+/// Stiffness of a displacement that only friction at its bound resists, in that of the stiffest
+/// element: it decides how far one iteration goes, not where they end.
+constexpr double proximal_share = 1e-6;
+
+/// The truss with a fraction of its loads and misfits: with none it is free of stress as drawn.
+Model loaded(Model model, double fraction) {
+  const auto drawn = [&](const auto& part) {
+    return (model.nodes[index(part.second)].position - model.nodes[index(part.first)].position)
+        .norm();
+  };
+  const auto towards = [fraction](double from, double to) { return from + fraction * (to - from); };
+  for (Node& node : model.nodes) node.load *= fraction;
+  for (Link& link : model.links) {
+    link.stress_free_length = towards(drawn(link), link.stress_free_length);
+  }
+  for (AxialSpring& spring : model.springs) {
+    // A slack cable has no force to begin with.
+    if (spring.cable && spring.free_length > drawn(spring)) continue;
+    spring.free_length = towards(drawn(spring), spring.free_length);
+  }
+  for (TorsionSpring& spring : model.torsion_springs) spring.free_angle *= fraction;
+  return model;
+}
+
+}  // namespace
+
+/// Whether displacements are small beside the truss.
+bool Walker::is_near(const VectorXd& moved) const {
+  const double farthest = length_of(moved, system.displacements());
+  return system.size() == 0.0 || farthest <= near_share * system.size();
+}
+
+/// Follows loads and misfits from none to the whole in steps that stay near, each from the last
+/// equilibrium. A joint whose friction is exhausted slides to the next equilibrium if that is near:
+/// to a stop, to where another element carries.
+/// @returns where no step leads on; nothing if the whole load is reached or the path was stopped
+std::optional<Stall> Walker::follow_loads() {
+  z = VectorXd::Zero(system.unknowns());
+  origin.statuses = system.all_stick();
+  StepStart begin = system.begin(z, 0.0, origin.statuses, 1.0);
+  double reached = 0.0;
+  double step = 1.0;
+  while (reached < 1.0) {
+    const double next = std::min(1.0, reached + step);
+    const Model part = loaded(model, next);
+    const System there(part);
+    Newton solver(there, options.locate_events, newton.progress());
+    solver.regularise_displacements(proximal_share * system.stiffness_scale());
+    VectorXd trial = z;
+    Statuses statuses = origin.statuses;
+    const SolveReport report =
+        solver.solve(0.0, begin, JointModel::pins, 1.0, options.most_iterations, trial, statuses);
+    note(report);
+    if (report.end == SolveEnd::stopped) {
+      path.complete = false;
+      return std::nullopt;
+    }
+    const bool found = report.end == SolveEnd::converged && is_near(trial - z) &&
+                       solver.regularisation() != Regularisation::displacements &&
+                       solver.stability_index() >= 0;
+    if (found) {
+      begin = there.commit(trial, 0.0, statuses, begin);
+      z = std::move(trial);
+      origin.statuses = std::move(statuses);
+      step = 2.0 * (next - reached);
+      reached = next;
+      continue;
+    }
+    step = 0.5 * (next - reached);
+    if (step < least_step) return Stall{reached, report, statuses, trial};
+  }
+  // The factors of the whole load, for what is asked next.
+  const SolveReport last =
+      newton.solve(0.0, begin, JointModel::pins, 1.0, options.most_iterations, z, origin.statuses);
+  note(last);
+  if (last.end == SolveEnd::converged) return std::nullopt;
+  return Stall{1.0, last, origin.statuses, z};
+}
+
+/// Names what ends the way of the loads: buckling, or the joints that slip there or beyond.
+void Walker::refuse_overload(const Stall& at) {
+  std::set<int> exhausted(at.report.joints.begin(), at.report.joints.end());
+  Statuses beyond = at.statuses;
+  system.settle(at.z, 0.0, system.begin(z, 0.0, origin.statuses, 1.0), beyond);
+  for (int i = 0; i < static_cast<int>(beyond.size()); ++i) {
+    if (is_slip(origin.statuses[index(i)]) || is_slip(beyond[index(i)])) exhausted.insert(i);
+  }
+  if (at.report.end == SolveEnd::converged || exhausted.empty()) {
+    z = at.z;
+    origin.statuses = at.statuses;
+    refuse_buckled(0.0);
+  }
+  if (exhausted.empty())
+    fail(at.report, JointModel::pins, 0.0, "no equilibrium of the drawn shape");
+  FailureFields fields = failure_at(FailureKind::overloaded, model, 0.0);
+  for (const int i : exhausted) fields.joints.push_back(named(model, i));
+  fields.numbers = {{"load_fraction", at.fraction}};
+  throw Failure(std::move(fields));
+}
+
+}  // namespace statejump::truss::detail

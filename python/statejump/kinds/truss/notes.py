@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Notes of a quasi-static path as sentences: what a user has to know of a run that did not fail."""
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from statejump.kinds.truss.resolved import ResolvedTruss
+
+MOST_NAMED = 8  # joints that a sentence names; of more it gives the number
+
+
+def sentences(truss: ResolvedTruss, notes: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
+    """Return the notes of a path, as its ``notes`` has them, in their order."""
+    return tuple(_sentence(truss, note) for note in notes)
+
+
+def _sentence(truss: ResolvedTruss, note: Mapping[str, Any]) -> str:
+    at = f"at a temperature change of {note['temperature_change_K']:.9g} K (t = {note['time_s']:.9g} s)"
+    if note["kind"] == "large_start":
+        size_m = float(np.ptp(truss.nodes.position_m, axis=0).max())
+        return (f"the loads move the structure by {note['value']:.3g} m at the start, {note['value'] / size_m:.1%} of its "
+                "size: the path belongs to that configuration, not to the drawn one")
+    if note["kind"] == "slack":
+        return (f"{_named(note['joints'])}: no contact {at}; the element carries no force and keeps its position in the "
+                "play until the clearance closes")
+    return (f"{_named(note['joints'])}: constrain a displacement more than once {at}; the reactions are one solution of "
+            "many, the displacements are unique")
+
+
+def _named(joints: Sequence[tuple[str, str]]) -> str:
+    named = ", ".join(f"{kind} {name!r}" for kind, name in joints[:MOST_NAMED])
+    return named if len(joints) <= MOST_NAMED else f"{named} and {len(joints) - MOST_NAMED} more"
