@@ -105,16 +105,19 @@ def table(*cards: Card | Iterator[Card]) -> dict[str, Card]:
 
 def markdown(cards: Mapping[str, Card], heading: Sequence[str]) -> list[str]:
     """Return tables of the documentation: cards that are used with their fields, then the others by reason."""
-    lines = [f"| {heading[0]} | becomes | used | no influence | not supported |", "|---|---|---|---|---|"]
-    for card in sorted(cards.values(), key=lambda one: one.name):
-        if card.use != USED:
-            continue
+    taken = sorted((card for card in cards.values() if card.use == USED), key=lambda one: one.name)
+    fields = any(card.fields for card in taken)
+    shown = (USED, IDLE, REFUSED) if fields else ()
+    lines = [f"| {' | '.join([heading[0], 'becomes', *shown])} |", "|---" * (2 + len(shown)) + "|"]
+    for card in taken:
         cells = [_code(card.name), card.what + ("; needs `--beams-as-bars`" if card.bending else "")]
-        for use in (USED, IDLE, REFUSED):
+        for use in shown:
             cells.append("; ".join(_by_reason(field for field in card.fields
                                               if field.use == use and field.name != BLANK)))
         lines.append("| " + " | ".join(cells) + " |")
     for use in (IDLE, REFUSED):
+        if not any(card.use == use for card in cards.values()):
+            continue
         lines += ["", f"| {heading[0]}: {use} | reason |", "|---|---|"]
         reasons: dict[str, list[str]] = {}
         for card in cards.values():

@@ -29,7 +29,7 @@ def case_document(
     temperature_change_K: float | None = None, density_kg_per_m3: float | None = None,
     joints: Sequence[Mapping[str, str]] = (), sections: Mapping[str, Mapping[str, Any]] | None = None,
     reflector: tuple[Sequence[str], Sequence[float]] | None = None, links: Mapping[str, float] | None = None,
-    fixed: Sequence[tuple[str, str]] = (),
+    fixed: Sequence[tuple[str, str]] = (), check_ignored: bool = True,
 ) -> Document:
     """Return the case of a deck; what becomes of it is noted in the deck's account.
 
@@ -41,6 +41,7 @@ def case_document(
     :param reflector: nodes of a reflecting surface, names or patterns, and its axis
     :param links: keys of links whose number the deck does not say
     :param fixed: names or patterns of nodes, and the directions in which they are held too
+    :param check_ignored: whether an item of ``Options.ignored`` that the deck does not have is refused
     :raises StatejumpError: a link lacks a number, there is no such node
     """
     used = {end for bar in deck.bars for end in bar.nodes}
@@ -63,7 +64,8 @@ def case_document(
     }
     _springs(deck, made, units, dimension)
     deck.settle()
-    deck.check_waived()
+    if check_ignored:
+        deck.check_waived()
     if "thermal" in more and (deck.temperature or any(bar.temperature_change is not None for bar in deck.bars)):
         deck.leave("temperatures", "those of the members' histories are taken", 0)
     _hold(made, fixed, dimension)

@@ -43,6 +43,8 @@ def read(path: Path, options: Options | None = None) -> Deck:
     for block in taken:
         if block.name == "ELEMENT":
             mesh.check_type(model, block)
+        elif block.name in ("STEP", "STATIC", "END STEP"):
+            deck.take(f"*{block.name}", KEYWORDS[block.name.replace(" ", "_")].what)
     deck.settle()
     given = assembly.flat(model, taken)
     steps, own = _steps(given)

@@ -99,6 +99,9 @@ def cbush(reader: Reader, card: Card) -> None:
         reader.deck.refuse("PBUSH.K4-K6", "stiffness of rotations", found[0].line)
     first = reader.node(card, 2)
     second = reader.node(card, 3) if card[3] and card[3] != "0" else None
+    if second is None and not card[7] and any(card.fields[4:7]):
+        reader.deck.refuse(card.name, "a direction without CID of a spring to the ground", card.line)
+        return
     if card[7]:
         axes = reader.frame(card, 7).directions(reader.deck.nodes[first])
     elif second is None or reader.deck.nodes[first] == reader.deck.nodes[second]:

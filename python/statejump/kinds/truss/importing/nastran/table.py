@@ -56,9 +56,10 @@ CARDS: dict[str, Card] = table(
     used("PELAS", "stiffness of springs", "PID1 K1 GE1 S1 PID2 K2 GE2 S2",
          idle={"GE1 GE2": MATERIAL_DAMPING, "S1 S2": OUTPUT}),
     used("CBUSH", "springs along its line or to the ground", "EID PID GA GB GO/X1 X2 X3 CID S OCID S1 S2 S3",
-         idle={"S OCID S1 S2 S3": "place of the spring between nodes at one place or in line"}),
+         idle={"GO/X1 X2 X3": "the spring acts along its line",
+               "S OCID S1 S2 S3": "place of the spring between its nodes: they do not rotate"}),
     used("PBUSH", "stiffness of springs", "PID K Ki B GE RCV M", idle={"B GE": MATERIAL_DAMPING, "RCV": OUTPUT},
-         own=True),
+         refused={"M": "mass of a spring"}, own=True),
     used("CONM1", "mass of a node", "EID G CID M11 M21 M22 M31 M32 M33 M41 M42 M43 M44 M51 M52 M53 M54 M55 M61 M62 M63 "
          "M64 M65 M66", idle={"M44 M54 M55 M64 M65 M66": TURNS},
          refused={"M21 M31 M32 M41 M42 M43 M51 M52 M53 M61 M62 M63": "it couples directions"}),
