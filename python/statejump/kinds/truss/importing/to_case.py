@@ -113,7 +113,7 @@ def _springs(deck: Deck, made: Document, units: Units, dimension: int) -> None:
     places = np.array([node["position_m"] for node in made["node"]])
     size = float(np.ptp(places, axis=0).max()) or 1.0
     for spring in deck.springs:
-        name = f"K{spring.name}" if spring.name[0].isdecimal() else spring.name
+        name = _called("K", spring.name)
         ends = [node_name(spring.first)]
         if spring.second is not None:
             ends.append(node_name(spring.second))
@@ -131,8 +131,12 @@ def _ground(deck: Deck, spring: Spring, name: str, units: Units, length: float, 
 
 
 def node_name(name: str) -> str:
-    """Return how a node of a deck is called: numbers begin with N."""
-    return f"N{name}" if name.isdecimal() else name
+    """Return how a node of a deck is called: numbers begin with N, those of an instance with its name."""
+    return _called("N", name)
+
+
+def _called(letter: str, name: str) -> str:
+    return f"{letter}{name}" if name[0].isdecimal() else name.replace(".", "_")
 
 
 def _changes(deck: Deck, given: float | None) -> list[float]:
@@ -179,7 +183,7 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
                                  cause=bar.why_no_area if words[0] == "c" and bar.why_no_area else None,
                                  remedy=f"{OPTIONS[key]} gives all of them one")
     made: dict[str, Any] = {
-        "name": f"L{bar.name}" if bar.name.isdecimal() else bar.name,
+        "name": _called("L", bar.name),
         "nodes": [node_name(end) for end in bar.nodes],
         **numbers,
         "thermal_expansion_per_K": (given.get("thermal_expansion_per_K", 0.0) if bar.expansion is None

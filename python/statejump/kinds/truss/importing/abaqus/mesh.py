@@ -156,7 +156,7 @@ def _set(model: Model, block: Block, scope: Scope, nodes: bool) -> None:
         for word in words:
             other = model.group(nodes, word, of)
             if other is not None:
-                model.add(line, sets, name, list(other))
+                model.add(line, sets, name, other)
                 continue
             item = model.name(line, word, of)
             if item not in known:

@@ -65,8 +65,8 @@ class Model:
     """A deck while it is read."""
 
     deck: Deck
-    node_sets: dict[str, list[str]] = field(default_factory=dict)
-    element_sets: dict[str, list[str]] = field(default_factory=dict)
+    node_sets: dict[str, dict[str, None]] = field(default_factory=dict)
+    element_sets: dict[str, dict[str, None]] = field(default_factory=dict)
     elements: dict[str, Element] = field(default_factory=dict)
     materials: dict[str, Material] = field(default_factory=dict)
     material: Material | None = None
@@ -107,11 +107,11 @@ class Model:
             raise self.deck.fail(block.line, f"*{block.name} has no {key}=")
         return block.parameters[key]
 
-    def add(self, line: int, sets: dict[str, list[str]], name: str, items: Iterable[str]) -> None:
-        """Add items to a set."""
-        have = sets.setdefault(name, [])
+    def add(self, line: int, sets: dict[str, dict[str, None]], name: str, items: Iterable[str]) -> None:
+        """Add items to a set, each once."""
+        have = sets.setdefault(name, {})
         before = len(have)
-        have.extend(items)
+        have.update(dict.fromkeys(items))
         self.set_items += len(have) - before
         self.deck.room(line, self.set_items)
 
@@ -121,7 +121,7 @@ class Model:
         upper = word.upper()
         for name in (scope.prefix + upper, upper, upper.removeprefix("ASSEMBLY.")):
             if name in sets:
-                return sets[name]
+                return list(sets[name])
         if upper == ("NALL" if nodes else "EALL"):
             return list(self.deck.nodes) if nodes else list(self.elements)
         return None

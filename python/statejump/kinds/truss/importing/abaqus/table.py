@@ -21,10 +21,10 @@ KEYWORDS: dict[str, Card] = table(
     used("NGEN", "nodes in a line or an arc", "NSET LINE SYSTEM", refused={"SYSTEM": "coordinates of the extra point"}),
     used("NFILL", "nodes between two sets", "NSET BIAS TWO STEP SINGULAR",
          refused={"BIAS TWO STEP SINGULAR": "uneven distances"}),
-    used("NCOPY", "copied nodes", "CHANGE_NUMBER OLDSET NEWSET SHIFT MULTIPLE REFLECT POLE", refused={"REFLECT "
+    used("NCOPY", "copied nodes", "CHANGE_NUMBER OLD_SET NEW_SET SHIFT MULTIPLE REFLECT POLE", refused={"REFLECT "
          "POLE": "copies that are mirrored or projected"}),
     used("ELGEN", "links in rows", "ELSET ALLNODES", refused={"ALLNODES": "nodes with numbers of their own"}),
-    used("ELCOPY", "copied links", "ELEMENT_SHIFT OLDSET NEWSET SHIFT_NODES REFLECT",
+    used("ELCOPY", "copied links", "ELEMENT_SHIFT OLD_SET NEW_SET SHIFT_NODES REFLECT",
          refused={"REFLECT": "copies that are mirrored"}),
     used("ELEMENT", "link, spring or mass by its TYPE", "TYPE ELSET INPUT", refused={"INPUT": "a file of its own"}),
     used("NSET", "names", "NSET GENERATE ELSET INSTANCE UNSORTED INTERNAL", idle={"UNSORTED INTERNAL": "names only"}),

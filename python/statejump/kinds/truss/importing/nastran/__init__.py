@@ -9,8 +9,8 @@ from statejump.core.reading import finite_number
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED
 from statejump.kinds.truss.importing.model import BENDING, Deck, Options
 from statejump.kinds.truss.importing.nastran import control, elements, loads, nodes, properties
-from statejump.kinds.truss.importing.nastran.cards import Card, split
-from statejump.kinds.truss.importing.nastran.reader import BARE_EXPONENT, Reader
+from statejump.kinds.truss.importing.nastran.cards import BARE_EXPONENT, Card, split
+from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.nastran.table import CARDS, PARAMS
 
 # In the order in which they are read: each needs those before it.

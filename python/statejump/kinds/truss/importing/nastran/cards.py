@@ -17,6 +17,8 @@ NAME = re.compile(r"[A-Z][A-Z0-9]{0,7}$")
 # Files of meshers and of old courses have BEGIN_BULK and BEGING BULK.
 BEGIN_BULK = re.compile(r"\s*BEGIN(G?[\s_]+BULK\b|\s*$)", re.IGNORECASE)
 REPEAT = re.compile(r"=\(?(\d+)\)?$")
+# A number without the letter of its exponent: 7.+10, 2.3-5.
+BARE_EXPONENT = re.compile(r"([0-9.])([+-][0-9]+)$")
 INCLUDE = re.compile(r"\s*INCLUDE\s+(\S.*)$|\s*INCLUDE(['\"].*)$", re.IGNORECASE)
 
 
@@ -162,13 +164,18 @@ def _fields(deck: Deck, number: int, line: str) -> tuple[str, list[str], str]:
     if "," in line[:FREE_COMMA]:
         words = [word.strip() for word in line.split(",")]
         count = 4 if words[0].endswith("*") or words[0].startswith("*") else 8
-        if any(words[count + 2:]):
-            if not words[count + 1] or words[count + 1][0] in "+*":
-                raise deck.fail(number, f"a line of more than {count + 2} free fields")
-            return words[0], words[1:], ""  # continued without a line of its own
+        beyond = words[count + 1:]
+        if beyond and beyond[0] and beyond[0][0] not in "+*" and (any(beyond[1:]) or _is_number(beyond[0])):
+            return words[0], words[1:], ""  # continued without a line of its own: no mark is a number
+        if any(beyond[1:]):
+            raise deck.fail(number, f"a line of more than {count + 2} free fields")
         mark = words[count + 1] if len(words) > count + 1 else ""
         return words[0], (words[1:count + 1] + [""] * count)[:count], mark.strip(" +*")
     head = line[:SMALL].strip()
     width = LARGE if head.endswith("*") or head.startswith("*") else SMALL
     fields = [line[at:at + width].strip() for at in range(SMALL, DATA_END, width)]
     return head, fields, line[DATA_END:LINE_END].strip(" +*")
+
+
+def _is_number(text: str) -> bool:
+    return finite_number(BARE_EXPONENT.sub(r"\1e\2", text.lower().replace("d", "e"))) is not None

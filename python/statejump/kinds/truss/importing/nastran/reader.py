@@ -2,16 +2,12 @@
 """What the readers of cards share: numbers, nodes, sets, and what is known of the deck so far."""
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 
 from statejump.core.reading import finite_number
 from statejump.kinds.truss.importing.coordinates import Frame
 from statejump.kinds.truss.importing.model import Bar, Deck, quoted
-from statejump.kinds.truss.importing.nastran.cards import Card
-
-# A number without the letter of its exponent: 7.+10, 2.3-5.
-BARE_EXPONENT = re.compile(r"([0-9.])([+-][0-9]+)$")
+from statejump.kinds.truss.importing.nastran.cards import BARE_EXPONENT, Card
 
 
 @dataclass
