@@ -31,7 +31,7 @@ def difference(path: Path, step: int, ours: Mapping[str, np.ndarray], names: Map
     :param names: these names by numbers of the deck
     """
     if not step:
-        return "no step"
+        return "no static step"
     text = path.read_text(encoding="latin-1")
     with tempfile.TemporaryDirectory() as folder:
         for beside in path.parent.iterdir():

@@ -243,7 +243,9 @@ REFUSED = {
     "moment": ("2, 1, 7000.", "2, 4, 7000.", "*CLOAD is not supported: a moment"),
     "given displacement": ("2, 2, 3", "2, 2, 3, .1", "*BOUNDARY is not supported: a given displacement"),
     "pressure": ("*CLOAD\n2, 1, 7000.", "*DLOAD\nBARS, P1, 1.", "*DLOAD, P1 is not supported"),
-    "coefficients of a temperature": ("2.3e-5\n", "2.3e-5, 0.\n3e-5, 100.\n", "*EXPANSION is not supported: its numbers depend on"),
+    "coefficients of temperature and direction": ("*EXPANSION\n2.3e-5", "*EXPANSION, TYPE=ORTHO\n2e-5, 2e-5, 2e-5, 0.\n3e-5, "
+                                                  "3e-5, 3e-5, 100.", "*EXPANSION is not supported: its numbers depend on"),
+    "modulus of a temperature": ("7.e10, 0.3", "7.e10, 0.3, 0.\n6.e10, .3, 100.", "*ELASTIC is not supported: its numbers depend"),
     "directions": ("*EXPANSION\n2.3e-5", "*EXPANSION, TYPE=ORTHO\n2.3e-5, 2e-5, 2e-5", "differs from direction to direction"),
     "modulus of directions": ("*ELASTIC\n", "*ELASTIC, TYPE=ORTHO\n", "*ELASTIC, TYPE is not supported: it is not isotropic"),
     "gradient": ("*CLOAD\n2, 1, 7000.", "*TEMPERATURE\n2, 20., 5.", "*TEMPERATURE is not supported: temperatures that differ"),
@@ -262,6 +264,19 @@ def test_what_matters_and_is_not_supported_is_named(name: str, tmp_path: Path) -
     old, new, sentence = REFUSED[name]
     assert old in MODEL + LOAD
     assert sentence in refusal(tmp_path, (MODEL + LOAD).replace(old, new))
+
+
+@pytest.mark.parametrize("peak", [120.0, 60.0, -40.0])
+def test_coefficients_follow_the_temperature_from_their_zero(peak: float, tmp_path: Path) -> None:
+    """Secants of 2e-5, 2.5e-5 and 2.2e-5 1/K at 0, 50 and 100 degrees from ZERO=10; free of stress at 20, with 2.2e-5."""
+    text = MODEL.replace("*EXPANSION\n2.3e-5\n", "*EXPANSION, ZERO=10.\n2.e-5, 0.\n2.5e-5, 50.\n2.2e-5, 100.\n")
+    text += f"*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 20.\n*STEP\n*STATIC\n*TEMPERATURE\nNALL, {peak}\n*END STEP\n"
+    case = sj.load(made(tmp_path, text, None))
+    assert case.link[0].expansion == "X1" and case.thermal.temperature_change_max_K == peak - 20
+    secant = {120.0: 2.2e-5, 60.0: 2.44e-5, -40.0: 2e-5}[peak]
+    wanted = secant * (peak - 10) - 2.2e-5 * 10
+    # A jump of 2e-5 1/K at most, spread over 0.2 K, is right to its square.
+    assert case.expansion[0].strain(np.array([peak - 20]))[0] == pytest.approx(wanted, abs=1e-8)
 
 
 def test_lines_of_a_solid_are_no_elements(tmp_path: Path) -> None:

@@ -23,6 +23,8 @@ SUFFIXES = {".inp": "abaqus", ".bdf": "nastran", ".dat": "nastran", ".nas": "nas
 class Bar:
     """An element that becomes a link. Numbers are in the units of the deck; None: the deck does not say.
 
+    :param expansion_table: temperatures and secant coefficients, where these depend on temperature
+    :param expansion_zero: temperature at which the secants begin
     :param more_mass: per length, besides that of the density
     :param why_no_area: why the deck's section gives no area
     """
@@ -37,6 +39,8 @@ class Bar:
     density: float | None = None
     reference_temperature: float | None = None
     temperature_change: float | None = None
+    expansion_table: tuple[tuple[float, float], ...] = ()
+    expansion_zero: float = 0.0
     more_mass: float = 0.0
     why_no_area: str = ""
 
@@ -105,7 +109,7 @@ class Deck:
     initial: dict[str, float] = field(default_factory=dict)
     taken: dict[tuple[str, str], int] = field(default_factory=dict)
     left: dict[tuple[str, str], tuple[int, int]] = field(default_factory=dict)
-    step: int = 0  # which one is taken; 0: the deck has none
+    step: int = 0  # which static one is taken; 0: none
     refused: dict[tuple[str, str], tuple[int, str, int]] = field(default_factory=dict)
     waived: set[str] = field(default_factory=set)
 

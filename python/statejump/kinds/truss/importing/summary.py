@@ -36,7 +36,7 @@ def summary(made: Mapping[str, Any]) -> Shown:
         ("total mass [kg]", f"{mass:.6g}" if mass else "none"),
         ("Young's modulus [Pa]", _range([link["young_modulus_Pa"] for link in links])),
         ("cross-section area [m2]", _range([link["cross_section_area_m2"] for link in links])),
-        ("thermal expansion [1/K]", _range([link["thermal_expansion_per_K"] for link in links])),
+        ("thermal expansion [1/K]", _range(_coefficients(made))),
         ("largest force [N]", f"{max(forces):.6g}" if forces else "none"),
     ]
     if "temperature_change_max_K" in thermal:
@@ -84,6 +84,11 @@ def _mass(link: Mapping[str, Any], positions: Mapping[str, np.ndarray]) -> float
     if "mass_kg" in link:
         return float(link["mass_kg"])
     return float(link.get("density_kg_per_m3", 0.0) * link["cross_section_area_m2"] * _length(link, positions))
+
+
+def _coefficients(made: Mapping[str, Any]) -> list[float]:
+    return [link["thermal_expansion_per_K"] for link in made["link"] if "thermal_expansion_per_K" in link] + [
+        value for item in made.get("expansion", ()) for value in item["thermal_expansion_per_K"]]
 
 
 def _range(values: Sequence[float]) -> str:

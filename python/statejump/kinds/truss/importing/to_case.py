@@ -9,6 +9,7 @@ import numpy as np
 
 from statejump.core.errors import MissingKey, StatejumpError
 from statejump.kinds.truss.generate.document import Document, finished
+from statejump.kinds.truss.importing import expansions
 from statejump.kinds.truss.importing.joints import matching, put_in
 from statejump.kinds.truss.importing.model import Bar, Deck, Spring
 from statejump.kinds.truss.importing.supports import supports
@@ -59,10 +60,11 @@ def case_document(
         "node": [_node(deck, node, dimension, units) for node in deck.nodes if node in used],
         "link": [_link(deck, bar, change, peak, units, density_kg_per_m3, links or {})
                  for bar, change in zip(deck.bars, changes)],
-        "slider": [], "revolute": [], "spring": [],
+        "slider": [], "revolute": [], "spring": [], "expansion": [],
         "thermal": {"shape": "triangle", "temperature_change_max_K": float(peak)}, **more,
     }
     _springs(deck, made, units, dimension)
+    _expansions(deck, made)
     deck.settle()
     if check_ignored:
         deck.check_waived()
@@ -124,6 +126,27 @@ def _springs(deck: Deck, made: Document, units: Units, dimension: int) -> None:
             spring.stiffness, units.force_N / units.length_m)})
 
 
+def _expansions(deck: Deck, made: Document) -> None:
+    """Give links the coefficients that follow the temperature, one of each table and temperature free of stress."""
+    names: dict[tuple[tuple[tuple[float, float], ...], float, float], str] = {}
+    for bar, link in zip(deck.bars, made["link"]):
+        if not bar.expansion_table:
+            continue
+        key = (bar.expansion_table, bar.expansion_zero, _free(deck, bar))
+        if key not in names:
+            names[key] = f"X{len(names) + 1}"
+            made["expansion"].append(expansions.item(names[key], *key))
+        link["expansion"] = names[key]
+        del link["thermal_expansion_per_K"]
+
+
+def _free(deck: Deck, bar: Bar) -> float:
+    """Return the temperature at which a bar is free of stress."""
+    if bar.reference_temperature is not None:
+        return bar.reference_temperature
+    return sum(deck.initial.get(end, 0.0) for end in bar.nodes) / 2
+
+
 def _ground(deck: Deck, spring: Spring, name: str, units: Units, length: float, dimension: int) -> dict[str, Any]:
     start = [in_units(value, units.length_m) for value in deck.nodes[spring.first]]
     return {"name": name, "fixed": list("xyz"[:dimension]),
@@ -146,9 +169,7 @@ def _changes(deck: Deck, given: float | None) -> list[float]:
         change = bar.temperature_change
         if change is None and deck.temperature:
             ends = [deck.temperature.get(end, deck.initial.get(end, 0.0)) for end in bar.nodes]
-            start = [deck.initial.get(end, 0.0) for end in bar.nodes]
-            free = sum(start) / 2 if bar.reference_temperature is None else bar.reference_temperature
-            change = sum(ends) / 2 - free
+            change = sum(ends) / 2 - _free(deck, bar)
         if change is None:
             change = given
         if change is None:
@@ -189,7 +210,7 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
         "thermal_expansion_per_K": (given.get("thermal_expansion_per_K", 0.0) if bar.expansion is None
                                     else bar.expansion),
     }
-    if bar.expansion is None and "thermal_expansion_per_K" not in given:
+    if bar.expansion is None and not bar.expansion_table and "thermal_expansion_per_K" not in given:
         deck.leave(bar.kind, "no thermal expansion: 0 is taken", 0)
     if bar.density:
         made["density_kg_per_m3"] = in_units(bar.density, units.mass / units.length_m**3 * deck.mass_scale)

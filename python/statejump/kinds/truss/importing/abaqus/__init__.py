@@ -130,6 +130,7 @@ def _bars(model: Model) -> None:
                 of = section.material
                 bar.area, bar.young_modulus, bar.expansion = section.area, of.young_modulus, of.expansion
                 bar.poisson_ratio, bar.density, bar.why_no_area = of.poisson_ratio, of.density, section.why
+                bar.expansion_table, bar.expansion_zero = of.expansion_table, of.expansion_zero
             else:
                 bar.why_no_area = "no section names it"
             model.deck.bars.append(bar)

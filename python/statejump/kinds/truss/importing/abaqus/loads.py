@@ -96,7 +96,7 @@ def _chosen(model: Model, steps: list[Step]) -> int:
     if count == 0:
         return 0
     place: int = wanted or next((at for at, step in enumerate(steps) if at and step.static()), 1)
-    model.deck.step = place
+    model.deck.step = place if steps[place].static() else 0
     for at, step in enumerate(steps):
         if at and at != place:
             what = "before it: what stays of it is taken" if at < place else "it is left out"

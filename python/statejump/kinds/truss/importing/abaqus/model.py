@@ -49,6 +49,8 @@ class Material:
     poisson_ratio: float | None = None
     expansion: float | None = None
     density: float | None = None
+    expansion_table: tuple[tuple[float, float], ...] = ()
+    expansion_zero: float = 0.0
 
 
 @dataclass

@@ -51,19 +51,30 @@ def elastic(model: Model, block: Block, scope: Scope) -> None:
 
 
 def expansion(model: Model, block: Block, scope: Scope) -> None:
-    """Thermal expansion. ZERO has no influence while the coefficient is constant: bars are free of stress at their
+    """Thermal expansion. ZERO matters where the coefficient depends on temperature: bars are free of stress at their
     initial temperature."""
     kind = block.parameters.get("TYPE", "").upper()
     counts = {"ORTHO": 3, "ANISO": 6}.get(kind, 1)
     if kind not in (*ISOTROPIC, "ORTHO", "ANISO"):
         model.deck.refuse("*EXPANSION, TYPE", "an unknown type", block.line, "EXPANSION.TYPE")
         return
-    if found := _of_material(model, block, counts):
+    if counts == 1 and model.material is not None and len({words[0] for _, words in block.data}) > 1:
+        _expansion_table(model, model.material, block)
+    elif found := _of_material(model, block, counts):
         if any(value != found[1][0] for value in found[1][:3]) or any(found[1][3:]):
             model.deck.refuse("*EXPANSION, TYPE", "it differs from direction to direction", block.line,
                               "EXPANSION.TYPE")
             return
         found[0].expansion = found[1][0]
+
+
+def _expansion_table(model: Model, of: Material, block: Block) -> None:
+    rows = [model.numbers(line, words[:2]) for line, words in block.data]
+    if any(len(row) < 2 for row in rows) or any(b[1] <= a[1] for a, b in zip(rows, rows[1:])):
+        raise model.deck.fail(block.line, "*EXPANSION: not pairs of a coefficient and a rising temperature")
+    of.expansion_table = tuple((temperature, value) for value, temperature in rows)
+    of.expansion_zero = model.number(block.line, block.parameters.get("ZERO") or "0")
+    model.deck.take("*EXPANSION", "thermal expansion that follows the temperature")
 
 
 def density(model: Model, block: Block, scope: Scope) -> None:
