@@ -4,7 +4,7 @@
 
     PYTHONPATH=build/python scripts/decks.py FOLDER [-o TABLE.md] [--beams-as-bars] [--ignore CARD ...] [--circ radius]
 
-A row for each deck of Nastran, CalculiX or Abaqus: imported, ran, why not, largest displacement in metres, and where
+A row for each deck of Nastran, CalculiX or Abaqus: its units, imported, ran, why not, largest displacement in metres, and where
 ``ccx`` is installed and the deck is CalculiX's, the largest difference of a displacement to that of CalculiX over its
 largest displacement. Both are linear: loads are multiplied by a small factor, and *STEP, NLGEOM is left out for
 CalculiX. A deck without temperatures is run at the temperature change of ``--temperature-change``. Every deck runs in
@@ -27,10 +27,11 @@ import decks_ccx
 import numpy as np
 
 SUFFIXES = (".inp", ".bdf", ".nas", ".dat")
-HEADER = ("deck", "imported", "ran", "why not", "largest displacement [m]", "difference to ccx")
+HEADER = ("deck", "units", "imported", "ran", "why not", "largest displacement [m]", "difference to ccx")
 # Strains of structures are below 1e-2: what is not linear is then below 1e-7 of the displacement, as ccx prints it.
 SMALL = 1e-5
 FAULT = "fault"
+UNITS = ("SI", "mm-N", "in-lbf")
 
 
 @dataclass
@@ -38,6 +39,7 @@ class Row:
     """What became of a deck; a cause is a sentence."""
 
     deck: str
+    units: str = ""
     imported: bool = False
     ran: bool = False
     cause: str = ""
@@ -48,7 +50,7 @@ class Row:
     def cells(self) -> tuple[str, ...]:
         """Return the cells of the table."""
         largest = "" if self.largest_m is None else f"{self.largest_m:.6g}"
-        return (self.deck, *("yes" if one else "no" for one in (self.imported, self.ran)),
+        return (self.deck, self.units, *("yes" if one else "no" for one in (self.imported, self.ran)),
                 self.cause.replace("|", "\\|"), largest, self.difference)
 
 
@@ -56,20 +58,26 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
     """Import and run a deck in this process."""
     import statejump as sj
     from statejump.core.errors import StatejumpError
-    from statejump.kinds.truss.importing import Options, case_document, read
+    from statejump.kinds.truss.importing import SYSTEMS, Options, case_document, hints, read
 
     row = Row(name)
     try:
         deck = read(path, None, None, Options(frozenset(word.upper().lstrip("*") for word in options.ignore),
                                               options.beams_as_bars, options.step, options.circ))
-        made = case_document(deck, "deck", temperature_change_K=options.temperature_change, check_ignored=False)
+        documents = {units: case_document(deck, "deck", units=SYSTEMS[units], check_ignored=False,
+                                          temperature_change_K=options.temperature_change)
+                     for units in ([options.units] if options.units else UNITS)}
+        # Decks say nothing of their units: those with the fewest implausible numbers are taken.
+        row.units = min(documents, key=lambda units: len(hints(documents[units])))
+        made = documents[row.units]
         case = sj.load(made)
         row.imported = True
         row.largest_m = float(np.abs(_displacements(case.reduced())).max())
         row.ran = True
         if path.suffix == ".inp" and decks_ccx.installed():
             names = {node: f"N{node}" if node.isdecimal() else node for node in deck.nodes}
-            row.difference = decks_ccx.difference(path, deck.step, _small(made), names)
+            ours = {node: moved / SYSTEMS[row.units].length_m for node, moved in _small(made).items()}
+            row.difference = decks_ccx.difference(path, deck.step, ours, names)
     except StatejumpError as refused:
         row.cause = str(refused).replace(str(path), path.name)
     except Exception as fault:  # what the table is made to find
@@ -122,6 +130,7 @@ def arguments_of(options: argparse.Namespace) -> list[str]:
     words += ["--beams-as-bars"] if options.beams_as_bars else []
     words += ["--step", str(options.step)] if options.step else []
     words += ["--circ", options.circ] if options.circ else []
+    words += ["--units", options.units] if options.units else []
     return words + [word for name in options.ignore for word in ("--ignore", name)]
 
 
@@ -136,6 +145,7 @@ def main() -> int:
     parser.add_argument("--temperature-change", type=float, default=0.0)
     parser.add_argument("--circ", choices=("radius", "diameter"))
     parser.add_argument("--step", type=int)
+    parser.add_argument("--units", choices=("SI", "mm-N", "mm-kN-t", "in-lbf"), help="none: the most plausible ones")
     parser.add_argument("--ignore", action="append", default=[])
     parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()

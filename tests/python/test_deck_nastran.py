@@ -335,3 +335,20 @@ def test_units_of_a_deck(tmp_path: Path) -> None:
     document = made(tmp_path, bulk + "CONM2,3,2,,.002\n", units=Units(1e-3))
     assert document["link"][0]["density_kg_per_m3"] == pytest.approx(2700) and document["node"][1]["mass_kg"] == 2
     assert moved(document) == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_directions_without_stiffness_are_held_as_in_nastran(tmp_path: Path) -> None:
+    free = ROD.replace("SPC1,1,23,2\n", "GRID,3,,0.,5.,3.\nCROD,2,1,1,3\nSPC1,1,123,3\n")
+    document = made(tmp_path, free)
+    assert document["node"][1]["fixed"] == ["y", "z"] and moved(document) == pytest.approx(1e-3, rel=1e-12)
+    for bulk, control in ((free + "PARAM,AUTOSPC,NO\n", CONTROL), (free, CONTROL.replace("SPC = 1", "AUTOSPC = NO\nSPC = 1"))):
+        assert "fixed" not in made(tmp_path, bulk, control)["node"][1]
+    beam = free.replace("CROD,1,1,1,2", "CBAR,1,9,1,2,0.,1.,0.\nPBAR,9,1,1.-4")
+    assert "fixed" not in made(tmp_path, beam, beams_as_bars=True)["node"][1]
+
+
+def test_gravity_without_mass_is_left_out(tmp_path: Path) -> None:
+    bulk = ROD.replace("2700.", "").replace("FORCE,5,2,,7000.,1.,0.,0.", "GRAV,5,,9.81,1.,0.,0.")
+    assert "gravity_m_per_s2" not in made(tmp_path, bulk)["truss"]
+    document = made(tmp_path, bulk + "CONM2,3,2,,100.\n")
+    assert moved(document) == pytest.approx(981 / 7e6, rel=1e-12)

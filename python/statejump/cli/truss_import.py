@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from statejump.kinds.truss.importing import Units
 
 
+# Keys whose number is out of range where the units of a deck are others than SI.
+UNIT_KEYS = ("cross_section_area_m2", "young_modulus_Pa", "density_kg_per_m3", "position_m", "mass_kg")
+
+
 def _joint(text: str) -> dict[str, str]:
     found = {}
     for part in text.split(","):
@@ -145,6 +149,8 @@ def import_command(
     try:
         case = parse_case(document, files_from=output.parent)
     except StatejumpError as refused:
+        if refused.key in UNIT_KEYS and not refused.remedy and not (units or length_unit or force_unit):
+            refused.remedy = "--units mm-N, mm-kN-t or in-lbf names the units of the deck"
         raise refused.located(file=file) from None
     left = [f"# Left out: {printable(card)} ({count}): {why}" for card, count, _, why in deck.left_rows()]
     write(document, output, [head_line("truss", output), f"# Imported from {printable(file.name)}", *left,

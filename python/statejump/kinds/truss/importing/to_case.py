@@ -20,6 +20,8 @@ FLAT = 1e-9
 # Length of a spring to the ground over the size of the truss: a node that moves across it by a thousandth of the size
 # feels a millionth of its force. Positions keep 13 digits.
 FAR, FARTHEST_M = 1e3, 9e5
+# Of a bar without density where gravity acts: cases need a mass, of which this is none beside others.
+WEIGHTLESS_KG = 1e-15
 # What gives all links a number that the deck does not say.
 OPTIONS = {"young_modulus_Pa": "--young-modulus", "cross_section_area_m2": "--area",
            "thermal_expansion_per_K": "--thermal-expansion"}
@@ -52,6 +54,9 @@ def case_document(
     more = dict(sections or {})
     changes = [0.0] * len(deck.bars) if "thermal" in more else _changes(deck, temperature_change_K)
     peak = max(changes, key=abs)
+    if any(deck.gravity) and density_kg_per_m3 is None and not deck.mass and not any(bar.density for bar in deck.bars):
+        deck.leave("gravity", "nothing has a mass", 0)
+        deck.gravity = [0.0, 0.0, 0.0]
     gravity = [in_units(part, units.length_m) for part in deck.gravity[:dimension]]
     truss: dict[str, Any] = {"dimension": dimension, **({"gravity_m_per_s2": gravity} if any(gravity) else {})}
     made: Document = {
@@ -217,8 +222,8 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
     elif density is not None:
         made["density_kg_per_m3"] = density
     elif any(deck.gravity):
-        made["mass_kg"] = 0.0
-        deck.leave(bar.kind, "no density: the bar has no weight", 0)
+        made["mass_kg"] = WEIGHTLESS_KG
+        deck.leave(bar.kind, f"no density: a mass of {WEIGHTLESS_KG:g} kg is taken, for gravity acts", 0)
     else:
         deck.leave(bar.kind, "no density: the DEM and --dynamic need one, see --density", 0)
     if bar.poisson_ratio is not None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from statejump.core.reading import finite_number
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED
 from statejump.kinds.truss.importing.model import BENDING, Deck, Options
-from statejump.kinds.truss.importing.nastran import control, elements, loads, nodes, properties
+from statejump.kinds.truss.importing.nastran import control, elements, loads, nodes, properties, singularities
 from statejump.kinds.truss.importing.nastran.cards import BARE_EXPONENT, Card, split
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.nastran.table import CARDS, PARAMS
@@ -44,7 +44,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
         if card.name == "SPCD" and dynamic:
             deck.leave(card.name, "given motion of a dynamic solution", card.line)
         else:
-            _check(reader, card)
+            _check(reader, card, chosen)
     deck.settle()
     nodes.read_nodes(reader)
     for name, read_card in READERS.items():
@@ -54,6 +54,8 @@ def read(path: Path, options: Options | None = None) -> Deck:
     _take_together(reader)
     loads.temperatures(reader)
     elements.finish_bars(reader)
+    if chosen.autospc:
+        singularities.hold_singular(reader)
     if chosen.solution.startswith("106"):  # there TREF is that of the coefficient of expansion only
         for bar in deck.bars:
             bar.reference_temperature = None
@@ -67,7 +69,7 @@ def _counts(reader: Reader, card: Card) -> bool:
     return not kind or card.name == "TEMP" or reader.factor(card, kind) is not None
 
 
-def _check(reader: Reader, card: Card) -> None:
+def _check(reader: Reader, card: Card, given: control.Control) -> None:
     """Refuse a card or a field that is not supported; note those without influence."""
     deck, known = reader.deck, CARDS.get(card.name)
     if known is None:
@@ -75,7 +77,7 @@ def _check(reader: Reader, card: Card) -> None:
     elif known.sets and not _counts(reader, card):
         deck.leave(card.name, f"set {reader.whole(card, 0)} is not selected", card.line)
     elif card.name == "PARAM":
-        _param(reader, card)
+        _param(reader, card, given)
     elif known.use == REFUSED:
         deck.refuse(card.name, known.what, card.line)
     elif known.use == IDLE:
@@ -103,11 +105,13 @@ def _check_fields(reader: Reader, card: Card) -> None:
             reader.deck.refuse(f"{card.name}.{name}", field.why, card.line)
 
 
-def _param(reader: Reader, card: Card) -> None:
+def _param(reader: Reader, card: Card, given: control.Control) -> None:
     name = card[0].upper()
     known = PARAMS.get(name)
     if name == "WTMASS":
         reader.deck.mass_scale = reader.number(card, 1)
+    elif name == "AUTOSPC":
+        given.autospc = card[1].upper() != "NO"
     elif known is None:
         reader.deck.refuse(f"PARAM.{name}", "the parameter is unknown", card.line)
     elif known.use == REFUSED:
@@ -122,7 +126,7 @@ def _take_together(reader: Reader) -> None:
     """Note the cards that are read with others."""
     for name in ("GRDSET", "BAROR", "BEAMOR", "PBUSH", "PARAM"):
         for card in reader.cards.get(name, []):
-            if name != "PARAM" or card[0].upper() == "WTMASS":
+            if name != "PARAM" or card[0].upper() in ("WTMASS", "AUTOSPC"):
                 reader.deck.take(name, CARDS[name].what)
     for name in ("SPCADD", "MPCADD", "LOAD", "LOADADD"):
         for card in reader.cards.get(name, []):

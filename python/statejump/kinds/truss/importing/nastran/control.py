@@ -27,11 +27,13 @@ class Control:
     :param given: whether there is a case control: without one every set counts that is the only one of its kind
     :param chosen: sets by kind
     :param solution: what SOL says
+    :param autospc: whether directions without stiffness are held
     """
 
     given: bool = False
     chosen: dict[str, str] = field(default_factory=dict)
     solution: str = ""
+    autospc: bool = True
 
 
 @dataclass
@@ -61,6 +63,9 @@ def read(deck: Deck, lines: list[tuple[int, str]]) -> Control:
         if found is None:
             raise deck.fail(line, f"{quoted(text)} is not a command of the case control")
         name, option, value = found[1], (found[2] or "").strip(), found[3].strip()
+        if name == "AUTOSPC":
+            control.autospc = "NO" not in (value.split() or [option])
+            continue
         if name in ("SUBCASE", "SUBCOM", "SYM", "SYMCOM", "REPCASE"):
             number = value.split()[0] if value else ""
             subcases.append(_Subcase(int(number) if number.isdecimal() else len(subcases) + 1, line, name))

@@ -79,7 +79,7 @@ CARDS: dict[str, Card] = table(
          sets="load"),
     used("TEMP", "temperature of links", "SID G1 T1 G2 T2 G3 T3", sets="temperature"),
     used("TEMPD", "temperature of links", "SID1 T1 SID2 T2 SID3 T3 SID4 T4"),
-    used("PARAM", "WTMASS: factor of all masses", "N V1 V2", own=True),
+    used("PARAM", "WTMASS: factor of all masses; AUTOSPC", "N V1 V2", own=True),
     # Not supported.
     refused("MPC", "equations between nodes are not solved", sets="mpc"),
     refused("RBAR RBAR1 RBE1 RBE2 RBE2GS RBE3 RROD RJOINT RTRPLT RTRPLT1 RSPLINE RSSCON", RIGID),
@@ -132,10 +132,11 @@ CARDS: dict[str, Card] = table(
 # Names of PARAM. Of what is not listed the influence is not known.
 PARAMS: dict[str, Card] = table(
     used("WTMASS", "factor of all masses"),
+    used("AUTOSPC", "whether directions of nodes without stiffness are held; YES if not given"),
     refused("INREL", "inertia relief"),
     refused("CK1 CK2 CK3 CM1 CM2 CP1 CP2", "factor of matrices"),
     refused("PREMASS SUPAERO", "changes of the model"),
-    idle("POST PRTMAXIM GRDPNT PRGPST PRTRESLT USETPRT AUTOSPC AUTOSPCR EPZERO MAXRATIO BAILOUT TINY NOFISR OGEOM "
+    idle("POST PRTMAXIM GRDPNT PRGPST PRTRESLT USETPRT AUTOSPCR EPZERO MAXRATIO BAILOUT TINY NOFISR OGEOM "
          "OUGCORD OUNIT1 OUNIT2 PATVER PRINT OMID OLDSEQ NEWSEQ SNORM SEP1XOVR K6ROT LGDISP LMODES G W3 W4 GFL W3FL "
          "W4FL COUPMASS RESVEC RESVINER DDRMM HFREQ LFREQ LMODESFL KDAMP VREF MACH Q AUNITS FACTOR NASPRT CURVPLOT "
          "DBDICT DBALL DBEXT EXTOUT EXTDR MODACC NOCOMPS NOELOF NOELOP NOGPF NONLMETH NLAYERS NINTPTS NT RSPLICE "
@@ -152,6 +153,7 @@ PARAMS: dict[str, Card] = table(
 
 # Commands of the case control. Of what is not listed nothing is selected that acts on a truss in statics.
 CONTROL: dict[str, Card] = table(
+    used("AUTOSPC", "whether directions of nodes without stiffness are held"),
     used("SUBCASE", "the first one, or that of --step"),
     used("SPC", "set of supports"), used("LOAD", "set of loads"), used("MPC", "set of MPC, which is not supported"),
     used("TEMPERATURE", "LOAD, BOTH: temperatures; INITIAL: those free of stress of materials without TREF"),
