@@ -4,11 +4,11 @@
 
     PYTHONPATH=build/python scripts/decks.py FOLDER [-o TABLE.md] [--beams-as-bars] [--ignore CARD ...] [--circ radius]
 
-A row for each deck of Nastran, CalculiX or Abaqus: its units, imported, ran, why not, largest displacement in metres, and where
-``ccx`` is installed and the deck is CalculiX's, the largest difference of a displacement to that of CalculiX over its
-largest displacement. Both are linear: loads are multiplied by a small factor, and *STEP, NLGEOM is left out for
-CalculiX. A deck without temperatures is run at the temperature change of ``--temperature-change``. Every deck runs in
-a process of its own. Exit status 1: an import or a run ended otherwise than with a result or a sentence.
+A row for each deck of Nastran, CalculiX or Abaqus: its units, imported, ran, why not, largest displacement in metres.
+Where ``ccx`` is installed and the deck is CalculiX's, also the largest difference of a displacement to that of
+CalculiX, over the largest one. Both are linear then: loads are multiplied by a small factor, and *STEP, NLGEOM is left
+out for CalculiX. A deck without temperatures is run at that of ``--temperature-change``. Every deck runs in a process
+of its own. Exit status 1: an import or a run ended otherwise than with a result or a sentence.
 """
 from __future__ import annotations
 

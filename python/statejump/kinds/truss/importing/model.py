@@ -181,7 +181,11 @@ class Deck:
 
     def hold(self, name: str, direction: Sequence[float]) -> None:
         """Hold a node in a direction, a unit vector."""
-        x, y, z = direction
+        x, y, z = (float(part) for part in direction)
+        for axis, size in zip("xyz", (x, y, z)):
+            if abs(size) == 1:  # the usual case, exact in the basic system
+                self.fix(name, axis)
+                return
         self.held.setdefault(name, []).append((x, y, z))
 
     def load(self, name: str, force: Sequence[float], line: int = 0, card: str = "force") -> None:

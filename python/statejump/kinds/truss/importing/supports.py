@@ -15,11 +15,12 @@ SAME = 1e-6
 
 def supports(deck: Deck, node: str, dimension: int) -> dict[str, Any]:
     """Return ``fixed`` and ``guide_normal`` of a node. :raises Unreadable: a case has no such support"""
+    if node not in deck.held:
+        fixed = [axis for axis in "xyz"[:dimension] if axis in deck.fixed.get(node, ())]
+        return {"fixed": fixed} if fixed else {}
     axes = np.eye(3)
     held = [axes["xyz".index(axis)] for axis in sorted(deck.fixed.get(node, ()))] + [
         np.array(direction) for direction in deck.held.get(node, ())]
-    if not held:
-        return {}
     if dimension == 2:  # the plane holds the third direction
         held.append(axes[2])
     _, sizes, spanned = np.linalg.svd(np.array(held))
@@ -31,8 +32,8 @@ def supports(deck: Deck, node: str, dimension: int) -> dict[str, Any]:
     if len(oblique) > 1:
         raise deck.fail(0, f"node {node} is held in two oblique directions", "a case holds axes and one more direction")
     made: dict[str, Any] = {}
-    if fixed := [axis for axis in "xyz"[:dimension] if "xyz".index(axis) in along]:
-        made["fixed"] = fixed
+    if along_axes := [axis for axis in "xyz"[:dimension] if "xyz".index(axis) in along]:
+        made["fixed"] = along_axes
     if len(oblique):
         normal = oblique[0] * np.sign(oblique[0][np.argmax(np.abs(oblique[0]))])
         made["guide_normal"] = [float(f"{part:.15g}") for part in normal[:dimension]]
