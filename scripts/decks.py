@@ -56,23 +56,20 @@ class Row:
 
 def one(path: Path, name: str, options: argparse.Namespace) -> Row:
     """Import and run a deck in this process."""
-    import statejump as sj
     from statejump.core.errors import StatejumpError
-    from statejump.kinds.truss.importing import SYSTEMS, Options, case_document, hints, read
+    from statejump.kinds.truss.importing import SYSTEMS, Options, case_document, read
 
-    row = Row(name)
+    row, beams = Row(name), False
     try:
         deck = read(path, None, None, Options(frozenset(word.upper().lstrip("*") for word in options.ignore),
                                               options.beams_as_bars, options.step, options.circ))
         documents = {units: case_document(deck, "deck", units=SYSTEMS[units], check_ignored=False,
                                           temperature_change_K=options.temperature_change)
                      for units in ([options.units] if options.units else UNITS)}
-        # Decks say nothing of their units: those with the fewest implausible numbers are taken.
-        row.units = min(documents, key=lambda units: len(hints(documents[units])))
-        made = documents[row.units]
-        case = sj.load(made)
+        beams = any("BEAM" in bar.kind or "CBAR" in bar.kind or "TYPE=B" in bar.kind for bar in deck.bars)
+        row.units, made, case = _plausible(documents)
         row.imported = True
-        row.largest_m = float(np.abs(_displacements(case.reduced())).max())
+        row.largest_m = float(np.abs(_displacements(case.reduced())).max())  # type: ignore[attr-defined]
         row.ran = True
         if path.suffix == ".inp" and decks_ccx.installed():
             names = {node: f"N{node}" if node.isdecimal() else node for node in deck.nodes}
@@ -80,10 +77,29 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
             row.difference = decks_ccx.difference(path, deck.step, ours, names)
     except StatejumpError as refused:
         row.cause = str(refused).replace(str(path), path.name)
+        if row.imported and beams and "mechanism" in row.cause:
+            row.cause = f"needs bending: {row.cause}"
     except Exception as fault:  # what the table is made to find
         row.fault = True
         row.cause = f"{FAULT}: {type(fault).__name__}: {fault}; {traceback.extract_tb(fault.__traceback__)[-1]}"
     return row
+
+
+def _plausible(documents: dict[str, dict]) -> tuple[str, dict, object]:
+    """Return the units of a deck, which says nothing of them, its document and its case: of those that are a case the
+    units with the fewest implausible numbers."""
+    import statejump as sj
+    from statejump.core.errors import StatejumpError
+    from statejump.kinds.truss.importing import hints
+
+    first: StatejumpError | None = None
+    for units in sorted(documents, key=lambda units: len(hints(documents[units]))):
+        try:
+            return units, documents[units], sj.load(documents[units])
+        except StatejumpError as refused:
+            first = first or refused
+    assert first is not None
+    raise first
 
 
 def _displacements(run: object) -> np.ndarray:
@@ -97,15 +113,16 @@ def _small(made: dict) -> dict[str, np.ndarray]:
     """Return the displacements of a case whose loads are small, multiplied to those of the loads."""
     import statejump as sj
 
+    factor = 1.0 if "expansion" in made else SMALL  # coefficients that follow the temperature are not linear
     small = json.loads(json.dumps(made))
     for node in small["node"]:
         if "force_N" in node:
-            node["force_N"] = [part * SMALL for part in node["force_N"]]
+            node["force_N"] = [part * factor for part in node["force_N"]]
     if "gravity_m_per_s2" in small["truss"]:
-        small["truss"]["gravity_m_per_s2"] = [part * SMALL for part in small["truss"]["gravity_m_per_s2"]]
-    small["thermal"]["temperature_change_max_K"] *= SMALL
+        small["truss"]["gravity_m_per_s2"] = [part * factor for part in small["truss"]["gravity_m_per_s2"]]
+    small["thermal"]["temperature_change_max_K"] *= factor
     run = sj.load(small).reduced()
-    found = _displacements(run) / SMALL
+    found = _displacements(run) / factor
     return {node["name"]: np.append(found[at], [0.0] * (3 - found.shape[1])) for at, node in enumerate(small["node"])}
 
 

@@ -55,7 +55,7 @@ def difference(path: Path, step: int, ours: Mapping[str, np.ndarray], names: Map
 
 
 def printing(text: str, step: int, nodes: list[int]) -> str:
-    """Return a deck that prints the displacements of one step only, and is linear."""
+    """Return a deck that ends with a step, prints its displacements and is linear."""
     made: list[str] = []
     number, skips = 0, False
     for line in text.splitlines():
@@ -68,7 +68,7 @@ def printing(text: str, step: int, nodes: list[int]) -> str:
                     made += ["*NSET, NSET=SJPRINTED", *(f"{node}," for node in sorted(nodes))]
                 line = re.sub(r",\s*NLGEOM(\s*=\s*YES)?", "", line, flags=re.IGNORECASE)
             if re.match(r"\*END\s*STEP\b", keyword) and number == step:
-                made += ["*NODE PRINT, NSET=SJPRINTED", "U"]
+                return "\n".join([*made, "*NODE PRINT, NSET=SJPRINTED", "U", "*END STEP"]) + "\n"
         if not skips:
             made.append(line)
     return "\n".join(made) + "\n"
