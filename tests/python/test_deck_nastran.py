@@ -352,3 +352,15 @@ def test_gravity_without_mass_is_left_out(tmp_path: Path) -> None:
     assert "gravity_m_per_s2" not in made(tmp_path, bulk)["truss"]
     document = made(tmp_path, bulk + "CONM2,3,2,,100.\n")
     assert moved(document) == pytest.approx(981 / 7e6, rel=1e-12)
+
+
+@pytest.mark.parametrize("control, sentence", [
+    ("SOL 159\nCEND\nSPC = 1\nBEGIN BULK\n", "line 1: SOL 159 is not supported: heat transfer"),
+    ("SOL 101\nCEND\nANALYSIS = HEAT\nSPC = 1\nBEGIN BULK\n", "line 3: ANALYSIS is not supported: of HEAT"),
+    ("SOL 101\nCEND\nK2GG = STIFF\nSPC = 1\nBEGIN BULK\n", "line 3: K2GG is not supported: matrices"),
+    ("SOL 101\nCEND\nSPC = 1\nSUBCOM 3\nBEGIN BULK\n", "line 4: SUBCOM is not supported: it combines"),
+    ("SOL 101\nCEND\nSPC = 1\n", "line 2: a CEND without BEGIN BULK"),
+    ("SOL 101\nCEND\nSPC = 1\nBEGIN BULK\nBEGIN SUPER=1\n", "line 5: superelements"),
+])
+def test_what_the_control_sections_select_is_read_or_named(control: str, sentence: str, tmp_path: Path) -> None:
+    assert sentence in refusal(tmp_path, ROD, control)

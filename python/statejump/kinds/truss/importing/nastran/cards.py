@@ -59,6 +59,10 @@ def split(deck: Deck) -> tuple[list[tuple[int, str]], list[Card]]:
     """Return the lines of executive and case control, and the cards of the bulk data."""
     lines = list(Source(deck.path, included))
     begin = next((place for place, (_, line) in enumerate(lines) if BEGIN_BULK.match(line)), None)
+    if begin is None:
+        for number, line in lines:
+            if line.strip().upper() == "CEND":
+                raise deck.fail(number, "a CEND without BEGIN BULK")
     control = [] if begin is None else lines[:begin]
     return ([(number, text) for number, line in control if (text := line.split("$")[0].strip())],
             _cards(deck, lines[0 if begin is None else begin + 1:]))

@@ -11,6 +11,7 @@ from statejump.kinds.truss.importing.model import Deck, quoted
 from statejump.kinds.truss.importing.nastran.table import CONTROL
 
 COMMAND = re.compile(r"([A-Z][A-Z0-9]*)\s*(?:\(([^)]*)\)?)?\s*=?\s*(.*)$")
+HEAT = ("153", "159", "NLSCSH", "NLTCSH")
 # Name and option of a command, and the kind of set that it selects.
 SELECTED = {
     "SPC": "spc", "LOAD": "load", "MPC": "mpc", "DEFORM": "deform", "SUPORT1": "suport", "NSM": "nsm",
@@ -48,10 +49,12 @@ def read(deck: Deck, lines: list[tuple[int, str]]) -> Control:
     """Return what the subcase of ``--step``, or the first one, selects."""
     cend = next((place for place, (_, text) in enumerate(lines) if text.upper().startswith("CEND")), None)
     control = Control(given=cend is not None)
-    for _, text in lines[:cend or 0]:
+    for line, text in lines[:cend or 0]:
         words = text.upper().split()
         if words[:1] == ["SOL"] and len(words) > 1:
             control.solution = words[1].strip(",")
+            if control.solution in HEAT:
+                deck.refuse(f"SOL {control.solution}", "heat transfer: its supports are temperatures", line, "SOL")
     common = _Subcase(0, 0, "")
     subcases: list[_Subcase] = []
     continued = False
@@ -92,7 +95,7 @@ def _command(deck: Deck, line: int, of: _Subcase, name: str, option: str, value:
         if not set_name.isdecimal():
             raise deck.fail(line, f"{name} = {quoted(value)} is not the number of a set")
         of.chosen[kind] = str(int(set_name))
-    elif known is not None and known.use == REFUSED:
+    elif known is not None and known.use == REFUSED and (name != "ANALYSIS" or value.startswith("HEAT")):
         of.chosen[f"refused {name}"] = str(line)
 
 

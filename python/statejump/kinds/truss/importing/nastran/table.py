@@ -160,6 +160,7 @@ CONTROL: dict[str, Card] = table(
     used("DEFORM", "set of DEFORM, which is not supported"), used("NSM", "set of NSM, which is not supported"),
     used("SUPORT1", "set of SUPORT1, which is not supported"),
     refused("K2GG M2GG P2G B2GG A2GG", "matrices that are added to the structure"),
+    refused("ANALYSIS", "of HEAT: its supports are temperatures"),
     refused("TRIM", "loads of aerodynamics"),
     refused("SUBCOM SYM SYMCOM REPCASE", "it combines the results of other subcases"),
     refused("CLOAD", "loads of another run"), refused("BCONTACT BCSET", "contact"), refused("BOLTLD", "bolts"),
