@@ -342,13 +342,13 @@ def tables(folder: Path) -> Reader:
 
 def decks(folder: Path) -> Reader:
     """Trusses of other programs: `truss import`."""
-    seeds = {path.suffix: path.read_bytes() for path in sorted((REPOSITORY / "tests/fuzz/decks").iterdir())}
+    seeds = {path.name: path.read_bytes() for path in sorted((REPOSITORY / "tests/fuzz/decks").iterdir())}
 
     def spoiled(place: Path, chance: random.Random) -> Any:
-        suffix = chance.choice(sorted(seeds))
+        name = chance.choice(sorted(seeds))
         change = mutations.spoiled_bytes if chance.random() < 0.3 else mutations.spoiled_text
-        path = place / f"given{suffix}"
-        path.write_bytes(change(seeds[suffix], list(seeds.values()), chance))
+        path = place / f"given{Path(name).suffix}"
+        path.write_bytes(change(seeds[name], list(seeds.values()), chance))
         return path
 
     def read(place: Path, path: Path) -> bool:

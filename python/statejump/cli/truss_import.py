@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from statejump.cli.terminal import QUIET, make_console, print_table
 from statejump.cli.truss_files import TABLES, new_files
 from statejump.core.errors import NotAllowed, StatejumpError, printable
+
+if TYPE_CHECKING:
+    from statejump.kinds.truss.importing import Units
+
+
+# Keys whose number is out of range where the units of a deck are others than SI.
+UNIT_KEYS = ("cross_section_area_m2", "young_modulus_Pa", "density_kg_per_m3", "position_m", "mass_kg")
 
 
 def _joint(text: str) -> dict[str, str]:
@@ -43,6 +51,17 @@ def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) ->
     return {"thermal": {"shape": "table", "members_file": beside, **said}, "reduced": {"increments_per_branch": 1}}
 
 
+def _units(system: str | None, length: float | None, force: float | None) -> Units:
+    from statejump.kinds.truss.importing import SYSTEMS, Units
+
+    if system is None:
+        return Units(length or 1.0, force or 1.0)
+    for option, value in (("--length-unit", length), ("--force-unit", force)):
+        if value is not None:
+            raise NotAllowed(option, value, f"--units {system} says it already")
+    return SYSTEMS[system]
+
+
 @click.command("import")
 @click.argument("file", metavar="FILE", type=click.Path(path_type=Path))
 @click.option("-o", "--output", required=True, metavar="CASE", type=click.Path(path_type=Path),
@@ -50,10 +69,19 @@ def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) ->
 @click.option("--format", "form", type=click.Choice(["abaqus", "nastran", "tables", "mesh"]),
               help="What FILE is; by its suffix where nothing is said.")
 @click.option("--bars", metavar="FILE", type=click.Path(path_type=Path), help="Table of bars beside a table of nodes.")
-@click.option("--length-unit", type=click.FloatRange(min=0, min_open=True), default=1.0, show_default=True,
-              metavar="METRES", help="Length of one unit of a deck: 0.001 for millimetres.")
-@click.option("--force-unit", type=click.FloatRange(min=0, min_open=True), default=1.0, show_default=True,
-              metavar="NEWTON", help="Force of one unit of a deck.")
+@click.option("--units", type=click.Choice(["SI", "mm-N", "mm-kN-t", "in-lbf"]),
+              help="Units of a deck; mm-kN-t has masses in tonnes. Without it: SI.")
+@click.option("--length-unit", type=click.FloatRange(min=0, min_open=True), metavar="METRES",
+              help="Length of one unit of a deck, in place of --units: 0.001 for millimetres.")
+@click.option("--force-unit", type=click.FloatRange(min=0, min_open=True), metavar="NEWTON",
+              help="Force of one unit of a deck, in place of --units.")
+@click.option("--step", type=click.IntRange(min=1), metavar="NUMBER",
+              help="Step or subcase of a deck; without it the first one.")
+@click.option("--beams-as-bars", is_flag=True, help="Take beams as pin-jointed bars: their bending is left out.")
+@click.option("--circ", type=click.Choice(["radius", "diameter"]),
+              help="What the one length of SECTION=CIRC is: a radius in Abaqus, a diameter in FreeCAD's decks.")
+@click.option("--ignore", "ignored", multiple=True, metavar="CARD",
+              help="Leave out a card, or a field CARD.FIELD, that is not supported although it has influence.")
 @click.option("--temperature-change", type=float, metavar="KELVIN", help="Of all links, where the deck says nothing.")
 @click.option("--young-modulus", "young_modulus_Pa", type=float, metavar="PA",
               help="Of links, where the deck says nothing.")
@@ -82,7 +110,8 @@ def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) ->
 @click.option("--force", is_flag=True, help="Overwrite the file.")
 @QUIET
 def import_command(
-    file: Path, output: Path, form: str | None, bars: Path | None, length_unit: float, force_unit: float,
+    file: Path, output: Path, form: str | None, bars: Path | None, units: str | None, length_unit: float | None,
+    force_unit: float | None, step: int | None, beams_as_bars: bool, circ: str | None, ignored: tuple[str, ...],
     temperature_change: float | None, fixed: tuple[str, ...], density: float | None, members_file: Path | None,
     reference_temperature: float | None, lead_in: float | None, lead_out: float | None, joints: tuple[str, ...],
     reflector: str | None, reflector_axis: tuple[float, float, float], tables: bool, force: bool, quiet: bool,
@@ -91,7 +120,8 @@ def import_command(
     """A truss of another program as a case file: decks of CalculiX and Abaqus, Nastran bulk data, CSV tables,
     meshes (.vtk, .vtu, .msh, .med, .mesh; by meshio).
 
-    Prints what was taken, what was left out and why.
+    Prints what was taken, what was left out and why, and sizes to check. What has influence and is not supported is
+    refused; --ignore leaves it out.
 
     \b
     Examples:
@@ -100,14 +130,15 @@ def import_command(
     """
     from statejump.kinds.loading import parse_case
     from statejump.kinds.truss.generate.document import write
-    from statejump.kinds.truss.importing import case_document, read
+    from statejump.kinds.truss.importing import Options, case_document, hints, read, summary
     from statejump.schema.json_schema import head_line
 
     console = make_console(quiet)
     beside = new_files(output, tables, force)
-    deck = read(file, form, bars)
+    deck = read(file, form, bars, Options(frozenset(name.lstrip("*").upper() for name in ignored), beams_as_bars, step,
+                                          circ))
     document = case_document(
-        deck, output.stem, length_unit_m=length_unit, force_unit_N=force_unit,
+        deck, output.stem, units=_units(units, length_unit, force_unit),
         temperature_change_K=temperature_change, density_kg_per_m3=density,
         links={key: value for key, value in links.items() if value is not None}, fixed=[_held(text) for text in fixed],
         joints=[_joint(text) for text in joints],
@@ -118,12 +149,17 @@ def import_command(
     try:
         case = parse_case(document, files_from=output.parent)
     except StatejumpError as refused:
+        if refused.key in UNIT_KEYS and not refused.remedy and not (units or length_unit or force_unit):
+            refused.remedy = "--units mm-N, mm-kN-t or in-lbf names the units of the deck"
         raise refused.located(file=file) from None
     left = [f"# Left out: {printable(card)} ({count}): {why}" for card, count, _, why in deck.left_rows()]
     write(document, output, [head_line("truss", output), f"# Imported from {printable(file.name)}", *left,
                              "# Units are in the names."], beside)
     for table in deck.account():
         print_table(table, console)
+    print_table(summary(document), console)
+    for hint in hints(document):
+        console.print(f"hint: {hint}")
     console.print(f"{output}: nodes {len(document['node'])}, links {len(document['link'])}, joints "
                   f"{len(document.get('slider', ())) + len(document.get('revolute', ()))}, "
                   f"{'planar' if case['truss.dimension'] == 2 else 'spatial'}")

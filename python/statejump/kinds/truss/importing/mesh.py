@@ -66,7 +66,7 @@ def _add(deck: Deck, mesh: Any, block: int, kind: str, ends: np.ndarray) -> None
             deck.take(f"cell data {quoted(name)}", "number of its link", len(ends))
     for place, nodes in enumerate(ends):
         first, second = (str(int(node) + 1) for node in nodes[:2])
-        numbers = {key: float(values[place]) for key, values in known.items()}
+        numbers: dict[str, Any] = {key: float(values[place]) for key, values in known.items()}
         deck.bars.append(Bar(str(len(deck.bars) + 1), (first, second), "line", **numbers))
     deck.take(f"cells {kind}", "link", len(ends))
     if kind == "line3" and len(ends):

@@ -2,14 +2,18 @@
 """What a deck says of a truss, whatever program it is for, and the account of what was taken and what was not."""
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from statejump.core.errors import NotAllowed, Unreadable, printable, size
-from statejump.core.reading import is_file
+from statejump.core.errors import NotAllowed, StatejumpError, Unreadable, printable
 from statejump.core.tables import Shown
+from statejump.kinds.truss.importing.lines import LARGEST_BYTES, text_of
 
-LARGEST_BYTES = 1 << 26
+__all__ = ["LARGEST_BYTES", "Bar", "Deck", "Options", "Spring", "quoted", "read", "text_of"]
+
+BENDING = "--beams-as-bars"
+MOST_SHOWN = 5  # further items of a refusal
 MOST_ITEMS = 1_000_000  # of a deck: nodes, bars, members of sets
 SUFFIXES = {".inp": "abaqus", ".bdf": "nastran", ".dat": "nastran", ".nas": "nastran", ".csv": "tables",
             ".vtk": "mesh", ".vtu": "mesh", ".msh": "mesh", ".med": "mesh", ".mesh": "mesh"}
@@ -17,7 +21,13 @@ SUFFIXES = {".inp": "abaqus", ".bdf": "nastran", ".dat": "nastran", ".nas": "nas
 
 @dataclass
 class Bar:
-    """An element that becomes a link. Numbers are in the units of the deck; None: the deck does not say."""
+    """An element that becomes a link. Numbers are in the units of the deck; None: the deck does not say.
+
+    :param expansion_table: temperatures and secant coefficients, where these depend on temperature
+    :param expansion_zero: temperature at which the secants begin
+    :param more_mass: per length, besides that of the density
+    :param why_no_area: why the deck's section gives no area
+    """
 
     name: str
     nodes: tuple[str, str]
@@ -29,6 +39,43 @@ class Bar:
     density: float | None = None
     reference_temperature: float | None = None
     temperature_change: float | None = None
+    expansion_table: tuple[tuple[float, float], ...] = ()
+    expansion_zero: float = 0.0
+    more_mass: float = 0.0
+    why_no_area: str = ""
+
+
+@dataclass
+class Spring:
+    """A linear spring along the line between two nodes, or between a node and the ground in a direction.
+
+    :param second: the other node; None: the ground
+    :param direction: unit vector, of a spring to the ground
+    """
+
+    name: str
+    first: str
+    second: str | None
+    stiffness: float
+    kind: str
+    line: int
+    direction: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the user decides about cards.
+
+    :param ignored: names of cards and fields that are left out although they have influence
+    :param beams_as_bars: whether beams become pin-jointed bars
+    :param step: number of the step or subcase; None: the first one
+    :param circ: what the one length of a CIRC section is: ``radius`` or ``diameter``
+    """
+
+    ignored: frozenset[str] = frozenset()
+    beams_as_bars: bool = False
+    step: int | None = None
+    circ: str | None = None
 
 
 @dataclass
@@ -36,19 +83,35 @@ class Deck:
     """A truss in the units of its deck.
 
     :param temperature: of nodes, absolute or from zero as the deck has it
+    :param held: directions in which a node does not move, besides those of ``fixed``
+    :param mass: lumped at nodes
+    :param mass_scale: factor of all masses and densities
+    :param gravity: acceleration of all masses
+    :param refused: first line, reason and count by card and the option that waives it
     :param taken: count by card and what became of it
     :param left: first line and count by card and why it was left out
     """
 
     path: Path
+    options: Options = field(default_factory=Options)
     nodes: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     bars: list[Bar] = field(default_factory=list)
     fixed: dict[str, set[str]] = field(default_factory=dict)
+    held: dict[str, list[tuple[float, float, float]]] = field(default_factory=dict)
     force: dict[str, list[float]] = field(default_factory=dict)
+    force_line: dict[str, tuple[int, str]] = field(default_factory=dict)  # where the first force of a node stands
+    springs: list[Spring] = field(default_factory=list)
+    mass: dict[str, float] = field(default_factory=dict)
+    mass_line: dict[str, tuple[int, str]] = field(default_factory=dict)
+    mass_scale: float = 1.0
+    gravity: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
     temperature: dict[str, float] = field(default_factory=dict)
     initial: dict[str, float] = field(default_factory=dict)
     taken: dict[tuple[str, str], int] = field(default_factory=dict)
     left: dict[tuple[str, str], tuple[int, int]] = field(default_factory=dict)
+    step: int = 0  # which static one is taken; 0: none
+    refused: dict[tuple[str, str], tuple[int, str, int]] = field(default_factory=dict)
+    waived: set[str] = field(default_factory=set)
 
     def take(self, card: str, what: str, count: int = 1) -> None:
         """Note that something of a card became part of the truss."""
@@ -58,6 +121,43 @@ class Deck:
         """Note that something of a card did not."""
         first, count = self.left.get((card, why), (line, 0))
         self.left[card, why] = (first, count + 1)
+
+    def refuse(self, card: str, why: str, line: int, waiver: str | None = None) -> None:
+        """Note that something of a card has influence and is not supported; ``--ignore`` leaves it out.
+
+        :param waiver: what ``--ignore`` must name; None: the card. It ends with ``=`` or begins with ``--`` where it
+            is an option of its own
+        """
+        waiver = waiver or card
+        if waiver.upper() in self.options.ignored or card.upper() in self.options.ignored:
+            self.waived.add(waiver.upper() if waiver.upper() in self.options.ignored else card.upper())
+            self.leave(card, f"{why}; left out by --ignore", line)
+            return
+        first, said, count = self.refused.get((card, waiver), (line, why, 0))
+        self.refused[card, waiver] = (first, said, count + 1)
+
+    def settle(self) -> None:
+        """Refuse what is not supported. :raises StatejumpError: one sentence with card, line and option"""
+        if not self.refused:
+            return
+        # Bending first: no other card matters where the user has to decide about it.
+        found = sorted(self.refused.items(), key=lambda item: (item[0][1] != BENDING, item[1][0]))
+        (card, waiver), (line, why, _) = found[0]
+        shown = [f"{quoted(also)[1:-1]} (line {at})" for (also, _), (at, _, _) in found[1:MOST_SHOWN + 1]]
+        others = f"; also {', '.join(shown)}" if shown else ""
+        if len(found) > MOST_SHOWN + 1:
+            others += f" and {len(found) - MOST_SHOWN - 1} more"
+        card = quoted(card)[1:-1]
+        raise StatejumpError(
+            f"line {line}: {card} is not supported" if line else f"{card} is not supported", cause=f"{why}{others}",
+            file=self.path,
+            remedy=f"{waiver} takes it as a pin-jointed bar" if waiver == BENDING else f"{waiver} says which"
+            if waiver.startswith("--") else f"--ignore {_argument(waiver)} leaves it out")
+
+    def check_waived(self) -> None:
+        """Refuse an ``--ignore`` that names nothing of the deck. :raises NotAllowed: there is one"""
+        for name in sorted(self.options.ignored - self.waived):
+            raise NotAllowed("--ignore", name, "the deck has no unsupported item of this name")
 
     def fail(self, line: int, what: str, cause: str | None = None) -> Unreadable:
         """Return why the deck cannot be read."""
@@ -79,11 +179,26 @@ class Deck:
         """Hold a node in directions of ``xyz``."""
         self.fixed.setdefault(name, set()).update(directions)
 
-    def load(self, name: str, force: tuple[float, float, float]) -> None:
+    def hold(self, name: str, direction: Sequence[float]) -> None:
+        """Hold a node in a direction, a unit vector."""
+        x, y, z = (float(part) for part in direction)
+        for axis, size in zip("xyz", (x, y, z)):
+            if abs(size) == 1:  # the usual case, exact in the basic system
+                self.fix(name, axis)
+                return
+        self.held.setdefault(name, []).append((x, y, z))
+
+    def load(self, name: str, force: Sequence[float], line: int = 0, card: str = "force") -> None:
         """Add a force on a node."""
+        self.force_line.setdefault(name, (line, card))
         have = self.force.setdefault(name, [0.0, 0.0, 0.0])
         for place, value in enumerate(force):
             have[place] += value
+
+    def weigh(self, name: str, mass: float, line: int, card: str) -> None:
+        """Add a mass at a node."""
+        self.mass_line.setdefault(name, (line, card))
+        self.mass[name] = self.mass.get(name, 0.0) + mass
 
     def account(self) -> list[Shown]:
         """Return what was taken and what was left out as tables."""
@@ -101,34 +216,24 @@ class Deck:
                 for (card, why), (line, count) in sorted(self.left.items(), key=lambda item: item[1])]
 
 
+def _argument(waiver: str) -> str:
+    """Return what --ignore needs as a shell takes it."""
+    shown = quoted(waiver)
+    return shown if " " in shown else shown[1:-1]
+
+
 def quoted(text: str) -> str:
     """Return a word of a deck as a sentence has it."""
     shown = repr(printable(text))
     return shown if len(shown) <= 40 else shown[:36] + "...'"
 
 
-def text_of(path: Path) -> list[str]:
-    """Return the lines of a deck. :raises Unreadable: there is none, it is too large or no text"""
-    if not is_file(path):
-        raise Unreadable("no such file", file=path)
-    try:
-        with path.open("rb") as stream:
-            content = stream.read(LARGEST_BYTES + 1)
-        if len(content) > LARGEST_BYTES:
-            raise Unreadable("cannot be read", cause=f"it is larger than {size(LARGEST_BYTES)}", file=path)
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise Unreadable("cannot be read", cause="it is not UTF-8 text", file=path) from None
-    except OSError as failure:
-        raise Unreadable("cannot be read", cause=failure.strerror, file=path) from None
-    return text.replace("\r\n", "\n").split("\n")
-
-
-def read(path: Path, form: str | None = None, bars: Path | None = None) -> Deck:
+def read(path: Path, form: str | None = None, bars: Path | None = None, options: Options | None = None) -> Deck:
     """Return what a deck says.
 
     :param form: ``abaqus`` (CalculiX too), ``nastran``, ``tables`` or ``mesh``; None: by the suffix
     :param bars: of ``tables`` the second table
+    :param options: what to do with cards of ``abaqus`` and ``nastran``
     :raises StatejumpError: one sentence with file and line
     """
     from statejump.kinds.truss.importing import abaqus, mesh, nastran, tables
@@ -143,7 +248,8 @@ def read(path: Path, form: str | None = None, bars: Path | None = None) -> Deck:
             raise NotAllowed("FILE", path.name, "a table of nodes needs a table of bars", remedy="--bars names it")
         deck = tables.read(path, bars)
     else:
-        deck = {"abaqus": abaqus.read, "nastran": nastran.read, "mesh": mesh.read}[form](path)
+        deck = mesh.read(path) if form == "mesh" else \
+            {"abaqus": abaqus.read, "nastran": nastran.read}[form](path, options or Options())
     if not deck.bars:
         raise Unreadable("holds no bars", file=path, remedy=", ".join(
             f"{card}: {why}" for card, _, _, why in deck.left_rows()[:3]) or None)

@@ -5,29 +5,38 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from statejump.core.errors import MissingKey, StatejumpError
 from statejump.kinds.truss.generate.document import Document, finished
+from statejump.kinds.truss.importing import expansions
 from statejump.kinds.truss.importing.joints import matching, put_in
-from statejump.kinds.truss.importing.model import Bar, Deck
+from statejump.kinds.truss.importing.model import Bar, Deck, Spring
+from statejump.kinds.truss.importing.supports import supports
+from statejump.kinds.truss.importing.units import Units, in_units
 
 # A coordinate that differs by less, over the size of the truss, is the same: decks have eight digits.
 FLAT = 1e-9
+# Length of a spring to the ground over the size of the truss: a node that moves across it by a thousandth of the size
+# feels a millionth of its force. Positions keep 13 digits.
+FAR, FARTHEST_M = 1e3, 9e5
+# Of a bar without density where gravity acts: cases need a mass, of which this is none beside others.
+WEIGHTLESS_KG = 1e-15
 # What gives all links a number that the deck does not say.
 OPTIONS = {"young_modulus_Pa": "--young-modulus", "cross_section_area_m2": "--area",
            "thermal_expansion_per_K": "--thermal-expansion"}
 
 
 def case_document(
-    deck: Deck, name: str, *, length_unit_m: float = 1.0, force_unit_N: float = 1.0,
+    deck: Deck, name: str, *, units: Units = Units(),
     temperature_change_K: float | None = None, density_kg_per_m3: float | None = None,
     joints: Sequence[Mapping[str, str]] = (), sections: Mapping[str, Mapping[str, Any]] | None = None,
     reflector: tuple[Sequence[str], Sequence[float]] | None = None, links: Mapping[str, float] | None = None,
-    fixed: Sequence[tuple[str, str]] = (),
+    fixed: Sequence[tuple[str, str]] = (), check_ignored: bool = True,
 ) -> Document:
     """Return the case of a deck; what becomes of it is noted in the deck's account.
 
-    :param length_unit_m: length of one unit of the deck [m]
-    :param force_unit_N: force of one unit of the deck [N]; stress is force by length squared
+    :param units: units of the deck
     :param temperature_change_K: of all links, of a deck without temperatures
     :param density_kg_per_m3: of links whose density the deck does not say
     :param joints: what ``--joint`` says, see :mod:`~statejump.kinds.truss.importing.joints`
@@ -35,30 +44,41 @@ def case_document(
     :param reflector: nodes of a reflecting surface, names or patterns, and its axis
     :param links: keys of links whose number the deck does not say
     :param fixed: names or patterns of nodes, and the directions in which they are held too
+    :param check_ignored: whether an item of ``Options.ignored`` that the deck does not have is refused
     :raises StatejumpError: a link lacks a number, there is no such node
     """
     used = {end for bar in deck.bars for end in bar.nodes}
-    for node in [node for node in deck.nodes if node not in used]:
-        deck.leave(f"node {node}" if len(deck.nodes) < 50 else "node", "no link ends there", 0)
+    used |= {end for spring in deck.springs for end in (spring.first, spring.second) if end}
+    _check_unused(deck, used)
     dimension = _dimension(deck, used)
     more = dict(sections or {})
     changes = [0.0] * len(deck.bars) if "thermal" in more else _changes(deck, temperature_change_K)
     peak = max(changes, key=abs)
+    if any(deck.gravity) and density_kg_per_m3 is None and not deck.mass and not any(bar.density for bar in deck.bars):
+        deck.leave("gravity", "nothing has a mass", 0)
+        deck.gravity = [0.0, 0.0, 0.0]
+    gravity = [in_units(part, units.length_m) for part in deck.gravity[:dimension]]
+    truss: dict[str, Any] = {"dimension": dimension, **({"gravity_m_per_s2": gravity} if any(gravity) else {})}
     made: Document = {
         "case": {"name": name, "kind": "truss", "title": "", "source": f"imported from {deck.path.name}"},
-        "truss": {"dimension": dimension},
-        "node": [_node(deck, node, dimension, length_unit_m, force_unit_N) for node in deck.nodes if node in used],
-        "link": [_link(deck, bar, change, peak, length_unit_m, force_unit_N, density_kg_per_m3, links or {})
+        "truss": truss,
+        "node": [_node(deck, node, dimension, units) for node in deck.nodes if node in used],
+        "link": [_link(deck, bar, change, peak, units, density_kg_per_m3, links or {})
                  for bar, change in zip(deck.bars, changes)],
-        "slider": [], "revolute": [],
+        "slider": [], "revolute": [], "spring": [], "expansion": [],
         "thermal": {"shape": "triangle", "temperature_change_max_K": float(peak)}, **more,
     }
+    _springs(deck, made, units, dimension)
+    _expansions(deck, made)
+    deck.settle()
+    if check_ignored:
+        deck.check_waived()
     if "thermal" in more and (deck.temperature or any(bar.temperature_change is not None for bar in deck.bars)):
         deck.leave("temperatures", "those of the members' histories are taken", 0)
     _hold(made, fixed, dimension)
     put_in(made, joints, dimension)
     if reflector is not None:
-        of_deck = [f"N{node}" if node.isdecimal() else node for node in deck.nodes if node in used]
+        of_deck = [node_name(node) for node in deck.nodes if node in used]
         made["reflector"] = {"axis": [float(part) for part in reflector[1][:dimension]], "nodes": list(dict.fromkeys(
             name for pattern in reflector[0] for name in matching("--reflector", pattern.strip(), of_deck)))}
     return finished(made)
@@ -73,13 +93,78 @@ def _hold(made: Document, fixed: Sequence[tuple[str, str]], dimension: int) -> N
             nodes[name]["fixed"] = [axis for axis in "xyz"[:dimension] if axis in held]
 
 
+def _check_unused(deck: Deck, used: set[str]) -> None:
+    """Refuse what acts on a node where no bar and no spring ends; note the others."""
+    acting = [(deck.force_line[node], node, "force") for node, force in deck.force.items()
+              if node in deck.force_line and any(force)]
+    acting += [(deck.mass_line[node], node, "mass") for node, mass in deck.mass.items() if mass]
+    for (line, card), node, what in acting:
+        if node not in used:
+            deck.refuse(card, f"a {what} on node {node}, where no bar ends", line, f"{card.lstrip('*')}.UNUSED")
+    for node in [node for node in deck.nodes if node not in used]:
+        deck.leave(f"node {node}" if len(deck.nodes) < 50 else "node", "no bar ends there", 0)
+
+
 def _dimension(deck: Deck, used: set[str]) -> int:
     heights = [deck.nodes[node][2] for node in used]
     size = max((abs(value) for node in used for value in deck.nodes[node]), default=0.0)
-    if max(heights) - min(heights) > FLAT * size or any(force[2] for force in deck.force.values()):
+    if (max(heights) - min(heights) > FLAT * size or any(force[2] for force in deck.force.values()) or deck.gravity[2]
+            or any(spring.direction and abs(spring.direction[2]) > FLAT for spring in deck.springs)):
         return 3
     deck.leave("z of nodes", "all nodes are in one plane: the truss is planar", 0)
     return 2
+
+
+def _springs(deck: Deck, made: Document, units: Units, dimension: int) -> None:
+    """Add springs; one to the ground in a direction ends at a node far away, so that it acts in that direction only."""
+    places = np.array([node["position_m"] for node in made["node"]])
+    size = float(np.ptp(places, axis=0).max()) or 1.0
+    for spring in deck.springs:
+        name = _called("K", spring.name)
+        ends = [node_name(spring.first)]
+        if spring.second is not None:
+            ends.append(node_name(spring.second))
+        else:
+            ends.append(f"G_{name}")
+            made["node"].append(_ground(deck, spring, ends[1], units, min(FAR * size, FARTHEST_M), dimension))
+        made["spring"].append({"name": name, "nodes": ends, "stiffness_N_per_m": in_units(
+            spring.stiffness, units.force_N / units.length_m)})
+
+
+def _expansions(deck: Deck, made: Document) -> None:
+    """Give links the coefficients that follow the temperature, one of each table and temperature free of stress."""
+    names: dict[tuple[tuple[tuple[float, float], ...], float, float], str] = {}
+    for bar, link in zip(deck.bars, made["link"]):
+        if not bar.expansion_table:
+            continue
+        key = (bar.expansion_table, bar.expansion_zero, _free(deck, bar))
+        if key not in names:
+            names[key] = f"X{len(names) + 1}"
+            made["expansion"].append(expansions.item(names[key], *key))
+        link["expansion"] = names[key]
+        del link["thermal_expansion_per_K"]
+
+
+def _free(deck: Deck, bar: Bar) -> float:
+    """Return the temperature at which a bar is free of stress."""
+    if bar.reference_temperature is not None:
+        return bar.reference_temperature
+    return sum(deck.initial.get(end, 0.0) for end in bar.nodes) / 2
+
+
+def _ground(deck: Deck, spring: Spring, name: str, units: Units, length: float, dimension: int) -> dict[str, Any]:
+    start = [in_units(value, units.length_m) for value in deck.nodes[spring.first]]
+    return {"name": name, "fixed": list("xyz"[:dimension]),
+            "position_m": [at + length * part for at, part in zip(start, spring.direction or ())][:dimension]}
+
+
+def node_name(name: str) -> str:
+    """Return how a node of a deck is called: numbers begin with N, those of an instance with its name."""
+    return _called("N", name)
+
+
+def _called(letter: str, name: str) -> str:
+    return f"{letter}{name}" if name[0].isdecimal() else name.replace(".", "_")
 
 
 def _changes(deck: Deck, given: float | None) -> list[float]:
@@ -89,9 +174,7 @@ def _changes(deck: Deck, given: float | None) -> list[float]:
         change = bar.temperature_change
         if change is None and deck.temperature:
             ends = [deck.temperature.get(end, deck.initial.get(end, 0.0)) for end in bar.nodes]
-            start = [deck.initial.get(end, 0.0) for end in bar.nodes]
-            free = sum(start) / 2 if bar.reference_temperature is None else bar.reference_temperature
-            change = sum(ends) / 2 - free
+            change = sum(ends) / 2 - _free(deck, bar)
         if change is None:
             change = given
         if change is None:
@@ -100,50 +183,47 @@ def _changes(deck: Deck, given: float | None) -> list[float]:
     return found
 
 
-def _in_units(value: float, unit: float) -> float:
-    """Return a number of a deck in the units of cases, with the digits that a deck can have: 50 mm2 are 5e-05 m2."""
-    return value if unit == 1 else float(f"{value * unit:.15g}")
-
-
-def _node(deck: Deck, name: str, dimension: int, length: float, force: float) -> dict[str, Any]:
-    made: dict[str, Any] = {"name": f"N{name}" if name.isdecimal() else name,
-                            "position_m": [_in_units(value, length) for value in deck.nodes[name][:dimension]]}
-    fixed = [axis for axis in "xyz"[:dimension] if axis in deck.fixed.get(name, ())]
-    if fixed:
-        made["fixed"] = fixed
-    load = [_in_units(value, force) for value in deck.force.get(name, ())][:dimension]
+def _node(deck: Deck, name: str, dimension: int, units: Units) -> dict[str, Any]:
+    made: dict[str, Any] = {"name": node_name(name),
+                            "position_m": [in_units(value, units.length_m) for value in deck.nodes[name][:dimension]]}
+    made.update(supports(deck, name, dimension))
+    load = [in_units(value, units.force_N) for value in deck.force.get(name, ())][:dimension]
     if any(load):
         made["force_N"] = load
+    if deck.mass.get(name):
+        made["mass_kg"] = in_units(deck.mass[name], units.mass * deck.mass_scale)
     return made
 
 
-def _link(deck: Deck, bar: Bar, change: float, peak: float, length: float, force: float,
+def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
           density: float | None, given: Mapping[str, float]) -> dict[str, Any]:
-    stress = force / length**2
     numbers: dict[str, float] = {}
-    for key, words, value, unit in (("young_modulus_Pa", "Young's modulus", bar.young_modulus, stress),
-                                    ("cross_section_area_m2", "cross-section area", bar.area, length**2)):
+    for key, words, value, unit in (("young_modulus_Pa", "Young's modulus", bar.young_modulus, units.stress),
+                                    ("cross_section_area_m2", "cross-section area", bar.area, units.length_m**2)):
         if value:
-            numbers[key] = _in_units(value, unit)
+            numbers[key] = in_units(value, unit)
         elif key in given:
             numbers[key] = given[key]
         else:
             raise StatejumpError(f"{bar.kind} {bar.name!r} has no {words}", file=deck.path,
+                                 cause=bar.why_no_area if words[0] == "c" and bar.why_no_area else None,
                                  remedy=f"{OPTIONS[key]} gives all of them one")
     made: dict[str, Any] = {
-        "name": f"L{bar.name}" if bar.name.isdecimal() else bar.name,
-        "nodes": [f"N{end}" if end.isdecimal() else end for end in bar.nodes],
+        "name": _called("L", bar.name),
+        "nodes": [node_name(end) for end in bar.nodes],
         **numbers,
         "thermal_expansion_per_K": (given.get("thermal_expansion_per_K", 0.0) if bar.expansion is None
                                     else bar.expansion),
     }
-    if bar.expansion is None and "thermal_expansion_per_K" not in given:
+    if bar.expansion is None and not bar.expansion_table and "thermal_expansion_per_K" not in given:
         deck.leave(bar.kind, "no thermal expansion: 0 is taken", 0)
     if bar.density:
-        # Mass is force by length, times seconds squared.
-        made["density_kg_per_m3"] = _in_units(bar.density, force / length**4)
+        made["density_kg_per_m3"] = in_units(bar.density, units.mass / units.length_m**3 * deck.mass_scale)
     elif density is not None:
         made["density_kg_per_m3"] = density
+    elif any(deck.gravity):
+        made["mass_kg"] = WEIGHTLESS_KG
+        deck.leave(bar.kind, f"no density: a mass of {WEIGHTLESS_KG:g} kg is taken, for gravity acts", 0)
     else:
         deck.leave(bar.kind, "no density: the DEM and --dynamic need one, see --density", 0)
     if bar.poisson_ratio is not None:

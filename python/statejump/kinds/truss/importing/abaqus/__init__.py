@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Decks of CalculiX and Abaqus. The table says what becomes of every keyword; the readers follow it."""
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+from statejump.kinds.truss.importing.abaqus import assembly, generation, loads, mesh, sections
+from statejump.kinds.truss.importing.abaqus.keywords import Block, blocks
+from statejump.kinds.truss.importing.abaqus.model import Element, Model, Reading, Scope
+from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, KEYWORDS
+from statejump.kinds.truss.importing.contract import IDLE, REFUSED, Card
+from statejump.kinds.truss.importing.model import Bar, Deck, Options
+
+# The order in which keywords are read; decks have them in any. Those of one stage are read in the order of the deck.
+STAGES: tuple[dict[str, Reading], ...] = (
+    {"SYSTEM": mesh.system, "NODE": mesh.node},
+    {"NGEN": generation.ngen, "NSET": mesh.node_set, "NFILL": generation.nfill, "NCOPY": generation.ncopy},
+    {"ELEMENT": mesh.element},
+    {"ELSET": mesh.element_set, "ELGEN": generation.elgen, "ELCOPY": generation.elcopy},
+    {"TRANSFORM": loads.transform},
+    {"MATERIAL": sections.material, "ELASTIC": sections.elastic, "EXPANSION": sections.expansion,
+     "DENSITY": sections.density},
+    {"SOLID SECTION": sections.section, "BEAM SECTION": sections.section, "BEAM GENERAL SECTION": sections.general,
+     "SPRING": sections.spring, "MASS": sections.mass, "INITIAL CONDITIONS": loads.initial},
+)
+# What is read with the steps, or says where parts begin and end.
+TOGETHER = ("BOUNDARY", "CLOAD", "DLOAD", "TEMPERATURE", "AMPLITUDE", "STEP", "STATIC", "END STEP", "PART", "END PART",
+            "ASSEMBLY", "END ASSEMBLY", "INSTANCE", "END INSTANCE")
+# The middle of a bar of three nodes: decks have eight digits, meshers put it there to six.
+MIDDLE = 1e-6
+# CalculiX takes keywords and parameters without their blanks.
+BY_LETTERS = {name.replace("_", ""): (name.replace("_", " "), card) for name, card in KEYWORDS.items()}
+
+
+def read(path: Path, options: Options | None = None) -> Deck:
+    """Return what a deck says. :raises StatejumpError: one sentence with file and line"""
+    deck = Deck(path, options or Options())
+    model = Model(deck)
+    taken = [block for block in blocks(deck, path) if _check(model, block)]
+    for block in taken:
+        if block.name == "ELEMENT":
+            mesh.check_type(model, block)
+        elif block.name in ("STEP", "STATIC", "END STEP"):
+            deck.take(f"*{block.name}", KEYWORDS[block.name.replace(" ", "_")].what)
+    deck.settle()
+    given = assembly.flat(model, taken)
+    steps, own = _steps(given)
+    for stage in STAGES:
+        for block, scope in own:
+            later = block.name == "NSET" and "ELSET" in block.parameters
+            if later and "ELSET" in stage:
+                mesh.node_set(model, block, scope)
+            elif block.name in stage and not later:
+                stage[block.name](model, block, scope)
+    loads.run(model, steps)
+    _bars(model)
+    deck.settle()
+    return deck
+
+
+def _check(model: Model, block: Block) -> bool:
+    """Whether a keyword is read; it is refused, or noted as without influence, by the table."""
+    deck = model.deck
+    letters = block.name.replace(" ", "")
+    if letters not in BY_LETTERS:
+        deck.refuse(f"*{block.name}", "the keyword is unknown", block.line, block.name)
+        return False
+    block.name, known = BY_LETTERS[letters]
+    if known.use == REFUSED:
+        deck.refuse(f"*{block.name}", known.what, block.line, block.name)
+    elif known.use == IDLE:
+        deck.leave(f"*{block.name}", known.what, block.line)
+    elif block.name in deck.options.ignored:
+        deck.waived.add(block.name)
+        deck.leave(f"*{block.name}", "left out by --ignore", block.line)
+    else:
+        _check_parameters(model, block, known)
+        return True
+    return False
+
+
+def _check_parameters(model: Model, block: Block, known: Card) -> None:
+    by_letters = {field.name.replace("_", ""): field for field in known.fields}
+    for name, value in list(block.parameters.items()):
+        field = by_letters.get(name.replace(" ", ""))
+        if field is None:
+            model.deck.refuse(f"*{block.name}, {name}", "the parameter is unknown", block.line, f"{block.name}.{name}")
+            continue
+        written = field.name.replace("_", " ")
+        if written != name:
+            block.parameters[written] = block.parameters.pop(name)
+        if field.use == REFUSED and value.upper() != "NO":
+            model.deck.refuse(f"*{block.name}, {written}", field.why, block.line, f"{block.name}.{written}")
+        elif field.use == IDLE and value.strip("0.eE+-") != "":
+            model.deck.leave(f"*{block.name}, {written}", field.why, block.line)
+
+
+def _steps(given: list[tuple[Block, Scope]]) -> tuple[list[loads.Step], list[tuple[Block, Scope]]]:
+    """Return the steps, of which the first has what stands outside of steps, and all blocks."""
+    steps = [loads.Step()]
+    current = steps[0]
+    for block, scope in given:
+        if block.name == "STEP":
+            current = loads.Step(block.line, "PERTURBATION" in block.parameters)
+            steps.append(current)
+        elif block.name == "END STEP":
+            current = steps[0]
+        current.blocks.append((block, scope))
+    return steps, given
+
+
+def _bars(model: Model) -> None:
+    """Make bars of elements, in two where something else happens at the middle node."""
+    shared = Counter(end for one in model.elements.values() for end in set(one.nodes))
+    for one in model.elements.values():
+        if one.family not in (BAR, BEAM):
+            continue
+        ends = [(one.nodes[0], one.nodes[-1])]
+        names = [one.name]
+        if len(one.nodes) == 3 and _splits(model, one, shared):
+            ends = [(one.nodes[0], one.nodes[1]), (one.nodes[1], one.nodes[2])]
+            names = [f"{one.name}_1", f"{one.name}_2"]
+        card = f"*ELEMENT, TYPE={one.kind}"
+        for name, pair in zip(names, ends):
+            bar = Bar(name, pair, card)
+            if section := model.sections.get(one.name):
+                of = section.material
+                bar.area, bar.young_modulus, bar.expansion = section.area, of.young_modulus, of.expansion
+                bar.poisson_ratio, bar.density, bar.why_no_area = of.poisson_ratio, of.density, section.why
+                bar.expansion_table, bar.expansion_zero = of.expansion_table, of.expansion_zero
+            else:
+                bar.why_no_area = "no section names it"
+            model.deck.bars.append(bar)
+        model.deck.take(card, "link" if one.family == BAR
+                        else "link: it carries axial force only, its bending is left out")
+
+
+def _splits(model: Model, one: Element, shared: Counter[str]) -> bool:
+    """Whether the middle node of an element is more than a point of a straight bar."""
+    deck, middle = model.deck, one.nodes[1]
+    first, between, last = (np.array(deck.nodes[end]) for end in one.nodes)
+    if shared[middle] > 1 or any(deck.force.get(middle, ())) or middle in deck.mass or \
+            np.linalg.norm(between - (first + last) / 2) > MIDDLE * np.linalg.norm(last - first):
+        return True
+    if deck.fixed.get(middle) or middle in deck.held:
+        deck.leave(f"*ELEMENT, TYPE={one.kind}", "supports of middle nodes: a bar is straight", one.line)
+    return False

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Keywords of a deck of CalculiX or Abaqus with their parameters and data lines, and *INCLUDE."""
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from statejump.kinds.truss.importing.lines import Source
+from statejump.kinds.truss.importing.model import Deck
+
+Data = tuple[int, list[str]]
+
+
+@dataclass
+class Block:
+    """A keyword: its line, its name and parameters in capitals, and its data lines as words."""
+
+    line: int
+    name: str
+    parameters: dict[str, str] = field(default_factory=dict)
+    data: list[Data] = field(default_factory=list)
+
+
+def words(text: str) -> list[str]:
+    """Return what stands between commas, without blanks around; a comma in quotes is none."""
+    if '"' not in text:
+        return [word.strip() for word in text.split(",")]
+    found, quoted = [""], False
+    for sign in text:
+        if sign == '"':
+            quoted = not quoted
+        elif sign == "," and not quoted:
+            found.append("")
+            continue
+        found[-1] += sign
+    return [word.strip() for word in found]
+
+
+def unquoted(word: str) -> str:
+    """Return a name without its quotes."""
+    return word[1:-1] if len(word) > 1 and word[0] == word[-1] == '"' else word
+
+
+def _keyword(text: str) -> tuple[str, dict[str, str]]:
+    first, *rest = words(text[1:])
+    parameters = {}
+    for word in rest:
+        key, _, value = word.partition("=")
+        if key.strip():
+            parameters[" ".join(key.upper().split())] = unquoted(value.strip())
+    return " ".join(first.upper().split()), parameters
+
+
+def included(lines: list[str], place: int) -> tuple[str, int] | None:
+    """Return the file that *INCLUDE names and the number of its lines."""
+    text = lines[place].strip()
+    if not text[:8].upper() == "*INCLUDE":
+        return None
+    count = 1
+    while text.endswith(",") and place + count < len(lines):
+        text += lines[place + count].strip()
+        count += 1
+    name, parameters = _keyword(text)
+    return (parameters.get("INPUT", ""), count) if name == "INCLUDE" else None
+
+
+def blocks(deck: Deck, path: Path) -> Iterator[Block]:
+    """Yield every keyword with its data lines, of which those without any word are left out."""
+    current: Block | None = None
+    joined, begun = "", 0
+    for number, raw in Source(path, included):
+        text = raw.strip()
+        if not text or text.startswith("**"):
+            continue
+        if joined or text.startswith("*"):
+            begun = begun or number
+            joined += text
+            if joined.endswith(","):
+                continue
+            if current is not None:
+                yield current
+            current = Block(begun, *_keyword(joined))
+            joined, begun = "", 0
+            continue
+        if current is None:
+            raise deck.fail(number, "data before the first keyword")
+        line = words(text)
+        if line[-1] == "" and len(line) > 1:
+            line.pop()
+        if any(line):
+            current.data.append((number, [unquoted(word) for word in line]))
+    if current is not None:
+        yield current

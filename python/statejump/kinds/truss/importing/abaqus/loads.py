@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Supports, loads and temperatures, from step to step."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from statejump.core.errors import NotAllowed
+from statejump.kinds.truss.importing.abaqus.keywords import Block
+from statejump.kinds.truss.importing.abaqus.model import Model, Scope
+from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, MASS
+from statejump.kinds.truss.importing.coordinates import Frame, about_axis, by_axis
+from statejump.kinds.truss.importing.model import quoted
+
+HELD = {"ENCASTRE": (1, 6), "PINNED": (1, 3), "XSYMM": (1, 1), "YSYMM": (2, 2), "ZSYMM": (3, 3)}
+STATIC = ("STATIC", "COUPLED TEMPERATURE-DISPLACEMENT", "UNCOUPLED TEMPERATURE-DISPLACEMENT", "VISCO")
+
+
+@dataclass
+class Step:
+    """Blocks of a step; those of the model itself stand before the first one."""
+
+    line: int = 0
+    perturbation: bool = False
+    blocks: list[tuple[Block, Scope]] = field(default_factory=list)
+
+    def static(self) -> Block | None:
+        """Return the block that makes the step a static one."""
+        return next((block for block, _ in self.blocks if block.name in STATIC), None)
+
+
+@dataclass
+class State:
+    """What acts at the end of a step.
+
+    :param held: directions by node
+    :param force: force by node and direction, with line
+    :param gravity: vectors by set, with line
+    """
+
+    held: dict[str, set[int]] = field(default_factory=dict)
+    force: dict[tuple[str, int], tuple[float, int]] = field(default_factory=dict)
+    gravity: dict[str, tuple[np.ndarray, int]] = field(default_factory=dict)
+    temperature: dict[str, float] = field(default_factory=dict)
+
+
+def transform(model: Model, block: Block, scope: Scope) -> None:
+    """Directions of supports and loads of the nodes of a set."""
+    kind = block.parameters.get("TYPE", "R").upper()[:1]
+    values = model.numbers(*block.data[0]) if block.data else []
+    if len(values) < 6:
+        raise model.deck.fail(block.line, "*TRANSFORM needs two points")
+    first, second = np.array(values[:3]), np.array(values[3:6])
+    frame: Frame | None = None
+    if kind == "R":
+        frame = by_axis("R", np.zeros(3), first, second)
+    elif kind == "C":
+        frame = about_axis(first, second)
+    else:
+        model.deck.refuse("*TRANSFORM, TYPE", "only R and C are read", block.line, "TRANSFORM.TYPE")
+        return
+    if frame is None:
+        raise model.deck.fail(block.line, "*TRANSFORM: its points give no directions")
+    for node in model.nodes_of(block.line, model.needed(block, "NSET"), scope):
+        model.frames[node] = frame
+    model.deck.take("*TRANSFORM", "directions of supports and forces")
+
+
+def initial(model: Model, block: Block, scope: Scope) -> None:
+    """Temperatures at which links are free of stress."""
+    kind = block.parameters.get("TYPE", "").upper()
+    if kind != "TEMPERATURE":
+        card = f"*INITIAL CONDITIONS, TYPE={quoted(kind)[1:-1]}"
+        model.deck.refuse(card, "only temperatures are read", block.line, "INITIAL CONDITIONS")
+        return
+    _temperatures(model, model.deck.initial, block, scope)
+
+
+def run(model: Model, steps: list[Step]) -> None:
+    """Apply the model's own supports and the steps up to the chosen one."""
+    chosen = _chosen(model, steps)
+    state = State()
+    amplitudes = {block.parameters.get("NAME", "").upper(): block
+                  for step in steps for block, _ in step.blocks if block.name == "AMPLITUDE"}
+    for number, step in enumerate(steps[:chosen + 1]):
+        _apply(model, step, state, amplitudes, number == chosen)
+    _finish(model, state)
+
+
+def _chosen(model: Model, steps: list[Step]) -> int:
+    """Return the place of the chosen step: that of --step, else the first static one, else the first."""
+    wanted, count = model.deck.options.step or 0, len(steps) - 1
+    if wanted > max(count, 1):
+        raise NotAllowed("--step", wanted, f"the deck has {count} step{'s' if count != 1 else ''}")
+    if count == 0:
+        return 0
+    place: int = wanted or next((at for at, step in enumerate(steps) if at and step.static()), 1)
+    model.deck.step = place if steps[place].static() else 0
+    for at, step in enumerate(steps):
+        if at and at != place:
+            what = "before it: what stays of it is taken" if at < place else "it is left out"
+            model.deck.leave(f"step {at}", f"step {place} is taken, {what}; --step chooses another", step.line)
+    return place
+
+
+def _apply(model: Model, step: Step, state: State, amplitudes: dict[str, Block], last: bool) -> None:
+    """Apply a step: OP=NEW removes what former ones left, a force replaces that of a former one, forces of one step
+    add up."""
+    if last and step.perturbation and (state.force or state.gravity or state.temperature):
+        model.deck.refuse("*STEP, PERTURBATION", "small loads on the loaded state of a former step", step.line,
+                          "STEP.PERTURBATION")
+    renewed: set[str] = set()
+    forces: dict[tuple[str, int], tuple[float, int]] = {}
+    static = step.static()
+    period = 1.0
+    if static is not None and static.data:
+        values = model.numbers(*static.data[0])
+        period = values[1] if len(values) > 1 and values[1] else 1.0
+    for block, scope in step.blocks:
+        if block.name not in ("BOUNDARY", "CLOAD", "DLOAD", "TEMPERATURE"):
+            continue
+        if block.parameters.get("OP", "").upper() == "NEW" and block.name not in renewed:
+            renewed.add(block.name)
+            _clear(state, block.name)
+        if block.name == "BOUNDARY":
+            _boundary(model, block, scope, state)
+        elif (factor := _factor(model, block, amplitudes, period if static else None)) is None:
+            continue
+        elif block.name == "CLOAD":
+            _cload(model, block, scope, forces, factor)
+        elif block.name == "DLOAD":
+            _dload(model, block, scope, state, factor)
+        else:
+            _temperatures(model, state.temperature, block, scope)
+    state.force.update(forces)
+
+
+def _clear(state: State, name: str) -> None:
+    """Remove what former steps left of a keyword."""
+    if name == "BOUNDARY":
+        state.held.clear()
+    elif name == "CLOAD":
+        state.force.clear()
+    elif name == "DLOAD":
+        state.gravity.clear()
+    else:
+        state.temperature.clear()
+
+
+def _factor(model: Model, block: Block, amplitudes: dict[str, Block], period: float | None) -> float | None:
+    """Return the factor of AMPLITUDE= at the end of a step; None: it is refused."""
+    name = block.parameters.get("AMPLITUDE")
+    if name is None:
+        return 1.0
+    found = amplitudes.get(name.upper())
+    if found is None:
+        raise model.deck.fail(block.line, f"there is no amplitude {quoted(name)}")
+    given = found.parameters
+    if period is None or given.get("TIME") or given.get("VALUE", "RELATIVE").upper() != "RELATIVE" or \
+            given.get("DEFINITION", "TABULAR").upper() != "TABULAR" or block.name == "TEMPERATURE":
+        model.deck.refuse(f"*{block.name}, AMPLITUDE", "its value at the end of the step is not known", block.line,
+                          f"{block.name}.AMPLITUDE")
+        return None
+    pairs = [value for line, words in found.data for value in model.numbers(line, words)]
+    times, values = pairs[::2], pairs[1::2]
+    if len(times) != len(values) or not times or any(b <= a for a, b in zip(times, times[1:])):
+        raise model.deck.fail(found.line, "*AMPLITUDE: not pairs of rising times and values")
+    model.deck.take("*AMPLITUDE", "factor of loads")
+    return float(np.interp(period, times, values))
+
+
+def _boundary(model: Model, block: Block, scope: Scope, state: State) -> None:
+    for line, words in block.data:
+        nodes = model.nodes_of(line, words[0], scope)
+        named = words[1].upper() if len(words) > 1 else ""
+        if named in HELD:
+            first, last = HELD[named]
+        else:
+            first = model.whole(line, words[1]) if len(words) > 1 else 0
+            last = model.whole(line, words[2]) if len(words) > 2 and words[2] else first
+        if first == 0:
+            raise model.deck.fail(line, "*BOUNDARY needs a direction")
+        if len(words) > 3 and words[3] and model.number(line, words[3]) != 0 and first <= 3:
+            model.deck.refuse("*BOUNDARY", "a given displacement that is not 0", line, "BOUNDARY.VALUE")
+            continue
+        if last > 3:
+            model.deck.leave("*BOUNDARY", "directions above 3: ends of bars turn freely, temperatures are no supports",
+                             line)
+        directions = range(first, min(last, 3) + 1)
+        for node in nodes if directions else ():
+            state.held.setdefault(node, set()).update(directions)
+        if directions:
+            model.deck.take("*BOUNDARY", "directions without motion", len(nodes))
+
+
+def _cload(model: Model, block: Block, scope: Scope, forces: dict[tuple[str, int], tuple[float, int]],
+           factor: float) -> None:
+    for line, words in block.data:
+        if len(words) < 3:
+            raise model.deck.fail(line, "*CLOAD needs node, direction and force")
+        direction = model.whole(line, words[1])
+        value = factor * model.number(line, words[2])
+        if not 1 <= direction <= 3:
+            if value:
+                model.deck.refuse("*CLOAD", "a moment: nodes of a truss do not rotate", line, "CLOAD.MOMENT")
+            continue
+        for node in model.nodes_of(line, words[0], scope):
+            before = forces.get((node, direction), (0.0, line))
+            forces[node, direction] = (before[0] + value, before[1])
+        model.deck.take("*CLOAD", "dead load")
+
+
+def _dload(model: Model, block: Block, scope: Scope, state: State, factor: float) -> None:
+    for line, words in block.data:
+        kind = words[1].upper() if len(words) > 1 else ""
+        if kind != "GRAV":
+            model.deck.refuse(f"*DLOAD, {quoted(kind)[1:-1]}", "a load on elements that is not gravity", line,
+                              f"DLOAD.{kind}")
+            continue
+        values = (model.numbers(line, words[2:6]) + [0.0] * 4)[:4]
+        direction = np.array(values[1:4])
+        size = np.linalg.norm(direction)
+        if size == 0:
+            raise model.deck.fail(line, "*DLOAD: gravity without direction")
+        state.gravity[scope.prefix + words[0].upper() if words[0] else "EALL"] = (
+            direction / size * values[0] * factor, line)
+        model.deck.take("*DLOAD", "gravity")
+
+
+def _temperatures(model: Model, found: dict[str, float], block: Block, scope: Scope) -> None:
+    for line, words in block.data:
+        if len(words) < 2:
+            raise model.deck.fail(line, f"*{block.name} needs node and temperature")
+        values = model.numbers(line, words[1:])
+        if any(values[1:]):
+            model.deck.refuse(f"*{block.name}", "temperatures that differ across a section", line,
+                              f"{block.name}.GRADIENT")
+        for node in model.nodes_of(line, words[0], scope):
+            found[node] = values[0]
+        model.deck.take(f"*{block.name}", "temperature of links")
+
+
+def _finish(model: Model, state: State) -> None:
+    """Write what acts into the deck, in the basic system."""
+    deck = model.deck
+    deck.temperature.update(state.temperature)
+    for node, directions in state.held.items():
+        if node in model.frames:
+            axes = model.frames[node].directions(deck.nodes[node])
+            for at in sorted(directions):
+                deck.hold(node, axes[at - 1])
+        else:
+            deck.fix(node, "".join("xyz"[at - 1] for at in sorted(directions)))
+    for (node, direction), (value, line) in state.force.items():
+        if value:
+            axis = model.frame(node).directions(deck.nodes[node])[direction - 1]
+            deck.load(node, [float(part) * value for part in axis], line, "*CLOAD")
+    if state.gravity:
+        _gravity(model, state)
+
+
+def _gravity(model: Model, state: State) -> None:
+    """Gravity must act alike on everything that has a mass."""
+    acting: dict[str, np.ndarray] = {}
+    for group, (vector, line) in state.gravity.items():
+        for one in model.elements_of(line, group, Scope()):
+            acting[one.name] = acting.get(one.name, np.zeros(3)) + vector
+    heavy = [one.name for one in model.elements.values() if one.family == MASS or one.family in (BAR, BEAM)
+             and one.name in model.sections and model.sections[one.name].material.density]
+    vectors = [acting.get(name, np.zeros(3)) for name in heavy]
+    if any((one != vectors[0]).any() for one in vectors):
+        model.deck.refuse("*DLOAD, GRAV", "it acts on a part of the structure only",
+                          next(line for _, line in state.gravity.values()), "DLOAD.GRAV")
+    elif vectors:
+        model.deck.gravity[:] = [float(part) for part in vectors[0]]

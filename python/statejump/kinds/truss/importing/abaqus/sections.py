@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Materials, sections, stiffnesses of springs and masses."""
+from __future__ import annotations
+
+import numpy as np
+
+from statejump.kinds.truss.importing import profiles
+from statejump.kinds.truss.importing.abaqus.keywords import Block
+from statejump.kinds.truss.importing.abaqus.model import Material, Model, Scope, Section
+from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, MASS, SPRING
+from statejump.kinds.truss.importing.model import quoted
+from statejump.kinds.truss.importing.springs import add_spring
+
+ISOTROPIC = ("", "ISO", "ISOTROPIC")
+
+
+def material(model: Model, block: Block, scope: Scope) -> None:
+    """The material of the keywords that follow."""
+    model.material = model.materials.setdefault(model.needed(block, "NAME").upper(), Material())
+    model.deck.take("*MATERIAL", "properties of links")
+
+
+def _of_material(model: Model, block: Block, counts: int) -> tuple[Material, list[float]] | None:
+    """Return the material and its numbers; None: they depend on temperature or direction, which is refused.
+
+    :param counts: how many numbers stand before the temperature
+    """
+    if model.material is None:
+        raise model.deck.fail(block.line, f"*{block.name} before any *MATERIAL")
+    if not block.data:
+        raise model.deck.fail(block.line, f"*{block.name} has no data")
+    rows = [(model.numbers(line, words) + [0.0] * counts)[:counts] for line, words in block.data]
+    if any(row != rows[0] for row in rows):
+        model.deck.refuse(f"*{block.name}", "its numbers depend on temperature", block.data[1][0], block.name)
+        return None
+    model.deck.take(f"*{block.name}", "properties of links")
+    return model.material, rows[0]
+
+
+def elastic(model: Model, block: Block, scope: Scope) -> None:
+    """Young's modulus and Poisson's ratio."""
+    if block.parameters.get("TYPE", "").upper() not in ISOTROPIC:
+        model.deck.refuse("*ELASTIC, TYPE", "it is not isotropic", block.line, "ELASTIC.TYPE")
+        return
+    if found := _of_material(model, block, 2):
+        found[0].young_modulus, ratio = found[1]
+        if not -0.99 <= ratio <= 0.49:  # only the DEM's joints use it
+            model.deck.leave("*ELASTIC", f"Poisson's ratio {ratio:g}: outside of -0.99 to 0.49", block.line)
+        elif len(block.data[0][1]) > 1:
+            found[0].poisson_ratio = ratio
+
+
+def expansion(model: Model, block: Block, scope: Scope) -> None:
+    """Thermal expansion. ZERO matters where the coefficient depends on temperature: bars are free of stress at their
+    initial temperature."""
+    kind = block.parameters.get("TYPE", "").upper()
+    counts = {"ORTHO": 3, "ANISO": 6}.get(kind, 1)
+    if kind not in (*ISOTROPIC, "ORTHO", "ANISO"):
+        model.deck.refuse("*EXPANSION, TYPE", "an unknown type", block.line, "EXPANSION.TYPE")
+        return
+    if counts == 1 and model.material is not None and len({words[0] for _, words in block.data}) > 1:
+        _expansion_table(model, model.material, block)
+    elif found := _of_material(model, block, counts):
+        if any(value != found[1][0] for value in found[1][:3]) or any(found[1][3:]):
+            model.deck.refuse("*EXPANSION, TYPE", "it differs from direction to direction", block.line,
+                              "EXPANSION.TYPE")
+            return
+        found[0].expansion = found[1][0]
+
+
+def _expansion_table(model: Model, of: Material, block: Block) -> None:
+    rows = [model.numbers(line, words[:2]) for line, words in block.data]
+    if any(len(row) < 2 for row in rows) or any(b[1] <= a[1] for a, b in zip(rows, rows[1:])):
+        raise model.deck.fail(block.line, "*EXPANSION: not pairs of a coefficient and a rising temperature")
+    of.expansion_table = tuple((temperature, value) for value, temperature in rows)
+    of.expansion_zero = model.number(block.line, block.parameters.get("ZERO") or "0")
+    model.deck.take("*EXPANSION", "thermal expansion that follows the temperature")
+
+
+def density(model: Model, block: Block, scope: Scope) -> None:
+    """Mass per volume."""
+    if found := _of_material(model, block, 1):
+        found[0].density = found[1][0]
+
+
+def section(model: Model, block: Block, scope: Scope) -> None:
+    """Area and material of the bars of a set. Other elements of the set are refused where they are."""
+    name = model.needed(block, "MATERIAL").upper()
+    if name not in model.materials:
+        raise model.deck.fail(block.line, f"there is no material {quoted(name)}")
+    shape = "AREA" if block.name == "SOLID SECTION" else block.parameters.get("SECTION", "").upper()
+    values = model.numbers(*block.data[0]) if block.data else []
+    made = Section(_area(model, block, shape, values), model.materials[name],
+                   f"*{block.name} {quoted(shape)[1:-1]} gives no area with its sizes")
+    _assign(model, block, scope, made)
+
+
+def _assign(model: Model, block: Block, scope: Scope, made: Section) -> None:
+    for one in model.elements_of(block.line, model.needed(block, "ELSET"), scope):
+        if one.family in (BAR, BEAM):
+            model.sections[one.name] = made
+    model.deck.take(f"*{block.name}", "cross-section area of links")
+
+
+def _area(model: Model, block: Block, shape: str, values: list[float]) -> float | None:
+    given = len([word for word in block.data[0][1] if word]) if block.data else 0
+    if shape == "CIRC" and given == 1:
+        if model.deck.options.circ is None:
+            model.deck.refuse(
+                f"*{block.name}, SECTION=CIRC", "its one length is a radius in Abaqus, a diameter in CalculiX and "
+                "FreeCAD",
+                block.line, "--circ radius|diameter")
+            return None
+        if model.deck.options.circ == "radius":
+            values = [2 * values[0]]
+    return profiles.calculix(shape, values[:given])
+
+
+def general(model: Model, block: Block, scope: Scope) -> None:
+    """A section by its area, with a material of its own."""
+    if block.parameters.get("SECTION", "GENERAL").upper() != "GENERAL":
+        model.deck.refuse("*BEAM GENERAL SECTION, SECTION", "only GENERAL is read", block.line,
+                          "BEAM GENERAL SECTION.SECTION")
+        return
+    numeric = [model.numbers(line, words) for line, words in block.data]
+    if len(numeric) < 2 or not numeric[0]:
+        raise model.deck.fail(block.line, "*BEAM GENERAL SECTION needs a line of areas and one of moduli")
+    moduli = numeric[2] if len(numeric) > 2 else numeric[1]
+    made = Material(moduli[0], expansion=moduli[2] if len(moduli) > 2 else None)
+    if "DENSITY" in block.parameters:
+        made.density = model.number(block.line, block.parameters["DENSITY"])
+    _assign(model, block, scope, Section(numeric[0][0], made, "it has no area"))
+
+
+def spring(model: Model, block: Block, scope: Scope) -> None:
+    """Stiffness of springs: a line of directions for SPRING1 and SPRING2, then the stiffness."""
+    if not block.data:
+        raise model.deck.fail(block.line, "*SPRING has no stiffness")
+    found = model.elements_of(block.line, model.needed(block, "ELSET"), scope)
+    along = all(one.kind == "SPRINGA" for one in found)
+    directions = [] if along else [model.whole(block.data[0][0], word) for word in block.data[0][1]]
+    rows = [model.numbers(line, words) for line, words in block.data[0 if along else 1:]]
+    if not rows or any(row[0] != rows[0][0] for row in rows):
+        raise model.deck.fail(block.line, "*SPRING: its stiffness depends on temperature, or there is none")
+    for one in found:
+        if one.family != SPRING:
+            continue
+        if one.kind == "SPRINGA":
+            way = np.subtract(model.deck.nodes[one.nodes[1]], model.deck.nodes[one.nodes[0]])
+            ends = [(end, way) for end in one.nodes]
+        else:
+            if len(directions) < len(one.nodes) or not all(1 <= at <= 3 for at in directions[:len(one.nodes)]):
+                model.deck.refuse("*SPRING", "it acts on a rotation", block.line, "SPRING")
+                return
+            ends = [(end, model.frame(end).directions(model.deck.nodes[end])[at - 1])
+                    for end, at in zip(one.nodes, directions)]
+        add_spring(model.deck, one.line, "*SPRING", one.name, rows[0][0], ends)
+
+
+def mass(model: Model, block: Block, scope: Scope) -> None:
+    """Mass of the nodes of elements of type MASS."""
+    if not block.data:
+        raise model.deck.fail(block.line, "*MASS has no data")
+    value = model.numbers(*block.data[0])[0]
+    if value < 0:
+        raise model.deck.fail(block.line, "*MASS is negative")
+    for one in model.elements_of(block.line, model.needed(block, "ELSET"), scope):
+        if one.family == MASS and value:
+            model.deck.weigh(one.nodes[0], value, block.line, "*MASS")
+    model.deck.take("*MASS", "mass of nodes")

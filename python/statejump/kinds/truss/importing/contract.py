@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What becomes of every card of a deck and of every field of a card: it is used, it has no influence, or it is not
+supported. The import refuses by this table, and the documentation is made from it."""
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+USED, IDLE, REFUSED = "used", "no influence", "not supported"
+BLANK = "-"  # a position that must be empty
+
+
+@dataclass(frozen=True)
+class Field:
+    """A field of a card or a parameter of a keyword.
+
+    :param why: the reason of a field that has no influence or is not supported
+    """
+
+    name: str
+    use: str = USED
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class Card:
+    """A card of Nastran or a keyword of CalculiX and Abaqus.
+
+    :param what: what a card that is used becomes, or the reason why it is not
+    :param fields: in the order of a card; parameters of a keyword have no order
+    :param repeats: number of last fields that repeat
+    :param sets: kind of set that the case control must select for the card to count
+    :param own: whether its reader finds the positions of the fields, because they depend on values
+    :param bending: whether it needs --beams-as-bars
+    """
+
+    name: str
+    use: str
+    what: str
+    fields: tuple[Field, ...] = ()
+    repeats: int = 0
+    sets: str = ""
+    own: bool = False
+    bending: bool = False
+
+    def field(self, place: int) -> Field | None:
+        """Return the field at a position behind the name; None: the card has none there."""
+        if place < len(self.fields):
+            return self.fields[place]
+        return self.fields[len(self.fields) - self.repeats + (place - len(self.fields)) % self.repeats] \
+            if self.repeats else None
+
+    def parameter(self, name: str) -> Field | None:
+        """Return the parameter of a name."""
+        return next((field for field in self.fields if field.name == name), None)
+
+
+def used(name: str, what: str, layout: str = "", *, idle: Mapping[str, str] | None = None,
+         refused: Mapping[str, str] | None = None, repeats: int = 0, sets: str = "", own: bool = False,
+         bending: bool = False) -> Card:
+    """Return a card that is used.
+
+    :param layout: names of all fields in their order, with blanks between them
+    :param idle: reasons of fields without influence by their names, with blanks between these
+    :param refused: reasons of fields that are not supported, likewise
+    :raises ValueError: a reason names a field that the layout does not have, or one twice
+    """
+    names = layout.split()
+    reasons: dict[str, tuple[str, str]] = {}
+    for use, given in ((IDLE, idle or {}), (REFUSED, refused or {})):
+        for several, why in given.items():
+            for one in several.split():
+                if one in reasons or one not in names:
+                    raise ValueError(f"field {one} of {name} is in no class or in two")
+                reasons[one] = (use, why)
+    if len(set(names) - {BLANK}) != len([one for one in names if one != BLANK]):
+        raise ValueError(f"{name} has two fields of one name")
+    fields = tuple(Field(one, REFUSED, "must be empty") if one == BLANK else Field(one, *reasons.get(one, (USED,)))
+                   for one in names)
+    return Card(name, USED, what, fields, repeats, sets, own, bending)
+
+
+def idle(names: str, why: str) -> Iterator[Card]:
+    """Yield cards that have no influence for one reason."""
+    for name in names.split():
+        yield Card(name, IDLE, why)
+
+
+def refused(names: str, why: str, sets: str = "") -> Iterator[Card]:
+    """Yield cards that are not supported for one reason."""
+    for name in names.split():
+        yield Card(name, REFUSED, why, sets=sets)
+
+
+def table(*cards: Card | Iterator[Card]) -> dict[str, Card]:
+    """Return cards by name. :raises ValueError: a card is in two classes"""
+    found: dict[str, Card] = {}
+    for item in cards:
+        for card in [item] if isinstance(item, Card) else item:
+            if card.name in found:
+                raise ValueError(f"card {card.name} is in two classes")
+            found[card.name] = card
+    return found
+
+
+def markdown(cards: Mapping[str, Card], heading: Sequence[str]) -> list[str]:
+    """Return tables of the documentation: cards that are used with their fields, then the others by reason."""
+    taken = sorted((card for card in cards.values() if card.use == USED), key=lambda one: one.name)
+    fields = any(card.fields for card in taken)
+    shown = (USED, IDLE, REFUSED) if fields else ()
+    lines = [f"| {' | '.join([heading[0], 'becomes', *shown])} |", "|---" * (2 + len(shown)) + "|"]
+    for card in taken:
+        cells = [_code(card.name), card.what + ("; needs `--beams-as-bars`" if card.bending else "")]
+        for use in shown:
+            cells.append("; ".join(_by_reason(field for field in card.fields
+                                              if field.use == use and field.name != BLANK)))
+        lines.append("| " + " | ".join(cells) + " |")
+    for use in (IDLE, REFUSED):
+        if not any(card.use == use for card in cards.values()):
+            continue
+        lines += ["", f"| {heading[0]}: {use} | reason |", "|---|---|"]
+        reasons: dict[str, list[str]] = {}
+        for card in cards.values():
+            if card.use == use:
+                reasons.setdefault(card.what, []).append(_code(card.name))
+        lines += [f"| {', '.join(sorted(names))} | {why} |" for why, names in sorted(reasons.items())]
+    return lines
+
+
+def _code(name: str) -> str:
+    return f"`{name.replace('_', ' ')}`"
+
+
+def _by_reason(fields: Iterator[Field]) -> list[str]:
+    reasons: dict[str, list[str]] = {}
+    for field in fields:
+        reasons.setdefault(field.why, []).append(field.name.replace("_", " "))
+    return [", ".join(names) + (f": {why}" if why else "") for why, names in reasons.items()]

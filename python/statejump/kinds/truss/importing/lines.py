@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lines of a deck and of the files that it includes."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from statejump.core.errors import Unreadable, printable, size
+from statejump.core.reading import is_file
+
+LARGEST_BYTES = 1 << 26  # of a deck with all that it includes
+DEEPEST = 10  # files that include each other
+
+
+class Line(int):
+    """The number of a line; of a line of an included file with that file's name."""
+
+    file: str | None = None
+
+    @classmethod
+    def of(cls, number: int, file: str | None) -> int:
+        """Return a number that knows its file; None: the file of the deck itself."""
+        if file is None:
+            return number
+        line = cls(number)
+        line.file = file
+        return line
+
+    def __str__(self) -> str:
+        return f"{int(self)} of {self.file}"
+
+    def __format__(self, how: str) -> str:
+        return str(self)
+
+
+def text_of(path: Path, most: int = LARGEST_BYTES) -> list[str]:
+    """Return the lines of a file. :raises Unreadable: there is none, it is too large or no text"""
+    if not is_file(path):
+        raise Unreadable("no such file", file=path)
+    try:
+        with path.open("rb") as stream:
+            content = stream.read(most + 1)
+        if len(content) > most:
+            raise Unreadable("cannot be read", cause=f"it is larger than {size(LARGEST_BYTES)}", file=path)
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        # Comments in the language of the user; names and numbers are ASCII in either.
+        text = content.decode("latin-1")
+        if "\x00" in text:
+            raise Unreadable("cannot be read", cause="it is not text", file=path) from None
+    except OSError as failure:
+        raise Unreadable("cannot be read", cause=failure.strerror, file=path) from None
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
+class Source:
+    """Reads a deck and its included files, none of which may be outside its folder.
+
+    :param path: the deck
+    :param included: returns the file that a line includes and the number of lines that name it; None: no INCLUDE
+    """
+
+    def __init__(self, path: Path, included: Callable[[list[str], int], tuple[str, int] | None]) -> None:
+        self.path, self.included = path, included
+        self.folder = path.resolve().parent
+        self.bytes = 0
+
+    def __iter__(self) -> Iterator[tuple[int, str]]:
+        return self._lines(self.path, None, 0)
+
+    def _lines(self, path: Path, name: str | None, depth: int) -> Iterator[tuple[int, str]]:
+        lines = text_of(path, LARGEST_BYTES - self.bytes)
+        self.bytes += sum(map(len, lines))
+        skip = 0
+        for place, line in enumerate(lines):
+            if skip:
+                skip -= 1
+                continue
+            found = self.included(lines, place)
+            if found is None:
+                yield Line.of(place + 1, name), line
+                continue
+            given, count = found
+            skip = count - 1
+            yield from self._lines(self._inside(Line.of(place + 1, name), given, depth), given, depth + 1)
+
+    def _inside(self, line: int, given: str, depth: int) -> Path:
+        shown = repr(printable(given))[:60]
+        if depth >= DEEPEST:
+            raise Unreadable(f"line {line}: more than {DEEPEST} files include each other", file=self.path)
+        try:
+            path = (self.folder / given).resolve()
+        except (OSError, RuntimeError, ValueError):
+            raise Unreadable(f"line {line}: {shown} is not the name of a file", file=self.path) from None
+        if not path.is_relative_to(self.folder):
+            raise Unreadable(f"line {line}: the included file {shown} is outside the deck's folder", file=self.path,
+                             remedy="copy it beside the deck")
+        if not is_file(path):
+            raise Unreadable(f"line {line}: there is no included file {shown}", file=self.path)
+        return path

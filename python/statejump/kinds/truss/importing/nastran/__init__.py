@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bulk data of Nastran. The table says what becomes of every card; the readers follow it."""
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from statejump.core.reading import finite_number
+from statejump.kinds.truss.importing.contract import IDLE, REFUSED
+from statejump.kinds.truss.importing.model import BENDING, Deck, Options
+from statejump.kinds.truss.importing.nastran import control, elements, loads, nodes, properties, singularities
+from statejump.kinds.truss.importing.nastran.cards import BARE_EXPONENT, Card, split
+from statejump.kinds.truss.importing.nastran.reader import Reader
+from statejump.kinds.truss.importing.nastran.table import CARDS, PARAMS
+
+# In the order in which they are read: each needs those before it.
+READERS: dict[str, Callable[[Reader, Card], None]] = {
+    "MAT1": properties.mat1, "PROD": properties.simple, "PBAR": properties.simple, "PTUBE": properties.ptube,
+    "PBARL": properties.pbarl, "PBEAM": properties.pbeam, "PBEAML": properties.pbeaml, "PELAS": properties.pelas,
+    "CROD": elements.bar, "CTUBE": elements.bar, "CBAR": elements.bar, "CBEAM": elements.bar, "CONROD": elements.conrod,
+    "CELAS1": elements.celas, "CELAS2": elements.celas, "CBUSH": elements.cbush, "CONM1": elements.conm1,
+    "CONM2": elements.conm2, "SPC": nodes.spc, "SPC1": nodes.spc1, "FORCE": loads.force, "FORCE1": loads.force,
+    "FORCE2": loads.force, "PLOAD1": loads.pload1, "GRAV": loads.gravity,
+}
+# Cards that other functions read, all of a kind at once.
+TOGETHER = ("GRID", "GRDSET", "CORD1R", "CORD1C", "CORD1S", "CORD2R", "CORD2C", "CORD2S", "BAROR", "BEAMOR", "PBUSH",
+            "SPCADD", "MPCADD", "LOAD", "LOADADD", "TEMP", "TEMPD", "PARAM")
+
+DYNAMIC_SOLUTIONS = ("108", "109", "111", "112", "118", "129", "DFREQ", "DTRAN", "MFREQ", "MTRAN")
+
+
+def read(path: Path, options: Options | None = None) -> Deck:
+    """Return what bulk data say. :raises StatejumpError: one sentence with file and line"""
+    deck = Deck(path, options or Options())
+    lines, cards = split(deck)
+    chosen = control.read(deck, lines)
+    by_name: dict[str, list[Card]] = {}
+    for card in cards:
+        by_name.setdefault(card.name, []).append(card)
+    reader = Reader(deck, by_name)
+    loads.select(reader, chosen)
+    dynamic = chosen.solution.removeprefix("SE") in DYNAMIC_SOLUTIONS
+    for card in cards:
+        if card.name == "SPCD" and dynamic:
+            deck.leave(card.name, "given motion of a dynamic solution", card.line)
+        else:
+            _check(reader, card, chosen)
+    deck.settle()
+    nodes.read_nodes(reader)
+    for name, read_card in READERS.items():
+        for card in by_name.get(name, []):
+            if name not in deck.options.ignored and _counts(reader, card):
+                read_card(reader, card)
+    _take_together(reader)
+    loads.temperatures(reader)
+    elements.finish_bars(reader)
+    if chosen.autospc:
+        singularities.hold_singular(reader)
+    if chosen.solution.startswith("106"):  # there TREF is that of the coefficient of expansion only
+        for bar in deck.bars:
+            bar.reference_temperature = None
+    deck.settle()
+    return deck
+
+
+def _counts(reader: Reader, card: Card) -> bool:
+    """Whether the set of a card is selected."""
+    kind = CARDS[card.name].sets
+    return not kind or card.name == "TEMP" or reader.factor(card, kind) is not None
+
+
+def _check(reader: Reader, card: Card, given: control.Control) -> None:
+    """Refuse a card or a field that is not supported; note those without influence."""
+    deck, known = reader.deck, CARDS.get(card.name)
+    if known is None:
+        deck.refuse(card.name, "the card is unknown", card.line)
+    elif known.sets and not _counts(reader, card):
+        deck.leave(card.name, f"set {reader.whole(card, 0)} is not selected", card.line)
+    elif card.name == "PARAM":
+        _param(reader, card, given)
+    elif known.use == REFUSED:
+        deck.refuse(card.name, known.what, card.line)
+    elif known.use == IDLE:
+        deck.leave(card.name, known.what, card.line)
+    elif card.name in deck.options.ignored:
+        deck.waived.add(card.name)
+        deck.leave(card.name, "left out by --ignore", card.line)
+    else:
+        if known.bending and not deck.options.beams_as_bars:
+            deck.refuse(card.name, "the structure needs bending, which a truss does not have", card.line, BENDING)
+        if not known.own:
+            _check_fields(reader, card)
+
+
+def _check_fields(reader: Reader, card: Card) -> None:
+    known = CARDS[card.name]
+    for place, text in enumerate(card.fields):
+        if not text:
+            continue
+        field = known.field(place)
+        if field is None:
+            raise reader.fail(card, f"it has no field {place + 2}")
+        if field.use == REFUSED and finite_number(BARE_EXPONENT.sub(r"\1e\2", text.lower().replace("d", "e"))) != 0:
+            name = field.name if field.name != "-" else f"field {place + 2}"
+            reader.deck.refuse(f"{card.name}.{name}", field.why, card.line)
+
+
+def _param(reader: Reader, card: Card, given: control.Control) -> None:
+    name = card[0].upper()
+    known = PARAMS.get(name)
+    if name == "WTMASS":
+        reader.deck.mass_scale = reader.number(card, 1)
+    elif name == "AUTOSPC":
+        given.autospc = card[1].upper() != "NO"
+    elif known is None:
+        reader.deck.refuse(f"PARAM.{name}", "the parameter is unknown", card.line)
+    elif known.use == REFUSED:
+        value = finite_number(card[1].lower())
+        if value not in ({0.0} if name == "INREL" else {1.0}):
+            reader.deck.refuse(f"PARAM.{name}", known.what, card.line)
+    else:
+        reader.deck.leave(f"PARAM {name}", known.what, card.line)
+
+
+def _take_together(reader: Reader) -> None:
+    """Note the cards that are read with others."""
+    for name in ("GRDSET", "BAROR", "BEAMOR", "PBUSH", "PARAM"):
+        for card in reader.cards.get(name, []):
+            if name != "PARAM" or card[0].upper() in ("WTMASS", "AUTOSPC"):
+                reader.deck.take(name, CARDS[name].what)
+    for name in ("SPCADD", "MPCADD", "LOAD", "LOADADD"):
+        for card in reader.cards.get(name, []):
+            if (name, "sets of loads with factors") not in reader.deck.taken and \
+                    (name, "sets of supports") not in reader.deck.taken:
+                reader.deck.leave(name, f"set {reader.whole(card, 0)} is not selected", card.line)

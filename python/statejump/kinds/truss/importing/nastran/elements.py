@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bars, springs and masses."""
+from __future__ import annotations
+
+import numpy as np
+
+from statejump.kinds.truss.importing.model import Bar, quoted
+from statejump.kinds.truss.importing.nastran.cards import Card
+from statejump.kinds.truss.importing.nastran.reader import Reader
+from statejump.kinds.truss.importing.springs import add_spring
+
+SAME = 1e-6  # of offsets, over their size: cards have seven digits
+
+
+def _element(reader: Reader, card: Card) -> str:
+    name = reader.whole(card, 0)
+    if name in reader.elements:
+        raise reader.deck.fail(card.line, f"element {name} is there twice")
+    reader.elements.add(name)
+    reader.deck.room(card.line, len(reader.elements))
+    return name
+
+
+def bar(reader: Reader, card: Card) -> None:
+    """CROD, CTUBE, CBAR, CBEAM."""
+    name = _element(reader, card)
+    beam = card.name in ("CBAR", "CBEAM")
+    default = name
+    for other in reader.cards.get({"CBAR": "BAROR", "CBEAM": "BEAMOR"}.get(card.name, ""), []):
+        default = other[1] or name
+    if beam:
+        for place in (8, 9):
+            if set(card[place]) & set("123"):
+                reader.deck.refuse(f"{card.name}.{'PA' if place == 8 else 'PB'}",
+                                   f"pin flags {quoted(card[place])} release forces", card.line)
+    ends = (reader.node(card, 2), reader.node(card, 3))
+    if beam and any(card.fields[10:16]):
+        _check_offsets(reader, card, ends)
+    reader.deck.take(card.name, "link: it carries axial force only, its bending is left out" if beam else "link")
+    reader.bars[name] = (card.line, Bar(name, ends, card.name), reader.whole(card, 1, default))
+
+
+def _check_offsets(reader: Reader, card: Card, ends: tuple[str, str]) -> None:
+    """Refuse offsets that lengthen or turn a bar; equal ones shift it, which nodes without rotation do not feel."""
+    offsets, kinds = [], (card[7].upper() or "GGG").ljust(3, "G")[1:]
+    for place, end, kind in zip((10, 13), ends, kinds):
+        given = np.array([reader.number(card, at, 0.0) for at in range(place, place + 3)])
+        frame = reader.frames[reader.displacement_frame[end] if kind == "G" else "0"]
+        offsets.append(given @ frame.directions(reader.deck.nodes[end]))
+    apart = np.linalg.norm(offsets[0] - offsets[1])
+    if kinds[0] != kinds[1] and np.any(offsets) or apart > SAME * np.linalg.norm(offsets):
+        reader.deck.refuse(f"{card.name}.W1A-W3B", "offsets that differ from end to end need rotations", card.line)
+    elif np.any(offsets):
+        reader.deck.leave(card.name, "equal offsets of both ends: nodes of a truss do not rotate", card.line)
+
+
+def conrod(reader: Reader, card: Card) -> None:
+    """A bar with its own section."""
+    name = _element(reader, card)
+    made = Bar(name, (reader.node(card, 1), reader.node(card, 2)), card.name)
+    made.area = reader.number(card, 4)
+    made.more_mass = reader.number(card, 7, 0.0)
+    reader.deck.take(card.name, "link")
+    reader.conrods[name] = (card.line, made, reader.whole(card, 3))
+
+
+def celas(reader: Reader, card: Card) -> None:
+    """CELAS1 and CELAS2: a spring between two components, of which an empty one is the ground."""
+    name = _element(reader, card)
+    if card.name == "CELAS2":
+        stiffness = reader.number(card, 1, 0.0)
+    else:
+        stiffness = reader.springs.get(reader.whole(card, 1, name), np.nan)
+        if np.isnan(stiffness):
+            raise reader.fail(card, f"there is no PELAS {reader.whole(card, 1, name)}")
+    ends = []
+    for place in (2, 4):
+        component = card[place + 1] or "0"
+        if card[place] and card[place] != "0":
+            if component not in ("1", "2", "3"):
+                what = "a scalar point" if component == "0" else "a rotation"
+                reader.deck.refuse(card.name, f"it joins {what}", card.line)
+                return
+            node = reader.node(card, place)
+            frame = reader.frames[reader.displacement_frame[node]]
+            ends.append((node, frame.directions(reader.deck.nodes[node])[int(component) - 1]))
+    add_spring(reader.deck, card.line, card.name, name, stiffness, ends)
+
+
+def cbush(reader: Reader, card: Card) -> None:
+    """A spring in up to three directions, to the ground or, in the first one, along its line."""
+    name = _element(reader, card)
+    number = reader.whole(card, 1, name)
+    found = [one for one in reader.cards.get("PBUSH", []) if reader.whole(one, 0) == number]
+    if not found:
+        raise reader.fail(card, f"there is no PBUSH {number}")
+    stiffness = _bush(reader, found[0])
+    if any(stiffness[3:]):
+        reader.deck.refuse("PBUSH.K4-K6", "stiffness of rotations", found[0].line)
+    first = reader.node(card, 2)
+    second = reader.node(card, 3) if card[3] and card[3] != "0" else None
+    if second is None and not card[7] and any(card.fields[4:7]):
+        reader.deck.refuse(card.name, "a direction without CID of a spring to the ground", card.line)
+        return
+    if card[7]:
+        axes = reader.frame(card, 7).directions(reader.deck.nodes[first])
+    elif second is None or reader.deck.nodes[first] == reader.deck.nodes[second]:
+        axes = reader.frames["0"].axes
+    else:
+        way = np.subtract(reader.deck.nodes[second], reader.deck.nodes[first])
+        axes = np.array([way / np.linalg.norm(way), *2 * [np.zeros(3)]])
+    for place, value in enumerate(stiffness[:3]):
+        if not value:
+            continue
+        if not axes[place].any():
+            reader.deck.refuse(card.name, "it is stiff across the line between its nodes", card.line)
+            return
+        ends = [(node, axes[place]) for node in (first, second) if node is not None]
+        add_spring(reader.deck, card.line, card.name, name if place == 0 else f"{name}_{place + 1}", value, ends)
+
+
+def _bush(reader: Reader, card: Card) -> list[float]:
+    """Return the six stiffnesses of PBUSH."""
+    found = [0.0] * 6
+    for row in card.rows():
+        if row[1].upper() == "K":
+            found = [reader.number(Card(card.line, card.name, row), place, 0.0) for place in range(2, 8)]
+        elif row[1].upper() == "M" and any(row[2:]):
+            reader.deck.refuse("PBUSH.M", "mass of a spring", card.line)
+    return found
+
+
+def conm2(reader: Reader, card: Card) -> None:
+    """A mass at a node. Its offset acts on rotations only."""
+    _element(reader, card)
+    node = reader.node(card, 1)
+    mass = reader.number(card, 3, 0.0)
+    _weigh(reader, card, node, mass)
+
+
+def conm1(reader: Reader, card: Card) -> None:
+    """A matrix of masses, which must be one mass for all directions."""
+    _element(reader, card)
+    node = reader.node(card, 1)
+    first, second, third = (reader.number(card, place, 0.0) for place in (3, 5, 8))
+    if not first == second == third:
+        reader.deck.refuse(card.name, "the mass differs from one direction to another", card.line)
+        return
+    _weigh(reader, card, node, first)
+
+
+def _weigh(reader: Reader, card: Card, node: str, mass: float) -> None:
+    if mass < 0:
+        raise reader.fail(card, "a negative mass")
+    if mass:
+        reader.deck.weigh(node, mass, card.line, card.name)
+        reader.deck.take(card.name, "mass of a node")
+    else:
+        reader.deck.leave(card.name, "its mass is 0", card.line)
+
+
+def finish_bars(reader: Reader) -> None:
+    """Give bars what properties and materials say."""
+    deck = reader.deck
+    ready: list[tuple[int, Bar, str, float]] = []
+    for line, made, name in reader.bars.values():
+        if name not in reader.properties:
+            raise deck.fail(line, f"{made.kind} {made.name}: there is no property {quoted(name)} that is read")
+        section = reader.properties[name]
+        if section.area is None:
+            made.why_no_area = section.why
+        made.area, made.more_mass = section.area, section.more
+        ready.append((line, made, section.material, section.mass_area or section.area or 0.0))
+    ready += [(line, made, material, made.area or 0.0) for line, made, material in reader.conrods.values()]
+    for line, made, name, mass_area in sorted(ready, key=lambda item: item[0]):
+        if name not in reader.materials:
+            raise deck.fail(line, f"{made.kind} {made.name}: there is no MAT1 {name}")
+        of = reader.materials[name]
+        made.young_modulus, made.poisson_ratio, made.expansion = of.young_modulus, of.poisson_ratio, of.expansion
+        made.reference_temperature = of.reference
+        if of.density is not None and made.area:
+            made.density = of.density * mass_area / made.area
+        if made.more_mass and made.area:
+            made.density = (made.density or 0.0) + made.more_mass / made.area
+        deck.bars.append(made)

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sets of the case control, forces, gravity and temperatures."""
+from __future__ import annotations
+
+import numpy as np
+
+from statejump.kinds.truss.importing.model import quoted
+from statejump.kinds.truss.importing.nastran.cards import Card
+from statejump.kinds.truss.importing.nastran.control import Control
+from statejump.kinds.truss.importing.nastran.reader import Reader
+from statejump.kinds.truss.importing.nastran.table import CARDS
+from statejump.kinds.truss.importing.springs import ALONG
+
+COMBINED = {"spc": "SPCADD", "mpc": "MPCADD"}
+
+
+def select(reader: Reader, control: Control) -> None:
+    """Find the sets that count, and the factor of each."""
+    for kind in ("spc", "mpc", "load", "temperature", "initial", "deform", "nsm", "suport"):
+        chosen = control.chosen.get(kind)
+        if chosen is None and not control.given and kind != "initial":
+            chosen = _only(reader, kind)
+        reader.sets[kind] = {} if chosen is None else _expanded(reader, kind, chosen)
+
+
+def _only(reader: Reader, kind: str) -> str | None:
+    """Return the only set of a kind of a deck without case control. :raises Unreadable: there are several"""
+    first: dict[str, Card] = {}
+    if kind == "load":
+        combined = [card for name in ("LOAD", "LOADADD") for card in reader.cards.get(name, [])]
+    else:
+        combined = reader.cards.get(COMBINED.get(kind, ""), [])
+    plain = [card for name, cards in reader.cards.items() if name in CARDS and CARDS[name].sets == kind
+             for card in cards]
+    for card in combined or plain:
+        first.setdefault(reader.whole(card, 0), card)
+    if kind == "temperature":
+        for card in reader.cards.get("TEMPD", []):
+            for text in filter(None, card.fields[::2]):
+                first.setdefault(reader.name(card.line, text), card)
+    if len(first) > 1:
+        (one, _), (two, card) = list(first.items())[:2]
+        raise reader.deck.fail(card.line, f"{card.name} of set {two} beside set {one}",
+                               f"a case control with {kind.upper()} = must say which one counts")
+    return next(iter(first), None)
+
+
+def _expanded(reader: Reader, kind: str, chosen: str) -> dict[str, float]:
+    """Return the sets that a set consists of with their factors."""
+    found: dict[str, float] = {}
+    if kind == "load":
+        for name in ("LOAD", "LOADADD"):
+            for card in reader.cards.get(name, []):
+                if reader.whole(card, 0) == chosen:
+                    common = reader.number(card, 1, 1.0)
+                    for place in range(2, len(card.fields), 2):
+                        if card[place + 1]:
+                            part = reader.whole(card, place + 1)
+                            found[part] = found.get(part, 0.0) + common * reader.number(card, place, 1.0)
+                    reader.deck.take(name, "sets of loads with factors")
+    for card in reader.cards.get(COMBINED.get(kind, ""), []):
+        if reader.whole(card, 0) == chosen:
+            found.update({reader.name(card.line, text): 1.0 for text in card.fields[1:] if text})
+            reader.deck.take(card.name, "sets of supports")
+    found.setdefault(chosen, 1.0)
+    return found
+
+
+def force(reader: Reader, card: Card) -> None:
+    """FORCE, FORCE1 and FORCE2."""
+    factor = reader.factor(card, "load")
+    node = reader.node(card, 1)
+    if card.name == "FORCE":
+        size = reader.number(card, 3)
+        given = np.array([reader.number(card, place, 0.0) for place in (4, 5, 6)])
+        vector = given @ reader.frame(card, 2).directions(reader.deck.nodes[node]) * size
+    else:
+        corners = [np.array(reader.deck.nodes[reader.node(card, place)])
+                   for place in range(3, 5 if card.name == "FORCE1" else 7)]
+        way = corners[1] - corners[0]
+        if card.name == "FORCE2":
+            way = np.cross(way, corners[3] - corners[2])
+        length = np.linalg.norm(way)
+        if length == 0:
+            raise reader.fail(card, "its nodes give no direction")
+        vector = way / length * reader.number(card, 2)
+    reader.deck.load(node, [float(part) * (factor or 0.0) for part in vector], card.line, card.name)
+    reader.deck.take(card.name, "dead load")
+
+
+def gravity(reader: Reader, card: Card) -> None:
+    """GRAV: an acceleration of all masses."""
+    frame = reader.frame(card, 1)
+    if frame.kind != "R":
+        reader.deck.refuse(card.name, "its direction is that of a curved system", card.line)
+        return
+    given = np.array([reader.number(card, place, 0.0) for place in (3, 4, 5)])
+    vector = given @ frame.axes * reader.number(card, 2) * (reader.factor(card, "load") or 0.0)
+    for axis in range(3):
+        reader.deck.gravity[axis] += float(vector[axis])
+    reader.deck.take(card.name, "gravity")
+
+
+def pload1(reader: Reader, card: Card) -> None:
+    """A load along a bar as forces on its ends; a load across would bend it."""
+    factor, name = reader.factor(card, "load") or 0.0, reader.whole(card, 1)
+    if name not in reader.bars:
+        raise reader.fail(card, f"there is no bar {name}")
+    ends = reader.bars[name][1].nodes
+    first, second = (np.array(reader.deck.nodes[end]) for end in ends)
+    length = float(np.linalg.norm(second - first))
+    axis = (second - first) / length if length else np.zeros(3)
+    kind, scale = card[2].upper(), card[3].upper()
+    directions = {"FX": np.eye(3)[0], "FY": np.eye(3)[1], "FZ": np.eye(3)[2], "FXE": axis}
+    along = directions.get(kind)
+    if along is None or np.linalg.norm(np.cross(along, axis)) > ALONG:
+        reader.deck.refuse(card.name, "it acts across the bar, which would bend", card.line)
+        return
+    if scale not in ("LE", "FR"):
+        reader.deck.refuse(card.name, f"scale {quoted(card[3])[1:-1]}", card.line)
+        return
+    start, low = reader.number(card, 4), reader.number(card, 5)
+    end = reader.number(card, 6) if card[6] else start
+    high = reader.number(card, 7) if card[7] else low
+    start, end = (value / (length if scale == "LE" and length else 1.0) for value in (start, end))
+    if end == start:  # a force
+        shares = (low * (1 - start), low * start)
+    else:
+        span, rise = end - start, high - low
+        total = span * length * (low + high) / 2
+        # The integral of the load times the fraction of the length.
+        second_share = span * length * (low * start + low * span / 2 + rise * start / 2 + rise * span / 3)
+        shares = (total - second_share, second_share)
+    for node, share in zip(ends, shares):
+        reader.deck.load(node, [float(part) * share * factor for part in along], card.line, card.name)
+    reader.deck.take(card.name, "dead loads of both ends")
+
+
+def temperatures(reader: Reader) -> None:
+    """TEMP and TEMPD of the sets for loads and for the state free of stress."""
+    for kind, found in (("temperature", reader.deck.temperature), ("initial", reader.deck.initial)):
+        default = None
+        for card in reader.cards.get("TEMP", []):
+            if reader.factor(card, kind) is not None:
+                for place in (1, 3, 5):
+                    if card[place]:
+                        found[reader.node(card, place)] = reader.number(card, place + 1)
+                        reader.deck.take(card.name, "temperature of links")
+        for card in reader.cards.get("TEMPD", []):
+            for place in range(0, 8, 2):
+                if card[place] and reader.whole(card, place) in reader.sets[kind]:
+                    default = reader.number(card, place + 1)
+                    reader.deck.take(card.name, "temperature of links")
+        if default is not None:
+            for name in reader.deck.nodes:
+                found.setdefault(name, default)
+    _left(reader)
+
+
+def _left(reader: Reader) -> None:
+    for card in reader.cards.get("TEMP", []):
+        if reader.factor(card, "temperature") is None and reader.factor(card, "initial") is None:
+            reader.deck.leave("TEMP", f"set {reader.whole(card, 0)} is not selected", card.line)
+    for card in reader.cards.get("TEMPD", []):
+        for text in filter(None, card.fields[::2]):
+            name = reader.name(card.line, text)
+            if name not in reader.sets["temperature"] and name not in reader.sets["initial"]:
+                reader.deck.leave("TEMPD", f"set {name} is not selected", card.line)

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""GRID, coordinate systems and supports."""
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+
+import numpy as np
+
+from statejump.kinds.truss.importing.coordinates import BASIC, by_points
+from statejump.kinds.truss.importing.model import quoted
+from statejump.kinds.truss.importing.nastran.cards import Card
+from statejump.kinds.truss.importing.nastran.reader import Reader
+
+
+def read_nodes(reader: Reader) -> None:
+    """Read GRID in systems that may be defined by other GRIDs, in any order."""
+    defaults = (reader.cards.get("GRDSET") or [Card(0, "GRDSET")])[0]
+    reader.frames["0"] = BASIC
+    grids: dict[str, Card] = {}
+    for card in reader.cards.get("GRID", []):
+        name = reader.whole(card, 0)
+        if name in grids and grids[name].fields != card.fields:
+            raise reader.deck.fail(card.line, f"node {quoted(name)} is there twice")
+        grids[name] = card
+    _Places(reader, grids, defaults).place_all()
+    for name, card in grids.items():
+        reader.displacement_frame[name] = reader.whole(card, 5, reader.whole(defaults, 5, "0"))
+        if held := card[6] or defaults[6]:
+            fix(reader, card, held, [name])
+        reader.deck.take("GRID", "node")
+    reader.sorted_nodes = sorted(map(int, grids))
+
+
+class _Places:
+    """Finds positions of nodes and systems, which may depend on each other in a chain without a loop."""
+
+    def __init__(self, reader: Reader, grids: dict[str, Card], defaults: Card) -> None:
+        self.reader, self.grids = reader, grids
+        self.default = reader.whole(defaults, 1, "0")
+        self.systems: dict[str, tuple[Card, int]] = {}
+        for kind in "RCS":
+            for card in reader.cards.get(f"CORD1{kind}", []):
+                for place in (0, 4):
+                    if card[place]:
+                        self._add(card, place)
+            for card in reader.cards.get(f"CORD2{kind}", []):
+                self._add(card, 0)
+
+    def _add(self, card: Card, place: int) -> None:
+        name = self.reader.whole(card, place)
+        if name == "0" or name in self.systems and self.systems[name][0].fields != card.fields:
+            raise self.reader.fail(card, f"coordinate system {name} is there twice")
+        self.systems[name] = (card, place)
+        self.reader.deck.take(card.name, "coordinate system")
+
+    def place_all(self) -> None:
+        """Place all nodes and systems, those first on which others depend."""
+        for kind, names in (("system", list(self.systems)), ("node", list(self.grids))):
+            for name in names:
+                waiting = [(kind, name)]
+                on_way = set(waiting)
+                while waiting:
+                    needed = self._needed(*waiting[-1])
+                    if not needed:
+                        self._place(*waiting[-1])
+                        on_way.discard(waiting.pop())
+                    elif needed[0] in on_way:
+                        card = self.grids[name] if kind == "node" else self.systems[name][0]
+                        raise self.reader.fail(card, "coordinate systems depend on each other in a circle")
+                    else:
+                        waiting.append(needed[0])
+                        on_way.add(needed[0])
+
+    def _needed(self, kind: str, name: str) -> list[tuple[str, str]]:
+        """Return what has no place yet and is needed for one."""
+        reader = self.reader
+        if kind == "node":
+            card = self.grids[name]
+            needed = [("system", reader.whole(card, 1, self.default))]
+        else:
+            card, place = self.systems[name]
+            needed = [("system", reader.whole(card, 1, "0"))] if card.name.startswith("CORD2") else [
+                ("node", reader.whole(card, place + further)) for further in (1, 2, 3)]
+        missing = []
+        for of, other in needed:
+            placed = other in reader.frames if of == "system" else other in reader.deck.nodes
+            if not placed:
+                if not (other in self.systems if of == "system" else other in self.grids):
+                    what = "coordinate system" if of == "system" else "GRID"
+                    raise reader.fail(card, f"there is no {what} {other}")
+                missing.append((of, other))
+        return missing
+
+    def _place(self, kind: str, name: str) -> None:
+        reader = self.reader
+        if kind == "node":
+            if name in reader.deck.nodes:
+                return
+            card = self.grids[name]
+            frame = reader.frames[reader.whole(card, 1, self.default)]
+            x, y, z = frame.point([reader.number(card, at, 0.0) for at in (2, 3, 4)])
+            reader.deck.add_node(card.line, name, (float(x), float(y), float(z)))
+            return
+        card, place = self.systems[name]
+        if card.name.startswith("CORD2"):
+            base = reader.frames[reader.whole(card, 1, "0")]
+            points = [base.point([reader.number(card, at + axis, 0.0) for axis in range(3)]) for at in (2, 5, 8)]
+        else:
+            points = [np.array(reader.deck.nodes[reader.whole(card, place + further)]) for further in (1, 2, 3)]
+        frame_found = by_points(card.name[-1], *points)
+        if frame_found is None:
+            raise reader.fail(card, f"the points of coordinate system {name} span no plane")
+        reader.frames[name] = frame_found
+
+
+def fix(reader: Reader, card: Card, components: str, nodes: list[str]) -> None:
+    """Hold nodes in components of their displacement systems."""
+    if not set(components) <= set("0123456"):
+        raise reader.fail(card, f"components {quoted(components)} are not of the digits 1 to 6")
+    moves = [int(one) - 1 for one in dict.fromkeys(components) if one in "123"]
+    if set(components) & set("456"):
+        reader.deck.leave(card.name, "components 4 to 6: ends of bars turn freely", card.line)
+    for node in nodes if moves else ():
+        frame = reader.frames.get(reader.displacement_frame[node])
+        if frame is None:
+            raise reader.fail(card, f"there is no coordinate system {reader.displacement_frame[node]}")
+        directions = frame.directions(reader.deck.nodes[node])
+        for one in moves:
+            reader.deck.hold(node, directions[one])
+    if moves:
+        reader.deck.take(card.name, "directions without motion", len(nodes))
+
+
+def spc1(reader: Reader, card: Card) -> None:
+    """Hold the nodes of a list, of which ``THRU`` may skip numbers that are not there."""
+    items = [text for text in card.fields[2:] if text]
+    nodes: list[str] = []
+    place = 0
+    while place < len(items):
+        if place + 2 < len(items) and items[place + 1].upper() == "THRU":
+            first, last = (int(reader.name(card.line, items[at])) for at in (place, place + 2))
+            start, end = bisect_left(reader.sorted_nodes, first), bisect_right(reader.sorted_nodes, last)
+            nodes += map(str, reader.sorted_nodes[start:end])
+            place += 3
+        else:
+            name = reader.name(card.line, items[place])
+            if name not in reader.deck.nodes:
+                raise reader.fail(card, f"there is no GRID {name}")
+            nodes.append(name)
+            place += 1
+    fix(reader, card, card[1], nodes)
+
+
+def spc(reader: Reader, card: Card) -> None:
+    """Hold one or two nodes."""
+    for place in (1, 4):
+        if not card[place]:
+            continue
+        if card[place + 2] and reader.number(card, place + 2) != 0:
+            reader.deck.refuse(card.name, "a given displacement that is not 0", card.line)
+            continue
+        fix(reader, card, card[place + 1], [reader.node(card, place)])

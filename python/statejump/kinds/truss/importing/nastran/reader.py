@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the readers of cards share: numbers, nodes, sets, and what is known of the deck so far."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from statejump.core.reading import finite_number
+from statejump.kinds.truss.importing.coordinates import Frame
+from statejump.kinds.truss.importing.model import Bar, Deck, quoted
+from statejump.kinds.truss.importing.nastran.cards import BARE_EXPONENT, Card
+
+
+@dataclass
+class Material:
+    """MAT1; None: the card does not say."""
+
+    young_modulus: float | None
+    poisson_ratio: float | None
+    density: float | None
+    expansion: float | None
+    reference: float | None
+
+
+@dataclass
+class Property:
+    """Section of a bar.
+
+    :param area: None: not known, with the reason
+    :param mass_area: mean area, which weighs; it differs from ``area`` in a taper
+    :param more: non-structural mass per length
+    """
+
+    material: str
+    area: float | None
+    why: str = ""
+    mass_area: float | None = None
+    more: float = 0.0
+
+
+@dataclass
+class Reader:
+    """A deck while its cards are read.
+
+    :param sets: active sets by kind, with the factor of each
+    """
+
+    deck: Deck
+    cards: dict[str, list[Card]]
+    sets: dict[str, dict[str, float]] = field(default_factory=dict)
+    frames: dict[str, Frame] = field(default_factory=dict)
+    displacement_frame: dict[str, str] = field(default_factory=dict)  # CD of nodes
+    materials: dict[str, Material] = field(default_factory=dict)
+    properties: dict[str, Property] = field(default_factory=dict)
+    springs: dict[str, float] = field(default_factory=dict)  # PELAS
+    bars: dict[str, tuple[int, Bar, str]] = field(default_factory=dict)  # line, bar, property
+    conrods: dict[str, tuple[int, Bar, str]] = field(default_factory=dict)  # line, bar, material
+    elements: set[str] = field(default_factory=set)
+    sorted_nodes: list[int] = field(default_factory=list)
+
+    def number(self, card: Card, place: int, default: float | None = None) -> float:
+        """Return a real number of a field."""
+        text = card[place]
+        if not text and default is not None:
+            return default
+        if not text:
+            raise self.deck.fail(card.line, f"{card.name}: field {place + 2} is empty")
+        value = finite_number(BARE_EXPONENT.sub(r"\1e\2", text.lower().replace("d", "e")))
+        if value is None:
+            raise self.deck.fail(card.line, f"{quoted(text)} is not a finite number")
+        return value
+
+    def optional(self, card: Card, place: int) -> float | None:
+        """Return a real number of a field that may be empty."""
+        return self.number(card, place) if card[place] else None
+
+    def whole(self, card: Card, place: int, default: str | None = None) -> str:
+        """Return a whole number of a field as a name."""
+        text = card[place]
+        if not text and default is not None:
+            return default
+        return self.name(card.line, text)
+
+    def name(self, line: int, text: str) -> str:
+        """Return a whole number as a name."""
+        if not text.isdecimal() or not text.isascii() or len(text) > 12:
+            raise self.deck.fail(line, f"{quoted(text)} is not a whole number above 0")
+        return str(int(text))
+
+    def node(self, card: Card, place: int) -> str:
+        """Return a node that is there."""
+        name = self.whole(card, place)
+        if name not in self.deck.nodes:
+            raise self.deck.fail(card.line, f"there is no GRID {name}")
+        return name
+
+    def factor(self, card: Card, kind: str) -> float | None:
+        """Return the factor of the card's set; None: the set does not count."""
+        return self.sets.get(kind, {}).get(self.whole(card, 0))
+
+    def frame(self, card: Card, place: int) -> Frame:
+        """Return a coordinate system that is there."""
+        name = self.whole(card, place, "0")
+        if name not in self.frames:
+            raise self.deck.fail(card.line, f"{card.name}: there is no coordinate system {name}")
+        return self.frames[name]
+
+    def fail(self, card: Card, what: str) -> Exception:
+        """Return why a card cannot be read."""
+        return self.deck.fail(card.line, f"{card.name}: {what}")

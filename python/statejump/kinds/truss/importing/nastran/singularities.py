@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""AUTOSPC of Nastran: a component of a node in which no element is stiff is held."""
+from __future__ import annotations
+
+import numpy as np
+
+from statejump.kinds.truss.importing.nastran.reader import Reader
+
+# EPZERO of Nastran: a smaller share of the node's largest stiffness is none.
+EPZERO = 1e-8
+BEAMS = ("CBAR", "CBEAM")
+
+
+def hold_singular(reader: Reader) -> None:
+    """Hold components of displacement systems without stiffness, but where beams end, which are stiff in Nastran."""
+    deck = reader.deck
+    stiffness: dict[str, np.ndarray] = {}
+    bent = {end for bar in deck.bars if bar.kind in BEAMS for end in bar.nodes}
+    pairs = [bar.nodes for bar in deck.bars]
+    pairs += [(spring.first, spring.second) for spring in deck.springs if spring.second]
+    for first, second in pairs:
+        way = np.subtract(deck.nodes[second], deck.nodes[first])
+        length = float(np.linalg.norm(way))
+        if length == 0:
+            continue
+        block = np.outer(way, way) / length**2  # only which directions are stiff matters
+        for end in (first, second):
+            stiffness[end] = stiffness.get(end, np.zeros((3, 3))) + block
+    for spring in deck.springs:
+        if spring.direction is not None:
+            block = np.outer(spring.direction, spring.direction)
+            stiffness[spring.first] = stiffness.get(spring.first, np.zeros((3, 3))) + block
+    for node, block in stiffness.items():
+        if node in bent:
+            continue
+        axes = reader.frames[reader.displacement_frame[node]].directions(deck.nodes[node])
+        diagonal = np.einsum("ij,jk,ik->i", axes, block, axes)
+        for at in np.flatnonzero(diagonal <= EPZERO * diagonal.max()):
+            deck.hold(node, axes[at])
+            deck.take("AUTOSPC", "directions of nodes without stiffness, held as in Nastran")

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every known card of the bulk data and every known command of the case control in exactly one class."""
+from __future__ import annotations
+
+from statejump.kinds.truss.importing.contract import Card, idle, refused, table, used
+
+TURNS = "nodes of a truss do not rotate"
+BENDS = "bars do not bend"
+MATERIAL_DAMPING = "damping does not act in statics"
+SECTION_POINTS = "points where stress is printed"
+DYNAMIC = "acts in dynamics, buckling or modes only; the import takes structure, static loads and temperatures"
+DESIGN = "optimization: the first design is taken"
+AERO = "aerodynamics: acts through TRIM, which is not supported, or in flutter and gusts"
+HEAT = "heat transfer: temperatures are those of TEMP and TEMPD"
+OUTPUT = "output"
+THROUGH = "acts through elements that name it, which are not supported"
+SHELL, SOLID = "shells are no part of a truss", "solids are no part of a truss"
+RIGID = "rigid elements need rotations or equations between nodes"
+EXACT = "reduction, exact in statics"
+POINTS = "end A: C1 C2 D1 D2 E1 E2 F1 F2"
+
+CARDS: dict[str, Card] = table(
+    used("GRID", "node", "ID CP X1 X2 X3 CD PS SEID", idle={"SEID": "superelement: the structure is taken as one"}),
+    used("GRDSET", "defaults of GRID", "- CP - - - CD PS SEID",
+         idle={"SEID": "superelement: the structure is taken as one"}),
+    *(used(f"CORD1{kind}", "coordinate system", "CIDA G1A G2A G3A CIDB G1B G2B G3B") for kind in "RCS"),
+    *(used(f"CORD2{kind}", "coordinate system", "CID RID A1 A2 A3 B1 B2 B3 C1 C2 C3") for kind in "RCS"),
+    # Elements and their sections.
+    used("CROD", "link", "EID PID G1 G2"),
+    used("CTUBE", "link", "EID PID G1 G2"),
+    used("CONROD", "link", "EID G1 G2 MID A J C NSM", idle={"J C": TURNS}),
+    *(used(name, "pin-jointed bar; offsets must be equal at both ends, pin flags of 4 to 6",
+           f"EID PID GA GB X1 X2 X3 OFFT PA PB W1A W2A W3A W1B W2B W3B{more}",
+           idle={f"X1 X2 X3{more}": BENDS}, bending=True)
+      for name, more in (("CBAR", ""), ("CBEAM", " SA SB"))),
+    used("BAROR", "default property of CBAR", "- PID - - X1 X2 X3 OFFT", idle={"X1 X2 X3 OFFT": BENDS}),
+    used("BEAMOR", "default property of CBEAM", "- PID - - X1 X2 X3 OFFT", idle={"X1 X2 X3 OFFT": BENDS}),
+    used("PROD", "area", "PID MID A J C NSM", idle={"J C": TURNS}),
+    used("PTUBE", "area", "PID MID OD T NSM OD2"),
+    used("PBAR", "area", "PID MID A I1 I2 J NSM - C1 C2 D1 D2 E1 E2 F1 F2 K1 K2 I12",
+         idle={"I1 I2 J K1 K2 I12": BENDS, "C1 C2 D1 D2 E1 E2 F1 F2": SECTION_POINTS}),
+    used("PBARL", "area", "PID MID GROUP TYPE - - - - DIMi NSM", own=True),
+    used("PBEAM", "area, also of a taper", "PID MID A I1 I2 I12 J NSM C1 C2 D1 D2 E1 E2 F1 F2 SO X/XB K1 K2 S1 S2 "
+         "NSI(A) NSI(B) CW(A) CW(B) M1(A) M2(A) M1(B) M2(B) N1(A) N2(A) N1(B) N2(B)",
+         idle={"I1 I2 I12 J K1 K2 S1 S2 CW(A) CW(B) N1(A) N2(A) N1(B) N2(B)": BENDS,
+               "NSI(A) NSI(B) M1(A) M2(A) M1(B) M2(B)": TURNS, "C1 C2 D1 D2 E1 E2 F1 F2 SO": SECTION_POINTS}, own=True),
+    used("PBEAML", "area, also of a taper", "PID MID GROUP TYPE - - - - DIMi NSM SO X/XB",
+         idle={"SO": SECTION_POINTS}, own=True),
+    used("MAT1", "material", "MID E G NU RHO A TREF GE ST SC SS MCSID",
+         idle={"GE": MATERIAL_DAMPING, "ST SC SS": "stress limits: only margins are made of them",
+               "MCSID": "direction of stress output"}),
+    # Springs and masses.
+    used("CELAS1", "spring along its line or to the ground", "EID PID G1 C1 G2 C2"),
+    used("CELAS2", "spring along its line or to the ground", "EID K G1 C1 G2 C2 GE S",
+         idle={"GE": MATERIAL_DAMPING, "S": OUTPUT}),
+    used("PELAS", "stiffness of springs", "PID1 K1 GE1 S1 PID2 K2 GE2 S2",
+         idle={"GE1 GE2": MATERIAL_DAMPING, "S1 S2": OUTPUT}),
+    used("CBUSH", "springs along its line or to the ground", "EID PID GA GB GO/X1 X2 X3 CID S OCID S1 S2 S3",
+         idle={"GO/X1 X2 X3": "the spring acts along its line",
+               "S OCID S1 S2 S3": "place of the spring between its nodes: they do not rotate"}),
+    used("PBUSH", "stiffness of springs", "PID K Ki B GE RCV M", idle={"B GE": MATERIAL_DAMPING, "RCV": OUTPUT},
+         refused={"M": "mass of a spring"}, own=True),
+    used("CONM1", "mass of a node", "EID G CID M11 M21 M22 M31 M32 M33 M41 M42 M43 M44 M51 M52 M53 M54 M55 M61 M62 M63 "
+         "M64 M65 M66", idle={"M44 M54 M55 M64 M65 M66": TURNS},
+         refused={"M21 M31 M32 M41 M42 M43 M51 M52 M53 M61 M62 M63": "it couples directions"}),
+    used("CONM2", "mass of a node", "EID G CID M X1 X2 X3 - I11 I21 I22 I31 I32 I33",
+         idle={"CID X1 X2 X3 I11 I21 I22 I31 I32 I33": TURNS}),
+    # Supports, loads and temperatures.
+    used("SPC", "directions without motion", "SID G1 C1 D1 G2 C2 D2", sets="spc"),
+    used("SPC1", "directions without motion", "SID C Gi", repeats=1, sets="spc"),
+    used("SPCADD", "several sets of supports", "SID Si", repeats=1),
+    used("MPCADD", "several sets of equations", "SID Si", repeats=1),
+    *(used(name, "several sets of loads with factors", "SID S Si Li", repeats=2) for name in ("LOAD", "LOADADD")),
+    used("FORCE", "dead load", "SID G CID F N1 N2 N3", sets="load"),
+    used("FORCE1", "dead load", "SID G F G1 G2", sets="load"),
+    used("FORCE2", "dead load", "SID G F G1 G2 G3 G4", sets="load"),
+    used("PLOAD1", "dead loads of both ends, of a load along the bar", "SID EID TYPE SCALE X1 P1 X2 P2", sets="load"),
+    used("GRAV", "gravity", "SID CID A N1 N2 N3 MB", idle={"MB": "superelement: the structure is taken as one"},
+         sets="load"),
+    used("TEMP", "temperature of links", "SID G1 T1 G2 T2 G3 T3", sets="temperature"),
+    used("TEMPD", "temperature of links", "SID1 T1 SID2 T2 SID3 T3 SID4 T4"),
+    used("PARAM", "WTMASS: factor of all masses; AUTOSPC", "N V1 V2", own=True),
+    # Not supported.
+    refused("MPC", "equations between nodes are not solved", sets="mpc"),
+    refused("RBAR RBAR1 RBE1 RBE2 RBE2GS RBE3 RROD RJOINT RTRPLT RTRPLT1 RSPLINE RSSCON", RIGID),
+    refused("SUPORT", "supports that inertia relief or a rigid body need"),
+    refused("SUPORT1", "supports that inertia relief or a rigid body need", sets="suport"),
+    refused("SPCD", "given displacement, but of SOL 108 to 112, which RLOAD or TLOAD multiplies", sets="load"),
+    refused("MOMENT MOMENT1 MOMENT2", TURNS, sets="load"),
+    refused("PLOAD PLOAD2 PLOAD4 PLOADX PLOADX1 PLOADB3", "pressure on an element", sets="load"),
+    refused("RFORCE RFORCE1 ACCEL ACCEL1", "loads of a field of accelerations", sets="load"),
+    refused("SLOAD", "load on a scalar point", sets="load"),
+    refused("DEFORM", "a bar that is too long", sets="deform"),
+    refused("TEMPRB TEMPP1 TEMPP2 TEMPP3 TEMPB3 TEMPF TEMPN1 TEMPBC", "temperatures of elements", sets="temperature"),
+    refused("MATT1 MATT2 MATT3 MATT5 MATT8 MATT9", "properties that depend on temperature"),
+    refused("MATS1 CREEP", "material that is not linear"),
+    refused("CELAS3 CELAS4 CMASS3 CMASS4", "it joins scalar points"),
+    refused("CMASS1 CMASS2", "mass of one direction"),
+    refused("CBUSH1D CBUSH2D CGAP CWELD CFAST CSEAM CINTC GENEL", "element that is no straight bar of two nodes"),
+    refused("CBEND CBEAM3", "curved beam"),
+    refused("PBCOMP PBRSECT PBMSECT", "section whose area is not known from one number"),
+    refused("CSHEAR CQUAD CQUAD4 CQUAD8 CQUADR CQUADX CQUADX4 CQUADX8 CTRIA3 CTRIA6 CTRIAR CTRIAX CTRIAX6 CTRAX3 "
+            "CTRAX6 CPLSTN3 CPLSTN4 CPLSTS3 CPLSTS4", SHELL),
+    refused("CHEXA CPENTA CPYRAM CTETRA", SOLID),
+    refused("CAABSF CHACAB CHACBR ACMODL", "acoustics"),
+    refused("NSM NSM1 NSML NSML1 NSMADD", "non-structural mass", sets="nsm"),
+    refused("BCONP BCTABLE BCTSET BSURFS BGSET BLSEG", "contact"),
+    # No influence.
+    idle("ENDDATA ECHOON ECHOOFF CBARAO PLOTEL PLOTEL3 PLOTEL4 SET1 SET2 SET3 GRIDG", OUTPUT),
+    idle("PSHELL PCOMP PCOMPG PSHEAR PSOLID PLSOLID PBEND PBEAM3 PGAP PBUSH1D PBUSHT PELAST PMASS PQUAD PPLANE PLPLANE "
+         "PAABSF PACABS MAT2 MAT3 MAT4 MAT5 MAT8 MAT9 MAT10 MAT11 MATHP MATHE MATT4 TABLEM1 TABLEM2 TABLEM3 TABLEM4 "
+         "TABLES1 SPOINT EPOINT PSEAM PWELD PFAST", THROUGH),
+    idle("CDAMP1 CDAMP2 CDAMP3 CDAMP4 CDAMP5 PDAMP PDAMPT CVISC PVISC", MATERIAL_DAMPING),
+    idle("EIGB EIGC EIGP EIGR EIGRL FREQ FREQ1 FREQ2 FREQ3 FREQ4 FREQ5 TSTEP TSTEPNL NLPARM NLPCI NLSTEP DLOAD RLOAD1 "
+         "RLOAD2 TLOAD1 TLOAD2 DAREA DELAY DPHASE LSEQ LOADCYN ACSRCE RANDPS RANDT1 TABLED1 TABLED2 TABLED3 TABLED4 "
+         "TABDMP1 TABRND1 TABRNDG TIC TF NOLIN1 NOLIN2 NOLIN3 NOLIN4 ROTORG ROTORD UNBALNC RGYRO NLRGAP SPCR", DYNAMIC),
+    idle("DESVAR DVPREL1 DVPREL2 DVMREL1 DVMREL2 DVCREL1 DVCREL2 DVGRID DVSHAP DRESP1 DRESP2 DRESP3 DCONSTR DCONADD "
+         "DOPTPRM DSCREEN DEQATN DTABLE DDVAL DLINK DVBSHAP DRESP1L MODTRAK BEADVAR TOPVAR DIVERG", DESIGN),
+    idle("AERO AEROS AEROZ AEFACT AELIST AELINK AEPARM AESTAT AESURF AESURFS CAERO1 CAERO2 CAERO3 CAERO4 CAERO5 CAERO7 "
+         "PAERO1 PAERO2 PAERO3 PAERO4 PAERO5 PAFOIL7 SPLINE1 SPLINE2 SPLINE3 SPLINE4 SPLINE5 PANLST1 PANLST2 PANLST3 "
+         "FLFACT FLUTTER GUST MKAERO1 MKAERO2 MKAEROZ TRIM TRIMFLT TRIMVAR TRIMFNC LOADMOD CSSCHD MONPNT1 MONPNT3 "
+         "MLOADS EXTINP EXTOUT FLUTTF FIXHATM ACOORD ATTACH CELLBOX CELLWNG INPCFD BODY7 SEGMESH DMIS", AERO),
+    idle("CHBDYE CHBDYG CHBDYP PHBDY PCONV PCONVM CONV CONVM RADM RADMT RADBC RADLST RADCAV RADSET RADMTX VIEW VIEW3D "
+         "QBDY1 QBDY2 QBDY3 QHBDY QVECT QVOL", HEAT),
+    idle("ASET ASET1 BSET BSET1 CSET CSET1 OMIT OMIT1 QSET QSET1 USET USET1 SEQSET SEQSET1 SEBSET SEBSET1 SECSET "
+         "SECSET1 SESET CSUPEXT SEELT RELEASE DYNRED CYJOIN", EXACT),
+    idle("DMI DMIG DMIJ DMIJI DMIK DTI", "matrix: acts through K2GG, M2GG or P2G, which are not supported"),
+    idle("CLOAD", "acts through the command CLOAD, which is not supported"),
+    idle("MDLPRM ITER INTS FLOATS SEQGP", "how a program solves"),
+)
+
+# Names of PARAM. Of what is not listed the influence is not known.
+PARAMS: dict[str, Card] = table(
+    used("WTMASS", "factor of all masses"),
+    used("AUTOSPC", "whether directions of nodes without stiffness are held; YES if not given"),
+    refused("INREL", "inertia relief"),
+    refused("CK1 CK2 CK3 CM1 CM2 CP1 CP2", "factor of matrices"),
+    refused("PREMASS SUPAERO", "changes of the model"),
+    idle("POST PRTMAXIM GRDPNT PRGPST PRTRESLT USETPRT AUTOSPCR EPZERO MAXRATIO BAILOUT TINY NOFISR OGEOM "
+         "OUGCORD OUNIT1 OUNIT2 PATVER PRINT OMID OLDSEQ NEWSEQ SNORM SEP1XOVR K6ROT LGDISP LMODES G W3 W4 GFL W3FL "
+         "W4FL COUPMASS RESVEC RESVINER DDRMM HFREQ LFREQ LMODESFL KDAMP VREF MACH Q AUNITS FACTOR NASPRT CURVPLOT "
+         "DBDICT DBALL DBEXT EXTOUT EXTDR MODACC NOCOMPS NOELOF NOELOP NOGPF NONLMETH NLAYERS NINTPTS NT RSPLICE "
+         "SIGMA STRESS TABS SRCOMPS XYUNIT OPTEXIT DESPCH NASM DSZERO CDPRT IUNIT OPGEOM OPTION OSETELE PDRMSG PROUT "
+         "PLTMSG S1 SESEF SEMAP START TABID ULTIMA VUGRAPH ASING BUCKLE TESTNEG MINRATIO EST ECHOON CHECKOUT CHKOUT "
+         "CONFAC RMSINT DYNSPCF INRLM PARTN FIXEDB GEOMU GPECT HEATSTAT IRES LOADU MESH NDAMP NUMOUT OG BIGER BIGER1 "
+         "BIGER2 ADPCON ERROR CASPIV CASEM SKPAMP UNSYMF VMOPT WRBEAMB XFLAG ALTRED ALTSHAPE AESMETH AESRNDM AESTOL "
+         "AUTOQSET RMXPANEL F56 RESLTOPT SOLADJC SDRPOPT SDRDENS SERST SECOMB SUBCASID MPCX EXTUNIT EXTDROUT OELMSET "
+         "OGRDSET ISAVE NEWSET HDF5 CONM2 PEDGE MNLEMPRT FLUIDMP STRUCTMP FREQDEP OMACHPR GYROAVG WR3 WR4 ROTCSV "
+         "ROTGPF ENFMETH ENFMOTN NQMAX CYCIO CYCSEQ OIBULK POSTEXT UNITSYS DBCDIAG DMIGNRG LSTRN COMPARE PNCHDB EPSHT "
+         "MAXIT SUPER TINY2 OMSGLVL",
+         "output, damping, or how a program solves"),
+)
+
+# Commands of the case control. Of what is not listed nothing is selected that acts on a truss in statics.
+CONTROL: dict[str, Card] = table(
+    used("AUTOSPC", "whether directions of nodes without stiffness are held"),
+    used("SUBCASE", "the first one, or that of --step"),
+    used("SPC", "set of supports"), used("LOAD", "set of loads"), used("MPC", "set of MPC, which is not supported"),
+    used("TEMPERATURE", "LOAD, BOTH: temperatures; INITIAL: those free of stress of materials without TREF"),
+    used("DEFORM", "set of DEFORM, which is not supported"), used("NSM", "set of NSM, which is not supported"),
+    used("SUPORT1", "set of SUPORT1, which is not supported"),
+    refused("K2GG M2GG P2G B2GG A2GG", "matrices that are added to the structure"),
+    refused("ANALYSIS", "of HEAT: its supports are temperatures"),
+    refused("TRIM", "loads of aerodynamics"),
+    refused("SUBCOM SYM SYMCOM REPCASE", "it combines the results of other subcases"),
+    refused("CLOAD", "loads of another run"), refused("BCONTACT BCSET", "contact"), refused("BOLTLD", "bolts"),
+)

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Springs between components of nodes as springs along a line."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from statejump.kinds.truss.importing.model import Deck, Spring
+
+# The sine of the angle between a spring and the line of its nodes that counts as none: decks have four digits at least.
+ALONG = 1e-4
+
+
+def add_spring(deck: Deck, line: int, card: str, name: str, stiffness: float,
+               ends: Sequence[tuple[str, np.ndarray]]) -> None:
+    """Add a spring between nodes, each with its direction, or between one node and the ground.
+
+    What it does across the line between its nodes a truss cannot: it is refused.
+    """
+    if not ends or not stiffness:
+        deck.leave(card, "it has no stiffness or no node", line)
+        return
+    if stiffness < 0:
+        deck.refuse(card, "its stiffness is negative", line)
+        return
+    first, direction = ends[0]
+    if len(ends) == 1:
+        x, y, z = (float(part) for part in direction)
+        deck.springs.append(Spring(name, first, None, stiffness, card, line, (x, y, z)))
+    else:
+        second, other = ends[1]
+        if first == second:
+            deck.refuse(card, "it joins two components of one node", line)
+            return
+        way = np.subtract(deck.nodes[second], deck.nodes[first])
+        length = np.linalg.norm(way)
+        if length == 0:
+            deck.refuse(card, "its nodes are at one place", line)
+            return
+        if any(np.linalg.norm(np.cross(one, way)) > ALONG * length for one in (direction, other)) or \
+                (direction @ way) * (other @ way) < 0:
+            deck.refuse(card, "it acts across the line between its nodes", line)
+            return
+        deck.springs.append(Spring(name, first, second, stiffness, card, line))
+    deck.take(card, "spring")

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Directions without motion as a case has them: along axes, and one of any direction."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from statejump.kinds.truss.importing.model import Deck
+
+# The sine of the angle at which two directions are one: axes come from coordinates with four digits at least, and a
+# support that is off by this turns the displacement by as little.
+SAME = 1e-6
+
+
+def supports(deck: Deck, node: str, dimension: int) -> dict[str, Any]:
+    """Return ``fixed`` and ``guide_normal`` of a node. :raises Unreadable: a case has no such support"""
+    if node not in deck.held:
+        fixed = [axis for axis in "xyz"[:dimension] if axis in deck.fixed.get(node, ())]
+        return {"fixed": fixed} if fixed else {}
+    axes = np.eye(3)
+    held = [axes["xyz".index(axis)] for axis in sorted(deck.fixed.get(node, ()))] + [
+        np.array(direction) for direction in deck.held.get(node, ())]
+    if dimension == 2:  # the plane holds the third direction
+        held.append(axes[2])
+    _, sizes, spanned = np.linalg.svd(np.array(held))
+    basis = spanned[:int(np.sum(sizes > SAME))]
+    along = [axis for axis in range(3) if np.linalg.norm(axes[axis] - basis.T @ (basis @ axes[axis])) <= SAME]
+    rest = basis - basis[:, along] @ axes[along] if along else basis
+    _, sizes, spanned = np.linalg.svd(rest)
+    oblique = spanned[:int(np.sum(sizes > SAME))]
+    if len(oblique) > 1:
+        raise deck.fail(0, f"node {node} is held in two oblique directions", "a case holds axes and one more direction")
+    made: dict[str, Any] = {}
+    if along_axes := [axis for axis in "xyz"[:dimension] if "xyz".index(axis) in along]:
+        made["fixed"] = along_axes
+    if len(oblique):
+        normal = oblique[0] * np.sign(oblique[0][np.argmax(np.abs(oblique[0]))])
+        made["guide_normal"] = [float(f"{part:.15g}") for part in normal[:dimension]]
+    return made

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Units of decks, which say nothing of them."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Units:
+    """What one unit of a deck is.
+
+    :param length_m: of length [m]
+    :param force_N: of force [N]
+    :param mass_kg: of mass [kg]; None: force times seconds squared by length
+    """
+
+    length_m: float = 1.0
+    force_N: float = 1.0
+    mass_kg: float | None = None
+
+    @property
+    def mass(self) -> float:
+        """Unit of mass [kg]."""
+        return self.force_N / self.length_m if self.mass_kg is None else self.mass_kg
+
+    @property
+    def stress(self) -> float:
+        """Unit of stress [Pa]."""
+        return self.force_N / self.length_m**2
+
+
+POUND_FORCE_N = 4.4482216152605  # exact
+INCH_M = 0.0254  # exact
+SYSTEMS = {
+    "SI": Units(), "mm-N": Units(1e-3), "mm-kN-t": Units(1e-3, 1e3, 1e3), "in-lbf": Units(INCH_M, POUND_FORCE_N),
+}
+
+
+def in_units(value: float, unit: float) -> float:
+    """Return a number of a deck in the units of cases, with the digits that a deck can have: 50 mm2 are 5e-05 m2."""
+    return value if unit == 1 else float(f"{value * unit:.15g}")

@@ -1,0 +1,189 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Imports and runs all decks of a folder and writes one table.
+
+    PYTHONPATH=build/python scripts/decks.py FOLDER [-o TABLE.md] [--beams-as-bars] [--ignore CARD ...] [--circ radius]
+
+A row for each deck of Nastran, CalculiX or Abaqus: its units, imported, ran, why not, largest displacement in metres.
+Where ``ccx`` is installed and the deck is CalculiX's, also the largest difference of a displacement to that of
+CalculiX, over the largest one. Both are linear then: loads are multiplied by a small factor, and *STEP, NLGEOM is left
+out for CalculiX. A deck without temperatures is run at that of ``--temperature-change``. Every deck runs in a process
+of its own. Exit status 1: an import or a run ended otherwise than with a result or a sentence.
+"""
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import traceback
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import decks_ccx
+import numpy as np
+
+SUFFIXES = (".inp", ".bdf", ".nas", ".dat")
+HEADER = ("deck", "units", "imported", "ran", "why not", "largest displacement [m]", "difference to ccx")
+# Strains of structures are below 1e-2: what is not linear is then below 1e-7 of the displacement, as ccx prints it.
+SMALL = 1e-5
+FAULT = "fault"
+UNITS = ("SI", "mm-N", "in-lbf")
+
+
+@dataclass
+class Row:
+    """What became of a deck; a cause is a sentence."""
+
+    deck: str
+    units: str = ""
+    imported: bool = False
+    ran: bool = False
+    cause: str = ""
+    largest_m: float | None = None
+    difference: str = ""
+    fault: bool = False
+
+    def cells(self) -> tuple[str, ...]:
+        """Return the cells of the table."""
+        largest = "" if self.largest_m is None else f"{self.largest_m:.6g}"
+        return (self.deck, self.units, *("yes" if one else "no" for one in (self.imported, self.ran)),
+                self.cause.replace("|", "\\|"), largest, self.difference)
+
+
+def one(path: Path, name: str, options: argparse.Namespace) -> Row:
+    """Import and run a deck in this process."""
+    from statejump.core.errors import StatejumpError
+    from statejump.kinds.truss.importing import SYSTEMS, Options, case_document, read
+
+    row, beams = Row(name), False
+    try:
+        deck = read(path, None, None, Options(frozenset(word.upper().lstrip("*") for word in options.ignore),
+                                              options.beams_as_bars, options.step, options.circ))
+        documents = {units: case_document(deck, "deck", units=SYSTEMS[units], check_ignored=False,
+                                          temperature_change_K=options.temperature_change)
+                     for units in ([options.units] if options.units else UNITS)}
+        beams = any("BEAM" in bar.kind or "CBAR" in bar.kind or "TYPE=B" in bar.kind for bar in deck.bars)
+        row.units, made, case = _plausible(documents)
+        row.imported = True
+        row.largest_m = float(np.abs(_displacements(case.reduced())).max())  # type: ignore[attr-defined]
+        row.ran = True
+        if path.suffix == ".inp" and decks_ccx.installed():
+            names = {node: f"N{node}" if node.isdecimal() else node for node in deck.nodes}
+            ours = {node: moved / SYSTEMS[row.units].length_m for node, moved in _small(made).items()}
+            row.difference = decks_ccx.difference(path, deck.step, ours, names)
+    except StatejumpError as refused:
+        row.cause = str(refused).replace(str(path), path.name)
+        if row.imported and beams and "mechanism" in row.cause:
+            row.cause = f"needs bending: {row.cause}"
+    except Exception as fault:  # what the table is made to find
+        row.fault = True
+        row.cause = f"{FAULT}: {type(fault).__name__}: {fault}; {traceback.extract_tb(fault.__traceback__)[-1]}"
+    return row
+
+
+def _plausible(documents: dict[str, dict]) -> tuple[str, dict, object]:
+    """Return the units of a deck, which says nothing of them, its document and its case: of those that are a case the
+    units with the fewest implausible numbers."""
+    import statejump as sj
+    from statejump.core.errors import StatejumpError
+    from statejump.kinds.truss.importing import hints
+
+    first: StatejumpError | None = None
+    for units in sorted(documents, key=lambda units: len(hints(documents[units]))):
+        try:
+            return units, documents[units], sj.load(documents[units])
+        except StatejumpError as refused:
+            first = first or refused
+    assert first is not None
+    raise first
+
+
+def _displacements(run: object) -> np.ndarray:
+    """Return the displacements (nodes, axes) at the largest temperature change."""
+    history = run.history  # type: ignore[attr-defined]
+    at = int(np.argmax(np.abs(history["temperature_change_K"].values)))
+    return np.asarray(history["displacement_m"].values[at])
+
+
+def _small(made: dict) -> dict[str, np.ndarray]:
+    """Return the displacements of a case whose loads are small, multiplied to those of the loads."""
+    import statejump as sj
+
+    factor = 1.0 if "expansion" in made else SMALL  # coefficients that follow the temperature are not linear
+    small = json.loads(json.dumps(made))
+    for node in small["node"]:
+        if "force_N" in node:
+            node["force_N"] = [part * factor for part in node["force_N"]]
+    if "gravity_m_per_s2" in small["truss"]:
+        small["truss"]["gravity_m_per_s2"] = [part * factor for part in small["truss"]["gravity_m_per_s2"]]
+    small["thermal"]["temperature_change_max_K"] *= factor
+    run = sj.load(small).reduced()
+    found = _displacements(run) / factor
+    return {node["name"]: np.append(found[at], [0.0] * (3 - found.shape[1])) for at, node in enumerate(small["node"])}
+
+
+def in_process(path: Path, folder: Path, arguments: Sequence[str], seconds: float) -> Row:
+    """Import and run a deck in a process of its own, which may die."""
+    name = str(path.relative_to(folder))
+    command = [sys.executable, __file__, str(folder), "--one", str(path), *arguments]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=seconds,
+                              env={**os.environ, "OMP_NUM_THREADS": "1"})
+    except subprocess.TimeoutExpired:
+        return Row(name, cause=f"{FAULT}: not done after {seconds:g} s", fault=True)
+    lines = done.stdout.splitlines()
+    if done.returncode or not lines:
+        return Row(name, cause=f"{FAULT}: exit status {done.returncode}: {done.stderr.strip()[-200:]}", fault=True)
+    return Row(**json.loads(lines[-1]))
+
+
+def arguments_of(options: argparse.Namespace) -> list[str]:
+    """Return the options of a deck as words."""
+    words = ["--temperature-change", str(options.temperature_change)]
+    words += ["--beams-as-bars"] if options.beams_as_bars else []
+    words += ["--step", str(options.step)] if options.step else []
+    words += ["--circ", options.circ] if options.circ else []
+    words += ["--units", options.units] if options.units else []
+    return words + [word for name in options.ignore for word in ("--ignore", name)]
+
+
+def main() -> int:
+    """Run the command."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("-o", "--output", type=Path, help="Markdown table; none: standard output")
+    parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--seconds", type=float, default=300.0, help="of a deck, at most")
+    parser.add_argument("--beams-as-bars", action="store_true")
+    parser.add_argument("--temperature-change", type=float, default=0.0)
+    parser.add_argument("--circ", choices=("radius", "diameter"))
+    parser.add_argument("--step", type=int)
+    parser.add_argument("--units", choices=("SI", "mm-N", "mm-kN-t", "in-lbf"), help="none: the most plausible ones")
+    parser.add_argument("--ignore", action="append", default=[])
+    parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.one:
+        print(json.dumps(asdict(one(options.one, str(options.one.relative_to(options.folder)), options))))
+        return 0
+    found = sorted(path for path in options.folder.rglob("*") if path.suffix.lower() in SUFFIXES)
+    words = arguments_of(options)
+    with ThreadPoolExecutor(options.jobs) as pool:
+        rows = list(pool.map(lambda path: in_process(path, options.folder, words, options.seconds), found))
+    lines = [f"| {' | '.join(cells)} |" for cells in (HEADER, ["---"] * len(HEADER), *(row.cells() for row in rows))]
+    lines += ["", f"{len(rows)} decks, {sum(row.imported for row in rows)} imported, "
+              f"{sum(row.ran for row in rows)} ran, {sum(row.fault for row in rows)} faults"]
+    text = "\n".join(lines) + "\n"
+    if options.output:
+        options.output.write_text(text, encoding="utf-8")
+        print(lines[-1])
+    else:
+        print(text, end="")
+    return int(any(row.fault for row in rows))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

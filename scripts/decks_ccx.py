@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs a deck of CalculiX, linear, and compares its displacements with others."""
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+ROW = re.compile(r"\s*(\d+)\s+([-+.\dEe]+)\s+([-+.\dEe]+)\s+([-+.\dEe]+)\s*$")
+OUTPUT = re.compile(r"\*((NODE|EL|ELEMENT|CONTACT|SECTION|MODAL|ENERGY)\s*(PRINT|FILE|OUTPUT)|OUTPUT|RESTART)\b",
+                    re.IGNORECASE)
+BEAMS = re.compile(r"TYPE\s*=\s*B\d", re.IGNORECASE)
+SECONDS = 120
+
+
+def installed() -> bool:
+    """Whether there is CalculiX."""
+    return shutil.which("ccx") is not None
+
+
+def difference(path: Path, step: int, ours: Mapping[str, np.ndarray], names: Mapping[str, str]) -> str:
+    """Return the largest difference of a displacement over the largest one, or why there is none.
+
+    :param step: number of the step that was imported
+    :param ours: displacements by the names of nodes in a case
+    :param names: these names by numbers of the deck
+    """
+    if not step:
+        return "no static step"
+    text = path.read_text(encoding="latin-1")
+    with tempfile.TemporaryDirectory() as folder:
+        for beside in path.parent.iterdir():
+            if beside.is_file() and beside.suffix.lower() in (".inc", ".msh", ".nam", ".dat", ".inp"):
+                shutil.copy(beside, folder)
+        (Path(folder) / "given.inp").write_text(printing(text, step, [int(name) for name in names if name.isdecimal()]))
+        try:
+            subprocess.run(["ccx", "-i", "given"], cwd=folder, capture_output=True, timeout=SECONDS,
+                           env={"OMP_NUM_THREADS": "1", "PATH": "/usr/local/bin:/usr/bin:/bin"})
+        except subprocess.TimeoutExpired:
+            return f"ccx: not done after {SECONDS} s"
+        theirs = printed(Path(folder) / "given.dat")
+    common = [(ours[names[node]], value) for node, value in theirs.items() if names.get(node) in ours]
+    if not common:
+        return "ccx printed no displacement"
+    largest = max(float(np.abs(value).max()) for _, value in common)
+    if largest == 0:
+        return "ccx: nothing moves"
+    found = max(float(np.abs(one - value).max()) for one, value in common) / largest
+    return f"{found:.2g}" + (" (beams bend in ccx)" if BEAMS.search(text) and found > 1e-6 else "")
+
+
+def printing(text: str, step: int, nodes: list[int]) -> str:
+    """Return a deck that ends with a step, prints its displacements and is linear."""
+    made: list[str] = []
+    number, skips = 0, False
+    for line in text.splitlines():
+        keyword = line.strip().upper()
+        if keyword.startswith("*") and not keyword.startswith("**"):
+            skips = bool(OUTPUT.match(keyword))
+            if re.match(r"\*STEP\b", keyword):
+                number += 1
+                if number == 1:
+                    made += ["*NSET, NSET=SJPRINTED", *(f"{node}," for node in sorted(nodes))]
+                line = re.sub(r",\s*NLGEOM(\s*=\s*YES)?", "", line, flags=re.IGNORECASE)
+            if re.match(r"\*END\s*STEP\b", keyword) and number == step:
+                return "\n".join([*made, "*NODE PRINT, NSET=SJPRINTED", "U", "*END STEP"]) + "\n"
+        if not skips:
+            made.append(line)
+    return "\n".join(made) + "\n"
+
+
+def printed(path: Path) -> dict[str, np.ndarray]:
+    """Return the displacements of the last increment by the number of their node."""
+    found: dict[str, np.ndarray] = {}
+    reads = False
+    for line in path.read_text().splitlines() if path.is_file() else ():
+        if "displacements" in line:
+            found, reads = {}, True
+        elif row := ROW.match(line):
+            if reads:
+                found[row[1]] = np.array([float(part) for part in row.groups()[1:]])
+        elif line.strip():
+            reads = False
+    return found

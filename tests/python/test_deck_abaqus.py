@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Decks of CalculiX and Abaqus: keywords, sets, steps and every kind of keyword with its closed form."""
+from __future__ import annotations
+
+import time
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import statejump as sj
+from statejump.kinds.truss.importing import Options, case_document, read
+
+# A rod of 7e6 N/m along x, held but along x at its end; 7000 N stretch it by 1 mm.
+MODEL = """*NODE, NSET=NALL
+1, 0., 0., 0.
+2, 1., 0., 0.
+*ELEMENT, TYPE=T3D2, ELSET=BARS
+1, 1, 2
+*MATERIAL, NAME=AL
+*ELASTIC
+7.e10, 0.3
+*EXPANSION
+2.3e-5
+*DENSITY
+2700.
+*SOLID SECTION, ELSET=BARS, MATERIAL=AL
+1.e-4
+*BOUNDARY
+1, 1, 3
+2, 2, 3
+"""
+LOAD = "*STEP\n*STATIC\n*CLOAD\n2, 1, 7000.\n*END STEP\n"
+
+
+def made(folder: Path, text: str, change: float | None = 0.0, **options: Any) -> dict[str, Any]:
+    """Return the document of a deck."""
+    (folder / "deck.inp").write_text(text)
+    return case_document(read(folder / "deck.inp", options=Options(**options)), "deck", temperature_change_K=change)
+
+
+def moved(document: dict[str, Any], node: str = "N2", axis: int = 0) -> float:
+    """Return the displacement of a node at the peak of the temperature."""
+    run = sj.load(document).reduced()
+    at = int(np.argmax(np.abs(run.history["temperature_change_K"].values)))
+    names = [item["name"] for item in document["node"]]
+    return float(run.history["displacement_m"].values[at, names.index(node), axis])
+
+
+def refusal(folder: Path, text: str, **options: Any) -> str:
+    """Return why a deck is refused."""
+    with pytest.raises(sj.StatejumpError) as refused:
+        made(folder, text, **options)
+    return str(refused.value).removeprefix(f"{folder / 'deck.inp'}: ")
+
+
+NODES = MODEL[:MODEL.index("*ELEMENT")]
+SAME = {  # what is replaced in the deck without changing it
+    "elements before nodes": (MODEL, MODEL.replace(NODES, "") + NODES),
+    "quoted names with commas": ("ELSET=BARS", 'ELSET="bars, left"'),
+    "blanks left out": ("*SOLID SECTION", "*SOLIDSECTION"),
+    "lower case": ("*ELASTIC", "*elastic"),
+    "parameters over lines": ("*SOLID SECTION, ELSET=BARS,", "*SOLID SECTION,\nELSET=BARS,"),
+    "exponents of Fortran": ("7.e10", "7.d10"),
+    "named supports": ("1, 1, 3", "1, PINNED"),
+    "an initial temperature that stays": ("*BOUNDARY", "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 20.\n*BOUNDARY"),
+    "the same coefficient twice": ("2.3e-5\n", "2.3e-5, 0.\n2.3e-5, 100.\n"),
+    "a coefficient of three equal directions": ("*EXPANSION\n2.3e-5", "*EXPANSION, TYPE=ORTHO, ZERO=20.\n2.3e-5, 2.3e-5, 2.3e-5"),
+    "output": ("*END STEP", "*NODE PRINT, NSET=NALL\nU\n*EL FILE\nS\n*END STEP"),
+}
+
+
+@pytest.mark.parametrize("name", SAME)
+def test_what_says_the_same_is_the_same(name: str, tmp_path: Path) -> None:
+    old, new = SAME[name]
+    text = MODEL + LOAD
+    assert old in text
+    assert moved(made(tmp_path, text.replace(old, new))) == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_included_files_stay_in_the_folder(tmp_path: Path) -> None:
+    (tmp_path / "nodes.msh").write_text(NODES)
+    text = (MODEL + LOAD).replace(NODES, "*INCLUDE, INPUT=nodes.msh\n")
+    assert moved(made(tmp_path, text)) == pytest.approx(1e-3, rel=1e-12)
+    assert "is outside the deck's folder" in refusal(tmp_path, text.replace("nodes.msh", "../nodes.msh"))
+    (tmp_path / "nodes.msh").write_text("*INCLUDE, INPUT=nodes.msh\n")
+    assert "more than 10 files include each other" in refusal(tmp_path, text)
+
+
+MOVED = {  # text behind the model, and the displacement
+    "forces of one step add up": ("*STEP\n*STATIC\n*CLOAD\n2, 1, 3000.\n*CLOAD\n2, 1, 4000.\n*END STEP\n", {}, 1e-3),
+    "the first step": (LOAD + LOAD.replace("7000", "3500"), {}, 1e-3),
+    "a force of a second step replaces": (LOAD + LOAD.replace("7000", "3500"), {"step": 2}, 0.5e-3),
+    "what a second step does not name stays": (LOAD + LOAD.replace("2, 1,", "2, 2,"), {"step": 2}, 1e-3),
+    "OP=NEW removes": (LOAD + LOAD.replace("*CLOAD", "*CLOAD, OP=NEW").replace("2, 1,", "2, 2,"), {"step": 2}, 0.0),
+    "an amplitude at the end of a step": (
+        "*AMPLITUDE, NAME=A\n0., 0., 2., 1.\n*STEP\n*STATIC\n.1, 1.\n*CLOAD, AMPLITUDE=A\n2, 1, 14000.\n*END STEP\n", {}, 1e-3),
+    "a step of modes first": ("*STEP\n*FREQUENCY\n3\n*END STEP\n" + LOAD, {}, 1e-3),
+    "gravity": ("*STEP\n*STATIC\n*DLOAD\nBARS, GRAV, 9.81, 1., 0., 0.\n*END STEP\n", {}, 0.27 / 2 * 9.81 / 7e6),
+    "a spring to the ground": ("*ELEMENT, TYPE=SPRING1, ELSET=S\n9, 2\n*SPRING, ELSET=S\n1\n7.e6\n" + LOAD, {}, 0.5e-3),
+    "a spring along its line": ("*NODE\n3, 3., 0., 0.\n*ELEMENT, TYPE=SPRINGA, ELSET=S\n9, 2, 3\n*SPRING, ELSET=S\n\n7.e6\n"
+                                "*BOUNDARY\n3, 1, 3\n" + LOAD, {}, 0.5e-3),
+    "directions of a transform": ("*TRANSFORM, NSET=END, TYPE=R\n0., 1., 0., -1., 0., 0.\n*NSET, NSET=END\n2\n" +
+                                  LOAD.replace("2, 1, 7000.", "2, 2, -7000."), {}, None),
+}
+
+
+@pytest.mark.parametrize("name", MOVED)
+def test_steps_loads_and_springs(name: str, tmp_path: Path) -> None:
+    text, options, wanted = MOVED[name]
+    model = MODEL
+    if wanted is None:  # x of the node is along y: its supports are its directions 1 and 3
+        model, wanted = MODEL.replace("2, 2, 3\n", "2, 1, 1\n2, 3, 3\n"), 1e-3
+    assert moved(made(tmp_path, model + text, **options)) == pytest.approx(wanted, rel=1e-9, abs=1e-18)
+
+
+SECTIONS = {  # parameters and sizes of *BEAM SECTION, options and area; checked with CalculiX 2.20 but I, L, TRAPEZOID
+    "RECT": ("20., 30.", {}, 600), "RECT of one length": ("20.", {}, 400), "CIRC": ("10., 20.", {}, pi * 50),
+    "CIRC as radius": ("10.", {"circ": "radius"}, pi * 100), "CIRC as diameter": ("10.", {"circ": "diameter"}, pi * 25),
+    "PIPE": ("10., 2.", {}, pi * 36), "BOX": ("20., 30., 1., 2., 3., 5.", {}, 600 - 16 * 23),
+    "I": ("5., 10., 4., 6., 1., 2., .5", {}, 4 + 12 + 3.5), "L": ("5., 6., 1., 2.", {}, 15),
+    "TRAPEZOID": ("4., 3., 2., 1.", {}, 9),
+}
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_areas_of_beam_sections(name: str, tmp_path: Path) -> None:
+    sizes, options, area = SECTIONS[name]
+    text = MODEL.replace("T3D2", "B31").replace("*SOLID SECTION,", f"*BEAM SECTION, SECTION={name.split()[0]},").replace(
+        "1.e-4\n*B", f"{sizes}\n0., 1., 0.\n*B")
+    link = made(tmp_path, text, beams_as_bars=True, **options)["link"][0]
+    assert link["cross_section_area_m2"] == pytest.approx(area, rel=1e-12)
+    assert "the structure needs bending" in refusal(tmp_path, text, **options)
+
+
+def test_one_length_of_a_circle_is_asked_for(tmp_path: Path) -> None:
+    text = MODEL.replace("T3D2", "B31").replace("*SOLID SECTION,", "*BEAM SECTION, SECTION=CIRC,")
+    said = refusal(tmp_path, text, beams_as_bars=True)
+    assert said.startswith("line 13: *BEAM SECTION, SECTION=CIRC is not supported") and "--circ radius|diameter" in said
+
+
+def test_a_general_section_has_its_material(tmp_path: Path) -> None:
+    text = MODEL.replace("T3D2", "B31").replace(
+        "*SOLID SECTION, ELSET=BARS, MATERIAL=AL\n1.e-4\n",
+        "*BEAM GENERAL SECTION, ELSET=BARS, SECTION=GENERAL, DENSITY=2700.\n1.e-4, 1.e-9, 0., 1.e-9, 2.e-9\n"
+        "0., 1., 0.\n7.e10, 2.7e10, 2.3e-5\n")
+    assert moved(made(tmp_path, text + LOAD, beams_as_bars=True)) == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_a_bar_of_three_nodes_is_one_bar_or_two(tmp_path: Path) -> None:
+    text = MODEL.replace("2, 1., 0., 0.", "2, 1., 0., 0.\n3, .5, 0., 0.").replace("T3D2", "T3D3").replace("1, 1, 2\n", "1, 1, 3, 2\n")
+    assert [link["name"] for link in made(tmp_path, text + LOAD)["link"]] == ["L1"]
+    assert moved(made(tmp_path, text + LOAD)) == pytest.approx(1e-3, rel=1e-12)
+    document = made(tmp_path, text.replace("2, 2, 3", "2, 2, 3\n3, 2, 3") + LOAD.replace("2, 1,", "3, 1,"))
+    assert len(document["link"]) == 2 and moved(document) == pytest.approx(0.5e-3, rel=1e-12)
+
+
+PARTS = """*HEADING
+*PART, NAME=BAR
+*NODE
+1, 0., 0., 0.
+2, 1., 0., 0.
+*ELEMENT, TYPE=T3D2
+1, 1, 2
+*NSET, NSET=TIP
+2
+*ELSET, ELSET=ALL, GENERATE
+1, 1
+*SOLID SECTION, ELSET=ALL, MATERIAL=AL
+1.e-4,
+*END PART
+*ASSEMBLY, NAME=A
+*INSTANCE, NAME=LOW, PART=BAR
+*END INSTANCE
+*INSTANCE, NAME=HIGH, PART=BAR
+0., 1., 0.
+0., 1., 0., 0., 1., 1., 90.
+*END INSTANCE
+*NSET, NSET=WALL, INSTANCE=LOW
+1
+*NSET, NSET=WALL, INSTANCE=HIGH
+1
+*END ASSEMBLY
+*MATERIAL, NAME=AL
+*ELASTIC
+7.e10, 0.3
+*BOUNDARY
+WALL, ENCASTRE
+LOW.TIP, 2, 3
+HIGH.TIP, 1, 1
+HIGH.2, 3, 3
+*STEP
+*STATIC
+*CLOAD
+LOW.TIP, 1, 7000.
+HIGH.2, 2, 3500.
+*END STEP
+"""
+
+
+def test_instances_of_parts_are_shifted_and_rotated(tmp_path: Path) -> None:
+    document = made(tmp_path, PARTS)
+    places = {node["name"]: node["position_m"] for node in document["node"]}
+    assert places["HIGH_1"] == [0, 1] and places["HIGH_2"] == pytest.approx([0, 2], abs=1e-15)
+    assert moved(document, "LOW_2") == pytest.approx(1e-3, rel=1e-12)
+    assert moved(document, "HIGH_2", 1) == pytest.approx(0.5e-3, rel=1e-9)
+
+
+def test_nodes_and_elements_are_generated(tmp_path: Path) -> None:
+    text = MODEL.replace("2, 1., 0., 0.\n", "2, 1., 0., 0.\n*NODE, NSET=B\n11, 0., 1., 0.\n*NODE\n101, 0., 0., 4.\n103, 2., 0., 4.\n"
+                         "*NGEN, NSET=LINE\n101, 103\n*NODE\n201, 1., 0., 0.\n203, 0., 1., 0.\n200, 0., 0., 0.\n"
+                         "*NGEN, LINE=C\n201, 203, 1, 200\n*NSET, NSET=A\n1\n*NFILL\nA, B, 2, 5\n"
+                         "*NCOPY, CHANGE NUMBER=1000, OLD SET=LINE, SHIFT, NEW SET=COPY\n0., 0., 1.\n"
+                         "0., 0., 0., 0., 0., 1., 90.\n")
+    text = text.replace("*MATERIAL", "*ELEMENT, TYPE=T3D2, ELSET=ROW\n101, 101, 102\n*ELGEN, ELSET=ROW\n101, 2\n"
+                        "*ELCOPY, ELEMENT SHIFT=1000, OLD SET=ROW, SHIFT NODES=1000, NEW SET=BARS\n*MATERIAL")
+    (tmp_path / "deck.inp").write_text(text + LOAD)
+    deck = read(tmp_path / "deck.inp", options=Options(ignored=frozenset()))
+    assert deck.nodes["102"] == (1, 0, 4) and deck.nodes["6"] == (0, 0.5, 0)
+    assert deck.nodes["202"] == pytest.approx((np.sqrt(0.5), np.sqrt(0.5), 0), abs=1e-15)
+    assert deck.nodes["1103"] == pytest.approx((0, 2, 5), abs=1e-15)
+    assert {bar.name: bar.nodes for bar in deck.bars if bar.name != "1"} == {
+        "101": ("101", "102"), "102": ("102", "103"), "1101": ("1101", "1102"), "1102": ("1102", "1103")}
+
+
+def test_nodes_in_cylindrical_coordinates_of_a_system(tmp_path: Path) -> None:
+    text = MODEL.replace("*NODE, NSET=NALL\n", "*SYSTEM\n0., 0., 1., 0., 1., 1.\n*NODE, SYSTEM=C\n3, 2., 90., 0.\n*SYSTEM\n*NODE\n")
+    (tmp_path / "deck.inp").write_text(text)
+    assert read(tmp_path / "deck.inp").nodes["3"] == pytest.approx((-2, 0, 1), abs=1e-15)
+    assert "*NODE, SYSTEM is not supported" in refusal(tmp_path, text.replace("SYSTEM=C", "SYSTEM=S"))
+
+
+REFUSED = {
+    "equation": ("*BOUNDARY", "*EQUATION\n2\n1, 1, 1., 2, 1, -1.\n*BOUNDARY", "line 15: *EQUATION is not supported: equations between"),
+    "tie": ("*BOUNDARY", "*TIE, NAME=T\nA, B\n*BOUNDARY", "*TIE is not supported"),
+    "solid": ("*MATERIAL", "*ELEMENT, TYPE=C3D8\n5, 1,2,1,2,1,2,1,2\n*MATERIAL", "*ELEMENT, TYPE=C3D8 is not supported: it is no "
+              "straight bar; --ignore C3D8 leaves it out"),
+    "unknown": ("*BOUNDARY", "*NEW THING\n*BOUNDARY", "*NEW THING is not supported: the keyword is unknown; --ignore 'NEW THING'"),
+    "parameter": ("*CLOAD", "*CLOAD, FOLLOWER", "*CLOAD, FOLLOWER is not supported: a load that turns; --ignore CLOAD.FOLLOWER"),
+    "unknown parameter": ("*CLOAD", "*CLOAD, NEW=1", "*CLOAD, NEW is not supported: the parameter is unknown"),
+    "moment": ("2, 1, 7000.", "2, 4, 7000.", "*CLOAD is not supported: a moment"),
+    "given displacement": ("2, 2, 3", "2, 2, 3, .1", "*BOUNDARY is not supported: a given displacement"),
+    "pressure": ("*CLOAD\n2, 1, 7000.", "*DLOAD\nBARS, P1, 1.", "*DLOAD, P1 is not supported"),
+    "coefficients of temperature and direction": ("*EXPANSION\n2.3e-5", "*EXPANSION, TYPE=ORTHO\n2e-5, 2e-5, 2e-5, 0.\n3e-5, "
+                                                  "3e-5, 3e-5, 100.", "*EXPANSION is not supported: its numbers depend on"),
+    "modulus of a temperature": ("7.e10, 0.3", "7.e10, 0.3, 0.\n6.e10, .3, 100.", "*ELASTIC is not supported: its numbers depend"),
+    "directions": ("*EXPANSION\n2.3e-5", "*EXPANSION, TYPE=ORTHO\n2.3e-5, 2e-5, 2e-5", "differs from direction to direction"),
+    "modulus of directions": ("*ELASTIC\n", "*ELASTIC, TYPE=ORTHO\n", "*ELASTIC, TYPE is not supported: it is not isotropic"),
+    "gradient": ("*CLOAD\n2, 1, 7000.", "*TEMPERATURE\n2, 20., 5.", "*TEMPERATURE is not supported: temperatures that differ"),
+    "amplitude of dynamics": ("*STATIC\n*CLOAD", "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n*DYNAMIC\n*CLOAD, AMPLITUDE=A",
+                              "*CLOAD, AMPLITUDE is not supported"),
+    "gravity on a part": ("*STATIC\n*CLOAD\n2, 1, 7000.", "*STATIC\n*ELEMENT, TYPE=MASS, ELSET=M\n9, 2\n*MASS, ELSET=M\n5.\n*DLOAD\n"
+                          "BARS, GRAV, 9.81, 1., 0., 0.", "it acts on a part of the structure only"),
+    "load elsewhere": ("2, 1, 7000.", "3, 1, 7000.\n*NODE\n3, 9., 9., 9.", "*CLOAD is not supported: a force on node 3, where no"),
+    "spring across": ("*BOUNDARY", "*NODE\n3, 1., 1., 0.\n*ELEMENT, TYPE=SPRING2, ELSET=S\n9, 2, 3\n*SPRING, ELSET=S\n1, 1\n5.\n*BOUNDARY",
+                      "*SPRING is not supported: it acts across"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_matters_and_is_not_supported_is_named(name: str, tmp_path: Path) -> None:
+    old, new, sentence = REFUSED[name]
+    assert old in MODEL + LOAD
+    assert sentence in refusal(tmp_path, (MODEL + LOAD).replace(old, new))
+
+
+@pytest.mark.parametrize("peak", [120.0, 60.0, -40.0])
+def test_coefficients_follow_the_temperature_from_their_zero(peak: float, tmp_path: Path) -> None:
+    """Secants of 2e-5, 2.5e-5 and 2.2e-5 1/K at 0, 50 and 100 degrees from ZERO=10; free of stress at 20, with 2.2e-5."""
+    text = MODEL.replace("*EXPANSION\n2.3e-5\n", "*EXPANSION, ZERO=10.\n2.e-5, 0.\n2.5e-5, 50.\n2.2e-5, 100.\n")
+    text += f"*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 20.\n*STEP\n*STATIC\n*TEMPERATURE\nNALL, {peak}\n*END STEP\n"
+    case = sj.load(made(tmp_path, text, None))
+    assert case.link[0].expansion == "X1" and case.thermal.temperature_change_max_K == peak - 20
+    secant = {120.0: 2.2e-5, 60.0: 2.44e-5, -40.0: 2e-5}[peak]
+    wanted = secant * (peak - 10) - 2.2e-5 * 10
+    # A jump of 2e-5 1/K at most, spread over 0.2 K, is right to its square.
+    assert case.expansion[0].strain(np.array([peak - 20]))[0] == pytest.approx(wanted, abs=1e-8)
+
+
+def test_lines_of_a_solid_are_no_elements(tmp_path: Path) -> None:
+    text = MODEL.replace("*MATERIAL", "*ELEMENT, TYPE=C3D20R\n5, 1,2,1,2,1,2,1,2,1,2,\n1,2,1,2,1,2,1,2,1,2\n*MATERIAL", 1)
+    document = made(tmp_path, text + LOAD, ignored=frozenset({"C3D20R"}))
+    assert moved(document) == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_reading_is_linear(tmp_path: Path) -> None:
+    """2000 GENERATE lines on 40 000 nodes took 28 s; eight times the lines may take at most 16 times as long."""
+    count = 40_000
+    nodes = "*NODE\n" + "".join(f"{number}, {number}., 0., 0.\n" for number in range(1, count + 1))
+    rest = MODEL.replace(NODES, "").replace("*BOUNDARY", "{sets}*BOUNDARY")
+    took = []
+    for lines in (250, 2000):
+        sets = "*NSET, NSET=S, GENERATE\n" + "".join(f"{20 * at + 1}, {20 * at + 20}\n" for at in range(lines))
+        (tmp_path / "deck.inp").write_text(nodes + rest.format(sets=sets))
+        begun = time.process_time()
+        read(tmp_path / "deck.inp")
+        took.append(time.process_time() - begun)
+    assert took[1] < 2 * took[0] + 1  # most is the reading of the nodes, which is the same

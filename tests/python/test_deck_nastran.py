@@ -1,0 +1,366 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Decks of Nastran: the fields of cards as the manuals have them, and every kind of card with its closed form."""
+from __future__ import annotations
+
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import statejump as sj
+from statejump.kinds.truss.importing import Options, Units, case_document, read
+from statejump.kinds.truss.importing.profiles import NASTRAN, nastran
+
+E, A = 7e10, 1e-4
+CONTROL = "SOL 101\nCEND\nSPC = 1\nLOAD = 5\nBEGIN BULK\n"
+# One rod of 7e6 N/m along x, held but along x at its end; 7000 N stretch it by 1 mm.
+ROD = """GRID,1,,0.,0.,0.
+GRID,2,,1.,0.,0.
+CROD,1,1,1,2
+PROD,1,1,1.-4
+MAT1,1,7.+10,,.3,2700.,2.3-5,20.
+SPC1,1,123,1
+SPC1,1,23,2
+FORCE,5,2,,7000.,1.,0.,0.
+"""
+
+
+def made(folder: Path, bulk: str, control: str = CONTROL, change: float | None = 0.0, **options: Any) -> dict[str, Any]:
+    """Return the document of a deck."""
+    (folder / "deck.bdf").write_text(control + bulk + "ENDDATA\n")
+    units = options.pop("units", Units())
+    return case_document(read(folder / "deck.bdf", options=Options(**options)), "deck", units=units,
+                         temperature_change_K=change)
+
+
+def moved(document: dict[str, Any], node: str = "N2", axis: int = 0) -> float:
+    """Return the displacement of a node at the peak of the temperature."""
+    run = sj.load(document).reduced()
+    at = int(np.argmax(np.abs(run.history["temperature_change_K"].values)))
+    names = [item["name"] for item in document["node"]]
+    return float(run.history["displacement_m"].values[at, names.index(node), axis])
+
+
+def refusal(folder: Path, bulk: str, control: str = CONTROL, **options: Any) -> str:
+    """Return why a deck is refused."""
+    with pytest.raises(sj.StatejumpError) as refused:
+        made(folder, bulk, control, **options)
+    return str(refused.value).removeprefix(f"{folder / 'deck.bdf'}: ")
+
+
+def test_the_rod_is_as_long_as_by_hand(tmp_path: Path) -> None:
+    assert moved(made(tmp_path, ROD)) == pytest.approx(1e-3, rel=1e-12)
+
+
+@pytest.mark.parametrize("name, old, new", [
+    ("small", "GRID,2,,1.,0.,0.", "GRID           2              1.      0.      0."),
+    ("large", "GRID,2,,1.,0.,0.", "GRID*                  2                              1.              0.\n*                     0."),
+    ("free large", "GRID,2,,1.,0.,0.", "GRID*,2,,1.,0.\n*,0."),
+    ("lower case", "CROD,1,1,1,2", "crod,1,1,1,2"),
+    ("tabs", "CROD,1,1,1,2", "CROD\t1\t1\t1\t2"),
+    ("bare exponent", "PROD,1,1,1.-4", "PROD,1,1,100.-6"),
+    ("comma behind column 10", "CROD,1,1,1,2", "DEQATN  11      F(B,C)=B*C\nDEQATN        12G(B,C)=B-C\nCROD,1,1,1,2"),
+    ("comment", "CROD,1,1,1,2", "CROD,1,1,1,2 $ the only one"),
+    ("marks", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.,,+M1\n+M1,1.+8,1.+8"),
+    ("marks out of order", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.\nSPC1,1,123,1\n",
+     "MAT1,1,7.+10,,.3,2700.,2.3-5,20.,,+M1\nSPC1,1,123,1\n+M1,1.+8,1.+8\n"),
+    ("long free line", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.,,1.+8,1.+8"),
+    ("a number in field 10", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.,,1.+8"),
+    ("cards in any order", "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCROD,1,1,1,2\n",
+     "CROD,1,1,1,2\nGRID,2,,1.,0.,0.\nGRID,1,,0.,0.,0.\n"),
+    ("Windows", "\n", "\r\n"),
+    ("Latin-1", "CROD,1,1,1,2", "$ St\xfctze\nCROD,1,1,1,2"),
+])
+def test_fields_are_read_as_the_manuals_say(name: str, old: str, new: str, tmp_path: Path) -> None:
+    assert old in ROD
+    text = ROD.replace(old, new)
+    (tmp_path / "deck.bdf").write_bytes((CONTROL + text + "ENDDATA\n").encode("latin-1"))
+    document = case_document(read(tmp_path / "deck.bdf"), "deck", temperature_change_K=0.0)
+    assert moved(document) == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_replicated_cards_count_up(tmp_path: Path) -> None:
+    bulk = ROD.replace("GRID,2,,1.,0.,0.\n", "GRID,2,,1.,0.,0.\n=,*(1),=,*(1.),==\n=(2)\n").replace(
+        "CROD,1,1,1,2\n", "CROD,1,1,1,2\n=,*(1),=,*(1),*(1)\n=(2)\n").replace("SPC1,1,23,2", "SPC1,1,23,2,THRU,5")
+    document = made(tmp_path, bulk)
+    assert [node["position_m"][0] for node in document["node"]] == [0, 1, 2, 3, 4]
+    assert [link["nodes"] for link in document["link"]] == [[f"N{n}", f"N{n + 1}"] for n in range(1, 5)]
+
+
+def test_included_files_are_read_with_their_lines(tmp_path: Path) -> None:
+    (tmp_path / "mesh").mkdir()
+    (tmp_path / "mesh" / "nodes.inc").write_text("GRID,1,,0.,0.,0.\nINCLUDE 'mesh/more.inc'\n")
+    (tmp_path / "mesh" / "more.inc").write_text("GRID,2,,1.,0.,0.\n")
+    rest = ROD.split("\n", 2)[2]
+    assert moved(made(tmp_path, "INCLUDE 'mesh/nodes.inc'\n" + rest)) == pytest.approx(1e-3, rel=1e-12)
+    (tmp_path / "mesh" / "more.inc").write_text("GRID,2,,one,0.,0.\n")
+    assert refusal(tmp_path, "INCLUDE 'mesh/nodes.inc'\n" + rest) == "line 1 of mesh/more.inc: 'one' is not a finite number"
+
+
+@pytest.mark.parametrize("name, sentence", [
+    ("'../other.inc'", "is outside the deck's folder"), ("'/etc/passwd'", "is outside the deck's folder"),
+    ("'none.inc'", "there is no included file 'none.inc'"), ("'deck.bdf'", "more than 10 files include each other"),
+])
+def test_includes_that_are_refused(name: str, sentence: str, tmp_path: Path) -> None:
+    (tmp_path.parent / "other.inc").write_text("GRID,9\n")
+    (tmp_path / "link.inc").symlink_to("/etc/passwd")
+    assert sentence in refusal(tmp_path, f"INCLUDE {name}\n" + ROD)
+    assert "is outside" in refusal(tmp_path, "INCLUDE 'link.inc'\n" + ROD)
+
+
+SPRUNG = {  # cards beside the rod, and what its end does then
+    "spring to the ground": ("CELAS2,2,7.+6,2,1\n", 0.5e-3),
+    "spring by a property": ("CELAS1,2,9,2,1\nPELAS,9,2.1+7\n", 0.25e-3),
+    "spring along its line": ("GRID,3,,3.,0.,0.\nSPC1,1,123,3\nCELAS2,2,7.+6,2,1,3,1\n", 0.5e-3),
+    "bush to the ground": ("CBUSH,2,9,2,,,,,0\nPBUSH,9,K,7.+6\n", 0.5e-3),
+    "bush along its line": ("GRID,3,,3.,0.,0.\nSPC1,1,123,3\nCBUSH,2,9,2,3\nPBUSH,9,K,7.+6\n", 0.5e-3),
+    "a second load": ("FORCE1,5,2,3500.,2,1\n", 0.5e-3),
+    "combined loads": ("LOAD,5,2.,1.5,6,.5,7\nFORCE,6,2,,1000.,1.,0.,0.\nFORCE,7,2,,4000.,1.,0.,0.\n", 2e-3),
+    "load along the bar": ("PLOAD1,5,1,FXE,FR,0.,2000.,1.,2000.\n", None),
+}
+
+
+@pytest.mark.parametrize("name", SPRUNG)
+def test_springs_and_loads(name: str, tmp_path: Path) -> None:
+    cards, wanted = SPRUNG[name]
+    bulk = ROD + cards
+    if name == "load along the bar":
+        bulk = bulk.replace("CROD,1,1,1,2", "CBAR,1,1,1,2,0.,1.,0.").replace("PROD", "PBAR")
+        # 2000 N/m from end to end: half of it at each end, as in the exact solution of the bar.
+        assert moved(made(tmp_path, bulk, beams_as_bars=True)) == pytest.approx(8000 / 7e6, rel=1e-12)
+        return
+    assert moved(made(tmp_path, bulk)) == pytest.approx(wanted, rel=1e-9)
+
+
+def test_a_linear_load_along_the_bar_keeps_its_work(tmp_path: Path) -> None:
+    bulk = ROD.replace("CROD,1,1,1,2", "CBAR,1,1,1,2,0.,1.,0.").replace("PROD", "PBAR").replace(
+        "FORCE,5,2,,7000.,1.,0.,0.", "PLOAD1,5,1,FX,LE,.5,0.,1.,600.")
+    forces = {node["name"]: node.get("force_N", [0.0])[0] for node in made(tmp_path, bulk, beams_as_bars=True)["node"]}
+    # p = 1200 (x - 0.5): 150 N in all; its moment about the start is 1200 (1/3 - 1/4 - (1/24 - 1/16)) = 125 N m.
+    assert forces["N2"] == pytest.approx(125, rel=1e-12) and forces["N1"] == pytest.approx(25, rel=1e-12)
+
+
+AREAS = [  # shape, dimensions, area by hand
+    ("ROD", [0.01], pi * 1e-4), ("TUBE", [0.02, 0.01], pi * 3e-4), ("TUBE2", [0.02, 0.01], pi * 3e-4),
+    ("BAR", [2, 3], 6), ("BOX", [5, 4, 0.2, 0.3], 20 - 4.4 * 3.6), ("BOX1", [5, 4, 0.2, 0.4, 0.3, 0.5], 20 - 4.2 * 3.4),
+    ("I", [10, 4, 6, 0.5, 1, 2], 4 + 12 + 3.5), ("I1", [3, 1, 8, 10], 8 + 8), ("H", [3, 2, 5, 1], 13),
+    ("T", [5, 6, 1, 2], 5 + 10), ("T1", [5, 4, 1, 2], 5 + 8), ("T2", [5, 6, 1, 2], 15), ("L", [5, 6, 1, 2], 15),
+    ("CHAN", [4, 10, 1, 2], 16 + 6), ("CHAN1", [3, 1, 8, 10], 16), ("CHAN2", [1, 2, 6, 5], 12 + 6),
+    ("Z", [3, 1, 8, 10], 16), ("CROSS", [4, 1, 6, 2], 14), ("HEXA", [1, 6, 3], 15), ("HAT", [5, 1, 4, 2], 4 + 8 + 4),
+    ("HAT1", [10, 6, 4, 1, 1], 10 + 10 + 8), ("DBOX", [10, 4, 5, 1, 2, 1, 1, 1, 1, 1], 16 + 6 + 6),
+]
+
+
+@pytest.mark.parametrize("shape, sizes, area", AREAS, ids=[shape for shape, _, _ in AREAS])
+def test_areas_of_sections(shape: str, sizes: list[float], area: float, tmp_path: Path) -> None:
+    assert nastran(shape, sizes) == pytest.approx(area, rel=1e-12)
+    for card in ("PBARL", "PBEAML"):
+        fields = ",".join(repr(float(size)) for size in sizes[:8])
+        more = "".join(f"\n,{repr(float(size))}" if at == 0 else f",{repr(float(size))}" for at, size in enumerate(sizes[8:]))
+        bulk = ROD.replace("CROD,1,1,1,2", f"{'CBAR' if card == 'PBARL' else 'CBEAM'},1,1,1,2,0.,1.,0.").replace(
+            "PROD,1,1,1.-4", f"{card},1,1,,{shape}\n,{fields}{more}")
+        assert made(tmp_path, bulk, beams_as_bars=True)["link"][0]["cross_section_area_m2"] == pytest.approx(area, rel=1e-12)
+
+
+def test_every_shape_has_a_test() -> None:
+    assert {shape for shape, _, _ in AREAS} == set(NASTRAN)
+
+
+BARS = {  # cards in place of CROD and PROD, and the displacement under 7000 N
+    "tube": ("CTUBE,1,1,1,2\nPTUBE,1,1,.02,.001\n", 7000 / (E * pi * 0.019 * 0.001)),
+    "full tube": ("CTUBE,1,1,1,2\nPTUBE,1,1,.02\n", 7000 / (E * pi * 1e-4)),
+    "own section": ("CONROD,1,1,2,1,2.-4\n", 0.5e-3),
+    "taper": ("CBEAM,1,1,1,2,0.,0.,1.\nPBEAM,1,1,4.-4,1.-8,1.-8,,2.-8\n,,,,,,,,\n,YES,1.,1.-4,1.-9,1.-9,,2.-9\n",
+              7000 / E * np.log(4) / 3e-4),
+    "taper with a station": ("CBEAM,1,1,1,2,0.,0.,1.\nPBEAM,1,1,4.-4,1.-8,1.-8,,2.-8\n,,,,,,,,\n"
+                             ",NO,.5,1.-4,1.-9,1.-9,,2.-9\n,NO,1.,1.-4,1.-9,1.-9,,2.-9\n",
+                             7000 / E * (0.5 * np.log(4) / 3e-4 + 0.5 / 1e-4)),
+    "taper by shape": ("CBEAM,1,1,1,2,0.,0.,1.\nPBEAML,1,1,,BAR\n,.02,.02,0.,YES,1.,.01,.01\n",
+                       7000 / E * np.log(4) / 3e-4),
+    "equal offsets": ("CBAR,1,1,1,2,0.,1.,0.\n,,,0.,.1,0.,0.,.1,0.\nPBAR,1,1,1.-4\n", 1e-3),
+    "moments released": ("CBAR,1,1,1,2,0.,1.,0.\n,456,56\nPBAR,1,1,1.-4\n", 1e-3),
+    "default property": ("BAROR,,7\nCBAR,1,,1,2,0.,1.,0.\nPBAR,7,1,1.-4\n", 1e-3),
+}
+
+
+@pytest.mark.parametrize("name", BARS)
+def test_bars_by_their_sections(name: str, tmp_path: Path) -> None:
+    cards, wanted = BARS[name]
+    bulk = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", cards)
+    assert moved(made(tmp_path, bulk, beams_as_bars=True)) == pytest.approx(wanted, rel=1e-9)
+
+
+def test_a_taper_weighs_its_mean_area(tmp_path: Path) -> None:
+    link = made(tmp_path, ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", BARS["taper"][0]), beams_as_bars=True)["link"][0]
+    assert link["density_kg_per_m3"] * link["cross_section_area_m2"] == pytest.approx(2700 * 2.5e-4, rel=1e-12)
+
+
+def test_modulus_from_shear_modulus_and_poisson(tmp_path: Path) -> None:
+    link = made(tmp_path, ROD.replace("MAT1,1,7.+10,,.3", "MAT1,1,,2.5+10,.4"))["link"][0]
+    assert link["young_modulus_Pa"] == pytest.approx(7e10, rel=1e-12)
+    assert made(tmp_path, ROD.replace("MAT1,1,7.+10,,.3", "MAT1,1,7.+10,2.8+10,"))["link"][0]["poisson_ratio"] == \
+        pytest.approx(0.25, rel=1e-12)
+
+
+SYSTEMS = {
+    "rectangular": ("CORD2R,5,,0.,0.,0.,0.,0.,1.\n,0.,1.,0.\n", "GRID,2,5,1.,0.,0.", (0, 1, 0)),
+    "cylindrical": ("CORD2C,5,,0.,0.,1.,0.,0.,2.\n,1.,0.,1.\n", "GRID,2,5,2.,90.,3.", (0, 2, 4)),
+    "spherical": ("CORD2S,5,,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n", "GRID,2,5,2.,90.,90.", (0, 2, 0)),
+    "nested": ("CORD2R,6,5,1.,0.,0.,1.,0.,1.\n,2.,0.,0.\nCORD2R,5,,0.,0.,0.,0.,0.,1.\n,0.,1.,0.\n",
+               "GRID,2,6,1.,0.,0.", (0, 2, 0)),
+    "by nodes": ("CORD1R,5,1,8,9\nGRID,8,,0.,0.,1.\nGRID,9,,0.,1.,0.\n", "GRID,2,5,1.,0.,0.", (0, 1, 0)),
+    "default": ("CORD2R,5,,0.,0.,0.,0.,0.,1.\n,0.,1.,0.\nGRDSET,,5\n", "GRID,2,,1.,0.,0.", (0, 1, 0)),
+}
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_coordinate_systems(name: str, tmp_path: Path) -> None:
+    cards, grid, wanted = SYSTEMS[name]
+    (tmp_path / "deck.bdf").write_text(CONTROL + cards + ROD.replace("GRID,2,,1.,0.,0.", grid) + "ENDDATA\n")
+    assert read(tmp_path / "deck.bdf").nodes["2"] == pytest.approx(wanted, abs=1e-15)
+
+
+def test_supports_and_forces_in_their_own_systems(tmp_path: Path) -> None:
+    """A rod at 30 degrees, whose end slides along it: guided, and pulled in the direction of the rod."""
+    turned = ROD.replace("GRID,2,,1.,0.,0.", "GRID,2,5,1.,0.,0.,5").replace("FORCE,5,2,", "FORCE,5,2,5")
+    turned += "CORD2R,5,,0.,0.,0.,0.,0.,1.\n,.8660254037844387,.5,0.\n"
+    document = made(tmp_path, turned)
+    assert document["node"][1]["guide_normal"] == pytest.approx([-0.5, np.sqrt(3) / 2] if document["node"][1][
+        "guide_normal"][1] > 0 else [0.5, -np.sqrt(3) / 2], rel=1e-12)
+    assert moved(document) == pytest.approx(1e-3 * np.sqrt(3) / 2, rel=1e-6)
+
+
+def test_two_oblique_directions_are_refused(tmp_path: Path) -> None:
+    bulk = ROD.replace("GRID,2,,1.,0.,0.", "GRID,2,,1.,0.,0.,5") + "CORD2R,5,,0.,0.,0.,1.,1.,1.\n,1.,0.,0.\n" + \
+        "GRID,3,,0.,0.,1.\nCROD,2,1,2,3\nSPC1,1,123,3\n"
+    assert "node 2 is held in two oblique directions" in refusal(tmp_path, bulk)
+
+
+def test_gravity_acts_on_masses_and_densities(tmp_path: Path) -> None:
+    bulk = ROD.replace("FORCE,5,2,,7000.,1.,0.,0.", "GRAV,5,,9.81,1.,0.,0.\nCONM2,3,2,,100.\nPARAM,WTMASS,2.")
+    document = made(tmp_path, bulk)
+    assert document["truss"]["gravity_m_per_s2"] == [9.81, 0.0]
+    assert document["node"][1]["mass_kg"] == 200 and document["link"][0]["density_kg_per_m3"] == 5400
+    # Half of the rod's weight hangs at its end, as in the exact solution of the rod.
+    assert moved(document) == pytest.approx((200 + 0.54 / 2) * 9.81 / 7e6, rel=1e-9)
+
+
+def test_masses_of_conm1_and_of_bars(tmp_path: Path) -> None:
+    bulk = ROD.replace("PROD,1,1,1.-4", "PROD,1,1,1.-4,,,.54")
+    document = made(tmp_path, bulk + "CONM1,3,2,,4.,,4.\n,4.\n")
+    assert document["node"][1]["mass_kg"] == 4 and document["link"][0]["density_kg_per_m3"] == pytest.approx(8100)
+    assert "CONM1 is not supported: the mass differs" in refusal(tmp_path, bulk + "CONM1,3,2,,4.,,5.\n,4.\n")
+
+
+SUBCASES = "SOL 101\nCEND\nSPC = 1\nSUBCASE 1\n  LOAD = 5\nSUBCASE 2\n  TEMPERATURE(LOAD) = 20\nBEGIN BULK\n"
+
+
+def test_one_subcase_is_taken(tmp_path: Path) -> None:
+    bulk = ROD + "TEMPD,20,120.\n"
+    assert moved(made(tmp_path, bulk, SUBCASES)) == pytest.approx(1e-3, rel=1e-12)
+    assert moved(made(tmp_path, bulk, SUBCASES, None, step=2)) == pytest.approx(2.3e-3, rel=1e-12)
+    deck = read(tmp_path / "deck.bdf", options=Options())
+    assert ("SUBCASE 2", "subcase 1 is taken; --step chooses another") in deck.left
+    assert "--step = 3 is not allowed: the subcases of the deck are 1, 2" in refusal(tmp_path, bulk, SUBCASES, step=3)
+
+
+def test_initial_temperatures_hold_where_a_material_has_none(tmp_path: Path) -> None:
+    control = CONTROL.replace("LOAD = 5", "TEMP(LOAD) = 20\nTEMP(INIT) = 30")
+    bulk = ROD + "TEMPD,20,120.\nTEMPD,30,70.\n"
+    assert moved(made(tmp_path, bulk, control, None)) == pytest.approx(2.3e-3, rel=1e-12)  # TREF = 20
+    assert moved(made(tmp_path, bulk.replace(",20.\nSPC", "\nSPC"), control, None)) == pytest.approx(1.15e-3, rel=1e-12)
+
+
+def test_sets_of_supports_are_combined(tmp_path: Path) -> None:
+    bulk = ROD.replace("SPC1,1,123,1", "SPC1,11,123,1").replace("SPC1,1,23,2", "SPC1,12,23,2") + "SPCADD,1,11,12\n"
+    assert moved(made(tmp_path, bulk)) == pytest.approx(1e-3, rel=1e-12)
+
+
+REFUSED = {  # cards beside the rod and what the refusal says
+    "shell": ("CQUAD4,2,1,1,2,2,1\n", "line 14: CQUAD4 is not supported: shells are no part of a truss; --ignore CQUAD4"),
+    "unknown": ("CNEW,2,1\n", "CNEW is not supported: the card is unknown"),
+    "rigid": ("GRID,3\nRBE2,9,3,123,2\n", "RBE2 is not supported: rigid elements"),
+    "moment": ("MOMENT,5,2,,1.,1.,0.,0.\n", "MOMENT is not supported: nodes of a truss do not rotate"),
+    "across": ("GRID,3,,1.,1.,0.\nSPC1,1,123,3\nCELAS2,2,7.+6,2,1,3,1\n", "CELAS2 is not supported: it acts across"),
+    "at one place": ("GRID,3,,1.,0.,0.\nSPC1,1,123,3\nCELAS2,2,7.+6,2,1,3,1\n", "CELAS2 is not supported: its nodes are at"),
+    "rotation": ("CELAS2,2,7.+6,2,4\n", "CELAS2 is not supported: it joins a rotation"),
+    "bush across": ("GRID,3,,3.,0.,0.\nSPC1,1,123,3\nCBUSH,2,9,2,3\nPBUSH,9,K,7.+6,1.\n", "CBUSH is not supported: it is stiff across"),
+    "bush turns": ("CBUSH,2,9,2,,,,,0\nPBUSH,9,K,7.+6,,,1.\n", "PBUSH.K4-K6 is not supported"),
+    "given displacement": ("SPC,1,2,1,.1\n", "SPC is not supported: a given displacement"),
+    "support of a free body": ("SUPORT,2,1\n", "SUPORT is not supported"),
+    "load elsewhere": ("GRID,3,,5.,5.,5.\nFORCE,5,3,,1.,1.,0.,0.\n", "FORCE is not supported: a force on node 3, where no bar ends"),
+    "parameter": ("PARAM,NEWONE,1\n", "PARAM.NEWONE is not supported: the parameter is unknown"),
+    "inertia relief": ("PARAM,INREL,-2\n", "PARAM.INREL is not supported"),
+    "temperature-dependent": ("MATT1,1,7\n", "MATT1 is not supported"),
+    "field": ("CONM1,3,2,,4.,1.,4.\n,4.\n", "CONM1.M21 is not supported: it couples directions"),
+    "several": ("CQUAD4,2,1\nMATT1,1,7\nSUPORT,2,1\n", "also MATT1 (line 15), SUPORT (line 16)"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_matters_and_is_not_supported_is_named(name: str, tmp_path: Path) -> None:
+    cards, sentence = REFUSED[name]
+    assert sentence in refusal(tmp_path, ROD + cards)
+
+
+BENT = {
+    "no option": ("CBAR,1,1,1,2,0.,1.,0.\n", {}, "line 8: CBAR is not supported: the structure needs bending, which a truss does "
+                  "not have; --beams-as-bars takes it as a pin-jointed bar"),
+    "pin flag": ("CBAR,1,1,1,2,0.,1.,0.\n,,1\n", {"beams_as_bars": True}, "CBAR.PB is not supported: pin flags '1'"),
+    "offset": ("CBAR,1,1,1,2,0.,1.,0.\n,,,-.5,0.,0.,.5,0.,0.\n", {"beams_as_bars": True}, "CBAR.W1A-W3B is not supported"),
+    "load across": ("CBAR,1,1,1,2,0.,1.,0.\nPLOAD1,5,1,FY,FR,0.,1.,1.,1.\n", {"beams_as_bars": True}, "it acts across the bar"),
+    "group of sections": ("CBAR,1,1,1,2,0.,1.,0.\nPBARL,1,1,MINE,ROD\n,1.\n", {"beams_as_bars": True}, "group 'MINE'"),
+}
+
+
+@pytest.mark.parametrize("name", BENT)
+def test_bending_is_not_left_out_in_silence(name: str, tmp_path: Path) -> None:
+    cards, options, sentence = BENT[name]
+    bulk = ROD.replace("CROD,1,1,1,2\n", cards).replace("PROD,1,1,1.-4\n", "" if "PBARL" in cards else "PBAR,1,1,1.-4\n")
+    assert sentence in refusal(tmp_path, bulk, **options)
+
+
+def test_ignore_leaves_out_what_it_names(tmp_path: Path) -> None:
+    bulk = ROD + "CQUAD4,2,1,1,2,2,1\nCONM1,3,2,,4.,1.,4.\n,4.\n"
+    document = made(tmp_path, bulk, ignored=frozenset({"CQUAD4", "CONM1.M21"}))
+    assert document["node"][1]["mass_kg"] == 4 and len(document["link"]) == 1
+    assert "--ignore = 'CQUAD8' is not allowed: the deck has no unsupported item of this name" in refusal(
+        tmp_path, ROD, ignored=frozenset({"CQUAD8"}))
+
+
+def test_units_of_a_deck(tmp_path: Path) -> None:
+    bulk = ROD.replace("GRID,2,,1.", "GRID,2,,1000.").replace("1.-4", "100.").replace("7.+10", "7.+4").replace("2700.", "2.7-9")
+    document = made(tmp_path, bulk + "CONM2,3,2,,.002\n", units=Units(1e-3))
+    assert document["link"][0]["density_kg_per_m3"] == pytest.approx(2700) and document["node"][1]["mass_kg"] == 2
+    assert moved(document) == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_directions_without_stiffness_are_held_as_in_nastran(tmp_path: Path) -> None:
+    free = ROD.replace("SPC1,1,23,2\n", "GRID,3,,0.,5.,3.\nCROD,2,1,1,3\nSPC1,1,123,3\n")
+    document = made(tmp_path, free)
+    assert document["node"][1]["fixed"] == ["y", "z"] and moved(document) == pytest.approx(1e-3, rel=1e-12)
+    for bulk, control in ((free + "PARAM,AUTOSPC,NO\n", CONTROL), (free, CONTROL.replace("SPC = 1", "AUTOSPC = NO\nSPC = 1"))):
+        assert "fixed" not in made(tmp_path, bulk, control)["node"][1]
+    beam = free.replace("CROD,1,1,1,2", "CBAR,1,9,1,2,0.,1.,0.\nPBAR,9,1,1.-4")
+    assert "fixed" not in made(tmp_path, beam, beams_as_bars=True)["node"][1]
+
+
+def test_gravity_without_mass_is_left_out(tmp_path: Path) -> None:
+    bulk = ROD.replace("2700.", "").replace("FORCE,5,2,,7000.,1.,0.,0.", "GRAV,5,,9.81,1.,0.,0.")
+    assert "gravity_m_per_s2" not in made(tmp_path, bulk)["truss"]
+    document = made(tmp_path, bulk + "CONM2,3,2,,100.\n")
+    assert moved(document) == pytest.approx(981 / 7e6, rel=1e-12)
+
+
+@pytest.mark.parametrize("control, sentence", [
+    ("SOL 159\nCEND\nSPC = 1\nBEGIN BULK\n", "line 1: SOL 159 is not supported: heat transfer"),
+    ("SOL 101\nCEND\nANALYSIS = HEAT\nSPC = 1\nBEGIN BULK\n", "line 3: ANALYSIS is not supported: of HEAT"),
+    ("SOL 101\nCEND\nK2GG = STIFF\nSPC = 1\nBEGIN BULK\n", "line 3: K2GG is not supported: matrices"),
+    ("SOL 101\nCEND\nSPC = 1\nSUBCOM 3\nBEGIN BULK\n", "line 4: SUBCOM is not supported: it combines"),
+    ("SOL 101\nCEND\nSPC = 1\n", "line 2: a CEND without BEGIN BULK"),
+    ("SOL 101\nCEND\nSPC = 1\nBEGIN BULK\nBEGIN SUPER=1\n", "line 5: superelements"),
+])
+def test_what_the_control_sections_select_is_read_or_named(control: str, sentence: str, tmp_path: Path) -> None:
+    assert sentence in refusal(tmp_path, ROD, control)
