@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import nan
 
 import numpy as np
 
@@ -50,7 +51,8 @@ def outcome(case: Case, model: str, outputs: Sequence[str] = ()) -> dict[str, fl
     """
     run = sampled(case, model, outputs)
     found: dict[str, float] = case.behaviour.ability("outcomes", case)(case, run)
-    return found | values(outputs, run)
+    at_end = {name: run.summary.get(name, nan) for name in case.behaviour.AT_PROGRAM_END}
+    return found | at_end | values(outputs, run)
 
 
 def run_sample(recipe: Recipe, index: int) -> Sample:

@@ -60,6 +60,7 @@ def surface_command(
     console = make_console(quiet)
     if (samples is None) != (column is None):
         raise MissingKey("--column" if column is None else "--samples", "--samples and --column go together")
+    notes: list[str] = []
     try:
         if file.suffix == ".csv":
             drawn, moved = told.read_nodes(file)
@@ -77,7 +78,8 @@ def surface_command(
             moves = np.asarray(run.history["position_m"].values)[:, nodes] - design.position_m
             worst = int(np.argmax(history["rms_design_m"]))
             states = {f"farthest from the design, at {history['temperature_change_K'][worst]:.4g} K": moves[worst],
-                      "end of the last cycle": moves[-1]}
+                      "end of the last cycle" if case.has_jump else "end of the program": moves[-1]}
+            notes = list(case.thermal_notes)
         tables = {state: [*told.state_rows(design, moved, measure, direction), *told.zernike_rows(design, moved, terms)]
                   for state, moved in states.items()}
         shown: list[Shown | str] = [_shown("drawn surface", told.design_rows(design))]
@@ -86,6 +88,7 @@ def surface_command(
             shown.append("note: the nodes lie in one plane with the axis: this is a profile against a parabola")
         if design.focal_length_m is None:
             shown.append("note: the nodes do not determine a focal length: the best fit is flat")
+        shown += [f"note: {note}" for note in notes]
         if samples is not None and column is not None:
             shown.append(_repeatability(samples, column, share, 2 * design.aperture_m[1] if length is None else length))
     except StatejumpError as refused:

@@ -59,6 +59,8 @@ class Kind(Generic[CaseType]):
     WORDS: ClassVar[Mapping[str, str]] = {}
     # Names of what a campaign records of a run, in the order of its table; each ends in its unit.
     OUTCOMES: ClassVar[tuple[str, ...]] = ()
+    # Numbers of a run's summary that stand for where a program ends that does not end at the reference temperature.
+    AT_PROGRAM_END: ClassVar[tuple[str, ...]] = ()
     # Models whose runs ``outcomes`` can measure.
     OUTCOMES_OF: ClassVar[tuple[str, ...]] = ("reduced", "dem")
     # Module that builds the scene in YADE, or the path of its file; by default scene_NAME beside the runner.
@@ -119,7 +121,8 @@ class Kind(Generic[CaseType]):
             if section in data:
                 raise NotAllowed(f"section [{section}]", cause=self.Case.NOT_IN_FILE[section])
         made = structure(self.Case, data)
-        thermal.check(made.thermal)
+        thermal.check(made.thermal, returns=made.ending is not None)
+        made.check_cycles()
         made.check()
         return made
 
