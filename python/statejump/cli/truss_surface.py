@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 import numpy as np
@@ -12,6 +13,12 @@ from statejump.core.errors import MissingKey, NotAllowed, StatejumpError
 from statejump.core.results_folder import Results
 from statejump.core.tables import Shown, read_columns, write_columns, write_csv
 from statejump.core.units import plain
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from statejump.core.case import Case
+    from statejump.surface import Design
 
 # The arguments of the library as options of the command.
 OPTIONS = {"axis": "--axis", "focal_length_m": "--focal-length", "direction": "--direction", "terms": "--zernike",
@@ -71,15 +78,8 @@ def surface_command(
                 if given is not None:
                     raise NotAllowed(option, beside="beside a case", cause="its section [reflector] says it")
             case = loaded(file, "reduced")
-            design, nodes = surface.reflector_of(case)
-            with undivided(console, f"{case.name}, reduced model") as tell:
-                run = case.behaviour.ability("reduced", case)(case, tell)
-            history, name = surface.history(run, measure), case.name
-            moves = np.asarray(run.history["position_m"].values)[:, nodes] - design.position_m
-            worst = int(np.argmax(history["rms_design_m"]))
-            states = {f"farthest from the design, at {history['temperature_change_K'][worst]:.4g} K": moves[worst],
-                      "end of the last cycle" if case.has_jump else "end of the program": moves[-1]}
-            notes = list(case.thermal_notes)
+            design, states, history = _of_case(case, measure, console)
+            name, notes = case.name, list(case.thermal_notes)
         tables = {state: [*told.state_rows(design, moved, measure, direction), *told.zernike_rows(design, moved, terms)]
                   for state, moved in states.items()}
         shown: list[Shown | str] = [_shown("drawn surface", told.design_rows(design))]
@@ -106,6 +106,24 @@ def surface_command(
         written = folder.publish(written)
     print_shown(shown, console)
     console.print(f"results: {', '.join(str(path) for path in written)}")
+
+
+def _of_case(
+    case: Case, measure: str, console: Console
+) -> tuple[Design, dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Return the surface of a case, its displacements where it is farthest from its design and at the end, and its
+    history."""
+    from statejump import surface
+
+    design, nodes = surface.reflector_of(case)
+    with undivided(console, f"{case.name}, reduced model") as tell:
+        run = case.behaviour.ability("reduced", case)(case, tell)
+    history = surface.history(run, measure)
+    moves = np.asarray(run.history["position_m"].values)[:, nodes] - design.position_m
+    worst = int(np.argmax(history["rms_design_m"]))
+    return design, {
+        f"farthest from the design, at {history['temperature_change_K'][worst]:.4g} K": moves[worst],
+        "end of the last cycle" if case.has_jump else "end of the program": moves[-1]}, history
 
 
 def _shown(title: str, rows: list[tuple[str, str, float]]) -> Shown:

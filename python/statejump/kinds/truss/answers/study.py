@@ -207,7 +207,7 @@ def _jumps(found: TrussPath, output: Output, jump: float) -> bool:
     """Whether an output jumps by more than rounding."""
     largest = float(np.linalg.norm(node_jumps(found)[-1], axis=1).max())
     size = float(np.ptp(found.truss.nodes.position_m, axis=0).max())
-    return abs(jump) > NO_JUMP * (largest / size if output.unit == "rad" else largest) and jump != 0
+    return abs(jump) > NO_JUMP * (largest / size if output.unit == "rad" else largest)
 
 
 def _shares(found: TrussPath, output: Output, tell: Tell, tables: dict[str, list[rows.Row]],
