@@ -104,6 +104,11 @@ class Kind(Generic[CaseType]):
         """Return the models that campaigns run."""
         return tuple(model for model in self.OUTCOMES_OF if self.has_model(model))
 
+    def recorded(self, case: CaseType, run: Run) -> dict[str, float]:
+        """Return the outcomes of a run, and where its program ends if that is not at the reference temperature."""
+        found: dict[str, float] = self.ability("outcomes", case)(case, run)
+        return found if case.ending is None else {**found, **{name: run.summary[name] for name in self.AT_PROGRAM_END}}
+
     def samples(self, case: CaseType, model: str) -> int:
         """Return how many samples a run of a model has."""
         return case.samples_per_cycle * case.thermal.cycles + 1
