@@ -68,11 +68,12 @@ def surface_command(
     if (samples is None) != (column is None):
         raise MissingKey("--column" if column is None else "--samples", "--samples and --column go together")
     notes: list[str] = []
+    history: dict[str, np.ndarray] = {}
     try:
         if file.suffix == ".csv":
             drawn, moved = told.read_nodes(file)
             design = surface.Design.of(drawn, (0, 0, 1) if axis is None else axis, focal_length)
-            states, history, name = {"nodes": moved}, {}, file.stem
+            states, name = {"nodes": moved}, file.stem
         else:
             for option, given in (("--axis", axis), ("--focal-length", focal_length)):
                 if given is not None:

@@ -5,7 +5,7 @@ They are of the truss and its whole program, so that none vanishes where a truss
 """
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -48,6 +48,16 @@ def scales(truss: ResolvedTruss, displacement_m: np.ndarray) -> Scales:
 
     :param displacement_m: of the nodes over the program (states, nodes, 3)
     """
+    kept = vars(truss)
+    if "_scales" not in kept:  # a truss never changes, and may have a program for every link
+        kept["_scales"] = _at_rest(truss)
+    still: Scales = kept["_scales"]
+    motion = max(still.motion_m, float(np.linalg.norm(displacement_m, axis=-1).max(initial=0.0)))
+    return replace(still, motion_m=motion, rounding_m=max(still.rounding_m, ROUNDING * motion))
+
+
+def _at_rest(truss: ResolvedTruss) -> Scales:
+    """Return the scales of a truss that does not move."""
     links, springs, position = truss.links, truss.springs, truss.nodes.position_m
     coordinates = COORDINATES * float(np.abs(position).max(initial=0.0))
     size = float(np.ptp(position, axis=0).max()) if len(position) else 0.0
@@ -59,11 +69,8 @@ def scales(truss: ResolvedTruss, displacement_m: np.ndarray) -> Scales:
     load = max(float(np.linalg.norm(truss.nodes.force_N, axis=1).max(initial=0.0)),
                float(np.abs(springs.preload_N).max(initial=0.0)))
     deflection = load / float(stiffness.max()) if len(stiffness) else 0.0
-    largest = float(np.linalg.norm(displacement_m, axis=-1).max(initial=0.0))
-    motion = max(largest, size * float(expansion.max(initial=0.0)), deflection, LEAST_MOTION * coordinates)
-    return Scales(
-        motion, max(ROUNDING * motion, coordinates),
-        max(float((rigidity * strain).max(initial=0.0)), load, coordinates * float(stiffness.max(initial=0.0))),
-        0.5 * max(float((rigidity * strain**2 * links.stress_free_length_m).sum()), load * deflection,
-                  coordinates**2 * float(stiffness.sum())),
-    )
+    motion = max(size * float(expansion.max(initial=0.0)), deflection, LEAST_MOTION * coordinates)
+    force = max(float((rigidity * strain).max(initial=0.0)), load, coordinates * float(stiffness.max(initial=0.0)))
+    held = float((rigidity * strain**2 * links.stress_free_length_m).sum())
+    energy = 0.5 * max(held, load * deflection, coordinates**2 * float(stiffness.sum()))
+    return Scales(motion, max(ROUNDING * motion, coordinates), force, energy)
