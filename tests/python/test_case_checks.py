@@ -391,10 +391,10 @@ def test_checks_of_a_truss() -> None:
         assert truss_refused(reflector={"nodes": names, "axis": axis}) == (
             f"reflector.axis = {axis} is not allowed: must be 2 numbers, not zero in every direction")
     assert [node.fixed for node in made("trusses/ball_tripod").node if "z" in node.fixed]  # in space
-    for section in ("node", "link", "truss", "thermal"):
+    for section in ("node", "truss", "thermal"):
         with pytest.raises(StatejumpError, match="is missing$") as missing:
             parse_case({name: part for name, part in chain.items() if name != section})
-        assert str(missing.value) == f"section {'[[' + section + ']]' if section in ('node', 'link') else f'[{section}]'} is missing"
+        assert str(missing.value) == f"section {'[[node]]' if section == 'node' else f'[{section}]'} is missing"
     spring = {"name": "S", "links": [chain["link"][0]["name"]], "stiffness_N_m_per_rad": 1.0, "axis": [0, 0, 1]}
     assert truss_refused(torsion_spring=[spring]) == (
         "torsion_spring 'S': axis = [0.0, 0.0, 1.0] is not allowed: in a planar truss it is z")

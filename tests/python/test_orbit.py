@@ -64,7 +64,7 @@ def test_a_case_takes_the_file(tmp_path: Path, statejump: Callable[..., Outcome]
     data["thermal"] = {"shape": "table", "table_file": str(tmp_path / "orbit.csv"), "reference_temperature_K": 293.15,
                        "lead_in_s": 600.0}
     case = sj.load(data)
-    assert case.period_s == 2 * 5400.0 + 600.0 and case.reduced().complete
+    assert case.definition.ending.time_s == 2 * 5400.0 + 600.0 and case.reduced().complete
 
 
 HEAD = "name,absorptivity,emissivity,sun_view,heat_capacity_J_per_m2_K\n"

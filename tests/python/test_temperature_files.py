@@ -267,6 +267,8 @@ def test_what_is_repeated_ends_where_it_begins(chain: tuple[Path, list[str], np.
     assert sj.load(path).duration_s == 20.0
     given[-1, 3] += 0.5
     write(path.with_name("members.csv"), ",".join(["time_s", *(f"{name}_K" for name in names)]), np.c_[TIMES, given])
+    assert sj.load(path).definition.ending.temperature_change_K == pytest.approx(0.5)  # every cycle returns
+    path.write_text(path.read_text().replace("[thermal]", "[thermal]\nreturn_to_reference = false"))
     with pytest.raises(sj.StatejumpError, match=f"members.csv ends 0.5 K away .*column '{names[3]}'"):
         sj.load(path)
 

@@ -10,8 +10,10 @@ import pytest
 
 import statejump as sj
 from statejump import _engine
-from statejump.core.why_missed import kink, rounded_up
+from statejump.core.units import text
+from statejump.core.why_missed import heated_too_fast, kink, rounded_up
 from statejump.kinds.spring_slider.why_missed import natural_period_s
+from statejump.kinds.truss.joints.slider import SLIDER
 from statejump.kinds.truss.solve import solve
 from statejump.kinds.truss.why_missed import slowest_natural_period_s
 
@@ -73,3 +75,35 @@ def test_what_is_said_helps() -> None:
     slow = fast.changed({"thermal.period_s": longer})
     again = sj.compare(slow.reduced(), slow.dem())
     assert "displacement_rms_over_largest" in missed.missed and "displacement_rms_over_largest" not in again.missed
+
+
+@pytest.mark.parametrize(("allowed_m", "wanted"), [
+    (1e-15, "no thermal.period_s up to 1e+06 s is long enough; raise the damping ratios in [dem]"),
+    # 4 · 1 mm / 1 s · 10 ms / 2π is 6.37 µm, that over a tenth of 67 pm 9.5e5.
+    (6.7e-11, "thermal.period_s = 1e+06 is long enough even so"), (1e-8, "thermal.period_s = 7000 is long enough even so"),
+])
+def test_advice_stays_within_what_the_case_allows(allowed_m: float, wanted: str) -> None:
+    thermal = sj.load(planar(node=[{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]}])).definition.thermal
+    program = _engine.ThermalProgram(shape="triangle", temperature_change_max_K=1.0, period_s=1.0)
+    (said,) = heated_too_fast(1e-2, thermal, program, 1e-3, allowed_m)
+    assert wanted in said
+
+
+def test_pads_that_bend_across_are_named() -> None:
+    """A load across the axis of a slider between two nodes: F over the pad's Hertz stiffness."""
+    load, normal, radius = 40.0, 300.0, 0.02
+    data = planar(
+        node=[{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
+              {"name": "B", "position_m": [1.0, 0.0], "force_N": [0.0, load]},
+              {"name": "C", "position_m": [1.0, 0.0], "fixed": ["x", "y"]}],
+        link=[{"name": "AB", "nodes": ["A", "B"], **LINK}],
+        slider=[{"name": "S", "nodes": ["B", "C"], "axis": [1.0, 0.0], "friction_coefficient": 0.1,
+                 "normal_force_N": normal, "pad_radius_m": radius}])
+    path = solve(sj.load(data).definition)
+    effective = 70e9 / (2 * (1 - 0.3**2))
+    stiffness = (6 * normal * effective**2 * radius) ** (1 / 3)  # dF/dδ of F = 4/3 E* sqrt(R) δ^1.5
+    give = load / stiffness
+    (said,) = SLIDER.gives_in_dem(path, path.truss.sliders, 0.99 * give)
+    assert said.startswith("the reduced model holds slider 'S' rigidly across its axis, in the DEM its pad bends there by up "
+                           f"to {text(give, 'm', 2)}: raise pad_radius_m or young_modulus_Pa")
+    assert not SLIDER.gives_in_dem(path, path.truss.sliders, 1.01 * give)

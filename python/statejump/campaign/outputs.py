@@ -27,6 +27,7 @@ ENDS: dict[str, Callable[[np.ndarray], np.ndarray]] = {"end": lambda values: val
 ALL: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "max": lambda values: values.max(axis=0), "min": lambda values: values.min(axis=0),
     "range": lambda values: np.ptp(values, axis=0)}
+JUMP = "jump"
 REPEAT = "repeat"  # of the times of Case.returns_s
 HOW: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     **ENDS, **ALL, REPEAT: lambda values: np.linalg.norm((values - values[0]).reshape(len(values), -1), axis=1).max()}
@@ -77,6 +78,8 @@ def values(names: Sequence[str], run: Run) -> dict[str, float]:
     columns: dict[tuple[str | None, bool], dict[str, Column]] = {}
     found = {}
     returned: Run | None = None
+    if any(_parts(name)["how"] == JUMP for name in names):
+        run.definition.need_jump("an output 'jump:...'")
     for name in names:
         asked = _parts(name)
         group, repeats = asked["group"], asked["how"] == REPEAT

@@ -94,6 +94,7 @@ class Campaign:
         lines: list[Shown | str] = [
             Shown(self.plan.title, ("outcome", *COLUMNS.values()), rows, left=("outcome",))
         ]
+        lines += [f"note: {note}" for note in self.plan.case.thermal_notes]
         if done.note:
             lines.append(f"warning: {done.note}")
         if done.already_there:

@@ -72,6 +72,7 @@ def summary(campaign: Plan, table: Table) -> dict[str, Any]:
             name: {parameter: spearman(values, outcome) for parameter, values in table.parameters.items()}
             for name, outcome in table.outcomes.items()
         },
+        "notes": list(campaign.case.thermal_notes),
         "key_sha256": campaign.key,
         "statejump_version": __version__,
     }
@@ -125,6 +126,7 @@ def _lines(campaign: Plan, found: Mapping[str, Any]) -> list[str]:
         f"{found['failed']:,} failed.",
         "Units are in the names; count is the number of samples that have the value.",
     ]
+    lines += [f"Note: {note}." for note in found["notes"]]
     if any(isinstance(parameter, Independent) for parameter in campaign.vary):
         lines.append("Keys with `*`: every item is drawn on its own, shown is the mean over the items of a sample.")
     return [

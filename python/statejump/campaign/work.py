@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import nan
 
 import numpy as np
 
@@ -49,8 +50,9 @@ def outcome(case: Case, model: str, outputs: Sequence[str] = ()) -> dict[str, fl
     :raises StatejumpError: the run failed
     """
     run = sampled(case, model, outputs)
-    found: dict[str, float] = case.behaviour.ability("outcomes", case)(case, run)
-    return found | values(outputs, run)
+    # A sample whose program ends at the reference temperature, among others that do not, lacks these.
+    nothing = dict.fromkeys(case.behaviour.AT_PROGRAM_END, nan)
+    return nothing | case.behaviour.recorded(case, run) | values(outputs, run)
 
 
 def run_sample(recipe: Recipe, index: int) -> Sample:

@@ -59,5 +59,5 @@ class BatchSample:
         about = json.loads(samples.with_name(samples.name + ".json").read_text(encoding="utf-8"))
         behaviour, case = self.case.behaviour, self.case
         run = behaviour.ability("dem_run", case)(case, read_samples(samples), about)
-        found: dict[str, float] = behaviour.ability("outcomes", case)(case, run)
+        found: dict[str, float] = behaviour.recorded(case, run)
         return found

@@ -23,9 +23,10 @@ def _told(case: Case, runs: dict[str, Run], console: Console) -> None:
     print_shown(definition.behaviour.ability("told", definition)(definition, runs), console)
 
 
-def _warn(runs: dict[str, Run], console: Console) -> None:
+def _warn(case: Case, runs: dict[str, Run], console: Console) -> None:
+    notes = case.definition.thermal_notes if case.definition.has_jump else ()
     for warning in warnings_of(runs.values()):
-        console.print(f"warning: {warning}")
+        console.print(f"{'note' if warning in notes else 'warning'}: {warning}")
 
 
 def _check(case: Case, folder: ResultsFolder, *models: str) -> None:
@@ -42,7 +43,7 @@ def _finish(model: str, case: Case, run: Run, folder: ResultsFolder, console: Co
     runs = {model: run}
     written = folder.publish([save(model, case.definition, runs, folder.staged)])
     _told(case, runs, console)
-    _warn(runs, console)
+    _warn(case, runs, console)
     console.print(f"results: {written[0]}, history: {folder.path / f'{model}_history.csv'}")
 
 
@@ -193,7 +194,7 @@ def _compare_case(case_file: Path, dynamic: bool, finite: bool, results: Results
         console.print(note)
     for reason in comparison.reasons:
         console.print(f"may be why: {reason}")
-    _warn(runs, console)
+    _warn(case, runs, console)
     console.print(f"results: {', '.join(str(name) for name in written)}")
     if not comparison.passed:
         raise TolerancesMissed(comparison.missed, file=case_file)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 import numpy as np
@@ -12,6 +13,12 @@ from statejump.core.errors import MissingKey, NotAllowed, StatejumpError
 from statejump.core.results_folder import Results
 from statejump.core.tables import Shown, read_columns, write_columns, write_csv
 from statejump.core.units import plain
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from statejump.core.case import Case
+    from statejump.surface import Design
 
 # The arguments of the library as options of the command.
 OPTIONS = {"axis": "--axis", "focal_length_m": "--focal-length", "direction": "--direction", "terms": "--zernike",
@@ -60,24 +67,20 @@ def surface_command(
     console = make_console(quiet)
     if (samples is None) != (column is None):
         raise MissingKey("--column" if column is None else "--samples", "--samples and --column go together")
+    notes: list[str] = []
+    history: dict[str, np.ndarray] = {}
     try:
         if file.suffix == ".csv":
             drawn, moved = told.read_nodes(file)
             design = surface.Design.of(drawn, (0, 0, 1) if axis is None else axis, focal_length)
-            states, history, name = {"nodes": moved}, {}, file.stem
+            states, name = {"nodes": moved}, file.stem
         else:
             for option, given in (("--axis", axis), ("--focal-length", focal_length)):
                 if given is not None:
                     raise NotAllowed(option, beside="beside a case", cause="its section [reflector] says it")
             case = loaded(file, "reduced")
-            design, nodes = surface.reflector_of(case)
-            with undivided(console, f"{case.name}, reduced model") as tell:
-                run = case.behaviour.ability("reduced", case)(case, tell)
-            history, name = surface.history(run, measure), case.name
-            moves = np.asarray(run.history["position_m"].values)[:, nodes] - design.position_m
-            worst = int(np.argmax(history["rms_design_m"]))
-            states = {f"farthest from the design, at {history['temperature_change_K'][worst]:.4g} K": moves[worst],
-                      "end of the last cycle": moves[-1]}
+            design, states, history = _of_case(case, measure, console)
+            name, notes = case.name, list(case.thermal_notes)
         tables = {state: [*told.state_rows(design, moved, measure, direction), *told.zernike_rows(design, moved, terms)]
                   for state, moved in states.items()}
         shown: list[Shown | str] = [_shown("drawn surface", told.design_rows(design))]
@@ -86,6 +89,7 @@ def surface_command(
             shown.append("note: the nodes lie in one plane with the axis: this is a profile against a parabola")
         if design.focal_length_m is None:
             shown.append("note: the nodes do not determine a focal length: the best fit is flat")
+        shown += [f"note: {note}" for note in notes]
         if samples is not None and column is not None:
             shown.append(_repeatability(samples, column, share, 2 * design.aperture_m[1] if length is None else length))
     except StatejumpError as refused:
@@ -103,6 +107,24 @@ def surface_command(
         written = folder.publish(written)
     print_shown(shown, console)
     console.print(f"results: {', '.join(str(path) for path in written)}")
+
+
+def _of_case(
+    case: Case, measure: str, console: Console
+) -> tuple[Design, dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Return the surface of a case, its displacements where it is farthest from its design and at the end, and its
+    history."""
+    from statejump import surface
+
+    design, nodes = surface.reflector_of(case)
+    with undivided(console, f"{case.name}, reduced model") as tell:
+        run = case.behaviour.ability("reduced", case)(case, tell)
+    history = surface.history(run, measure)
+    moves = np.asarray(run.history["position_m"].values)[:, nodes] - design.position_m
+    worst = int(np.argmax(history["rms_design_m"]))
+    return design, {
+        f"farthest from the design, at {history['temperature_change_K'][worst]:.4g} K": moves[worst],
+        "end of the last cycle" if case.has_jump else "end of the program": moves[-1]}, history
 
 
 def _shown(title: str, rows: list[tuple[str, str, float]]) -> Shown:

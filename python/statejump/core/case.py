@@ -2,15 +2,15 @@
 """The definition of a case: what all kinds have in common, header and temperature program."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from statejump.core import thermal as programs
-from statejump.core.errors import NotAllowed
-from statejump.core.thermal import Thermal
+from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.thermal import CaseThermal, Ending
 from statejump.schema.fields import CHOICE, Section, definition, evolved, section, text
 from statejump.schema.item_tables import with_rows
 from statejump.schema.paths import set_value
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from statejump import _engine
+    from statejump.core.temperature_files import MemberProgram
+    from statejump.core.thermal import Thermal
     from statejump.kinds.protocol import Kind
 
 __all__ = ["CHOICE", "Case", "CaseHeader", "Origin"]
@@ -73,12 +75,48 @@ class Case(Section):
     NOT_IN_FILE: ClassVar[Mapping[str, str]] = {}
 
     case: CaseHeader = section(CaseHeader, required=True)
-    thermal: Thermal = section(Thermal, required=True)
+    thermal: CaseThermal = section(CaseThermal, required=True)
 
     def __attrs_post_init__(self) -> None:
         # What nothing says of the period is settled here, so that every reader finds a number.
-        lasts = programs.period_of(self.thermal, self.thermal.period_s, "thermal.period_s")
-        object.__setattr__(self, "thermal", evolved(self.thermal, period_s=lasts))
+        thermal = self.thermal
+        ending = programs.ending(self._given_programs(), thermal.return_to_reference, thermal.period_s)
+        return_s = ending.return_s if ending is not None else 0.0
+        lasts = programs.period_of(thermal, thermal.period_s, "thermal.period_s", return_s=return_s)
+        object.__setattr__(self, "thermal", evolved(thermal, period_s=lasts))
+        object.__setattr__(self, "_ending", ending)
+
+    def _given_programs(self) -> Sequence[Thermal | MemberProgram]:
+        """Return the temperature programs as given, the common one first."""
+        return [self.thermal]
+
+    @property
+    def ending(self) -> Ending | None:
+        """Where the temperature program ends, if that is not at the reference temperature."""
+        found: Ending | None = self.__dict__["_ending"]
+        return found
+
+    @property
+    def has_jump(self) -> bool:
+        """Whether the program, with a return that is added, ends at the reference temperature."""
+        return self.ending is None or self.ending.returns
+
+    def check_cycles(self) -> None:
+        """Raise NotAllowed for cycles that do not end where they begin."""
+        if not self.has_jump and self.thermal.cycles > 1:
+            raise NotAllowed("thermal.cycles", self.thermal.cycles, f"what is repeated must end where it begins, and "
+                             f"{self.thermal_notes[0]}")
+
+    @property
+    def thermal_notes(self) -> tuple[str, ...]:
+        """What is to be known of the program: where it ends, if that is not at the reference temperature."""
+        return () if self.ending is None else (self.ending.note,)
+
+    def need_jump(self, what: str) -> None:
+        """Raise StatejumpError for what needs a state jump where the program does not return."""
+        if self.ending is not None and not self.ending.returns:
+            raise StatejumpError(cause=f"{what} needs a state jump, and {self.ending.where}", case=self.name,
+                                 remedy=self.ending.remedy)
 
     @property
     def origin(self) -> Origin:

@@ -13,7 +13,7 @@ import numpy as np
 
 from statejump.core.errors import NotAllowed
 from statejump.core.temperature_files import MemberProgram
-from statejump.core.thermal import LARGEST_CHANGE_K, Thermal
+from statejump.core.thermal import LARGEST_CHANGE_K, Thermal, rows
 from statejump.schema.fields import Section, definition, numbers
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def followed(
 def _rows(program: Thermal | MemberProgram, period_s: float) -> tuple[Numbers, Numbers]:
     """Return times and temperature changes between which a cycle is straight."""
     if program.shape == "table":
-        return np.array(program.table_time_s), np.array(program.table_temperature_change_K)
+        return rows(program, period_s)
     assert isinstance(program, Thermal) and program.temperature_change_max_K is not None
     if program.shape != "triangle":
         raise NotAllowed("thermal.shape", program.shape, "must be 'triangle' or 'table' where an expansion follows the "

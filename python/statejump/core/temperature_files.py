@@ -18,7 +18,9 @@ import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, Unreadable
 from statejump.core.temperature_columns import Read, listed, of_means, quoted, read_columns, refuse
-from statejump.core.thermal import KEYS_OF_FILES, LARGEST_CHANGE_K, LONGEST_TABLE_S, SAME_TEMPERATURE_K, Thermal
+from statejump.core.thermal import (
+    KEYS_OF_FILES, LARGEST_CHANGE_K, LONGEST_TABLE_S, SAME_TEMPERATURE_K, SAME_TIME, Thermal,
+)
 from statejump.schema.fields import Attached, Section, fields_of, rule_of
 
 if TYPE_CHECKING:
@@ -83,10 +85,18 @@ class Histories(Attached):
     def to_json(self) -> dict[str, Any]:
         return {"members": len(self.names), "times": len(self.time_s), "sha256": self.sha256}
 
-    def programs(self, cycles: int) -> list[MemberProgram]:
-        """Return the program of every member, in the order of the names."""
-        columns = np.ascontiguousarray(self.temperature_change_K.T)
-        return [MemberProgram(self.time_s, column, cycles) for column in columns]
+    def programs(self, cycles: int, period_s: float) -> list[MemberProgram]:
+        """Return the program of every member, in the order of the names, with the return until ``period_s``."""
+        times, changes = self.time_s, self.temperature_change_K
+        if period_s - times[-1] > SAME_TIME * times[-1]:
+            times, changes = np.append(times, period_s), np.vstack((changes, np.zeros(changes.shape[1])))
+        columns = np.ascontiguousarray(changes.T)
+        return [MemberProgram(times, column, cycles) for column in columns]
+
+    def furthest_at_end(self, cycles: int) -> MemberProgram:
+        """Return the program of the member that ends furthest from the reference temperature."""
+        furthest = int(np.argmax(np.abs(self.temperature_change_K[-1])))
+        return MemberProgram(self.time_s, self.temperature_change_K[:, furthest], cycles)
 
     def mean_K(self) -> list[float]:
         """Return the mean temperature change of all members at the times."""
@@ -227,7 +237,7 @@ def _changes(read: Read, given: Mapping[str, Any], section: str) -> tuple[Number
     if close.size:
         raise Unreadable(f"times {time_s[close[0]]:g} and {time_s[close[0] + 1]:g}", file=read.path,
                          cause=f"they cannot be told apart within {time_s[-1]:g} s")
-    if _cycles(given) > 1 and changes[-1].any():
+    if _cycles(given) > 1 and changes[-1].any() and given.get("return_to_reference") is False:
         last = int(np.argmax(np.abs(changes[-1])))
         raise NotAllowed(
             f"{section}cycles", given.get("cycles"),

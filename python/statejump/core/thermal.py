@@ -2,18 +2,20 @@
 """Temperature programs: the section of a case file, its range, the engine's program of it.
 
 A program of a shape is repeated every ``period_s``. The times of a table are the times: its cycle lasts as
-long as its last one says.
+long as its last one says. A table that ends elsewhere than it begins gets a return: one more row, ΔT = 0 at
+``period_s``.
 """
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
 from statejump.schema.fields import (
-    CHOICE, Section, choice, definition, fields_of, numbers, parameter, rule_of, text, whole,
+    CHOICE, Section, choice, definition, fields_of, numbers, parameter, rule_of, switch, text, whole,
 )
 
 if TYPE_CHECKING:
@@ -27,6 +29,7 @@ PERIOD_s = 1.0  # where nothing says how long a cycle lasts
 SAME_TIME = 1e-9  # two durations that differ by less, relatively, are the same but for rounding
 SAME_TEMPERATURE_K = 1e-9  # below this a difference of two temperatures is the rounding of °C into kelvin
 LONGEST_TABLE_S, LARGEST_CHANGE_K = 1e12, 1e4
+LONGEST_PERIOD_S = 1e6
 MOST_SHOWN = 20  # values of a list in a sentence
 # Keys that name a file of temperatures or say what is in it; see :mod:`statejump.core.temperature_files`.
 KEYS_OF_FILES = ("table_file", "table_column", "members_file", "reference_temperature_K", "lead_in_s",
@@ -45,7 +48,8 @@ class Thermal(Section):
         None, "K", -LARGEST_CHANGE_K, LARGEST_CHANGE_K, "Chen et al. (2021), sections 3.3 and 4.3"
     )
     cycles: int = whole(1, 1, 100_000, "the paper runs one")
-    period_s: float = parameter(None, "s", 0, 1e6, "1 s; a table lasts as long as its last time says", above=True)
+    period_s: float = parameter(
+        None, "s", 0, LONGEST_PERIOD_S, "1 s; a table lasts as long as its last time says", above=True)
     table_time_s: list[float] | None = numbers(None, "s", 0, LONGEST_TABLE_S, "measured data")
     table_temperature_change_K: list[float] | None = numbers(
         None, "K", -LARGEST_CHANGE_K, LARGEST_CHANGE_K, "measured data"
@@ -63,10 +67,118 @@ class Thermal(Section):
     )
 
 
-def check(thermal: Thermal, section: str = "thermal.") -> None:
+@definition
+class CaseThermal(Thermal):
+    """The temperature program of a case.
+
+    ``return_to_reference`` is true by default: a state jump is a change at one temperature, so a program that ends
+    elsewhere has none. On the quasi-static path the jump does not depend on how long the return takes.
+    """
+
+    return_to_reference: bool = switch(
+        True, "whether a table that ends elsewhere returns to ΔT = 0 at its mean rate, or until period_s")
+
+
+@dataclass(frozen=True)
+class Ending:
+    """End of the rows of a table that does not end at the reference temperature.
+
+    :param time_s: of the last row, in the last cycle
+    :param temperature_change_K: there, of the program that is furthest from the reference temperature
+    :param return_s: how long the added return takes [s]; 0: none is added
+    :param remedy: what adds one
+    """
+
+    time_s: float
+    temperature_change_K: float
+    return_s: float
+    remedy: str = ""
+
+    @property
+    def returns(self) -> bool:
+        """Whether a return to the reference temperature is added."""
+        return self.return_s > 0
+
+    @property
+    def where(self) -> str:
+        """The ending as a clause."""
+        return f"the program ends at a temperature change of {self.temperature_change_K:.6g} K"
+
+    @property
+    def note(self) -> str:
+        """The ending in a sentence."""
+        if self.returns:
+            return (f"{self.where}: a return to the reference temperature of {self.return_s:.6g} s is added, and the "
+                    "state jump is that after it (thermal.return_to_reference)")
+        return f"{self.where}, not at the reference temperature: it has no state jump; {self.remedy}"
+
+
+def ending(
+    programs: Sequence[Thermal | MemberProgram], returns: bool, period_s: float | None, key: str = "thermal.period_s",
+) -> Ending | None:
+    """Return where the programs of a case end, if that is not at the reference temperature.
+
+    The return takes as long as the table that is furthest away at its mean rate, or until ``period_s``.
+
+    :param programs: the common one first, as given, without a return
+    :param returns: whether a return is wanted
+    :param period_s: how long a cycle lasts; None: nothing says it
+    :raises NotAllowed: ``period_s`` is before the last row
+    """
+    tables = [one for one in programs if one.shape == "table"]
+    if not tables or not all(map(_is_sound, tables)):  # :func:`check` refuses what is not
+        return None
+    furthest = max(tables, key=lambda one: abs(float(_changes(one)[-1])))
+    changes, lasts, cycles = _changes(furthest), float(_times(furthest)[-1]), programs[0].cycles
+    last = float(changes[-1])
+    if abs(last) < SAME_TEMPERATURE_K:
+        return None
+    if not returns:
+        return Ending(cycles * lasts, last, 0.0, "set thermal.return_to_reference to true to add a return")
+    if len(tables) < len(programs) or any((one.cycles or cycles) != cycles for one in tables):
+        return Ending(cycles * lasts, last, 0.0, "give all programs as tables of as many cycles to add a return")
+    takes = abs(last) * lasts / float(np.abs(np.diff(changes)).sum())
+    if lasts < LONGEST_PERIOD_S:
+        takes = min(takes, LONGEST_PERIOD_S - lasts)
+    if period_s is not None and abs(period_s - lasts) > SAME_TIME * lasts:
+        takes = period_s - lasts
+    if takes < 0:
+        raise NotAllowed(key, period_s, f"the table lasts {lasts:g} s, and the return to the reference temperature "
+                         "ends after it", remedy=f"leave {key} out")
+    return Ending((cycles - 1) * (lasts + takes) + lasts, last, takes)
+
+
+def _is_sound(program: Thermal | MemberProgram) -> bool:
+    """Whether a table has rising times and as many temperatures."""
+    if program.table_time_s is None or program.table_temperature_change_K is None:
+        return False
+    times = _times(program)
+    return len(times) > 1 and len(times) == len(_changes(program)) and bool(np.all(np.diff(times) > 0))
+
+
+def _times(program: Thermal | MemberProgram) -> NDArray[np.float64]:
+    return np.asarray(program.table_time_s, dtype=float)
+
+
+def _changes(program: Thermal | MemberProgram) -> NDArray[np.float64]:
+    return np.asarray(program.table_temperature_change_K, dtype=float)
+
+
+def rows(
+    program: Thermal | MemberProgram, period_s: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return times [s] and temperature changes [K] of a table, with the return that is added until ``period_s``."""
+    times, changes = _times(program), _changes(program)
+    if period_s - times[-1] <= SAME_TIME * times[-1]:
+        return times, changes
+    return np.append(times, period_s), np.append(changes, 0.0)
+
+
+def check(thermal: Thermal, section: str = "thermal.", returns: bool = False) -> None:
     """Raise StatejumpError for what is wrong with a program as a whole.
 
     :param section: how its keys begin, "" in a table of its own
+    :param returns: whether a return is added where a table ends elsewhere than at the reference temperature
     """
     for key in KEYS_OF_FILES:
         if getattr(thermal, key, None) is not None:
@@ -95,9 +207,9 @@ def check(thermal: Thermal, section: str = "thermal.") -> None:
     if len(changes) != len(times):
         raise NotAllowed(f"{section}table_temperature_change_K", ABSENT, f"must be {len(times)} values, one per time, "
                          f"not {len(changes)}")
-    if changes[0] != 0 or (thermal.cycles > 1 and changes[-1] != 0):
+    if changes[0] != 0 or (thermal.cycles > 1 and changes[-1] != 0 and not returns):
         raise NotAllowed(f"{section}table_temperature_change_K", _short(changes),
-                         "must start at 0 [K] and, with several cycles, end at 0 [K]")
+                         "must start at 0 [K] and, with several cycles and without a return, end at 0 [K]")
 
 
 def _short(values: list[float]) -> Any:
@@ -105,17 +217,23 @@ def _short(values: list[float]) -> Any:
     return values if len(values) <= MOST_SHOWN else ABSENT
 
 
-def period_of(thermal: Thermal, given_s: float | None, key: str, default_s: float = PERIOD_s) -> float:
-    """Return how long a cycle lasts [s]: of a table its last time, else what is given.
+def period_of(
+    thermal: Thermal, given_s: float | None, key: str, default_s: float = PERIOD_s, return_s: float = 0.0
+) -> float:
+    """Return how long a cycle lasts [s]: of a table its last time and the return, else what is given.
 
     :param given_s: what the case says of it; None: nothing
     :param key: the key that says it
     :param default_s: where nothing says it
+    :param return_s: how long the return takes that is added to the table
     :raises NotAllowed: a table lasts otherwise
     """
     lasts = thermal.table_time_s[-1] if thermal.shape == "table" and thermal.table_time_s else 0.0
     if not lasts > 0:  # no table, or one that :func:`check` refuses
         return default_s if given_s is None else given_s
+    if return_s and given_s is not None and abs(given_s - lasts) <= SAME_TIME * lasts:
+        given_s = None  # of a further program: what its table lasts
+    lasts += return_s
     if given_s is not None and abs(given_s - lasts) > SAME_TIME * lasts:
         raise NotAllowed(key, given_s, f"the table lasts {lasts:g} s, and its own times are the times",
                          remedy=f"leave {key} out")
@@ -144,8 +262,9 @@ def parameters(thermal: Thermal | MemberProgram, period_s: float) -> dict[str, A
         return {"shape": "table", "cycles": thermal.cycles, "table_time_s": thermal.table_time_s.tolist(),
                 "table_temperature_change_K": thermal.table_temperature_change_K.tolist()}
     if thermal.shape == "table":
-        return {"shape": "table", "cycles": thermal.cycles, "table_time_s": thermal.table_time_s,
-                "table_temperature_change_K": thermal.table_temperature_change_K}
+        times, changes = rows(thermal, period_s)
+        return {"shape": "table", "cycles": thermal.cycles, "table_time_s": times.tolist(),
+                "table_temperature_change_K": changes.tolist()}
     return {"shape": thermal.shape, "cycles": thermal.cycles, "period_s": period_s,
             "temperature_change_max_K": thermal.temperature_change_max_K}
 
@@ -157,7 +276,7 @@ def returns_s(programs: Sequence[Thermal | MemberProgram], period_s: float) -> N
     """
     common, own = programs[0], [period_s]
     if common.shape == "table" and common.table_time_s is not None:
-        own = list(common.table_time_s[1:])
+        own = rows(common, period_s)[0][1:].tolist()
     times: NDArray[np.float64] = (np.arange(common.cycles)[:, None] * period_s + np.array(own)).ravel()
     for one in programs:
         times = times[np.abs(program(one, period_s).temperature_change(times)) < SAME_TEMPERATURE_K]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from statejump.core.thermal import Thermal, range_K
+from statejump.core.thermal import LONGEST_PERIOD_S, Thermal, range_K
 from statejump.core.units import text
 
 if TYPE_CHECKING:
@@ -43,14 +43,18 @@ def heated_too_fast(
         return ["a motion that only friction holds has no natural period; the reduced model has no inertia: "
                 "'statejump compare --dynamic' gives it one"]
     swing = moved_m * kink(program) / program.period_s * natural_period_s / (2 * pi)
-    if swing < SHARE_TOLD * allowed_m or range_K(thermal)[0] == range_K(thermal)[1]:
+    if swing <= SHARE_TOLD * allowed_m or not allowed_m > 0 or range_K(thermal)[0] == range_K(thermal)[1]:
         return []
-    enough = rounded_up(program.period_s * max(swing / (SHARE_TOLD * allowed_m), 1.0))
+    found = (f"the slowest natural period, {text(natural_period_s, 's', 3)}, is "
+             f"{natural_period_s / program.period_s:.2g} of the thermal one; undamped, corners of the temperature "
+             f"leave oscillations of {text(swing, 'm', 2)}, and the tolerance allows {text(allowed_m, 'm', 2)}: ")
+    enough = program.period_s * max(swing / (SHARE_TOLD * allowed_m), 1.0)
+    if not enough < LONGEST_PERIOD_S:
+        return [f"{found}no thermal.period_s up to {LONGEST_PERIOD_S:g} s is long enough; raise the damping ratios "
+                "in [dem]"]
+    enough = min(rounded_up(enough), LONGEST_PERIOD_S)
     which = f"a table that lasts {enough:g} s" if thermal.shape == "table" else f"thermal.period_s = {enough:g}"
-    return [f"the slowest natural period, {text(natural_period_s, 's', 3)}, is "
-            f"{natural_period_s / program.period_s:.2g} of the thermal one; undamped, corners of the temperature leave "
-            f"oscillations of {text(swing, 'm', 2)}, and the tolerance allows {text(allowed_m, 'm', 2)}: {which} is "
-            "long enough even so; or raise the damping ratios in [dem]"]
+    return [f"{found}{which} is long enough even so; or raise the damping ratios in [dem]"]
 
 
 def still_moving(dem: Run, mass_kg: float, natural_period_s: float, allowed_m: float) -> list[str]:
@@ -59,8 +63,9 @@ def still_moving(dem: Run, mass_kg: float, natural_period_s: float, allowed_m: f
     swing = inf if isinf(natural_period_s) else sqrt(2 * max(kinetic, 0.0) / mass_kg) * natural_period_s / (2 * pi)
     if not kinetic > 0 or not swing > SHARE_TOLD * allowed_m:
         return []
+    longer = ", or set a longer thermal.period_s" if float(dem.time_s[-1]) < LONGEST_PERIOD_S else ""
     return [f"the DEM still moves at the end, with {text(kinetic, 'J', 2)} of kinetic energy: raise the damping ratios "
-            "in [dem], or set a longer thermal.period_s"]
+            f"in [dem]{longer}"]
 
 
 def rounded_up(value: float) -> float:

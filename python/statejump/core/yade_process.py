@@ -22,6 +22,7 @@ from statejump.core.errors import FailedRun, Interrupted, StatejumpError
 from statejump.core.progress import Tell
 from statejump.core.run import Run
 from statejump.core.samples import read_samples
+from statejump.core.thermal import parameters
 from statejump.schema.fields import choice
 
 MARK = "STATEJUMP "
@@ -42,6 +43,7 @@ def common_values(case: Case, number_of_steps: int) -> dict[str, Any]:
     """Return what the YADE script needs of a case of any kind, as plain values; keys as in the case file."""
     values = case.to_dict()
     values["period_s"] = case.period_s
+    values["thermal"].update(parameters(case.thermal, case.period_s))
     values["number_of_samples"] = case.samples_per_cycle * case.thermal.cycles
     values["dem"].update(number_of_steps=number_of_steps, time_step_s=case.duration_s / number_of_steps)
     return values

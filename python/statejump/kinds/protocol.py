@@ -59,6 +59,8 @@ class Kind(Generic[CaseType]):
     WORDS: ClassVar[Mapping[str, str]] = {}
     # Names of what a campaign records of a run, in the order of its table; each ends in its unit.
     OUTCOMES: ClassVar[tuple[str, ...]] = ()
+    # Numbers of a run's summary that stand for where a program ends that does not end at the reference temperature.
+    AT_PROGRAM_END: ClassVar[tuple[str, ...]] = ()
     # Models whose runs ``outcomes`` can measure.
     OUTCOMES_OF: ClassVar[tuple[str, ...]] = ("reduced", "dem")
     # Module that builds the scene in YADE, or the path of its file; by default scene_NAME beside the runner.
@@ -102,6 +104,11 @@ class Kind(Generic[CaseType]):
         """Return the models that campaigns run."""
         return tuple(model for model in self.OUTCOMES_OF if self.has_model(model))
 
+    def recorded(self, case: CaseType, run: Run) -> dict[str, float]:
+        """Return the outcomes of a run, and where its program ends if that is not at the reference temperature."""
+        found: dict[str, float] = self.ability("outcomes", case)(case, run)
+        return found if case.ending is None else {**found, **{name: run.summary[name] for name in self.AT_PROGRAM_END}}
+
     def samples(self, case: CaseType, model: str) -> int:
         """Return how many samples a run of a model has."""
         return case.samples_per_cycle * case.thermal.cycles + 1
@@ -119,7 +126,8 @@ class Kind(Generic[CaseType]):
             if section in data:
                 raise NotAllowed(f"section [{section}]", cause=self.Case.NOT_IN_FILE[section])
         made = structure(self.Case, data)
-        thermal.check(made.thermal)
+        thermal.check(made.thermal, returns=made.ending is not None)
+        made.check_cycles()
         made.check()
         return made
 

@@ -128,7 +128,8 @@ class Document:
     def cards(self) -> list[dict[str, Any]]:
         """The numbers at the top: state jumps of every model, then the first contact or slip."""
         models = self.result.models
-        names = dict.fromkeys(name for run in models.values() for name in run.summary if "jump" in name)
+        names = dict.fromkeys(name for run in models.values() for name, value in run.summary.items()
+                              if ("jump" in name or "at_program_end" in name) and math.isfinite(value))
         cards = [] if self.part is None else self.part.cards()
         cards += [
             {
@@ -260,7 +261,7 @@ class Document:
             for kind in MARKED_EVENTS if (event := run.events.first(kind)) is not None
         ]
         jumps = [value for name, value in run.summary.items() if "jump" in name]
-        if jumps and jumps[0]:
+        if jumps and jumps[0] and math.isfinite(jumps[0]):
             marks.append({"time_s": float(run.time_s[-1]), "label": "state jump", "role": "jump", "value": ""})
         shown = [
             made for chart in self._charts

@@ -96,4 +96,6 @@ def _temperature(case: Case) -> str:
         peak = max(case.temperature_range_K, key=abs)
     times = "once" if thermal.cycles == 1 else f"{thermal.cycles} times"
     way = SHAPES.get(thermal.shape, "changes by up to {peak}").format(peak=text(peak, "K"))
-    return f"The temperature {way}, {times}; a cycle lasts {text(case.period_s, 's')}."
+    returned = ", the return to the reference temperature included" if case.ending is not None and (
+        case.ending.returns) else ""
+    return f"The temperature {way}, {times}; a cycle lasts {text(case.period_s, 's')}{returned}."

@@ -58,6 +58,7 @@ class SpringSlider(Kind[SpringSliderCase]):
         "friction_dissipation_J",
         "largest_axial_force_N",
     )
+    AT_PROGRAM_END = ("displacement_at_program_end_m",)
 
     def reduced(self, case: SpringSliderCase, tell: Tell) -> Run:
         from statejump.kinds.spring_slider import reduced
@@ -149,7 +150,10 @@ class SpringSlider(Kind[SpringSliderCase]):
         """Return what makes the state jump smaller; see :func:`.control.control`."""
         from statejump.kinds.spring_slider import control
 
-        return control.control(case, **settings)
+        case.need_jump("'statejump control'")
+        found = control.control(case, **settings)
+        found.remarks += case.thermal_notes
+        return found
 
     def convergence(self, case: SpringSliderCase, tell: Tell, decades: int = 0) -> Convergence:
         """Return how the DEM approaches the reduced model; see :func:`.convergence.convergence`."""

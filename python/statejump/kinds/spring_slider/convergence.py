@@ -79,7 +79,8 @@ def _variant(case: SpringSliderCase, factor: float, **settings: Any) -> SpringSl
     if times is None:
         changes["thermal.period_s"] = case.period_s * factor
     else:  # it lasts as long as its last time says
-        changes |= {"thermal.period_s": None, "thermal.table_time_s": [time * factor for time in times]}
+        period = None if case.ending is None else case.period_s * factor
+        changes |= {"thermal.period_s": period, "thermal.table_time_s": [time * factor for time in times]}
     changed = case.changed(changes)
     assert isinstance(changed, SpringSliderCase)
     return changed
@@ -107,6 +108,7 @@ def convergence(case: SpringSliderCase, tell: Tell = lambda share: None, decades
     :param tell: takes the finished share, 0 to 1
     :raises StatejumpError: a run failed
     """
+    case.need_jump("'statejump convergence'")
     slower, finer = variants(case, decades)
     every = [*slower, *finer]
     runs: list[Run] = []

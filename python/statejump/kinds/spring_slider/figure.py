@@ -51,7 +51,7 @@ def sheet(case: SpringSliderCase, runs: Sequence[Run]) -> Sheet:
             elif quantity == 0:
                 if exact:
                     _mark_events(axes, path)
-                    _mark_jump(axes, path)
+                    _mark_jump(axes, case, path)
                 axes.legend(loc="upper left", framealpha=1)
 
         return draw
@@ -107,8 +107,8 @@ def _mark_events(panel: Axes, path: _engine.SpringSliderPath) -> None:
                            ha=side, va="center")
 
 
-def _mark_jump(panel: Axes, path: _engine.SpringSliderPath) -> None:
-    jump = path.state_jump_m
+def _mark_jump(panel: Axes, case: SpringSliderCase, path: _engine.SpringSliderPath) -> None:
+    jump = path.state_jump_m if case.has_jump else 0.0
     if jump:
         last = path.segments[-1].end_displacement_m * 1e3
         panel.plot(0, last, "s", color="#D55E00", markersize=5, zorder=6)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,8 @@ from statejump.results.events import from_states
 from statejump.schema.fields import evolved
 
 CONTACTS = ("floor", "stop_minus", "stop_plus")
+# Displacement at the end of the program's rows, from the start: what a program that ends off the reference has.
+AT_END = "displacement_at_program_end_m"
 SLIDING_STAGES = ("S2", "S5")
 # A rigid stop is touched to rounding; a sample that stands off further does not touch it.
 TOUCHING = 1e-9
@@ -112,7 +115,7 @@ def _contacts(case: SpringSliderCase, history: Columns) -> dict[str, Column]:
 
 def _run(
     case: SpringSliderCase, model: str, columns: Columns, events: list[Event] | None, summary: dict[str, float],
-    **more: Any,
+    warnings: tuple[str, ...] = (), **more: Any,
 ) -> Run:
     plain, energy = columns_of(columns)
     contacts = _contacts(case, columns)
@@ -125,7 +128,19 @@ def _run(
     }
     if events is None:
         events = from_states(columns["time_s"], change, contacts["state"].values, CONTACTS)
-    return Run(model, plain, energy, links, contacts, Events(events), summary, names(case), lambda: case, **more)
+    warnings = (*case.thermal_notes, *warnings)
+    return Run(model, plain, energy, links, contacts, Events(events), summary, names(case), lambda: case,
+               warnings=warnings, **more)
+
+
+def _summary(case: SpringSliderCase, jump_m: float, there_m: float) -> dict[str, float]:
+    """Return the state jump, NaN where the program does not return, and the displacement where its rows end.
+
+    :param jump_m: displacement at the end less that at the start
+    :param there_m: displacement at the end of the program's rows less that at the start
+    """
+    found = {"state_jump_m": jump_m if case.has_jump else nan}
+    return found if case.ending is None else {**found, AT_END: there_m}
 
 
 def reduced_run(
@@ -142,12 +157,17 @@ def reduced_run(
         elif event.kind in ("cycle_end", "force_sign_change"):
             joint = ""
         events.append(Event(event.kind, event.time_s, event.temperature_change_K, joint))
-    return _run(case, "reduced", columns, events, {"state_jump_m": path.state_jump_m}, warnings=warnings, native=path,
-                sampler=sampler)
+    there = nan
+    if case.ending is not None:
+        start, there = path.sample(np.array([0.0, case.ending.time_s]))["displacement_m"]
+        there -= start
+    return _run(case, "reduced", columns, events, _summary(case, path.state_jump_m, float(there)), warnings=warnings,
+                native=path, sampler=sampler)
 
 
 def dem_run(case: SpringSliderCase, columns: Columns, about: Mapping[str, Any]) -> Run:
     """Return a DEM run: events between samples."""
     x = columns["displacement_m"]
-    summary = {"state_jump_m": float(x[-1] - x[0]), **numbers_of(about)}
+    there = nan if case.ending is None else np.interp(case.ending.time_s, columns["time_s"], x) - x[0]
+    summary = {**_summary(case, float(x[-1] - x[0]), float(there)), **numbers_of(about)}
     return _run(case, "dem", columns, None, summary, about=about)

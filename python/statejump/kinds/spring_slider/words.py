@@ -10,11 +10,12 @@ from statejump.core.run import AT_STOP, Event, Run
 from statejump.core.tables import Shown
 from statejump.core.units import text
 from statejump.kinds.spring_slider.case import SpringSliderCase
+from statejump.kinds.spring_slider.result import AT_END
 
 WORDS = {
     "floor": "Floor", "stop_plus": "Stop +", "stop_minus": "Stop −", "bar": "Bar", "at_stop_plus": "stop +",
     "at_stop_minus": "stop −", "displacement_m": "Displacement of the slider",
-    "axial_force_N": "Axial force, compression positive",
+    "axial_force_N": "Axial force, compression positive", AT_END: "Displacement at the end of the program",
     # What the stages of the reduced model mean.
     "stage S1": "stick, never slid yet", "stage S2": "slip in the sense of the first slide",
     "stage S3": "stick, the link unloads", "stage S4": "stick, the link loads the other way",
@@ -62,7 +63,13 @@ def told(case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown | str]:
             ]
             headings = ("event", "stage", "ΔT [K]", "time [s]", "displacement [m]", "axial force [N]")
             found.append(Shown(f"{case.title}: events of the first cycle", headings, rows, left=("event", "stage")))
-        found.append(f"state jump: {run.summary['state_jump_m']:.6e} m after {case.thermal.cycles} cycle(s)")
+        if case.ending is not None:
+            found.append(f"displacement at the program's end, {case.ending.temperature_change_K:.6g} K: "
+                         f"{run.summary[AT_END]:.6e} m")
+        if case.has_jump:
+            returned = " and the return" if case.ending is not None else ""
+            found.append(f"state jump: {run.summary['state_jump_m']:.6e} m after {case.thermal.cycles} cycle(s)"
+                         f"{returned}")
     return found
 
 

@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 
 from statejump.core.case import Case
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey
-from statejump.core.thermal import Thermal
+from statejump.core.thermal import CaseThermal
 from statejump.schema.fields import (
     Section, choice, definition, fields_of, numbers, parameter, rule_of, section, tables, text, whole,
 )
@@ -150,8 +150,8 @@ class StaticsCase(Case):
     force: list[Force] = tables(Force, "sections [[force]]", required=True, read=read_forces)
     picture: Picture = section(Picture)
     # The common part of all kinds; forces carry their temperatures themselves.
-    thermal: Thermal = section(
-        Thermal, made=lambda: Thermal(shape="triangle", temperature_change_max_K=0.0)
+    thermal: CaseThermal = section(
+        CaseThermal, made=lambda: CaseThermal(shape="triangle", temperature_change_max_K=0.0)
     )
 
     @property

@@ -58,6 +58,7 @@ class Truss(Kind[TrussCase]):
         "slipping_joints",
         "largest_axial_force_N",
     )
+    AT_PROGRAM_END = ("largest_displacement_at_program_end_m",)
     OUTCOMES_OF = ("reduced",)
 
     def reduced(self, case: TrussCase, tell: Tell) -> Run:
@@ -174,12 +175,16 @@ class Truss(Kind[TrussCase]):
         """Return what keeps the jump of a node below a value; see :func:`statejump.truss.control`."""
         from statejump.kinds.truss.control import study
 
-        return study.control(case, **settings)
+        case.need_jump("'statejump control'")
+        found = study.control(case, **settings)
+        found.remarks += case.thermal_notes
+        return found
 
     def answers(self, case: TrussCase, **settings: Any) -> TrussAnswers:
         """Return what a designer asks of the truss; see :func:`statejump.truss.answers`."""
         from statejump.kinds.truss.answers import study
 
+        case.need_jump("'statejump truss answers'")
         return study.study(case, **settings)
 
 

@@ -16,7 +16,7 @@ from statejump.core import yade_process
 from statejump.core.case import Case
 from statejump.core.expansion import Expansion
 from statejump.core.temperature_files import Histories, MemberProgram
-from statejump.core.thermal import Thermal, returns_s
+from statejump.core.thermal import CaseThermal, Thermal, returns_s
 from statejump.kinds.truss import checks
 from statejump.kinds.truss.joints.ball_joint import BallJoint
 from statejump.kinds.truss.joints.iwan_joint import IwanJoint
@@ -119,7 +119,7 @@ class TrussTorsionSpring(Item):
 
 
 @definition
-class TrussThermal(Thermal):
+class TrussThermal(CaseThermal):
     """A temperature program, or the temperatures of all members."""
 
     ONE_OF = {"shape": {"table": (*Thermal.ONE_OF["shape"]["table"], ("members_file",))}}
@@ -138,7 +138,7 @@ class Program(Item, Thermal):
 
     cycles: int | None = whole(None, 1, 100_000, "as [thermal]")  # type: ignore[assignment]
     period_s: float | None = parameter(  # type: ignore[assignment]
-        None, "s", 0, 1e6, "as [thermal]; of a table its last time", above=True
+        None, "s", 0, core_thermal.LONGEST_PERIOD_S, "as [thermal]; of a table its last time", above=True
     )
 
     def completed(self, common: TrussThermal) -> TrussThermal:
@@ -148,7 +148,8 @@ class Program(Item, Thermal):
         """
         given = self.to_dict()
         del given["name"]
-        lasts = core_thermal.period_of(self, self.period_s, "period_s", common.period_s)
+        table_s = core_thermal.period_of(common, None, "", common.period_s)
+        lasts = core_thermal.period_of(self, self.period_s, "period_s", common.period_s, common.period_s - table_s)
         return TrussThermal(**{**given, "cycles": self.cycles or common.cycles, "period_s": lasts})
 
 
@@ -254,7 +255,7 @@ class TrussCase(Case):
 
     truss: Truss = section(Truss, required=True)
     node: list[Node] = tables(Node, "sections [[node]]", required=True)
-    link: list[Link] = tables(Link, "sections [[link]]", required=True)
+    link: list[Link] = tables(Link, "sections [[link]]")
     program: list[Program] = tables(Program, "sections [[program]]")
     expansion: list[TrussExpansion] = tables(TrussExpansion, "sections [[expansion]]")
     slider: list[Slider] = tables(Slider, "sections [[slider]]")
@@ -283,8 +284,13 @@ class TrussCase(Case):
     def programs(self) -> list[TrussThermal | MemberProgram]:
         """The temperature programs, the common one first, cycles and period filled in; then those of members."""
         members = self.thermal.members
-        of_members = [] if members is None else members.programs(self.thermal.cycles)
+        of_members = [] if members is None else members.programs(self.thermal.cycles, self.period_s)
         return [self.thermal, *(program.completed(self.thermal) for program in self.program), *of_members]
+
+    def _given_programs(self) -> list[Thermal | MemberProgram]:
+        members, cycles = self.thermal.members, self.thermal.cycles
+        of_members = [] if members is None else [members.furthest_at_end(cycles)]
+        return [self.thermal, *self.program, *of_members]
 
     def returns_s(self) -> NDArray[np.float64]:
         """Return the times [s] at which all parts have their first temperature again."""

@@ -60,7 +60,7 @@ def _programs(case: TrussCase) -> None:
     for item in case.program:
         try:
             program = item.completed(case.thermal)
-            thermal.check(program, section="")
+            thermal.check(program, section="", returns=case.ending is not None)
         except StatejumpError as refused:
             refused.item = f"program {item.name!r}"
             raise

@@ -11,6 +11,7 @@ import numpy as np
 from statejump.core.comparison import Comparison, Quantity, models, share
 from statejump.core.run import Column, Run, change, energy_residue_J
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.scales import COMPARED, NO_JUMP, Scales, scales
 from statejump.kinds.truss.why_missed import why_missed
 
 
@@ -47,10 +48,19 @@ def loop_width_m(case: TrussCase, run: Run) -> float:
     return width
 
 
+def scales_of(case: TrussCase, run: Run) -> Scales:
+    """Return the scales of the motion of a run."""
+    return scales(case.resolve(), run["displacement_m"])
+
+
 def jump_scale_m(case: TrussCase, run: Run) -> float:
-    """What differences of jumps are measured by [m]: the largest jump or the loop's width, the larger."""
-    jumps = np.linalg.norm(jumps_m(run), axis=1)
-    return max(float(jumps.max()), loop_width_m(case, run))
+    """What differences of jumps are measured by [m]: the largest jump or the loop's width, the larger. Where both are
+    NO_JUMP of the difference of displacements that the case allows, or less, it is COMPARED of the motion."""
+    jumps, tolerance = np.linalg.norm(jumps_m(run), axis=1), case.tolerance
+    allowed = tolerance.displacement_relative * scales_of(case, run).motion_m
+    largest = max(float(jumps.max()), loop_width_m(case, run))
+    least = COMPARED if largest <= NO_JUMP * allowed else NO_JUMP
+    return max(largest, least * allowed / tolerance.jump_relative)
 
 
 def _relative(name: str, difference: float, scale: float, tolerance: float) -> Quantity:
@@ -62,7 +72,8 @@ def difference(case: TrussCase, first: Run, second: Run) -> list[Quantity]:
     """Compare two runs at the same times; the first gives the scales."""
     tolerance = case.tolerance
     ours, other = (run["displacement_m"] for run in (first, second))
-    largest = float(np.linalg.norm(ours, axis=2).max())
+    of = scales_of(case, first)
+    largest = max(float(np.linalg.norm(ours, axis=2).max()), COMPARED * of.motion_m)
     peak = int(np.argmax(np.abs(first["temperature_change_K"])))
     apart = np.linalg.norm(other - ours, axis=2)
     rows = [
@@ -75,13 +86,15 @@ def difference(case: TrussCase, first: Run, second: Run) -> list[Quantity]:
     node = int(np.argmax(np.linalg.norm(jumps[0], axis=1)))
     scale = jump_scale_m(case, first)
     ours_m, other_m = (float(np.linalg.norm(jump[node])) for jump in jumps)
-    rows.append(models(f"jump_of_node_{case.node[node].name}", "m", ours_m, other_m, tolerance.jump_relative * scale))
-    rows.append(_relative("jump_largest_difference_over_largest_jump_or_loop",
+    what = "jump" if case.has_jump else "displacement_at_program_end"
+    rows.append(models(f"{what}_of_node_{case.node[node].name}", "m", ours_m, other_m, tolerance.jump_relative * scale))
+    rows.append(_relative(f"{what}_largest_difference_over_largest_{'jump_or_loop' if case.has_jump else 'of_them'}",
                           float(np.linalg.norm(jumps[1] - jumps[0], axis=1).max()), scale, tolerance.jump_relative))
     forces = [run.links["axial_force_N"].values for run in (first, second)]
     rows.append(_relative(
-        "axial_force_largest_rms_over_largest", float(np.sqrt(((forces[1] - forces[0]) ** 2).mean(axis=0)).max()),
-        float(np.abs(forces[0]).max()), tolerance.force_relative,
+        "axial_force_largest_rms_over_largest",
+        float(np.sqrt(((forces[1] - forces[0]) ** 2).mean(axis=0)).max(initial=0.0)),
+        max(float(np.abs(forces[0]).max(initial=0.0)), COMPARED * of.force_N), tolerance.force_relative,
     ))
     return rows
 
@@ -99,12 +112,13 @@ def loop_drift_m(case: TrussCase, run: Run) -> float:
 
 
 def _energy_row(case: TrussCase, dem: Run) -> Quantity:
-    """Residue over the work of friction; without friction over the energy that is stored and spent."""
+    """Residue over the work of friction; without friction over the energy that is stored and spent. An energy is of
+    second order in the motion, so its least scale is that of forces squared."""
     residual = energy_residual(dem.energy)
     scale = change(dem.energy, "friction_dissipation_J")
-    name = "energy_residual_over_friction_work"
-    if not scale > 0:
-        scale = float(np.ptp(dem["elastic_energy_J"]) + dem["damping_dissipation_J"][-1])
+    name, least = "energy_residual_over_friction_work", COMPARED**2 * scales_of(case, dem).energy_J
+    if not scale > least:
+        scale = max(float(np.ptp(dem["elastic_energy_J"]) + dem["damping_dissipation_J"][-1]), least)
         name = "energy_residual_over_largest_stored"
     return models(name, "-", 0.0, share(residual, scale), case.tolerance.energy_balance_relative)
 
@@ -115,7 +129,8 @@ def compare(case: TrussCase, reduced: Run, dem: Run) -> Comparison:
     rows = [*difference(case, exact, dem), _energy_row(case, dem)]
     if case.thermal.cycles > 2:
         rows.append(_relative("loop_drift_over_largest_displacement", loop_drift_m(case, dem),
-                              float(np.linalg.norm(exact["displacement_m"], axis=2).max()),
+                              max(float(np.linalg.norm(exact["displacement_m"], axis=2).max()),
+                                  COMPARED * scales_of(case, exact).motion_m),
                               case.tolerance.displacement_relative))
     found = Comparison(case, {"reduced": exact, "dem": dem}, tuple(rows), warnings=reduced.warnings)
     return found if found.passed else replace(
@@ -123,8 +138,8 @@ def compare(case: TrussCase, reduced: Run, dem: Run) -> Comparison:
 
 
 def jump_table(case: TrussCase, run: Run, most: int = 8) -> list[tuple[Any, ...]]:
-    """Return name, jump along x, y, z and its length [m] of the nodes that jump most."""
-    jumps = jumps_m(run)
+    """Return name, jump along x, y, z and its length [m] of the nodes that jump most. Rounding is no jump."""
+    jumps, rounding_m = jumps_m(run), scales_of(case, run).rounding_m
     length = np.linalg.norm(jumps, axis=1)
     order = np.argsort(-length, kind="stable")[:most]
-    return [(case.node[node].name, *jumps[node], length[node]) for node in order if length[node] > 0]
+    return [(case.node[node].name, *jumps[node], length[node]) for node in order if length[node] > rounding_m]

@@ -50,9 +50,11 @@ def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: No
         raise StatejumpError(cause='contacts that slip in part (reduced.sticking = "partial_slip") have no cone of '
                              "Coulomb's", case=case.name, remedy='set reduced.sticking to "elastic" or "rigid"')
     joints = truss.number_of_joints()
-    if not 1 <= joints <= MOST_JOINTS:
+    if not joints:
+        raise StatejumpError(cause="the truss has no joints, so it has no contact problem", case=case.name)
+    if joints > MOST_JOINTS:
         raise StatejumpError(f"the truss has {joints} joints", case=case.name,
-                             cause=f"the matrix of a contact problem is dense, so it must be 1 to {MOST_JOINTS}")
+                             cause=f"the matrix of a contact problem is dense, so it must be at most {MOST_JOINTS}")
     wanted = (np.arange(number) + 0.5) / number * case.duration_s
     found = whole_path(truss, tell, cycle_ends_only=True, problem_times=wanted, **settings(case))
     problems = [_problem(case, problem) for problem in found.problems if problem["joints"]]

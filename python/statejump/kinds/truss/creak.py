@@ -74,7 +74,8 @@ class Creak:
             places[1].set_ylabel(f"Acceleration of node {self.node} [m/s²]")
             places[1].sharex(places[0])
             shown = self.frequency_Hz > 0
-            places[2].loglog(self.frequency_Hz[shown], self.density_m2_per_s4_per_Hz[shown], color="0", linewidth=0.9)
+            draw = places[2].loglog if self.density_m2_per_s4_per_Hz[shown].any() else places[2].semilogx
+            draw(self.frequency_Hz[shown], self.density_m2_per_s4_per_Hz[shown], color="0", linewidth=0.9)
             places[2].set_xlabel("Frequency [Hz]")
             places[2].set_ylabel("Density of acceleration [(m/s²)²/Hz]")
             figure.suptitle(f"{self.case.title}: creak at node {self.node}")

@@ -58,7 +58,7 @@ def symbol_size(gap_pt: float) -> float:
 
 def link_colours(truss: ResolvedTruss) -> tuple[Any, ScalarMappable | None]:
     fraction = truss.links.shown_fraction
-    if np.ptp(fraction) < 1e-9:
+    if not len(fraction) or np.ptp(fraction) < 1e-9:
         return LINK, None
     scale = ScalarMappable(Normalize(min(0.0, fraction.min()), fraction.max()), COLOURS)
     return scale.to_rgba(fraction), scale
@@ -72,11 +72,13 @@ def legend(truss: ResolvedTruss) -> list[Line2D]:
 
     springs = truss.springs
     fraction = truss.links.shown_fraction
-    uniform = np.ptp(fraction) < 1e-9
+    uniform = not len(fraction) or np.ptp(fraction) < 1e-9
     text = "link" if (fraction == 1).all() else f"link, {scaled(fraction, 1.0, 'of ΔT')}"
     if not uniform:
         text = "link, coloured by temperature fraction"
-    found = [entry(text, linestyle="-", linewidth=2, color=LINK if uniform else COLOURS(0.6))]
+    found = []
+    if len(fraction):
+        found.append(entry(text, linestyle="-", linewidth=2, color=LINK if uniform else COLOURS(0.6)))
     symbol: dict[str, Any] = dict(color="0.25", markerfacecolor="white")
     if truss.dimension == 2:
         if truss.nodes.fixed[:, :2].all(axis=1).any():

@@ -85,6 +85,8 @@ def _sliding(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Qu
 
 def _refuse(truss: ResolvedTruss) -> None:
     """Raise NotAllowed for what the deck does not have."""
+    if not truss.links.names:
+        raise NotAllowed("link", cause="'statejump fe' takes trusses with links")
     of_angles = [(joint.section, truss.joints[joint.section].names) for joint in JOINTS
                  if not isinstance(joint, (AlongAxis, RoundParts))]
     of_springs = [("spring", truss.springs.names), ("torsion_spring", truss.torsion_springs.names)]

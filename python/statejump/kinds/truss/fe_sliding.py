@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from statejump.core.comparison import Quantity
 from statejump.core.errors import FailedRun, NotAllowed
-from statejump.core.thermal import range_K
+from statejump.core.thermal import range_K, rows as program_rows
 from statejump.fe import ccx
 from statejump.fe.ccx import number
 from statejump.kinds.truss.arrays import GROUND
@@ -34,6 +34,7 @@ MOST_BRANCHES = 40
 STEP = 1e-3  # of the solver's temperatures, loads, friction and play, so that its displacements are small as well
 # Displacements that are small are so to STEP of strains of a few thousandths, friction sticks to 1/STICK.
 TOLERANCE = 1e-4
+LEAST_JUMP = 1e-2
 
 
 def rows(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Quantity, ...]]:
@@ -54,16 +55,19 @@ def rows(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Quanti
     states = path.states["displacement_m"][at] / STEP
     own, start = states[1:], states[0]
 
-    def row(name: str, ours: Numbers, theirs: Numbers) -> Quantity:
-        size = float(np.linalg.norm(ours, axis=-1).max())
-        apart = float(np.linalg.norm(theirs - ours, axis=-1).max())
-        values = {"reduced": size, "fe": float(np.linalg.norm(theirs, axis=-1).max())}
+    def row(name: str, ours: Numbers, theirs: Numbers, least: float = 0.0) -> Quantity:
+        own_size = float(np.linalg.norm(ours, axis=-1).max())
+        size, apart = max(own_size, least), float(np.linalg.norm(theirs - ours, axis=-1).max())
+        values = {"reduced": own_size, "fe": float(np.linalg.norm(theirs, axis=-1).max())}
         share = apart / size if size else apart
         return Quantity(name, "m", values, share, TOLERANCE, share <= TOLERANCE)
 
     found_rows = [row("largest_displacement_sliding", own, other)]
     if not np.any(start):
-        found_rows.append(row("largest_jump_sliding", own[-1], other[-1]))
+        what = "jump" if case.has_jump else "displacement_at_program_end"
+        # CalculiX prints seven digits: of the largest displacement, TOLERANCE · LEAST_JUMP are left.
+        least = LEAST_JUMP * float(np.linalg.norm(own, axis=-1).max())
+        found_rows.append(row(f"largest_{what}_sliding", own[-1], other[-1], least))
     return lines, tuple(found_rows)
 
 
@@ -85,7 +89,8 @@ def corners(case: TrussCase, truss: ResolvedTruss) -> list[float]:
             raise NotAllowed("thermal.shape", program.shape, "sliders of 'statejump fe' follow 'triangle' and 'table'")
     cycle: set[float] = set()
     for program in truss.programs:
-        table = program.table_time_s if program.shape == "table" else [0.0, case.period_s / 2, case.period_s]
+        table = (program_rows(program, case.period_s)[0] if program.shape == "table"
+                 else [0.0, case.period_s / 2, case.period_s])
         cycle.update(np.asarray(table, dtype=float).tolist())
     every = sorted({0.0, *(cycle_s + number_of * case.period_s for number_of in range(case.thermal.cycles)
                            for cycle_s in cycle)})

@@ -14,7 +14,7 @@ from statejump.core.run import Run
 from statejump.core.thin_loops import straight_part
 from statejump.core.units import scale_of, text
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.compare import jumps_m, reduced_name
+from statejump.kinds.truss.compare import jumps_m, reduced_name, scales_of
 
 REDUCED_RUN: dict[str, Any] = {**REDUCED, "linewidth": 3.6}
 DEM_RUN = {**DEM, "linewidth": 1.1}
@@ -42,7 +42,8 @@ def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
     first = runs[0]
     shown = _shown(case, first)
     scale, unit = (1e3, "mm") if np.abs(first["displacement_m"]).max() > 2e-3 else (1e6, "µm")
-    link = int(np.argmax(np.ptp(first.links["axial_force_N"].values, axis=0)))
+    forces = np.ptp(first.links["axial_force_N"].values, axis=0)
+    link = int(np.argmax(forces)) if len(forces) else None
     styled = [(run, {**REDUCED_RUN, "label": reduced_name(run)} if run.model == "reduced" else DEM_RUN) for run in runs]
 
     def loop(node: int, axis: int) -> Panel:
@@ -51,7 +52,7 @@ def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
                 axes.plot(run["temperature_change_K"], run["displacement_m"][:, node, axis] * scale, **style)
             axes.set_xlabel("Temperature change [K]")
             axes.set_ylabel(f"Displacement of node {case.node[node].name} along {'xyz'[axis]} [{unit}]")
-            _mark_jump(axes, first, node, axis, scale)
+            _mark_jump(axes, case, first, node, axis, scale)
 
         return draw
 
@@ -68,10 +69,11 @@ def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
         slope_scale, slope_unit = scale_of("m", abs(line.slope))
         axes.set_ylabel(f"The same less {line.slope * slope_scale:.5g} {slope_unit}/K [{own_unit}]")
         axes.plot(first["temperature_change_K"][-1], left[0][-1] * own_scale, "s", color="#D55E00", markersize=5,
-                  zorder=6, label=f"state jump {text(float(left[0][-1] - left[0][0]), 'm', 4)}")
+                  zorder=6, label=_label(case, first, float(left[0][-1] - left[0][0])))
         axes.legend(loc="best", framealpha=1)
 
     def force(axes: Axes) -> None:
+        assert link is not None
         for run, style in styled:
             axes.plot(run["temperature_change_K"], run.links["axial_force_N"].values[:, link], **style)
         axes.set_xlabel("Temperature change [K]")
@@ -85,12 +87,20 @@ def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
         axes.set_ylabel("Work of friction [mJ]")
 
     second = without_line if line is not None else loop(*shown[1]) if len(shown) > 1 else None
-    return Sheet([loop(*shown[0]), second, force, friction], 2, (9.5, 7.0), case.title)
+    return Sheet([loop(*shown[0]), second, None if link is None else force, friction], 2, (9.5, 7.0), case.title)
 
 
-def _mark_jump(axes: Axes, run: Run, node: int, axis: int, scale: float) -> None:
+def _label(case: TrussCase, run: Run, jump_m: float) -> str:
+    """Return how the mark at the end of a loop is called."""
+    if not case.has_jump:
+        return f"end of the program, {text(jump_m, 'm', 4)}"
+    rounding = abs(jump_m) <= scales_of(case, run).rounding_m
+    return "no state jump" if rounding else f"state jump {text(jump_m, 'm', 4)}"
+
+
+def _mark_jump(axes: Axes, case: TrussCase, run: Run, node: int, axis: int, scale: float) -> None:
     values = run["displacement_m"][:, node, axis] * scale
     jump = run["displacement_m"][-1, node, axis] - run["displacement_m"][0, node, axis]
     axes.plot(run["temperature_change_K"][-1], values[-1], "s", color="#D55E00", markersize=5, zorder=6,
-              label=f"state jump {text(float(jump), 'm', 4)}")
+              label=_label(case, run, float(jump)))
     axes.legend(loc="best", framealpha=1)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a campaign records of one truss. Reflector columns are NaN without a surface that determines a fit."""
+"""What a campaign records of one truss. Reflector columns are NaN without a surface that determines a fit, jumps and
+reflector columns where the program does not return to the reference temperature."""
 from __future__ import annotations
 
 import numpy as np
@@ -16,8 +17,7 @@ LEAST_HEAT = 1e-9
 
 
 def quick(case: TrussCase) -> Run:
-    """Return the reduced model as a run of two samples, its ends; only those events are located on which the state
-    depends."""
+    """Return the reduced model as a run of its ends; only those events are located on which the state depends."""
     path = quick_path(case.resolve(), case.reduced.increments_per_branch)
     return reduced_run(case, path, np.array([0.0, case.duration_s]))
 
@@ -29,7 +29,7 @@ def outcomes(case: TrussCase, run: Run) -> dict[str, float]:
     jumps = np.linalg.norm(node_jumps(found)[-1], axis=1)
     heat = heat_of_joints_J(ends)[-1]
     values = dict.fromkeys(case.behaviour.OUTCOMES, float("nan"))
-    surface = reflector.surface(truss)
+    surface = reflector.surface(truss) if case.has_jump else None
     if surface is not None:
         start, end = (surface.fit(ends["displacement_m"][index]) for index in (0, -1))
         values.update(
@@ -38,11 +38,11 @@ def outcomes(case: TrussCase, run: Run) -> dict[str, float]:
             reflector_tilt_change_rad=float(np.linalg.norm(end.tilt_rad - start.tilt_rad)),
             reflector_depth_change_m=end.depth_m - start.depth_m,
         )
+    if case.has_jump:
+        values.update(largest_node_jump_m=float(jumps.max()), rms_node_jump_m=float(np.sqrt(np.mean(jumps**2))))
     values.update(
-        largest_node_jump_m=float(jumps.max()),
-        rms_node_jump_m=float(np.sqrt(np.mean(jumps**2))),
         friction_dissipation_J=float(heat.sum()),
         slipping_joints=float(np.count_nonzero(heat > LEAST_HEAT * heat.sum())),
-        largest_axial_force_N=float(np.abs(found.states["axial_force_N"]).max()),
+        largest_axial_force_N=float(np.abs(found.states["axial_force_N"]).max(initial=0.0)),
     )
     return values

@@ -21,6 +21,7 @@ from statejump.core.units import scale_of, text, unit_of
 from statejump.kinds.truss.case import Link, Spring, TrussCase
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.result import names as names_of
+from statejump.kinds.truss.scales import scales
 from statejump.kinds.truss.words import is_guided, is_held
 from statejump.report import words
 from statejump.report.drawing import round_down
@@ -82,6 +83,9 @@ class TrussPart:
         else:
             self.cycles = len(self.answers.tables["cycles"])
             self.node_jumps = _vectors(self.answers.tables["node_jumps"], self.cycles)
+        self._rounding_m = scales(case.resolve(), self._run.history["displacement_m"].values).rounding_m
+        sizes = np.linalg.norm(self.node_jumps, axis=2, keepdims=True)
+        self.node_jumps = np.where(sizes > self._rounding_m, self.node_jumps, 0.0)
         self._size_m = np.linalg.norm(self.node_jumps[-1], axis=1)
         self.joints = self._joints()
         self.measures = self._measures()
@@ -230,11 +234,14 @@ class TrussPart:
 
     def _without_answers(self) -> list[str]:
         name = self.nodes[self._first]
+        if self._size_m.max() <= self._rounding_m:
+            return ["No node is away from where it began by more than rounding."]
         moved = {model: self._since_start(run, "history", "displacement_m")[-1, self._first]
                  for model, run in self.result.models.items()}
         jumps = [f"{text(float(np.linalg.norm(way)), 'm', 4)} in the {words.inside(words.MODELS[model])}"
                  for model, way in moved.items()]
-        found = [f"The node that jumps most, {name}, is after {_cycles(self.cycles)} away from where it began by "
+        which = "jumps" if self.case.has_jump else "is displaced"
+        found = [f"The node that {which} most, {name}, is after {_cycles(self.cycles)} away from where it began by "
                  f"{' and '.join(jumps)}."]
         if self.joints:
             by = "how far they moved" + (" and by the heat of their friction" if any(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,8 @@ ITEMS = {"displacement_m": ("nodes", True), "axial_force_N": ("links", False), "
 TOUCHING = [joint for joint in JOINTS if joint.has_contacts]
 # Of these the DEM samples states; those of contacts are among the contacts of a result.
 STICKING = [joint for joint in JOINTS if joint.has_contacts or not joint.not_in_dem]
+# Where the rows of a program end that does not end at the reference temperature, from the start.
+AT_END = "largest_displacement_at_program_end_m"
 HEAT = "heat of friction since the start"
 LOCATED = 1e-6  # of a cycle: an event within less has no uncertainty worth telling
 NOTES = {"displacement_m": "from the drawn shape", "axial_force_N": "compression positive"} | {
@@ -115,8 +118,10 @@ def _changes(truss: ResolvedTruss, time_s: np.ndarray, part: Any) -> np.ndarray:
 
 def _run(
     case: TrussCase, model: str, plain: dict[str, Column], energy: dict[str, Column], items: dict[str, np.ndarray],
-    events: Callable[[], list[Event]], summary: Mapping[str, float], **more: Any,
+    events: Callable[[], list[Event]], summary: Mapping[str, float], warnings: tuple[str, ...] = (),
+    dense: tuple[np.ndarray, np.ndarray] | None = None, **more: Any,
 ) -> Run:
+    """Return a run. ``dense``: times and displacements, where there are more of them than samples."""
     truss, time = case.resolve(), plain["time_s"].values
     history = dict(plain)
     for key, (of, _) in ITEMS.items():
@@ -139,9 +144,24 @@ def _run(
         return sorted([*events(), *_cable_events(truss, time, change, items["tension_N"])],
                       key=lambda event: event.time_s)
 
-    jumps = np.linalg.norm(items["displacement_m"][-1] - items["displacement_m"][0], axis=1)
     return Run(model, history, energy, links, contacts, Events(happened),
-               {"largest_jump_m": float(jumps.max()), **summary}, names(case), lambda: case, **more)
+               {**_jumps(case, *(dense or (time, items["displacement_m"]))), **summary}, names(case), lambda: case,
+               warnings=(*case.thermal_notes, *warnings), **more)
+
+
+def _jumps(case: TrussCase, time_s: np.ndarray, displacement_m: np.ndarray) -> dict[str, float]:
+    """Return the largest jump of a node, NaN where the program does not return, and the largest displacement where its
+    rows end, from the start."""
+    moved = displacement_m - displacement_m[0]
+    largest = float(np.linalg.norm(moved[-1], axis=1).max())
+    found = {"largest_jump_m": largest if case.has_jump else nan}
+    if case.ending is not None:
+        after = min(int(np.searchsorted(time_s, case.ending.time_s)), len(time_s) - 1)
+        before = max(after - 1, 0)
+        share = float(np.interp(case.ending.time_s, time_s[[before, after]], [0.0, 1.0])) if after > before else 0.0
+        there = (1 - share) * moved[before] + share * moved[after]
+        found[AT_END] = float(np.linalg.norm(there, axis=1).max())
+    return found
 
 
 def _cable_events(truss: ResolvedTruss, time: np.ndarray, change: np.ndarray, tension_N: np.ndarray) -> list[Event]:
@@ -244,7 +264,8 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
         beyond = (*beyond, "of this long path the ends of cycles are kept: loads of links between them are not checked")
     beyond = (*beyond, *_taken_together(case, path), *notes.sentences(path.truss, path.notes))
     run = _run(case, "reduced", plain, energy, items, lambda: _events(case, path), summary, native=path,
-               warnings=beyond, sampler=lambda times: reduced_run(case, path, times))
+               warnings=beyond, dense=(at, states["displacement_m"]),
+               sampler=lambda times: reduced_run(case, path, times))
     others = _heat_columns({key: sampled(values) for key, values in _heat_without_contact(states).items()})
     heat_of_joints = Column(sampled(_heat(states)), "J", "contacts", note=HEAT)
     return replace(run, history={**run.history, **others}, contacts={**run.contacts, "dissipation_J": heat_of_joints})

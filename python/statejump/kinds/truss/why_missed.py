@@ -11,12 +11,13 @@ from scipy.sparse.linalg import ArpackError, eigsh
 
 from statejump.core import physics
 from statejump.core.run import Run
-from statejump.core.why_missed import heated_too_fast, still_moving
+from statejump.core.why_missed import SHARE_TOLD, heated_too_fast, still_moving
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.dem import blocked_directions
 from statejump.kinds.truss.masses import lumped_mass_kg
 from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.scales import COMPARED, scales
 from statejump.kinds.truss.solve import TrussPath, engine_program, solve
 
 # Of the stiffest part: a motion that is held by less is held by nothing but rounding.
@@ -34,7 +35,8 @@ def why_missed(case: TrussCase, exact: Run, dem: Run, jump_scale_m: float) -> li
     mass, period = lumped_mass_kg(path.truss), slowest_natural_period_s(path)
     moved = float(np.linalg.norm(np.ptp(exact["displacement_m"], axis=0), axis=1).max())
     tolerance = case.tolerance
-    allowed = min(tolerance.displacement_relative * moved, tolerance.jump_relative * jump_scale_m)
+    least = COMPARED * scales(path.truss, exact["displacement_m"]).motion_m
+    allowed = min(tolerance.displacement_relative * max(moved, least), tolerance.jump_relative * jump_scale_m)
     found = heated_too_fast(period, case.thermal, engine_program(case.thermal), moved, allowed)
     found += still_moving(dem, float(mass.sum()), period, allowed)
     if case.reduced.sticking == "rigid" and path.truss.number_of_joints():
@@ -44,6 +46,8 @@ def why_missed(case: TrussCase, exact: Run, dem: Run, jump_scale_m: float) -> li
     if slips is not None and slips != case.dem.friction_law and path.truss.number_of_joints():
         found.append(f"contacts of the reduced model and of the DEM slip by different laws: set dem.friction_law to "
                      f"{slips!r}, as reduced.sticking is {case.reduced.sticking!r}")
+    for joint in JOINTS:
+        found += joint.gives_in_dem(path, path.truss.joints[joint.section], SHARE_TOLD * allowed)
     return found
 
 

@@ -14,6 +14,7 @@ from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.joints.words import count, spread
 from statejump.kinds.truss.motion import TrussMotion
+from statejump.kinds.truss.result import AT_END
 
 
 def is_held(case: TrussCase, node: Node) -> bool:
@@ -40,7 +41,7 @@ def describe(case: TrussCase) -> list[str]:
     if any(loads):
         sentences.append(f"Dead loads of {spread(loads, 'N')} on {count(loads, 'node')}.")
     shares = [link.temperature_fraction for link in case.link]
-    if set(shares) != {1.0}:
+    if set(shares) - {1.0}:
         sentences.append(f"Links are shaded: they take {spread(shares, digits=3)} of the temperature change.")
     if case.thermal.members is not None:
         sentences.append(f"{len(case.thermal.members.names)} members have temperature histories of their own, of "
@@ -71,6 +72,15 @@ def _tied(case: TrussCase) -> list[str]:
     return [f"It has {' and '.join(filter(None, [', '.join(tied[:-1]), tied[-1]]))}."] if tied else []
 
 
+def _what(case: TrussCase) -> str:
+    """What the end of a run less its start is."""
+    if case.ending is None:
+        return f"state jump after {case.thermal.cycles} cycle(s)"
+    if case.ending.returns:
+        return f"state jump after {case.thermal.cycles} cycle(s) and the return"
+    return f"displacement at the program's end, {case.ending.temperature_change_K:.6g} K, no state jump"
+
+
 def told(case: TrussCase, runs: Mapping[str, Run]) -> list[Shown | str]:
     """Return what a command prints of the runs: the nodes that jump most, events, energy residue."""
     first, *others = runs.values()
@@ -82,8 +92,11 @@ def told(case: TrussCase, runs: Mapping[str, Run]) -> list[Shown | str]:
         [name, *(f"{value:.6e}" for value in (*jump[: len(axes)], length, *(size[numbers[name]] for size in lengths)))]
         for name, *jump, length in compare.jump_table(case, first)
     ]
-    title = f"{case.title}: state jump after {case.thermal.cycles} cycle(s)"
-    found: list[Shown | str] = [Shown(title, header, rows, left=("node",))]
+    found: list[Shown | str] = [
+        Shown(f"{case.title}: {_what(case)}", header, rows, left=("node",)) if rows
+        else f"{case.title}: no node moves by more than rounding between start and end"]
+    if AT_END in first.summary and case.has_jump:
+        found.append(f"largest displacement at the program's end: {first.summary[AT_END]:.6e} m")
     for model, run in runs.items():
         label = {"reduced": compare.reduced_name(run), "dem": "DEM"}[model] + ": " if others else ""
         found.append(f"{label}{len(run.events)} events, energy residue {run.summary['energy_residue_J']:.3g} J")

@@ -75,6 +75,7 @@ class Umbrella(Kind):
         "contacts",
         "energy_residue_J",
     )
+    AT_PROGRAM_END = ("theta2_change_at_program_end_rad", "theta4_change_at_program_end_rad")
 
     def laws(self, case: UmbrellaCase) -> Joint:
         """Return the joint as the curves of the laws want it."""
@@ -154,7 +155,10 @@ class Umbrella(Kind):
         """Return what makes the state jump smaller; see :func:`.control.control`."""
         from statejump.kinds.umbrella import control
 
-        return control.control(case, **settings)
+        case.need_jump("'statejump control'")
+        found = control.control(case, **settings)
+        found.remarks += case.thermal_notes
+        return found
 
     def figures(self, case: UmbrellaCase, results: Results, part: Part) -> Figures:
         """Draw the paper's Figures 13 to 16 of the case in both models, and test its claims."""

@@ -8,6 +8,7 @@ from statejump.core.comparison import Comparison, Quantity, models, quantity, sh
 from statejump.core.run import Run, energy_residue_J
 from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.kinds.umbrella.result import AT_END
 
 STORED = tuple(f"{name}_energy_J" for name in ("kinetic", "axial", "contact", "torsion"))
 DISSIPATED = tuple(f"{name}_dissipation_J" for name in ("axial", "pin", "friction", "impact"))
@@ -80,14 +81,15 @@ def history_rows(case: UmbrellaCase, ours: Run, other: Run) -> list[Quantity]:
     rows = []
     if reproducible:
         for angle in ("theta2", "theta4"):
-            name = f"{angle}_jump"
-            rows.append(models(name, "rad", ours.summary[f"{name}_rad"], other.summary[f"{name}_rad"],
+            key = f"{angle}_jump_rad" if case.has_jump else f"{angle}{AT_END}"
+            rows.append(models(key.removesuffix("_rad"), "rad", ours.summary[key], other.summary[key],
                                tolerance.final_theta2_rad))
     end = len(ours) if reproducible else largest_temperature(ours) + 1
     until = "" if reproducible else "_until_largest_temperature"
     for angle in ("theta2", "theta4"):
         column = f"{angle}_rad"
-        span = float(np.ptp(ours[column]))
+        # The allowed difference of jumps, below which an angle does not change: it is no scale of zero.
+        span = max(float(np.ptp(ours[column])), tolerance.final_theta2_rad)
         largest = float(np.max(np.abs(other[column][:end] - ours[column][:end])))
         rows.append(
             models(f"{angle}_largest_difference_over_range{until}", "-", 0.0,

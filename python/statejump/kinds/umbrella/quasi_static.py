@@ -28,12 +28,16 @@ class QuasiStatic:
     """Quasi-static paths of a loaded rib.
 
     :param case: name of the case
+    :param notes: what is to be known of the temperature program
+    :param has_jump: whether the program returns to the reference temperature
     :param paths: by links: ``rigid``, with rigid contact and Coulomb's friction; ``elastic``, with Hertz's contact and
         the compliance of the friction law, where the laws of the case have such a path
     """
 
     case: str
     paths: dict[str, Any]
+    notes: tuple[str, ...] = ()
+    has_jump: bool = True
 
     def _path(self, links: str) -> Any:
         if links not in self.paths:
@@ -57,8 +61,10 @@ class QuasiStatic:
 
     @property
     def summary(self) -> dict[str, float]:
-        """Jumps of both angles on every path; NaN: the contact is lost on the way, with it the place in the play."""
-        return {f"{key.removesuffix('_rad')}_{links}_rad": float("nan") if path.separated else float(getattr(path, key))
+        """Jumps of both angles on every path. NaN: the program does not return, or the contact is lost on the way, with
+        it the place in the play."""
+        return {f"{key.removesuffix('_rad')}_{links}_rad":
+                float(getattr(path, key)) if self.has_jump and not path.separated else float("nan")
                 for links, path in self.paths.items() for key in JUMPS}
 
     @property
@@ -66,6 +72,7 @@ class QuasiStatic:
         """What has to be known of the paths."""
         lost = [f"the contact is lost on the path with {links} links: the place in the play is undetermined from there"
                 for links, path in self.paths.items() if path.separated]
+        lost = [*self.notes, *lost]
         return lost if ELASTIC in self.paths else [*lost, "the laws of the case have no path with elastic links"]
 
     def told(self) -> list[Shown | str]:
@@ -101,4 +108,4 @@ def quasi_static(case: UmbrellaCase) -> QuasiStatic:
         if has_elastic_loop(case):
             compliance = "mindlin" if laws.law("friction", case.joint.friction_law).has_memory else "rigid"
             paths[ELASTIC] = _engine.elastic_loop(model, program, angle, SAMPLES, compliance)
-    return QuasiStatic(case.name, paths)
+    return QuasiStatic(case.name, paths, case.thermal_notes, case.has_jump)

@@ -18,6 +18,9 @@ from statejump.results.events import from_states
 
 CONTACTS = ("joint_b",)
 LINKS = ("link_ab", "link_bc")
+ANGLES = ("theta2", "theta4")
+# Change of an angle at the end of a program's rows, from the start: what one that ends off the reference has.
+AT_END = "_change_at_program_end_rad"
 CHAOS = (
     "without damping of links and pins the motion after contact is chaotic: one run's jump is one of many, see "
     "'statejump figures'"
@@ -117,11 +120,13 @@ def _run(
             events.remove(seen)
         events.append(Event("first_contact", first_time, first_change, CONTACTS[0]))
         events.sort(key=lambda event: event.time_s)
-    jumps = {
-        f"{angle}_jump_rad": float(columns[f"{angle}_rad"][-1] - columns[f"{angle}_rad"][0])
-        for angle in ("theta2", "theta4")
-    }
-    warnings = () if case.is_reproducible else (CHAOS,)
+    jumps = {}
+    for angle in ANGLES:
+        turned = columns[f"{angle}_rad"] - columns[f"{angle}_rad"][0]
+        jumps[f"{angle}_jump_rad"] = float(turned[-1]) if case.has_jump else nan
+        if case.ending is not None:
+            jumps[f"{angle}{AT_END}"] = float(np.interp(case.ending.time_s, columns["time_s"], turned))
+    warnings = (*case.thermal_notes, *(() if case.is_reproducible else (CHAOS,)))
     return Run(model, plain, energy, _links(case, columns), contacts, Events(events), {**jumps, **summary},
                names(case), lambda: case, warnings=warnings, **more)
 

@@ -8,11 +8,14 @@ from statejump.core.run import Run
 from statejump.core.tables import Shown
 from statejump.core.units import text
 from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.kinds.umbrella.result import ANGLES, AT_END
 
 WORDS = {
     "joint_b": "Joint B", "link_ab": "Link AB", "link_bc": "Link BC", "theta2_rad": "Angle θ2 of AB",
     "theta4_rad": "Angle θ4 of BC", "theta2_jump_rad": "Jump of θ2", "theta4_jump_rad": "Jump of θ4",
     "theta2_jump": "Jump of θ2", "theta4_jump": "Jump of θ4",
+    f"theta2{AT_END}": "Change of θ2 at the end of the program",
+    f"theta4{AT_END}": "Change of θ4 at the end of the program",
 }
 
 
@@ -44,8 +47,14 @@ def told(case: UmbrellaCase, runs: Mapping[str, Run]) -> list[Shown | str]:
             "first contact: none, the play is never used up" if first is None
             else f"first contact: ΔT = {first.temperature_change_K:.6f} K at {first.time_s:.6f} s"
         )
-        found.append(f"state jump: θ2 {said['theta2_jump_rad']:.6e} rad, θ4 {said['theta4_jump_rad']:.6e} rad after "
-                     f"{case.thermal.cycles} cycle(s)")
+        if case.ending is not None:
+            there = (said[f"{angle}{AT_END}"] for angle in ANGLES)
+            found.append("change at the program's end, {:.6g} K: θ2 {:.6e} rad, θ4 {:.6e} rad".format(
+                case.ending.temperature_change_K, *there))
+        if case.has_jump:
+            returned = " and the return" if case.ending is not None else ""
+            found.append(f"state jump: θ2 {said['theta2_jump_rad']:.6e} rad, θ4 {said['theta4_jump_rad']:.6e} rad "
+                         f"after {case.thermal.cycles} cycle(s){returned}")
         if "energy_residue_J" in said:
             found.append(f"{said['steps']:,.0f} steps, {said['contacts']:.0f} contacts, energy residue "
                          f"{said['energy_residue_J']:.3g} J")

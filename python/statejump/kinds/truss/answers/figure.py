@@ -17,7 +17,7 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
 from statejump.core.figures import Constrained, Drawing, panels, style
 from statejump.kinds.truss.answers.contributions import Contributions
-from statejump.kinds.truss.answers.jumps import node_jumps
+from statejump.kinds.truss.answers.jumps import node_jumps, rounding_m
 from statejump.kinds.truss.answers.outputs import Output
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
@@ -56,6 +56,7 @@ def jumps_figure(found: TrussPath, shares: Contributions | None, title: str) -> 
     """Return the drawn truss and the truss with its jumps, magnified; the first MARKED joints have numbers."""
     truss = found.truss
     jump = node_jumps(found)[-1]
+    jump = np.where(np.linalg.norm(jump, axis=1, keepdims=True) > rounding_m(found), jump, 0.0)
     size = np.linalg.norm(jump, axis=1)
     factor, unit = readable(float(size.max()), "m")
     scale = magnification(truss, float(size.max()))
@@ -102,7 +103,9 @@ def jumps_figure(found: TrussPath, shares: Contributions | None, title: str) -> 
         drawing.colorbar(colours, ax=panel, label=f"Jump of a node [{unit}]", shrink=0.8 if flat else 0.6,
                          pad=0.02 if flat else 0.1)
         cycles = len(found.cycle_ends["time_s"]) - 1
-        text = f"jumps after {cycles} cycle{'s' if cycles > 1 else ''}, {scale:g} times magnified; grey: as drawn"
+        after = f"after {cycles} cycle{'s' if cycles > 1 else ''}"
+        text = (f"jumps {after}, {scale:g} times magnified; grey: as drawn" if size.any()
+                else f"no node jumps {after}")
         if shares is not None and shares.jump != 0:
             text += "; numbers: rank of a joint"
         wrapped = fill(text, int(13 * drawing.get_figwidth()))

@@ -12,6 +12,7 @@ import numpy as np
 
 from statejump.core.progress import Tell
 from statejump.kinds.truss.resolved import ResolvedTruss
+from statejump.kinds.truss.scales import scales
 from statejump.kinds.truss.solve import TrussPath, whole_path
 
 
@@ -25,6 +26,11 @@ def node_jumps(found: TrussPath) -> np.ndarray:
     """Return the jump [m] (cycles, nodes, 3) of every node after each cycle, against the start."""
     ends = found.cycle_ends["displacement_m"]
     return ends[1:] - ends[0]
+
+
+def rounding_m(found: TrussPath) -> float:
+    """Return the largest displacement [m] that is rounding of the motion, no jump."""
+    return scales(found.truss, found.states["displacement_m"]).rounding_m
 
 
 def most_moved(found: TrussPath) -> int:

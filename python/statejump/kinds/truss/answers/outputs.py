@@ -9,7 +9,7 @@ import numpy as np
 
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.answers import reflector
-from statejump.kinds.truss.answers.jumps import most_moved, node_jumps
+from statejump.kinds.truss.answers.jumps import most_moved, node_jumps, rounding_m
 from statejump.kinds.truss.references import known_name
 from statejump.kinds.truss.solve import TrussPath
 
@@ -44,11 +44,10 @@ class Output:
         """Return the lengths of changes of the vector, see :meth:`over_cycles`."""
         return np.linalg.norm(motion, axis=1)
 
-    def scale(self, found: TrussPath) -> float:
-        """Return the largest displacement, of a tilt over the size of the truss: what rounding is a share of."""
-        largest = float(np.abs(found.states["displacement_m"]).max(initial=1e-300))
+    def rounding(self, found: TrussPath) -> float:
+        """Return the largest change that is rounding of the motion; of a tilt over the size of the truss."""
         size = float(np.ptp(found.truss.nodes.position_m, axis=0).max())
-        return largest / size if self.unit == "rad" else largest
+        return rounding_m(found) / size if self.unit == "rad" else rounding_m(found)
 
 
 def node_output(found: TrussPath, name: str | None = None) -> Output:

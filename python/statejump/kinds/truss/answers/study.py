@@ -150,19 +150,21 @@ def study(
         found = quick_path(truss, increments, tell)
     asked = chosen_output(found, output)
     checked, finer = judged(found, increments, lambda more: quick_path(truss, more, cycle_ends_only=True), asked)
-    jump = asked.jump(found)
+    jump, rounding = asked.jump(found), asked.rounding(found)
+    if abs(jump) <= rounding:
+        jump = 0.0
     tables: dict[str, list[rows.Row]] = {
         "cycles": rows.cycle_rows(found), "node_jumps": rows.node_rows(found), "joint_jumps": rows.joint_rows(found),
     }
     run = reduced_run(case, found, _sample_times(case))
     notes = [*others(found, finer, checked, asked), *_surface(found, tables), *run.warnings]
     change = abs(asked.jump(finer) - jump)
-    if change > RESOLVED * abs(jump):
+    if change > max(RESOLVED * abs(jump), rounding):
         notes.append(f"the jump is not resolved: with twice the increments it changes by {change:.2g} {asked.unit}; "
                      "more reduced.increments_per_branch are needed, or there is none")
     shares = None
     if not _jumps(found, asked, jump):
-        notes.append("the output does not jump: no joints are ranked, no sensitivities are asked")
+        notes.append("the output does not jump: no joints are ranked, no sensitivities are computed")
     else:
         with phase("contributions of joints") as tell:
             shares = _shares(found, asked, tell, tables, notes)
@@ -210,12 +212,18 @@ def _jumps(found: TrussPath, output: Output, jump: float) -> bool:
 
 def _shares(found: TrussPath, output: Output, tell: Tell, tables: dict[str, list[rows.Row]],
             notes: list[str]) -> Contributions | None:
+    if not found.truss.number_of_joints():
+        notes.append("the truss has no joints: none are ranked")
+        return None
     try:
         shares = contributions(found, output, tell)
     except EngineFailed as failure:
         notes.append(f"no contributions: the truss without friction: {failure.sentence}")
         return None
     notes += shares.notes
+    if not shares.contribution.any():
+        notes.append("no joint holds the jump by friction: none are ranked")
+        return None
     tables["contributions"] = rows.contribution_rows(shares)
     return shares
 

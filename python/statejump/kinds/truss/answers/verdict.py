@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from statejump.core.units import plain
+from statejump.kinds.truss.answers.jumps import rounding_m
 from statejump.kinds.truss.answers.outputs import Output
 from statejump.kinds.truss.solve import TrussPath, heat_of_joints_J
 
@@ -23,7 +24,6 @@ SETTLED = 1e-6
 STEADY = 0.01  # two jumps that differ by less are the same growth
 RESOLVED = 0.01  # of the largest jump: what the increments may leave of a growth that is called none
 DOUBLINGS = 3  # of the increments, where two paths do not tell
-ROUNDING = 1e-12  # of the largest displacement
 
 # Path of so many increments a branch.
 Solve = Callable[[int], TrussPath]
@@ -63,7 +63,7 @@ def verdict(coarse: TrussPath, finer: TrussPath, increments: int, output: Output
     each = output.sizes(motion)
     left = output.sizes(motion - output.over_cycles(coarse))
     heat = np.diff(heat_of_joints_J(finer.cycle_ends).sum(axis=1))
-    floor = ROUNDING * output.scale(finer)
+    floor = output.rounding(finer)
     last, most = float(each[-1]), float(each.max())
 
     def shown(value: float) -> str:
@@ -105,8 +105,7 @@ def others(coarse: TrussPath, finer: TrussPath, checked: Verdict, output: Output
         return []
     moved, before = (np.diff(path.cycle_ends["displacement_m"], axis=0) for path in (finer, coarse))
     each, left = np.linalg.norm(moved, axis=2), np.linalg.norm(moved - before, axis=2)[-1]
-    largest = float(np.abs(finer.states["displacement_m"]).max(initial=0.0))
-    least = max(SETTLED * float(each.max()), ROUNDING * largest)
+    least = max(SETTLED * float(each.max()), rounding_m(finer))
     going = np.where(each[-1] > np.maximum(least, 2 * left), each[-1], 0.0)
     if not going.any():
         return []

@@ -100,8 +100,9 @@ def _spring(case: TrussCase, one: str, two: str) -> Candidate:
     links, springs, turned = truss.links, truss.springs, truss.torsion_springs
     bars = links.young_modulus_Pa * links.cross_section_area_m2 / links.stress_free_length_m
     size = float(np.ptp(truss.nodes.position_m, axis=0).max())
-    stiffest = min(highest(case, STIFFNESS), STIFFER * bars.max())
-    softest = min(np.concatenate((bars, springs.stiffness_N_per_m, turned.stiffness_N_m_per_rad / size**2))) / STIFFER
+    every = np.concatenate((bars, springs.stiffness_N_per_m, turned.stiffness_N_m_per_rad / size**2))
+    stiffest = min(highest(case, STIFFNESS), STIFFER * (bars if len(bars) else every).max(initial=1.0))
+    softest = every.min(initial=stiffest) / STIFFER
     return Candidate(
         f"add_spring {told}", f"Spring from {one} to {two}", "N/m", 0.0, _grid(0.0, softest, stiffest),
         lambda stiffness: with_spring(truss, ends, stiffness), "spring", "stiffness_N_per_m",

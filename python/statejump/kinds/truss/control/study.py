@@ -9,7 +9,7 @@ from statejump.control.study import Line, Places, Study, Sweep, check_wanted, nu
 from statejump.core.errors import NotAllowed
 from statejump.core.progress import Tell, one_of
 from statejump.core.units import plain
-from statejump.kinds.truss.answers.jumps import most_moved, quick_path
+from statejump.kinds.truss.answers.jumps import most_moved, quick_path, rounding_m
 from statejump.kinds.truss.answers.verdict import RESOLVED
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.control.candidates import candidates
@@ -47,10 +47,11 @@ def control(
     asked = candidates(case, places)
     node = most_moved(quick_path(truss, increments)) if places.node is None else names.index(places.node)
     now = jump_of(truss, node, increments)
-    wanted = now.size_m / 2 if jump_below is None and now.size_m > 0 else jump_below
+    jumps = now.size_m > rounding_m(now.path)
+    wanted = now.size_m / 2 if jump_below is None and jumps else jump_below
     measure = (f"quasi-static path of the truss, solved again for every value; jump of node {names[node]} over "
                f"{case.thermal.cycles} cycle(s)")
-    result = Study(measure, "m", "µm", MICRO, RESULTS, now.size_m, wanted, "|State jump| [µm]", LINES)
+    result = Study(measure, "m", "µm", MICRO, RESULTS, now.size_m if jumps else 0.0, wanted, "|State jump| [µm]", LINES)
     result.recommendation["node"] = names[node]
     searches = [Search(one, Sweep(one.parameter, one.label, one.unit, 1.0, one.own, []), node, increments)
                 for one in asked]

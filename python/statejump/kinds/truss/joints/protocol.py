@@ -267,6 +267,11 @@ class JointType(Generic[ItemType, ArraysType]):
         """Return the nodes (joints, k) or GROUND that a contact pushes and its greatest stiffness [N/m] on the path."""
         return np.zeros((0, 1), dtype=int), np.zeros(0)
 
+    def gives_in_dem(self, path: Course, joints: ArraysType, told_m: float) -> list[str]:
+        """Return sentences on where joints that are rigid in the reduced model give way in the DEM by more than
+        ``told_m`` [m]."""
+        return []
+
     def torsion(self, joints: ArraysType) -> Torsion:
         """Return what turns links against each other by a moment."""
         return Torsion((), np.zeros((0, 2), dtype=int), np.zeros((0, 3)), np.zeros(0))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from statejump.core import physics
+from statejump.core.units import text
 from statejump.kinds.truss.arrays import GROUND, References, columns, names, pairs, unit, vectors
 from statejump.kinds.truss.joints.along_axis import AlongAxis, Axes
 from statejump.kinds.truss.joints.protocol import (
@@ -114,6 +115,24 @@ def with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
     both: dict[str, Any] = {key: np.concatenate([value, more[key]]) for key, value in vars(sliders).items()
                             if key != "names"}
     return truss.with_joints(slider=Sliders(names=(*sliders.names, *joints.names), **both))
+
+
+def _across_N(path: Course, joints: Sliders, which: np.ndarray) -> np.ndarray:
+    """Return the largest force [N] across the axes of sliders (k,) that links, springs and dead loads put on their
+    first nodes."""
+    truss, states = path.truss, path.states
+    largest = []
+    for node, axis in zip(joints.nodes[which, 0], joints.axis[which]):
+        load = np.tile(truss.nodes.force_N[node], (len(states["time_s"]), 1))
+        for ends, pull in ((truss.links.nodes, -states["axial_force_N"]), (truss.springs.nodes, states["tension_N"])):
+            for item in np.flatnonzero((ends == node).any(axis=1)):
+                own, other = ends[item] if ends[item, 0] == node else ends[item, ::-1]
+                place = truss.nodes.position_m[[own, other]] + states["displacement_m"][:, [own, other]]
+                way = place[:, 1] - place[:, 0]
+                load = load + pull[:, item, None] * way / np.linalg.norm(way, axis=1, keepdims=True)
+        across = load - (load @ axis)[:, None] * axis
+        largest.append(float(np.linalg.norm(across, axis=1).max()))
+    return np.array(largest)
 
 
 class SliderType(AlongAxis[Slider, Sliders]):
@@ -248,6 +267,18 @@ class SliderType(AlongAxis[Slider, Sliders]):
         pad = pads(joints)
         across = np.where(self.bodies_touch(joints), 0.0, pad.normal_N_per_m)
         return self.pushed_nodes(joints), np.maximum(pad.tangential_N_per_m + stop, across)
+
+    def gives_in_dem(self, path: Course, joints: Sliders, told_m: float) -> list[str]:
+        between = np.flatnonzero(joints.nodes[:, 1] != GROUND)
+        if not len(between):
+            return []
+        give = _across_N(path, joints, between) / pads(joints).normal_N_per_m[between]
+        most = int(np.argmax(give))
+        if not give[most] > told_m:
+            return []
+        return [f"the reduced model holds slider {joints.names[between[most]]!r} rigidly across its axis, in the DEM "
+                f"its pad bends there by up to {text(float(give[most]), 'm', 2)}: raise pad_radius_m or "
+                "young_modulus_Pa of the sliders between two nodes"]
 
     def scene(self, path: Course, joints: Sliders) -> dict[str, Any]:
         def finite(values: np.ndarray) -> list[float | None]:

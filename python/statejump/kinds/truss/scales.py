@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scales of the motion of a truss, and below which share of them a number is rounding.
+
+They are of the truss and its whole program, so that none vanishes where a truss comes back to where it began.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from statejump.kinds.truss.resolved import ResolvedTruss
+
+# Changes of status are located within 1e-9 of a branch, and a slender truss enlarges the rounding of coordinates by the
+# square of its slenderness: 40 bays to one part in 1e9 of the motion.
+ROUNDING = 1e-9
+# Of the coordinates: a length is a difference of coordinates, and a state is some hundred solutions with such lengths.
+COORDINATES = 1e3 * float(np.finfo(float).eps)
+# Of the scales: what a comparison measures by at least. With a tenth of the critical damping the DEM lags and swings by
+# some 1e-5 of the motion, where the natural period is 1e-3 of that of the temperature. The usual tolerance, 1 % of it,
+# leaves ten times as much.
+COMPARED = 1e-2
+# Of the difference of displacements that a case allows: a jump below it is none for a comparison with the DEM.
+NO_JUMP = 1e-4
+# Times the rounding of coordinates: a hundredth of COMPARED of it is still that rounding.
+LEAST_MOTION = 1e4
+
+
+@dataclass(frozen=True)
+class Scales:
+    """What differences are measured by.
+
+    :param motion_m: largest displacement or free expansion over the program, or deflection of the stiffest part under
+        the largest load; at least that of LEAST_MOTION
+    :param rounding_m: a displacement at or below it is rounding of the motion
+    :param force_N: largest force of a link whose expansion is held, or load
+    :param energy_J: elastic energy of all links whose expansion is held, or of that deflection
+    """
+
+    motion_m: float
+    rounding_m: float
+    force_N: float
+    energy_J: float
+
+
+def scales(truss: ResolvedTruss, displacement_m: np.ndarray) -> Scales:
+    """Return the scales of a truss.
+
+    :param displacement_m: of the nodes over the program (states, nodes, 3)
+    """
+    kept = vars(truss)
+    if "_scales" not in kept:  # a truss never changes, and may have a program for every link
+        kept["_scales"] = _at_rest(truss)
+    still: Scales = kept["_scales"]
+    motion = max(still.motion_m, float(np.linalg.norm(displacement_m, axis=-1).max(initial=0.0)))
+    return replace(still, motion_m=motion, rounding_m=max(still.rounding_m, ROUNDING * motion))
+
+
+def _at_rest(truss: ResolvedTruss) -> Scales:
+    """Return the scales of a truss that does not move."""
+    links, springs, position = truss.links, truss.springs, truss.nodes.position_m
+    coordinates = COORDINATES * float(np.abs(position).max(initial=0.0))
+    size = float(np.ptp(position, axis=0).max()) if len(position) else 0.0
+    ranges_K = np.abs(truss.temperature_ranges_K).max(axis=1)
+    expansion = np.abs(links.thermal_expansion_per_K * links.temperature_fraction * ranges_K[links.program])
+    strain = np.maximum(expansion, coordinates / links.stress_free_length_m)
+    rigidity = links.young_modulus_Pa * links.cross_section_area_m2
+    stiffness = np.concatenate((rigidity / links.stress_free_length_m, springs.stiffness_N_per_m))
+    load = max(float(np.linalg.norm(truss.nodes.force_N, axis=1).max(initial=0.0)),
+               float(np.abs(springs.preload_N).max(initial=0.0)))
+    deflection = load / float(stiffness.max()) if len(stiffness) else 0.0
+    motion = max(size * float(expansion.max(initial=0.0)), deflection, LEAST_MOTION * coordinates)
+    force = max(float((rigidity * strain).max(initial=0.0)), load, coordinates * float(stiffness.max(initial=0.0)))
+    held = float((rigidity * strain**2 * links.stress_free_length_m).sum())
+    energy = 0.5 * max(held, load * deflection, coordinates**2 * float(stiffness.sum()))
+    return Scales(motion, max(ROUNDING * motion, coordinates), force, energy)
