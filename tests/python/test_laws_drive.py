@@ -10,7 +10,7 @@ import pytest
 
 import statejump as sj
 from statejump import laws
-from statejump.core.tables import read_columns
+from statejump.core.table_files import read_columns
 
 CONTACT: dict[str, Any] = dict(effective_young_modulus_Pa=38.5e9, effective_shear_modulus_Pa=7.9e9,
                                effective_radius_m=0.01, friction_coefficient=0.3)

@@ -18,7 +18,7 @@ from scipy.stats import f as f_distribution
 
 from statejump.identification.loop import Loop
 from statejump.identification.models import (
-    MODELS, PARAMETERS, POSITIVE, START, Model, containing, parts_of, with_part)
+    MODELS, PARAMETERS, POSITIVE, START, Model, containing, with_part)
 from statejump.identification.noise import Noise, noise_of
 
 STARTS = 4  # best of the grid of starts that are followed
@@ -260,7 +260,7 @@ class Fits:
 def noise_at(best: Fit, loop: Loop) -> Noise:
     """Return how the noise of a loop is correlated, by the residuals of a fit."""
     problem = Problem(best.model, loop)
-    return noise_of(problem.residual(best.point), problem.jacobian(best.point))
+    return noise_of(problem.residual(best.point), problem.jacobian(best.point), problem.displacement)
 
 
 class _Better(Exception):
@@ -362,7 +362,7 @@ def intervals(fits: Fits, model: str, confidence: float, names: Sequence[str] | 
 
 def _intervals(problem: Problem, best: Fit, confidence: float, names: Sequence[str]) -> Intervals:
     jacobian = problem.jacobian(best.point)
-    noise = noise_of(problem.residual(best.point), jacobian)
+    noise = noise_of(problem.residual(best.point), jacobian, problem.displacement)
     freedoms = best.rows - len(problem.names)
     quantile = float(f_distribution.ppf(confidence, 1, max(1.0, best.rows / noise.rows_each - len(problem.names))))
     profiles, ends = {}, {}

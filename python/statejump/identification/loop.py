@@ -4,24 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey
-from statejump.core.tables import check_columns, read_columns
+from statejump.core.column_units import matched
+from statejump.core.errors import MissingKey, NotAllowed, StatejumpError
+from statejump.core.table_files import read_known
+from statejump.core.tables import check_columns
 from statejump.identification.hysteresis import Memory, from_any_start, remembered
 
 PAIRS = (("displacement_m", "force_N"), ("rotation_rad", "moment_N_m"))
 COLUMNS = ("time_s", *(name for pair in PAIRS for name in pair))
+# What test rigs call these quantities.
+WORDS = {
+    "time_s": ("t",), "displacement_m": ("disp", "displ", "position", "travel", "stroke", "deflection", "slip", "u", "x"),
+    "force_N": ("load", "friction", "friction force", "axial force", "F"), "rotation_rad": ("angle", "rot", "theta"),
+    "moment_N_m": ("torque", "M"),
+}
 STARTS = ("unknown", "fresh", "cycled")
 UNITS = {"displacement": ("m", "rad"), "force": ("N", "N m"), "stiffness": ("N/m", "N m/rad"), "-": ("-", "-")}
 FORCES, DISPLACEMENTS = ("force", "moment"), ("displacement", "rotation")
 FEWEST_ROWS = 20
-# Energy that a loop may give out, of the largest that its force could do along its path: sensors that are not in phase.
+# Fraction of the work of the largest force along the path that a loop may give out: sensors that are not in phase.
 PHASE = 0.01
 # Standard deviations of the energy by the noise of the force that pass for chance.
 CHANCE = 6.0
@@ -64,8 +71,8 @@ class Loop:
         force, displacement = FORCES[self.angular], DISPLACEMENTS[self.angular]
         remedy = f"multiply {force} by -1: it is positive where it resists a positive {displacement}"
         if energy < -max(CHANCE * doubt, PHASE * largest):
-            raise StatejumpError("the loop gives out energy", cause=f"{-energy:.4g} J: the sign of the {force} is reversed",
-                                 remedy=remedy)
+            raise StatejumpError("the loop gives out energy", remedy=remedy,
+                                 cause=f"{-energy:.4g} J: the sign of the {force} is reversed")
         if energy <= PHASE * largest and np.corrcoef(self.displacement, self.force)[0, 1] < PUSHES:
             raise StatejumpError(f"the {force} falls as the {displacement} rises", cause="its sign is reversed",
                                  remedy=remedy)
@@ -94,7 +101,7 @@ class Loop:
 
 
 def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown") -> Loop:
-    """Return a loop of a CSV file, or of columns.
+    """Return a loop of a table, or of columns.
 
     :param source: columns ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``; ``time_s`` may be
         there and is not used
@@ -104,21 +111,24 @@ def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown") ->
     if start not in STARTS:
         raise NotAllowed("start", start, f"must be one of {', '.join(STARTS)}", allowed=STARTS)
     if isinstance(source, Mapping):
-        return _loop("loop", {str(name): np.atleast_1d(np.asarray(values)) for name, values in source.items()}, start)
+        return _loop("loop", _named(source), start)
     file = Path(source)
-    columns = read_columns(file)
+    columns = read_known(file, COLUMNS, WORDS)
     try:
         return _loop(file.stem, columns, start)
     except StatejumpError as failure:
         raise failure.located(file=file) from None
 
 
+def _named(source: Mapping[str, Any]) -> dict[str, np.ndarray]:
+    """Return columns by keys that end in their units, in these units; ISO times are left out."""
+    given = {str(name): np.atleast_1d(np.asarray(values)) for name, values in source.items()}
+    columns = [column for column in matched(list(given), COLUMNS, WORDS) if not column.iso]
+    return {column.key: column.converted(given[column.name]) if given[column.name].dtype.kind in "iuf"
+            else given[column.name] for column in columns}
+
+
 def _loop(name: str, columns: Mapping[str, np.ndarray], start: str) -> Loop:
-    for column in columns:
-        if column not in COLUMNS:
-            near = get_close_matches(column, COLUMNS, 1)
-            raise UnknownKey(column, section=f"column {column}", cause=f"did you mean {near[0]}?" if near else
-                             f"known are {', '.join(COLUMNS)}")
     pairs = [pair for pair in PAIRS if pair[0] in columns or pair[1] in columns]
     if not pairs:
         raise MissingKey("displacement_m", "a loop has displacement_m and force_N, or rotation_rad and moment_N_m",

@@ -5,10 +5,13 @@ Least squares stay unbiased if the noise is correlated, but their variance grows
 derivative that no other parameter explains. Independent noise of variance s² gives the estimate the variance s²/(h·h),
 noise of the correlations ρ gives κ s²/(h·h) with κ = Σ ρ_|i-j| h_i h_j/(h·h). The correlations are those of an
 autoregression of the residuals (Burg), whose order BIC chooses.
+
+What a joint's formula leaves out comes back in every cycle, so that cycles do not average it. With the correlation c of
+the residuals a cycle apart, C cycles multiply κ by 1 + (C - 1) c.
 """
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import log
 
@@ -17,22 +20,36 @@ from scipy.signal import fftconvolve, lfilter
 
 MOST_LAGS = 12  # of the autoregression
 ROWS_A_LAG = 10
+SAME_PLACE = 0.5  # correlation of the displacement some rows apart from which those are whole cycles
+CHANCE = 5.0  # standard deviations of a correlation that pass for chance: the largest of hundreds is looked for
 FORGOTTEN = 1e-4  # correlation below which the rest is left out
 REFINEMENTS = 5  # of the correction for fitted parameters; it settles within a percent
 
 
 @dataclass(frozen=True)
 class Noise:
-    """Correlations of the noise of rows 0, 1, 2, … apart."""
+    """Correlations of the noise.
+
+    :param correlations: of rows 0, 1, 2, … apart
+    :param repeated: correlation of rows a cycle apart
+    :param cycles: how many there are
+    """
 
     correlations: np.ndarray
+    repeated: float = 0.0
+    cycles: float = 1.0
+
+    @cached_property
+    def _by_cycles(self) -> float:
+        return 1 + max(0.0, self.cycles - 1) * self.repeated
 
     @cached_property
     def rows_each(self) -> float:
-        """Rows that count as one: 1 + 2 Σ ρ up to the first correlation that is not positive."""
+        """Rows that count as one: 1 + 2 Σ ρ up to the first correlation that is not positive, by the factor of the
+        cycles."""
         positive = self.correlations > 0
         last = len(positive) if positive.all() else int(np.argmin(positive))
-        return max(1.0, 2 * float(self.correlations[:last].sum()) - 1)
+        return max(1.0, 2 * float(self.correlations[:last].sum()) - 1) * self._by_cycles
 
     def inflation(self, derivative: np.ndarray) -> float:
         """Return κ, by which the variance of an estimate grows.
@@ -43,20 +60,48 @@ class Noise:
         products = _products(derivative, lags)
         if not products[0] > 0:
             return self.rows_each
-        return max(1.0, float(2 * self.correlations[:lags] @ products / products[0]) - 1)
+        return max(1.0, float(2 * self.correlations[:lags] @ products / products[0]) - 1) * self._by_cycles
 
 
 INDEPENDENT = Noise(np.ones(1))
 
 
-def noise_of(residual: np.ndarray, jacobian: np.ndarray) -> Noise:
+def noise_of(residual: np.ndarray, jacobian: np.ndarray, path: np.ndarray) -> Noise:
     """Return the noise whose residuals would be correlated as these are.
-
-    A fit takes up slow noise: its residuals are less correlated than the noise. With Q an orthonormal basis of the
-    Jacobian, R the correlations of the noise, residuals have those of (1 - Q Qᵀ) R (1 - Q Qᵀ).
 
     :param residual: of every row
     :param jacobian: its derivatives by the parameters (rows, parameters)
+    :param path: displacements
+    """
+    near = _near(residual, jacobian)
+    return replace(near, **_repeated(residual, path, near.rows_each))
+
+
+def _repeated(residual: np.ndarray, path: np.ndarray, rows_each: float) -> dict[str, float]:
+    """Return how the residuals of a cycle are correlated with those of the next, and how many cycles there are."""
+    rows = len(path)
+    lags = np.arange(rows // 2)
+    left = rows - lags
+    here, there = (_products(values - values.mean(), len(lags)) for values in (path, residual))
+    if not there[0] > 0:
+        return {}
+    at, again = here * rows / (here[0] * left), there * rows / (there[0] * left)
+    back = np.flatnonzero(at <= 0)
+    whole = (at > SAME_PLACE) & (lags > back[0]) if back.size else np.zeros(len(lags), dtype=bool)
+    if not whole.any():
+        return {}
+    lag = int(np.argmax(np.where(whole, again, -np.inf)))
+    first = int(np.argmax(np.where(whole & (lags <= 1.5 * np.argmax(whole)), at, -np.inf)))
+    if again[lag] <= CHANCE * np.sqrt(rows_each / left[lag]):
+        return {}
+    return {"repeated": float(min(again[lag], 1.0)), "cycles": rows / first}
+
+
+def _near(residual: np.ndarray, jacobian: np.ndarray) -> Noise:
+    """Return the correlations of rows that follow each other.
+
+    A fit takes up slow noise: its residuals are less correlated than the noise. With Q an orthonormal basis of the
+    Jacobian, R the correlations of the noise, residuals have those of (1 - Q Qᵀ) R (1 - Q Qᵀ).
     """
     most = min(MOST_LAGS, len(residual) // ROWS_A_LAG)
     seen = _products(residual, most + 1)

@@ -209,7 +209,8 @@ class Identification:
                         for name, count, noise, _, _, more in self._rows_of_models()], left=("joint",))
         level = f"{100 * self.confidence:g} %"
         parameters = Shown(
-            f"{self.model}, all {self.fit.rows} rows: {self.fit.model.formula}", ("parameter", "unit", "estimate", f"{level} from", "to", "what"),
+            f"{self.model}, all {self.fit.rows} rows: {self.fit.model.formula}",
+            ("parameter", "unit", "estimate", f"{level} from", "to", "what"),
             [(name, unit, f"{value:.6g}", _end(low), _end(high), PARAMETERS[name].meaning)
              for name, unit, value, low, high in self._rows_of_parameters()], left=("parameter", "unit", "what"))
         return [models, parameters, *(f"note: {note}" for note in self.notes)]
