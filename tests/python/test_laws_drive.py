@@ -141,8 +141,8 @@ def test_a_mark_of_byte_order_is_no_part_of_the_first_name(tmp_path: Path) -> No
 @pytest.mark.parametrize("text, sentence", [
     (None, "error: history.csv: cannot be read: No such file or directory\n"),
     ("slide_m,penetration_depth_m\n", "error: history.csv: holds no samples\n"),
-    ("slide_m,penetration_depth_m\n0\n", "error: history.csv: line 2 has not as many cells as the header\n"),
-    ("slide_m,penetration_depth_m\n0,0\n0,0,0\n", "error: history.csv: line 3 has not as many cells as the header\n"),
+    ("slide_m,penetration_depth_m\n0\n", "error: history.csv: line 2 has 1 cells: the header has 2\n"),
+    ("slide_m,penetration_depth_m\n0,0\n0,0,0\n", "error: history.csv: line 3 has 3 cells: the header has 2\n"),
     ("slide_m\n0\n", "error: history.csv: column penetration_depth_m is missing: the history needs "
                      "penetration_depth_m or normal_force_N\n"),
 ])

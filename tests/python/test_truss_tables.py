@@ -188,7 +188,7 @@ def test_commands(tmp_path: Path, statejump: Callable[..., Any]) -> None:
 WRONG = {
     "node.csv: line 2 has 2 cells: the header has 3": ("name,position_m,fixed\nN0,0 0\n", "node"),
     "node.csv: column 'positon_m' is unknown: did you mean position_m?": ("name,positon_m\nN0,0 0\n", "node"),
-    "node.csv: two columns have one name": ("name,name\nN0,N0\n", "node"),
+    "node.csv: column 'name' is not allowed beside 'name': both are name": ("name,name\nN0,N0\n", "node"),
     "node.csv: line 1: there is no column": ("", "node"),
     "node.csv: has no row below its header": ("name,position_m\n", "node"),
     "node.csv: line 3, column 'position_m': 'x' is not a finite number": (
@@ -226,7 +226,8 @@ def test_wrong_tables(expected: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("given, expected", [
     ({"node": "no.csv"}, "no.csv: no such file of tables"),
-    ({"node": "a.txt"}, "case.toml: tables.node = 'a.txt' is not allowed: must end with .csv, .h5, .hdf5"),
+    ({"node": "a.xlsx"}, "case.toml: tables.node = 'a.xlsx' is not allowed: must end with .csv, .txt, .tsv, .dat, .h5, "
+     ".hdf5"),
     ({"nodes": "a.csv"}, "case.toml: tables.nodes is unknown: did you mean tables.node?"),
     ({"link": "a.csv"}, "case.toml: tables.link = 'a.csv' is not allowed: the case has [[link]] as well; leave one of "
                         "them out"),

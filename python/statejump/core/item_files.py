@@ -2,8 +2,8 @@
 """Files of items beside a case file, named in its section ``[tables]``: one row an item, one column a key.
 
 Text tables: a cell is what the case file would have, lists with blanks between their entries and without brackets;
-an empty cell is a key that is not given. HDF5: a data set of every key, of n numbers, n texts, or n rows of either; numbers
-that are NaN and texts that are empty are not given.
+an empty cell is a key that is not given. HDF5: a data set of every key, of n numbers, n texts, or n rows of either;
+numbers that are NaN and texts that are empty are not given.
 
 They are read with the case file, and their columns take the place of its lists.
 """

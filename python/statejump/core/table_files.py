@@ -12,7 +12,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from contextlib import contextmanager
 from itertools import chain
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 import numpy as np
 
@@ -52,7 +52,7 @@ class Table:
         self.path = path
         self._skipped = 0
         self.separator, lines = self._begin(stream)
-        self._reader = _blank_separated(path, lines) if self.separator == BLANKS else csv.reader(
+        self._reader: Any = _BlankSeparated(lines) if self.separator == BLANKS else csv.reader(
             lines, delimiter=self.separator, skipinitialspace=True)
         cells = [cell.strip() for cell in next(iter(self._reader), [])]
         if self.separator == BLANKS:
@@ -208,10 +208,10 @@ def _joined(words: Iterable[str]) -> list[str]:
     return found
 
 
-class _blank_separated:
+class _BlankSeparated:
     """Rows of cells between blanks, as a reader of ``csv`` has them."""
 
-    def __init__(self, path: Path, lines: Iterable[str]) -> None:
+    def __init__(self, lines: Iterable[str]) -> None:
         self._lines = iter(lines)
         self.line_num = 0
 

@@ -19,6 +19,8 @@ _WORDS = {"celsius": "degC", "°c": "degC", "degc": "degC", "degreec": "degC", "
           "fahrenheit": "degF", "°f": "degF", "degf": "degF", "degreefahrenheit": "degF", "degreesfahrenheit": "degF",
           "kelvin": "K", "kelvins": "K", "degk": "K", "°k": "K", "%": "percent", "percent": "percent",
           "secs": "s", "mins": "min", "hr": "h", "hrs": "h", "degs": "deg"}
+LONGEST = 60  # characters of a unit
+_POWER = re.compile(r"\*\*(?!\s*-?[1-4](?![\d*.]))")  # of no unit; 9**9**9 would be computed for ever
 _NEWTON_METRE = re.compile(r"(?<![A-Za-z])([kMmµud]?N)(mm|cm|m)(?![A-Za-z])")
 
 
@@ -59,7 +61,7 @@ def spelled(unit: str) -> str | None:
     text = _NEWTON_METRE.sub(r"\1*\2", text)
     text = re.sub(r"([A-Za-zµ])([2346])(?![\d.])", r"\1**\2", text)
     text = re.sub(r"(?<=[A-Za-zµ\d])[-.](?=[A-Za-zµ])", "*", text)
-    if re.search(r"[^A-Za-zµ0-9*/()+\-.\s_]", text) or not text:
+    if re.search(r"[^A-Za-zµ0-9*/()+\-.\s_]", text) or _POWER.search(text) or not 0 < len(text) <= LONGEST:
         return None
     if re.fullmatch(r"[A-Za-z]{4,}", text) and text not in REGISTRY and text.lower() in REGISTRY:
         return text.lower()

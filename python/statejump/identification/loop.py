@@ -20,7 +20,8 @@ PAIRS = (("displacement_m", "force_N"), ("rotation_rad", "moment_N_m"))
 COLUMNS = ("time_s", *(name for pair in PAIRS for name in pair))
 # What test rigs call these quantities.
 WORDS = {
-    "time_s": ("t",), "displacement_m": ("disp", "displ", "position", "travel", "stroke", "deflection", "slip", "u", "x"),
+    "time_s": ("t",),
+    "displacement_m": ("disp", "displ", "position", "travel", "stroke", "deflection", "slip", "u", "x"),
     "force_N": ("load", "friction", "friction force", "axial force", "F"), "rotation_rad": ("angle", "rot", "theta"),
     "moment_N_m": ("torque", "M"),
 }
