@@ -172,18 +172,18 @@ def random_loop(model: str, correlation: float, rng: np.random.Generator) -> tup
 
 
 def random_joints(loops: int) -> None:
-    """Print the coverage of random loops, a half of each joint."""
+    """Print the coverage of random loops, a sixth of each joint with each noise."""
     rows = []
     for model in ("coulomb_play", "coulomb_soft_stops"):
-        for correlation in (0.0, 0.9):
+        for correlation in (0.0, 0.5, 0.9):
             inside: dict[str, int] = {}
             rng = np.random.default_rng(5)
-            for _ in range(loops // 4):
+            for _ in range(loops // 6):
                 true, columns = random_loop(model, correlation, rng)
                 count(inside, true, columns, model)
-            share = 100 * sum(inside.values()) / (len(inside) * (loops // 4))
-            each = ", ".join(f"{name} {100 * number / (loops // 4):.0f}" for name, number in inside.items())
-            rows.append((model, f"{correlation:g}", f"{loops // 4}", f"{share:.1f}", each))
+            share = 100 * sum(inside.values()) / (len(inside) * (loops // 6))
+            each = ", ".join(f"{name} {100 * number / (loops // 6):.0f}" for name, number in inside.items())
+            rows.append((model, f"{correlation:g}", f"{loops // 6}", f"{share:.1f}", each))
             print(*rows[-1], sep=" | ", file=sys.stderr, flush=True)
     print(*markdown(("joint", "correlation of rows", "loops", "coverage [%]", "by parameter [%]"), rows, (1, 2, 3)),
           sep="\n")

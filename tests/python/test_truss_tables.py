@@ -294,3 +294,12 @@ def test_blocks_of_rows_are_checked_as_all_of_them(
             found.append(str(refused))
     same(found[0], found[1])
     same(found[0], found[2])
+
+
+@pytest.mark.parametrize("file, name", [("my case.v2.toml", "my_case_v2"), ("Träger (1).toml", "Tr_ger_1"),
+                                        ("ü.toml", "case")])
+def test_any_file_name_gives_the_name_of_a_case(statejump: Callable[..., Any], tmp_path: Path, file: str, name: str
+                                                ) -> None:
+    done = statejump("truss", "chain", 2, "-o", file)
+    assert done.status == 0, done.errors
+    assert sj.load(tmp_path / file).definition.case.name == name

@@ -102,12 +102,13 @@ def import_command(
     from statejump.kinds.truss.generate.document import write
     from statejump.kinds.truss.importing import case_document, read
     from statejump.schema.json_schema import head_line
+    from statejump.schema.rules import folder_name
 
     console = make_console(quiet)
     beside = new_files(output, tables, force)
     deck = read(file, form, bars)
     document = case_document(
-        deck, output.stem, length_unit_m=length_unit, force_unit_N=force_unit,
+        deck, folder_name(output.stem), length_unit_m=length_unit, force_unit_N=force_unit,
         temperature_change_K=temperature_change, density_kg_per_m3=density,
         links={key: value for key, value in links.items() if value is not None}, fixed=[_held(text) for text in fixed],
         joints=[_joint(text) for text in joints],
