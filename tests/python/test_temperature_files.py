@@ -176,6 +176,27 @@ def test_the_way_from_the_stress_free_temperature_is_said(chain: tuple[Path, lis
     assert not members.temperature_change_K[-1].any()
 
 
+@pytest.mark.parametrize("times, unit", [
+    (["0", "0,5", "1,25", "3,5", "5"], "time [h]"),
+    (["2026-03-01T00:00:00", "2026-03-01T00:30:00", "2026-03-01T01:15:00", "2026-03-01T03:30:00", "2026-03-01T05:00:00"],
+     "time")])
+def test_hours_dates_and_degrees(times: list[str], unit: str, chain: tuple[Path, list[str], np.ndarray]) -> None:
+    """As a German spreadsheet writes it; °C needs the reference temperature, and there is one."""
+    path, names, given = chain
+    rows = [";".join([time, *(f"{value - 273.15:.4f}".replace(".", ",") for value in row)]) for time, row in zip(times, given)]
+    path.with_name("members.csv").write_text("\r\n".join(
+        [";".join([unit, *(f"{name} [°C]" for name in names)]), *rows, ";" * len(names), ""]), encoding="utf-8-sig")
+    members = sj.load(path).thermal.members
+    assert members.names == tuple(names)
+    assert members.time_s.tolist() == (1800 * TIMES).tolist()
+    # Four decimals are exact here; °C into kelvin rounds.
+    assert members.temperature_change_K == pytest.approx(given - REFERENCE_K, abs=1e-12 * 300)
+    path.write_text(path.read_text().replace("reference_temperature_K = 293.15", ""))
+    with pytest.raises(sj.StatejumpError, match="thermal.reference_temperature_K is missing: members.csv has temperatures "
+                                                "in °C"):
+        sj.load(path)
+
+
 def test_both_ends_of_a_link_give_its_mean(chain: tuple[Path, list[str], np.ndarray]) -> None:
     path, names, given = chain
     file = path.with_name("members.csv")

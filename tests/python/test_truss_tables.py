@@ -296,6 +296,21 @@ def test_blocks_of_rows_are_checked_as_all_of_them(
     same(found[0], found[2])
 
 
+def test_items_in_other_units(tmp_path: Path) -> None:
+    """Lists are converted as single numbers are; other units make the same case."""
+    document = generate.chain(2)
+    path = beside(document, tmp_path)
+    before = load_case(path)
+    table = tmp_path / "case_node.csv"
+    head, *rows = table.read_text().splitlines()
+    place = head.split(",").index("position_m")
+    cells = [row.split(",") for row in rows]
+    for row in cells:
+        row[place] = " ".join(f"{1000 * float(value):.10g}".replace(".", ",") for value in row[place].split())
+    table.write_text("\n".join(";".join(row) for row in [head.replace("position_m", "position [mm]").split(","), *cells]))
+    assert [node.position_m for node in load_case(path).node] == [node.position_m for node in before.node]
+
+
 @pytest.mark.parametrize("file, name", [("my case.v2.toml", "my_case_v2"), ("Träger (1).toml", "Tr_ger_1"),
                                         ("ü.toml", "case")])
 def test_any_file_name_gives_the_name_of_a_case(statejump: Callable[..., Any], tmp_path: Path, file: str, name: str

@@ -50,7 +50,7 @@ def open_csv(path: Path, encoding: str = "utf-8-sig") -> Iterator[TextIO]:
     try:
         with path.open(newline="", encoding=encoding) as stream:
             yield stream
-    except UnicodeDecodeError:
+    except UnicodeError:
         raise Unreadable("not CSV", cause="the file is not UTF-8 text", file=path) from None
     except csv.Error as failure:
         raise Unreadable("not CSV", cause=str(failure), file=path) from None
