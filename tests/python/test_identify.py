@@ -205,9 +205,8 @@ def test_growing_and_shrinking_cycles_are_used_whole(amplitude: np.ndarray) -> N
 
 
 def test_no_joint_fits_worse_than_one_that_it_contains() -> None:
-    """On loops of partial slip, where no slide is the right joint, with few rows and much noise."""
-    values = {"stiffness": 1e6, "friction": 300.0, "iwan_exponent": -0.6, "iwan_ratio": 0.5, "preload": 0.0}
-    fits = Fits(read_loop(measured("iwan", values, noise=30.0)))
+    """A stiff slide slides nearly everywhere: stops that a search starts from never get out of the way by themselves."""
+    fits = Fits(read_loop(measured("coulomb", {"stiffness": 1e7, "friction": 100.0, "preload": 0.0}), "fresh"))
     for model in MODELS.values():
         for part in parts_of(model.name):
             assert fits.fit(model.name).squares <= fits.fit(part).squares * (1 + 1e-6), (model.name, part)

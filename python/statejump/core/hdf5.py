@@ -168,4 +168,4 @@ def _check_stored(item: h5py.Dataset, place: str, size: int, path: Path) -> int:
     stored = min(size, item.id.get_storage_size())
     if declared > MOST_PACKED * (stored if written else size):
         raise Unreadable("damaged", cause=f"{place} claims to hold more than the file does", file=path)
-    return 0 if written else declared
+    return 0 if written else int(declared)

@@ -76,7 +76,8 @@ class Problem:
             if name in STOPS:  # no clearance is negative
                 self.low[place] = max(self.low[place], -self.offsets[place] / half)
         slides = model.answer is MODELS["coulomb"].answer
-        self.limits = [(place, end, limit) for place, name in enumerate(self.names) if slides
+        self.limits = [(place, end, limit) for place, name in enumerate(self.names)
+                       if slides or name == "preload_stiffness"
                        for end, limit in ((self.low[place], ZEROS.get(name)), (self.high[place], ENDLESS.get(name)))
                        if limit is not None]
 

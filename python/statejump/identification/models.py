@@ -56,7 +56,7 @@ PARAMETERS = {each.name: each for each in (
     Parameter("preload", "force", LINEAR, -FAR, FAR, (0.0,), "force at displacement 0, without friction"),
     Parameter("preload_stiffness", "stiffness", POSITIVE, 1 / FAR, FAR, (0.03, 0.3), "spring beside the slide"),
     Parameter("iwan_exponent", "-", LINEAR, -0.999, 0.0, (-0.7, -0.3), "χ of the distribution of sliders"),
-    Parameter("iwan_ratio", "-", POSITIVE, 1e-4, 1e8, (0.3, 3.0), "β, stiffness of the last sliders over the others"),
+    Parameter("iwan_ratio", "-", POSITIVE, 1e-4, 1e12, (0.3, 3.0), "β, stiffness of the last sliders over the others"),
     Parameter(START, "-", LINEAR, -1.0, 1.0, (0.0,), "carried in the first row, as a fraction of the limit"),
 )}
 Values = Mapping[str, float]
