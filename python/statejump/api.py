@@ -118,8 +118,8 @@ def identify(
     """Return what a measured loop says of a joint: parameters by least squares, noise of the force may be correlated,
     intervals by profile likelihood, the choice among joints by BIC, and what the loop does not say.
 
-    :param source: a table, or columns: ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``, or the
-        same in other units, row by row as measured; a force is positive where it resists a positive displacement
+    :param source: a table, or columns: ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``, or
+        the same in other units, row by row as measured; a force is positive where it resists a positive displacement
     :param model: a joint, several, or ``auto``: all of :data:`statejump.identification.models.MODELS`
     :param start: friction before the first row: ``fresh``, it carries nothing; ``cycled``, the path was gone before;
         ``unknown``: it is a parameter too
