@@ -2,9 +2,11 @@
 """Tables and pictures of docs/identification.md: loops of known joints from the other models, with noise, identified.
 
     PYTHONPATH=build/python /usr/bin/python3 docs/make_identification.py [--repetitions N] [--choices N]
+    PYTHONPATH=build/python /usr/bin/python3 docs/make_identification.py --random N
 
 Each loop is computed once, by the contact kernel, the closed form, the truss solver or YADE; every repetition adds
-noise of its own to the force. 500 repetitions take about ten minutes of one core.
+noise of its own to the force. ``--random`` draws joints with play and with soft stops, and paths of constant, growing
+or shrinking cycles, instead. 500 repetitions take some half an hour of one core, 200 random loops ten minutes.
 """
 from __future__ import annotations
 
@@ -17,18 +19,19 @@ from math import sqrt
 from pathlib import Path
 
 import numpy as np
+from scipy.signal import lfilter
 
 import statejump as sj
 from statejump.core.figures import style
 from statejump.core.tables import markdown
-from statejump.identification.fit import fit, intervals
+from statejump.identification.fit import Fits, intervals
 from statejump.identification.loop import read_loop
 from statejump.identification.models import MODELS
 
 PICTURES = Path(__file__).parent / "identification"
 NOISE = 0.01  # of half of the loop's force
 CONFIDENCE = 0.95
-# Triangles to both sides: a first loading, which is left out, and two cycles.
+# Triangles to both sides: a first loading and two cycles.
 CORNERS_K = [0.0, 100.0, -100.0, 100.0, -100.0, 0.0]
 TABLE = {"thermal.shape": "table", "thermal.table_time_s": list(np.arange(6.0)),
          "thermal.table_temperature_change_K": CORNERS_K, "thermal.temperature_change_max_K": None}
@@ -135,11 +138,55 @@ def repeated(known: Known, repetitions: int) -> dict[str, int]:
     """Return in how many repetitions the interval of each parameter holds its true value."""
     inside = dict.fromkeys(known.true, 0)
     for repetition in range(repetitions):
-        loop = read_loop(known.measured(repetition))
-        _, found = intervals(fit(MODELS[known.model], loop), loop, CONFIDENCE, list(known.true))
-        for name, value in known.true.items():
-            inside[name] += found[name].low <= value <= found[name].high
+        count(inside, known.true, known.measured(repetition), known.model)
     return inside
+
+
+def count(inside: dict[str, int], true: dict[str, float], columns: dict[str, np.ndarray], model: str) -> None:
+    """Count the intervals of a loop that hold the true values."""
+    found = intervals(Fits(read_loop(columns)), model, CONFIDENCE, list(true))[1].of
+    for name, value in true.items():
+        inside[name] = inside.get(name, 0) + (found[name].low <= value <= found[name].high)
+
+
+def random_loop(model: str, correlation: float, rng: np.random.Generator) -> tuple[dict[str, float], dict[
+    str, np.ndarray
+]]:
+    """Return a joint and its loop from rest: 600 rows, 2 to 5 cycles, noise of 2 % of half of the force."""
+    stiffness, friction = 10 ** rng.uniform(5.5, 6.5), rng.uniform(50, 300)
+    true = {"stiffness": stiffness, "friction": friction, "preload": rng.uniform(-20, 20)}
+    amplitude = rng.uniform(4, 8) * friction / stiffness
+    if model == "coulomb_play":
+        true["play"] = rng.uniform(0.3, 1.5) * friction / stiffness
+        amplitude += true["play"]
+    else:
+        true["clearance_minus"], true["clearance_plus"] = (amplitude * rng.uniform(0.3, 0.6) for _ in range(2))
+        true["stop_stiffness"] = stiffness * rng.uniform(0.3, 3)
+    time = np.linspace(0, 1, 600)
+    cycles = int(rng.integers(2, 6))
+    envelope = (np.ones(600), 0.1 + 0.9 * time, 1 - 0.9 * time)[int(rng.integers(3))]
+    path = amplitude * envelope * np.sin(2 * np.pi * cycles * time)
+    force = MODELS[model].answer(true, path, read_loop({"displacement_m": path, "force_N": path}, "fresh").memory)
+    noise = lfilter([sqrt(1 - correlation**2)], [1, -correlation], rng.normal(size=1100))[500:]
+    return true, {"displacement_m": path, "force_N": force + 0.01 * np.ptp(force) * noise}
+
+
+def random_joints(loops: int) -> None:
+    """Print the coverage of random loops, a sixth of each joint with each noise."""
+    rows = []
+    for model in ("coulomb_play", "coulomb_soft_stops"):
+        for correlation in (0.0, 0.5, 0.9):
+            inside: dict[str, int] = {}
+            rng = np.random.default_rng(5)
+            for _ in range(loops // 6):
+                true, columns = random_loop(model, correlation, rng)
+                count(inside, true, columns, model)
+            share = 100 * sum(inside.values()) / (len(inside) * (loops // 6))
+            each = ", ".join(f"{name} {100 * number / (loops // 6):.0f}" for name, number in inside.items())
+            rows.append((model, f"{correlation:g}", f"{loops // 6}", f"{share:.1f}", each))
+            print(*rows[-1], sep=" | ", file=sys.stderr, flush=True)
+    print(*markdown(("joint", "correlation of rows", "loops", "coverage [%]", "by parameter [%]"), rows, (1, 2, 3)),
+          sep="\n")
 
 
 def chosen(known: Known, choices: int) -> str:
@@ -153,7 +200,11 @@ def main() -> None:
     asked.add_argument("--repetitions", type=int, default=500)
     asked.add_argument("--choices", type=int, default=20, help="how often BIC chooses among all joints")
     asked.add_argument("--loops", nargs="*", default=list(LOOPS), choices=list(LOOPS))
+    asked.add_argument("--random", type=int, metavar="N", help="coverage of N random loops instead")
     given = asked.parse_args()
+    if given.random:
+        random_joints(given.random)
+        return
     PICTURES.mkdir(exist_ok=True)
     rows, choices = [], []
     for name in given.loops:

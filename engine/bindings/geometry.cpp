@@ -178,6 +178,8 @@ void bind_geometry(py::module_& module) {
                              [](const BoreMesh& m) { return m.triangles().vertices.size(); })
       .def_property_readonly("face_count",
                              [](const BoreMesh& m) { return m.triangles().faces.size(); })
+      .def_property_readonly("removed_face_count",
+                             [](const BoreMesh& m) { return m.triangles().removed; })
       .def_property_readonly("wall_face_count", [](const BoreMesh& m) { return m.wall().size(); })
       .def_property_readonly("closed", &BoreMesh::closed)
       .def_property_readonly("mean_radius_m", &BoreMesh::mean_radius)

@@ -115,14 +115,14 @@ def identify(
     confidence: float = 0.95, target: str | None = None, normal_force_N: float | None = None,
     journal_radius_m: float | None = None,
 ) -> Identification:
-    """Return what a measured loop says of a joint: parameters by maximum likelihood under Gaussian noise of the force,
+    """Return what a measured loop says of a joint: parameters by least squares, noise of the force may be correlated,
     intervals by profile likelihood, the choice among joints by BIC, and what the loop does not say.
 
-    :param source: CSV file, or columns: ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``,
-        row by row as measured; a force is positive where it resists a positive displacement
+    :param source: a table, or columns: ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``, or
+        the same in other units, row by row as measured; a force is positive where it resists a positive displacement
     :param model: a joint, several, or ``auto``: all of :data:`statejump.identification.models.MODELS`
     :param start: friction before the first row: ``fresh``, it carries nothing; ``cycled``, the path was gone before;
-        ``unknown``: rows are left out until it is forgotten
+        ``unknown``: it is a parameter too
     :param confidence: of the intervals, 0.5 to 0.999
     :param target: where the joint goes: ``spring_slider`` (default), ``slider``, ``revolute``, ``umbrella`` (default of
         rotations), ``torsion_spring``, ``iwan_joint``

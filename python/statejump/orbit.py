@@ -12,16 +12,18 @@ state.
 """
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from statejump.core.column_units import matched
 from statejump.core.errors import NotAllowed, Range, StatejumpError, Unreadable
-from statejump.core.reading import is_file, open_csv
+from statejump.core.reading import is_file
+from statejump.core.table_files import numbers_of, open_table
 from statejump.core.tables import write_columns
 from statejump.schema.rules import NUMBER, Rule
 
@@ -222,33 +224,30 @@ def read_members(path: str | Path) -> list[Member]:
     path = Path(path)
     if not is_file(path):
         raise Unreadable("no such file of members", file=path)
-    with open_csv(path) as stream:
-        rows = csv.DictReader(stream, restkey="", restval=None)
-        missing = [name for name in COLUMNS if name not in (rows.fieldnames or ())]
+    with open_table(path) as table:
+        try:
+            columns = matched(table.header, COLUMNS)
+        except StatejumpError as refused:
+            raise refused.located(file=path) from None
+        missing = [key for key in COLUMNS if key not in {column.key for column in columns}]
         if missing:
             raise Unreadable(f"line 1: column {missing[0]} is missing", cause="needed are " + ", ".join(COLUMNS),
                              file=path)
         found: list[Member] = []
-        for row in rows:
-            if "" in row or None in row.values():
-                raise Unreadable(f"line {rows.line_num} has not as many cells as the header", file=path)
-            if len(found) == MOST_MEMBERS:
+        for lines, rows in table.blocks():
+            if len(found) + len(rows) > MOST_MEMBERS:
                 raise Unreadable(f"has more than {MOST_MEMBERS} members", file=path)
-            found.append(_member(path, rows.line_num, row))
+            cells = {column.key: part if column.key == "name" else numbers_of(table, column, part, lines).tolist()
+                     for column, part in zip(columns, zip(*rows))}
+            found += [_member(path, line, dict(zip(cells, row))) for line, row in zip(lines, zip(*cells.values()))]
     return found
 
 
-def _member(path: Path, line: int, row: dict[str, str]) -> Member:
-    name = row["name"].strip()
+def _member(path: Path, line: int, row: dict[str, Any]) -> Member:
+    name = str(row["name"]).strip()
     if not name or not name.isprintable():
         raise Unreadable(f"line {line}: name", cause="must be a text that is not empty", file=path)
-    values = {}
-    for key in SECTION:
-        try:
-            values[key] = float(row[key])
-        except ValueError:
-            raise NotAllowed(key, row[key], "must be a number", file=path, item=f"line {line}") from None
     try:
-        return Member(name, **values)
+        return Member(name, **{key: row[key] for key in SECTION})
     except NotAllowed as refused:
         raise refused.located(file=path) from None

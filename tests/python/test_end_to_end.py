@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from conftest import REPOSITORY
-from statejump.core.tables import read_columns
+from statejump.core.table_files import read_columns
 
 CASES = ("table1", "table1_wide", "table1_frictionless", "table1_ten_cycles")
 

@@ -155,6 +155,21 @@ def test_files_that_are_not_right(tmp_path: Path, wrong: str) -> None:
     assert caught.value.exit_status == 2
 
 
+def test_a_data_set_that_was_never_written_has_its_fill_value(tmp_path: Path) -> None:
+    """HDF5 allocates nothing for it, which is valid: Siconos makes solutions so. Too large a one is refused still."""
+    problem = pressed()
+
+    def made(file: Any, size: int) -> None:
+        space = h5py.h5s.create_simple((size,))
+        h5py.h5d.create(file.create_group("solution").id, b"r", h5py.h5t.NATIVE_DOUBLE, space)
+
+    path = write_raw(tmp_path / "a.hdf5", problem, change=lambda file: made(file, problem.q.size))
+    assert sj.fclib.read(path).stored[0].reactions.tolist() == [0.0] * problem.q.size
+    large = write_raw(tmp_path / "b.hdf5", problem, change=lambda file: made(file, 10**10))
+    with pytest.raises(StatejumpError, match="/solution/r claims to hold more than the file does"):
+        sj.fclib.read(large)
+
+
 def test_no_file_and_no_hdf5(tmp_path: Path) -> None:
     with pytest.raises(StatejumpError, match="no such file"):
         sj.fclib.read(tmp_path / "none.hdf5")

@@ -10,7 +10,7 @@ import pytest
 
 import statejump as sj
 from statejump import laws
-from statejump.core.tables import read_columns
+from statejump.core.table_files import read_columns
 
 CONTACT: dict[str, Any] = dict(effective_young_modulus_Pa=38.5e9, effective_shear_modulus_Pa=7.9e9,
                                effective_radius_m=0.01, friction_coefficient=0.3)
@@ -141,8 +141,8 @@ def test_a_mark_of_byte_order_is_no_part_of_the_first_name(tmp_path: Path) -> No
 @pytest.mark.parametrize("text, sentence", [
     (None, "error: history.csv: cannot be read: No such file or directory\n"),
     ("slide_m,penetration_depth_m\n", "error: history.csv: holds no samples\n"),
-    ("slide_m,penetration_depth_m\n0\n", "error: history.csv: line 2 has not as many cells as the header\n"),
-    ("slide_m,penetration_depth_m\n0,0\n0,0,0\n", "error: history.csv: line 3 has not as many cells as the header\n"),
+    ("slide_m,penetration_depth_m\n0\n", "error: history.csv: line 2 has 1 cells: the header has 2\n"),
+    ("slide_m,penetration_depth_m\n0,0\n0,0,0\n", "error: history.csv: line 3 has 3 cells: the header has 2\n"),
     ("slide_m\n0\n", "error: history.csv: column penetration_depth_m is missing: the history needs "
                      "penetration_depth_m or normal_force_N\n"),
 ])

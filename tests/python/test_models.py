@@ -17,7 +17,7 @@ from statejump.core.errors import StatejumpError
 from statejump.core.figures import save
 from statejump.core.output import write_atomically
 from statejump.core.run import Run
-from statejump.core.tables import read_columns
+from statejump.core.table_files import read_columns
 from statejump.kinds.loading import load_case
 from statejump.kinds.spring_slider import compare, dem, reduced, result, stable_step
 from statejump.kinds.spring_slider.case import SpringSliderCase as Case

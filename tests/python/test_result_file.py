@@ -20,7 +20,8 @@ from conftest import COMMAND, REPOSITORY, sealed
 import statejump as sj
 from statejump.core.errors import StatejumpError
 from statejump.core.run import AT_STOP, GROUPS, SEPARATED, SLIP, STICK, Column, Event, Events, Run
-from statejump.core.tables import read_columns, write_columns
+from statejump.core.table_files import read_columns
+from statejump.core.tables import write_columns
 from statejump.kinds.spring_slider import compare as slider_compare, result as slider_result
 from statejump.results import layout, scene
 from statejump.results.contents import Mesh, Result

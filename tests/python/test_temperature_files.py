@@ -176,6 +176,27 @@ def test_the_way_from_the_stress_free_temperature_is_said(chain: tuple[Path, lis
     assert not members.temperature_change_K[-1].any()
 
 
+@pytest.mark.parametrize("times, unit", [
+    (["0", "0,5", "1,25", "3,5", "5"], "time [h]"),
+    (["2026-03-01T00:00:00", "2026-03-01T00:30:00", "2026-03-01T01:15:00", "2026-03-01T03:30:00", "2026-03-01T05:00:00"],
+     "time")])
+def test_hours_dates_and_degrees(times: list[str], unit: str, chain: tuple[Path, list[str], np.ndarray]) -> None:
+    """As a German spreadsheet writes it; °C needs the reference temperature, and there is one."""
+    path, names, given = chain
+    rows = [";".join([time, *(f"{value - 273.15:.4f}".replace(".", ",") for value in row)]) for time, row in zip(times, given)]
+    path.with_name("members.csv").write_text("\r\n".join(
+        [";".join([unit, *(f"{name} [°C]" for name in names)]), *rows, ";" * len(names), ""]), encoding="utf-8-sig")
+    members = sj.load(path).thermal.members
+    assert members.names == tuple(names)
+    assert members.time_s.tolist() == (1800 * TIMES).tolist()
+    # Four decimals are exact here; °C into kelvin rounds.
+    assert members.temperature_change_K == pytest.approx(given - REFERENCE_K, abs=1e-12 * 300)
+    path.write_text(path.read_text().replace("reference_temperature_K = 293.15", ""))
+    with pytest.raises(sj.StatejumpError, match="thermal.reference_temperature_K is missing: members.csv has temperatures "
+                                                "in °C"):
+        sj.load(path)
+
+
 def test_both_ends_of_a_link_give_its_mean(chain: tuple[Path, list[str], np.ndarray]) -> None:
     path, names, given = chain
     file = path.with_name("members.csv")
@@ -200,26 +221,28 @@ WRONG: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
     "end and mean": (lambda rows: [rows[0].replace("L2_K", "L1@b_K"), *rows[1:]],
                      "members.csv: has the column 'L1@b' beside 'L1'"),
     "ends of two units": (lambda rows: [rows[0].replace("L2_K", "L1@b_degC").replace("L1_K", "L1@a_K"), *rows[1:]],
-                          "members.csv: columns 'L1@a' and 'L1@b': one is in kelvin, the other in °C"),
+                          "members.csv: columns 'L1@a' and 'L1@b': they have different units"),
     "NaN": (lambda rows: [*rows[:2], rows[2].rpartition(",")[0] + ",nan", *rows[3:]],
             "members.csv: line 3, column 'L10_K': 'nan' is not a finite number"),
     "empty cell": (lambda rows: [*rows[:2], rows[2].rpartition(",")[0] + ",", *rows[3:]],
                    "members.csv: line 3, column 'L10_K': the cell is empty"),
     "times go back": (lambda rows: [*rows[:2], rows[3], rows[2], *rows[4:]],
-                      "members.csv: line 4: time_s = 1: times must rise, and 2.5 is before it"),
+                      "members.csv: line 4: time_s = 1.0: times must rise, and 2.5 is before it"),
     "times too close": (lambda rows: [*rows[:2], "1e-320," + rows[2].partition(",")[2], *rows[3:]],
                         "members.csv: times 0 and 9.99989e-321: they cannot be told apart within"),
-    "wrong unit": (lambda rows: [rows[0].replace("L2_K", "L2_degF"), *rows[1:]],
-                   "members.csv: line 1: column 'L2_degF': it must be NAME_K or NAME_degC"),
-    "unit of time": (lambda rows: [rows[0].replace("time_s", "time_h"), *rows[1:]],
-                     "members.csv: line 1: the first column is 'time_h': it must be time_s"),
+    "wrong unit": (lambda rows: [rows[0].replace("L2_K", "L2 [C]"), *rows[1:]],
+                   "members.csv: line 1: column 'L2 [C]': 'C' is no unit of temperature; accepted are NAME_K, NAME_degC"),
+    "no unit": (lambda rows: [rows[0].replace("L2_K", "L2"), *rows[1:]],
+                "members.csv: line 1: column 'L2': it names no unit of temperature; accepted are NAME_K, NAME_degC"),
+    "unit of time": (lambda rows: [rows[0].replace("time_s", "time_m"), *rows[1:]],
+                     "members.csv: line 1: the first column is 'time_m': 'm' is not a unit of time; accepted are time_s"),
     "two columns of one name": (lambda rows: [rows[0].replace("L2_K", "L3_degC"), *rows[1:]],
                                 "members.csv: two columns are called 'L3'"),
     "short row": (lambda rows: [*rows[:3], "2.5,300"], "members.csv: line 4 has 2 cells: the header has 11"),
     "no rows": (lambda rows: rows[:2], "members.csv: has fewer than two times"),
     "below absolute zero": (lambda rows: [*rows[:2], rows[2].rpartition(",")[0] + ",-3", *rows[3:]],
                             "members.csv: column 'L10' at 1 s: -3 is below absolute zero"),
-    "control characters": (lambda rows: [rows[0].replace("L2_K", "L\x1b2_K"), *rows[1:]], "it must be NAME_K or NAME_degC"),
+    "control characters": (lambda rows: [rows[0].replace("L2_K", "L\x1b2_K"), *rows[1:]], "it names no unit of temperature"),
 }
 
 
@@ -238,7 +261,7 @@ def test_what_is_wrong_with_a_file_is_one_sentence(
 
 KEYS = {
     "no such file": ('members_file = "none.csv"', "none.csv: no such file of temperatures"),
-    "not a table": ('members_file = "/etc/passwd"', "is not allowed: must end with .csv, .h5, .hdf5"),
+    "not a table": ('members_file = "/etc/passwd"', "is not allowed: must end with .csv, .txt, .tsv, .dat, .h5, .hdf5"),
     "both": ('members_file = "members.csv"\ntable_time_s = [0.0, 1.0]',
              "thermal.table_time_s is not allowed with thermal.members_file"),
     "reference alone": ("table_time_s = [0.0, 1.0]\ntable_temperature_change_K = [0.0, 1.0]",

@@ -766,8 +766,6 @@ def test_generators_do_not_overwrite(tmp_path: Path, statejump: Callable[..., An
      "error: a.toml: node 'L2': force_N = [0.0, nan] is not allowed: must be finite, between -1e+12 and 1e+12 [N]\n"),
     (("umbrella", 2, "-o", "a.toml", "--friction-coefficient", 11),
      "error: a.toml: revolute 'joint1': friction_coefficient = 11.0 is not allowed: must be between 0 and 10 [-]\n"),
-    (("chain", 3, "-o", "a b.toml"),
-     "error: a b.toml: case.name = 'a b' is not allowed: must consist of letters, digits, '_' and '-'\n"),
 ])
 def test_bad_options(arguments: tuple[Any, ...], expected: str, tmp_path: Path, statejump: Callable[..., Any]) -> None:
     outcome = statejump("truss", *arguments)

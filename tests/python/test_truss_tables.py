@@ -188,7 +188,7 @@ def test_commands(tmp_path: Path, statejump: Callable[..., Any]) -> None:
 WRONG = {
     "node.csv: line 2 has 2 cells: the header has 3": ("name,position_m,fixed\nN0,0 0\n", "node"),
     "node.csv: column 'positon_m' is unknown: did you mean position_m?": ("name,positon_m\nN0,0 0\n", "node"),
-    "node.csv: two columns have one name": ("name,name\nN0,N0\n", "node"),
+    "node.csv: column 'name' is not allowed beside 'name': both are name": ("name,name\nN0,N0\n", "node"),
     "node.csv: line 1: there is no column": ("", "node"),
     "node.csv: has no row below its header": ("name,position_m\n", "node"),
     "node.csv: line 3, column 'position_m': 'x' is not a finite number": (
@@ -226,7 +226,8 @@ def test_wrong_tables(expected: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("given, expected", [
     ({"node": "no.csv"}, "no.csv: no such file of tables"),
-    ({"node": "a.txt"}, "case.toml: tables.node = 'a.txt' is not allowed: must end with .csv, .h5, .hdf5"),
+    ({"node": "a.xlsx"}, "case.toml: tables.node = 'a.xlsx' is not allowed: must end with .csv, .txt, .tsv, .dat, .h5, "
+     ".hdf5"),
     ({"nodes": "a.csv"}, "case.toml: tables.nodes is unknown: did you mean tables.node?"),
     ({"link": "a.csv"}, "case.toml: tables.link = 'a.csv' is not allowed: the case has [[link]] as well; leave one of "
                         "them out"),
@@ -293,3 +294,27 @@ def test_blocks_of_rows_are_checked_as_all_of_them(
             found.append(str(refused))
     same(found[0], found[1])
     same(found[0], found[2])
+
+
+def test_items_in_other_units(tmp_path: Path) -> None:
+    """Lists are converted as single numbers are; other units make the same case."""
+    document = generate.chain(2)
+    path = beside(document, tmp_path)
+    before = load_case(path)
+    table = tmp_path / "case_node.csv"
+    head, *rows = table.read_text().splitlines()
+    place = head.split(",").index("position_m")
+    cells = [row.split(",") for row in rows]
+    for row in cells:
+        row[place] = " ".join(f"{1000 * float(value):.10g}".replace(".", ",") for value in row[place].split())
+    table.write_text("\n".join(";".join(row) for row in [head.replace("position_m", "position [mm]").split(","), *cells]))
+    assert [node.position_m for node in load_case(path).node] == [node.position_m for node in before.node]
+
+
+@pytest.mark.parametrize("file, name", [("my case.v2.toml", "my_case_v2"), ("Träger (1).toml", "Tr_ger_1"),
+                                        ("ü.toml", "case")])
+def test_any_file_name_gives_the_name_of_a_case(statejump: Callable[..., Any], tmp_path: Path, file: str, name: str
+                                                ) -> None:
+    done = statejump("truss", "chain", 2, "-o", file)
+    assert done.status == 0, done.errors
+    assert sj.load(tmp_path / file).definition.case.name == name

@@ -6,7 +6,7 @@
 namespace statejump::geometry::formats {
 
 void read_obj(std::string_view content, Reading& reading) {
-  Words words(content, '#');
+  Words words(content, '#', true);
   std::string_view word;
   std::vector<std::int64_t> corners;
   constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();

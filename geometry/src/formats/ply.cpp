@@ -222,6 +222,9 @@ void read_ply(std::string_view content, Reading& reading) {
       if (place >= 0) found |= 1 << place;
     }
     if (is_point && found != 7) reading.refuse("its vertices lack a coordinate");
+    for (std::size_t p = 0; is_point && p < coordinate.size(); ++p)
+      if (coordinate[p] >= 0 && element.properties[p].type == PlyType::float32)
+        reading.has_floats();
     if (element.name == "face" && found != 8) reading.refuse("its faces lack vertex_indices");
     for (std::uint64_t i = 0; i < element.count; ++i) {
       Eigen::Vector3d point = Eigen::Vector3d::Zero();

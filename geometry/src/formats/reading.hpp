@@ -2,8 +2,11 @@
 // What mesh files are read into.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -27,6 +30,8 @@ class Reading {
   }
 
   void add_point(const Eigen::Vector3d& point) { points_.push_back(point); }
+  /// Coordinates are floats of 32 bits: one vertex may differ by rounding from face to face.
+  void has_floats() { floats_ = true; }
   /// @param corners from 0; any integer is taken here and checked in the end
   void add_polygon(const std::vector<std::int64_t>& corners) {
     if (corners.size() < 3)
@@ -42,15 +47,7 @@ class Reading {
   Triangles triangles() const {
     if (fans_.empty()) refuse_faces("the mesh has no faces");
     Triangles result;
-    std::map<std::array<double, 3>, int> known;
-    std::vector<int> number(points_.size());
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      if (!points_[i].allFinite()) refuse_faces("vertex " + std::to_string(i) + " is not finite");
-      const std::array<double, 3> key{points_[i].x(), points_[i].y(), points_[i].z()};
-      const auto [place, fresh] = known.emplace(key, static_cast<int>(result.vertices.size()));
-      if (fresh) result.vertices.push_back(points_[i]);
-      number[i] = place->second;
-    }
+    const std::vector<int> number = weld(result.vertices);
     const auto count = static_cast<std::int64_t>(points_.size());
     for (std::size_t f = 0; f < fans_.size(); ++f) {
       for (const std::int64_t corner : fans_[f])
@@ -58,15 +55,62 @@ class Reading {
           refuse_faces("face " + std::to_string(polygon_of_[f]) + " has corner " +
                        std::to_string(corner) + ", but there are only " + std::to_string(count) +
                        " vertices");
-      const auto& fan = fans_[f];
-      result.faces.push_back({number[static_cast<std::size_t>(fan[0])],
-                              number[static_cast<std::size_t>(fan[1])],
-                              number[static_cast<std::size_t>(fan[2])]});
+      std::array<int, 3> face{};
+      for (std::size_t k = 0; k < 3; ++k) face[k] = number[static_cast<std::size_t>(fans_[f][k])];
+      // Exporters write facets whose corners are one vertex; a surface is the same without them.
+      if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
+        ++result.removed;
+      else
+        result.faces.push_back(face);
     }
+    if (result.faces.empty()) refuse_faces("the mesh has no faces with three vertices");
     return result;
   }
 
  private:
+  using Cells = std::multimap<std::array<double, 3>, int>;  ///< vertices by cell
+
+  /// Equal vertices become one, and of floats those nearer than rounding.
+  /// @param[out] vertices by first appearance @return number of the vertex of each point
+  std::vector<int> weld(std::vector<Eigen::Vector3d>& vertices) const {
+    double largest = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (!points_[i].allFinite()) refuse_faces("vertex " + std::to_string(i) + " is not finite");
+      largest = std::max(largest, points_[i].cwiseAbs().maxCoeff());
+    }
+    // Two units in the last place of the largest coordinate, one for each of two roundings.
+    const double near = floats_ ? 2 * std::numeric_limits<float>::epsilon() * largest : 0;
+    Cells known;
+    std::vector<int> number(points_.size());
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      number[i] = known_vertex(known, vertices, points_[i], near);
+      if (number[i] >= 0) continue;
+      number[i] = static_cast<int>(vertices.size());
+      known.emplace(cell_of(points_[i], near), number[i]);
+      vertices.push_back(points_[i]);
+    }
+    return number;
+  }
+  static std::array<double, 3> cell_of(const Eigen::Vector3d& point, double size) {
+    if (!(size > 0)) return {point.x(), point.y(), point.z()};
+    return {std::floor(point.x() / size), std::floor(point.y() / size),
+            std::floor(point.z() / size)};
+  }
+  /// First vertex whose coordinates all differ by at most `near`; -1: none.
+  static int known_vertex(const Cells& known, const std::vector<Eigen::Vector3d>& vertices,
+                          const Eigen::Vector3d& point, double near) {
+    const std::array<double, 3> cell = cell_of(point, near);
+    int found = -1;
+    for (int k = 0; k < (near > 0 ? 27 : 1); ++k) {
+      std::array<double, 3> beside = cell;
+      if (near > 0) beside = {cell[0] + k % 3 - 1, cell[1] + k / 3 % 3 - 1, cell[2] + k / 9 - 1};
+      for (auto [at, end] = known.equal_range(beside); at != end; ++at)
+        if ((found < 0 || at->second < found) &&
+            (vertices[static_cast<std::size_t>(at->second)] - point).cwiseAbs().maxCoeff() <= near)
+          found = at->second;
+    }
+    return found;
+  }
   [[noreturn]] void refuse_faces(const std::string& cause) const {
     throw MeshFailure(name_, MeshFault::bad_faces, cause);
   }
@@ -77,6 +121,7 @@ class Reading {
   std::vector<std::array<std::int64_t, 3>> fans_;
   std::vector<std::size_t> polygon_of_;  ///< of each triangle
   std::size_t polygons_ = 0;
+  bool floats_ = false;
 };
 
 // Each adds to what was read; arguments: the file's whole content.

@@ -52,6 +52,7 @@ constexpr std::size_t stl_facet = 50;
 }  // namespace
 
 void read_stl(std::string_view content, Reading& reading) {
+  reading.has_floats();
   const bool swapped = !machine_is_little_endian();
   const bool long_enough = content.size() >= stl_header;
   const std::uint64_t count =

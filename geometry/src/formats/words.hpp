@@ -33,18 +33,22 @@ inline bool to_number(std::string_view word, Number& value) {
 /// Words of a text, line by line; what follows a comment sign is skipped.
 class Words {
  public:
-  Words(std::string_view text, char comment) : text_(text), comment_(comment) {}
+  /// @param goes_on whether a backslash at the end of a line joins the next one to it
+  Words(std::string_view text, char comment, bool goes_on = false)
+      : text_(text), comment_(comment), goes_on_(goes_on) {}
 
   /// Next word of this line; false at its end.
   bool in_line(std::string_view& word) {
-    while (at_ < text_.size() && text_[at_] != '\n' && is_space(text_[at_])) ++at_;
+    while (at_ < text_.size() &&
+           (join() || (text_[at_] != '\n' && is_space(text_[at_]) && ++at_ > 0))) {
+    }
     if (at_ >= text_.size() || text_[at_] == '\n') return false;
     if (comment_ != '\0' && text_[at_] == comment_) {
       skip_line();
       return false;
     }
     const std::size_t start = at_;
-    while (at_ < text_.size() && !is_space(text_[at_]) &&
+    while (at_ < text_.size() && !is_space(text_[at_]) && joint() == 0 &&
            (comment_ == '\0' || text_[at_] != comment_))
       ++at_;
     word = text_.substr(start, at_ - start);
@@ -61,13 +65,29 @@ class Words {
   }
   /// To the end of this line.
   void skip_line() {
-    while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+    while (at_ < text_.size() && (join() || (text_[at_] != '\n' && ++at_ > 0))) {
+    }
   }
   int line() const { return line_; }
 
  private:
+  /// Length of a backslash with the end of its line; 0: none is here.
+  std::size_t joint() const {
+    if (!goes_on_ || text_[at_] != '\\') return 0;
+    const std::string_view rest = text_.substr(at_ + 1, 2);
+    return rest.substr(0, 1) == "\n" ? 2 : rest == "\r\n" ? 3 : 0;
+  }
+  /// Steps over such an end; false where none is here.
+  bool join() {
+    const std::size_t length = joint();
+    at_ += length;
+    if (length > 0) ++line_;
+    return length > 0;
+  }
+
   std::string_view text_;
   char comment_;
+  bool goes_on_;
   std::size_t at_ = 0;
   int line_ = 1;
 };

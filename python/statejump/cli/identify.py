@@ -18,11 +18,12 @@ OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence",
 @click.command("identify")
 @click.argument("loop_file", metavar="LOOP.csv", type=click.Path(path_type=Path))
 @click.option("--model", default="auto", show_default=True, metavar="NAME",
-              help="Joint that is fitted: linear, clearance, coulomb, coulomb_spring, coulomb_clearance, "
-                   "coulomb_clearance_spring, mindlin, mindlin_spring, iwan, iwan_spring; auto: all, the best by BIC.")
+              help="Joint that is fitted: linear, clearance, coulomb, coulomb_clearance, coulomb_soft_stops, "
+                   "coulomb_play, mindlin, iwan, the last six also with _spring at the end; auto: all, the best by "
+                   "BIC.")
 @click.option("--start", default="unknown", show_default=True, metavar="HOW",
               help="Friction before the first row: fresh (carries nothing), cycled (the path was gone before), unknown "
-                   "(rows are left out until it is forgotten).")
+                   "(what fits best).")
 @click.option("--confidence", type=float, default=0.95, show_default=True, metavar="P", help="Of the intervals.")
 @click.option("--for", "target", default=None, metavar="WHAT",
               help="Section that is written: spring_slider, slider, revolute, umbrella, torsion_spring, iwan_joint.  "
@@ -39,7 +40,8 @@ def identify_command(
 ) -> None:
     """Clearance, stiffness, friction and preload of a joint from the measured loop in LOOP.csv, with intervals.
 
-    LOOP.csv has the columns displacement_m and force_N, or rotation_rad and moment_N_m, row by row as measured.
+    LOOP.csv has the columns displacement_m and force_N, or rotation_rad and moment_N_m, row by row as measured, or the
+    same in other units, as "disp [mm]" and "Force [kN]".
 
     \b
     Example:

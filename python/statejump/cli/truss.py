@@ -26,6 +26,7 @@ from statejump.core.units import split_unit
 from statejump.kinds.truss.case import Revolute, TrussReduced
 from statejump.kinds.truss.generate.document import write
 from statejump.schema.fields import fields_of, rule_of
+from statejump.schema.rules import folder_name
 from statejump.truss import LARGEST, LEAST, MAKERS
 
 # Keys that take one of several names.
@@ -77,7 +78,7 @@ def _generator_command(kind: str, function: Callable[..., Case]) -> click.Comman
         if not os.path.isdir(output.parent):
             raise NotWritten("cannot be written", file=output, cause=f"there is no folder {output.parent}")
         try:
-            case = function(n, name=output.stem, **values)
+            case = function(n, name=folder_name(output.stem), **values)
         except StatejumpError as refused:
             raise refused.located(file=output) from None
         given = [

@@ -132,13 +132,14 @@ def import_command(
     from statejump.kinds.truss.generate.document import write
     from statejump.kinds.truss.importing import Options, case_document, hints, read, summary
     from statejump.schema.json_schema import head_line
+    from statejump.schema.rules import folder_name
 
     console = make_console(quiet)
     beside = new_files(output, tables, force)
     deck = read(file, form, bars, Options(frozenset(name.lstrip("*").upper() for name in ignored), beams_as_bars, step,
                                           circ))
     document = case_document(
-        deck, output.stem, units=_units(units, length_unit, force_unit),
+        deck, folder_name(output.stem), units=_units(units, length_unit, force_unit),
         temperature_change_K=temperature_change, density_kg_per_m3=density,
         links={key: value for key, value in links.items() if value is not None}, fixed=[_held(text) for text in fixed],
         joints=[_joint(text) for text in joints],

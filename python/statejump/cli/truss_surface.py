@@ -11,7 +11,8 @@ import numpy as np
 from statejump.cli.terminal import QUIET, RESULTS, CaseFile, loaded, make_console, print_shown, undivided
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError
 from statejump.core.results_folder import Results
-from statejump.core.tables import Shown, read_columns, write_columns, write_csv
+from statejump.core.table_files import read_columns
+from statejump.core.tables import Shown, write_columns, write_csv
 from statejump.core.units import plain
 
 if TYPE_CHECKING:

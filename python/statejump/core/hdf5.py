@@ -115,6 +115,7 @@ def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]
     seen = {h5py.h5o.get_info(file.id).addr}
     size = path.stat().st_size
     groups = [("", file)]
+    unwritten = 0  # bytes of data sets that no byte of the file stands for
     while groups:
         parent, group = groups.pop()
         for name in group:
@@ -129,7 +130,7 @@ def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]
             if isinstance(item, h5py.Group):
                 groups.append((place, item))
             else:
-                _check_stored(item, place, size, path)
+                unwritten += _check_stored(item, place, size - unwritten // MOST_PACKED, path)
             found[place] = item
     for place, item in {"/": file, **found}.items():
         _check_texts(item, place, path)
@@ -150,8 +151,12 @@ def _check_texts(item: h5py.Group | h5py.Dataset, place: str, path: Path) -> Non
             raise Unreadable("damaged", cause=f"{shown} is not UTF-8", file=path) from None
 
 
-def _check_stored(item: h5py.Dataset, place: str, size: int, path: Path) -> None:
-    """Raise Unreadable where the numbers are not in the file, or not as many as are declared."""
+def _check_stored(item: h5py.Dataset, place: str, size: int, path: Path) -> int:
+    """Raise Unreadable where the numbers are not in the file, or more are declared than there can be. Return the bytes
+    of a data set that was made and never written in whole or in part: it is valid and has its fill value there.
+
+    :param size: bytes of the file, without those that stand for data sets that were not written
+    """
     import h5py
 
     made = item.id.get_create_plist()
@@ -159,5 +164,8 @@ def _check_stored(item: h5py.Dataset, place: str, size: int, path: Path) -> None
         raise Unreadable("damaged", cause=f"{place} has its numbers in another file", file=path)
     values = 0 if item.shape is None else math.prod(item.shape)
     declared = item.dtype.itemsize * max(values, math.prod(item.chunks) if item.chunks else 0)
-    if declared > MOST_PACKED * min(size, item.id.get_storage_size()):
+    written = item.id.get_space_status() == h5py.h5d.SPACE_STATUS_ALLOCATED
+    stored = min(size, item.id.get_storage_size())
+    if declared > MOST_PACKED * (stored if written else size):
         raise Unreadable("damaged", cause=f"{place} claims to hold more than the file does", file=path)
+    return 0 if written else int(declared)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files of items beside a case file, named in its section ``[tables]``: one row an item, one column a key.
 
-CSV: a cell is what the case file would have, lists with blanks between their entries and without brackets; an empty
-cell is a key that is not given. HDF5: a data set of every key, of n numbers, n texts, or n rows of either; numbers
-that are NaN and texts that are empty are not given.
+Text tables: a cell is what the case file would have, lists with blanks between their entries and without brackets;
+an empty cell is a key that is not given. HDF5: a data set of every key, of n numbers, n texts, or n rows of either;
+numbers that are NaN and texts that are empty are not given.
 
 They are read with the case file, and their columns take the place of its lists.
 """
@@ -17,17 +17,18 @@ from typing import Any
 import attrs
 import numpy as np
 
+from statejump.core.column_units import Column, matched
 from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey, Unreadable
 from statejump.core.output import write_atomically
-from statejump.core.reading import check_size, finite_number, is_file, open_csv
-from statejump.core.temperature_columns import quoted
+from statejump.core.reading import is_file
+from statejump.core.table_files import SUFFIXES as TEXT_SUFFIXES, Place, Table, open_table, quoted
 from statejump.schema.fields import TABLES_BESIDE, Section, fields_of, rule_of, section_of, tables_of
 from statejump.schema.item_tables import ItemTable, once
 from statejump.schema.rules import NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, suggestion
-from statejump.schema.texts import BLOCK, Numbering, Texts
+from statejump.schema.texts import Numbering, Texts
 from statejump.schema.toml import LARGEST_BYTES
 
-SUFFIXES = (".csv", ".h5", ".hdf5")
+SUFFIXES = (*TEXT_SUFFIXES, ".h5", ".hdf5")
 MOST_IN_LIST = 16  # entries of a cell or row: what items list are ends, directions and components
 TEXTS_AT_ONCE = 1 << 14  # of a data set: as objects they take ten times the memory of the file
 SWITCHES = {"true": True, "false": False}
@@ -75,64 +76,36 @@ def read_items(path: Path, key: str, model: type[Section], words: Numbering) -> 
         raise NotAllowed(key, path.name, f"must end with {', '.join(SUFFIXES)}")
     if not is_file(path):
         raise Unreadable("no such file of tables", file=path)
-    in_text = path.suffix.lower() == ".csv"
+    in_text = path.suffix.lower() in TEXT_SUFFIXES
     try:
-        return ItemTable(**_csv(path, model, words)) if in_text else ItemTable(**_hdf5(path, model, words))
+        return ItemTable(**_text(path, model, words)) if in_text else ItemTable(**_hdf5(path, model, words))
     except StatejumpError as failure:
         raise failure.located(file=path) from None
 
 
-def _keys(path: Path, names: Sequence[str], model: type[Section]) -> dict[str, Rule]:
-    """Return the rules of the keys of a file's columns."""
+def _keys(names: Sequence[str], model: type[Section]) -> list[tuple[Column, Rule]]:
+    """Return the columns of a file with the rules of their keys."""
     known = fields_of(model)
-    for name in names:
-        if name not in known:
-            said = suggestion(name, list(known))
-            raise Unreadable(f"column {quoted(name)} is unknown", file=path, cause=said.get("cause"),
-                             remedy=said.get("remedy"))
-    if len(set(names)) < len(names):
-        raise Unreadable("two columns have one name", file=path)
-    return {name: rule_of(known[name]) for name in names}
+    return [(column, rule_of(known[column.key])) for column in matched(names, list(known))]
 
 
-def _csv(path: Path, model: type[Section], words: Numbering) -> dict[str, np.ndarray | Texts]:
+def _text(path: Path, model: type[Section], words: Numbering) -> dict[str, np.ndarray | Texts]:
     blocks: dict[str, list[np.ndarray]] = {}
-    with open_csv(path) as stream:
-        check_size(path, LARGEST_BYTES, "; HDF5 may be larger")
-        reader = csv.reader(stream)
-        header = [cell.strip() for cell in next(reader, [])]
-        if not header:
-            raise Unreadable("line 1: there is no column", file=path)
-        rules = _keys(path, header, model)
-        for rows in _blocks(path, reader, len(header)):
-            for (name, rule), cells in zip(rules.items(), zip(*(row for _, row in rows))):
-                blocks.setdefault(name, []).append(_column(path, name, rule, cells, [line for line, _ in rows], words))
+    with open_table(path, LARGEST_BYTES, "; HDF5 may be larger") as table:
+        keys = _keys(table.header, model)
+        for lines, rows in table.blocks():
+            for (column, rule), cells in zip(keys, zip(*rows)):
+                blocks.setdefault(column.key, []).append(_column(table, column, rule, cells, lines, words))
     if not blocks:
         raise Unreadable("has no row below its header", file=path)
     joined = {name: _joined(blocks.pop(name)) for name in list(blocks)}  # no longer in memory than as blocks
-    return {name: _texts(joined[name], words) if rule.form in (TEXT, TEXTS) else joined[name]
-            for name, rule in rules.items()}
+    return {column.key: _texts(joined[column.key], words) if rule.form in (TEXT, TEXTS) else joined[column.key]
+            for column, rule in keys}
 
 
 def _texts(numbers: np.ndarray, words: Numbering) -> Texts:
     """Return a column of texts, its numbers of no more bytes than they need."""
     return Texts(once(numbers.astype(np.min_scalar_type(numbers.max(initial=0)))), words.words)
-
-
-def _blocks(path: Path, reader: Any, width: int) -> Iterator[list[tuple[int, list[str]]]]:
-    """Return rows with their lines, some at a time."""
-    found = []
-    for row in reader:
-        if not row:
-            continue
-        if len(row) != width:
-            raise Unreadable(f"line {reader.line_num} has {len(row)} cells", cause=f"the header has {width}", file=path)
-        found.append((reader.line_num, row))
-        if len(found) == BLOCK:
-            yield found
-            found = []
-    if found:
-        yield found
 
 
 def _joined(parts: list[np.ndarray]) -> np.ndarray:
@@ -147,54 +120,52 @@ def _joined(parts: list[np.ndarray]) -> np.ndarray:
 
 
 def _column(
-    path: Path, name: str, rule: Rule, cells: Sequence[str], lines: Sequence[int], words: Numbering
+    table: Table, column: Column, rule: Rule, cells: Sequence[str], lines: Sequence[int], words: Numbering
 ) -> np.ndarray:
     """Return the values of some cells, of texts their numbers."""
-    if rule.form == NUMBER:
-        return np.array([_number(path, name, line, cell) for line, cell in zip(lines, cells)])
+    def place(index: int) -> tuple[int, str]:
+        return lines[index], column.name
+
     if rule.form == TEXT:
         return words.numbers([cell.strip().encode() for cell in cells])
     if rule.form == SWITCH:
         for line, cell in zip(lines, cells):
-            if cell.strip() and cell.strip() not in SWITCHES:
-                raise Unreadable(f"line {line}, column {quoted(name)}", cause=f"{quoted(cell)} is not true or false",
-                                 file=path)
-        return np.array([SWITCHES.get(cell.strip()) for cell in cells], dtype=object)
-    if rule.form == WHOLE:
-        numbers = [_number(path, name, line, cell) for line, cell in zip(lines, cells)]
-        return np.array([None if value != value else int(value) if value == int(value) else value for value in numbers],
-                        dtype=object)
+            if cell.strip() and cell.strip().lower() not in SWITCHES:
+                raise Unreadable(f"line {line}, column {quoted(column.name)}",
+                                 cause=f"{quoted(cell)} is not true or false", file=table.path)
+        return np.array([SWITCHES.get(cell.strip().lower()) for cell in cells], dtype=object)
+    if rule.form in (NUMBER, WHOLE):
+        numbers = column.converted(table.numbers(cells, place, empty=True))
+        if rule.form == NUMBER:
+            return numbers
+        return np.array([None if value != value else int(value) if value == int(value) else value
+                         for value in numbers.tolist()], dtype=object)
     if rule.form not in (NUMBERS, TEXTS):
-        raise Unreadable(f"column {quoted(name)}", cause="a table cannot have this key", file=path)
+        raise Unreadable(f"column {quoted(column.name)}", cause="a table cannot have this key", file=table.path)
     split = [cell.split() for cell in cells]
     width = max(1, *map(len, split))
-    for line, entries in zip(lines, split):
+    for index, entries in enumerate(split):
         if len(entries) > MOST_IN_LIST:
-            raise Unreadable(f"line {line}, column {quoted(name)}",
-                             cause=f"{len(entries)} entries, a cell has {MOST_IN_LIST} at most", file=path)
+            raise Unreadable(f"line {lines[index]}, column {quoted(column.name)}",
+                             cause=f"{len(entries)} entries, a cell has {MOST_IN_LIST} at most", file=table.path)
         if rule.form == NUMBERS and entries and len(entries) != width:
-            raise Unreadable(f"line {line}, column {quoted(name)}",
-                             cause=f"{len(entries)} numbers, other rows have {width}", file=path)
+            raise Unreadable(f"line {lines[index]}, column {quoted(column.name)}",
+                             cause=f"{len(entries)} numbers, other rows have {width}", file=table.path)
     if rule.form == TEXTS:
         made = np.zeros((len(split), width), np.int32)
         made[np.arange(width) < np.array([[len(entries)] for entries in split])] = words.numbers(
             [entry.encode() for entries in split for entry in entries])
         return made
-    return np.array([
-        [_number(path, name, line, entry) for entry in entries] if entries else [np.nan] * width
-        for line, entries in zip(lines, split)
-    ]).reshape(-1, width)
+    return column.converted(_lists(table, split, width, place))
 
 
-def _number(path: Path, name: str, line: int, cell: str) -> float:
-    """Return the number of a cell, NaN where it is empty."""
-    if not cell.strip():
-        return float("nan")
-    value = finite_number(cell)
-    if value is None:
-        raise Unreadable(f"line {line}, column {quoted(name)}", cause=f"{quoted(cell)} is not a finite number",
-                         file=path)
-    return value
+def _lists(table: Table, split: Sequence[Sequence[str]], width: int, place: Place) -> np.ndarray:
+    """Return numbers by rows, NaN in a row whose cell is empty."""
+    given = [index for index, entries in enumerate(split) if entries]
+    found = np.full((len(split), width), np.nan)
+    found[given] = table.numbers([entry for index in given for entry in split[index]],
+                                 lambda entry: place(given[entry // width])).reshape(-1, width)
+    return found
 
 
 def _hdf5(path: Path, model: type[Section], words: Numbering) -> dict[str, np.ndarray | Texts]:
@@ -207,15 +178,16 @@ def _hdf5(path: Path, model: type[Section], words: Numbering) -> dict[str, np.nd
             raise Unreadable("cannot be read", cause="it is not HDF5", file=path)
         with h5py.File(path, "r") as file:
             found = {name.removeprefix("/"): part for name, part in objects(file, path).items() if name != "/"}
-            rules = _keys(path, list(found), model)
-            return {name: _of_data_set(path, name, rule, found[name], words) for name, rule in rules.items()}
+            return {column.key: _of_data_set(path, column, rule, found[column.name], words)
+                    for column, rule in _keys(list(found), model)}
     except (OSError, RuntimeError, MemoryError) as error:
         raise Unreadable("cannot be read", cause=" ".join(str(error).split()), file=path) from None
 
 
-def _of_data_set(path: Path, name: str, rule: Rule, data: Any, words: Numbering) -> np.ndarray | Texts:
+def _of_data_set(path: Path, column: Column, rule: Rule, data: Any, words: Numbering) -> np.ndarray | Texts:
     import h5py
 
+    name = column.name
     lists = rule.form in (NUMBERS, TEXTS)
     if not isinstance(data, h5py.Dataset) or data.ndim != (2 if lists else 1):
         raise Unreadable(f"{quoted(name)} must be a data set of {'rows' if lists else 'single values'}", file=path)
@@ -226,7 +198,7 @@ def _of_data_set(path: Path, name: str, rule: Rule, data: Any, words: Numbering)
         if data.dtype.kind not in "fiub":
             raise Unreadable(f"{quoted(name)} must be of numbers", file=path)
         if rule.form in (NUMBER, NUMBERS):
-            return np.asarray(data[()], dtype=float)
+            return column.converted(np.asarray(data[()], dtype=float))
         return np.asarray(data[()].astype(bool if rule.form == SWITCH else int).tolist(), dtype=object)
     if h5py.check_string_dtype(data.dtype) is None:
         raise Unreadable(f"{quoted(name)} must be of texts", file=path)

@@ -42,15 +42,15 @@ def finite_number(text: str) -> float | None:
 
 
 @contextmanager
-def open_csv(path: Path) -> Iterator[TextIO]:
+def open_csv(path: Path, encoding: str = "utf-8-sig") -> Iterator[TextIO]:
     """Open a CSV file for one of the readers of ``csv``; what is wrong with it while it is read is one sentence.
 
     :raises Unreadable: it may not be read, is not UTF-8 text or not CSV
     """
     try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
+        with path.open(newline="", encoding=encoding) as stream:
             yield stream
-    except UnicodeDecodeError:
+    except UnicodeError:
         raise Unreadable("not CSV", cause="the file is not UTF-8 text", file=path) from None
     except csv.Error as failure:
         raise Unreadable("not CSV", cause=str(failure), file=path) from None

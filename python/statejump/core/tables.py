@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one writer of tables: CSV with units in the headers, Markdown, JSON; and the reader of CSV columns."""
+"""The one writer of tables: CSV with units in the headers, Markdown, JSON."""
 from __future__ import annotations
 
 import csv
@@ -13,9 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from statejump.core.errors import NotAllowed, StatejumpError, Unreadable
+from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.core.output import write_atomically
-from statejump.core.reading import open_csv
 
 
 BLOCK = 4096  # rows that are written at once
@@ -68,31 +67,6 @@ def _cells(values: np.ndarray) -> Iterable[str]:
 
 def _quoted(text: str) -> str:
     return '"' + text.replace('"', '""') + '"' if _SPECIAL.search(text) else text
-
-
-def read_columns(path: Path) -> dict[str, np.ndarray]:
-    """Return the columns of a CSV file with a header; numbers where all cells are.
-
-    :raises Unreadable: the file may not be read, is no CSV file with as many cells in each row as in the first, holds
-        no samples
-    """
-    rows: list[list[str]] = []
-    with open_csv(path) as stream:
-        reader = csv.reader(stream)
-        for row in reader:
-            rows.append(row)
-            if len(row) != len(rows[0]):
-                raise Unreadable(f"line {reader.line_num} has not as many cells as the header", file=path)
-    if len(rows) < 2:
-        raise Unreadable("holds no samples", file=path)
-    columns = {}
-    for place, name in enumerate(rows[0]):
-        cells = [row[place] for row in rows[1:]]
-        try:
-            columns[name] = np.array([float(cell) for cell in cells])
-        except ValueError:
-            columns[name] = np.array(cells)
-    return columns
 
 
 def finite(value: Any) -> Any:

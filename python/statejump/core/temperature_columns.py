@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Columns of temperatures over time in a CSV or HDF5 file."""
+"""Columns of temperatures over time in a text table or an HDF5 file."""
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from statejump.core.errors import NotAllowed, Unreadable, printable
-from statejump.core.reading import check_size, finite_number, is_file, open_csv
+from statejump.core.column_units import Column, Conversion, conversion, matched, splits
+from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey, Unreadable
+from statejump.core.reading import is_file
+from statejump.core.table_files import SUFFIXES as TEXT_SUFFIXES, Table, numbers_of, open_table, quoted
 from statejump.schema.toml import LARGEST_BYTES
 
 if TYPE_CHECKING:
@@ -21,7 +22,8 @@ if TYPE_CHECKING:
 
 ZERO_CELSIUS_K = 273.15
 ENDINGS = {"_K": 0.0, "_degC": ZERO_CELSIUS_K}
-SUFFIXES = (".csv", ".h5", ".hdf5")
+SUFFIXES = (*TEXT_SUFFIXES, ".h5", ".hdf5")
+ACCEPTED = "NAME_K, NAME_degC, NAME [K] or NAME [°C]"
 HDF5_TEMPERATURES = {"temperature_K": 0.0, "temperature_degC": ZERO_CELSIUS_K}
 ENDS = ("@a", "@b")  # of the names of columns: first and second node of a link
 
@@ -64,7 +66,7 @@ def of_means(read: Read) -> Read:
             raise Unreadable(f"has the column {quoted(name)} {'beside' if beside else 'without'} {quoted(without)}",
                              cause="a link has one temperature, or one at either end", file=read.path)
         if read.offset_K[index] != read.offset_K[place[other]]:
-            raise Unreadable(f"columns {quoted(name)} and {quoted(other)}", cause="one is in kelvin, the other in °C",
+            raise Unreadable(f"columns {quoted(name)} and {quoted(other)}", cause="they have different units",
                              file=read.path)
         pairs[link] = index, place[other]
     if len(pairs) == len(place):
@@ -86,12 +88,6 @@ def listed(names: tuple[str, ...]) -> str:
     return ", ".join(map(quoted, names[:5])) + (", ..." if len(names) > 5 else "")
 
 
-def quoted(text: Any) -> str:
-    """Return what stands in a file as a sentence quotes it."""
-    shown = repr(printable(str(text)))
-    return shown if len(shown) <= 40 else shown[:36] + "...'"
-
-
 def read_columns(path: Path, key: str) -> Read:
     """Return what a file of temperatures holds.
 
@@ -101,7 +97,7 @@ def read_columns(path: Path, key: str) -> Read:
         raise NotAllowed(key, path.name, f"must end with {', '.join(SUFFIXES)}")
     if not is_file(path):
         raise Unreadable("no such file of temperatures", file=path)
-    found = _csv(path) if path.suffix.lower() == ".csv" else _hdf5(path)
+    found = _text(path) if path.suffix.lower() in TEXT_SUFFIXES else _hdf5(path)
     _check_names(path, found.names)
     if len(found.time_s) < 2:
         raise Unreadable("has fewer than two times", file=path)
@@ -115,56 +111,53 @@ def _check_names(path: Path, names: tuple[str, ...]) -> None:
         raise Unreadable(f"two columns are called {quoted(again)}", file=path)
 
 
-def _csv(path: Path) -> Read:
-    with open_csv(path) as stream:
-        check_size(path, LARGEST_BYTES)
-        return _rows(path, csv.reader(stream))
+def _text(path: Path) -> Read:
+    with open_table(path, LARGEST_BYTES) as table:
+        time = _time(table)
+        if len(table.header) < 2:
+            raise Unreadable("line 1: there is no column of temperatures", file=path)
+        columns = [_temperature(path, name) for name in table.header[1:]]
+        times, rows = [], []
+        for line, row in table.rows():
+            times.append((line, row[0]))
+            rows.append(_values(table, line, row))
+        lines, cells = zip(*times) if times else ((), ())
+        time_s = numbers_of(table, time, cells, lines) if times else np.zeros(0)
+    for place in np.flatnonzero(np.diff(time_s) <= 0):
+        raise Unreadable(f"line {times[place + 1][0]}: {table.header[0]} = {times[place + 1][1].strip()}", file=path,
+                         cause=f"times must rise, and {times[place][1].strip()} is before it")
+    values = np.array(rows).reshape(-1, len(columns))
+    scale = np.array([found.factor / found.divisor for _, found in columns])
+    return Read(path, tuple(name for name, _ in columns), np.array([found.offset for _, found in columns]), time_s,
+                values if (scale == 1).all() else values * scale)
 
 
-def _rows(path: Path, reader: Iterator[list[str]]) -> Read:
-    header = [cell.strip() for cell in next(reader, [])]
-    if not header or header[0] != "time_s":
-        raise Unreadable(f"line 1: the first column is {quoted(header[0] if header else '')}",
-                         cause="it must be time_s", file=path)
-    if len(header) < 2:
-        raise Unreadable("line 1: there is no column of temperatures", file=path)
-    names, offsets = [], []
-    for cell in header[1:]:
-        ending = next((ending for ending in ENDINGS if cell.endswith(ending)), "")
-        name = cell.removesuffix(ending)
-        if not ending or not name or not name.isprintable():
-            raise Unreadable(f"line 1: column {quoted(cell)}", cause="it must be NAME_K or NAME_degC", file=path)
-        names.append(name)
-        offsets.append(ENDINGS[ending])
-    rows: list[Numbers] = []
-    last = -np.inf
-    for line, row in enumerate(reader, start=2):
-        if not row:
-            continue
-        if len(row) != len(header):
-            raise Unreadable(f"line {line} has {len(row)} cells", cause=f"the header has {len(header)}", file=path)
-        values = _values(path, line, header, row)
-        if not values[0] > last:
-            raise Unreadable(f"line {line}: time_s = {values[0]:g}", file=path,
-                             cause=f"times must rise, and {last:g} is before it")
-        last = values[0]
-        rows.append(values)
-    table = np.array(rows).reshape(-1, len(header))
-    return Read(path, tuple(names), np.array(offsets), table[:, 0].copy(), table[:, 1:])
-
-
-def _values(path: Path, line: int, header: list[str], row: list[str]) -> Numbers:
+def _time(table: Table) -> Column:
+    """Return what the first column is."""
     try:
-        values = np.fromiter(map(float, row), float, len(row))
-        if np.isfinite(values).all() and "_" not in "".join(row):  # Python takes 1_000 for a number
-            return values
-    except ValueError:
-        pass
-    for cell, name in zip(row, header):
-        if finite_number(cell) is None:
-            what = f"{quoted(cell)} is not a finite number" if cell.strip() else "the cell is empty"
-            raise Unreadable(f"line {line}, column {quoted(name)}", cause=what, file=path)
-    raise AssertionError("a row is refused by one of its cells")
+        return matched(table.header[:1], ("time_s",), {"time_s": ("t",)})[0]
+    except StatejumpError as refused:
+        said = "it must be the time" if isinstance(refused, UnknownKey) else refused.cause
+        raise Unreadable(f"line 1: the first column is {quoted(table.header[0])}", cause=said, file=table.path,
+                         remedy="accepted are time_s, time [h], or time with ISO times") from None
+
+
+def _temperature(path: Path, cell: str) -> tuple[str, Conversion]:
+    """Return the name of a column of temperatures, and how its numbers become kelvin."""
+    for ending, offset in ENDINGS.items():
+        if cell.endswith(ending) and cell.removesuffix(ending).isprintable() and cell != ending:
+            return cell.removesuffix(ending), Conversion(offset=offset)
+    ways = [(name.strip(), unit) for name, unit in splits(cell) if name.strip() and cell.isprintable()]
+    for name, unit in ways:
+        found = conversion(unit, "K")
+        if found is not None:
+            return name, found
+    raise Unreadable(f"line 1: column {quoted(cell)}", cause="it names no unit of temperature" if not ways else
+                     f"{quoted(ways[0][1])} is no unit of temperature", remedy=f"accepted are {ACCEPTED}", file=path)
+
+
+def _values(table: Table, line: int, row: Sequence[str]) -> Numbers:
+    return table.numbers(row[1:], lambda index: (line, table.header[index + 1]))
 
 
 def _hdf5(path: Path) -> Read:

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, Unreadable
-from statejump.core.temperature_columns import Read, listed, of_means, quoted, read_columns, refuse
+from statejump.core.table_files import quoted
+from statejump.core.temperature_columns import Read, listed, of_means, read_columns, refuse
 from statejump.core.thermal import (
     KEYS_OF_FILES, LARGEST_CHANGE_K, LONGEST_TABLE_S, SAME_TEMPERATURE_K, SAME_TIME, Thermal,
 )

@@ -1,24 +1,32 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Maximum likelihood of a joint for a loop, intervals by profile likelihood, choice by BIC.
+"""Least squares of a joint for a loop, intervals by profile likelihood, choice by BIC.
 
-Noise of the force is Gaussian, independent from row to row, of one unknown scale σ: with RSS the sum of squares of the
-residuals of n rows, the likelihood with the best σ is ln L = -n/2 (ln(2π RSS/n) + 1), a function of RSS alone.
+Noise of the force is Gaussian, of one unknown scale σ, and may be correlated from row to row: n rows count as
+m = n/τ independent ones. With RSS the sum of squares of the residuals, ln L = -m/2 (ln(2π RSS/n) + 1). The profile
+of a parameter may rise by κ F/(n - p) of RSS, F the quantile of F(1, m - p) and κ the growth of its variance.
 """
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from math import exp, inf, isfinite, log, pi, sqrt
 
 import numpy as np
 from scipy.optimize import brentq, least_squares
-from scipy.stats import chi2
+from scipy.stats import f as f_distribution
 
 from statejump.identification.loop import Loop
-from statejump.identification.models import MODELS, PARAMETERS, POSITIVE, Model
+from statejump.identification.models import (
+    MODELS, PARAMETERS, POSITIVE, START, Model, containing, with_part)
+from statejump.identification.noise import Noise, noise_of
 
 STARTS = 4  # best of the grid of starts that are followed
+STARTS_FROM_PART = 2  # likewise, the parameters of a part being those of its optimum
 CLOSE = 1e-3  # of an interval's half width: to this its ends are found
+NEAREST = 1e-12  # of what is sought: no end is nearer
+AT_END = 0.01  # of what is sought: nearer to its end a parameter is at it
+DEPENDS = 0.25  # of an interval's half width: a parameter that moves further as another one nears its end depends on it
 ROUNDING = 1e-9  # of half of the loop's force: noise below is that of the arithmetic
 
 
@@ -35,12 +43,23 @@ class Interval:
         return isfinite(self.low) and isfinite(self.high)
 
 
+STOPS = ("clearance_minus", "clearance_plus")
+ZEROS = dict.fromkeys(("friction", "play", "preload_stiffness"), 0.0)
+ENDLESS = dict.fromkeys(("friction", "stop_stiffness", *STOPS), inf)
+
+
 class Problem:
-    """A joint and a loop. Points of the search are in units of the loop's size, positive parameters as logarithms."""
+    """A joint and a loop. Points of the search are in units of the loop's size, positive parameters as logarithms.
+
+    At an end of what is sought a parameter of a slide has the value that does nothing, 0 or infinite: so a joint
+    contains its parts.
+    """
 
     def __init__(self, model: Model, loop: Loop) -> None:
-        self.model, self.names = model, model.parameters
-        self.displacement, self.force = loop.fitted
+        self.model = model
+        free_start = loop.start == "unknown" and "friction" in model.parameters
+        self.names = (*model.parameters, START) if free_start else model.parameters
+        self.displacement, self.force = loop.displacement, loop.force
         self.memory = loop.memory
         self.half_force = float(np.ptp(self.force)) / 2
         half = float(np.ptp(loop.displacement)) / 2
@@ -53,21 +72,35 @@ class Problem:
         self.logarithmic = np.array([PARAMETERS[name].scale == POSITIVE for name in self.names])
         self.low, self.high = (self._sought([getattr(PARAMETERS[name], end) for name in self.names])
                                for end in ("low", "high"))
+        for place, name in enumerate(self.names):
+            if name in STOPS:  # no clearance is negative
+                self.low[place] = max(self.low[place], -self.offsets[place] / half)
+        slides = model.answer is MODELS["coulomb"].answer
+        self.limits = [(place, end, limit) for place, name in enumerate(self.names)
+                       if slides or name == "preload_stiffness"
+                       for end, limit in ((self.low[place], ZEROS.get(name)), (self.high[place], ENDLESS.get(name)))
+                       if limit is not None]
 
     def _sought(self, relative: Sequence[float]) -> np.ndarray:
         found = np.array(relative, dtype=float)
-        found[self.logarithmic] = np.log(found[self.logarithmic])
+        with np.errstate(divide="ignore"):  # nothing, of a part that lacks it
+            found[self.logarithmic] = np.log(found[self.logarithmic])
         return found
 
     def values(self, point: np.ndarray) -> dict[str, float]:
         """Return the parameters of a point of the search, in SI units."""
         relative = np.where(self.logarithmic, np.exp(np.where(self.logarithmic, point, 0.0)), point)
-        return dict(zip(self.names, (relative * self.units + self.offsets).tolist()))
+        found = (relative * self.units + self.offsets).tolist()
+        for place, end, limit in self.limits:
+            if point[place] == end:
+                found[place] = limit
+        return dict(zip(self.names, found))
 
     def point(self, values: dict[str, float]) -> np.ndarray:
         """Return the point of the search of parameters in SI units."""
-        return self._sought([(values[name] - offset) / unit
-                             for name, offset, unit in zip(self.names, self.offsets, self.units)])
+        found = self._sought([(values[name] - offset) / unit
+                              for name, offset, unit in zip(self.names, self.offsets, self.units)])
+        return np.asarray(np.clip(found, self.low, self.high))
 
     def value(self, place: int, coordinate: float) -> float:
         """Return one parameter of a coordinate of the search; infinite at an end of what is sought."""
@@ -106,32 +139,46 @@ class Problem:
         inside = np.clip(point[free], self.low[free], self.high[free])
         found = least_squares(moved, inside, bounds=(self.low[free], self.high[free]), x_scale="jac", ftol=1e-10,
                               xtol=1e-10, gtol=1e-12, max_nfev=200)
+        first = np.array(start)
+        first[free] = np.clip(first[free], self.low[free], self.high[free])
         point[free] = found.x
-        return point, self.squares(point)
+        ends = self.squares(first), self.squares(point)
+        # The search begins inside of its bounds, which may be worse than on one.
+        return (first, ends[0]) if ends[0] <= ends[1] else (point, ends[1])
 
-    def search(self) -> tuple[np.ndarray, float]:
-        """Return the best point that is found from the grid of starts, and its sum of squares."""
-        starts = []
-        for relative in self.model.starts():
-            starts.append(self._sought([relative[name] for name in self.names]))
+    def starts(self) -> list[np.ndarray]:
+        """Return the best starts of the grid."""
+        grid = [self._sought([relative[name] for name in self.names]) for relative in self.model.starts(self.names)]
+        return self._lowest(grid, STARTS)
+
+    def starts_of(self, part: Fit) -> list[np.ndarray]:
+        """Return the optimum of a part, and the best starts of what the part lacks."""
+        values = {**dict.fromkeys((START,), 0.0), **part.values}
+        there = self.point(with_part(self.model, part.model, values, self.memory, self.displacement))
+        more = [name for name in self.names if name not in part.values]
+        grid = []
+        for relative in self.model.starts(more):
+            start = np.array(there)
+            for name, value in relative.items():
+                place = self.names.index(name)
+                start[place] = log(value) if self.logarithmic[place] else value
+            grid.append(start)
+        return [there, *self._lowest(grid, STARTS_FROM_PART)]
+
+    def _lowest(self, starts: list[np.ndarray], count: int) -> list[np.ndarray]:
+        starts = [np.clip(start, self.low, self.high) for start in starts]
         order = np.argsort([self.squares(start) for start in starts], kind="stable")
-        return min((self.best(starts[place]) for place in order[:STARTS]), key=lambda each: each[1])
+        return [starts[place] for place in order[:count]]
 
-    def spread(self, point: np.ndarray, squares: float) -> np.ndarray:
-        """Return standard deviations by the curvature at the best point; NaN of what the residuals do not follow."""
-        step = 1e-6
+    def jacobian(self, point: np.ndarray) -> np.ndarray:
+        """Return the derivatives of the residual (rows, parameters)."""
         columns = []
         for place in range(len(point)):
+            step = 1e-6 if point[place] + 1e-6 <= self.high[place] else -1e-6
             there = np.array(point)
             there[place] += step
             columns.append((self.residual(there) - self.residual(point)) / step)
-        jacobian = np.array(columns).T
-        with np.errstate(all="ignore"):
-            try:
-                covariance = np.linalg.inv(jacobian.T @ jacobian) * squares / len(self.force)
-            except np.linalg.LinAlgError:
-                return np.full(len(point), np.nan)
-            return np.sqrt(np.diag(covariance))
+        return np.array(columns).T
 
 
 @dataclass(frozen=True)
@@ -140,46 +187,81 @@ class Fit:
 
     :param model: the joint
     :param values: its parameters by name, SI units
-    :param noise: σ of the force, by maximum likelihood
-    :param log_likelihood: natural logarithm
+    :param noise: σ of the force
     :param rows: how many were fitted
+    :param rows_each: how many rows count as one
     """
 
     model: Model
     values: dict[str, float]
     noise: float
-    log_likelihood: float
     rows: int
     point: np.ndarray
     squares: float
+    rows_each: float = 1.0
+
+    @property
+    def independent_rows(self) -> float:
+        """How many independent rows would say as much."""
+        return self.rows / self.rows_each
+
+    @property
+    def log_likelihood(self) -> float:
+        """Natural logarithm, of the independent rows."""
+        return -0.5 * self.independent_rows * (log(2 * pi * self.noise**2) + 1)
 
     @property
     def bic(self) -> float:
         """Schwarz's criterion, the less the better; σ is a parameter too."""
-        return (len(self.values) + 1) * log(self.rows) - 2 * self.log_likelihood
+        return (len(self.values) + 1) * log(self.independent_rows) - 2 * self.log_likelihood
 
 
 def _fit(problem: Problem, point: np.ndarray, squares: float) -> Fit:
     rows = len(problem.force)
     noise = sqrt(squares / rows) * problem.half_force
-    return Fit(problem.model, problem.values(point), noise, -0.5 * rows * (log(2 * pi * noise**2) + 1), rows, point,
-               squares)
+    return Fit(problem.model, problem.values(point), noise, rows, point, squares)
 
 
-def fit(model: Model, loop: Loop) -> Fit:
-    """Return a joint of the greatest likelihood for a loop."""
-    problem = Problem(model, loop)
-    return _fit(problem, *problem.search())
+class Fits:
+    """The joints that were fitted to a loop, none worse than a joint that it contains."""
+
+    def __init__(self, loop: Loop) -> None:
+        self.loop = loop
+        self._found: dict[str, Fit] = {}
+
+    def fit(self, name: str) -> Fit:
+        """Return a joint of the least sum of squares, of its parts too."""
+        if name not in self._found:
+            model = MODELS[name]
+            problem = Problem(model, self.loop)
+            starts = problem.starts()
+            for part in model.parts:
+                starts += problem.starts_of(self.fit(part))
+            self._found[name] = _fit(problem, *min(map(problem.best, starts), key=lambda each: each[1]))
+        return self._found[name]
+
+    def improve(self, better: Fit) -> None:
+        """Take a better point of a joint, for the joints that contain it too."""
+        self._found[better.model.name] = better
+        for name in containing(better.model.name):
+            before = self._found.get(name)
+            if before is not None and before.squares > better.squares:
+                problem = Problem(MODELS[name], self.loop)
+                point, squares = problem.best(problem.starts_of(better)[0])
+                if squares < before.squares:
+                    self._found[name] = _fit(problem, point, squares)
+
+    def ranked(self, names: Sequence[str]) -> list[Fit]:
+        """Return the fits of joints, the best by BIC first. The rows count as the residuals of the best fit say."""
+        found = [self.fit(name) for name in names]
+        rows_each = noise_at(min(found, key=lambda each: each.squares), self.loop).rows_each
+        return sorted((replace(each, rows_each=rows_each) for each in found), key=lambda each: each.bic)
 
 
-def fits(loop: Loop, names: Sequence[str]) -> list[Fit]:
-    """Return the fits of joints, the best by BIC first."""
-    return sorted((fit(MODELS[name], loop) for name in names), key=lambda each: each.bic)
-
-
-def threshold(confidence: float) -> float:
-    """Return how far twice the logarithm of the likelihood may fall inside of an interval (Wilks)."""
-    return float(chi2.ppf(confidence, 1))
+def noise_at(best: Fit, loop: Loop) -> Noise:
+    """Return how the noise of a loop is correlated, by the residuals of a fit."""
+    problem = Problem(best.model, loop)
+    return noise_of(problem.residual(best.point), problem.jacobian(best.point), problem.displacement)
 
 
 class _Better(Exception):
@@ -191,14 +273,14 @@ class _Better(Exception):
 
 
 class Profile:
-    """Likelihood of one parameter, with the best of all others."""
+    """Sum of squares of one parameter, with the best of all others."""
 
     def __init__(self, problem: Problem, best: Fit, name: str) -> None:
         self.problem, self.best, self.place = problem, best, problem.names.index(name)
         self.known = {float(best.point[self.place]): (best.point, 0.0)}
 
-    def drop(self, coordinate: float) -> float:
-        """Return by how much twice the logarithm of the likelihood falls."""
+    def rise(self, coordinate: float) -> float:
+        """Return by which fraction the sum of squares rises."""
         near = min(self.known, key=lambda each: abs(each - coordinate))
         if near == coordinate:
             return self.known[near][1]
@@ -207,52 +289,120 @@ class Profile:
         point, squares = self.problem.best(start, held=self.place)
         if squares < self.best.squares * (1 - 1e-9):
             raise _Better(point, squares)
-        fallen = self.best.rows * log(squares / self.best.squares)
-        self.known[coordinate] = (point, fallen)
-        return fallen
+        risen = squares / self.best.squares - 1
+        self.known[coordinate] = (point, risen)
+        return risen
 
     def end(self, direction: int, step: float, most: float) -> float:
-        """Return where the likelihood has fallen by ``most``; the bound of the search where it does not."""
+        """Return where the sum of squares has risen by ``most``; the bound of the search where it does not."""
         bound = float((self.problem.high if direction > 0 else self.problem.low)[self.place])
-        inside = float(self.best.point[self.place])
-        while True:
-            outside = inside + direction * step
-            if (outside - bound) * direction >= 0:
-                outside = bound
-            if self.drop(outside) > most:
-                break
-            if outside == bound:
+        nearest = NEAREST * float(self.problem.high[self.place] - self.problem.low[self.place])
+        centre = float(self.best.point[self.place])
+        widest = direction * (bound - centre)
+        if widest <= nearest:
+            return bound
+
+        def risen(distance: float) -> float:
+            return self.rise(bound if distance >= widest else centre + direction * distance) - most
+
+        outside = min(step, widest)
+        inside = outside
+        while risen(inside) > 0:
+            inside, outside = inside / 4, inside
+            if inside <= nearest:
+                return centre + direction * outside
+        while risen(outside) <= 0:
+            if outside == widest:
                 return bound
-            inside, step = outside, 2 * step
-        if inside == outside:
-            return outside
-        return float(brentq(lambda coordinate: self.drop(coordinate) - most, inside, outside,
-                            xtol=CLOSE * abs(outside - inside)))
+            inside, outside = outside, min(2 * outside, widest)
+        return centre + direction * exp(float(brentq(
+            lambda distance: risen(exp(distance)), log(inside), log(outside), xtol=CLOSE)))
+
+    @cached_property
+    def movements(self) -> dict[int, np.ndarray]:
+        """Return, by end, how all parameters move on the last of the way there; of ends that bound the parameter
+        none."""
+        found = {}
+        for direction, ends in ((-1, self.problem.low), (1, self.problem.high)):
+            bound, widest = ends[self.place], AT_END * (self.problem.high - self.problem.low)[self.place]
+            at = [each for each in self.known if abs(each - bound) <= widest]
+            before = [each for each in self.known if abs(each - bound) > widest]
+            if at and before:
+                last, near = (min(each, key=lambda one: abs(one - bound)) for each in (at, before))
+                found[direction] = self.known[last][0] - self.known[near][0]
+        return found
 
 
-def intervals(best: Fit, loop: Loop, confidence: float, names: Sequence[str] | None = None) -> tuple[
-    Fit, dict[str, Interval]
-]:
+@dataclass(frozen=True)
+class Intervals:
+    """Intervals of a fit.
+
+    :param of: by parameter
+    :param because: parameters that have no end because another one, which is named, has none
+    """
+
+    of: dict[str, Interval]
+    because: dict[str, str]
+
+
+def intervals(fits: Fits, model: str, confidence: float, names: Sequence[str] | None = None) -> tuple[Fit, Intervals]:
     """Return the interval of each parameter, and the fit, which a profile may have made better.
 
     :param confidence: as 0.95
     :param names: of which parameters; None: of all
     """
-    most = threshold(confidence)
     while True:
-        problem = Problem(best.model, loop)
-        spread = problem.spread(best.point, best.squares)
-        found = {}
+        best = fits.fit(model)
+        problem = Problem(best.model, fits.loop)
+        wanted = [name for name in problem.names if name in names] if names is not None else problem.names
         try:
-            for name in problem.names if names is None else names:
-                place = problem.names.index(name)
-                widest = problem.high[place] - problem.low[place]
-                step = sqrt(most) * spread[place]
-                step = step if 0 < step < 0.1 * widest else 1e-3 * widest
-                profile = Profile(problem, best, name)
-                low, high = (profile.end(direction, float(step), most) for direction in (-1, 1))
-                found[name] = Interval(problem.value(place, low), problem.value(place, high))
+            return best, _intervals(problem, best, confidence, wanted)
         except _Better as better:
-            best = _fit(problem, better.point, better.squares)
-            continue
-        return best, found
+            fits.improve(_fit(problem, better.point, better.squares))
+
+
+def _intervals(problem: Problem, best: Fit, confidence: float, names: Sequence[str]) -> Intervals:
+    jacobian = problem.jacobian(best.point)
+    noise = noise_of(problem.residual(best.point), jacobian, problem.displacement)
+    freedoms = best.rows - len(problem.names)
+    quantile = float(f_distribution.ppf(confidence, 1, max(1.0, best.rows / noise.rows_each - len(problem.names))))
+    profiles, ends = {}, {}
+    for name in names:
+        place = problem.names.index(name)
+        others = np.delete(jacobian, place, axis=1)
+        own = jacobian[:, place] - others @ np.linalg.lstsq(others, jacobian[:, place], rcond=None)[0]
+        most = noise.inflation(own) * quantile / freedoms
+        widest = float(problem.high[place] - problem.low[place])
+        size = float(own @ own)
+        step = sqrt(most * best.squares / size) if size > 0 else inf
+        profiles[name] = Profile(problem, best, name)
+        ends[name] = [profiles[name].end(direction, step if step < 0.1 * widest else 1e-3 * widest, most)
+                      for direction in (-1, 1)]
+    found = {name: Interval(*(problem.value(problem.names.index(name), end) for end in both))
+             for name, both in ends.items()}
+    because = {}
+    for name, profile in profiles.items():
+        for way, cause in _dependence(problem, profile, ends[name], profiles).items():
+            found[name] = Interval(found[name].low if way > 0 else -inf, found[name].high if way < 0 else inf)
+            because[name] = cause
+    return Intervals({name: interval for name, interval in found.items() if name != START}, because)
+
+
+def _dependence(problem: Problem, profile: Profile, ends: Sequence[float], profiles: dict[str, Profile]) -> dict[
+    int, str
+]:
+    """Return which ends of an interval are where they are only because another parameter is at the end of what is
+    sought, and which parameter that is."""
+    found = {}
+    half = (ends[1] - ends[0]) / 2
+    for way, end in zip((-1, 1), ends):
+        point = profile.known[min(profile.known, key=lambda each: abs(each - end))][0]
+        for name, other in profiles.items():
+            if other is profile or name == START:
+                continue
+            for direction, moved in other.movements.items():
+                bound = (problem.high if direction > 0 else problem.low)[other.place]
+                near = abs(point[other.place] - bound) <= AT_END * (problem.high - problem.low)[other.place]
+                if near and way * moved[profile.place] > DEPENDS * half:
+                    found[way] = name
+    return found

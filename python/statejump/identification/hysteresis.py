@@ -22,20 +22,45 @@ class Memory:
 
     :param half_distance: at which the backbone is needed [m or rad]
     :param weights: rows of the path × half distances
+    :param loaded: the same path after sliding downwards and upwards; None: the first row is known
+    :param path: displacements, where ``loaded`` is given
     """
 
     half_distance: np.ndarray
     weights: csr_matrix
+    loaded: tuple[Memory, Memory] | None = None
+    path: np.ndarray | None = None
 
-    def force(self, backbone: Backbone) -> np.ndarray:
+    def force(self, backbone: Backbone, start: float = 0.0) -> np.ndarray:
         """Return the force of friction in every row.
 
         :param backbone: force of a first loading from rest, of displacements from 0
+        :param start: fraction of the limit that friction carries in the first row, if that is not known. Sliders of
+            several limits have more than one such state; the force is interpolated between rest and full slip
         """
         found: np.ndarray = self.weights @ backbone(self.half_distance)
-        return found
+        if self.loaded is None or start == 0:
+            return found
+        return (1 - abs(start)) * found + abs(start) * self.loaded[start > 0].force(backbone)
+
+    def stretch(self, width: float, start: float = 0.0) -> np.ndarray:
+        """Return the displacement of a spring in front of one slider, which slides at ±width.
+
+        :param start: as in :meth:`force`. A slider between two paths stays where it is until one of them takes it
+            along: x = min(max(x0, x_low), x_high), exactly
+        """
+        def clipped(half: np.ndarray) -> np.ndarray:
+            return np.minimum(half, width)
+
+        if self.loaded is None or self.path is None:
+            return self.force(clipped)
+        low, high = (memory.force(clipped) for memory in self.loaded)
+        first = start * min(width, float(np.ptp(self.path)))
+        return np.asarray(np.minimum(np.maximum(self.path - self.path[0] + first, low), high))
 
 
+# A slider that is moved further than this, in ranges of the path, has slid.
+FAR_AWAY = 10.0
 # Terms of the sum: half distance and weight of each.
 Terms = tuple[tuple[float, float], ...]
 
@@ -68,6 +93,18 @@ def remembered(path: np.ndarray, fresh: bool) -> Memory:
             now = new
         rows.append(_terms(stack, now, fresh))
     return _memory(rows[-len(path):])
+
+
+def from_any_start(path: np.ndarray) -> Memory:
+    """Return what friction remembers along a path whose first row may carry any friction."""
+    away = FAR_AWAY * float(np.ptp(path))
+    rest = remembered(path, fresh=True)
+    down, up = (_without_first(remembered(np.append(path[0] - sign * away, path), fresh=True)) for sign in (-1, 1))
+    return Memory(rest.half_distance, rest.weights, (down, up), path)
+
+
+def _without_first(memory: Memory) -> Memory:
+    return Memory(memory.half_distance, csr_matrix(memory.weights[1:]))
 
 
 def _closes(stack: list[tuple[float, Terms]], new: float, fresh: bool) -> bool:

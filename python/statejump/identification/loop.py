@@ -4,26 +4,37 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.sparse import csr_matrix
 
-from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey
-from statejump.core.tables import check_columns, read_columns
-from statejump.identification.hysteresis import Memory, remembered
+from statejump.core.column_units import matched
+from statejump.core.errors import MissingKey, NotAllowed, StatejumpError
+from statejump.core.table_files import read_known
+from statejump.core.tables import check_columns
+from statejump.identification.hysteresis import Memory, from_any_start, remembered
 
 PAIRS = (("displacement_m", "force_N"), ("rotation_rad", "moment_N_m"))
 COLUMNS = ("time_s", *(name for pair in PAIRS for name in pair))
+# What test rigs call these quantities.
+WORDS = {
+    "time_s": ("t",),
+    "displacement_m": ("disp", "displ", "position", "travel", "stroke", "deflection", "slip", "u", "x"),
+    "force_N": ("load", "friction", "friction force", "axial force", "F"), "rotation_rad": ("angle", "rot", "theta"),
+    "moment_N_m": ("torque", "M"),
+}
 STARTS = ("unknown", "fresh", "cycled")
 UNITS = {"displacement": ("m", "rad"), "force": ("N", "N m"), "stiffness": ("N/m", "N m/rad"), "-": ("-", "-")}
+FORCES, DISPLACEMENTS = ("force", "moment"), ("displacement", "rotation")
 FEWEST_ROWS = 20
-# Rows are fitted from where the path has been over this share of its range: what friction carried before is then
-# forgotten but by sliders that only the last twentieth of the range moves.
-SETTLED = 0.95
+# Fraction of the work of the largest force along the path that a loop may give out: sensors that are not in phase.
+PHASE = 0.01
+# Standard deviations of the energy by the noise of the force that pass for chance.
+CHANCE = 6.0
+# Correlation of force and displacement from which a force pushes instead of resisting.
+PUSHES = -0.5
 
 
 @dataclass(frozen=True)
@@ -35,7 +46,7 @@ class Loop:
     :param force: likewise [N], or the moment [N m]
     :param angular: whether it is moment over rotation
     :param start: what is known of the joint before the first row: ``fresh``, friction carries nothing; ``cycled``,
-        the joint has gone the same path before; ``unknown``: rows are left out until the path has wiped it out
+        the joint has gone the same path before; ``unknown``: friction carries what fits best
     """
 
     name: str
@@ -45,25 +56,45 @@ class Loop:
     start: str
 
     @cached_property
-    def first(self) -> int:
-        """First row that is fitted."""
-        if self.start != "unknown":
-            return 0
-        reached = np.maximum.accumulate(self.displacement) - np.minimum.accumulate(self.displacement)
-        return int(np.argmax(reached >= SETTLED * np.ptp(self.displacement)))
-
-    @cached_property
     def memory(self) -> Memory:
-        """What friction remembers in every row that is fitted."""
-        found = remembered(self.displacement, self.start == "fresh")
-        weights = csr_matrix(found.weights[self.first:])
-        used = np.unique(weights.indices)
-        return Memory(found.half_distance[used], csr_matrix(weights[:, used]))
+        """What friction remembers in every row."""
+        if self.start == "unknown":
+            return from_any_start(self.displacement)
+        return remembered(self.displacement, self.start == "fresh")
 
-    @cached_property
-    def fitted(self) -> tuple[np.ndarray, np.ndarray]:
-        """Displacement and force of the rows that are fitted."""
-        return self.displacement[self.first:], self.force[self.first:]
+    def check_sign(self) -> None:
+        """Refuse a force that does not resist: a reaction, as solvers and load cells give it.
+
+        :raises NotAllowed: the path gets energy out of the joint, or the force falls as the displacement rises
+        """
+        energy, doubt = self._energy()
+        largest = float(np.ptp(self.force)) / 2 * float(np.abs(np.diff(self.displacement)).sum())
+        force, displacement = FORCES[self.angular], DISPLACEMENTS[self.angular]
+        remedy = f"multiply {force} by -1: it is positive where it resists a positive {displacement}"
+        if energy < -max(CHANCE * doubt, PHASE * largest):
+            raise StatejumpError("the loop gives out energy", remedy=remedy,
+                                 cause=f"{-energy:.4g} J: the sign of the {force} is reversed")
+        if energy <= PHASE * largest and np.corrcoef(self.displacement, self.force)[0, 1] < PUSHES:
+            raise StatejumpError(f"the {force} falls as the {displacement} rises", cause="its sign is reversed",
+                                 remedy=remedy)
+
+    def _energy(self) -> tuple[float, float]:
+        """Return the energy that the joint takes up, and its standard deviation by the noise of the force: between the
+        first and the last row at the middle of the path, so that springs give nothing."""
+        middle = float(np.min(self.displacement) + np.max(self.displacement)) / 2
+        above = self.displacement > middle
+        crossings = np.flatnonzero(above[1:] != above[:-1])
+        same_way = crossings[above[crossings] == above[crossings[0]]]
+        rows = slice(int(same_way[0]), int(same_way[-1]) + 1)
+        displacement, force = self.displacement[rows], self.force[rows]
+        if len(force) < 3:
+            return 0.0, 0.0
+        weights = np.zeros(len(force))
+        weights[1:] += np.diff(displacement) / 2
+        weights[:-1] += np.diff(displacement) / 2
+        # Second differences of a smooth force are noise; its corners are few.
+        noise = 1.4826 * float(np.median(np.abs(np.diff(force, 2)))) / 6**0.5
+        return float(weights @ force), noise * float(np.linalg.norm(weights))
 
     def unit(self, dimension: str) -> str:
         """Return the unit of a displacement, a force, a stiffness; ``-`` of a ratio."""
@@ -71,7 +102,7 @@ class Loop:
 
 
 def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown") -> Loop:
-    """Return a loop of a CSV file, or of columns.
+    """Return a loop of a table, or of columns.
 
     :param source: columns ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``; ``time_s`` may be
         there and is not used
@@ -81,21 +112,24 @@ def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown") ->
     if start not in STARTS:
         raise NotAllowed("start", start, f"must be one of {', '.join(STARTS)}", allowed=STARTS)
     if isinstance(source, Mapping):
-        return _loop("loop", {str(name): np.atleast_1d(np.asarray(values)) for name, values in source.items()}, start)
+        return _loop("loop", _named(source), start)
     file = Path(source)
-    columns = read_columns(file)
+    columns = read_known(file, COLUMNS, WORDS)
     try:
         return _loop(file.stem, columns, start)
     except StatejumpError as failure:
         raise failure.located(file=file) from None
 
 
+def _named(source: Mapping[str, Any]) -> dict[str, np.ndarray]:
+    """Return columns by keys that end in their units, in these units; ISO times are left out."""
+    given = {str(name): np.atleast_1d(np.asarray(values)) for name, values in source.items()}
+    columns = [column for column in matched(list(given), COLUMNS, WORDS) if not column.iso]
+    return {column.key: column.converted(given[column.name]) if given[column.name].dtype.kind in "iuf"
+            else given[column.name] for column in columns}
+
+
 def _loop(name: str, columns: Mapping[str, np.ndarray], start: str) -> Loop:
-    for column in columns:
-        if column not in COLUMNS:
-            near = get_close_matches(column, COLUMNS, 1)
-            raise UnknownKey(column, section=f"column {column}", cause=f"did you mean {near[0]}?" if near else
-                             f"known are {', '.join(COLUMNS)}")
     pairs = [pair for pair in PAIRS if pair[0] in columns or pair[1] in columns]
     if not pairs:
         raise MissingKey("displacement_m", "a loop has displacement_m and force_N, or rotation_rad and moment_N_m",
@@ -113,12 +147,8 @@ def _loop(name: str, columns: Mapping[str, np.ndarray], start: str) -> Loop:
     for column, values in zip(pairs[0], (displacement, force)):
         if not np.ptp(values) > 0:
             raise NotAllowed(column, float(values[0]), "is the same in every row: that is no loop")
+    if len(displacement) < FEWEST_ROWS:
+        raise StatejumpError(f"{len(displacement)} rows are too few", cause=f"a loop needs {FEWEST_ROWS}")
     found = Loop(name, displacement, force, pairs[0] == PAIRS[1], start)
-    left = len(displacement) - found.first
-    if left < FEWEST_ROWS:
-        raise StatejumpError(
-            f"{left} rows are left to fit, at least {FEWEST_ROWS} are needed",
-            cause=f"{found.first} rows are before the path has been over its range" if found.first else None,
-            remedy="start = 'fresh' or 'cycled' says what friction carried before and leaves none out"
-            if found.first else None)
+    found.check_sign()
     return found

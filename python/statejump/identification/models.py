@@ -5,9 +5,10 @@ Force and displacement stand for moment and rotation as well. All answer to the 
 """
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
+from math import inf
 
 import numpy as np
 
@@ -41,16 +42,22 @@ class Parameter:
 
 # A loop cannot tell a joint a million times stiffer than itself from a rigid one.
 FAR = 1e6
+# Fraction of the limit that friction carries in the first row, sought where it is not known.
+START = "initial_friction"
 PARAMETERS = {each.name: each for each in (
     Parameter("stiffness", "stiffness", POSITIVE, 1 / FAR, FAR, (1.0, 2.0, 5.0, 20.0),
               "between the place of measurement and the slide; of partial slip that of sticking"),
     Parameter("friction", "force", POSITIVE, 1 / FAR, FAR, (0.1, 0.3, 0.6, 0.9), "limit of friction"),
-    Parameter("clearance_minus", "displacement", LINEAR, -1.0, 1.0, (0.1, 0.4, 0.7), "play below displacement 0"),
-    Parameter("clearance_plus", "displacement", LINEAR, -1.0, 1.0, (0.1, 0.4, 0.7), "play above displacement 0"),
+    Parameter("clearance_minus", "displacement", LINEAR, -1.0, 2.0, (0.1, 0.4, 0.7), "play below displacement 0"),
+    Parameter("clearance_plus", "displacement", LINEAR, -1.0, 2.0, (0.1, 0.4, 0.7), "play above displacement 0"),
+    Parameter("stop_stiffness", "stiffness", POSITIVE, 1 / FAR, FAR, (1.0, 10.0), "of a stop itself"),
+    Parameter("play", "displacement", POSITIVE, 1 / FAR, 2.0, (0.1, 0.5, 1.0),
+              "lost motion at each reversal, which moves with the slide"),
     Parameter("preload", "force", LINEAR, -FAR, FAR, (0.0,), "force at displacement 0, without friction"),
     Parameter("preload_stiffness", "stiffness", POSITIVE, 1 / FAR, FAR, (0.03, 0.3), "spring beside the slide"),
     Parameter("iwan_exponent", "-", LINEAR, -0.999, 0.0, (-0.7, -0.3), "χ of the distribution of sliders"),
-    Parameter("iwan_ratio", "-", POSITIVE, 1e-4, 1e4, (0.3, 3.0), "β, stiffness of the last sliders over the others"),
+    Parameter("iwan_ratio", "-", POSITIVE, 1e-4, 1e12, (0.3, 3.0), "β, stiffness of the last sliders over the others"),
+    Parameter(START, "-", LINEAR, -1.0, 1.0, (0.0,), "carried in the first row, as a fraction of the limit"),
 )}
 Values = Mapping[str, float]
 Answer = Callable[[Values, np.ndarray, Memory], np.ndarray]
@@ -64,36 +71,42 @@ class Model:
     :param parameters: names in PARAMETERS
     :param answer: force of parameters, displacements and what friction remembers
     :param formula: for tables
+    :param parts: joints that it contains: what they lack has a value that does nothing
     """
 
     name: str
     parameters: tuple[str, ...]
     answer: Answer
     formula: str
+    parts: tuple[str, ...] = ()
 
-    def starts(self) -> list[dict[str, float]]:
-        """Return where a search begins, in units of the loop's size."""
-        lists = [PARAMETERS[name].starts for name in self.parameters]
-        return [dict(zip(self.parameters, values)) for values in product(*lists)]
+    def starts(self, names: Sequence[str]) -> list[dict[str, float]]:
+        """Return where a search of some parameters begins, in units of the loop's size."""
+        lists = [PARAMETERS[name].starts for name in names]
+        return [dict(zip(names, values)) for values in product(*lists)]
 
 
 def _coulomb(values: Values, displacement: np.ndarray, memory: Memory) -> np.ndarray:
-    """A slide with friction f, preload P and spring k_p behind a spring k, between stops.
+    """A slide with friction f, preload P, spring k_p and play p behind a spring k, between stops of stiffness k_s.
 
-    Its block rests at x while |k (u - x) - k_p x - P| <= f; it is a play of half width f/(k + k_p) in
-    (k u - P)/(k + k_p), cut off by the stops.
+    Its block rests at x while |k (u - x) - g(x)| <= f, g the force of preload, spring and stops: g(x) is a play of
+    half width f in k u, and g rises with x. The play p widens the play in u, and within it the spring k is slack.
     """
     stiffness, friction = values["stiffness"], values.get("friction", 0.0)
     preload, spring = values.get("preload", 0.0), values.get("preload_stiffness", 0.0)
-    share = stiffness / (stiffness + spring)
-    width = friction / stiffness  # of the play, as a displacement
-    block = share * displacement - preload / (stiffness + spring)
-    if friction > 0:
-        block = block - share * memory.force(lambda half: np.minimum(half, width))
+    gap = values.get("play", 0.0) / 2
+    pulled: np.ndarray = stiffness * displacement
+    if friction > 0 or gap > 0:
+        stretch = memory.stretch(friction / stiffness + gap, values.get(START, 0.0))
+        if gap > 0:
+            stretch = stretch - np.clip(stretch, -gap, gap)
+        pulled = stiffness * (displacement - stretch)
+    block = (pulled - preload) / (stiffness + spring)
     if "clearance_plus" in values:
-        block = np.minimum(np.maximum(block, -values["clearance_minus"]), values["clearance_plus"])
-    force: np.ndarray = stiffness * (displacement - block)
-    return force
+        inside = np.clip(block, -values["clearance_minus"], values["clearance_plus"])
+        stop = values.get("stop_stiffness", inf)
+        block = inside + (block - inside) * (stiffness + spring) / (stiffness + spring + stop)
+    return np.asarray(stiffness * (displacement - block))
 
 
 def _spring(values: Values, displacement: np.ndarray, memory: Memory) -> np.ndarray:
@@ -120,7 +133,8 @@ def mindlin_backbone(friction: float, stiffness: float) -> Callable[[np.ndarray]
 
 
 def _mindlin(values: Values, displacement: np.ndarray, memory: Memory) -> np.ndarray:
-    return _beside(values, displacement) + memory.force(mindlin_backbone(values["friction"], values["stiffness"]))
+    return _beside(values, displacement) + memory.force(
+        mindlin_backbone(values["friction"], values["stiffness"]), values.get(START, 0.0))
 
 
 def iwan_backbone(friction: float, stiffness: float, exponent: float, ratio: float) -> Callable[
@@ -141,23 +155,65 @@ def iwan_backbone(friction: float, stiffness: float, exponent: float, ratio: flo
 
 def _iwan(values: Values, displacement: np.ndarray, memory: Memory) -> np.ndarray:
     return _beside(values, displacement) + memory.force(iwan_backbone(
-        values["friction"], values["stiffness"], values["iwan_exponent"], values["iwan_ratio"]))
+        values["friction"], values["stiffness"], values["iwan_exponent"], values["iwan_ratio"]),
+        values.get(START, 0.0))
 
 
 _SLIDE = ("stiffness", "friction", "preload")
 _STOPS = ("clearance_minus", "clearance_plus")
 _IWAN = ("stiffness", "friction", "iwan_exponent", "iwan_ratio", "preload")
 _SPRING = ("preload_stiffness",)
+_PLAY, _SOFT = ("play",), ("stop_stiffness",)
 MODELS = {model.name: model for model in (
     Model("linear", ("stiffness", "preload"), _spring, "F = P + k u"),
     Model("clearance", ("stiffness", *_STOPS), _coulomb, "F = k (u − x), x within the clearances"),
-    Model("coulomb", _SLIDE, _coulomb, "F = k (u − x), x slides while |F − P| = f"),
-    Model("coulomb_spring", _SLIDE + _SPRING, _coulomb, "F = k (u − x), x slides while |F − P − kp x| = f"),
-    Model("coulomb_clearance", _SLIDE + _STOPS, _coulomb, "as coulomb, x within the clearances"),
+    Model("coulomb", _SLIDE, _coulomb, "F = k (u − x), x slides while |F − P| = f", ("linear",)),
+    Model("coulomb_spring", _SLIDE + _SPRING, _coulomb, "F = k (u − x), x slides while |F − P − kp x| = f",
+          ("coulomb",)),
+    Model("coulomb_clearance", _SLIDE + _STOPS, _coulomb, "as coulomb, x within the clearances",
+          ("clearance", "coulomb")),
     Model("coulomb_clearance_spring", _SLIDE + _STOPS + _SPRING, _coulomb,
-          "as coulomb_spring, x within the clearances"),
-    Model("mindlin", _SLIDE, _mindlin, "F = P + f (1 − (1 − 2 k u/(3 f))^1.5) and Masing's rule"),
-    Model("mindlin_spring", _SLIDE + _SPRING, _mindlin, "as mindlin, with kp u"),
-    Model("iwan", _IWAN, _iwan, "four-parameter Iwan joint"),
-    Model("iwan_spring", _IWAN + _SPRING, _iwan, "as iwan, with kp u"),
+          "as coulomb_spring, x within the clearances", ("coulomb_clearance", "coulomb_spring")),
+    Model("coulomb_soft_stops", _SLIDE + _STOPS + _SOFT, _coulomb,
+          "as coulomb_clearance, stops of stiffness ks", ("coulomb_clearance",)),
+    Model("coulomb_soft_stops_spring", _SLIDE + _STOPS + _SOFT + _SPRING, _coulomb,
+          "as coulomb_clearance_spring, stops of stiffness ks", ("coulomb_soft_stops", "coulomb_clearance_spring")),
+    Model("coulomb_play", _SLIDE + _PLAY, _coulomb, "as coulomb, the spring k is slack over a play p that moves with x",
+          ("coulomb",)),
+    Model("coulomb_play_spring", _SLIDE + _PLAY + _SPRING, _coulomb, "as coulomb_spring, with the play p",
+          ("coulomb_play", "coulomb_spring")),
+    Model("mindlin", _SLIDE, _mindlin, "F = P + f (1 − (1 − 2 k u/(3 f))^1.5) and Masing's rule", ("linear",)),
+    Model("mindlin_spring", _SLIDE + _SPRING, _mindlin, "as mindlin, with kp u", ("mindlin",)),
+    Model("iwan", _IWAN, _iwan, "four-parameter Iwan joint", ("coulomb",)),
+    Model("iwan_spring", _IWAN + _SPRING, _iwan, "as iwan, with kp u", ("iwan", "coulomb_spring")),
 )}
+
+
+def containing(name: str) -> list[str]:
+    """Return the joints that contain a joint, the smaller first."""
+    return [model.name for model in MODELS.values() if name in parts_of(model.name)]
+
+
+def parts_of(name: str) -> set[str]:
+    """Return all joints that a joint contains."""
+    return set(MODELS[name].parts).union(*(parts_of(part) for part in MODELS[name].parts))
+
+
+def with_part(model: Model, part: Model, values: Values, memory: Memory, displacement: np.ndarray) -> dict[str, float]:
+    """Return the parameters with which a joint gives the force of a joint that it contains.
+
+    :param values: of the part
+    """
+    limits = {"friction": 0.0, "preload": 0.0, "preload_stiffness": 0.0, "play": 0.0, "stop_stiffness": inf,
+              "clearance_minus": inf, "clearance_plus": inf, "iwan_exponent": -0.5, "iwan_ratio": inf, START: 0.0}
+    found = {**{name: limits.get(name, 0.0) for name in (*model.parameters, START)}, **values}
+    if part.name == "linear":  # a slide that never slides: its spring is stretched from where it is without force
+        rest = float(np.mean(displacement - memory.stretch(inf)))
+        found.update(friction=inf, preload=values["preload"] + values["stiffness"] * rest)
+    if model.answer is _iwan and part.answer is _coulomb and values.get("preload_stiffness"):
+        # The spring of a slide is behind k, that of an Iwan joint beside it.
+        stiffness, spring = values["stiffness"], values["preload_stiffness"]
+        share = stiffness / (stiffness + spring)
+        found.update(stiffness=share * stiffness, friction=share * values["friction"],
+                     preload=share * values["preload"], preload_stiffness=share * spring)
+    return {name: found[name] for name in (*model.parameters, START)}

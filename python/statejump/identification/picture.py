@@ -42,13 +42,8 @@ def _scaled(found: Identification) -> tuple[float, str, float, str]:
 def _loop(panel: Axes, found: Identification) -> None:
     loop = found.loop
     along, along_unit, across, across_unit = _scaled(found)
-    before = slice(0, loop.first + 1)
-    if loop.first:
-        panel.plot(along * loop.displacement[before], across * loop.force[before], ".", color="0.75", markersize=3,
-                   label="measured, not fitted")
-    displacement, force = loop.fitted
-    panel.plot(along * displacement, across * force, ".", color="#E69F00", markersize=5, label="measured")
-    panel.plot(along * displacement, across * found.answer(), color="#000000", linewidth=1.2, label="fit")
+    panel.plot(along * loop.displacement, across * loop.force, ".", color="#E69F00", markersize=5, label="measured")
+    panel.plot(along * loop.displacement, across * found.answer(), color="#000000", linewidth=1.2, label="fit")
     stops = [sign * along * found.fit.values[name] for name, sign in (("clearance_minus", -1), ("clearance_plus", 1))
              if name in found.fit.values and found.intervals[name].bounded]
     for stop in stops:
@@ -62,11 +57,10 @@ def _loop(panel: Axes, found: Identification) -> None:
 def _residual(panel: Axes, found: Identification) -> None:
     loop = found.loop
     along, along_unit, _, _ = _scaled(found)
-    displacement, force = loop.fitted
-    left = force - found.answer()
+    left = loop.force - found.answer()
     scale, unit = scale_of(loop.unit("force"), float(abs(left).max()))
     panel.axhspan(-2 * found.fit.noise * scale, 2 * found.fit.noise * scale, color="0.9", label="±2 σ")
-    panel.plot(along * displacement, scale * left, ".", color="#0072B2", markersize=3)
+    panel.plot(along * loop.displacement, scale * left, ".", color="#0072B2", markersize=3)
     panel.set_xlabel(f"{'Rotation' if loop.angular else 'Displacement'} [{along_unit}]")
     panel.set_ylabel(f"Measured − fit [{unit}]")
     panel.legend(loc="upper left", fontsize=8, framealpha=1)

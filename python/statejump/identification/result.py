@@ -14,7 +14,7 @@ from statejump.core.errors import NotAllowed, Range, StatejumpError
 from statejump.core.tables import Shown, write_columns, write_csv, write_text
 from statejump.core.units import plain
 from statejump.identification import paste
-from statejump.identification.fit import Fit, Interval, fits, intervals
+from statejump.identification.fit import Fit, Fits, Interval, intervals
 from statejump.identification.loop import Loop, read_loop
 from statejump.identification.models import MODELS, PARAMETERS
 
@@ -41,6 +41,8 @@ class Identification:
     :param candidates: the joints that were tried, the best by BIC first
     :param fit: the joint that was chosen or asked for
     :param intervals: of its parameters
+    :param because: parameters that are not identified because another one, which is named, is at the end of what is
+        sought
     :param limits: of parameters that it does not have: the larger joint that was asked, and the interval there
     :param confidence: of the intervals
     :param target: where the joint goes, one of paste.TARGETS
@@ -52,6 +54,7 @@ class Identification:
     candidates: tuple[Fit, ...]
     fit: Fit
     intervals: dict[str, Interval]
+    because: dict[str, str]
     limits: dict[str, tuple[str, Interval]]
     confidence: float
     target: str
@@ -69,8 +72,8 @@ class Identification:
         return dict(self.fit.values)
 
     def answer(self) -> np.ndarray:
-        """Return the force of the fit in the rows that were fitted."""
-        return self.fit.model.answer(self.fit.values, self.loop.fitted[0], self.loop.memory)
+        """Return the force of the fit in every row."""
+        return self.fit.model.answer(self.fit.values, self.loop.displacement, self.loop.memory)
 
     @property
     def entries(self) -> list[paste.Entry]:
@@ -95,8 +98,8 @@ class Identification:
     @cached_property
     def notes(self) -> list[str]:
         """What the loop does not say, and what is doubtful."""
-        return [*self._choice(), *self._unbounded(), *self._absent(), *self._extrapolated(),
-                *self._residuals(), *self._rows()]
+        return [*self._choice(), *self._unbounded(), *self._absent(), *self._laws(), *self._extrapolated(),
+                *self._residuals()]
 
     def _choice(self) -> list[str]:
         best = self.candidates[0]
@@ -109,8 +112,18 @@ class Identification:
                 f"{each.bic - best.bic:.1f}" for each in near]
 
     def _unbounded(self) -> list[str]:
-        return [f"{name} is not identifiable from this loop: {self._words(name, interval)}"
-                for name, interval in self.intervals.items() if not interval.bounded]
+        told = []
+        for name, interval in self.intervals.items():
+            if not interval.bounded:
+                cause = self.because.get(name)
+                why = f", it depends on {cause}, which reaches the end of its range" if cause else ""
+                told.append(f"{name} is not identifiable from this loop{why}: {self._words(name, interval)}")
+        return told
+
+    def _laws(self) -> list[str]:
+        """What cases have no key for."""
+        return [f"{name} has no key in a case: the section leaves it out" for name in ("play", "stop_stiffness")
+                if name in self.fit.values]
 
     def _absent(self) -> list[str]:
         told = []
@@ -128,7 +141,7 @@ class Identification:
         if self.fit.model.answer is MODELS["coulomb"].answer or "friction" not in self.fit.values:
             return []
         alone = {**self.fit.values, "preload": 0.0, "preload_stiffness": 0.0}
-        reached = float(np.max(np.abs(self.fit.model.answer(alone, self.loop.fitted[0], self.loop.memory))))
+        reached = float(np.max(np.abs(self.fit.model.answer(alone, self.loop.displacement, self.loop.memory))))
         share = reached / self.fit.values["friction"]
         return [] if share > 1 - 1e-9 else [
             f"friction is extrapolated by the law of partial slip: the loop goes to {100 * share:.0f} % of it"]
@@ -144,21 +157,16 @@ class Identification:
     @property
     def correlation(self) -> float:
         """Correlation of the residual of a row with that of the next."""
-        left = self.loop.fitted[1] - self.answer()
+        left = self.loop.force - self.answer()
         total = float(left @ left)
         return float(left[1:] @ left[:-1]) / total if total else 0.0
 
     def _residuals(self) -> list[str]:
         if self.correlation * np.sqrt(self.fit.rows) <= CHANCE:
             return []
-        return [f"residuals of neighbouring rows are correlated ({self.correlation:.2f}): the noise is not independent "
-                "or the joint is another one, and the intervals are too narrow"]
-
-    def _rows(self) -> list[str]:
-        if not self.loop.first:
-            return []
-        return [f"the first {self.loop.first} of {len(self.loop.force)} rows are not fitted: what friction carried "
-                "before them is not known (--start fresh or cycled says it)"]
+        return [f"residuals of neighbouring rows are correlated ({self.correlation:.2f}): intervals and choice count "
+                f"{self.fit.rows} rows as {self.fit.independent_rows:.0f}; the noise is not independent or the joint "
+                "is another one"]
 
     def _rows_of_parameters(self) -> list[tuple[str, str, float, float, float]]:
         return [(name, self.loop.unit(PARAMETERS[name].dimension), self.fit.values[name], interval.low, interval.high)
@@ -181,7 +189,7 @@ class Identification:
         raise NotAllowed("table", table, "must be 'parameters', 'models' or 'rows'")
 
     def _columns(self) -> dict[str, np.ndarray]:
-        displacement, force = self.loop.fitted
+        displacement, force = self.loop.displacement, self.loop.force
         names = ("rotation_rad", "moment_N_m", "fitted_moment_N_m", "residual_N_m") if self.loop.angular else (
             "displacement_m", "force_N", "fitted_force_N", "residual_N")
         fitted = self.answer()
@@ -201,7 +209,8 @@ class Identification:
                         for name, count, noise, _, _, more in self._rows_of_models()], left=("joint",))
         level = f"{100 * self.confidence:g} %"
         parameters = Shown(
-            f"{self.model}: {self.fit.model.formula}", ("parameter", "unit", "estimate", f"{level} from", "to", "what"),
+            f"{self.model}, all {self.fit.rows} rows: {self.fit.model.formula}",
+            ("parameter", "unit", "estimate", f"{level} from", "to", "what"),
             [(name, unit, f"{value:.6g}", _end(low), _end(high), PARAMETERS[name].meaning)
              for name, unit, value, low, high in self._rows_of_parameters()], left=("parameter", "unit", "what"))
         return [models, parameters, *(f"note: {note}" for note in self.notes)]
@@ -258,28 +267,30 @@ def identified(
     chosen_target = target or ("umbrella" if loop.angular else "spring_slider")
     paste.check(chosen_target, loop.angular)
     try:
-        candidates = fits(loop, names)
-        best, found = intervals(candidates[0], loop, confidence)
+        fits = Fits(loop)
+        chosen = fits.ranked(names)[0].model.name
+        _, found = intervals(fits, chosen, confidence)
         limits = {}
         for name in ("friction", "clearance_minus", "clearance_plus"):
-            larger = _larger(best, name)
+            larger = _larger(chosen, name)
             if larger is not None:
-                asked = next((each for each in candidates if each.model.name == larger), None) or fits(
-                    loop, [larger])[0]
-                limits[name] = (larger, intervals(asked, loop, confidence, [name])[1][name])
+                limits[name] = (larger, intervals(fits, larger, confidence, [name])[1].of[name])
+        candidates = fits.ranked(names)
     except StatejumpError as failure:
         raise failure.located(file=source if isinstance(source, (str, Path)) else None) from None
-    return Identification(loop, (best, *candidates[1:]), best, found, limits, confidence, chosen_target,
+    best = next(each for each in candidates if each.model.name == chosen)
+    return Identification(loop, tuple(candidates), best, found.of, found.because, limits, confidence, chosen_target,
                           normal_force_N, journal_radius_m)
 
 
-def _larger(best: Fit, name: str) -> str | None:
-    """Return the smallest joint that has the parameters of a fit and another one; None: none says more of it."""
-    have = set(best.values)
-    if name in have or best.model.name == "linear" and name != "friction":
+def _larger(name_of_best: str, name: str) -> str | None:
+    """Return the smallest joint that has the parameters of a joint and another one; None: none says more of it."""
+    model = MODELS[name_of_best]
+    have = set(model.parameters)
+    if name in have or model.name == "linear" and name != "friction":
         return None
     slides = MODELS["coulomb"].answer
-    if best.model.answer is not slides and best.model.name != "linear":
+    if model.answer is not slides and model.name != "linear":
         return None
     larger = [each for each in MODELS.values() if have | {name} <= set(each.parameters) and each.answer is slides]
     return min(larger, key=lambda each: len(each.parameters)).name if larger else None

@@ -12,7 +12,8 @@ import numpy as np
 
 from statejump import _engine
 from statejump.core.errors import FailedRun, MissingKey, NotAllowed, StatejumpError, UnknownKey
-from statejump.core.tables import check_columns, read_columns, write_columns
+from statejump.core.table_files import read_known
+from statejump.core.tables import check_columns, write_columns
 from statejump.laws.traits import Law, catalogue
 
 # Kinds whose laws answer a path; the first that knows a name has it.
@@ -142,7 +143,7 @@ def _columns(history: Mapping[str, Any] | str | Path) -> tuple[Path | None, dict
     if isinstance(history, Mapping):
         return None, {str(name): np.atleast_1d(np.asarray(values)) for name, values in history.items()}
     file = Path(history)
-    return file, read_columns(file)
+    return file, read_known(file, COLUMNS)
 
 
 def _check(columns: Mapping[str, np.ndarray], kind: str, law: Law) -> None:

@@ -14,6 +14,7 @@ import attrs
 from statejump.core.errors import ABSENT, NotAllowed, Range, printable
 
 FOLDER_NAME = "[A-Za-z0-9][A-Za-z0-9_-]*"
+_NOT_IN_FOLDER_NAME = re.compile("[^A-Za-z0-9_-]+")
 # Types of values.
 NUMBER, WHOLE, SWITCH, TEXT, NUMBERS, TEXTS = "number", "whole", "switch", "text", "numbers", "texts"
 ATTACHED = "attached"  # what no file can say
@@ -155,6 +156,11 @@ def check_name(key: str, value: Any, names: Sequence[str], **more: Any) -> str:
     remedy = f"did you mean {near[0]!r}?" if near else None
     given = ABSENT if value is None else value
     raise NotAllowed(key, given, cause, allowed=tuple(names), remedy=remedy, **more)
+
+
+def folder_name(text: str) -> str:
+    """Return a text as the name of a folder: what is no letter, digit, '_' or '-' becomes '_'."""
+    return _NOT_IN_FOLDER_NAME.sub("_", text).strip("_-") or "case"
 
 
 def suggestion(word: str, known: Sequence[str], before: str = "", after: str = "") -> dict[str, str]:

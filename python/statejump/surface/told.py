@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey
-from statejump.core.tables import read_columns
+from statejump.core.errors import MissingKey, StatejumpError
+from statejump.core.table_files import read_known
 from statejump.surface.design import DEFINITIONS, Design
 from statejump.surface.motion import pointing_rad
 from statejump.surface.zernike import noll
@@ -21,23 +21,14 @@ Row = tuple[str, str, float]
 
 
 def read_nodes(file: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Return positions and displacements (nodes, 3) [m] of a CSV file.
+    """Return positions and displacements (nodes, 3) [m] of a table.
 
     :raises StatejumpError: no such file, a column that is missing or unknown, a cell that is no finite number
     """
-    columns = read_columns(file)
-    for name in columns:
-        if name not in COLUMNS:
-            raise UnknownKey(name, section=f"column {name}", cause=f"known are {', '.join(COLUMNS)}", file=file)
+    columns = read_known(file, COLUMNS, texts=("node",))
     for name in (*DRAWN, *MOVED):
         if name not in columns:
             raise MissingKey(name, "a node needs its place and its displacement", section=f"column {name}", file=file)
-        values = columns[name]
-        if not np.issubdtype(values.dtype, np.number):
-            raise NotAllowed(name, beside="as a column", cause="every row needs a number there", file=file)
-        if not np.isfinite(values).all():
-            row = int(np.flatnonzero(~np.isfinite(values))[0])
-            raise NotAllowed(name, float(values[row]), "must be a finite number", item=f"row {row + 1}", file=file)
     drawn, moved = (np.stack([columns[name] for name in names], axis=1) for names in (DRAWN, MOVED))
     return drawn, moved
 

@@ -41,6 +41,53 @@ void expect_refused(MeshFormat format, const std::string& prefix,
   }
 }
 
+/// Two triangles that share an edge, as binary STL; the shared vertices of the second are moved.
+std::string two_facets(float moved) {
+  const float corners[2][4][3] = {{{0, 0, 1}, {0, 0, 0}, {5, 0, 0}, {0, 3, 0}},
+                                  {{0, 0, 1}, {5 + moved, 0, 0}, {5, 3, 0}, {0, 3 + moved, 0}}};
+  std::string content(80, ' ');
+  const std::uint32_t count = 2;
+  content.append(reinterpret_cast<const char*>(&count), 4);
+  for (const auto& facet : corners) {
+    content.append(reinterpret_cast<const char*>(facet), sizeof facet);
+    content.append(2, '\0');
+  }
+  return content;
+}
+
+TEST(MeshFormats, FloatsAreWeldedWithinTheirRounding) {
+  // A float near 5 has units in the last place of 4.8e-7; near 3 it has 2.4e-7.
+  const float unit = 4.8e-7F;
+  const Triangles welded = parse_triangles(MeshFormat::stl, two_facets(unit), "mesh");
+  EXPECT_EQ(welded.vertices.size(), 4U);
+  const Triangles apart = parse_triangles(MeshFormat::stl, two_facets(10 * unit), "mesh");
+  EXPECT_EQ(apart.vertices.size(), 6U);
+  // Texts of OFF and OBJ hold numbers of any precision.
+  const Triangles exact = parse_triangles(
+      MeshFormat::obj, "v 0 0 0\nv 5 0 0\nv 5.0000004 0 0\nv 0 3 0\nf 1 2 4\nf 1 3 4", "mesh");
+  EXPECT_EQ(exact.vertices.size(), 4U);
+}
+
+TEST(MeshFormats, FacesOfTwoVerticesAreLeftOutAndCounted) {
+  const Triangles mesh = parse_triangles(
+      MeshFormat::obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\nf 3 2 2\n", "mesh");
+  EXPECT_EQ(mesh.faces.size(), 1U);
+  EXPECT_EQ(mesh.removed, 2);
+  EXPECT_EQ(refusal(MeshFormat::obj, "v 0 0 0\nv 1 0 0\nf 1 1 2\n"),
+            "the mesh has no faces with three vertices");
+}
+
+TEST(MeshFormats, LinesOfObjGoOnBehindABackslash) {
+  const Triangles mesh = parse_triangles(
+      MeshFormat::obj,
+      "# a comment \\\n v 9 9 9\nv 0 0 0\nv 1 \\\n 0 0\nv 0 1\\\r\n 0\nvn 0 \\\n0 1\nf 1\\\n 2 3\n",
+      "mesh");
+  EXPECT_EQ(mesh.vertices.size(), 3U);
+  EXPECT_EQ(mesh.faces.size(), 1U);
+  EXPECT_EQ(refusal(MeshFormat::obj, "v 0 0 0\nv 1 \\\n 0\n"),
+            "not readable as OBJ: line 3 has no three coordinates");
+}
+
 TEST(MeshFormats, Off) {
   const Triangles mesh = parse_triangles(MeshFormat::off,
                                          "# a comment\nSTCNOFF 5 2 0 # counts\n0 0 0 1 2 3\n"

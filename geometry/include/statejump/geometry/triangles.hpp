@@ -13,13 +13,15 @@ struct Triangles {
   std::vector<Eigen::Vector3d> vertices;  ///< [m], or the file's unit before scaling
   std::vector<std::array<int, 3>> faces;  ///< indices of vertices, anticlockwise seen from where
                                           ///< the normal points to
+  int removed = 0;                        ///< faces of the file with fewer than three vertices
 };
 
 /// Reads OFF, STL (text or binary), PLY or OBJ; the name's ending says which.
 ///
 /// The file may come from a stranger: pipes, devices and files of more than 2 GiB are refused, and
-/// so are counts that do not fit into the file. Equal vertices become one (STL has no shared ones)
-/// and polygons become triangles. Vertices and faces keep their order.
+/// so are counts that do not fit into the file. Equal vertices become one (STL has no shared ones),
+/// and of floats of 32 bits those nearer than their rounding. Polygons become triangles; faces of
+/// fewer than three vertices are left out. Vertices and faces keep their order.
 /// @throws MeshFailure no such file, an ending of another format, not readable as that format (with
 ///         the line of a text), corners that do not exist, vertices that are not finite, no faces
 Triangles read_triangles(const std::string& file);

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which key a column of a table is, and how its numbers become those of the key's unit.
+
+A key ends in its unit: ``force_N``. A column may name another unit of the same quantity, and in other ways:
+``force_kN``, ``Force [kN]``, ``Force (kN)``, ``Force / kN``, ``Force kN``. Only then units are looked up in pint, which
+takes some time to load.
+"""
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+import numpy as np
+
+from statejump.core.errors import StatejumpError, UnknownKey
+from statejump.core.units import split_unit
+
+# Accepted spellings that a refusal lists, by unit of a key.
+EXAMPLES = {"m": ("mm", "in"), "N": ("kN", "lbf"), "s": ("min", "h"), "K": ("°C",), "rad": ("deg", "mrad"),
+            "N m": ("N mm", "lbf in"), "Pa": ("MPa", "psi"), "m2": ("mm2",), "N/m": ("N/mm",), "kg/m3": ("g/cm3",)}
+QUANTITIES = {"m": "length", "N": "force", "s": "time", "K": "temperature", "rad": "angle", "N m": "moment",
+              "Pa": "pressure", "m2": "area", "N/m": "stiffness", "kg/m3": "density", "kg": "mass"}
+_BRACKETS = (re.compile(r"(.*?)\s*\[([^\[\]]*)\]"), re.compile(r"(.*?)\s*\(([^()]*)\)"))
+_SLASH = re.compile(r"(.*?)\s*/\s*(.+)")
+NO_UNIT = ("", "-", "1")
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """Numbers of one unit become those of another: x · factor/divisor + offset. The divisor keeps 12.5 mm at 0.0125 m
+    exactly as if it were written so."""
+
+    factor: float = 1.0
+    divisor: float = 1.0
+    offset: float = 0.0
+
+    def __call__(self, values: np.ndarray) -> np.ndarray:
+        if self.factor != 1:
+            values = values * self.factor
+        if self.divisor != 1:
+            values = values / self.divisor
+        return values + self.offset if self.offset else values
+
+
+SAME = Conversion()
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    :param name: as the table has it
+    :param key: what it is
+    :param converted: its numbers into the unit of the key
+    :param iso: whether its cells are ISO times
+    """
+
+    name: str
+    key: str
+    converted: Conversion = SAME
+    iso: bool = False
+
+
+def matched(header: Sequence[str], known: Sequence[str], words: Mapping[str, Sequence[str]] | None = None
+            ) -> list[Column]:
+    """Return what the columns of a table are.
+
+    :param known: keys that end in their units
+    :param words: by key: what else its quantity is called
+    :raises StatejumpError: a column is unknown, names no unit or one of another quantity, or two are one key
+    """
+    bases = {_plain(split_unit(key)[0]): key for key in known}
+    for key, more in (words or {}).items():
+        bases.update({_plain(word): key for word in more})
+    found: dict[str, Column] = {}
+    for name in header:
+        column = Column(name, name) if name in known else _column(name, known, bases)
+        if column.key in found:
+            raise StatejumpError(f"column {name!r} is not allowed beside {found[column.key].name!r}",
+                                 cause=f"both are {column.key}")
+        found[column.key] = column
+    return list(found.values())
+
+
+def _column(name: str, known: Sequence[str], bases: Mapping[str, str]) -> Column:
+    for base, unit in splits(name):
+        key = bases.get(_plain(base))
+        if key is not None:
+            return Column(name, key, _converted(name, base, unit, key))
+    key = bases.get(_plain(name))
+    if key is None:
+        near = get_close_matches(name, known, 1)
+        raise UnknownKey(name, section=f"column {name!r}", cause=None if near else f"known are {', '.join(known)}",
+                         remedy=f"did you mean {near[0]}?" if near else None)
+    wanted = split_unit(key)[1]
+    if key == "time_s":
+        return Column(name, key, iso=True)
+    if wanted != "-":
+        raise StatejumpError(f"column {name!r}", cause="it names no unit", remedy=accepted(name, key, wanted))
+    return Column(name, key)
+
+
+def _plain(base: str) -> str:
+    """Return a name without what differs from one spelling to the next; single letters stay as they are."""
+    found = re.sub(r"[\s_\-.:]+", "_", base.strip()).strip("_")
+    return found if len(found) == 1 else found.lower()
+
+
+def splits(name: str) -> Iterator[tuple[str, str]]:
+    """Return a name without its unit, and the unit, in all ways that it may be read."""
+    for pattern in (*_BRACKETS, _SLASH):
+        if bracket := pattern.fullmatch(name.strip()):
+            yield bracket[1], bracket[2].strip()
+    for found in re.finditer(r"_|\s+|,\s*", name):
+        if name[:found.start()].strip() and name[found.end():].strip():
+            yield name[:found.start()], name[found.end():].strip()
+
+
+def _converted(name: str, base: str, unit: str, key: str) -> Conversion:
+    wanted = split_unit(key)[1]
+    if unit in NO_UNIT:
+        if wanted in ("-", "rad") and unit != "" or wanted == "-":
+            return SAME
+        raise StatejumpError(f"column {name!r}", cause="it names no unit", remedy=accepted(base, key, wanted))
+    found = conversion(unit, wanted, change="change" in key)
+    if found is None:
+        quantity = f"of {QUANTITIES[wanted]}" if wanted in QUANTITIES else f"like {wanted}"
+        raise StatejumpError(f"column {name!r}", cause=f"{unit!r} is not a unit {quantity}",
+                             remedy=accepted(base, key, wanted))
+    return found
+
+
+def accepted(base: str, key: str, wanted: str) -> str:
+    """Return which spellings of a column are accepted, for a sentence."""
+    shown = [f"{base.strip()} [{unit}]" for unit in (wanted, *EXAMPLES.get(wanted, ()))] if wanted != "-" else [key]
+    return f"accepted are {', '.join(dict.fromkeys((key, *shown)))}"
+
+
+def conversion(unit: str, wanted: str, change: bool = False) -> Conversion | None:
+    """Return how numbers of a unit become those of another; None: it is no unit of the same quantity.
+
+    :param change: whether a temperature is a difference of two
+    """
+    if unit == wanted:
+        return SAME
+    from statejump.core import unit_library
+
+    return unit_library.conversion(unit, wanted, change)

@@ -1,0 +1,326 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The reader of text tables, as spreadsheets and test rigs write them.
+
+Separator is ``,``, ``;``, a tab or blanks; the decimal mark a point or, where no cell has a point, a comma. The file is
+UTF-8 or UTF-16, with or without a byte order mark. Blank rows and blank columns at the end are left out.
+"""
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from itertools import chain
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+
+from statejump.core.column_units import Column, accepted, matched
+from statejump.core.errors import StatejumpError, Unreadable, printable
+from statejump.core.iso_times import is_iso, seconds
+from statejump.core.reading import check_size, finite_number, open_csv
+
+SUFFIXES = (".csv", ".txt", ".tsv", ".dat")
+BLOCK = 4096  # rows that are converted at once
+SEPARATORS = ("\t", ";", ",")  # where a header has several, the first one
+BLANKS = " "
+_WORD = re.compile(r'"((?:[^"]|"")*)"(?=\s|$)|(\S+)')
+_QUOTED = re.compile(r'"(?:[^"]|"")*"')
+_DECIMAL_COMMA = re.compile(r"[+-]?(\d+,\d*|,\d+)([eE][+-]?\d+)?")
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+# In Excel's older code page a header has only these beyond ASCII: ° ² ³ µ ·
+_UNIT_BYTES = b"\xb0\xb2\xb3\xb5\xb7"
+Place = Callable[[int], tuple[int, str]]
+
+
+def quoted(text: object) -> str:
+    """Return a part of a file as a sentence quotes it."""
+    shown = repr(printable(str(text)))
+    return shown if len(shown) <= 40 else shown[:36] + "...'"
+
+
+class Table:
+    """A table that is being read.
+
+    :param path: the file
+    :param separator: of its cells
+    :param header: names of its columns
+    """
+
+    def __init__(self, path: Path, stream: TextIO) -> None:
+        self.path = path
+        self._skipped = 0
+        self.separator, lines = self._begin(stream)
+        self._reader: Any = _BlankSeparated(lines) if self.separator == BLANKS else csv.reader(
+            lines, delimiter=self.separator, skipinitialspace=True)
+        cells = [cell.strip() for cell in next(iter(self._reader), [])]
+        if self.separator == BLANKS:
+            cells = _joined(cells)
+        while cells and not cells[-1]:
+            cells.pop()
+        if not cells:
+            raise Unreadable("line 1: there is no column", file=path)
+        for place, cell in enumerate(cells, start=1):
+            if not cell:
+                raise Unreadable(f"line {self.line}: column {place} has no name", file=path)
+        self.header = tuple(cells)
+        self._decided = self.separator == ";"  # that a comma is a decimal mark: German Excel separates so
+        self._comma: tuple[int, str, str] | None = None
+        self._point: tuple[int, str, str] | None = None
+
+    def _begin(self, stream: TextIO) -> tuple[str, Iterator[str]]:
+        """Return the separator, and the lines from the header on."""
+        for line in stream:
+            said = line.strip().strip('"').lower()
+            if said in ("sep=,", "sep=;") or line.strip("\r\n\"").lower() == "sep=\t":
+                return line.strip("\r\n\"")[4], self._counted(stream, 1)
+            if line.strip() and line.strip(" \t,;\r\n"):
+                return _separator(line), chain((line,), stream)
+            self._skipped += 1
+        return ",", iter(())
+
+    def _counted(self, stream: TextIO, skipped: int) -> Iterator[str]:
+        self._skipped += skipped
+        return iter(stream)
+
+    @property
+    def line(self) -> int:
+        """Number of the line that was read last."""
+        return self._skipped + int(self._reader.line_num)
+
+    def rows(self) -> Iterator[tuple[int, list[str]]]:
+        """Return the rows below the header, with their lines.
+
+        :raises Unreadable: a row has not as many cells as the header
+        """
+        width = len(self.header)
+        for row in self._reader:
+            if len(row) > width and not any(map(str.strip, row[width:])):
+                del row[width:]
+            if len(row) != width:
+                if not any(map(str.strip, row)):
+                    continue
+                remedy = "decimal commas need ';' between the cells, or quotes" if (
+                    self.separator == "," and len(row) == 2 * width) else None
+                raise Unreadable(f"line {self.line} has {len(row)} cells", cause=f"the header has {width}",
+                                 remedy=remedy, file=self.path)
+            if not any(row) or not any(map(str.strip, row)):
+                continue
+            yield self.line, row
+
+    def blocks(self) -> Iterator[tuple[list[int], list[list[str]]]]:
+        """Return rows with their lines, some at a time."""
+        lines: list[int] = []
+        rows: list[list[str]] = []
+        for line, row in self.rows():
+            lines.append(line)
+            rows.append(row)
+            if len(rows) == BLOCK:
+                yield lines, rows
+                lines, rows = [], []
+        if rows:
+            yield lines, rows
+
+    def numbers(self, cells: Sequence[str], place: Place, empty: bool = False) -> np.ndarray:
+        """Return the finite numbers of some cells.
+
+        :param place: line and column of the i-th cell
+        :param empty: whether a cell may be empty; it is NaN
+        :raises Unreadable: one of them is none, with line and column
+        """
+        joined = "".join(cells)
+        if "," in joined:
+            cells = self._with_points(cells, place)
+        if "." in joined and self._point is None:
+            self._point = next((*place(i), cell) for i, cell in enumerate(cells) if "." in cell)
+        self._check_marks()
+        if "_" not in joined:  # Python takes 1_000 for a number
+            try:
+                found = np.fromiter(map(float, cells), float, len(cells))
+                if np.isfinite(found).all():
+                    return found
+            except ValueError:
+                pass
+        return np.array([self._number(cell, place, i, empty) for i, cell in enumerate(cells)], dtype=float)
+
+    def _number(self, cell: str, place: Place, index: int, empty: bool) -> float:
+        if empty and not cell.strip():
+            return float("nan")
+        value = finite_number(cell)
+        if value is None:
+            line, column = place(index)
+            what = f"{quoted(cell)} is not a finite number" if cell.strip() else "the cell is empty"
+            raise Unreadable(f"line {line}, column {quoted(column)}", cause=what, file=self.path)
+        return value
+
+    def _with_points(self, cells: Sequence[str], place: Place) -> list[str]:
+        """Return cells with points in place of decimal commas."""
+        found = []
+        for index, cell in enumerate(cells):
+            if "," in cell and _DECIMAL_COMMA.fullmatch(cell.strip()):
+                self._comma = self._comma or (*place(index), cell)
+                self._decided = self._decided or not _THOUSANDS.fullmatch(cell.strip())
+                cell = cell.replace(",", ".")
+            elif "." in cell and self._point is None:
+                self._point = (*place(index), cell)
+            found.append(cell)
+        return found
+
+    def _check_marks(self) -> None:
+        if self._comma and self._point:
+            line, column, cell = self._comma
+            raise Unreadable(f"line {line}, column {quoted(column)}", cause=(
+                f"{quoted(cell.strip())} has a decimal comma, {quoted(self._point[2].strip())} in line "
+                f"{self._point[0]} a point"), remedy="write one decimal mark", file=self.path)
+
+    def check_commas(self) -> None:
+        """Refuse commas that may be decimal marks or part thousands, once all rows are read."""
+        if self._comma and not self._decided:
+            line, column, cell = self._comma
+            raise Unreadable(f"line {line}, column {quoted(column)}", cause=(
+                f"{quoted(cell.strip())} may be a decimal number or one of thousands"),
+                remedy="write decimal points", file=self.path)
+
+
+def _separator(header: str) -> str:
+    plain = _QUOTED.sub('""', header)
+    for separator in SEPARATORS:
+        if separator in plain:
+            return separator
+    return BLANKS if len(_joined(_words(header))) > 1 else ","
+
+
+def _words(line: str) -> list[str]:
+    return [found[1].replace('""', '"') if found[1] is not None else found[2] for found in _WORD.finditer(line)]
+
+
+def _joined(words: Iterable[str]) -> list[str]:
+    """Return names of columns from the words of a header: a unit in brackets belongs to the word before it."""
+    found: list[str] = []
+    depth = 0
+    for word in words:
+        if found and (depth or word[:1] in "[("):
+            found[-1] += f" {word}"
+        else:
+            found.append(word)
+        depth += sum(word.count(bracket) for bracket in "[(") - sum(word.count(bracket) for bracket in "])")
+    return found
+
+
+class _BlankSeparated:
+    """Rows of cells between blanks, as a reader of ``csv`` has them."""
+
+    def __init__(self, lines: Iterable[str]) -> None:
+        self._lines = iter(lines)
+        self.line_num = 0
+
+    def __iter__(self) -> Iterator[list[str]]:
+        return self
+
+    def __next__(self) -> list[str]:
+        line = next(self._lines)
+        self.line_num += 1
+        return _words(line) if '"' in line else line.split()
+
+
+def _encoding(path: Path) -> str:
+    """Return how the text of a file is encoded; what is none of them is refused while it is read."""
+    with path.open("rb") as stream:
+        content = stream.read(1 << 16)
+        if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+            return "utf-16"
+        header = next((line for line in content.splitlines() if line.strip()), b"")
+        try:
+            header.decode("utf-8")
+        except UnicodeDecodeError:
+            allowed = bytes(range(128)) + _UNIT_BYTES
+            while content and not content.translate(None, allowed):
+                content = stream.read(1 << 20)
+            if not content:
+                return "cp1252"
+        return "utf-8-sig"
+
+
+@contextmanager
+def open_table(path: Path, largest_bytes: int | None = None, beside: str = "") -> Iterator[Table]:
+    """Open a table.
+
+    :param largest_bytes: more are refused; ``beside`` says what else there is
+    :raises Unreadable: it may not be read, is no text table, or has commas that may be one or the other mark
+    """
+    try:
+        encoding = _encoding(path)
+    except OSError as failure:
+        raise Unreadable("cannot be read", cause=failure.strerror, file=path) from None
+    with open_csv(path, encoding) as stream:
+        if largest_bytes is not None:
+            check_size(path, largest_bytes, beside)
+        table = Table(path, stream)
+        yield table
+        table.check_commas()
+
+
+def read_columns(path: Path) -> dict[str, np.ndarray]:
+    """Return the columns of a table as they are called; numbers where all cells are, NaN too.
+
+    :raises Unreadable: the file may not be read, is no table with as many cells in each row as in the header, holds
+        no samples
+    """
+    with open_table(path) as table:
+        lines, cells = _all(table)
+        found = {}
+        for name, column in zip(table.header, cells):
+            try:
+                found[name] = np.array([float(cell) for cell in column])
+            except ValueError:
+                try:
+                    found[name] = table.numbers(column, lambda index, name=name: (lines[index], name))  # type: ignore
+                except Unreadable:
+                    found[name] = np.array(column)
+    return found
+
+
+def _all(table: Table) -> tuple[list[int], list[tuple[str, ...]]]:
+    """Return the lines of all rows, and their cells by column."""
+    lines, rows = [], []
+    for line, row in table.rows():
+        lines.append(line)
+        rows.append(row)
+    if not rows:
+        raise Unreadable("holds no samples", file=table.path)
+    return lines, list(zip(*rows))
+
+
+def read_known(
+    path: Path, known: Sequence[str], words: Mapping[str, Sequence[str]] | None = None, texts: Collection[str] = ()
+) -> dict[str, np.ndarray]:
+    """Return the columns of a table by keys that end in their units, in these units.
+
+    :param known: keys
+    :param words: by key: what else its quantity is called
+    :param texts: keys whose cells are texts
+    :raises StatejumpError: one sentence with the file, and line or column
+    """
+    with open_table(path) as table:
+        try:
+            columns = matched(table.header, known, words)
+        except StatejumpError as failure:
+            raise failure.located(file=path) from None
+        lines, cells = _all(table)
+        return {column.key: np.array(part) if column.key in texts else numbers_of(table, column, part, lines)
+                for column, part in zip(columns, cells)}
+
+
+def numbers_of(table: Table, column: Column, cells: Sequence[str], lines: Sequence[int], empty: bool = False
+               ) -> np.ndarray:
+    """Return the numbers of cells of one column, in the unit of its key."""
+    def place(index: int) -> tuple[int, str]:
+        return lines[index], column.name
+
+    if column.iso:
+        if not is_iso(cells[0]):
+            raise Unreadable(f"column {quoted(column.name)}", cause="it names no unit and has no ISO times",
+                             remedy=accepted(column.name, column.key, "s"), file=table.path)
+        return seconds(cells, place, table.path)
+    return column.converted(table.numbers(cells, place, empty))

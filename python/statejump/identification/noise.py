@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Correlation of the noise from row to row: how many rows count as independent, and how much wider intervals are.
+
+Least squares stay unbiased if the noise is correlated, but their variance grows. Let h be the part of a parameter's
+derivative that no other parameter explains. Independent noise of variance s² gives the estimate the variance s²/(h·h),
+noise of the correlations ρ gives κ s²/(h·h) with κ = Σ ρ_|i-j| h_i h_j/(h·h). The correlations are those of an
+autoregression of the residuals (Burg), whose order BIC chooses.
+
+What a joint's formula leaves out comes back in every cycle, so that cycles do not average it. With the correlation c of
+the residuals a cycle apart, C cycles multiply κ by 1 + (C - 1) c.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import log
+
+import numpy as np
+from scipy.signal import fftconvolve, lfilter
+
+MOST_LAGS = 12  # of the autoregression
+ROWS_A_LAG = 10
+SAME_PLACE = 0.5  # correlation of the displacement some rows apart from which those are whole cycles
+CHANCE = 5.0  # standard deviations of a correlation that pass for chance: the largest of hundreds is looked for
+FORGOTTEN = 1e-4  # correlation below which the rest is left out
+REFINEMENTS = 5  # of the correction for fitted parameters; it settles within a percent
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Correlations of the noise.
+
+    :param correlations: of rows 0, 1, 2, … apart
+    :param repeated: correlation of rows a cycle apart
+    :param cycles: how many there are
+    """
+
+    correlations: np.ndarray
+    repeated: float = 0.0
+    cycles: float = 1.0
+
+    @cached_property
+    def _by_cycles(self) -> float:
+        return 1 + max(0.0, self.cycles - 1) * self.repeated
+
+    @cached_property
+    def rows_each(self) -> float:
+        """Rows that count as one: 1 + 2 Σ ρ up to the first correlation that is not positive, by the factor of the
+        cycles."""
+        positive = self.correlations > 0
+        last = len(positive) if positive.all() else int(np.argmin(positive))
+        return max(1.0, 2 * float(self.correlations[:last].sum()) - 1) * self._by_cycles
+
+    def inflation(self, derivative: np.ndarray) -> float:
+        """Return κ, by which the variance of an estimate grows.
+
+        :param derivative: h, of every row
+        """
+        lags = min(len(self.correlations), len(derivative))
+        products = _products(derivative, lags)
+        if not products[0] > 0:
+            return self.rows_each
+        return max(1.0, float(2 * self.correlations[:lags] @ products / products[0]) - 1) * self._by_cycles
+
+
+INDEPENDENT = Noise(np.ones(1))
+
+
+def noise_of(residual: np.ndarray, jacobian: np.ndarray, path: np.ndarray) -> Noise:
+    """Return the noise whose residuals would be correlated as these are.
+
+    :param residual: of every row
+    :param jacobian: its derivatives by the parameters (rows, parameters)
+    :param path: displacements
+    """
+    near = _near(residual, jacobian)
+    return replace(near, **_repeated(residual, path, near.rows_each))
+
+
+def _repeated(residual: np.ndarray, path: np.ndarray, rows_each: float) -> dict[str, float]:
+    """Return how the residuals of a cycle are correlated with those of the next, and how many cycles there are."""
+    rows = len(path)
+    lags = np.arange(rows // 2)
+    left = rows - lags
+    here, there = (_products(values - values.mean(), len(lags)) for values in (path, residual))
+    if not there[0] > 0:
+        return {}
+    at, again = here * rows / (here[0] * left), there * rows / (there[0] * left)
+    back = np.flatnonzero(at <= 0)
+    whole = (at > SAME_PLACE) & (lags > back[0]) if back.size else np.zeros(len(lags), dtype=bool)
+    if not whole.any():
+        return {}
+    lag = int(np.argmax(np.where(whole, again, -np.inf)))
+    first = int(np.argmax(np.where(whole & (lags <= 1.5 * np.argmax(whole)), at, -np.inf)))
+    if again[lag] <= CHANCE * np.sqrt(rows_each / left[lag]):
+        return {}
+    return {"repeated": float(min(again[lag], 1.0)), "cycles": rows / first}
+
+
+def _near(residual: np.ndarray, jacobian: np.ndarray) -> Noise:
+    """Return the correlations of rows that follow each other.
+
+    A fit takes up slow noise: its residuals are less correlated than the noise. With Q an orthonormal basis of the
+    Jacobian, R the correlations of the noise, residuals have those of (1 - Q Qᵀ) R (1 - Q Qᵀ).
+    """
+    most = min(MOST_LAGS, len(residual) // ROWS_A_LAG)
+    seen = _products(residual, most + 1)
+    if not seen[0] > 0 or most < 1:
+        return INDEPENDENT
+    order = _order(residual, most)
+    if not order:
+        return INDEPENDENT
+    basis = _basis(jacobian)
+    seen = seen[:order + 1] / len(residual)
+    found = _correlations(_burg(residual, order)[0], len(residual))
+    for _ in range(REFINEMENTS):
+        lost = _lost(basis, found, order)
+        corrected = seen / seen[0] * (1 - lost[0]) + lost
+        refined = _autoregression(corrected)
+        if refined is None:
+            break
+        found = _correlations(refined, len(residual))
+    return Noise(found)
+
+
+def _products(values: np.ndarray, lags: int) -> np.ndarray:
+    """Return Σ v_i v_{i+k} for k = 0, 1, ... lags - 1."""
+    if lags <= 64:
+        return np.array([values[:len(values) - lag] @ values[lag:] for lag in range(lags)])
+    return np.asarray(fftconvolve(values, values[::-1])[len(values) - 1:len(values) - 1 + lags])
+
+
+def _basis(jacobian: np.ndarray) -> np.ndarray:
+    """Return an orthonormal basis of the columns, without those that are not independent."""
+    scale = np.linalg.norm(jacobian, axis=0)
+    columns = jacobian[:, scale > 0] / scale[scale > 0]
+    if not columns.shape[1]:
+        return columns
+    left, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+    return np.asarray(left[:, sizes > 1e-8 * sizes[0]])
+
+
+def _lost(basis: np.ndarray, correlations: np.ndarray, order: int) -> np.ndarray:
+    """Return by how much the mean products of residuals 0 to ``order`` rows apart are less than those of the noise."""
+    rows = len(basis)
+    both = np.concatenate((correlations[:0:-1], correlations))
+    turned = np.array([fftconvolve(column, both)[len(correlations) - 1:len(correlations) - 1 + rows]
+                       for column in basis.T]).T  # R Q
+    inner = basis @ (basis.T @ turned)  # Q Qᵀ R Q
+    lost = np.empty(order + 1)
+    for lag in range(order + 1):
+        here, there = slice(0, rows - lag), slice(lag, rows)
+        once = np.sum(basis[here] * turned[there]) + np.sum(turned[here] * basis[there])
+        lost[lag] = (once - np.sum(inner[here] * basis[there])) / rows
+    return lost
+
+
+def _burg(values: np.ndarray, order: int) -> tuple[np.ndarray, list[float]]:
+    """Return the coefficients of an autoregression, and the variance that each order leaves (J. P. Burg, 1967)."""
+    forward, backward = values[1:], values[:-1]
+    coefficients, left = np.zeros(0), [float(values @ values) / len(values)]
+    for _ in range(order):
+        total = float(forward @ forward + backward @ backward)
+        reflection = 2 * float(forward @ backward) / total if total > 0 else 0.0
+        coefficients = np.append(coefficients - reflection * coefficients[::-1], reflection)
+        left.append(left[-1] * (1 - reflection**2))
+        forward, backward = (forward - reflection * backward)[1:], (backward - reflection * forward)[:-1]
+    return coefficients, left
+
+
+def _order(values: np.ndarray, most: int) -> int:
+    """Return the order of least BIC."""
+    left, rows = _burg(values, most)[1], len(values)
+    return int(np.argmin([rows * log(max(each, left[0] * 1e-12)) + lag * log(rows) for lag, each in enumerate(left)]))
+
+
+def _autoregression(products: np.ndarray) -> np.ndarray | None:
+    """Return the coefficients of the autoregression of some products (Levinson); None: it is none that settles."""
+    coefficients, left = np.zeros(0), float(products[0])
+    for lag in range(1, len(products)):
+        if not left > 0:
+            return None
+        reflection = float(products[lag] - coefficients @ products[lag - 1:0:-1][:lag - 1]) / left
+        if not abs(reflection) < 1:
+            return None
+        coefficients = np.append(coefficients - reflection * coefficients[::-1], reflection)
+        left *= 1 - reflection**2
+    return coefficients
+
+
+def _correlations(coefficients: np.ndarray, rows: int) -> np.ndarray:
+    """Return the correlations of an autoregression, as far as they matter."""
+    impulse = np.zeros(4 * rows)
+    impulse[0] = 1.0
+    answer = lfilter([1.0], np.append(1.0, -coefficients), impulse)
+    products = _products(answer, rows)
+    found = products / products[0]
+    far = np.flatnonzero(np.abs(found) > FORGOTTEN)
+    return np.asarray(found[:far[-1] + 1])
