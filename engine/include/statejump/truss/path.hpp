@@ -6,12 +6,15 @@
 #include <string_view>
 #include <vector>
 
+#include "statejump/start_friction.hpp"
 #include "statejump/truss/local_problem.hpp"
 #include "statejump/truss/model.hpp"
 
 namespace statejump::truss {
 
 struct Options {
+  /// How the truss gets to its first equilibrium.
+  StartFriction start_friction = StartFriction::stuck;
   /// Points of a path per monotone branch of the programs, >= 1.
   int increments_per_branch = 50;
   /// Whether every change of a joint's status is located in time, or only those that the state
@@ -123,6 +126,10 @@ struct Path {
 /// then the clearances open with frictionless contacts. There friction begins, without force. A
 /// journal that no pin force pushes, or whose contact force vanishes on the way, starts open, if
 /// the tangent stiffness without it is regular: springs, loads and bars then determine its place.
+///
+/// With StartFriction::stuck other joints hold by friction in the drawn shape as far as their
+/// limits allow. With StartFriction::frictionless the start is found of the truss whose joints have
+/// no friction; their slides are counted from there, so that friction begins without force.
 ///
 /// Throws std::invalid_argument for a model or option out of range. Throws std::runtime_error that
 /// names joint or nodes and the temperature: for a mechanism (with its free modes), also one that a
