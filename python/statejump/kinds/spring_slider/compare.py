@@ -8,6 +8,7 @@ import numpy as np
 
 from statejump.core.comparison import Comparison, Quantity, models, share
 from statejump.core.run import Run, change, energy_residue_J
+from statejump.kinds.spring_slider import stable_step
 from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.kinds.spring_slider.why_missed import why_missed
 
@@ -66,7 +67,10 @@ def first_cycle_events(case: SpringSliderCase, run: Run) -> dict[str, float | No
 
 def _jump_row(case: SpringSliderCase, exact_m: float, other_m: float) -> Quantity:
     tolerance = case.tolerance
-    limit = max(tolerance.state_jump_relative * abs(exact_m), tolerance.state_jump_absolute_m)
+    # A jump of zero is compared on the scale of jumps, f/(k + k_p).
+    stiffness = stable_step.link_stiffness(case) + case.joint.preload_stiffness_N_per_m
+    scale = max(abs(exact_m), case.friction_force_N / stiffness)
+    limit = max(tolerance.state_jump_relative * scale, tolerance.state_jump_absolute_m)
     return models("state_jump", "m", exact_m, other_m, limit)
 
 

@@ -11,6 +11,7 @@ from statejump import _engine
 from statejump.core.run import (
     AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Columns, Event, Events, Run, columns_of, numbers_of,
 )
+from statejump.core.start import carried
 from statejump.core.thermal import program
 from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.results import scene as drawing
@@ -142,12 +143,13 @@ def reduced_run(
         elif event.kind in ("cycle_end", "force_sign_change"):
             joint = ""
         events.append(Event(event.kind, event.time_s, event.temperature_change_K, joint))
-    return _run(case, "reduced", columns, events, {"state_jump_m": path.state_jump_m}, warnings=warnings, native=path,
-                sampler=sampler)
+    summary = {"state_jump_m": path.state_jump_m, **carried(path.model.start_load_N, case.friction_force_N)}
+    return _run(case, "reduced", columns, events, summary, warnings=warnings, native=path, sampler=sampler)
 
 
 def dem_run(case: SpringSliderCase, columns: Columns, about: Mapping[str, Any]) -> Run:
     """Return a DEM run: events between samples."""
     x = columns["displacement_m"]
-    summary = {"state_jump_m": float(x[-1] - x[0]), **numbers_of(about)}
+    start = carried(columns["friction_force_N"][0], case.friction_force_N)
+    summary = {"state_jump_m": float(x[-1] - x[0]), **start, **numbers_of(about)}
     return _run(case, "dem", columns, None, summary, about=about)
