@@ -107,22 +107,36 @@ def test_motion(start: str, friction_law: str) -> None:
         assert run.summary["start_friction_N"] == pytest.approx(CARRIED_N[start], abs=1e-3 * PRELOAD_N)
 
 
-@pytest.mark.parametrize("start", STARTS)
 @pytest.mark.parametrize("build", (as_spring_slider, as_truss))
-def test_dem(start: str, build: Any) -> None:
-    case = build(start)
-    run = case.dem()
-    x = displacement_m(run)
-    assert x[0] == pytest.approx(START_m[start], abs=1e-15)
-    assert run.summary["start_friction_N"] == pytest.approx(CARRIED_N[start], abs=1e-3 * PRELOAD_N)
-    assert x[-1] - x[0] == pytest.approx(JUMP_m[start], rel=0.005)
+def test_dem(build: Any) -> None:
+    """It starts from the same state, whatever friction carries there, and leaves the same jump."""
+    first_way_m = []
+    for start in STARTS:
+        case = build(start)
+        run = case.dem()
+        x = displacement_m(run)
+        assert x[0] == pytest.approx(START_m[start], abs=1e-15)
+        # The slide that loads the contact is friction over k_t, to the rounding of a depth and its root.
+        assert run.summary["start_friction_N"] == pytest.approx(CARRIED_N[start], rel=1e-9, abs=1e-9)
+        # The block slides at the end. Its velocity is that of half a step before, and the dashpot of the truss' spring
+        # pulls: with 2 ζ sqrt(k_p m), m a third of the bar's mass.
+        speed_m_per_s = 23.4e-6 * 0.5 * 60.0 * np.pi / 0.25
+        dashpot_s = 0.2 * np.sqrt(1e5 * 2700 * 0.5 * 9e-6 / 3) / STIFFNESS_N_per_m
+        bound_m = speed_m_per_s * (run.about["time_step_s"] + dashpot_s)
+        assert x[-1] - x[0] == pytest.approx(JUMP_m[start], abs=bound_m)
+        # A contact that started without its friction would lose P²/(2 k_t), 2e-4 of the heat of friction.
+        found = {row.name: row for row in sj.compare(case.reduced(), run).rows}
+        assert abs(found["energy_residual_over_friction_work"].difference or 0.0) < 1e-6
+        first_way_m.append(x[1] - x[0])
+    # Nothing but the heating moves the block. P/(k + k_p + k_t) is 7e-7 m.
+    assert first_way_m[0] == pytest.approx(first_way_m[1], abs=1e-10)
 
 
 def test_umbrella_without_friction_at_the_start_touches_where_it_needs_none() -> None:
     loaded = {"start.mode": "loaded", "torsion_spring.stiffness_N_m_per_rad": 50.0, "torsion_spring.bias_rad": 1e-3}
     case = sj.load("umbrella_damped").changed({**loaded, "start.friction": "frictionless"})
     assert case["start.contact_angle_rad"] == 0
-    with pytest.raises(NotAllowed, match="start.contact_angle_rad = 0.1 is not allowed: must be 0"):
+    with pytest.raises(NotAllowed, match="start.contact_angle_rad = 0.1 is not allowed with start.friction"):
         case.changed({"start.contact_angle_rad": 0.1})
 
 
