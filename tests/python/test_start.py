@@ -96,15 +96,16 @@ def test_control_finds_the_spring_for_the_start(start: str) -> None:
 
 
 @pytest.mark.parametrize("start", STARTS)
-@pytest.mark.parametrize("friction_law", ("mindlin", "mindlin_deresiewicz"))
-def test_motion(start: str, friction_law: str) -> None:
-    """Both schemes begin at rest with the friction of the start."""
-    sticking = {"mindlin": "elastic", "mindlin_deresiewicz": "partial_slip"}[friction_law]
-    for scheme in ("set_valued", "regularised"):
-        case = as_truss(start, **{"motion.scheme": scheme, "motion.masses": "lumped", "reduced.sticking": sticking,
-                                  "dem.friction_law": friction_law})
-        run = case.reduced(dynamic=True)
-        assert run.summary["start_friction_N"] == pytest.approx(CARRIED_N[start], abs=1e-3 * PRELOAD_N)
+@pytest.mark.parametrize("friction_law, sticking", [("mindlin", "elastic"), ("mindlin_deresiewicz", "partial_slip")])
+def test_motion_with_contacts_that_give(start: str, friction_law: str, sticking: str) -> None:
+    """Explicit steps begin with the friction of the quasi-static start."""
+    case = as_truss(start, **{
+        "motion.scheme": "regularised", "motion.masses": "lumped", "motion.steps_per_cycle": 20_000,
+        "thermal.period_s": 0.025, "reduced.sticking": sticking, "dem.friction_law": friction_law})
+    found, moved = case.reduced(), case.reduced(dynamic=True)
+    assert displacement_m(moved)[0] == displacement_m(found)[0]
+    # The slide that loads the contact is a closed form of the friction: some roundings.
+    assert moved.summary["start_friction_N"] == pytest.approx(found.summary["start_friction_N"], rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.parametrize("build", (as_spring_slider, as_truss))

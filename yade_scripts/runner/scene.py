@@ -45,11 +45,12 @@ def start_sticking(slides: Mapping[int, tuple[float, float, float]]) -> None:
     if not slides:
         return
     tracked, O.trackEnergy = O.trackEnergy, False
-    for body, slide in slides.items():
-        O.bodies[body].state.vel = tuple(way / O.dt for way in slide)
-    for engine in O.engines:
-        if isinstance(engine, (wrapper.InsertionSortCollider, wrapper.InteractionLoop)):
-            engine()
+    for share in (0, 1):  # pressed first, then rubbed: partial slip depends on the order
+        for body, slide in slides.items():
+            O.bodies[body].state.vel = tuple(share * way / O.dt for way in slide)
+        for engine in O.engines:
+            if isinstance(engine, (wrapper.InsertionSortCollider, wrapper.InteractionLoop)):
+                engine()
     for body in slides:
         O.bodies[body].state.vel = (0, 0, 0)
         O.forces.f(body, True)  # sums forces: others are not reset

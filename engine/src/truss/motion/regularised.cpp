@@ -226,7 +226,9 @@ bool Run::begin() {
     way = contacts_.start_way(*start);
   }
   const double h = duration_ / static_cast<double>(options_.steps);
-  commit({q_, v_, 0.0, h, way});
+  // Pressed first, then rubbed: partial slip depends on the order.
+  commit({q_, v_, 0.0, h, VectorXd::Zero(contacts_.numbers())});
+  if (!way.isZero(0.0)) commit({q_, v_, 0.0, h, way});
   heat_.friction.setZero();
   heat_.damping = heat_.thermal_work = 0.0;
   VectorXd z = VectorXd::Zero(system_.unknowns());
