@@ -3,7 +3,14 @@
 
 #include <pybind11/pybind11.h>
 
+#include <string>
+
+#include "statejump/start_friction.hpp"
+
 namespace statejump::bindings {
+
+/// "stuck" or "frictionless". Throws std::invalid_argument for another name.
+StartFriction start_friction_of(const std::string& name);
 
 /// Adds EngineFailure, the one exception that all failures of the engine become. Call first.
 void bind_failure(pybind11::module_& module);

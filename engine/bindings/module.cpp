@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bindings.hpp"
 
+#include "statejump/kernel/require.hpp"
+
+statejump::StartFriction statejump::bindings::start_friction_of(const std::string& name) {
+  if (name == "stuck") return StartFriction::stuck;
+  if (name == "frictionless") return StartFriction::frictionless;
+  throw kernel::OutOfRange("start_friction", name, "stuck or frictionless");
+}
+
 PYBIND11_MODULE(_engine, module) {
   module.doc() =
       "Reduced models of state jump in exact, closed or quasi-static form.\n\n"

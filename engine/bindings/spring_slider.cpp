@@ -31,11 +31,14 @@ void bind_model(py::module_& module) {
       "Raises ValueError for a value out of range.")
       .def(py::init([](double young_modulus, double cross_section_area, double stress_free_length,
                        double thermal_expansion, double friction_force, double clearance_minus,
-                       double clearance_plus, double preload_stiffness, double preload_force) {
+                       double clearance_plus, double preload_stiffness, double preload_force,
+                       const std::string& start_friction) {
              const spring_slider::SpringSlider model{
-                 young_modulus,     cross_section_area, stress_free_length,
-                 thermal_expansion, friction_force,     clearance_minus,
-                 clearance_plus,    preload_stiffness,  preload_force};
+                 young_modulus,      cross_section_area,
+                 stress_free_length, thermal_expansion,
+                 friction_force,     clearance_minus,
+                 clearance_plus,     preload_stiffness,
+                 preload_force,      start_friction_of(start_friction)};
              model.validate();
              return model;
            }),
@@ -43,7 +46,7 @@ void bind_model(py::module_& module) {
            py::arg("stress_free_length_m"), py::arg("thermal_expansion_per_K"),
            py::arg("friction_force_N"), py::arg("clearance_minus_m") = no_stop,
            py::arg("clearance_plus_m") = no_stop, py::arg("preload_stiffness_N_per_m") = 0.0,
-           py::arg("preload_force_N") = 0.0)
+           py::arg("preload_force_N") = 0.0, py::arg("start_friction") = "stuck")
       .def_readonly("young_modulus_Pa", &spring_slider::SpringSlider::young_modulus)
       .def_readonly("cross_section_area_m2", &spring_slider::SpringSlider::cross_section_area)
       .def_readonly("stress_free_length_m", &spring_slider::SpringSlider::stress_free_length)
@@ -57,7 +60,10 @@ void bind_model(py::module_& module) {
       .def_property_readonly(
           "start_displacement_m",
           [](const spring_slider::SpringSlider& self) { return start_displacement(self); },
-          "Where the block starts [m]: it needs no friction there, or a stop is in its way.")
+          "Where the block starts [m]: stuck or without friction, or where a stop is in its way.")
+      .def_property_readonly(
+          "start_load_N", [](const spring_slider::SpringSlider& self) { return start_load(self); },
+          "What friction balances at the start [N], stops left aside.")
       .def(
           "link_stiffness_N_per_m",
           [](const spring_slider::SpringSlider& self, double change) {
@@ -66,7 +72,15 @@ void bind_model(py::module_& module) {
           py::arg("temperature_change_K") = 0.0, "k_T = E A/l_T [N/m] at dT [K].")
       .def_property_readonly(
           "state_jump_m", [](const spring_slider::SpringSlider& self) { return state_jump(self); },
-          "f/(k + k_p) [m]: what one closed cycle leaves if it ends sliding at dT = 0.")
+          "What one closed cycle that heats leaves [m] if it ends sliding at dT = 0;\n"
+          "f/(k + k_p) from a start without friction.")
+      .def(
+          "state_jump_after_slide_m",
+          [](const spring_slider::SpringSlider& self, int direction) {
+            return state_jump(self, direction);
+          },
+          py::arg("direction"),
+          "The same [m] of a cycle that ends sliding in this sense, +1 or -1.")
       .def(
           "euler_load_N",
           [](const spring_slider::SpringSlider& self, const std::string& ends,

@@ -517,10 +517,12 @@ void bind_truss(py::module_& module) {
          const py::dict& torsion_springs, const py::dict& joints,
          std::vector<thermal::Program> programs, int increments_per_branch, bool locate_events,
          double event_tolerance, double energy_tolerance, bool cycle_ends_only,
-         std::vector<double> problem_times, const py::object& progress) {
+         std::vector<double> problem_times, const std::string& start_friction,
+         const py::object& progress) {
         const truss::Model model =
             make_model(nodes, links, springs, torsion_springs, joints, std::move(programs));
         truss::Options options;
+        options.start_friction = start_friction_of(start_friction);
         options.increments_per_branch = increments_per_branch;
         options.locate_events = locate_events;
         options.event_tolerance = event_tolerance;
@@ -543,7 +545,8 @@ void bind_truss(py::module_& module) {
       py::arg("event_tolerance") = truss::Options().event_tolerance,
       py::arg("energy_tolerance") = truss::Options().energy_tolerance,
       py::arg("cycle_ends_only") = truss::Options().cycle_ends_only,
-      py::arg("problem_times") = std::vector<double>(), py::arg("progress") = py::none(),
+      py::arg("problem_times") = std::vector<double>(), py::arg("start_friction") = "stuck",
+      py::arg("progress") = py::none(),
       "Quasi-static path of a truss: exact Coulomb friction at every joint.\n\n"
       "Every kind of item is a dict of arrays, one entry per item, and 'names'. Index -1: ground.\n"
       "nodes: position_m (n, 3), fixed (n, 3), guide_normal (n, 3), force_N (n, 3)\n"
@@ -557,6 +560,7 @@ void bind_truss(py::module_& module) {
       "at\n"
       "problem_times or later, see truss/local_problem.hpp), complete, solves, factorizations, "
       "unknowns, largest residuals.\n"
+      "start_friction: 'stuck' or 'frictionless', see start_friction.hpp.\n"
       "progress(share) may return False to end the path early: complete is then False. Raises "
       "ValueError for items out of range, RuntimeError that names joint or nodes "
       "and\n"
@@ -568,7 +572,8 @@ void bind_truss(py::module_& module) {
          std::vector<thermal::Program> programs, const py::dict& inertia, long steps,
          long sample_every, double theta, double displacement_tolerance_m, double restitution,
          int watched_node, const py::list& drives, bool start_drawn,
-         const std::string& friction_law, const py::object& progress) {
+         const std::string& start_friction, const std::string& friction_law,
+         const py::object& progress) {
         const truss::Model model =
             make_model(nodes, links, springs, torsion_springs, joints, std::move(programs));
         const auto numbers = [&](const char* key) { return inertia[key].cast<Eigen::VectorXd>(); };
@@ -586,6 +591,7 @@ void bind_truss(py::module_& module) {
                                     one["time_s"].cast<Eigen::VectorXd>(),
                                     one["angular_velocity_rad_per_s"].cast<Eigen::VectorXd>()});
         }
+        options.start_friction = start_friction_of(start_friction);
         if (start_drawn) {
           const auto count = static_cast<Eigen::Index>(model.nodes.size());
           options.start = truss::MotionStart{Eigen::Matrix3Xd::Zero(3, count),
@@ -611,8 +617,8 @@ void bind_truss(py::module_& module) {
       py::arg("joints"), py::arg("programs"), py::arg("inertia"), py::kw_only(), py::arg("steps"),
       py::arg("sample_every"), py::arg("theta") = 0.5, py::arg("displacement_tolerance_m") = 0.0,
       py::arg("restitution") = 0.0, py::arg("watched_node") = -1, py::arg("drives") = py::list(),
-      py::arg("start_drawn") = false, py::arg("friction_law") = "",
-      py::arg("progress") = py::none(),
+      py::arg("start_drawn") = false, py::arg("start_friction") = "stuck",
+      py::arg("friction_law") = "", py::arg("progress") = py::none(),
       "Motion of a truss from the equilibrium in which its quasi-static path begins, or from the\n"
       "drawn shape, at rest.\n\n"
       "Items as of truss_path(). inertia: link_mass_kg, link_damping_N_s_per_m,\n"

@@ -71,6 +71,7 @@ class SpringSlider(metaclass=_pybind11_type):
         clearance_plus_m: float = ...,
         preload_stiffness_N_per_m: float = ...,
         preload_force_N: float = ...,
+        start_friction: str = ...,
     ) -> None: ...
     @property
     def young_modulus_Pa(self) -> float: ...
@@ -91,9 +92,12 @@ class SpringSlider(metaclass=_pybind11_type):
     @property
     def preload_force_N(self) -> float: ...
     @property
+    def start_load_N(self) -> float: ...
+    @property
     def start_displacement_m(self) -> float: ...
     @property
     def state_jump_m(self) -> float: ...
+    def state_jump_after_slide_m(self, direction: int) -> float: ...
     def link_stiffness_N_per_m(self, temperature_change_K: float = ...) -> float: ...
     def euler_load_N(self, ends: str = ..., second_moment_of_area_m4: float = ...) -> float: ...
 
@@ -374,6 +378,7 @@ def truss_path(
     energy_tolerance: float = ...,
     cycle_ends_only: bool = ...,
     problem_times: Sequence[float] = ...,
+    start_friction: str = ...,
     progress: Callable[[float], bool | None] | None = ...,
 ) -> _Fields: ...
 def truss_motion(
@@ -393,6 +398,7 @@ def truss_motion(
     watched_node: int = ...,
     drives: list[dict[str, Any]] = ...,
     start_drawn: bool = ...,
+    start_friction: str = ...,
     friction_law: str = ...,
     progress: Callable[[float], bool | None] | None = ...,
 ) -> _Fields: ...

@@ -65,34 +65,44 @@ def test_preload_spring_in_the_dem(statejump, edited, tmp_path: Path) -> None:
     assert jump["dem"] == pytest.approx(jump["reduced"], rel=0.005)
 
 
-def test_preload_force_in_the_dem(statejump, edited, tmp_path: Path) -> None:
-    # Both models start at 630/(1.26e6 + 2e5) m, beyond the middle; the stop + is reached at a lower temperature.
+def started(friction: str) -> tuple[str, str]:
+    """Return the edit that selects how the block starts."""
+    return "[thermal]", f'[start]\nfriction = "{friction}"\n\n[thermal]'
+
+
+@pytest.mark.parametrize("friction, jump_N", [("stuck", 60.0), ("frictionless", 30.0)])
+def test_preload_force_in_the_dem(statejump, edited, tmp_path: Path, friction: str, jump_N: float) -> None:
+    # Both models start at 630 or 600 over 1.26e6 + 2e5 m, beyond the middle; the stop + is reached at a lower
+    # temperature. Where friction held at the start, it changes from one limit to the other.
     path = edited(("clearance_plus_m = 1e-3", "clearance_plus_m = 1e-3\npreload_force_N = -630\n"
-                   "preload_stiffness_N_per_m = 2e5"), ("period_s = 1.0", "period_s = 0.25"))
+                   "preload_stiffness_N_per_m = 2e5"), ("period_s = 1.0", "period_s = 0.25"), started(friction))
     outcome = statejump("compare", path)
     assert outcome.status == 0, outcome.output + outcome.errors
     found = quantities(tmp_path / "results" / "table1")
-    assert found["state_jump"]["reduced"] == pytest.approx(30 / 1.46e6, rel=1e-12)
+    assert found["state_jump"]["reduced"] == pytest.approx(jump_N / 1.46e6, rel=1e-12)
     with_none = 87.5092 + 0.2  # without a force, and rounded up
     assert found["stop_reached_temperature_change"]["dem"] < with_none - 25
 
 
-def test_block_that_a_preload_force_seats_on_a_stop_in_the_dem(statejump, edited, tmp_path: Path) -> None:
+@pytest.mark.parametrize("friction, carried_N", [("stuck", 30.0), ("frictionless", 0.0)])
+def test_block_that_a_preload_force_seats_on_a_stop_in_the_dem(
+    statejump, edited, tmp_path: Path, friction: str, carried_N: float
+) -> None:
     path = edited(("clearance_plus_m = 1e-3", "clearance_plus_m = 1e-3\npreload_force_N = 1350"),
-                  ("period_s = 1.0", "period_s = 0.25"))
+                  ("period_s = 1.0", "period_s = 0.25"), started(friction))
     outcome = statejump("dem", path)
     assert outcome.status == 0, outcome.output + outcome.errors
     history = read_columns(tmp_path / "results" / "table1" / "dem_history.csv")
     x, stop = history["displacement_m"], history["stop_force_N"]
     depth = -1e-3 - x
-    # The bar carries k (c + depth) of the 1350 N, the stop the rest from the first step on, to what a step of heating
-    # adds, 1e-6 of it.
-    assert stop[0] == pytest.approx(1350 - 1.26e6 * (1e-3 + depth[0]), abs=1e-4)
+    # The bar carries k (c + depth) of the 1350 N, friction what it holds, the stop the rest from the first step on, to
+    # what a step of heating adds, 1e-6 of it.
+    assert stop[0] == pytest.approx(1350 - carried_N - 1.26e6 * (1e-3 + depth[0]), abs=1e-4)
     # The first sample heats by 0.157 K, 2.3 N of the bar. An error of the start would swing the block by more than a
     # Hertzian stop of 3/2 F/depth gives to that.
     assert abs(x[1] - x[0]) < 2.32 / (1.5 * stop[1] / depth[1])
-    # It comes back to the stop. Friction, none at the start, carries f of the load at the end: the jump is what the stop,
-    # less deep by then, gives. 1 N: friction ends that far from its limit, as the tangential spring follows the load.
+    # It comes back to the stop. Friction carries f of the load at the end: the jump is what the stop, less deep by then
+    # if friction carried none at the start, gives. 1 N: friction ends that far from its limit, as the tangential spring follows the load.
     assert stop[-1] == pytest.approx(1350 - 30 - 1.26e6 * (1e-3 + depth[-1]), abs=1.0)
     # The dashpot of the stop adds 0.04 N, 70 N s/m at 0.5 mm/s.
     assert depth[-1] / depth[0] == pytest.approx((stop[-1] / stop[0]) ** (2 / 3), rel=1e-3)

@@ -2,6 +2,7 @@
 """What the scenes of all kinds of case share. Imported by scripts that run under ``yade``."""
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import statejump_yade as sj
@@ -33,6 +34,28 @@ def fixed_point(position: tuple[float, float, float]) -> int:
     body.state.pos = body.state.refPos = position
     body.state.blockedDOFs = "xyzXYZ"
     return O.bodies.append(body)
+
+
+def start_sticking(slides: Mapping[int, tuple[float, float, float]]) -> None:
+    """Load the contacts of pads by friction: each contact sees one slide of its pad, which itself stays where it is.
+    ``O.engines`` and ``O.dt`` are those of the run. Without slides nothing is done.
+
+    :param slides: of each pad [m], by body
+    """
+    if not slides:
+        return
+    tracked, O.trackEnergy = O.trackEnergy, False
+    for share in (0, 1):  # pressed first, then rubbed: partial slip depends on the order
+        for body, slide in slides.items():
+            O.bodies[body].state.vel = tuple(share * way / O.dt for way in slide)
+        for engine in O.engines:
+            if isinstance(engine, (wrapper.InsertionSortCollider, wrapper.InteractionLoop)):
+                engine()
+    for body in slides:
+        O.bodies[body].state.vel = (0, 0, 0)
+        O.forces.f(body, True)  # sums forces: others are not reset
+    O.forces.reset(resetAll=False)  # a ForceResetter does not in the first step
+    O.trackEnergy = tracked
 
 
 def joint_engines(

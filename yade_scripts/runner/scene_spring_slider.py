@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import statejump_yade as sj
 from failures import Names, SceneFailure, pair, rounded_down
-from scene import O, fixed_point, joint_engines, thermal_program
+from scene import O, fixed_point, joint_engines, start_sticking, thermal_program
 from states import Pair, States, Watched, each, norm
 from yade import wrapper
 
@@ -44,8 +44,8 @@ class SpringSliderScene:
 def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSliderScene:
     """Build the scene of a bar with a slider at its tip, in a slot (1-D clearance joint).
 
-    The bar lies along x with its root at -l0. The slider starts in equilibrium without friction: at the slot's
-    centre, or where a preload force has taken it, at the depths at which floor and stop carry their loads.
+    The bar lies along x with its root at -l0. The slider starts in equilibrium: at the slot's centre, or where a
+    preload force has taken it, at the depths at which floor and stop carry their loads, with the friction of its start.
 
     :param case: resolved case, sections and keys as in the case file
     :param recorders: engines that read the state, run before the motion of each step
@@ -121,6 +121,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
     )
     O.trackEnergy = True
     O.dt = dem["time_step_s"]
+    start_sticking({slider: (dem["start_slide_m"], 0, 0)} if dem["start_slide_m"] else {})
     stiffness = link["young_modulus_Pa"] * link["cross_section_area_m2"] / link["stress_free_length_m"]
     return SpringSliderScene(
         program, slider, floor, stop_minus, stop_plus, bar, preload, start_height_m=-depth,

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import statejump_yade as sj
 from failures import Names, SceneFailure, rounded_down
-from scene import O, joint_engines
+from scene import O, joint_engines, start_sticking
 from states import Pair, States, Watched, dot, each, in_order
 from truss_joints import JOINTS
 from truss_joints.parts import Joints, Row, rows
@@ -172,6 +172,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
     )
     O.trackEnergy = True
     O.dt = dem["time_step_s"]
+    start_sticking({body: slide for joints in made for body, slide in joints.start_slides().items()})
     return scene
 
 

@@ -48,11 +48,16 @@ double axial_force(const SpringSlider& model, double temperature_change, double 
          (thermal_displacement(model, temperature_change) - displacement);
 }
 
+double start_load(const SpringSlider& model) {
+  if (model.start_friction == StartFriction::frictionless) return 0.0;
+  return std::clamp(-model.preload_force, -model.friction_force, model.friction_force);
+}
+
 double start_displacement(const SpringSlider& model) {
   const double stiffness = link_stiffness(model, 0.0) + model.preload_stiffness;
-  // 0 − 0/k would be −0.
-  const double free = model.preload_force == 0.0 ? 0.0 : -model.preload_force / stiffness;
-  return std::clamp(free, -model.clearance_minus, model.clearance_plus);
+  const double excess = -model.preload_force - start_load(model);
+  const double slid = excess == 0.0 ? 0.0 : excess / stiffness;  // not −0
+  return std::clamp(slid, -model.clearance_minus, model.clearance_plus);
 }
 
 double sliding_displacement(const SpringSlider& model, double temperature_change, int direction) {
@@ -73,8 +78,9 @@ double sliding_temperature(const SpringSlider& model, double displacement, int d
   return (rigidity * displacement + force * model.stress_free_length) / slope;
 }
 
-double state_jump(const SpringSlider& model) {
-  return model.friction_force / (link_stiffness(model, 0.0) + model.preload_stiffness);
+double state_jump(const SpringSlider& model, int direction) {
+  return (start_load(model) - direction * model.friction_force) /
+         (link_stiffness(model, 0.0) + model.preload_stiffness);
 }
 
 double euler_load(const SpringSlider& model, EndCondition ends, double second_moment_of_area) {

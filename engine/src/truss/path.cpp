@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "start_choice.hpp"
 #include "walker.hpp"
 
 namespace statejump::truss {
@@ -130,8 +131,7 @@ Path solve(const Model& model, const Options& options) {
   walker.slide_rate = VectorXd::Zero(joints);
   walker.path.unknowns = system.unknowns();
   walker.state.joint_dissipation = VectorXd::Zero(joints);
-  walker.start();
-  walker.origin = system.begin(walker.z, 0.0, walker.origin.statuses, 1.0);
+  detail::start_as_chosen(walker);
   walker.origin.slack_stiffness = system.slack_stiffness();
   system.describe(walker.z, 0.0, walker.origin, walker.state);
   if (!options.cycle_ends_only) walker.path.states.push_back(walker.state);

@@ -20,6 +20,8 @@ std::vector<Path> paths() {
   preloaded.preload_stiffness = 3e5;
   SpringSlider pulled = table1();
   pulled.preload_force = 200.0;
+  SpringSlider settled = pulled;
+  settled.start_friction = StartFriction::frictionless;
   SpringSlider seated = preloaded;
   seated.preload_force = -2e3;
   SpringSlider frictionless = table1();
@@ -30,7 +32,7 @@ std::vector<Path> paths() {
   for (const thermal::Shape shape :
        {thermal::Shape::triangle, thermal::Shape::half_sine, thermal::Shape::sine}) {
     for (const SpringSlider& model :
-         {table1(), table1(2e-3), preloaded, pulled, seated, frictionless, shrinking}) {
+         {table1(), table1(2e-3), preloaded, pulled, settled, seated, frictionless, shrinking}) {
       result.push_back(solve(model, cycle(shape, 3, 0.7)));
     }
   }

@@ -142,7 +142,39 @@ TEST(SpringSliderPath, PreloadForceSeatsTheBlockOnAStop) {
                  {EventKind::cycle_end, Stage::at_stop_minus, Stage::at_stop_minus, 0.0}});
   EXPECT_EQ(path.segments.front().start_displacement, -c);
   EXPECT_EQ(path.state_jump(), 0.0);
-  // Too weak to reach the stop: it starts where it needs no friction, and the jump is that of none.
+}
+
+TEST(SpringSliderPath, StartsStuckOrWithoutFriction) {
+  // With k_p and a tension P < f: D = −P at the start where it is stuck. Slipping back, D = −f.
+  SpringSlider model = table1();
+  model.preload_stiffness = 1e5;
+  model.preload_force = 2.0 / 3.0 * f;
+  const double stiffness = EA / l0 + model.preload_stiffness;
+  const Path stuck = solve(model, cycle());
+  EXPECT_EQ(stuck.segments.front().start_displacement, 0.0);
+  EXPECT_NEAR(stuck.state_jump(), (f - model.preload_force) / stiffness, close(c));
+  EXPECT_NEAR(state_jump(model), stuck.state_jump(), close(c));
+  model.start_friction = StartFriction::frictionless;
+  const Path settled = solve(model, cycle());
+  EXPECT_NEAR(settled.segments.front().start_displacement, -model.preload_force / stiffness,
+              close(c));
+  EXPECT_NEAR(settled.state_jump(), f / stiffness, close(c));
+  EXPECT_EQ(state_jump(model), f / stiffness);
+  // P > f: the block slides as far as friction does not hold it, and comes back to there.
+  model.start_friction = StartFriction::stuck;
+  model.preload_force = 3.0 * f;
+  const Path slid = solve(model, cycle());
+  EXPECT_NEAR(slid.segments.front().start_displacement, -2.0 * f / stiffness, close(c));
+  EXPECT_NEAR(slid.state_jump(), 0.0, close(c));
+  // Pulled the other way, it starts at the other limit: 2 f lie between both.
+  model.preload_force = -3.0 * f;
+  EXPECT_NEAR(solve(model, cycle()).state_jump(), 2.0 * f / stiffness, close(c));
+  EXPECT_NEAR(state_jump(model), 2.0 * f / stiffness, close(c));
+}
+
+TEST(SpringSliderPath, WithoutFrictionAtTheStartAPreloadForceDoesNotChangeTheJump) {
+  SpringSlider model = table1();
+  model.start_friction = StartFriction::frictionless;
   model.preload_force = 0.5 * EA / l0 * c;
   const Path free = solve(model, cycle());
   EXPECT_NEAR(free.segments.front().start_displacement, -0.5 * c, close(c));
@@ -361,6 +393,7 @@ TEST(SpringSliderPath, EqualsSmallStepsForRandomModels) {
     model.preload_stiffness = run % 2 == 0 ? 0.0 : uniform(0.0, 2e6);
     // Up to what presses the block on a stop all the way: 2 mm times 1.26e6 N/m.
     model.preload_force = run % 3 == 0 ? 0.0 : uniform(-3e3, 3e3);
+    if (run % 4 < 2) model.start_friction = StartFriction::frictionless;
     std::vector<double> times{0.0};
     std::vector<double> changes{0.0};
     for (int i = 1; i < 8; ++i) {
@@ -373,10 +406,10 @@ TEST(SpringSliderPath, EqualsSmallStepsForRandomModels) {
     // rounding of l_T − l0, an ulp of 0.5 m, in every step that slides.
     const int steps = 400;
     const double tolerance = 7 * steps * 2e-16;
-    // It starts where the spring alone would hold it.
-    SpringSlider smooth = model;
-    smooth.friction_force = 0.0;
-    double x = return_mapping(smooth, 0.0, 0.0);
+    // From the middle; without friction it starts where the spring alone would hold it.
+    SpringSlider before = model;
+    if (model.start_friction == StartFriction::frictionless) before.friction_force = 0.0;
+    double x = return_mapping(before, 0.0, 0.0);
     std::size_t at = 0;
     for (std::size_t i = 1; i < times.size(); ++i) {
       for (int step = 1; step <= steps; ++step) {

@@ -24,6 +24,7 @@ def case(friction, period, steps):
         "dem": {
             "tip_mass_kg": 0.004, "link_damping_ratio": 0.2,
             "contact_damping_ratio": 0.2, "time_step_s": period / steps, "start_displacement_m": 0.0,
+            "start_slide_m": 0.0,
         },
     }
 

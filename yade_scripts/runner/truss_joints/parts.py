@@ -78,6 +78,11 @@ class Joints:
         """Return those that stand for joints, known from :meth:`append` on."""
         return []
 
+    def start_slides(self) -> dict[int, tuple[float, float, float]]:
+        """Return by body the slides [m] that load its contact by the friction of the start, see
+        :func:`scene.start_sticking`."""
+        return {}
+
     def states(self, states: States) -> list[np.ndarray]:
         """Return each of the columns: its values by sample and joint, vectors along a third axis."""
         raise NotImplementedError

@@ -7,7 +7,7 @@ A pad is held at the depth at which its floor carries the normal force.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import inf
+from math import copysign, inf
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,7 @@ class Sliders(Joints):
     def __init__(self, case: dict[str, Any]) -> None:
         super().__init__(case)
         self._damping_ratio: float = case["dem"]["contact_damping_ratio"]
+        self._slips_in_part: bool = case["dem"]["friction_law"] == "mindlin_deresiewicz"
         self._slots: list[list[wrapper.Body]] = []  # none between two nodes
         self._numbers: list[list[int]] = []  # of floor and stops
         self._between: dict[int, sj.PrismaticJoint] = {}  # by place
@@ -82,6 +83,21 @@ class Sliders(Joints):
             stopStiffness=slider["stop_stiffness_N_per_m15"], dampingRatio=self._damping_ratio,
             frictionForce=friction, slipPosition=slider["start_slide_m"] - friction / sticks,
         )
+
+    def start_slides(self) -> dict[int, tuple[float, float, float]]:
+        return {
+            self._pad(place): tuple(self._give_m(slider) * along for along in slider["axis"])
+            for place, slider in enumerate(self.rows) if self._numbers[place] and slider["start_friction_N"]
+        }
+
+    def _give_m(self, slider: Row) -> float:
+        """Return how far a pad's contact gives under the friction of the start, along the axis [m]."""
+        friction, limit, sticks = (
+            slider[key] for key in ("start_friction_N", "friction_limit_N", "friction_stiffness_N_per_m"))
+        if not self._slips_in_part:
+            return friction / sticks
+        # Cattaneo's contact under a constant normal force.
+        return copysign(1.5 * limit / sticks * (1 - (1 - abs(friction) / limit) ** (2 / 3)), friction)
 
     def prismatic_joints(self) -> list[sj.PrismaticJoint]:
         return list(self._between.values())

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "statejump/start_friction.hpp"
 #include "statejump/thermal/program.hpp"
 
 namespace statejump::spring_slider {
@@ -20,14 +21,15 @@ namespace statejump::spring_slider {
 /// or x = −c⁻, balance the rest, D + R + W = 0 with D = F − P − k_p x, at every instant: the path
 /// is quasi-static and rate-independent, a function of the sequence of ΔT alone.
 ///
-///   start   where D = 0 at ΔT = 0, x = −P/(k + k_p), or at the stop in its way: without friction
+///   start   at ΔT = 0 with D = D0, x = −(P + D0)/(k + k_p), or at the stop in its way;
+///           D0 = clamp(−P, −f, f) where it starts stuck, D0 = 0 where it starts frictionless
 ///   stick   |D| < f, x stays
 ///   slide   D = s f with the sense s of the motion, hence
 ///           x = (E A x_T − (s f + P) l_T)/(E A + k_p l_T)
 ///   stop    x = s c and s D > f
 ///
-/// A cycle that ends sliding leaves the block f/(k_T + k_p) from where D = 0, the state jump unless
-/// P presses it on a stop at the start.
+/// A cycle that ends sliding in sense s leaves the block with D = s f: the state jump is
+/// (D0 − s f)/(k + k_p), unless P presses the block on a stop at the start.
 ///
 /// Against a rigid stop equilibrium leaves R and W undetermined within −f <= R <= f. Assumed here
 /// is the smallest stop force, |W| = max(0, |D| − f): friction keeps the value that it had
@@ -56,6 +58,8 @@ struct SpringSlider {
   double preload_stiffness = 0.0;
   /// Tension P of that spring at x = 0 [N], towards −x when positive, |P| + f < E A.
   double preload_force = 0.0;
+  /// How the block gets to its start.
+  StartFriction start_friction = StartFriction::stuck;
 
   /// Throws std::invalid_argument that names the first field out of range, its value and the range.
   void validate() const;
@@ -79,8 +83,11 @@ double link_stiffness(const SpringSlider& model, double temperature_change);
 /// Axial force F = k_T (x_T − x) [N] of the link, positive in compression, with the block at x [m].
 double axial_force(const SpringSlider& model, double temperature_change, double displacement);
 
-/// Position x [m] of the block at the start, ΔT = 0: where it needs no friction, or at the stop
-/// that is in its way.
+/// D0 [N] that friction balances at the start, ΔT = 0, stops left aside.
+double start_load(const SpringSlider& model);
+
+/// Position x [m] of the block at the start, ΔT = 0: where D = start_load(), or at the stop that is
+/// in its way.
 double start_displacement(const SpringSlider& model);
 
 /// Position x [m] of the block that slides in sense `direction` (+1 or −1), stops left aside.
@@ -91,11 +98,11 @@ double sliding_displacement(const SpringSlider& model, double temperature_change
 /// NaN if no temperature does it (α = 0, or P + k_p x + direction·f >= E A).
 double sliding_temperature(const SpringSlider& model, double displacement, int direction);
 
-/// Displacement f/(k_T + k_p) [m] that one closed cycle leaves if it ends sliding at ΔT = 0 and did
-/// not start at a stop;
-/// positive for a cycle that heats. Independent of the clearance and of the largest temperature
+/// Displacement (D0 − s f)/(k + k_p) [m] that one closed cycle leaves if it ends sliding in sense s
+/// = `direction` at ΔT = 0 and did not start at a stop; −1, a cycle that heats, leaves f/(k + k_p)
+/// if it started without friction. Independent of the clearance and of the largest temperature
 /// (paper 3.4).
-double state_jump(const SpringSlider& model);
+double state_jump(const SpringSlider& model, int direction = -1);
 
 /// How the ends of a link are held, for its buckling load.
 enum class EndCondition { clamped_clamped, pinned_pinned };

@@ -64,6 +64,8 @@ struct MotionOptions {
   int most_iterations = 50;
   /// Without: the equilibrium in which the quasi-static path begins, at rest.
   std::optional<MotionStart> start = {};
+  /// How the truss gets to that equilibrium.
+  StartFriction start_friction = StartFriction::stuck;
   std::vector<Drive> drives = {};  ///< In planar trusses.
   /// Node whose velocity is kept at every step; −1: none.
   int watched_node = -1;

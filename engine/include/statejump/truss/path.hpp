@@ -7,12 +7,15 @@
 #include <vector>
 
 #include "statejump/failure.hpp"
+#include "statejump/start_friction.hpp"
 #include "statejump/truss/local_problem.hpp"
 #include "statejump/truss/model.hpp"
 
 namespace statejump::truss {
 
 struct Options {
+  /// How the truss gets to its first equilibrium.
+  StartFriction start_friction = StartFriction::stuck;
   /// Points of a path per monotone branch of the programs, >= 1.
   int increments_per_branch = 50;
   /// Whether every change of a joint's status is located in time, or only those that the state
@@ -151,6 +154,10 @@ struct Path {
 /// **Slack elements.** An element that hangs in the play of its joints carries nothing, and nothing
 /// depends on where it is. It stays at the admissible position nearest to its last one, as with
 /// vanishing dashpots in its pins (truss/system.hpp), until its clearance closes.
+///
+/// With StartFriction::stuck other joints hold by friction in the drawn shape as far as their
+/// limits allow. With StartFriction::frictionless the start is found of the truss whose joints have
+/// no friction; their slides are counted from there, so that friction begins without force.
 ///
 /// Throws std::invalid_argument for a model or option out of range. Throws std::runtime_error that
 /// names joint or nodes and the temperature: for a mechanism (with its free modes); for loads that

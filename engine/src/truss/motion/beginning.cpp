@@ -25,6 +25,7 @@ void check_motion(const Model& model, const MotionOptions& options) {
 
 std::optional<State> equilibrium(const Model& model, const MotionOptions& options) {
   Options statics;
+  statics.start_friction = options.start_friction;
   bool ended = false;
   // The path itself is not asked for: it ends after its first short step.
   statics.progress = [&](double share) {

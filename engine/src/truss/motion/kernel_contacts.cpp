@@ -261,6 +261,23 @@ kernel::ContactResponse KernelContacts::answer(const KernelContact& contact, con
   return found;
 }
 
+VectorXd KernelContacts::start_way(const State& start) const {
+  VectorXd way = VectorXd::Zero(numbers());
+  if (!remembers_) return way;
+  const bool rim_slips = laws::has(law_.friction, laws::Trait::needs_point_contact);
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    const KernelContact& contact = all_[i];
+    if (!contact.is_pad()) continue;
+    const double rubs = output(system_->model(), start, contact.joint, "slider_force_N")[0];
+    const double share = std::min(std::abs(rubs) / contact.pressed, 1.0);
+    // Cattaneo's contact under a constant normal force, or a spring.
+    const double gives = rim_slips ? 1.5 * (1.0 - std::cbrt((1.0 - share) * (1.0 - share))) : share;
+    way[static_cast<Eigen::Index>(3 * i)] =
+        std::copysign(gives * contact.pressed / contact.held, rubs);
+  }
+  return way;
+}
+
 void KernelContacts::respond(const Stage& stage, VectorXd& force, VectorXd& rates) const {
   for (std::size_t i = 0; i < all_.size(); ++i) {
     const auto first = static_cast<Eigen::Index>(3 * i);

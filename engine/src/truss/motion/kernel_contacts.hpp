@@ -6,6 +6,7 @@
 
 #include "statejump/kernel/contact_law.hpp"
 #include "statejump/kernel/laws/joint_law.hpp"
+#include "statejump/truss/path.hpp"
 #include "truss/system.hpp"
 
 namespace statejump::truss::detail {
@@ -68,6 +69,9 @@ class KernelContacts {
     const VectorXd& way;  ///< Slides [m], [m] and turn [rad] of every contact since then.
   };
   Eigen::Index numbers() const { return 3 * static_cast<Eigen::Index>(all_.size()); }
+  /// `Stage::way` that loads pads by the friction of a state at rest; contacts of round parts start
+  /// without friction.
+  VectorXd start_way(const State& start) const;
   /// Adds forces of all contacts [N]; leaves nothing behind. @param rates of `Stage::way`
   void respond(const Stage& stage, VectorXd& force, VectorXd& rates) const;
   /// The same at the end of a step, which the contacts take over. @param heat is added to

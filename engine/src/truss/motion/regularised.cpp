@@ -214,6 +214,7 @@ void Run::note(long step) {
 }
 
 bool Run::begin() {
+  VectorXd way = VectorXd::Zero(contacts_.numbers());
   if (options_.start) {
     q_ = bodies_.free_part(options_.start->displacement);
     v_ = bodies_.free_part(options_.start->velocity);
@@ -222,9 +223,12 @@ bool Run::begin() {
     if (!start) return false;
     q_ = bodies_.free_part(start->displacement);
     v_ = VectorXd::Zero(q_.size());
+    way = contacts_.start_way(*start);
   }
   const double h = duration_ / static_cast<double>(options_.steps);
+  // Pressed first, then rubbed: partial slip depends on the order.
   commit({q_, v_, 0.0, h, VectorXd::Zero(contacts_.numbers())});
+  if (!way.isZero(0.0)) commit({q_, v_, 0.0, h, way});
   heat_.friction.setZero();
   heat_.damping = heat_.thermal_work = 0.0;
   VectorXd z = VectorXd::Zero(system_.unknowns());

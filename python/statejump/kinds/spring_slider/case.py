@@ -12,6 +12,7 @@ from statejump.core import expansion, yade_process
 from statejump.core.case import Case, no_length_left
 from statejump.core.errors import MissingKey, NotAllowed
 from statejump.core.expansion import Expansion, followed
+from statejump.core.start import Start
 from statejump.core.temperature_files import MemberProgram
 from statejump.core.thermal import Thermal
 from statejump.kinds.spring_slider import stable_step
@@ -90,6 +91,7 @@ class SpringSliderCase(Case):
 
     link: Link = section(Link, required=True)
     joint: Joint = section(Joint, required=True)
+    start: Start = section(Start)
     expansion: Expansion | None = optional_section(Expansion)
     dem: Dem = section(Dem)
     tolerance: Tolerance = section(Tolerance)

@@ -8,6 +8,7 @@ import numpy as np
 
 from statejump.core.comparison import Comparison, Quantity, models, share
 from statejump.core.run import Run, change, energy_residue_J
+from statejump.kinds.spring_slider import stable_step
 from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.kinds.spring_slider.result import AT_END
 from statejump.kinds.spring_slider.why_missed import why_missed
@@ -70,9 +71,12 @@ def first_cycle_events(case: SpringSliderCase, run: Run) -> dict[str, float | No
 def _jump_row(case: SpringSliderCase, first: Run, second: Run) -> Quantity:
     """Compare state jumps; where the program does not return, displacements at its end."""
     tolerance = case.tolerance
+    # A jump of zero is compared on the scale of jumps, f/(k + k_p).
+    stiffness = stable_step.link_stiffness(case) + case.joint.preload_stiffness_N_per_m
     name = "state_jump_m" if case.has_jump else AT_END
     exact_m, other_m = (run.summary[name] for run in (first, second))
-    limit = max(tolerance.state_jump_relative * abs(exact_m), tolerance.state_jump_absolute_m)
+    scale = max(abs(exact_m), case.friction_force_N / stiffness)
+    limit = max(tolerance.state_jump_relative * scale, tolerance.state_jump_absolute_m)
     return models(name.removesuffix("_m"), "m", exact_m, other_m, limit)
 
 

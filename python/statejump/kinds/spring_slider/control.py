@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from statejump import _engine
 from statejump.control.study import (
     Line, Places, Row, Study, Sweep, bisect, check_wanted, grid, highest, number, ranges_that_pass, refuse_places,
     refuse_runs,
@@ -55,7 +56,20 @@ def jump_of(case: SpringSliderCase) -> Jump:
     free = -case.joint.clearance_minus_m < start < case.joint.clearance_plus_m
     closed = free and last.motion == "slide" and last.end_temperature_change_K == 0
     # A block that has not moved keeps the place that it started from.
-    return Jump(abs(path.state_jump_m), path.model.state_jump_m if closed else None, slips)
+    return Jump(abs(path.state_jump_m), closed_form_m(path) if closed else None, slips)
+
+
+def closed_form_m(path: _engine.SpringSliderPath) -> float:
+    """Return the jump of a path that ends sliding at ΔT = 0 and did not start at a stop [m]."""
+    return abs(path.model.state_jump_after_slide_m(path.segments[-1].direction))
+
+
+def closed_force_N(case: SpringSliderCase) -> float:
+    """Return the closed form times k + k_p [N]: f, or how far friction of the start is from that of the end."""
+    with engine():
+        path = reduced.solve(case, np.array([0.0]))
+    direction = path.segments[-1].direction or -1
+    return abs(path.model.start_load_N - direction * path.model.friction_force_N)
 
 
 @dataclass(frozen=True)
@@ -84,7 +98,7 @@ def smallest_preload(case: SpringSliderCase, wanted_m: float) -> Spring | None:
     if passes(0.0):
         return Spring(0.0, solved(0.0).size_m, "none")
     largest = highest(case, PRELOAD)
-    closed = case.friction_force_N / wanted_m - link_stiffness(case)
+    closed = closed_force_N(case) / wanted_m - link_stiffness(case)
     if 0 < closed <= largest and solved(closed).closed_form_m is not None:
         # A few roundings up, so that the solved jump is not above the wanted one.
         stiffness = closed

@@ -33,18 +33,19 @@ def dem_input(case: SpringSliderCase) -> dict[str, Any]:
     values = common_values(case, number_of_steps(case))
     values["link"]["thermal_expansion_per_K"] = case.thermal_expansion_per_K
     values["bar_program"] = parameters(case.bar_program, case.period_s)
-    values["dem"].update(tip_mass_kg=stable_step.tip_mass(case), start_displacement_m=start_displacement(case))
+    values["dem"].update(tip_mass_kg=stable_step.tip_mass(case), start_displacement_m=start_displacement(case),
+                         start_slide_m=start_slide(case))
     return values
 
 
 def start_displacement(case: SpringSliderCase) -> float:
-    """Return where the block starts [m]: where it needs no friction; a stop in its way gives by Hertz."""
+    """Return where the block starts [m]: as in the reduced model; a stop in its way gives by Hertz."""
     joint = case.joint
-    rigid = reduced.spring_slider(case).start_displacement_m
+    model = reduced.spring_slider(case)
     for side in (1, -1):
         clearance = case.clearance_m(side, 0.0)
         stiffness = stable_step.link_stiffness(case) + joint.preload_stiffness_N_per_m
-        load = -side * joint.preload_force_N - stiffness * clearance
+        load = -side * (joint.preload_force_N + model.start_load_N) - stiffness * clearance
         if load > 0:
             hertz = physics.hertz_stiffness_N_per_m15(
                 physics.effective_young_modulus_Pa(joint.young_modulus_Pa, joint.poisson_ratio), joint.pad_radius_m
@@ -52,4 +53,10 @@ def start_displacement(case: SpringSliderCase) -> float:
             deepest = float(physics.hertz_depth_m(load, hertz))
             depth = brentq(lambda there: hertz * there**1.5 + stiffness * there - load, 0.0, deepest)
             return side * (clearance + float(depth))
-    return rigid
+    return model.start_displacement_m
+
+
+def start_slide(case: SpringSliderCase) -> float:
+    """Return the slide [m] by which the floor's contact carries the friction of the start."""
+    load_N = reduced.spring_slider(case).start_load_N
+    return load_N / stable_step.contact_stiffness(case, case.joint.normal_force_N)[1] if load_N else 0.0

@@ -27,6 +27,7 @@ def spring_slider(case: SpringSliderCase) -> _engine.SpringSlider:
         clearance_plus_m=case.joint.clearance_plus_m,
         preload_stiffness_N_per_m=case.joint.preload_stiffness_N_per_m,
         preload_force_N=case.joint.preload_force_N,
+        start_friction=case.start.friction,
     )
 
 

@@ -12,6 +12,7 @@ from statejump import _engine
 from statejump.core.run import (
     AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Columns, Event, Events, Run, columns_of, numbers_of,
 )
+from statejump.core.start import carried
 from statejump.core.thermal import program
 from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.results import scene as drawing
@@ -161,13 +162,14 @@ def reduced_run(
     if case.ending is not None:
         start, there = path.sample(np.array([0.0, case.ending.time_s]))["displacement_m"]
         there -= start
-    return _run(case, "reduced", columns, events, _summary(case, path.state_jump_m, float(there)), warnings=warnings,
-                native=path, sampler=sampler)
+    summary = {**_summary(case, path.state_jump_m, float(there)), **carried(path.model.start_load_N, case.friction_force_N)}
+    return _run(case, "reduced", columns, events, summary, warnings=warnings, native=path, sampler=sampler)
 
 
 def dem_run(case: SpringSliderCase, columns: Columns, about: Mapping[str, Any]) -> Run:
     """Return a DEM run: events between samples."""
     x = columns["displacement_m"]
     there = nan if case.ending is None else np.interp(case.ending.time_s, columns["time_s"], x) - x[0]
-    summary = {**_summary(case, float(x[-1] - x[0]), float(there)), **numbers_of(about)}
+    summary = {**_summary(case, float(x[-1] - x[0]), float(there)),
+               **carried(columns["friction_force_N"][0], case.friction_force_N), **numbers_of(about)}
     return _run(case, "dem", columns, None, summary, about=about)

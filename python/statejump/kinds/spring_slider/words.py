@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from statejump.core.run import AT_STOP, Event, Run
+from statejump.core.start import FRICTIONLESS
 from statejump.core.tables import Shown
 from statejump.core.units import text
 from statejump.kinds.spring_slider.case import SpringSliderCase
@@ -45,8 +46,16 @@ def describe(case: SpringSliderCase) -> list[str]:
     if joint.preload_force_N:
         way = "towards" if joint.preload_force_N > 0 else "away from"
         sentences.append(f"A preload of {text(abs(joint.preload_force_N), 'N')} pulls the block {way} the root of the "
-                         "bar; the block starts where it needs no friction.")
+                         f"bar; {_start(case)}.")
     return sentences
+
+
+def _start(case: SpringSliderCase) -> str:
+    if case.start.friction == FRICTIONLESS:
+        return "friction begins where the block rests without it"
+    if abs(case.joint.preload_force_N) <= case.friction_force_N:
+        return "friction holds the block where it was assembled"
+    return "the block slides at the start until friction holds it"
 
 
 def told(case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown | str]:

@@ -15,6 +15,7 @@ from statejump.core import thermal as core_thermal
 from statejump.core import yade_process
 from statejump.core.case import Case
 from statejump.core.expansion import Expansion
+from statejump.core.start import Start
 from statejump.core.temperature_files import Histories, MemberProgram
 from statejump.core.thermal import CaseThermal, Thermal, returns_s
 from statejump.kinds.truss import checks
@@ -267,6 +268,7 @@ class TrussCase(Case):
     ball_joint: list[BallJoint] = tables(BallJoint, "sections [[ball_joint]]")
     drive: list[Drive] = tables(Drive, "sections [[drive]]")
     thermal: TrussThermal = section(TrussThermal, required=True)
+    start: Start = section(Start)
     output: Output = section(Output)
     reduced: TrussReduced = section(TrussReduced)
     motion: TrussMotion = section(TrussMotion)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from statejump.core.comparison import Quantity
 from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.start import FRICTIONLESS
 from statejump.fe import ccx
 from statejump.fe.ccx import number
 from statejump.kinds.truss import fe_sliding
@@ -80,6 +81,8 @@ def _sliding(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Qu
     """
     if truss.number_of_joints() > len(truss.sliders.names) or truss.sticking == "partial_slip":
         raise NotAllowed("joints", cause="beside them there are other joints, or partial slip")
+    if truss.start_friction == FRICTIONLESS:
+        raise NotAllowed("start.friction", truss.start_friction, "the deck's sliders stick where they are drawn")
     return fe_sliding.rows(case, truss)
 
 

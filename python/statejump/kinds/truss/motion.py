@@ -12,6 +12,7 @@ from statejump import _engine
 from statejump.core import physics
 from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import Interrupted, NotAllowed
+from statejump.core.start import FRICTIONLESS
 from statejump.core.progress import Tell
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
@@ -134,6 +135,9 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         if case.motion.start != "drawn":
             raise NotAllowed("motion.start", case.motion.start, f"must be 'drawn' with ball_joint {name!r}, whose "
                              "contact is rigid: no path says where it rests", case=case.name, joint=name)
+    if case.motion.start == "drawn" and case.start.friction == FRICTIONLESS:
+        raise NotAllowed("start.friction", case.start.friction, "must be 'stuck', there is no equilibrium before the "
+                         "motion", beside="with motion.start = 'drawn'", case=case.name)
     regularised = case.motion.scheme == "regularised"
     if regularised:
         from statejump.kinds.truss import stable_steps
@@ -146,6 +150,7 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
             sample_every=steps_per_sample, theta=case.motion.theta,
             displacement_tolerance_m=case.motion.displacement_tolerance_m or 0.0, restitution=case.motion.restitution,
             watched_node=watched_node, drives=_drives(truss), start_drawn=case.motion.start == "drawn",
+            start_friction=truss.start_friction,
             friction_law=case.dem.friction_law if regularised else "", progress=going_on,
         )
     except _engine.EngineFailure as failure:

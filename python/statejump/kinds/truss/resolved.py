@@ -129,6 +129,7 @@ class ResolvedTruss:
     program_names: tuple[str, ...]  # "thermal", those of the file, those of members, "EXPANSION of PROGRAM"
     reflector: ReflectorSurface | None
     sticking: str  # one of STICKING: contacts of the reduced model
+    start_friction: str  # how it gets to its first equilibrium
 
     @property
     def temperature_ranges_K(self) -> np.ndarray:
@@ -259,4 +260,5 @@ def resolve(case: TrussCase) -> ResolvedTruss:
         program_names=warmed.program_names,
         reflector=reflector,
         sticking=case.reduced.sticking,
+        start_friction=case.start.friction,
     )

@@ -12,6 +12,7 @@ import numpy as np
 from statejump.core.run import (
     AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Columns, Event, Events, Run, columns_of, numbers_of,
 )
+from statejump.core.start import carried
 from statejump.core.units import unit_of
 from statejump.kinds.truss import compare, members, notes
 from statejump.kinds.truss.case import TrussCase
@@ -164,6 +165,23 @@ def _jumps(case: TrussCase, time_s: np.ndarray, displacement_m: np.ndarray) -> d
     return found
 
 
+def _start_friction(truss: ResolvedTruss, items: Mapping[str, np.ndarray]) -> dict[str, float]:
+    """Return what the summary says of friction in the first of these states: forces, moments of hinges."""
+    forces: list[tuple[np.ndarray, np.ndarray]] = [(np.zeros(0), np.zeros(0))]
+    moments: list[tuple[np.ndarray, np.ndarray]] = []
+    for joint in JOINTS:
+        joints = truss.joints[joint.section]
+        if len(joints.names):
+            own = joint.carried_friction(joints, {column.name: items[column.name][0] for column in joint.columns})
+            (moments if joint.turns else forces).append(own)
+    found = carried(*map(np.concatenate, zip(*forces)))
+    if moments:
+        of_hinges = carried(*map(np.concatenate, zip(*moments)))
+        found["start_friction_over_limit"] = max(one["start_friction_over_limit"] for one in (found, of_hinges))
+        found["start_friction_N_m"] = of_hinges["start_friction_N"]
+    return found
+
+
 def _cable_events(truss: ResolvedTruss, time: np.ndarray, change: np.ndarray, tension_N: np.ndarray) -> list[Event]:
     """Return when cables go slack and become taut, each half-way between two samples."""
     cables = np.flatnonzero(truss.springs.cable)
@@ -257,8 +275,8 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
         "thermal_work_J": sampled(states["thermal_work_J"]),
         "external_work_J": sampled(states["load_potential_J"][0] - states["load_potential_J"]),
     })
-    summary = {"energy_residue_J": path.energy_residue_J, "solves": float(path.solves),
-               "unknowns": float(path.unknowns)}
+    summary = {**_start_friction(path.truss, states), "energy_residue_J": path.energy_residue_J,
+               "solves": float(path.solves), "unknowns": float(path.unknowns)}
     beyond = members.warnings(path.truss.links, at, states["temperature_change_K"], states["axial_force_N"])
     if len(at) == len(path.cycle_ends["time_s"]):
         beyond = (*beyond, "of this long path the ends of cycles are kept: loads of links between them are not checked")
@@ -300,6 +318,7 @@ def motion_run(case: TrussCase, motion: TrussMotion) -> Run:
         "external_work_J": states["load_potential_J"][0] - states["load_potential_J"] + states["drive_work_J"],
     })
     summary = {
+        **_start_friction(motion.truss, states),
         "energy_residue_J": compare.energy_residual(energy), "time_step_s": motion.time_step_s,
         "contact_problems": float(motion.iterations), "negative_dissipation_J": motion.negative_dissipation_J,
         "unknowns": float(motion.unknowns), "steps": float(motion.steps),
@@ -344,7 +363,8 @@ def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
         values = np.stack(found, axis=1) if found else np.zeros((samples, 0))
         items[key] = values.reshape(samples, -1, 3) if vector else values
     plain, energy = columns_of({name: values for name, values in columns.items() if "[" not in name})
-    summary = {**numbers_of(about), "energy_residue_J": compare.energy_residual(energy)}
+    summary = {**_start_friction(case.resolve(), items), **numbers_of(about),
+               "energy_residue_J": compare.energy_residual(energy)}
 
     def happened() -> list[Event]:
         truss = case.resolve()

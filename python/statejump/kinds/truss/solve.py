@@ -13,6 +13,7 @@ from statejump.core import thermal
 from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import Interrupted, StatejumpError
 from statejump.core.progress import Tell
+from statejump.core.start import FRICTIONLESS
 from statejump.core.temperature_files import MemberProgram
 from statejump.kinds.truss.case import TrussCase, TrussThermal
 from statejump.kinds.truss.joints import JOINTS
@@ -188,7 +189,7 @@ def path(
         found = _engine.truss_path(
             **engine_items(truss), increments_per_branch=increments_per_branch, locate_events=locate_events,
             event_tolerance=event_tolerance, energy_tolerance=energy_tolerance, cycle_ends_only=cycle_ends_only,
-            problem_times=problem_times, progress=progress,
+            problem_times=problem_times, start_friction=truss.start_friction, progress=progress,
         )
     except _engine.EngineFailure as failure:
         raise _failed(truss, failure, locate_events) from None
@@ -214,8 +215,11 @@ def whole_path(truss: ResolvedTruss, tell: Tell = lambda share: None, **options:
 
 def _failed(truss: ResolvedTruss, failure: _engine.EngineFailure, locate_events: bool) -> EngineFailed:
     """Return what the engine's failure says, and what helps where events are what does not settle."""
-    taken_together = failure.kind == "unsettled_joint" and locate_events
-    remedy = "set reduced.locate_events to false, which takes such changes together" if taken_together else None
+    remedy = None
+    if failure.kind == "unsettled_joint" and locate_events:
+        remedy = "set reduced.locate_events to false, which takes such changes together"
+    if truss.start_friction == FRICTIONLESS and failure.time_s == 0:
+        remedy = "set start.friction to 'stuck' if friction holds the truss at the start"
     return EngineFailed(failure, remedy=remedy, case=truss.name, place=truss.name)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from statejump.core.run import Run
+from statejump.core.start import FRICTIONLESS
 from statejump.core.tables import Shown
 from statejump.kinds.truss import compare
 from statejump.kinds.truss.case import Node, TrussCase
@@ -54,6 +55,8 @@ def describe(case: TrussCase) -> list[str]:
 def _joints(case: TrussCase) -> list[str]:
     found = ((joint, listed_joints(case, joint)) for joint in JOINTS)
     sentences = [joint.describe(items) for joint, items in found if items]
+    if case.start.friction == FRICTIONLESS:
+        sentences.append("Loads and preloads act before friction does: joints start without friction.")
     if case.reduced.sticking == "elastic":
         sentences.append("Joints of the reduced model stick elastically, as those of the DEM.")
     if case.reduced.sticking == "partial_slip":

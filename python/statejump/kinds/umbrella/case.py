@@ -15,6 +15,7 @@ from statejump.core import yade_process
 from statejump.core.case import Case, check_radii, no_length_left
 from statejump.core.errors import NotAllowed
 from statejump.core.physics import apex_m
+from statejump.core.start import FRICTIONLESS, start_friction
 from statejump.schema.fields import CHOICE, Section, choice, definition, parameter, section, whole
 
 PAPER = "Chen et al. (2021), Tables 2 and 3"
@@ -94,6 +95,7 @@ class Start(Section):
     eccentricity_m: float = parameter(0.0, "m", 0, 1e2, "the paper starts concentric")
     eccentricity_angle_rad: float = parameter(0.0, "rad", -2 * pi, 2 * pi, CHOICE + ": from AC")
     contact_angle_rad: float = parameter(0.0, "rad", -pi / 2, pi / 2, CHOICE + ": from AC; loaded")
+    friction: str = start_friction()
 
 
 @definition
@@ -331,6 +333,10 @@ class UmbrellaCase(Case):
             if getattr(spring, key) == 0:
                 raise NotAllowed("start.mode", start.mode,
                                  f"torsion_spring.{key} is 0, and only a biased torsion spring loads the joint")
+        if start.friction == FRICTIONLESS and start.contact_angle_rad != 0:
+            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad,
+                             "must be 0 [rad], where the contact needs no friction",
+                             beside="with start.friction = 'frictionless'")
         holds = laws.law("friction", joint.friction_law).holds_static_load
         largest = atan(joint.friction_coefficient) if holds else 0.0
         if abs(start.contact_angle_rad) > largest:

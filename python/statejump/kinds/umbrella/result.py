@@ -12,6 +12,7 @@ from statejump import _engine
 from statejump.core.run import (
     CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Columns, Event, Events, Run, columns_of, numbers_of,
 )
+from statejump.core.start import carried
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.results import scene as drawing
 from statejump.results.events import from_states
@@ -127,7 +128,8 @@ def _run(
         if case.ending is not None:
             jumps[f"{angle}{AT_END}"] = float(np.interp(case.ending.time_s, columns["time_s"], turned))
     warnings = (*case.thermal_notes, *(() if case.is_reproducible else (CHAOS,)))
-    return Run(model, plain, energy, _links(case, columns), contacts, Events(events), {**jumps, **summary},
+    start = carried(columns["tangential_force_N"][0], case.joint.friction_coefficient * columns["normal_force_N"][0])
+    return Run(model, plain, energy, _links(case, columns), contacts, Events(events), {**jumps, **start, **summary},
                names(case), lambda: case, warnings=warnings, **more)
 
 

@@ -84,6 +84,7 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
     varied = ("friction_coefficient", "radial_clearance_m", "ball_radius_m", "young_modulus_Pa")
     inner, outer = "ball", "socket"
     eccentricity, normal_force = "ball_eccentricity_m", "ball_normal_force_N"
+    friction_force = "ball_friction_force_N"
     has_axis = False
 
     def resolve(self, items: Sequence[BallJoint], known: References) -> BallJoints:

@@ -117,6 +117,9 @@ class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
     def friction_N(self, state: Mapping[str, np.ndarray]) -> np.ndarray:
         return state["iwan_force_N"]  # all of its springs end in friction: without it the joint carries nothing
 
+    def carried_friction(self, joints: IwanJoints, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        return np.abs(at["iwan_force_N"]), joints.slip_force_N
+
     def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
         joints: IwanJoints = truss.joints[self.section]
         return with_sliders(truss, joints).with_joints(iwan_joint=none_of(joints))

@@ -63,6 +63,7 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
     """Latch hinges, in the solver and in the DEM."""
 
     section = "latch_hinge"
+    turns = True
     Item = LatchHinge
     columns: ClassVar[tuple[JointColumn, ...]] = (
         JointColumn("hinge_rotation_rad", "from the drawn shape"),
@@ -125,6 +126,9 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
             # Against the ground the first link's own turn counts.
             loads.turn(index, first, -against if second == GROUND else against)
             loads.turn(index, second, -against)
+
+    def carried_friction(self, joints: LatchHinges, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        return np.abs(self._friction_N_m(joints, at)), joints.friction_moment_N_m
 
     def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
         hinges: LatchHinges = truss.joints[self.section]

@@ -115,6 +115,7 @@ class JointType(Generic[ItemType, ArraysType]):
     varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that a jump may follow
     has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
     has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result
+    turns: ClassVar[bool] = False  # its friction is a moment
     not_in_dem: ClassVar[str] = ""  # what follows its name where the DEM refuses it; empty: the DEM has it
 
     @property
@@ -232,6 +233,11 @@ class JointType(Generic[ItemType, ArraysType]):
     def unknown_friction(self, joints: ArraysType, state: Mapping[str, np.ndarray]) -> Iterable[int]:
         """Return the joints whose friction in a state is not known."""
         return ()
+
+    def carried_friction(self, joints: ArraysType, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """Return the friction of its joints and its limits (joints,) [N], or [N m] of a type that turns, from its
+        columns at one sample of any model. Of a stop and friction together friction carries what it can."""
+        raise NotImplementedError
 
     # ---------------------------------------------------------------- DEM
 

@@ -85,7 +85,7 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
     )
     varied = ("friction_coefficient", "radial_clearance_m", "journal_radius_m")
     inner, outer = "journal", "bearing"
-    eccentricity, normal_force = "eccentricity_m", "normal_force_N"
+    eccentricity, normal_force, friction_force = "eccentricity_m", "normal_force_N", "friction_force_N"
 
     def check_vectors(self, item: Revolute, dimension: int) -> None:
         axis_of_rotation(item.axis, dimension, self.where(item.name))

@@ -32,6 +32,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
     outer: ClassVar[str]  # what it plays in
     eccentricity: ClassVar[str]  # columns: inner less outer centre
     normal_force: ClassVar[str]
+    friction_force: ClassVar[str]
     has_axis: ClassVar[bool] = True  # its arrays have the axis about which parts turn
     has_temperature = True
     has_contacts = True
@@ -223,6 +224,11 @@ class RoundParts(JointType[ItemType, ArraysType]):
         arm = self._radius_m(joints, self.inner) - depth / 2
         for index, friction in enumerate(self.friction_on_inner_N(joints, state)):
             loads.rub(index, self._nodes(joints)[index], links[index], friction, offset[index], arm[index])
+
+    def carried_friction(self, joints: Any, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        friction = at[self.friction_force]
+        sizes = np.linalg.norm(friction, axis=1) if friction.ndim == 2 else np.abs(friction)
+        return sizes, joints.friction_coefficient * at[self.normal_force]
 
     def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
         joints: Any = truss.joints[self.section]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from statejump.core import physics
+from statejump.core.start import FRICTIONLESS
 from statejump.core.units import text
 from statejump.kinds.truss.arrays import GROUND, References, columns, names, pairs, unit, vectors
 from statejump.kinds.truss.joints.along_axis import AlongAxis, Axes
@@ -217,6 +218,10 @@ class SliderType(AlongAxis[Slider, Sliders]):
     def friction_N(self, state: Mapping[str, np.ndarray]) -> np.ndarray:
         return np.where(self._stopped(state), 0.0, state["slider_force_N"])
 
+    def carried_friction(self, joints: Sliders, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        limit = joints.friction_coefficient * joints.normal_force_N
+        return np.minimum(np.abs(at["slider_force_N"]), limit), limit
+
     def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
         sliders = truss.sliders
         return truss.with_joints(slider=replace(sliders, friction_coefficient=0 * sliders.friction_coefficient))
@@ -285,11 +290,14 @@ class SliderType(AlongAxis[Slider, Sliders]):
             return [float(value) if np.isfinite(value) else None for value in values]
 
         pad, limit = pads(joints), joints.friction_coefficient * joints.normal_force_N
+        friction = np.clip(path.states["slider_force_N"][0], -limit, limit)
+        if path.truss.start_friction == FRICTIONLESS:
+            friction = 0 * limit  # what presses on a stop is the stop's
         return {
             "friction_limit_N": limit, "friction_stiffness_N_per_m": pad.tangential_N_per_m,
             "stiffness_across_N_per_m": pad.normal_N_per_m, "stop_stiffness_N_per_m15": pad_hertz_stiffness(joints),
             "start_slide_m": path.states["slide_m"][0],
-            "start_friction_N": np.clip(path.states["slider_force_N"][0], -limit, limit),
+            "start_friction_N": friction,
             "depth_m": pad.depth_m, "reach_m": self.reach_m(path, joints),
             "floor_normal": pressing_directions(path.truss, joints),
             "clearance_minus_m": finite(joints.clearance_minus_m), "clearance_plus_m": finite(joints.clearance_plus_m),

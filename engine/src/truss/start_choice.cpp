@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "start_choice.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "truss/joints/partial_slip.hpp"
+
+namespace statejump::truss::detail {
+
+namespace {
+
+constexpr double rigid = std::numeric_limits<double>::infinity();
+
+/// The joint without friction, with the same unknowns.
+Joint without_friction(const Slider& joint) {
+  Slider loose = joint;
+  loose.friction_force = 0.0;
+  loose.tangential_stiffness = rigid;
+  loose.partial_slip = 0;
+  return loose;
+}
+
+Joint without_friction(const LatchHinge& joint) {
+  LatchHinge loose = joint;
+  loose.friction_moment = 0.0;
+  loose.friction_stiffness = rigid;
+  return loose;
+}
+
+/// All its springs end in friction: what is left is the prismatic joint.
+Joint without_friction(const IwanJoint& joint) {
+  Slider loose;
+  loose.name = joint.name;
+  loose.first = joint.first;
+  loose.second = joint.second;
+  loose.axis = joint.axis;
+  return loose;
+}
+
+/// Joints with play start without friction anyway.
+template <class Type>
+Joint without_friction(const Type& joint) {
+  return joint;
+}
+
+Model without_friction(const Model& model) {
+  Model loose = model;
+  for (Joint& joint : loose.joints) {
+    joint = std::visit([](const auto& one) { return without_friction(one); }, Joint(joint));
+  }
+  return loose;
+}
+
+/// Status with which friction begins: what slid sticks, what rests at a stop or is open stays.
+JointStatus begins(const Joint& joint, JointStatus status) {
+  if (status == JointStatus::open) return status;
+  if (std::visit([](const auto& one) { return one.has_play(); }, joint)) return status;
+  return is_slip(status) ? JointStatus::stick : status;
+}
+
+/// What a joint remembers where friction begins without force.
+void begin(const Slider& joint, const Trial& trial, JointStatus, double* now) {
+  now[0] = joint.axis.dot(trial.moved[0] - trial.moved[1]);
+  if (!joint.partial_slip) return;
+  write_partial_slip(pressed(joint.tangential_stiffness, joint.friction_force),
+                     now + joint.slip_memory_begin());
+}
+
+void begin(const IwanJoint& joint, const Trial& trial, JointStatus, double* now) {
+  std::fill_n(now, joint.history(), joint.axis.dot(trial.moved[0] - trial.moved[1]));
+}
+
+/// It counts what has slipped, which is all without force; with play its own start is this one.
+template <class Type>
+void begin(const Type& joint, const Trial& trial, JointStatus status, double* now) {
+  joint.begin(trial, status, now);
+}
+
+}  // namespace
+
+void start_as_chosen(Walker& walker) {
+  const System& system = walker.system;
+  if (walker.options.start_friction == StartFriction::stuck) {
+    walker.start();
+    walker.origin = system.begin(walker.z, 0.0, walker.origin.statuses, 1.0);
+    return;
+  }
+  const Model loose = without_friction(walker.model);
+  const System loose_system(loose);
+  const auto going_on = [&walker] {
+    return !walker.options.progress || walker.options.progress(0.0);
+  };
+  Walker found{.model = loose,
+               .system = loose_system,
+               .options = walker.options,
+               .newton = Newton(loose_system, walker.options.locate_events, going_on),
+               .rates = RateProblem(loose_system)};
+  found.slide_rate = VectorXd::Zero(walker.slide_rate.size());
+  found.state.joint_dissipation = VectorXd::Zero(walker.slide_rate.size());
+  found.start();
+  walker.path.solves += found.path.solves;
+  walker.path.notes = std::move(found.path.notes);
+  walker.path.complete = found.path.complete;
+  walker.z = std::move(found.z);
+  Statuses statuses = std::move(found.origin.statuses);
+  for (std::size_t i = 0; i < statuses.size(); ++i) {
+    statuses[i] = begins(walker.model.joints[i], statuses[i]);
+  }
+  walker.origin = system.begin(walker.z, 0.0, statuses, 1.0);
+  for (int i = 0; i < static_cast<int>(walker.model.joints.size()); ++i) {
+    const Trial at = system.trial(i, walker.z, 0.0, walker.origin, JointModel::frictionless, 1.0);
+    std::visit(
+        [&](const auto& one) {
+          begin(one, at, statuses[index(i)], system.history(i, walker.origin));
+        },
+        walker.model.joints[index(i)]);
+  }
+}
+
+}  // namespace statejump::truss::detail

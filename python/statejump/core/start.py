@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How a structure gets to its first equilibrium: one key, ``start.friction``, for all kinds and models."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from statejump.schema.fields import Section, choice, definition
+
+STUCK, FRICTIONLESS = "stuck", "frictionless"
+
+
+def start_friction() -> Any:
+    """Return the key. A structure is assembled before it is loaded: stuck is the default."""
+    return choice(STUCK, (STUCK, FRICTIONLESS),
+                  "joints hold where they were assembled; frictionless: friction begins after loads and preloads act")
+
+
+@definition
+class Start(Section):
+    """How the structure gets to its first equilibrium, at ΔT = 0."""
+
+    friction: str = start_friction()
+
+
+def carried(friction: Any, limit: Any) -> dict[str, float]:
+    """Return what a summary says of friction at the start: the largest force of any joint [N], and the largest ratio to
+    its limit [-]."""
+    force, most = np.abs(np.atleast_1d(friction)), np.atleast_1d(limit)
+    share = np.divide(force, most, out=np.zeros_like(force), where=most > 0)
+    return {"start_friction_N": float(force.max(initial=0.0)),
+            "start_friction_over_limit": float(share.max(initial=0.0))}
