@@ -523,7 +523,10 @@ bool Newton::keeping_pays(double decades) const {
 
 int Newton::stability_index() {
   if (!current_) current_ = factorize(solved_on_, solved_model_);
-  return current_ ? index_of(factor_.determinant_sign(), at_) : 0;
+  if (!current_) return 0;
+  const int found = checked_index(at_);
+  current_ = found >= 0;
+  return found;
 }
 
 int Newton::stability_index(const Assembly& at, const Statuses& statuses) {
@@ -531,7 +534,19 @@ int Newton::stability_index(const Assembly& at, const Statuses& statuses) {
   factored_ = factor_.factorize(at.jacobian(), linear::SparseFactor::refined_growth);
   factored_on_ = statuses;
   factored_model_ = JointModel::friction;
-  return factored_ ? index_of(factor_.determinant_sign(), at) : 0;
+  return factored_ ? checked_index(at) : 0;
+}
+
+int Newton::checked_index(const Assembly& at) {
+  const int found = index_of(factor_.determinant_sign(), at);
+  if (found >= 0) return found;
+  // Constraints that depend on each other may leave a pivot of rounding, whose sign means nothing.
+  const Regularisation needed = factor_regularised(*system_, at, 0.0, factor_);
+  factored_ = needed != Regularisation::none;
+  if (!factored_) return found;
+  const int regular = index_of(factor_.determinant_sign(), at);
+  if (regular >= 0) regularisation_ = needed;
+  return regular;
 }
 
 std::optional<VectorXd> Newton::rate(const VectorXd& by_time, const VectorXd& guess) {

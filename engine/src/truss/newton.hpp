@@ -148,6 +148,9 @@ class Newton {
   /// Factors the Jacobian at hand, which is one on this set of branches; see Singular matrices.
   bool factorize(const Statuses& statuses, JointModel joints,
                  double most_growth = linear::SparseFactor::refined_growth);
+  /// Index of the factored equations; a negative one is checked by regularised factors, which then
+  /// take the place of the others.
+  int checked_index(const Assembly& at);
   /// Whether the factors are of equations on this set of branches.
   bool keeps(const Statuses& statuses, JointModel joints) const {
     return factored_ && joints == factored_model_ && statuses == factored_on_;

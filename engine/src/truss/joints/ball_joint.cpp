@@ -274,9 +274,11 @@ JointStatus BallJoint::decide(const Trial& trial, JointStatus status) const {
     if (now.distance <= now.clearance + trial.length_rounding) return status;
     return mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
   }
-  if (now.normal_force < -trial.force_rounding) return JointStatus::open;
+  // Forces of slack elements are not told from none, see System::slack_stiffness().
+  const double slack = trial.slack_stiffness * radial_clearance;
+  if (now.normal_force < -trial.force_rounding - slack) return JointStatus::open;
   if (mu == 0.0 || partial_slip) return status;  // slips freely, or one row for stick and slip
-  const double bound = mu * now.normal_force;
+  const double bound = mu * (now.normal_force < slack ? slack : now.normal_force);
   if (status == JointStatus::stick) {
     return now.friction.norm() > bound + trial.force_rounding ? JointStatus::slip_plus : status;
   }

@@ -543,10 +543,13 @@ JointStatus ClearanceRevolute::decide(const Trial& trial, JointStatus status) co
     if (g.eccentricity.norm() <= g.clearance + trial.length_rounding) return status;
     return mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
   }
-  if (normal < -trial.force_rounding) return JointStatus::open;
+  // Forces of slack elements are not told from none, see System::slack_stiffness().
+  const double slack = trial.slack_stiffness * radial_clearance;
+  if (normal < -trial.force_rounding - slack) return JointStatus::open;
   if (mu == 0.0 || partial_slip) return status;  // slips freely, or one row for stick and slip
   if (status == JointStatus::stick) {
-    const double bound = mu * normal + trial.force_rounding;
+    const double carried = normal < slack ? slack : normal;
+    const double bound = mu * carried + trial.force_rounding;
     return friction > bound    ? JointStatus::slip_plus
            : friction < -bound ? JointStatus::slip_minus
                                : status;

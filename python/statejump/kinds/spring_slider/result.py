@@ -162,7 +162,8 @@ def reduced_run(
     if case.ending is not None:
         start, there = path.sample(np.array([0.0, case.ending.time_s]))["displacement_m"]
         there -= start
-    summary = {**_summary(case, path.state_jump_m, float(there)), **carried(path.model.start_load_N, case.friction_force_N)}
+    summary = {**_summary(case, path.state_jump_m, float(there)),
+               **carried(path.model.start_load_N, case.friction_force_N)}
     return _run(case, "reduced", columns, events, summary, warnings=warnings, native=path, sampler=sampler)
 
 

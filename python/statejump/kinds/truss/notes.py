@@ -21,13 +21,13 @@ def _sentence(truss: ResolvedTruss, note: Mapping[str, Any]) -> str:
     at = f"at a temperature change of {note['temperature_change_K']:.9g} K (t = {note['time_s']:.9g} s)"
     if note["kind"] == "large_start":
         size_m = float(np.ptp(truss.nodes.position_m, axis=0).max())
-        return (f"the loads move the structure by {note['value']:.3g} m at the start, {note['value'] / size_m:.1%} of its "
-                "size: the path belongs to that configuration, not to the drawn one")
+        return (f"the loads move the structure by {note['value']:.3g} m at the start, {note['value'] / size_m:.1%} of "
+                "its size: the path belongs to that configuration, not to the drawn one")
     if note["kind"] == "slack":
-        return (f"{_named(note['joints'])}: no contact {at}; the element carries no force and keeps its position in the "
-                "play until the clearance closes")
-    return (f"{_named(note['joints'])}: constrain a displacement more than once {at}; the reactions are one solution of "
-            "many, the displacements are unique")
+        return (f"{_named(note['joints'])}: no contact {at}; the element carries no force and keeps its position in "
+                "the play until the clearance closes")
+    return (f"{_named(note['joints'])}: constrain a displacement more than once {at}; the reactions are one solution "
+            "of many, the displacements are unique")
 
 
 def _named(joints: Sequence[tuple[str, str]]) -> str:
