@@ -2,7 +2,7 @@
 """Materials, sections, loads and joints of a drawn shape, as engineers would choose them."""
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -116,6 +116,7 @@ class Joiner:
     rng: Random
     force_N: float
     number: int = 0
+    carriers: set[tuple[str, str]] = field(default_factory=set)
 
     def name(self, kind: str) -> str:
         """Return a new name."""
@@ -164,7 +165,8 @@ class Joiner:
     def _may_detach(self, bar: str, side: int) -> bool:
         """Return whether another bar stays at the end; nodes of joints keep theirs."""
         node = self.made.bars[bar].ends[side]
-        return "_of_" not in node and (len(self.made.at(node)) > 1 or node in self.made.fixed)
+        stays = len(self.made.at(node)) > 1 or node in self.made.fixed
+        return stays and "_of_" not in node and (bar, node) not in self.carriers
 
     def pin(self, bar: str, side: int) -> None:
         """Put a pin with clearance at an end of a bar."""
@@ -172,7 +174,7 @@ class Joiner:
         if not self._may_detach(bar, side):
             return
         node = made.bars[bar].ends[side]
-        others = [one for one in made.at(node) if one != bar]
+        others = sorted(one for one in made.at(node) if one != bar)
         carrier = str(rng.choice(others)) if others else None
         if carrier is None and node not in made.fixed:
             return
@@ -190,6 +192,7 @@ class Joiner:
         }
         if carrier is not None:
             keys[f"{hollow}_link"] = carrier
+            self.carriers.add((carrier, old))
         if flat and made.dimension == 3:
             keys["axis"] = [float(value) for value in across]
         made.add(kind, self.name("pin"), **keys)

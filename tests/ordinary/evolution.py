@@ -71,7 +71,7 @@ def ends(document: Document) -> np.ndarray:
         wanted = rows.T @ load - slid
         friction = target.T @ target @ wanted
         if (np.abs(friction) > limits).any():
-            friction = lsq_linear(least, target @ wanted, (-limits, limits), tol=1e-12).x
+            friction = lsq_linear(least, target @ wanted, (-limits, limits), method="bvls").x
         moved = load - rows @ friction
         slid = rows.T @ moved
         return np.asarray(back.T @ moved)

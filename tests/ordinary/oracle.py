@@ -237,6 +237,55 @@ def softest(stiffness: np.ndarray, basis: np.ndarray) -> float:
     return float(eigh(found, eigvals_only=True, subset_by_index=[0, 0])[0]) / diagonal
 
 
+def _has_play(document: Document) -> bool:
+    return any(document.get(section) for section in CLEARANCE)
+
+
+def _forces(frame: Frame, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return forces on the nodes and the stiffness of bars, springs and cables at large displacements."""
+    d = frame.dimension
+    place = frame.x + moved.reshape(frame.x.shape)
+    force, stiffness = np.zeros_like(place), np.zeros((place.size, place.size))
+    free = frame.lengths - frame.tension / frame.stiffness
+    for number, (ends, _) in enumerate(frame.directions):
+        along = place[ends[1]] - place[ends[0]]
+        length = float(np.linalg.norm(along))
+        along, tension = along / length, frame.stiffness[number] * (length - free[number])
+        if frame.cables[number] and tension < 0:
+            continue
+        force[ends[0]] += tension * along
+        force[ends[1]] -= tension * along
+        outer = np.outer(along, along)
+        block = frame.stiffness[number] * outer + tension / length * (np.eye(d) - outer)
+        for one, two, sign in ((0, 0, 1), (1, 1, 1), (0, 1, -1), (1, 0, -1)):
+            rows, columns = (slice(d * ends[k], d * ends[k] + d) for k in (one, two))
+            stiffness[rows, columns] += sign * block
+    return force.ravel(), stiffness
+
+
+def follow(frame: Frame, basis: np.ndarray, steps: int = 10) -> np.ndarray | None:
+    """Return the displacement of the loaded structure with its joints held, from the drawn shape along growing loads;
+    None where it is not stable all along. Torsion springs keep their stiffness as drawn."""
+    turns = np.array(frame.turns).reshape(-1, frame.x.size)
+    bending = turns.T @ (frame.turn_stiffness[:, None] * turns)
+    scale = float(max(np.abs(frame.tension).max(), np.abs(frame.force).max(), 1e-9))
+    moved = np.zeros(frame.x.size)
+    unbalanced = basis.T @ _forces(frame, moved)[0]  # preloads that do not balance each other grow as loads do
+    for step in range(1, steps + 1):
+        for _ in range(50):
+            inner, stiffness = _forces(frame, moved)
+            left = basis.T @ (inner - bending @ moved + step / steps * frame.force) - (1 - step / steps) * unbalanced
+            tangent = basis.T @ (stiffness + bending) @ basis
+            if np.abs(left).max(initial=0.0) < 1e-9 * scale:
+                break
+            moved = moved + basis @ np.linalg.lstsq(tangent, left, rcond=1e-14)[0]
+        else:
+            return None
+        if softest(tangent, np.eye(len(tangent))) < FREE:
+            return None
+    return moved
+
+
 def _held_start(frame: Frame, basis: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return displacement, tensions and active cables of the loaded structure with its joints held."""
     active = np.ones(len(frame.stiffness), dtype=bool)
@@ -296,7 +345,7 @@ def _slid_start(frame: Frame, held: np.ndarray, free: np.ndarray, active: np.nda
     rows = np.linalg.solve(factor, (slides @ basis).T)
     limits = np.array([max(limit, 1e-12) for _, limit in frame.sliding])
     loads = np.linalg.solve(factor, force)
-    found = lsq_linear(rows, loads, (-limits, limits)).x
+    found = lsq_linear(rows, loads, (-limits, limits), method="bvls").x
     return np.asarray(basis @ np.linalg.solve(factor.T, loads - rows @ found))
 
 
@@ -324,7 +373,7 @@ def _has_slack(frame: Frame, held: np.ndarray, active: np.ndarray) -> bool:
     least = (vectors * root) @ vectors.T
     target = (vectors / root) @ vectors.T @ (rows.T @ loads)
     bound = weights * play[loose]
-    found = lsq_linear(least, target, (-bound, bound)).x
+    found = lsq_linear(least, target, (-bound, bound), method="bvls").x
     return bool((np.abs(found) < (1 - 1e-6) * bound).any())
 
 
@@ -334,20 +383,31 @@ def judge(document: Document) -> Verdict:
     held, free = frame.motions(False), frame.motions(True)
     moved, tension, active = _held_start(frame, held)
     stiffness = frame.elastic(active) + frame.geometric(tension)
-    least = softest(stiffness, held)
-    if least < FREE:
-        if frame.latches:
+    least, elastic = softest(stiffness, held), softest(frame.elastic(active), held)
+    if least < FREE or elastic < FREE:
+        if frame.latches or frame.sliding or _has_play(document):
             return Verdict("undetermined")
-        elastic = softest(frame.elastic(active), held)
-        return Verdict("mechanism" if elastic < FREE and least > -FREE else "unstable")
+        if elastic < FREE and abs(least) < FREE:
+            return Verdict("mechanism")
+        # Where only tension holds, or no longer holds, small displacements do not tell: the loads are followed.
+        followed = follow(frame, held)
+        if followed is None:
+            return Verdict("unstable")
+        share = float(np.abs(followed).max()) / frame.size
+        return Verdict("path" if share < FAR else "undetermined", True, start_share=share)
     factor = load_factor(frame, free) if frame.sliding else float("inf")
-    class_a = softest(frame.elastic(active) + frame.geometric(tension), free) > FREE
+    class_a = softest(stiffness, free) > FREE
+    if frame.sliding:  # what only the tension of bars holds is too soft beside friction
+        class_a = class_a and softest(frame.elastic(active), free) > FREE
     if class_a:
         factor = float("inf")
     if not factor >= 1 + MARGIN:
         return Verdict("overloaded" if factor < 1 - MARGIN else "undetermined", False, factor)
-    start = float(np.abs(_slid_start(frame, held, free, active, class_a)).max()) / frame.size
-    slack = _has_slack(frame, held, active)
+    try:
+        start = float(np.abs(_slid_start(frame, held, free, active, class_a)).max()) / frame.size
+        slack = _has_slack(frame, held, active)
+    except np.linalg.LinAlgError:  # stable as loaded, not as drawn
+        return Verdict("undetermined", class_a, factor)
     for heat in frame.thermal_tensions():
         # Joints that give way take force from bars: held, they carry the most.
         strained = basis_solution(frame, held, active, heat)

@@ -216,7 +216,7 @@ def chain(rng: Random, bays: int) -> Sketch:
     """A rail on feet, one behind the other; it is held at one end or only by friction."""
     made = Sketch(2)
     bay = float(rng.uniform(0.2, 2))
-    held = rng.random() < 0.7
+    held = rng.random() < 0.85
     for k in range(bays + 1):
         made.node(f"N{k}", bay * k, 0, fixed="xy" if held and k == 0 else "y")
         if k:

@@ -82,23 +82,43 @@ def _tidy(document: Document) -> Document:
     return document
 
 
+def _without_joints(document: Document, gone: list[tuple[str, str]]) -> Document:
+    """Hold joints, named by section and name."""
+    made = deepcopy(document)
+    for section, name in gone:
+        item = next(item for item in made[section] if item["name"] == name)
+        made[section].remove(item)
+        names = [item[key] for key in item if key.endswith("_node")] or item.get("nodes", [])
+        if len(names) == 2:
+            _merged(made, *(names if "_of_" in names[1] else names[::-1]))
+        elif len(names) == 1:
+            node = next(node for node in made["node"] if node["name"] == names[0])
+            node["fixed"] = list("xyz"[: made["truss"]["dimension"]])
+    return _tidy(made)
+
+
+def _parts(names: list[Any]) -> Iterator[list[Any]]:
+    """Yield parts of a list to leave out: halves, quarters, ..., one by one."""
+    length = len(names) // 2
+    while length > 1:
+        for start in range(0, len(names), length):
+            yield names[start: start + length]
+        length //= 2
+    for name in names:
+        yield [name]
+
+
 def smaller(document: Document) -> Iterator[Document]:
     """Yield smaller structures, large steps first."""
-    for section in JOINTS:
-        for number, item in enumerate(document.get(section, ())):
-            made = deepcopy(document)
-            del made[section][number]
-            names = [item[key] for key in item if key.endswith("_node")] or item.get("nodes", [])
-            if len(names) == 2 and "links" not in item:
-                _merged(made, *(names if "_of_" in names[1] else names[::-1]))
-            elif len(names) == 1:
-                node = next(node for node in made["node"] if node["name"] == names[0])
-                node["fixed"] = list("xyz"[: made["truss"]["dimension"]])
-            yield _tidy(made)
-    for name in [node["name"] for node in document["node"]]:
+    for gone in _parts([(section, item["name"]) for section in JOINTS for item in document.get(section, ())]):
+        yield _without_joints(document, gone)
+    for gone in _parts([node["name"] for node in document["node"]]):
         made = deepcopy(document)
         for section in ("link", "spring"):
-            made[section] = [item for item in made.get(section, ()) if name not in item["nodes"]]
+            made[section] = [item for item in made.get(section, ()) if not set(gone) & set(item["nodes"])]
+        kept = {link["name"] for link in made["link"]}
+        for section in ("torsion_spring", "latch_hinge"):
+            made[section] = [item for item in made.get(section, ()) if set(item["links"]) <= kept]
         if len(made["link"]) < len(document["link"]):
             yield _tidy(made)
     for section in ("link", "spring", "torsion_spring"):

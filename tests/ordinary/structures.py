@@ -74,6 +74,8 @@ def _finished(family: str, seed: int, made: Sketch, rng: Random, *, bare: bool) 
     title = f"{family}, {plan}, load {loaded}"
     document = made.document(f"{family}_{seed}", title, thermal, others)
     document["truss"] |= truss
+    if any(ball["friction_coefficient"] for ball in document.get("ball_joint", ())):
+        document["reduced"] = {"sticking": "elastic"}  # which balls with friction need
     return Structure(family, seed, document, plan, loaded)
 
 

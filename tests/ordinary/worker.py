@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Solves structures that it is named on standard input, a line each; answers in two lines of JSON: what theory says,
-what the solver did. A process of its own, for a solver may crash."""
+what the solver did. A process of its own, for a solver may crash: SIGPROF ends it where the solver takes longer than
+the argument [s], of the processor's time."""
 from __future__ import annotations
 
 import json
+import signal
 import sys
 import time
 from dataclasses import asdict
@@ -29,15 +31,15 @@ def run(document: Document) -> dict[str, Any]:
         case = sj.load(document)
     except StatejumpError as refused:
         return {"outcome": "refused", "reason": type(refused).__name__, "sentence": str(refused)}
-    began = time.perf_counter()
+    began = time.process_time()
     try:
         found = case.reduced()
     except FailedRun as failed:
         return {"outcome": "failed", "reason": getattr(failed, "reason", type(failed).__name__),
-                "sentence": str(failed), "seconds": time.perf_counter() - began}
+                "sentence": str(failed), "seconds": time.process_time() - began}
     except StatejumpError as refused:
         return {"outcome": "refused", "reason": type(refused).__name__, "sentence": str(refused)}
-    seconds = time.perf_counter() - began
+    seconds = time.process_time() - began
     return {"outcome": "finished", "reason": "", "sentence": "; ".join(found.warnings), "seconds": seconds,
             **numbers(found)}
 
@@ -80,13 +82,15 @@ def checked(structure: structures.Structure, verdict: Verdict, found: dict[str, 
     return ""
 
 
-def answer(family: str, seed: int) -> None:
+def answer(family: str, seed: int, limit_s: float) -> None:
     """Print both lines of a structure."""
     structure = structures.make(family, seed)
     verdict = judge(structure.document)
     print(json.dumps({**asdict(verdict), "joints": structure.joints, "clearance": structure.clearance,
                       "plan": structure.plan, "loaded": structure.loaded}), flush=True)
+    signal.setitimer(signal.ITIMER_PROF, limit_s)
     found = run(structure.document)
+    signal.setitimer(signal.ITIMER_PROF, 0)
     if found["outcome"] == "finished":
         wrong = checked(structure, verdict, found)
         if wrong:
@@ -98,4 +102,4 @@ def answer(family: str, seed: int) -> None:
 if __name__ == "__main__":
     for line in sys.stdin:
         named, number = line.split()
-        answer(named, int(number))
+        answer(named, int(number), float(sys.argv[1]))
