@@ -36,7 +36,7 @@ AXIAL = ("revolute", "torsion_spring", "latch_hinge")  # axes about which someth
 class Changed:
     """A changed case.
 
-    :param back: turns displacements (nodes of the first case, dimension) of the changed case into those of the first
+    :param back: turns jumps by node (cycles, dimension) of the changed case into those of the first
     :param rounding_m: how exactly the changed case holds lengths [m of the first case], beyond the size
     :param exact: whether only rounding differs; else the length of increments
     """
@@ -104,7 +104,7 @@ def _mapped(document: Document, matrix: np.ndarray) -> Changed:
         node["guide_normal"] = turned.tolist()
     if "gravity_m_per_s2" in made["truss"]:
         made["truss"]["gravity_m_per_s2"] = (matrix @ np.array(made["truss"]["gravity_m_per_s2"])).tolist()
-    return Changed(made, lambda moved: {name: matrix.T @ one for name, one in moved.items()})
+    return Changed(made, lambda moved: {name: one @ matrix for name, one in moved.items()})
 
 
 def rotated(document: Document, rng: Random) -> Changed:
@@ -149,9 +149,9 @@ def _rescaled(document: Document, length: float, force: float) -> Changed:
     return Changed(made, lambda moved: {name: one / length for name, one in moved.items()})
 
 
-def millimetres(document: Document, rng: Random) -> Changed:
-    """Write lengths in millimetres."""
-    return _rescaled(document, 1e3, 1.0)
+def inches(document: Document, rng: Random) -> Changed:
+    """Write lengths in inches: areas in square millimetres are beyond what a case allows."""
+    return _rescaled(document, 1 / 0.0254, 1.0)
 
 
 def kilonewtons(document: Document, rng: Random) -> Changed:
@@ -180,4 +180,4 @@ def finer(document: Document, rng: Random) -> Changed:
 
 TRANSFORMS: dict[str, Callable[[Document, Random], Changed]] = {
     one.__name__: one for one in (
-        permuted, renamed, rotated, mirrored, shifted, millimetres, kilonewtons, slower, finer)}
+        permuted, renamed, rotated, mirrored, shifted, inches, kilonewtons, slower, finer)}
