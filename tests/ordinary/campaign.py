@@ -33,6 +33,7 @@ FIELDS = ("family", "seed", "plan", "loaded", "joints", "clearance", "kind", "cl
           "outcome", "reason", "seconds", "start_share", "jump_m", "difference", "sentence")
 # Time on the wall over time of the processor, on a machine that does much else, before a worker counts as asleep.
 BUSY = 30
+START_S = 60.0  # imports of a new process, on such a machine
 # Kinds of failures that state what theory states.
 RIGHT = {"mechanism": ("held_mechanism", "mechanism"), "unstable": ("buckled", "held_mechanism"),
          "overloaded": ("overloaded",)}
@@ -80,7 +81,7 @@ class Worker:
         process.stdin.flush()
         try:
             for _ in ("what theory says", "what the solver did"):
-                line = self.lines.get(timeout=self.limit_s * BUSY)
+                line = self.lines.get(timeout=START_S + self.limit_s * BUSY)
                 if not line:
                     return row | self._crash(process)
                 row |= json.loads(line)

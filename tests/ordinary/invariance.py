@@ -21,7 +21,7 @@ import numpy as np
 
 import statejump as sj
 import structures
-from oracle import Frame, judge, softest
+from oracle import FREE, Frame, judge, softest
 from sketch import Document
 from statejump.core.errors import FailedRun, StatejumpError
 from transforms import TRANSFORMS, Changed
@@ -70,7 +70,8 @@ def tolerance_m(document: Document, first: Solved, changed: Changed) -> float:
     change the path by their square where laws are smooth.
     """
     frame = Frame(document)
-    soft = softest(frame.elastic(np.ones(len(frame.stiffness), dtype=bool)), frame.motions(True))
+    stiffness = frame.elastic(np.ones(len(frame.stiffness), dtype=bool)) + frame.geometric(frame.tension)
+    soft = max(softest(stiffness, frame.motions(True)), FREE)
     rounding = ROUNDINGS * EPSILON * frame.size + ROUNDINGS * changed.rounding_m
     found = 2 * (first.events + 1) * EVENT * first.largest_m + rounding / np.sqrt(soft)
     return float(found if changed.exact else found + first.largest_m / INCREMENTS**2)

@@ -34,7 +34,7 @@ def odd(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("odd")
 def test_a_crash_and_a_time_out_do_not_end_the_campaign() -> None:
-    found = list(campaign.solved([("warren", 0), ("warren", 1), ("warren", 2), ("warren", 3)], 1, 1.0))
+    found = list(campaign.solved([("warren", 0), ("warren", 1), ("warren", 2), ("warren", 3)], 1, 0.5, 0))
     assert [outcome(row) for row in found] == ["finished", "crash: SIGSEGV", "time-out: SIGPROF", "finished"]
     assert len(groups(found)["class A, no clearance joint"]) == 4
     assert "| crash | 1 |" in campaign.summary(found)

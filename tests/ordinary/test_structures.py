@@ -91,8 +91,10 @@ def arch(height_m: float, load_N: float) -> Document:
 def test_stability_is_that_of_the_loaded_structure() -> None:
     assert judge(arch(0.5, 100.0)).kind == "path"
     assert judge(arch(0.0, 0.0)).kind == "mechanism"
-    # A flat arch snaps through at E A h³ · 2/(3 √3) = 27 N; the load of its tangent at the start is E A h³ · 2 = 140 N.
-    assert judge(arch(1e-2 * 0.1 ** (1 / 3), 400.0)).kind == "unstable"
+    # A flat arch snaps through at E A h³ · 2/(3 √3) = 2.7 N.
+    assert judge(arch(1e-2, 2.0)).kind == "path"
+    assert judge(arch(1e-2, 3.5)).kind == "unstable"
+    assert judge(arch(1e-2, 400.0)).kind == "unstable"
 
 
 def test_a_bar_with_play_beside_others_is_slack() -> None:
