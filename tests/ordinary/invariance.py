@@ -1,0 +1,145 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether a structure written otherwise has the same jump: other order, names, place, direction, units, duration.
+
+    PYTHONPATH=build/python tests/ordinary/invariance.py [--count 300] [--seed 1] [--families ...] [--out FILE.csv]
+
+Structures of class A whose joints all carry forces: their paths are unique. A row says how far jumps of all nodes and
+cycles are apart, over what rounding explains.
+"""
+from __future__ import annotations
+
+import argparse
+import csv
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import statejump as sj
+import structures
+from oracle import FREE, Frame, judge, softest
+from sketch import Document
+from statejump.core.errors import FailedRun, StatejumpError
+from transforms import TRANSFORMS, Changed
+
+EVENT = 1e-9  # reduced.event_tolerance, of a branch
+INCREMENTS = 50  # of a branch
+EPSILON = float(np.finfo(float).eps)
+ROUNDINGS = 64  # sums of rounding errors of one length: of its coordinates, its direction, a few bars per node
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Jumps of a case.
+
+    :param jump_m: by node (cycles, dimension)
+    :param largest_m: largest displacement of the path
+    :param failure: kind of the failure, "" for none
+    """
+
+    jump_m: dict[str, np.ndarray]
+    largest_m: float = 0.0
+    events: int = 0
+    failure: str = ""
+
+
+def solved(document: Document) -> Solved:
+    """Return the jumps of a case with its own options."""
+    try:
+        path = sj.load(document).reduced().native
+    except FailedRun as failed:
+        return Solved({}, failure=str(getattr(failed, "reason", type(failed).__name__)))
+    except StatejumpError as refused:
+        return Solved({}, failure=f"refused: {refused}")
+    ends = path.cycle_ends["displacement_m"][:, :, : document["truss"]["dimension"]]
+    jumps = ends[1:] - ends[:1]
+    return Solved({name: jumps[:, number] for number, name in enumerate(path.truss.nodes.names)},
+                  float(np.abs(path.states["displacement_m"]).max()), len(path.events))
+
+
+def tolerance_m(document: Document, first: Solved, changed: Changed) -> float:
+    """Return how far jumps may be apart.
+
+    Every event is located within a fraction of a branch, in which nodes move by at most that fraction of their largest
+    displacement; a joint whose change is earlier slips that much more. Lengths are rounded to the size of the
+    coordinates; what that moves is at most the root of the condition of the stiffness as much. Twice the increments
+    change the path by their square where laws are smooth.
+    """
+    frame = Frame(document)
+    stiffness = frame.elastic(np.ones(len(frame.stiffness), dtype=bool)) + frame.geometric(frame.tension)
+    soft = max(softest(stiffness, frame.motions(True)), FREE)
+    rounding = ROUNDINGS * EPSILON * frame.size + ROUNDINGS * changed.rounding_m
+    found = 2 * (first.events + 1) * EVENT * first.largest_m + rounding / np.sqrt(soft)
+    return float(found if changed.exact else found + first.largest_m / INCREMENTS**2)
+
+
+def apart(document: Document, first: Solved, name: str, rng: np.random.Generator) -> dict[str, Any]:
+    """Return a row: how far the jumps of the changed case are from those of the first [m], and how far they may be."""
+    changed = TRANSFORMS[name](document, rng)
+    second = solved(changed.document)
+    row: dict[str, Any] = {"transform": name, "failure": first.failure, "changed_failure": second.failure}
+    if first.failure or second.failure:
+        return row | {"same": first.failure == second.failure}
+    back = changed.back(second.jump_m)
+    difference = max(float(np.abs(back[node] - jump).max()) for node, jump in first.jump_m.items())
+    allowed = tolerance_m(document, first, changed)
+    largest = max(float(np.abs(jump).max()) for jump in first.jump_m.values())
+    return row | {"difference_m": difference, "allowed_m": allowed, "jump_m": largest, "largest_m": first.largest_m,
+                  "same": difference <= allowed}
+
+
+def suitable(count: int, seed: int, families: list[str] | None = None, most_nodes: int = 10_000) -> Iterator[
+        structures.Structure]:
+    """Yield structures whose jump is unique."""
+    number = found = 0
+    chosen = families or list(structures.FAMILIES)
+    while found < count:
+        one = structures.make(chosen[number % len(chosen)], seed + number // len(chosen))
+        number += 1
+        if len(one.document["node"]) > most_nodes:
+            continue
+        verdict = judge(one.document)
+        if verdict.kind == "path" and verdict.class_a and not verdict.slack:
+            found += 1
+            yield one
+
+
+def rows(one: structures.Structure, names: list[str]) -> Iterator[dict[str, Any]]:
+    """Yield the rows of a structure."""
+    first = solved(one.document)
+    for name in names:
+        rng = structures.random_of(name, one.seed)
+        yield {"family": one.family, "seed": one.seed, **apart(one.document, first, name, rng)}
+
+
+def main() -> int:
+    """Compare structures with what they become."""
+    given = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    given.add_argument("--count", type=int, default=300)
+    given.add_argument("--seed", type=int, default=1)
+    given.add_argument("--families", nargs="+", choices=list(structures.FAMILIES))
+    given.add_argument("--out", type=Path)
+    asked = given.parse_args()
+    found = [row for one in suitable(asked.count, asked.seed, asked.families) for row in rows(one, list(TRANSFORMS))]
+    if asked.out:
+        with asked.out.open("w", newline="") as stream:
+            writer = csv.DictWriter(stream, sorted({key for row in found for key in row}))
+            writer.writeheader()
+            writer.writerows(found)
+    print("| change | structures | the same | largest difference over the allowed one |\n|---|---|---|---|")
+    for name in TRANSFORMS:
+        chosen = [row for row in found if row["transform"] == name]
+        worst = max((row["difference_m"] / row["allowed_m"] for row in chosen if "allowed_m" in row), default=0.0)
+        print(f"| {name} | {len(chosen)} | {sum(row['same'] for row in chosen)} | {worst:.2g} |")
+    for row in found:
+        if not row["same"]:
+            print(row)
+    return int(not all(row["same"] for row in found))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

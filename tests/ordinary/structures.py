@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ordinary structures, each made from a family and a seed alone.
+
+A structure is a case document with defaults throughout and what is known of it: how it was loaded, which joints it has.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan, cos, sin
+from typing import Any
+from zlib import crc32
+
+import numpy as np
+
+import dress
+import planar
+import programs
+import spatial
+from sketch import CLEARANCE, Document, Sketch
+
+Random = np.random.Generator
+SHAPES = {**planar.SHAPES, **spatial.SHAPES}
+
+
+@dataclass(frozen=True)
+class Structure:
+    """A case document and what its making knows of it.
+
+    :param walk_m: how far its middle walks in a cycle, where theory says so
+    """
+
+    family: str
+    seed: int
+    document: Document
+    plan: str
+    loaded: str
+    walk_m: float | None = None
+
+    @property
+    def name(self) -> str:
+        """Family and seed."""
+        return f"{self.family}_{self.seed}"
+
+    @property
+    def joints(self) -> int:
+        """How many joints it has."""
+        return sum(len(self.document.get(section, ())) for section in ("slider", "iwan_joint", "latch_hinge",
+                                                                       *CLEARANCE))
+
+    @property
+    def clearance(self) -> bool:
+        """Whether some joint has parts that play."""
+        return any(self.document.get(section) for section in CLEARANCE)
+
+
+def random_of(family: str, seed: int) -> Random:
+    """Return the generator of a structure; families with one seed share nothing."""
+    return np.random.default_rng([seed, crc32(family.encode())])
+
+
+def _finished(family: str, seed: int, made: Sketch, rng: Random, *, bare: bool) -> Structure:
+    thermal = programs.program(rng)
+    dress.materials(made, rng)
+    truss: Document = {}
+    plan, loaded = "none", "none"
+    if not bare:
+        loaded = dress.loads(made, rng, truss)
+        plan = dress.joints(made, rng, dress.thermal_force_N(made, programs.largest_K(thermal)))
+    others: list[Document] = []
+    if not bare and rng.random() < 0.15:
+        others.append(programs.of_others(rng, thermal))
+        for name in rng.choice(list(made.bars), max(1, len(made.bars) // 4), replace=False):
+            made.bars[str(name)].keys["program"] = "shade"
+    title = f"{family}, {plan}, load {loaded}"
+    document = made.document(f"{family}_{seed}", title, thermal, others)
+    document["truss"] |= truss
+    if any(ball["friction_coefficient"] for ball in document.get("ball_joint", ())):
+        document["reduced"] = {"sticking": "elastic"}  # which balls with friction need
+    return Structure(family, seed, document, plan, loaded)
+
+
+def _bays(rng: Random, spatial_one: bool) -> int:
+    """Return a number of bays: mostly few, some long."""
+    largest = 16 if spatial_one else 40
+    return int(np.clip(np.round(3 * 10 ** (rng.exponential(0.25))), 3, largest))
+
+
+def shaped(family: str, seed: int) -> Structure:
+    """Return a structure of a shape with joints and loads."""
+    rng = random_of(family, seed)
+    made = SHAPES[family](rng, _bays(rng, family in spatial.SHAPES))
+    return _finished(family, seed, made, rng, bare=False)
+
+
+def free(family: str, seed: int) -> Structure:
+    """Return a structure of any shape without joints and loads."""
+    rng = random_of(family, seed)
+    shape = str(rng.choice([name for name in SHAPES if name not in ("tensegrity", "cable_stayed", "scissor")]))
+    made = SHAPES[shape](rng, _bays(rng, shape in spatial.SHAPES))
+    made.items.clear()  # springs with a preload
+    if shape == "chain":
+        first = next(iter(made.points))
+        made.fixed[first] = "xy"
+    return _finished(family, seed, made, rng, bare=True)
+
+
+def walking(family: str, seed: int) -> Structure:
+    """Return a sheet or pipe that walks down an incline: blocks in a row, each with its friction, a dead load along the
+    slope. A cycle moves it by (L tan β/μ)(α ΔT - (μ cos β - sin β) w L/EA), but for the length of a block."""
+    rng = random_of(family, seed)
+    blocks = int(np.round(10 ** rng.uniform(np.log10(4), np.log10(120))))
+    friction = float(np.round(rng.uniform(0.2, 0.6), 3))
+    slope = atan(friction * float(rng.uniform(0.1, 0.7)))
+    length, area = float(rng.uniform(2, 100)), float(10 ** rng.uniform(-4, -2))
+    material = dress.MATERIALS[str(rng.choice(["aluminium", "steel", "titanium"]))]
+    largest = float(np.round(rng.uniform(10, 60), 1))
+    weight = material.density * area * dress.GRAVITY  # per length
+    made = Sketch(2)
+    per_block = weight * length / blocks
+    for k in range(blocks):
+        made.node(f"N{k}", (k + 0.5) * length / blocks, 0, fixed="y")
+        made.forces[f"N{k}"] = np.array([per_block * sin(slope), 0.0])
+        made.add("slider", f"S{k}", nodes=[f"N{k}"], axis=[1.0, 0.0], friction_coefficient=friction,
+                 normal_force_N=per_block * cos(slope))
+        if k:
+            made.bar(f"N{k - 1}", f"N{k}", "sheet", young_modulus_Pa=material.young_Pa, cross_section_area_m2=area,
+                     thermal_expansion_per_K=material.expansion_per_K, density_kg_per_m3=material.density)
+    thermal = {"shape": "triangle", "temperature_change_max_K": largest, "cycles": 3, "period_s": 1.0}
+    strain = material.expansion_per_K * largest
+    lost = (friction * cos(slope) - sin(slope)) * weight * length / (material.young_Pa * area)
+    walk = length * np.tan(slope) / friction * max(strain - lost, 0.0)
+    document = made.document(f"{family}_{seed}", f"sheet of {blocks} blocks that walks", thermal, [])
+    return Structure(family, seed, document, "feet", "slope", float(walk))
+
+
+FAMILIES: dict[str, Any] = {**dict.fromkeys(SHAPES, shaped), "free": free, "walking": walking}
+
+
+def make(family: str, seed: int) -> Structure:
+    """Return the structure of a family with a seed."""
+    made: Structure = FAMILIES[family](family, seed)
+    return made
+
+
+def sample(count: int, seed: int, families: list[str] | None = None) -> list[tuple[str, int]]:
+    """Return families and seeds of a campaign: one family after the other."""
+    chosen = families or list(FAMILIES)
+    return [(chosen[number % len(chosen)], seed + number // len(chosen)) for number in range(count)]
