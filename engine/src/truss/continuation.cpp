@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "rate_sets.hpp"
 #include "walker.hpp"
 
 namespace statejump::truss::detail {
@@ -73,6 +74,10 @@ SolveReport Walker::continue_from_event(double target, VectorXd& to, Statuses& s
   if (undecided && !answer.singular.empty()) {
     refuse_mechanism(target, answer.singular, JointModel::friction);
   }
+  // Constraints that depend on each other spoil the signs of all sets, not a solution that is near.
+  const bool near =
+      converged && length_of(to - z, system.displacements()) <= jump_share * system.size();
+  if (answer.count == Continuation::none && near && newton.stability_index() >= 0) return first;
   if (answer.count == Continuation::none) {
     fail_continuation(FailureKind::no_continuation, target, answer.joints);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
@@ -43,6 +44,21 @@ Model loaded(Model model, double fraction) {
 }
 
 }  // namespace
+
+/// Whether loads and misfits work on one of these displacements of the drawn shape.
+bool Walker::are_loaded(const std::vector<VectorXd>& shapes) const {
+  Assembly at = Assembly::without_jacobian(system.unknowns());
+  const VectorXd drawn = VectorXd::Zero(system.unknowns());
+  const Statuses stuck = system.all_stick();
+  system.evaluate(drawn, 0.0, system.begin(drawn, 0.0, stuck, 1.0), stuck, JointModel::pins, 1.0,
+                  at);
+  const auto forces = at.residual.head(system.displacements());
+  const double share = std::sqrt(std::numeric_limits<double>::epsilon());
+  return std::any_of(shapes.begin(), shapes.end(), [&](const VectorXd& shape) {
+    const auto moved = shape.head(system.displacements());
+    return std::abs(forces.dot(moved)) > share * forces.norm() * moved.norm();
+  });
+}
 
 /// Whether displacements are small beside the truss.
 bool Walker::is_near(const VectorXd& moved) const {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "newton.hpp"
 #include "parts.hpp"
@@ -92,6 +93,7 @@ FoundModes modes_between(const System& system, const Modes& modes, double smalle
     VectorXd mode = VectorXd::Zero(system.unknowns());
     mode.head(modes.vectors.rows()) = modes.vectors.col(j);
     found.modes.push_back(movers(system, mode));
+    found.shapes.push_back(std::move(mode));
   }
   found.count = static_cast<int>(found.modes.size());
   found.more = found.count == most_modes;

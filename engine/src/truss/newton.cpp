@@ -224,8 +224,12 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const Statuses first_statuses = statuses;
   // Where a change is to be located it is sought along the tangent at the start.
   const bool is_foreseen = ahead && !ahead->stop;
-  const VectorXd& begun_at = is_foreseen ? ahead->foreseen : first_z;
-  if (is_foreseen || (ahead && kept && keeps(statuses, joints))) z = ahead->foreseen;
+  // The tension of elements that are not yet as long as their temperature makes them would turn
+  // slack ones.
+  const bool hangs =
+      ahead && std::find(statuses.begin(), statuses.end(), JointStatus::open) != statuses.end();
+  const VectorXd& begun_at = is_foreseen || hangs ? ahead->foreseen : first_z;
+  if (is_foreseen || hangs || (ahead && kept && keeps(statuses, joints))) z = ahead->foreseen;
   bool condensed = false;
   /// Takes the step from the start that pivots on its factors lead to; false: there is none. What
   /// wanders is as it was at the start, everything else on the branches that were found.
@@ -295,6 +299,28 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     return begin_anew();
   };
 
+  // Looks once where on the way from the start the first of these joints leaves its branch. True:
+  // the solve ends there.
+  const auto leaves_ahead = [&](const Violations& found) {
+    if (!looking) return false;
+    std::vector<int> leaving;
+    for (const int i : found.joints) {
+      if (system_->is_event(i, statuses[index(i)], found.corrected[index(i)])) leaving.push_back(i);
+    }
+    if (leaving.empty()) return false;
+    const Violation first =
+        first_violation(leaving, first_z, z, ahead->from_time, time, start, joints, statuses);
+    if (!(first.share > ahead->now)) return false;
+    looking = false;
+    report.first_change = first.share;
+    report.leaving.emplace(first.joint, found.corrected[index(first.joint)]);
+    report.joints = found.joints;
+    if (!ahead->stop) return false;
+    quiet_ = !pivoted;
+    report.end = SolveEnd::event_ahead;
+    return true;
+  };
+
   // Every joint once on each of the other branches that it has, at most five.
   const long most_pivots = most_iterations + 5 * static_cast<long>(statuses.size());
   for (long total = 0; iterations < most_iterations && total < most_pivots; ++total, ++iterations) {
@@ -358,6 +384,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         start_anew();
         continue;
       }
+      if (leaves_ahead(found)) return report;
       if (!pivot(found, false)) return report;
       continue;
     }
@@ -427,21 +454,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         start_anew();
         continue;
       }
-      if (looking && !found.joints.empty()) {
-        const Violation first = first_violation(found.joints, first_z, z, ahead->from_time, time,
-                                                start, joints, statuses);
-        if (first.share > ahead->now) {
-          looking = false;
-          report.first_change = first.share;
-          report.leaving.emplace(first.joint, found.corrected[index(first.joint)]);
-          report.joints = found.joints;
-          if (ahead->stop) {
-            quiet_ = !pivoted;
-            report.end = SolveEnd::event_ahead;
-            return report;
-          }
-        }
-      }
+      if (leaves_ahead(found)) return report;
       if (!pivot(found, true)) return report;
     }
     const auto now = std::chrono::steady_clock::now();

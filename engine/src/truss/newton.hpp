@@ -189,6 +189,7 @@ struct FoundModes {
   int count = 0;                   ///< May be more than are described; 0: none.
   bool more = false;               ///< There may be more than `count`.
   std::vector<FailureMode> modes;  ///< The nodes that move most.
+  std::vector<VectorXd> shapes;    ///< Of the unknowns, the largest displacement of order one.
   explicit operator bool() const { return count > 0; }
 };
 

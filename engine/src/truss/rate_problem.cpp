@@ -4,10 +4,12 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "rate_sets.hpp"
 
@@ -68,7 +70,16 @@ std::optional<Eigen::MatrixXd> complementarity_matrix(const Branches& of) {
   return matrix;
 }
 
+/// Whether no candidate has friction that follows a normal force.
+bool has_given_limits(const System& system, const std::vector<Candidate>& candidates) {
+  return std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& one) {
+    return std::visit([](const auto& joint) { return joint.has_play(); },
+                      system.model().joints[index(one.joint)]);
+  });
+}
+
 bool has_positive_symmetric_part(Eigen::MatrixXd matrix) {
+  if (matrix.size() == 0) return true;  // nothing to decide
   // Rows and columns in units of their own, for a rounding that is the same everywhere.
   if (!(matrix.diagonal().array() > 0.0).all()) return false;
   const VectorXd unit = matrix.diagonal().cwiseSqrt().cwiseInverse();
@@ -130,8 +141,6 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
     if (!found.empty() && candidates.size() > most_joints) return answer;
   }
   for (const int joint : changing) candidate(joint);
-  if (candidates.empty()) return answer;  // nothing to decide
-
   // Every round knows one more branch of one of at most so many joints.
   for (;;) {
     std::size_t numbers = 0;
@@ -146,13 +155,12 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
     }
     const auto of = prepare(*system_, z, target, start, candidates, at_, factor_);
     if (!of) return answer;
-    if (!found.empty()) {
-      const auto matrix = complementarity_matrix(*of);
-      if (matrix && has_positive_symmetric_part(*matrix)) {
-        answer.count = Continuation::one;
-        answer.statuses = found;
-        return answer;
-      }
+    const auto matrix = complementarity_matrix(*of);
+    const bool is_unique = matrix && has_positive_symmetric_part(*matrix);
+    if (is_unique && !found.empty()) {
+      answer.count = Continuation::one;
+      answer.statuses = found;
+      return answer;
     }
     const Asking asking(*system_, z, target, start, *of, farthest(*system_, z, of->step));
     std::vector<Group> groups = groups_of(*of);
@@ -206,7 +214,11 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
       const auto count = std::count_if(motions.begin(), motions.end(),
                                        [](const Motion& one) { return one.index >= 0; });
       if (count == 0 && !all[g].examined) examined = false;
-      if (count == 1) {
+      // Of limits that are given, friction is a convex function: stable motions are one to rounding
+      // if none is unstable.
+      const bool is_one = count == 1 || (count > 1 && count == std::ssize(motions) &&
+                                         (is_unique || has_given_limits(*system_, candidates)));
+      if (is_one) {
         stable.push_back(*std::find_if(motions.begin(), motions.end(),
                                        [](const Motion& one) { return one.index >= 0; }));
         continue;

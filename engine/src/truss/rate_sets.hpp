@@ -82,7 +82,7 @@ class Asking {
         target_(target),
         start_(start),
         of_(of),
-        rounding_(system.rounding(z)),
+        rounding_{system.length_rounding(z), system.force_rounding(z)},
         near_(near) {}
 
   Statuses statuses(const Choice& choice) const {

@@ -54,9 +54,9 @@ void Walker::start() {
   origin.statuses = system.all_stick();
   z = VectorXd::Zero(system.unknowns());
   if (FoundModes modes = mechanism(system, z, 0.0, origin.statuses, JointModel::pins)) {
-    // A load across elements in line may stiffen them; what nothing resists it does not.
-    const bool is_mechanism =
-        follow_loads() || mechanism(system, z, 0.0, origin.statuses, JointModel::pins);
+    // A load across elements in line stiffens them as they give way.
+    const bool is_mechanism = !are_loaded(modes.shapes) || follow_loads() ||
+                              mechanism(system, z, 0.0, origin.statuses, JointModel::pins);
     if (is_mechanism) {
       fail_modes(failure_at(FailureKind::held_mechanism, model, 0.0), std::move(modes));
     }

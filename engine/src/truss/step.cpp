@@ -95,7 +95,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
   // The sum time + tolerance is rounded.
   const bool is_short = target - time <= 1.5 * tolerance;
   VectorXd trial = z;
-  Statuses trial_statuses = origin.statuses;
+  Statuses trial_statuses =
+      is_short && !changed_at_start.empty() ? changed_at_start : origin.statuses;
   const StepStart& begin = origin;
   // The first change ahead: passed where it need not be located, or no location is asked.
   std::optional<Ahead> ahead;
@@ -106,6 +107,11 @@ StepEnd Walker::step_to(double target, double tolerance) {
   SolveReport report = newton.solve(target, begin, JointModel::friction, 1.0,
                                     options.most_iterations, trial, trial_statuses, ahead);
   ahead.reset();  // as long as all unknowns
+  const bool hinted = is_short && !std::exchange(changed_at_start, {}).empty();
+  if (hinted && report.end != SolveEnd::stopped) {
+    looks_at_start = report.end == SolveEnd::converged && trial_statuses != origin.statuses;
+    if (report.end != SolveEnd::converged) return step_to(target, tolerance);
+  }
   event_share = report.first_change;
   if (report.end == SolveEnd::event_ahead) {
     ++path.solves;
@@ -148,11 +154,16 @@ StepEnd Walker::step_to(double target, double tolerance) {
   const auto matters = [&](int i) {
     const JointStatus before = origin.statuses[index(i)];
     const JointStatus after = trial_statuses[index(i)];
-    if (before == after) return false;
+    if (before == after || !system.is_event(i, before, after)) return false;
     return system.remembers_when(i, before, after) ? slide_at_stake(i, before, target, rounding)
                                                    : options.locate_events;
   };
   if (!is_short && system.first_joint(matters) >= 0) {
+    if (options.locate_events && looks_at_start && !report.leaving) {
+      // All that changed seems to have done so at the start. In a short step rounding hides which.
+      changed_at_start = trial_statuses;
+      event_share = 0.0;
+    }
     ++path.solves;
     return StepEnd::event_inside;
   }
@@ -163,6 +174,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
     const JointStatus before = origin.statuses[index(i)];
     const JointStatus after = trial_statuses[index(i)];
     if (before == after) continue;
+    if (!system.is_event(i, before, after)) continue;
     events.push_back(
         {target, target - time, model.temperature_change(0, 1.0, target), i, before, after});
     opened = opened || after == JointStatus::open;
@@ -241,6 +253,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
   if (path.problems.size() < asked.size() && target >= asked[path.problems.size()]) {
     path.problems.push_back(local_problem(system, trial, target, begin, trial_statuses));
   }
+  changed_at_start.clear();
+  looks_at_start = looks_at_start || !events.empty();
   state = std::move(next);
   rate = rate_after;
   slide_rate = slide_rate_after;

@@ -258,7 +258,8 @@ void System::settle(const VectorXd& z, double time, const StepStart& start,
 }
 
 Rounding System::rounding(const VectorXd& z) const {
-  return {closure_tolerance * reach(z), force_rounding(z)};
+  const double length = closure_tolerance * reach(z);
+  return {length, stiffness_scale_ * length};
 }
 
 double System::slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start,

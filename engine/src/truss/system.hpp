@@ -280,6 +280,10 @@ class System {
   int force_count(int joint) const { return frames_[index(joint)].forces; }
   /// Whether the state depends on when in a step a joint changed its status.
   bool remembers_when(int joint, JointStatus before, JointStatus after) const;
+  /// Whether a change of status is an event: one without friction that slides back is none.
+  bool is_event(int joint, JointStatus before, JointStatus after) const {
+    return !(is_slip(before) && is_slip(after)) || remembers_when(joint, before, after);
+  }
   /// Whether a joint slips at its rim while it sticks.
   bool slips_smoothly() const { return slips_smoothly_; }
   /// Slide of a step less what friction bends, of a joint that rolls; nothing is owed to it [m].

@@ -68,6 +68,11 @@ struct Walker {
   double time = 0.0;
   /// Share of the last step that was tried after which its first event comes; 1: unknown.
   double event_share = 1.0;
+  /// Statuses that a longer step found from the present state on; empty: none.
+  Statuses changed_at_start = {};
+  /// Whether such are looked for; not again where a short step did not confirm them, until the next
+  /// event.
+  bool looks_at_start = true;
   /// Steps at most into which an increment is cut for its energies.
   static constexpr double most_parts = 64.0;
   /// Longest step that energies are likely to balance over [s]; none known: as long as may be.
@@ -88,6 +93,7 @@ struct Walker {
   void start();
   std::optional<Stall> follow_loads();
   bool is_near(const VectorXd& moved) const;
+  bool are_loaded(const std::vector<VectorXd>& shapes) const;
   [[noreturn]] void refuse_overload(const Stall& at);
   std::vector<FailureJoint> slipping(const Statuses& statuses) const;
   void open_clearances();

@@ -149,7 +149,8 @@ TEST(Degenerate, BlocksThatSlipAtTheSameInstantAndLeaveAMechanismAreAnError) {
     solve(model);
     FAIL();
   } catch (const Failure& failed) {
-    EXPECT_EQ(failed.fields().kind, FailureKind::mechanism);
+    EXPECT_EQ(failed.fields().kind, FailureKind::friction_exhausted);
+    EXPECT_EQ(failed.fields().joints.size(), 2u);
     // They slip where E A α ΔT = f (1 + α ΔT).
     EXPECT_NEAR(*failed.fields().temperature_change, friction / (rigidity - friction) / expansion,
                 1e-6);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -522,20 +523,20 @@ TEST(Truss, LocalProblemsAreThoseThatThePathSolves) {
   EXPECT_EQ(local.reactions[0] * local.problem.mu[0], 30.0);
 }
 
-TEST(Truss, RoundingGoesWithTheLargestDisplacement) {
+TEST(Truss, RoundingGoesWithTheLargestDisplacementOfThePath) {
   const Model model = bar();
   const detail::System system(model);
   Eigen::VectorXd z = Eigen::VectorXd::Zero(system.unknowns());
-  z[0] = -1e-3;
   z.tail(system.unknowns() - 1).setConstant(30.0);  // forces do not count
-  const detail::Rounding by = system.rounding(z);
-  // A few units in its last place, and the stiffness of the bar times as much.
-  EXPECT_GT(by.length, 1e-3 * 2.2e-16);
-  EXPECT_LT(by.length, 1e-3 * 2.2e-16 * 10);
-  EXPECT_GT(by.force, 1.26e6 * by.length);
-  EXPECT_LT(by.force, 1.26e6 * by.length * 100);
-  z[0] *= 4.0;
-  EXPECT_EQ(system.rounding(z).length, 4.0 * by.length);
+  // At rest it is that of the largest thermal strain, 23.4e-6/K times 100 K, of the whole truss.
+  EXPECT_DOUBLE_EQ(system.reach(z), 23.4e-4 * system.size());
+  EXPECT_DOUBLE_EQ(system.rounding(z).length, detail::closure_tolerance * system.reach(z));
+  EXPECT_DOUBLE_EQ(system.rounding(z).force, system.stiffness_scale() * system.rounding(z).length);
+  z[0] = -1e-2;
+  EXPECT_EQ(system.reach(z), 1e-2);
+  // An iteration that runs away is not excused by its distance.
+  z[0] = 1e9;
+  EXPECT_EQ(system.reach(z), system.size());
 }
 
 TEST(Truss, JointThatNothingLoadsIsSlack) {

@@ -187,7 +187,10 @@ JointStatus LatchHinge::decide(const Trial& trial, JointStatus status) const {
   const double sense = status == JointStatus::slip_plus ? 1.0 : -1.0;
   const double slid = radius_of(trial) * (slipped(*this, trial) - trial.history[0]);
   const double rounding = slide_rounding(trial, trial.length_rounding, trial.force_rounding);
-  return sense * slid < -rounding ? JointStatus::stick : status;
+  if (sense * slid >= -rounding) return status;
+  if (friction_moment > 0.0) return JointStatus::stick;
+  // Without friction it turns either way.
+  return sense > 0.0 ? JointStatus::slip_minus : JointStatus::slip_plus;
 }
 
 void LatchHinge::begin(const Trial& trial, JointStatus, double* now) const {

@@ -543,8 +543,9 @@ JointStatus ClearanceRevolute::decide(const Trial& trial, JointStatus status) co
     if (g.eccentricity.norm() <= g.clearance + trial.length_rounding) return status;
     return mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
   }
-  // Forces of slack elements are not told from none, see System::slack_stiffness().
-  const double slack = trial.slack_stiffness * radial_clearance;
+  // What moves a slack element by a thousandth of its play in a step is not told from no force, see
+  // System::slack_stiffness().
+  const double slack = 1e-3 * trial.slack_stiffness * radial_clearance;
   if (normal < -trial.force_rounding - slack) return JointStatus::open;
   if (mu == 0.0 || partial_slip) return status;  // slips freely, or one row for stick and slip
   if (status == JointStatus::stick) {

@@ -87,6 +87,8 @@ JointStatus after_slip(const Slider& slider, const Trial& trial, const Sense& wa
       -slider.slide_rounding(trial, trial.length_rounding, trial.force_rounding)) {
     return way.slip;
   }
+  // Without friction it slides either way.
+  if (slider.friction_force == 0.0) return way.other_slip;
   return trial.before == way.other_stop && !elastic ? trial.before : JointStatus::stick;
 }
 
