@@ -215,9 +215,10 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
                                        [](const Motion& one) { return one.index >= 0; });
       if (count == 0 && !all[g].examined) examined = false;
       // Of limits that are given, friction is a convex function: stable motions are one to rounding
-      // if none is unstable.
-      const bool is_one = count == 1 || (count > 1 && count == std::ssize(motions) &&
-                                         (is_unique || has_given_limits(*system_, candidates)));
+      // if none is unstable and no set leaves a mechanism.
+      const bool is_one =
+          count == 1 || (count > 1 && count == std::ssize(motions) && !all[g].singular &&
+                         (is_unique || has_given_limits(*system_, candidates)));
       if (is_one) {
         stable.push_back(*std::find_if(motions.begin(), motions.end(),
                                        [](const Motion& one) { return one.index >= 0; }));

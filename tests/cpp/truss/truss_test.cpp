@@ -401,9 +401,14 @@ TEST(Truss, RibOfExpandingJournalsClosesItsBalance) {
   Options options;
   const double coarse = std::abs(relative_residue(solve(model, options)));
   options.increments_per_branch *= 4;
-  const double fine = std::abs(relative_residue(solve(model, options)));
+  const Path path = solve(model, options);
+  const double fine = std::abs(relative_residue(path));
   EXPECT_LT(coarse, 1e-9);
-  EXPECT_LT(fine, 1e-10);
+  // What a path may lose of the work, in each of its branches.
+  double work = 0.0;
+  for (const State& state : path.states) work = std::max(work, std::abs(state.thermal_work));
+  EXPECT_LT(fine,
+            2.0 * options.energy_tolerance * work / path.states.back().joint_dissipation.sum());
 }
 
 TEST(Truss, ItemsOutOfRangeAreNamed) {
