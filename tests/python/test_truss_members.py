@@ -99,5 +99,5 @@ def test_changes_that_are_taken_together_are_told() -> None:
     chain = sj.truss.chain(5)
     coarse = chain.changed({"reduced.locate_events": False, "reduced.increments_per_branch": 1})
     assert [warning.split(":")[0] for warning in told(coarse, "locate_events")] == [
-        "in 5 increments several joints changed their status"]
+        "in 2 increments several joints changed their status"]
     assert not told(chain, "locate_events")

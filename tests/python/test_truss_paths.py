@@ -77,10 +77,10 @@ def test_free_truss_expands_freely(count: int, diagonals: int, dimension: int, t
     found = path(bays(count, diagonals, dimension) | {"thermal": thermal})
     states, position = found.states, found.truss.nodes.position_m
     strain = 2e-5 * states["temperature_change_K"]
-    # Nodes balance to rounding of the displacements, 64 eps u, times the stiffness; chords add up that of all bays, and a
-    # row of bays bends under it by the cube of their number.
+    # Nodes balance to rounding of the displacements, 64 eps u, times the stiffness. A row of bays adds it up to moments,
+    # which chords carry by the square of their number, and bends under them by the cube.
     rounding_m = 64 * EPSILON * max(np.abs(strain).max() * count, EPSILON)
-    assert np.abs(states["axial_force_N"]).max() <= 7e5 * rounding_m * (count + 1)
+    assert np.abs(states["axial_force_N"]).max() <= 7e5 * rounding_m * (count + 1) ** 2
     off_m = np.abs(states["displacement_m"] - strain[:, None, None] * position).max()
     assert off_m <= rounding_m * (count + 1) ** 3
     assert found.complete and len(found.events) == 0
@@ -213,7 +213,7 @@ def test_slack_diagonal_is_noted_and_the_rest_is_as_without_it(load_N: float) ->
             expected = np.interp(times, bare.states["time_s"], bare.states["displacement_m"][:, node, axis])
             assert found.states["displacement_m"][:reached, node, axis] == pytest.approx(expected, abs=1e-9 * 4e-3)
     play = np.linalg.norm(found.states["eccentricity_m"][:, 0], axis=1)
-    assert play.max() <= 2e-4 * 1.01
+    assert play.max() <= 2e-4 * 1.05  # the contact gives by its Hertz depth
 
 
 def test_notes_become_warnings_of_a_run() -> None:

@@ -132,7 +132,9 @@ Path solve(const Model& model, const Options& options) {
   walker.path.unknowns = system.unknowns();
   walker.state.joint_dissipation = VectorXd::Zero(joints);
   detail::start_as_chosen(walker);
-  walker.origin.slack_stiffness = system.slack_stiffness();
+  if (walker.note_slack(0.0, walker.z, walker.origin.statuses)) {
+    walker.slack_stiffness = system.slack_stiffness();
+  }
   system.describe(walker.z, 0.0, walker.origin, walker.state);
   if (!options.cycle_ends_only) walker.path.states.push_back(walker.state);
   walker.path.cycle_ends.push_back(walker.state);

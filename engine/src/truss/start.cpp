@@ -128,14 +128,15 @@ void Walker::note(NoteKind kind, double when, const std::vector<int>& joints, do
   path.notes.push_back(std::move(made));
 }
 
-/// Notes the joints without contact whose elements nothing holds.
-void Walker::note_slack(double when, const VectorXd& at, const Statuses& statuses) {
+/// Notes the joints without contact whose elements nothing holds. True: there are such.
+bool Walker::note_slack(double when, const VectorXd& at, const Statuses& statuses) {
   std::vector<int> open;
   for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
     if (statuses[index(i)] == JointStatus::open) open.push_back(i);
   }
-  if (open.empty() || !mechanism(system, at, when, statuses, JointModel::friction)) return;
+  if (open.empty() || !mechanism(system, at, when, statuses, JointModel::friction)) return false;
   note(NoteKind::slack, when, open);
+  return true;
 }
 
 /// Notes joints that stick and share a constraint, if the last solve met such.

@@ -94,6 +94,8 @@ bool Walker::balances(const State& next, const VectorXd& to, double step, double
 StepEnd Walker::step_to(double target, double tolerance) {
   // The sum time + tolerance is rounded.
   const bool is_short = target - time <= 1.5 * tolerance;
+  // A joint that opens may leave a mechanism, which only a short step finds.
+  origin.slack_stiffness = is_short ? system.slack_stiffness() : slack_stiffness;
   VectorXd trial = z;
   Statuses trial_statuses =
       is_short && !changed_at_start.empty() ? changed_at_start : origin.statuses;
@@ -117,7 +119,16 @@ StepEnd Walker::step_to(double target, double tolerance) {
     ++path.solves;
     return StepEnd::event_inside;
   }
-  if (is_short) report = continue_from_event(target, trial, trial_statuses, report);
+  if (is_short) {
+    try {
+      report = continue_from_event(target, trial, trial_statuses, report);
+    } catch (const Failure&) {
+      // From the present statuses there may be a way on that is the only one.
+      if (!hinted) throw;
+      looks_at_start = false;
+      return step_to(target, tolerance);
+    }
+  }
   if (report.end == SolveEnd::converged && options.locate_events) {
     report = slide_on(target, is_short, trial, trial_statuses, std::move(report));
   }
@@ -159,7 +170,12 @@ StepEnd Walker::step_to(double target, double tolerance) {
                                                    : options.locate_events;
   };
   if (!is_short && system.first_joint(matters) >= 0) {
-    if (options.locate_events && looks_at_start && !report.leaving) {
+    // What a contact does after it closes says nothing of how it closes.
+    const int closes = system.first_joint([&](int i) {
+      return origin.statuses[index(i)] == JointStatus::open &&
+             trial_statuses[index(i)] != JointStatus::open;
+    });
+    if (options.locate_events && looks_at_start && closes < 0 && !report.leaving) {
       // All that changed seems to have done so at the start. In a short step rounding hides which.
       changed_at_start = trial_statuses;
       event_share = 0.0;
@@ -247,7 +263,11 @@ StepEnd Walker::step_to(double target, double tolerance) {
     return StepEnd::imprecise;
   }
   note(report);
-  if (opened) note_slack(target, trial, trial_statuses);
+  if (opened || slack_stiffness > 0.0) {
+    const bool slack =
+        (!opened && trial_statuses == origin.statuses) || note_slack(target, trial, trial_statuses);
+    slack_stiffness = slack ? system.slack_stiffness() : 0.0;
+  }
   note_not_unique(target);
   const std::vector<double>& asked = options.problem_times;
   if (path.problems.size() < asked.size() && target >= asked[path.problems.size()]) {

@@ -68,6 +68,8 @@ struct Walker {
   double time = 0.0;
   /// Share of the last step that was tried after which its first event comes; 1: unknown.
   double event_share = 1.0;
+  /// Of joints that are open [N/m]: 0 where something else determines their positions.
+  double slack_stiffness = 0.0;
   /// Statuses that a longer step found from the present state on; empty: none.
   Statuses changed_at_start = {};
   /// Whether such are looked for; not again where a short step did not confirm them, until the next
@@ -98,7 +100,7 @@ struct Walker {
   std::vector<FailureJoint> slipping(const Statuses& statuses) const;
   void open_clearances();
   void note(NoteKind kind, double when, const std::vector<int>& joints, double value = 0.0);
-  void note_slack(double when, const VectorXd& at, const Statuses& statuses);
+  bool note_slack(double when, const VectorXd& at, const Statuses& statuses);
   void note_not_unique(double when);
   void refuse_mechanism(double when, const Statuses& statuses, JointModel joints) const;
   void refuse_buckled(double when);
