@@ -105,7 +105,7 @@ std::optional<Stall> Walker::follow_loads() {
     step = 0.5 * (next - reached);
     if (step < least_step) return Stall{reached, report, statuses, trial};
   }
-  // The factors of the whole load, for what is asked next.
+  // Leaves the factors of the whole load, which the path reuses.
   const SolveReport last =
       newton.solve(0.0, begin, JointModel::pins, 1.0, options.most_iterations, z, origin.statuses);
   note(last);

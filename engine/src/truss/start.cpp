@@ -202,7 +202,6 @@ void Walker::open_clearances() {
     if (!opens(i)) origin.statuses[index(i)] = joint(i, [](const auto& one) { return one.rest(); });
   }
   if (std::none_of(with_play.begin(), with_play.end(), opens)) return;
-  note_slack(0.0, z, origin.statuses);
   refuse_buckled(0.0);
 }
 
