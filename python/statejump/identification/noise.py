@@ -3,7 +3,7 @@
 
 Least squares stay unbiased if the noise is correlated, but their variance grows. Let h be the part of a parameter's
 derivative that no other parameter explains. Independent noise of variance s² gives the estimate the variance s²/(h·h),
-noise of the correlations ρ gives κ s²/(h·h) with κ = Σ ρ_|i-j| h_i h_j/(h·h). The correlations are those of an
+noise of the correlations ρ gives κ s²/(h·h) with κ = Σ ρ(i-j) h(i) h(j)/(h·h). The correlations are those of an
 autoregression of the residuals (Burg), whose order BIC chooses.
 
 What a joint's formula leaves out comes back in every cycle, so that cycles do not average it. With the correlation c of

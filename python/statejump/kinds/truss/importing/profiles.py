@@ -57,7 +57,7 @@ def taper(stations: Sequence[tuple[float, float]]) -> tuple[float, float]:
 
 
 def calculix(shape: str, sizes: Sequence[float]) -> float | None:
-    """Return the area of *SOLID SECTION (``AREA``) or of a shape of *BEAM SECTION; None: it has none.
+    """Return the area of ``*SOLID SECTION`` (``AREA``) or of a shape of ``*BEAM SECTION``; None: it has none.
 
     CIRC has the lengths of its two axes in CalculiX; one length is the diameter here. RECT of one length is a square.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes and elements that are generated or copied: *NGEN, *NFILL, *NCOPY, *ELGEN, *ELCOPY."""
+"""Nodes and elements that are generated or copied: ``*NGEN``, ``*NFILL``, ``*NCOPY``, ``*ELGEN``, ``*ELCOPY``."""
 from __future__ import annotations
 
 from math import atan2, degrees

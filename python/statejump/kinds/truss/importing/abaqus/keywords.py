@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keywords of a deck of CalculiX or Abaqus with their parameters and data lines, and *INCLUDE."""
+"""Keywords of a deck of CalculiX or Abaqus with their parameters and data lines, and ``*INCLUDE``."""
 from __future__ import annotations
 
 from collections.abc import Iterator
@@ -53,7 +53,7 @@ def _keyword(text: str) -> tuple[str, dict[str, str]]:
 
 
 def included(lines: list[str], place: int) -> tuple[str, int] | None:
-    """Return the file that *INCLUDE names and the number of its lines."""
+    """Return the file that ``*INCLUDE`` names and the number of its lines."""
     text = lines[place].strip()
     if not text[:8].upper() == "*INCLUDE":
         return None
