@@ -143,15 +143,15 @@ FoundModes mechanism(const System& system, const VectorXd& z, double time, const
   return free_modes(System(slack), z, time, statuses, joints).first;
 }
 
-FoundModes buckling(const System& system, const VectorXd& z, double time,
-                    const Statuses& statuses) {
+FoundModes buckling(const System& system, const VectorXd& z, double time, const Statuses& statuses,
+                    double slack) {
   if (system.displacements() == 0) return {};
   Statuses held = system.all_stick();
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (statuses[i] == JointStatus::open) held[i] = JointStatus::open;
   }
-  const Eigen::SparseMatrix<double> shifted = shifted_stiffness(
-      system, z, time, held, JointModel::pins, stiff_joint, system.slack_stiffness(), free_share);
+  const Eigen::SparseMatrix<double> shifted =
+      shifted_stiffness(system, z, time, held, JointModel::pins, stiff_joint, slack, free_share);
   const Factors factors(shifted);
   // Sylvester: as many negative pivots as negative eigenvalues.
   const Eigen::Index unstable =

@@ -361,11 +361,29 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     if (total == 0) first_largest = largest;
     const bool astray = left.balance > 0.5 * std::max(largest, first_largest) + rounding;
     if (pivoted && is_foreseen && astray) return report;
+    // Where steps no longer shrink, what rounding of the forces bends a contact by that hardly
+    // touches is no gap.
+    const auto closes = [&](double largest_gap) {
+      if (largest_gap <= closure_tolerance * reach) return true;
+      const std::size_t n = lengths.size();
+      const bool shrinks = n < 2 || lengths[n - 1] < 0.5 * lengths[n - 2];
+      if (shrinks || largest_gap > 1e3 * closure_tolerance * reach) return false;
+      const Rounding by = system_->rounding(z);
+      return system_->first_joint([&](int i) {
+        const Eigen::Index row = system_->force_row(i);
+        for (Eigen::Index k = row; k < row + system_->force_count(i); ++k) {
+          const bool is_gap = at_.units[index(static_cast<int>(k))] == RowUnit::closure;
+          if (!is_gap || std::abs(at_.residual[k]) <= by.length) continue;
+          if (std::abs(at_.residual[k]) > system_->slide_rounding(i, z, time, start, by))
+            return true;
+        }
+        return false;
+      }) < 0;
+    };
     // Where rounding is larger than foreseen the iteration stands still: that is the end as well,
     // if forces balance at all.
     const bool closed = left.balance <= force_tolerance * largest + rounding &&
-                        left.closure <= closure_tolerance * reach &&
-                        left.force <= 16.0 * epsilon * largest + rounding;
+                        closes(left.closure) && left.force <= 16.0 * epsilon * largest + rounding;
     const bool still = !lengths.empty() && lengths.back() <= closure_tolerance * reach &&
                        left.balance <= 1e3 * force_tolerance * largest + rounding;
     if (total > 0 && (closed || still)) {

@@ -199,6 +199,8 @@ FoundModes mechanism(const System& system, const VectorXd& z, double time, const
 
 /// Modes in which the equilibrium at z is unstable though every joint that is not open is held (so
 /// friction cannot help). That a joint which slips makes the truss unstable is not seen.
-FoundModes buckling(const System& system, const VectorXd& z, double time, const Statuses& statuses);
+/// @param slack stiffness of a joint that is open [N/m]
+FoundModes buckling(const System& system, const VectorXd& z, double time, const Statuses& statuses,
+                    double slack);
 
 }  // namespace statejump::truss::detail

@@ -66,6 +66,11 @@ Eigen::VectorXd output(const Model& model, const State& state, int joint, std::s
 
 namespace {
 
+/// Steps in a row that ended before a foreseen change and came no nearer to it.
+constexpr int most_unconfirmed = 16;
+/// Steps of an eighth of one that passes a change come nearer to it by an eighth or more.
+constexpr double nearer = 0.95;
+
 /// Corners of all programs [s]. Those closer than Model::same_time of the duration are one: 3 times
 /// 0.1 s are not 0.3 s to the last bit, nor 8 times 0.15 s 4 times 0.3 s.
 std::vector<double> corners(const Model& model) {
@@ -132,9 +137,9 @@ Path solve(const Model& model, const Options& options) {
   walker.path.unknowns = system.unknowns();
   walker.state.joint_dissipation = VectorXd::Zero(joints);
   detail::start_as_chosen(walker);
-  if (walker.note_slack(0.0, walker.z, walker.origin.statuses)) {
-    walker.slack_stiffness = system.slack_stiffness();
-  }
+  walker.slack_stiffness = walker.note_slack(0.0, walker.z, walker.origin.statuses)
+                               ? system.slack_stiffness(walker.slack_level)
+                               : 0.0;
   system.describe(walker.z, 0.0, walker.origin, walker.state);
   if (!options.cycle_ends_only) walker.path.states.push_back(walker.state);
   walker.path.cycle_ends.push_back(walker.state);
@@ -150,6 +155,9 @@ Path solve(const Model& model, const Options& options) {
     const double tolerance = options.event_tolerance * length;
     walker.shortest_balanced =
         length / (Walker::most_parts * static_cast<double>(options.increments_per_branch));
+    if (std::exchange(walker.slack_level, 0) > 0) {
+      walker.slack_stiffness = std::min(walker.slack_stiffness, system.slack_stiffness(0));
+    }
     double convergent = length;  // longest step that Newton is trusted with
     for (int k = 0; k <= options.increments_per_branch; ++k) {
       // k = 0: the short first step, within which slips turn into sticks after the corner.
@@ -171,12 +179,17 @@ Path solve(const Model& model, const Options& options) {
       // time, the steps leave it.
       double margin = 0.5 * tolerance;
       int steps = 0;  // since the last change
+      // How far ahead the next change was foreseen, now and before the last step [s].
+      double ahead = length, ahead_before = length;
+      bool foresaw = false;
+      int unconfirmed = 0;
+      walker.locates = true;
       while (walker.time < target && walker.path.complete) {
         const double goal =
             std::max(std::nextafter(walker.time, target), std::min(target, walker.time + stride));
         const double from = walker.time;
         const double shortest = std::nextafter(from, target) - from;
-        const StepEnd end = walker.step_to(goal, std::max(tolerance, shortest));
+        const StepEnd end = walker.step_with_slack(goal, std::max(tolerance, shortest));
         if (end == StepEnd::done) {
           convergent = std::max(2.0 * convergent, tolerance);
           margin = 0.5 * tolerance;
@@ -186,7 +199,12 @@ Path solve(const Model& model, const Options& options) {
           const bool unchanged = counted == walker.path.events.size();
           const bool creeps = locating && (!options.locate_events || unchanged);
           stride = std::min(balanced(), creeps ? 8.0 * stride : convergent);
-          if (!unchanged) steps = 0;
+          if (foresaw) unconfirmed = ahead > nearer * ahead_before ? unconfirmed + 1 : 0;
+          if (foresaw) ahead_before = ahead;
+          foresaw = false;
+          if (!unchanged) steps = unconfirmed = 0;
+          // One that recedes before the steps is passed.
+          walker.locates = unconfirmed < most_unconfirmed;
           for (; counted < walker.path.events.size(); ++counted) {
             const Event& event = walker.path.events[counted];
             if (++changes[index(event.joint)] <= most_changes) continue;
@@ -208,6 +226,8 @@ Path solve(const Model& model, const Options& options) {
           if (foreseen) margin *= 2.0;
           if (end == StepEnd::not_converged) convergent = stride;
           locating = end == StepEnd::event_inside;
+          ahead = walker.event_share * tried;
+          foresaw = foresaw || locating;
         }
         if (++steps > options.most_steps) {
           FailureFields fields = failure_at(FailureKind::too_many_steps, model, walker.time);

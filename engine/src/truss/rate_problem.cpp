@@ -70,14 +70,6 @@ std::optional<Eigen::MatrixXd> complementarity_matrix(const Branches& of) {
   return matrix;
 }
 
-/// Whether no candidate has friction that follows a normal force.
-bool has_given_limits(const System& system, const std::vector<Candidate>& candidates) {
-  return std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& one) {
-    return std::visit([](const auto& joint) { return joint.has_play(); },
-                      system.model().joints[index(one.joint)]);
-  });
-}
-
 bool has_positive_symmetric_part(Eigen::MatrixXd matrix) {
   if (matrix.size() == 0) return true;  // nothing to decide
   // Rows and columns in units of their own, for a rounding that is the same everywhere.
@@ -179,11 +171,21 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
       }
       if (all.back().singular) answer.singular = asking.statuses(*all.back().singular);
     }
+    // A contact that pulls while it sticks and closes while it is open may slide.
+    for (std::size_t g = 0; g < groups.size() && !widened; ++g) {
+      if (!all[g].motions.empty()) continue;
+      for (const std::size_t i : groups[g]) {
+        if (!candidates[i].has(JointStatus::open)) continue;
+        for (const JointStatus slip : {JointStatus::slip_plus, JointStatus::slip_minus}) {
+          widened = add(candidates[i], slip) || widened;
+        }
+      }
+    }
     if (widened) continue;
 
     // The ways on of one group, the others on the first of theirs: does any joint beside object?
     const auto together = [&](std::size_t special, const Motion& with) {
-      Motion whole{Choice(candidates.size(), 0), with.step, with.index};
+      Motion whole{Choice(of->candidates.size(), 0), with.step, with.index};
       for (std::size_t g = 0; g < groups.size(); ++g) {
         const Motion& part = g == special ? with : all[g].motions.front();
         for (const std::size_t i : groups[g]) whole.choice[i] = part.choice[i];
@@ -207,6 +209,7 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
 
     // Groups in which no way goes on, or several do, decide for all; and name their joints.
     std::vector<int> stopped, parting;
+    bool parts_only = true;
     bool examined = true;
     std::vector<Motion> stable;
     for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -214,23 +217,29 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
       const auto count = std::count_if(motions.begin(), motions.end(),
                                        [](const Motion& one) { return one.index >= 0; });
       if (count == 0 && !all[g].examined) examined = false;
-      // Of limits that are given, friction is a convex function: stable motions are one to rounding
-      // if none is unstable and no set leaves a mechanism.
+      // The indices of all motions add up to one (the degree of the equations): stable motions are
+      // one to rounding if none is unstable and no set leaves a mechanism.
       const bool is_one =
-          count == 1 || (count > 1 && count == std::ssize(motions) && !all[g].singular &&
-                         (is_unique || has_given_limits(*system_, candidates)));
+          count == 1 || (count > 1 && count == std::ssize(motions) && !all[g].singular);
       if (is_one) {
-        stable.push_back(*std::find_if(motions.begin(), motions.end(),
-                                       [](const Motion& one) { return one.index >= 0; }));
+        stable.push_back(*std::min_element(
+            motions.begin(), motions.end(), [&](const Motion& one, const Motion& other) {
+              const auto far = [&](const Motion& to) {
+                return to.index < 0 ? std::numeric_limits<double>::infinity()
+                                    : length_of(to.step, system_->displacements());
+              };
+              return far(one) < far(other);
+            }));
         continue;
       }
       std::vector<int>& named = count == 0 ? stopped : parting;
+      parts_only = parts_only && count > 0;
       for (const std::size_t i : groups[g]) named.push_back(candidates[i].joint);
     }
     if (!examined) return answer;
-    if (!stopped.empty() || !parting.empty()) {
-      answer.count = stopped.empty() ? Continuation::several : Continuation::none;
-      answer.joints = stopped.empty() ? parting : stopped;
+    if (stable.size() < groups.size()) {
+      answer.count = parts_only ? Continuation::several : Continuation::none;
+      answer.joints = parts_only ? parting : stopped;
       return answer;
     }
     answer.count = Continuation::one;

@@ -7,6 +7,13 @@
 
 namespace statejump::truss::detail {
 
+namespace {
+
+/// Smallest part of a clearance that opens at once.
+constexpr double least_opening = 1e-4;
+
+}  // namespace
+
 FailureJoint named(const Model& model, int joint) {
   const Joint& one = model.joints[index(joint)];
   return {kind_of(one), name_of(one)};
@@ -113,7 +120,12 @@ std::vector<FailureJoint> Walker::slipping(const Statuses& statuses) const {
 void Walker::refuse_buckled(double when) {
   // It takes as much memory as the factors of rates do.
   rates.release();
-  if (FoundModes modes = buckling(system, z, when, origin.statuses)) {
+  for (;;) {
+    const double slack = system.slack_stiffness(slack_level);
+    FoundModes modes = buckling(system, z, when, origin.statuses, slack);
+    if (!modes) return;
+    // Elements that hang slack under compression are bounded by their play.
+    if (stiffen_slack(origin.statuses)) continue;
     fail_modes(failure_at(FailureKind::buckled, model, when), std::move(modes));
   }
 }
@@ -139,6 +151,14 @@ bool Walker::note_slack(double when, const VectorXd& at, const Statuses& statuse
   return true;
 }
 
+/// Makes the dashpots of slack joints stiffer; false: there are none, or none stiffer.
+bool Walker::stiffen_slack(const Statuses& statuses) {
+  const auto open = std::find(statuses.begin(), statuses.end(), JointStatus::open);
+  if (open == statuses.end() || slack_level == System::most_slack_level) return false;
+  slack_stiffness = system.slack_stiffness(++slack_level);
+  return true;
+}
+
 /// Notes joints that stick and share a constraint, if the last solve met such.
 void Walker::note_not_unique(double when) {
   if (newton.regularisation() != Regularisation::reactions) return;
@@ -151,58 +171,93 @@ void Walker::open_clearances() {
     if (joint(i, [](const auto& one) { return one.has_play(); })) with_play.push_back(i);
   }
   if (with_play.empty()) return;
-  // Below this a pin force is rounding of what the stiffest part would carry.
-  const double rounding = 1e-14 * system.stiffness_scale() * system.size();
-  const auto seat = [&](int i, const VectorXd& at, double opened, double next) {
-    const Trial trial = system.trial(i, at, 0.0, origin, JointModel::pins, opened);
-    return joint(i, [&](const auto& one) { return one.seat(trial, opened, next, rounding); });
-  };
-  const auto opens = [&](int i) { return origin.statuses[index(i)] == JointStatus::open; };
-  origin = system.begin(z, 0.0, origin.statuses, 1.0);
-  // The journal touches where its pin force pushes. One that nothing pushes stays in the middle, if
-  // something else than its contact holds it there.
-  for (const int i : with_play) {
-    const bool touches = seat(i, z, 0.0, 1.0).touches;
-    origin.statuses[index(i)] = touches ? JointStatus::slip_plus : JointStatus::open;
+  const VectorXd pinned_z = z;
+  const Statuses pinned = origin.statuses;
+  SolveReport last;
+  // Journals find the place where they need no friction, or stay where their force pushes them:
+  // many light ones have no such place nearby.
+  for (const JointModel contact : {JointModel::frictionless, JointModel::friction}) {
+    z = pinned_z;
+    origin = system.begin(z, 0.0, pinned, 1.0);
+    seat(with_play, contact);
+    last = open_seated(with_play, contact);
+    if (last.end == SolveEnd::stopped) {
+      path.complete = false;
+      return;
+    }
+    if (last.end == SolveEnd::converged) break;
   }
-  // The clearances open little by little, each time from the last equilibrium, because the links
-  // turn as they open; farther where that goes well.
+  if (last.end != SolveEnd::converged) {
+    fail(last, JointModel::friction, 0.0, "no equilibrium in contact at the start");
+  }
+  bool opens = false;
+  for (const int i : with_play) {
+    JointStatus& status = origin.statuses[index(i)];
+    if (status == JointStatus::open) {
+      opens = true;
+    } else {
+      status = joint(i, [](const auto& one) { return one.rest(); });
+    }
+  }
+  if (opens) refuse_buckled(0.0);
+}
+
+/// Lets every journal touch where its pin force pushes. One that nothing pushes stays in the
+/// middle, if something else than its contact holds it there.
+void Walker::seat(const std::vector<int>& with_play, JointModel contact) {
+  for (const int i : with_play) {
+    const Trial trial = system.trial(i, z, 0.0, origin, JointModel::pins, 0.0);
+    const bool touches = joint(
+        i, [&](const auto& one) { return one.seat(trial, 0.0, 1.0, seat_rounding()).touches; });
+    const JointStatus closed = contact == JointModel::frictionless
+                                   ? JointStatus::slip_plus
+                                   : joint(i, [](const auto& one) { return one.rest(); });
+    origin.statuses[index(i)] = touches ? closed : JointStatus::open;
+  }
+}
+
+/// Opens the clearances little by little, each time from the last equilibrium, because the links
+/// turn as they open; farther where that goes well.
+/// @returns how that ended: `z` and the statuses are those of the whole clearances if it converged
+SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel contact) {
   double opened = 0.0;
   double share = 0.125;
   while (opened < 1.0) {
     const double next = std::min(1.0, opened + share);
     VectorXd trial = z;
-    Statuses trial_statuses = origin.statuses;
+    Statuses statuses = origin.statuses;
     for (const int i : with_play) {
-      if (!opens(i)) system.apply(i, seat(i, z, opened, next), trial);
+      if (statuses[index(i)] == JointStatus::open) continue;
+      const Trial at = system.trial(i, z, 0.0, origin, JointModel::pins, opened);
+      const Seat seat =
+          joint(i, [&](const auto& one) { return one.seat(at, opened, next, seat_rounding()); });
+      system.apply(i, seat, trial);
     }
-    StepStart begin = system.begin(trial, 0.0, trial_statuses, next);
-    begin.slack_stiffness = system.slack_stiffness();
-    const SolveReport report = newton.solve(0.0, begin, JointModel::frictionless, next,
-                                            options.most_iterations, trial, trial_statuses);
+    StepStart begin = system.begin(trial, 0.0, statuses, next);
+    begin.slack_stiffness = system.slack_stiffness(slack_level);
+    SolveReport report =
+        newton.solve(0.0, begin, contact, next, options.most_iterations, trial, statuses);
     note(report);
-    if (report.end == SolveEnd::stopped) {
-      path.complete = false;
-      return;
-    }
+    if (report.end == SolveEnd::stopped) return report;
     if (report.end == SolveEnd::converged) {
-      z = trial;
-      origin.statuses = trial_statuses;
+      z = std::move(trial);
+      origin.statuses = std::move(statuses);
       opened = next;
       share *= 2.0;
       continue;
     }
     share *= 0.5;
-    if (share < 1e-4) {
-      origin.statuses = trial_statuses;
-      fail(report, JointModel::frictionless, 0.0, "no equilibrium in contact at the start");
+    if (share >= least_opening) continue;
+    const bool stiffer = contact == JointModel::friction && stiffen_slack(statuses);
+    if (!stiffer) {
+      origin.statuses = std::move(statuses);
+      return report;
     }
+    share = 0.125;
   }
-  for (const int i : with_play) {
-    if (!opens(i)) origin.statuses[index(i)] = joint(i, [](const auto& one) { return one.rest(); });
-  }
-  if (std::none_of(with_play.begin(), with_play.end(), opens)) return;
-  refuse_buckled(0.0);
+  SolveReport whole;
+  whole.end = SolveEnd::converged;
+  return whole;
 }
 
 }  // namespace statejump::truss::detail

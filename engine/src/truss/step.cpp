@@ -17,6 +17,8 @@ namespace {
 
 /// Of what is left of the energy that a path may lose the share that a step may.
 constexpr double share_of_an_event = 0.02;
+/// Steps before one is tried that is longer than those that balance: a tenth of the work at most.
+constexpr int most_held_steps = 10;
 
 }  // namespace
 
@@ -77,15 +79,16 @@ bool Walker::balances(const State& next, const VectorXd& to, double step, double
   const double allowed = std::max(by_time, by_event) + rounding;
   // The rules of work and heat lose the fourth power of a step, or more.
   const double longer = step * std::sqrt(std::sqrt(0.5 * allowed / std::max(lost, rounding)));
-  const bool controlled =
-      options.locate_events && !system.slips_smoothly() && step > shortest_balanced;
-  if (controlled && lost > allowed && lost < 0.5 * refused_loss) {
+  const bool controlled = options.locate_events && !system.slips_smoothly();
+  if (controlled && step > shortest_balanced && lost > allowed && lost < 0.5 * refused_loss) {
     refused_loss = lost;
+    steps_to_hold = most_held_steps;
     balanced_step = std::max(std::clamp(longer, 0.1 * step, 0.7 * step), shortest_balanced);
     return false;
   }
   refused_loss = std::numeric_limits<double>::infinity();
-  if (controlled) balanced_step = std::max(1.1 * balanced_step, longer);
+  steps_to_hold = std::max(0, steps_to_hold - 1);
+  if (controlled && steps_to_hold == 0) balanced_step = std::max(1.1 * balanced_step, longer);
   energy_gained += gained;
   return true;
 }
@@ -95,7 +98,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
   // The sum time + tolerance is rounded.
   const bool is_short = target - time <= 1.5 * tolerance;
   // A joint that opens may leave a mechanism, which only a short step finds.
-  origin.slack_stiffness = is_short ? system.slack_stiffness() : slack_stiffness;
+  origin.slack_stiffness = is_short ? system.slack_stiffness(slack_level) : slack_stiffness;
   VectorXd trial = z;
   Statuses trial_statuses =
       is_short && !changed_at_start.empty() ? changed_at_start : origin.statuses;
@@ -103,7 +106,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
   // The first change ahead: passed where it need not be located, or no location is asked.
   std::optional<Ahead> ahead;
   if (!is_short) {
-    ahead = Ahead{time, tolerance / (target - time), options.locate_events,
+    ahead = Ahead{time, tolerance / (target - time), options.locate_events && locates,
                   rate.size() == 0 ? z : VectorXd(z + (target - time) * rate)};
   }
   SolveReport report = newton.solve(target, begin, JointModel::friction, 1.0,
@@ -135,7 +138,14 @@ StepEnd Walker::step_to(double target, double tolerance) {
   if (report.end == SolveEnd::stopped) return StepEnd::stopped;
   if (report.end != SolveEnd::converged) {
     ++path.solves;
-    if (!is_short) return StepEnd::not_converged;
+    if (!is_short) {
+      // Without dashpots the step says nothing of elements that become slack.
+      const bool opens = std::find(trial_statuses.begin(), trial_statuses.end(),
+                                   JointStatus::open) != trial_statuses.end();
+      if (!opens || slack_stiffness > 0.0) return StepEnd::not_converged;
+      slack_stiffness = system.slack_stiffness(slack_level);
+      return step_to(target, tolerance);
+    }
     system.settle(trial, target, begin, trial_statuses);
     origin.statuses = trial_statuses;
     fail(report, JointModel::friction, target, "no equilibrium");
@@ -145,7 +155,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
     ++path.solves;
     return StepEnd::event_inside;
   }
-  if (!is_short && options.locate_events) {
+  if (!is_short && options.locate_events && locates) {
     event_share = first_edge(target, trial, begin, rounding);
     if (event_share < 1.0) {
       ++path.solves;
@@ -157,7 +167,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
     return is_slip(left.second) && left.second != trial_statuses[index(left.first)] &&
            system.remembers_when(left.first, left.second, trial_statuses[index(left.first)]);
   };
-  if (!is_short && report.leaving && slid_between(*report.leaving)) {
+  if (!is_short && locates && report.leaving && slid_between(*report.leaving)) {
     ++path.solves;
     return StepEnd::event_inside;
   }
@@ -169,7 +179,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
     return system.remembers_when(i, before, after) ? slide_at_stake(i, before, target, rounding)
                                                    : options.locate_events;
   };
-  if (!is_short && system.first_joint(matters) >= 0) {
+  if (!is_short && locates && system.first_joint(matters) >= 0) {
     // What a contact does after it closes says nothing of how it closes.
     const int closes = system.first_joint([&](int i) {
       return origin.statuses[index(i)] == JointStatus::open &&
@@ -237,7 +247,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
   // The cubics through both ends know of a joint's own change at most, and without location there
   // may be many.
   const bool told = options.locate_events || events.size() <= 1;
-  if (!is_short && told && rate.size() > 0 && rate_after.size() > 0) {
+  if (!is_short && locates && told && rate.size() > 0 && rate_after.size() > 0) {
     event_share = first_turn(ends);
     if (event_share < 1.0 || !follows_its_rates(ends)) {
       ++path.solves;
@@ -266,7 +276,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
   if (opened || slack_stiffness > 0.0) {
     const bool slack =
         (!opened && trial_statuses == origin.statuses) || note_slack(target, trial, trial_statuses);
-    slack_stiffness = slack ? system.slack_stiffness() : 0.0;
+    slack_stiffness = slack ? system.slack_stiffness(slack_level) : 0.0;
   }
   note_not_unique(target);
   const std::vector<double>& asked = options.problem_times;
@@ -286,6 +296,19 @@ StepEnd Walker::step_to(double target, double tolerance) {
     path.states.push_back(state);
   }
   return StepEnd::done;
+}
+
+/// A step; where there is none, with stiffer dashpots in the joints that are slack, or become so.
+StepEnd Walker::step_with_slack(double target, double tolerance) {
+  const Statuses before = origin.statuses;
+  for (;;) {
+    try {
+      return step_to(target, tolerance);
+    } catch (const Failure&) {
+      const Statuses reached = std::exchange(origin.statuses, before);
+      if (!stiffen_slack(before) && !stiffen_slack(reached)) throw;
+    }
+  }
 }
 
 }  // namespace statejump::truss::detail

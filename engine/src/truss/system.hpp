@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -257,7 +258,14 @@ class System {
   /// A stiffness of 1e-8 of the stiffest element is that limit in floating point: forces are below
   /// 1e-8 of what a motion by the play would ask of that element, and what rounding leaves of the
   /// forces moves a slack element by less than 1e-6 of the largest displacement.
-  double slack_stiffness() const { return 1e-8 * stiffness_scale_; }
+  ///
+  /// Each level above is a hundred times as stiff, up to a hundredth of the stiffest element: for
+  /// elements that compression pushes away from where they hang, or so many behind each other that
+  /// rounding decides. What its dashpots take is counted as work.
+  double slack_stiffness(int level) const {
+    return 1e-8 * std::pow(100.0, level) * stiffness_scale_;
+  }
+  static constexpr int most_slack_level = 3;
   /// What rounding at z leaves of the forces at a node [N]: some 64 terms are added up there, each
   /// of a stiffness times a displacement.
   double force_rounding(const VectorXd& z) const;

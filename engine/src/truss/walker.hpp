@@ -70,8 +70,12 @@ struct Walker {
   double event_share = 1.0;
   /// Of joints that are open [N/m]: 0 where something else determines their positions.
   double slack_stiffness = 0.0;
+  /// Of the dashpots of slack joints, see System::slack_stiffness().
+  int slack_level = 0;
   /// Statuses that a longer step found from the present state on; empty: none.
   Statuses changed_at_start = {};
+  /// Whether steps end at changes, see Path; else they pass them.
+  bool locates = true;
   /// Whether such are looked for; not again where a short step did not confirm them, until the next
   /// event.
   bool looks_at_start = true;
@@ -80,6 +84,7 @@ struct Walker {
   /// Longest step that energies are likely to balance over [s]; none known: as long as may be.
   double balanced_step = std::numeric_limits<double>::infinity();
   double shortest_balanced = 0.0;  ///< No shorter step is asked for [s].
+  int steps_to_hold = 0;           ///< Before a longer step is tried.
   double largest_work = 0.0;       ///< Of the temperature so far [J].
   double energy_gained = 0.0;      ///< What does not balance so far [J].
   /// What the last step lost, if it was refused for that [J].
@@ -99,12 +104,18 @@ struct Walker {
   [[noreturn]] void refuse_overload(const Stall& at);
   std::vector<FailureJoint> slipping(const Statuses& statuses) const;
   void open_clearances();
+  void seat(const std::vector<int>& with_play, JointModel contact);
+  SolveReport open_seated(const std::vector<int>& with_play, JointModel contact);
+  /// Below this a pin force is rounding of what the stiffest part would carry [N].
+  double seat_rounding() const { return 1e-14 * system.stiffness_scale() * system.size(); }
   void note(NoteKind kind, double when, const std::vector<int>& joints, double value = 0.0);
   bool note_slack(double when, const VectorXd& at, const Statuses& statuses);
   void note_not_unique(double when);
   void refuse_mechanism(double when, const Statuses& statuses, JointModel joints) const;
   void refuse_buckled(double when);
+  bool stiffen_slack(const Statuses& statuses);
   StepEnd step_to(double target, double tolerance);
+  StepEnd step_with_slack(double target, double tolerance);
   SolveReport continue_from_event(double target, VectorXd& to, Statuses& statuses,
                                   SolveReport first);
   SolveReport slide_on(double target, bool is_short, VectorXd& to, Statuses& statuses,

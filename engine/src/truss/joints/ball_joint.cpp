@@ -155,7 +155,8 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   }
   const Dual depth =
       detail::chain(now.normal_force, contact_of(joint).depth(now.normal_force.value()));
-  const Dual gap = now.distance - now.clearance - depth;
+  // Surfaces give way as much as the clearance is open: from pins to contacts in small steps.
+  const Dual gap = now.distance - now.clearance - trial.opening * depth;
   Vector<Dual> row = now.normal * gap;
   if (joint.partial_slip && trial.model == JointModel::friction) {
     // In metres: the slide of a spring with the stiffness of a contact that sticks.

@@ -425,8 +425,9 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     in_contact(*this, trial, g, start, motion, bends, of);
     holds_normal = true;
     const ByNormal depth = contact_of(*this).depth(normal);
-    writer.closure(0, g.eccentricity.norm() - g.clearance - depth.value);
-    corner[0][0] = -depth.slope;
+    // Surfaces give way as much as the clearance is open: from pins to contacts in small steps.
+    writer.closure(0, g.eccentricity.norm() - g.clearance - trial.opening * depth.value);
+    corner[0][0] = -trial.opening * depth.slope;
     const double mu = trial.model == JointModel::friction ? friction_coefficient : 0.0;
     if (partial_slip && trial.model == JointModel::friction) {
       // In metres: the slide of a spring with the stiffness of a contact that sticks.
