@@ -288,9 +288,27 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       one[index(found.joints.front())] = found.corrected[index(found.joints.front())];
       return one;
     };
+    // A contact that pulls while it sticks and closes while it is open may slide.
+    const auto slides = [&](const Violations& of) {
+      const std::size_t first = index(of.joints.front());
+      if (statuses[first] != JointStatus::open && of.corrected[first] != JointStatus::open) {
+        return false;
+      }
+      for (const JointStatus slip : {JointStatus::slip_plus, JointStatus::slip_minus}) {
+        Statuses sliding = statuses;
+        sliding[first] = slip;
+        if (!seen.insert(fingerprint(sliding)).second) continue;
+        statuses = std::move(sliding);
+        return true;
+      }
+      return false;
+    };
     Statuses next = take();
     while (!seen.insert(fingerprint(next)).second) {
-      if (pivoting == Pivoting::single) return false;
+      if (pivoting == Pivoting::single) {
+        if (!slides(found)) return false;
+        return begin_anew();
+      }
       pivoting = Pivoting::single;
       seen = {fingerprint(statuses)};
       next = take();

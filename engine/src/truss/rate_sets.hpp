@@ -83,6 +83,7 @@ class Asking {
         start_(start),
         of_(of),
         rounding_{system.length_rounding(z), system.force_rounding(z)},
+        same_(system.rounding(z).length),
         near_(near) {}
 
   Statuses statuses(const Choice& choice) const {
@@ -103,7 +104,7 @@ class Asking {
     const double apart = length_of(other.step - one.step, system_.displacements());
     const double size = length_of(one.step, system_.displacements());
     const double epsilon = std::numeric_limits<double>::epsilon();
-    return apart <= std::sqrt((rounding_.length + epsilon * size) * size);
+    return apart <= std::max(same_, std::sqrt((rounding_.length + epsilon * size) * size));
   }
 
  private:
@@ -113,6 +114,7 @@ class Asking {
   const StepStart& start_;
   const Branches& of_;
   Rounding rounding_;
+  double same_;  ///< What Newton's method leaves of a displacement [m].
   double near_;
 };
 

@@ -58,9 +58,13 @@ bool Walker::balances(const State& next, const VectorXd& to, double step, double
   const double duration = model.programs.front().duration();
   const double heat = next.joint_dissipation.sum();
   const double work = next.thermal_work - state.thermal_work;
-  const double gained = work - (next.elastic_energy - state.elastic_energy) -
-                        (next.load_potential - state.load_potential) -
-                        (heat - state.joint_dissipation.sum()) - taken;
+  const double unbalanced = work - (next.elastic_energy - state.elastic_energy) -
+                            (next.load_potential - state.load_potential) -
+                            (heat - state.joint_dissipation.sum());
+  // Forces of dashpots jump to none where a step begins. By the trapezoidal rule of the links' work
+  // they take up to the mean of both steps' forces times the motion.
+  const double by_dashpots = 0.5 * (taken + std::sqrt(taken * slack_work));
+  const double gained = std::min(0.0, unbalanced) + std::max(0.0, unbalanced - by_dashpots);
   largest_work = std::max(largest_work, std::abs(next.thermal_work));
   // At the start of a path its work is foreseen.
   const double scale = std::max(largest_work, std::abs(work) * duration / step);
@@ -90,6 +94,7 @@ bool Walker::balances(const State& next, const VectorXd& to, double step, double
   steps_to_hold = std::max(0, steps_to_hold - 1);
   if (controlled && steps_to_hold == 0) balanced_step = std::max(1.1 * balanced_step, longer);
   energy_gained += gained;
+  slack_work = taken;
   return true;
 }
 
@@ -142,7 +147,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
       // Without dashpots the step says nothing of elements that become slack.
       const bool opens = std::find(trial_statuses.begin(), trial_statuses.end(),
                                    JointStatus::open) != trial_statuses.end();
-      if (!opens || slack_stiffness > 0.0) return StepEnd::not_converged;
+      const bool is_free = opens || report.end == SolveEnd::singular;
+      if (!is_free || slack_stiffness > 0.0) return StepEnd::not_converged;
       slack_stiffness = system.slack_stiffness(slack_level);
       return step_to(target, tolerance);
     }
@@ -153,6 +159,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
   const Rounding rounding = system.rounding(z);
   if (!is_short && passes_instability(trial_statuses)) {
     ++path.solves;
+    // Elements that hang slack under compression are bounded by their play.
+    if (stiffen_slack(trial_statuses)) return step_to(target, tolerance);
     return StepEnd::event_inside;
   }
   if (!is_short && options.locate_events && locates) {

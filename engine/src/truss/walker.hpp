@@ -87,6 +87,7 @@ struct Walker {
   int steps_to_hold = 0;           ///< Before a longer step is tried.
   double largest_work = 0.0;       ///< Of the temperature so far [J].
   double energy_gained = 0.0;      ///< What does not balance so far [J].
+  double slack_work = 0.0;         ///< Of the dashpots in the last step [J].
   /// What the last step lost, if it was refused for that [J].
   double refused_loss = std::numeric_limits<double>::infinity();
   /// Rates of the unknowns at `time`; empty where they are not known.
