@@ -80,7 +80,7 @@ def control_command(
 
     console = make_console(quiet)
     case = loaded(case_file, "control")
-    with results.folder(case.name) as folder:
+    with results.folder(case.name, case) as folder:
         with undivided(console, "control") as tell:
             done: Study = case.behaviour.ability("control", case)(
                 case, jump_below=jump_below, runs=runs, with_dem=with_dem, tell=tell,

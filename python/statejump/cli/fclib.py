@@ -96,7 +96,7 @@ def write_command(case_file: Path, number: int, results: Results, quiet: bool) -
     console = make_console(quiet)
     case = loaded(case_file, "contact_problems")
     try:
-        with undivided(console, f"{case.name}, path") as tell, results.folder(f"{case.name}/fclib") as folder:
+        with undivided(console, f"{case.name}, path") as tell, results.folder(f"{case.name}/fclib", case) as folder:
             found = case.behaviour.ability("contact_problems", case)(case, number, tell)
             written = []
             for place, one in enumerate(found, start=1):

@@ -41,19 +41,20 @@ class CaseFile(click.Path):
 
 CASE = click.argument("case_file", metavar="CASE", type=CaseFile())
 WAIT = click.option("--wait", is_flag=True, help="Wait where another run is at work in the same folder.")
+FORCE = click.option("--force", is_flag=True, help="Replace results of another case that has the same name.")
 
 
 def RESULTS(command: Command) -> Command:
     """Give a command the options of its results folder, as one argument ``results``."""
 
     @wraps(command)
-    def called(results: Path, wait: bool, **values: Any) -> Any:
-        return command(results=Results(results, wait), **values)
+    def called(results: Path, wait: bool, force: bool, **values: Any) -> Any:
+        return command(results=Results(results, wait, force), **values)
 
     return cast(Command, click.option(
         "--results", default="results", show_default=True, type=click.Path(path_type=Path),
         help="Folder that gets one folder per case.",
-    )(WAIT(called)))
+    )(WAIT(FORCE(called))))
 
 
 QUIET = click.option("--quiet", is_flag=True, help="Print errors only.")

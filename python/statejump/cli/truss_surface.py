@@ -70,6 +70,7 @@ def surface_command(
         raise MissingKey("--column" if column is None else "--samples", "--samples and --column go together")
     notes: list[str] = []
     history: dict[str, np.ndarray] = {}
+    case: Case | None = None
     try:
         if file.suffix == ".csv":
             drawn, moved = told.read_nodes(file)
@@ -97,7 +98,7 @@ def surface_command(
         if isinstance(refused, NotAllowed) and refused.key in OPTIONS:
             refused.key = OPTIONS[refused.key]
         raise
-    with results.folder(name) as folder:
+    with results.folder(name, case) as folder:
         path = folder.staged / "surface.csv"
         write_csv(path, ("state", *told.HEADER), [(state, *row) for state, rows in tables.items() for row in rows])
         written = [path]
