@@ -56,10 +56,11 @@ def solve_command(file: Path, output: Path | None, tolerance: float, method: str
       statejump fclib solve Capsules-i125-1213.hdf5 -o solved.hdf5
     """
     from statejump import fclib
-    from statejump.core.output import check_target
+    from statejump.core.output import check_suffix, check_target
 
     console = make_console(quiet)
     if output is not None:
+        check_suffix("--output", output, ".hdf5", ".h5")
         check_target(output)
     problem = fclib.read(file)
     console.print(f"{problem.title or file.name}: {problem.contacts} contacts in {problem.dimension}-D")

@@ -138,6 +138,10 @@ def import_command(
     beside = new_files(output, tables, force)
     deck = read(file, form, bars, Options(frozenset(name.lstrip("*").upper() for name in ignored), beams_as_bars, step,
                                           circ))
+    if deck.named_units:
+        for option, value in (("--units", units), ("--length-unit", length_unit), ("--force-unit", force_unit)):
+            if value not in (None, "SI"):
+                raise NotAllowed(option, value, "columns of tables name their units", file=file)
     document = case_document(
         deck, folder_name(output.stem), units=_units(units, length_unit, force_unit),
         temperature_change_K=temperature_change, density_kg_per_m3=density,
@@ -159,7 +163,9 @@ def import_command(
     for table in deck.account():
         print_table(table, console)
     print_table(summary(document), console)
-    for hint in hints(document):
+    for choice in deck.choices:
+        console.print(f"chosen: {choice}")
+    for hint in (*hints(document), *case.implausible):
         console.print(f"hint: {hint}")
     console.print(f"{output}: nodes {len(document['node'])}, links {len(document['link'])}, joints "
                   f"{len(document.get('slider', ())) + len(document.get('revolute', ()))}, "

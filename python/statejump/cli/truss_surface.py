@@ -11,7 +11,7 @@ import numpy as np
 from statejump.cli.terminal import QUIET, RESULTS, CaseFile, loaded, make_console, print_shown, undivided
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError
 from statejump.core.results_folder import Results
-from statejump.core.table_files import read_columns
+from statejump.core.table_files import SUFFIXES, read_columns
 from statejump.core.tables import Shown, write_columns, write_csv
 from statejump.core.units import plain
 
@@ -72,7 +72,7 @@ def surface_command(
     history: dict[str, np.ndarray] = {}
     case: Case | None = None
     try:
-        if file.suffix == ".csv":
+        if file.suffix.lower() in SUFFIXES:
             drawn, moved = told.read_nodes(file)
             design = surface.Design.of(drawn, (0, 0, 1) if axis is None else axis, focal_length)
             states, name = {"nodes": moved}, file.stem

@@ -112,6 +112,11 @@ class Case(Section):
         """What is to be known of the program: where it ends, if that is not at the reference temperature."""
         return () if self.ending is None else (self.ending.note,)
 
+    @property
+    def implausible(self) -> tuple[str, ...]:
+        """Values that are allowed and hardly meant, a sentence each."""
+        return ()
+
     def need_jump(self, what: str) -> None:
         """Raise StatejumpError for what needs a state jump where the program does not return."""
         if self.ending is not None and not self.ending.returns:
