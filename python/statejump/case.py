@@ -97,8 +97,16 @@ class Case:
         :raises StatejumpError: the kind has no DEM, YADE is missing or failed
         :raises Interrupted: Ctrl-C; its ``run`` has the samples so far
         """
-        self.definition.behaviour.ability("dem_input", self.definition)
+        self.check_dem()
         return self._run("dem", "DEM", progress)
+
+    def check_dem(self) -> None:
+        """Check what :meth:`dem` needs, as far as it is known before anything is solved.
+
+        :raises StatejumpError: the kind has no DEM, the DEM cannot represent a part, or YADE is missing
+        """
+        self.definition.behaviour.ability("dem_input", self.definition)
+        self.definition.behaviour.check_dem(self.definition)
 
     def _run(self, ability: str, label: str, progress: Progress) -> Run:
         from statejump.core.limits import check_memory

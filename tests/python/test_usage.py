@@ -123,3 +123,14 @@ def test_a_suffix_of_another_format(statejump: Callable[..., Outcome], tmp_path:
     assert (done.status, done.errors) == (
         2, f"error: --output = {words[-1]!r} is not allowed: the file must end with {suffixes}\n")
     assert not (tmp_path / words[-1]).exists()
+
+
+@pytest.mark.parametrize("words, why", [
+    (("compare", "trusses/chain_10"), "YADE is missing"), (("control", "--dem", "table1"), "YADE is missing"),
+    (("convergence", "table1"), "YADE is missing"), (("compare", "trusses/four_bar"), "error: case four_bar: drive 'motor'"),
+])
+def test_what_the_dem_needs_is_checked_first(statejump: Callable[..., Outcome], cases: Path, tmp_path: Path,
+                                             words: tuple[str, ...], why: str) -> None:
+    done = statejump(*words[:-1], cases / f"{words[-1]}.toml", STATEJUMP_YADE="no-such-yade")
+    assert (done.status, done.output) == (2, "") and why in done.errors
+    assert not (tmp_path / "results").exists()

@@ -79,7 +79,9 @@ def control_command(
     from statejump.control import plot
 
     console = make_console(quiet)
-    case = loaded(case_file, "control")
+    case = loaded(case_file, "control", *(["dem_input"] if with_dem else []))
+    if with_dem:
+        case.behaviour.check_dem(case)
     with results.folder(case.name, case) as folder:
         with undivided(console, "control") as tell:
             done: Study = case.behaviour.ability("control", case)(

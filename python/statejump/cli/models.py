@@ -173,6 +173,7 @@ def _compare_case(case_file: Path, dynamic: bool, finite: bool, results: Results
 
     case = Case(loaded(case_file, "compare", "dem_input", *(["dynamic"] if dynamic else []),
                        *(["fe"] if finite else [])))
+    case.check_dem()
     with results.folder(_folder_name(case, dynamic), case.definition) as folder:
         _check(case, folder, "reduced", "dem")
         with progress(console, "reduced model") as tell:

@@ -92,6 +92,14 @@ class Kind(Generic[CaseType]):
 
         return yade_process.run(case, self.dem_values(case), self.ability("dem_run", case), tell)
 
+    def check_dem(self, case: CaseType) -> None:
+        """Raise StatejumpError where the DEM cannot run a case, as far as that is known before anything is solved. A
+        kind whose scene needs a solution has its own."""
+        from statejump.core.yade_process import find_yade
+
+        self.dem_values(case)
+        find_yade()
+
     def dem_values(self, case: CaseType) -> dict[str, Any]:
         """Return what the script in YADE reads."""
         return {"scene": self.scene_module(), **self.ability("dem_input", case)(case)}

@@ -81,6 +81,13 @@ class Truss(Kind[TrussCase]):
 
         return dem.dem_input(case)
 
+    def check_dem(self, case: TrussCase) -> None:
+        from statejump.core.yade_process import find_yade
+        from statejump.kinds.truss import dem
+
+        dem.check(case)
+        find_yade()
+
     def dem(self, case: TrussCase, tell: Tell) -> Run:
         from statejump.kinds.truss import dem, result
 
