@@ -2,14 +2,20 @@
 """What a user meets on the first day: warnings of wrong units, names of files, choices that are printed."""
 from __future__ import annotations
 
+import copy
+import pickle
+import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import statejump as sj
-from conftest import Outcome
+from conftest import BUILT, Outcome
+from statejump.core.comparison import models
 
 TABLE1 = {"thermal.temperature_change_max_K": 200.0}
 RING = {"thermal.temperature_change_max_K": 150.0}
@@ -63,7 +69,6 @@ def test_a_reference_temperature_in_degrees(tmp_path: Path) -> None:
             f'lead_in_s = 5\nlead_out_s = 5\n{text[end:]}')
         with pytest.warns() as found:
             sj.load(tmp_path / "case.toml")
-            import warnings
             warnings.warn("the last one")
         assert len(found) == count + 1
         if count:
@@ -134,3 +139,147 @@ def test_what_the_dem_needs_is_checked_first(statejump: Callable[..., Outcome], 
     done = statejump(*words[:-1], cases / f"{words[-1]}.toml", STATEJUMP_YADE="no-such-yade")
     assert (done.status, done.output) == (2, "") and why in done.errors
     assert not (tmp_path / "results").exists()
+
+
+# ---------------------------------------------------------------- Python
+
+
+@pytest.mark.parametrize("name", ["table1", "umbrella_8", "ring_12"])
+def test_runs_are_pickled_and_saved(tmp_path: Path, name: str) -> None:
+    run = sj.load(name).reduced()
+    file = run.save(tmp_path / "run.h5")
+    again = sj.read(file).models["reduced"]
+    kept = pickle.loads(pickle.dumps(again))  # of a file as well
+    for other in (pickle.loads(pickle.dumps(run)), copy.deepcopy(run), again, kept):
+        assert other.definition == run.definition and other.summary == run.summary and other.events == run.events
+        for group in ("history", "energy", "links", "contacts"):
+            assert getattr(other, group).keys() == getattr(run, group).keys()
+            for key, column in getattr(run, group).items():
+                assert np.array_equal(getattr(other, group)[key].values, column.values, equal_nan=True), key
+        assert other.native is None and other.at(0.5).time_s == [0.5]
+    assert run.save(tmp_path / "other").name == "other.h5"
+    with pytest.raises(sj.StatejumpError, match=r"path = .*run.csv' is not allowed: the file must end with \.h5"):
+        run.save(tmp_path / "run.csv")
+
+
+def test_comparisons_are_pickled_and_saved(tmp_path: Path) -> None:
+    run = sj.load("table1").reduced()
+    rows = (models("state_jump", "m", 1.0, 1.5, 0.6), models("drift", "m", 0.0, None, 0.1))
+    both = sj.Comparison(run.definition, {"reduced": run, "dem": replace(run, model="dem")}, rows)
+    kept = pickle.loads(pickle.dumps(both))
+    assert (kept.rows, kept.passed, kept.case) == (both.rows, both.passed, both.case)
+    read = sj.read(both.save(tmp_path / "both.h5"))
+    assert set(read.models) == {"reduced", "dem"} and read.passed == both.passed
+    with pytest.raises(sj.StatejumpError, match="two runs of one model: a result file holds one run of a model"):
+        sj.compare(run, run).save(tmp_path / "two.h5")
+
+
+@pytest.mark.parametrize("name", ["table1", "umbrella", "ring_12", "latch_boom", "statics_slot", "umbrella_8"])
+def test_cases_are_written_as_toml(tmp_path: Path, name: str) -> None:
+    case = sj.load(name)
+    changed = case.changed({"thermal.temperature_change_max_K": 12.5}) if "thermal" in dir(case) else case
+    (tmp_path / "text.toml").write_text(changed.to_toml())
+    for file in (tmp_path / "text.toml", changed.save(tmp_path / "saved")):
+        assert sj.load(file) == changed and sj.load(file) != case.changed({"case.title": "another"})
+    with pytest.raises(sj.StatejumpError, match=r"the file must end with \.toml"):
+        case.save(tmp_path / "case.json")
+
+
+def test_a_case_with_histories_of_members_is_written(tmp_path: Path) -> None:
+    chain = sj.truss.chain(2).to_dict()
+    names = [link["name"] for link in chain["link"]]
+    (tmp_path / "day.csv").write_text("time_s," + ",".join(f"{name}_K" for name in names) + "\n0" + ",293" * len(names)
+                                      + "\n10" + ",313.25" * len(names) + "\n20" + ",293" * len(names) + "\n")
+    text = sj.truss.chain(2).to_toml()
+    begin = text.index("[thermal]")
+    end = text.find("\n[", begin + 1)
+    (tmp_path / "case.toml").write_text(
+        f'{text[:begin]}[thermal]\nshape = "table"\nmembers_file = "day.csv"\nreference_temperature_K = 293.0\n'
+        + (text[end:] if end > 0 else ""))
+    case = sj.load(tmp_path / "case.toml")
+    (tmp_path / "there").mkdir()
+    assert sj.load(case.save(tmp_path / "there" / "mine.toml")) == case
+    with pytest.raises(sj.StatejumpError, match=r"save\(\) writes a file beside it"):
+        case.to_toml()
+
+
+def test_names_that_are_not_there_are_suggested() -> None:
+    run = sj.load("table1").reduced()
+    for get, sentence in (
+        (lambda: run.column("displacement_m"),
+         "column 'displacement_m' is unknown: did you mean history/displacement_m?"),
+        (lambda: run.column("history/displacment_m"),
+         "column 'history/displacment_m' is unknown: did you mean history/displacement_m?"),
+        (lambda: run["gap_m"], "column 'gap_m' is unknown: did you mean contacts/gap_m?"),
+        (lambda: run.history["dispalcement_m"], "column 'dispalcement_m' is unknown: did you mean displacement_m?"),
+        (lambda: run.summary["state_jump"], "number 'state_jump' is unknown: did you mean state_jump_m?"),
+        (lambda: run.frame(["histroy"]), "group 'histroy' is unknown: did you mean history?"),
+    ):
+        with pytest.raises(sj.StatejumpError) as failure:
+            get()
+        assert str(failure.value) == sentence
+    with pytest.raises(KeyError):
+        run["nothing"]
+    assert np.array_equal(run["history/displacement_m"], run["displacement_m"])
+    assert run["contacts/gap_m"].shape == (len(run), 3)
+
+
+def test_a_run_at_one_time() -> None:
+    for run in (sj.load("table1").reduced(), sj.load("chain_10").reduced()):
+        assert run.at(0.5).time_s.tolist() == [0.5] == run.at([0.5]).time_s.tolist() == run.at(np.float32(0.5)).time_s
+        for wrong in ("now", None, [[0.1]], float("nan")):
+            with pytest.raises(sj.StatejumpError, match="times_s is not allowed: must be a time or a list of times"):
+                run.at(wrong)  # type: ignore[arg-type]
+
+
+def test_numbers_of_numpy() -> None:
+    case = sj.load("ring_12")
+    changed = case.changed({
+        "revolute.*.friction_coefficient": np.float32(0.25), "thermal.cycles": np.int64(2),
+        "thermal.return_to_reference": np.bool_(True), "node.hub.position_m": np.zeros(2, np.float32)})
+    assert changed["revolute.*.friction_coefficient"] == 0.25 and type(changed.thermal.cycles) is int
+    assert sj.load({**case.to_dict(), "output": {"samples_per_cycle": np.int32(50)}})["output.samples_per_cycle"] == 50
+    assert sj.truss.ring(np.int64(6), radial_clearance_m=np.float64(2e-5))["revolute.*.radial_clearance_m"] == 2e-5
+    table = sj.load("table1")
+    for values in (0.25, np.float32(0.25), [0.25], (np.float64(0.25),), np.array(0.25)):
+        frame = sj.sweep(table, {"joint.friction_coefficient": values}).frame()
+        assert frame["joint.friction_coefficient"].tolist() == [0.25]
+    drawn = sj.montecarlo(table, {"joint.friction_coefficient": {
+        "distribution": "uniform", "low": np.float32(0.25), "high": np.float64(0.5)}}, samples=2)
+    assert drawn.failed == 0
+    with pytest.raises(sj.StatejumpError, match="0.3 is not allowed: must be a dict, as"):
+        sj.montecarlo(table, {"joint.friction_coefficient": 0.3})  # type: ignore[dict-item]
+
+
+def test_patterns_of_items() -> None:
+    case = sj.load("ring_12").changed({"revolute.joint1*.friction_coefficient": 0.25})
+    own = sj.load("ring_12")["revolute.joint0.friction_coefficient"]
+    assert [item.friction_coefficient == 0.25 for item in case.revolute] == [
+        item.name in ("joint1", "joint10", "joint11") for item in case.revolute] and own != 0.25
+    assert case["revolute.joint1?.friction_coefficient"] == 0.25
+    with pytest.raises(sj.StatejumpError, match="has several values"):
+        case["revolute.joint*.friction_coefficient"]
+    with pytest.raises(sj.StatejumpError) as failure:
+        case.changed({"revolute.jiont*.friction_coefficient": 0.1})
+    assert str(failure.value).endswith("revolute.jiont*.friction_coefficient is unknown: no revolute has a name that fits "
+                                       "'jiont*'; their names are joint0, joint1, joint2, joint3, joint4, ...")
+    key = "revolute.joint1*.friction_coefficient"
+    jumps = sj.sweep(case, {key: [0.25, 0.3]}).frame()
+    one_by_one = [case.changed({key: value}).reduced().summary["largest_jump_m"] for value in (0.25, 0.3)]
+    assert jumps["largest_node_jump_m"].tolist() == pytest.approx(one_by_one, rel=1e-12)
+    random = sj.montecarlo(case, {key: {"distribution": "normal", "relative": 0.1}}, samples=2)
+    assert len(random.plan.vary[0].items) == 3
+    with pytest.raises(sj.StatejumpError, match="it varies already"):
+        sj.sweep(case, {key: [0.25], "revolute.joint10.friction_coefficient": [0.3]})
+
+
+def test_what_completion_offers() -> None:
+    offered = [name for name in dir(sj.load("table1")) if not name.startswith("_")]
+    assert {"joint", "link", "thermal", "tolerance", "save", "changed"} <= set(offered)
+    assert {"node", "revolute", "reflector"} <= set(dir(sj.load("ring_12")))
+    for module in (sj.truss, sj.surface, sj.fclib, sj.laws):
+        assert dir(module) == sorted(module.__all__)
+
+
+def test_types_are_announced() -> None:
+    assert (BUILT / "statejump" / "py.typed").is_file()  # without it programs that check types see none (PEP 561)

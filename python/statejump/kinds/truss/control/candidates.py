@@ -16,7 +16,7 @@ from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.references import known_name
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.fields import rule_of
-from statejump.schema.paths import EVERY, attribute_of, split_path
+from statejump.schema.paths import EVERY, attribute_of, meant, split_path
 from statejump.schema.rules import suggestion
 
 PER_DECADE = 3
@@ -117,11 +117,12 @@ def _scaled(case: TrussCase, path: str) -> Candidate:
         paths = [f"{of}.{EVERY}.{name}" for of, name in known]
         raise UnknownKey("--scale", value=path, **suggestion(path, paths))
     names = [one.name for one in getattr(case, section)]
-    if item != EVERY and item not in names:
+    wanted = set(meant(item, names))
+    if not wanted:
         cause = None if names else f"the case has no [[{section}]]"
         raise UnknownKey("--scale", value=path, **({"cause": cause} if cause else suggestion(item, names)))
     values = known[section, key]
-    which = _has_value(values) & (np.array([item in (EVERY, name) for name in names], dtype=bool))
+    which = _has_value(values) & (np.array([name in wanted for name in names], dtype=bool))
     if not which.any():
         raise NotAllowed("--scale", path, "it has no value but 0 in this case: there is nothing to scale")
     sizes, allowed = np.abs(values[which]), rule_of(attribute_of(TrussCase, f"{section}.{EVERY}.{key}")).allowed
