@@ -16,6 +16,7 @@ import pytest
 import statejump as sj
 from conftest import BUILT, Outcome
 from statejump.core.comparison import models
+from statejump.core.run import Events
 
 TABLE1 = {"thermal.temperature_change_max_K": 200.0}
 RING = {"thermal.temperature_change_max_K": 150.0}
@@ -283,3 +284,25 @@ def test_what_completion_offers() -> None:
 
 def test_types_are_announced() -> None:
     assert (BUILT / "statejump" / "py.typed").is_file()  # without it programs that check types see none (PEP 561)
+
+
+def test_a_workbook(statejump: Callable[..., Outcome], tmp_path: Path) -> None:
+    openpyxl = pytest.importorskip("openpyxl")
+    run = sj.load("table1").reduced()
+    run = replace(run, events=Events([*run.events, sj.Event("slip", 1.0, 0.0, "=1+1")]),
+                  summary={**run.summary, "never_s": float("nan")})
+    run.save(tmp_path / "run.h5")
+    done = statejump("export", "run.h5", "--format", "xlsx", "--to", "sheets")
+    assert done.status == 0, done.errors
+    book = openpyxl.load_workbook(tmp_path / "sheets" / "run.xlsx")
+    assert book.sheetnames == ["reduced summary", "reduced events", "reduced history"]
+    rows = [[cell.value for cell in row] for row in book["reduced history"].iter_rows()]
+    columns = run.flat()
+    assert rows[0] == list(columns) and len(rows) == len(run) + 1
+    for place, values in enumerate(columns.values()):  # 16 digits: half a unit of the last one is 5e-16
+        read = [row[place] for row in rows[1:]]
+        assert read == (values.tolist() if values.dtype.kind == "U" else pytest.approx(values.tolist(), rel=1e-15, abs=0))
+    last = list(book["reduced events"].iter_rows())[-1]
+    assert (last[3].value, last[3].data_type) == ("=1+1", "s")  # a name is no formula
+    summary = {row[0].value: row[2].value for row in book["reduced summary"].iter_rows()}
+    assert summary["state_jump_m"] == pytest.approx(run.summary["state_jump_m"], rel=1e-15) and summary["never_s"] is None
