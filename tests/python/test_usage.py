@@ -15,6 +15,7 @@ import pytest
 
 import statejump as sj
 from conftest import BUILT, Outcome
+from statejump.campaign.summary import statistics
 from statejump.core.comparison import models
 from statejump.core.run import Events
 
@@ -306,3 +307,23 @@ def test_a_workbook(statejump: Callable[..., Outcome], tmp_path: Path) -> None:
     assert (last[3].value, last[3].data_type) == ("=1+1", "s")  # a name is no formula
     summary = {row[0].value: row[2].value for row in book["reduced summary"].iter_rows()}
     assert summary["state_jump_m"] == pytest.approx(run.summary["state_jump_m"], rel=1e-15) and summary["never_s"] is None
+
+
+def test_extremes_name_their_samples() -> None:
+    found = statistics(np.array([np.nan, 2.0, -3.0, np.inf, 5.0, 5.0]))
+    assert (found["minimum"], found["minimum_sample"], found["maximum"], found["maximum_sample"]) == (-3.0, 2, 5.0, 4)
+    assert statistics(np.array([np.nan]))["maximum_sample"] is None
+    swept = sj.sweep(sj.load("table1"), {"joint.friction_coefficient": [0.1, 0.3, 0.2]})
+    table = swept.told()[0]
+    assert not isinstance(table, str)
+    row = dict(zip(table.header[-3:], next(row for row in table.rows if row[0] == "state_jump_m")[-3:]))
+    assert table.header[-2:] == ("largest", "in sample") and row["in sample"] == "1"
+    assert swept.frame()["state_jump_m"].idxmax() == 1
+
+
+def test_no_key_is_named_best_unless_it_is_free() -> None:
+    chain, said = sj.truss.chain(2), "--free KEY"
+    found = sj.truss.control(chain, node="N2", jump_below=1e-4)
+    assert "best_scale" not in found.recommendation and said in found.sentences[-1]
+    found = sj.truss.control(chain, node="N2", scale=["slider.*.friction_coefficient", "slider.*.normal_force_N"])
+    assert found.recommendation["best_scale"].startswith("scale slider.*.") and said not in found.sentences[-1]

@@ -144,5 +144,8 @@ def _repeatability(samples: Path, column: str, share: float, length_m: float) ->
         raise NotAllowed("--column", column, f"must be one of {', '.join(lengths)}" if lengths
                          else "no column of it is a length [m]", file=samples)
     found = repeatability(columns[column], length_m, share)
+    size = np.abs(columns[column])
+    worst = int(np.nanargmax(size))
     return (f"repeatability of {column}: {found.um_per_m:.4g} µm/m at {100 * share:g} % of {found.samples:,} samples, "
-            f"95 % interval {found.low:.4g} to {found.high:.4g} µm/m, over {length_m:.4g} m")
+            f"95 % interval {found.low:.4g} to {found.high:.4g} µm/m, over {length_m:.4g} m; "
+            f"largest {1e6 * size[worst] / length_m:.4g} µm/m, in sample {worst}")
