@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import copy
 import pickle
+import re
+import time
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
@@ -18,6 +20,7 @@ from conftest import BUILT, Outcome
 from statejump.campaign.summary import statistics
 from statejump.core.comparison import models
 from statejump.core.run import Events
+from statejump.report.words import of_kind
 
 TABLE1 = {"thermal.temperature_change_max_K": 200.0}
 RING = {"thermal.temperature_change_max_K": 150.0}
@@ -327,3 +330,20 @@ def test_no_key_is_named_best_unless_it_is_free() -> None:
     assert "best_scale" not in found.recommendation and said in found.sentences[-1]
     found = sj.truss.control(chain, node="N2", scale=["slider.*.friction_coefficient", "slider.*.normal_force_N"])
     assert found.recommendation["best_scale"].startswith("scale slider.*.") and said not in found.sentences[-1]
+
+
+def test_wall_time_includes_start_and_figures(statejump_process: Callable[..., Outcome], cases: Path) -> None:
+    began = time.monotonic()
+    done = statejump_process("sweep", cases / "campaigns" / "table1_friction.toml")
+    took = time.monotonic() - began
+    said = float(re.search(r"wall time: ([\d.]+) s, start and figures included", done.output)[1])  # type: ignore[index]
+    samples = float(re.search(r"samples in ([\d.]+) s on", done.output)[1])  # type: ignore[index]
+    # A tick of the kernel's clock is 0.01 s, the line has a tenth; behind it the process only ends.
+    assert samples < said <= took + 0.06 and said > 0.3
+
+
+def test_names_on_a_page_are_those_that_users_gave() -> None:
+    truss, rib = of_kind("truss"), of_kind("umbrella")
+    for name in ("joint_a", "N10", "slider_left"):
+        assert truss.named(name) == truss.named(name, True) == name
+    assert rib.named("link_xy") == "Link xy" and rib.named("link_xy", True) == "link xy"

@@ -112,6 +112,10 @@ class Kind(Generic[CaseType]):
         """Return the models that campaigns run."""
         return tuple(model for model in self.OUTCOMES_OF if self.has_model(model))
 
+    def outcome_names(self, case: CaseType) -> tuple[str, ...]:
+        """Return the names of ``OUTCOMES`` that a case can have."""
+        return self.OUTCOMES
+
     def recorded(self, case: CaseType, run: Run) -> dict[str, float]:
         """Return the outcomes of a run, and where its program ends if that is not at the reference temperature."""
         found: dict[str, float] = self.ability("outcomes", case)(case, run)
