@@ -260,16 +260,14 @@ class Run:
         """Return the run at other times [s], one or several: exact where the model can tell, else linear between
         samples, labels those of the sample before. :raises NotAllowed: they are no finite numbers"""
         try:
-            times_s = np.atleast_1d(np.asarray(times_s, dtype=float))
+            asked = np.atleast_1d(np.asarray(times_s, dtype=float))
         except (TypeError, ValueError):
-            times_s = np.array([np.nan])
-        if times_s.ndim != 1 or not np.isfinite(times_s).all():
+            asked = np.array([np.nan])
+        if asked.ndim != 1 or not np.isfinite(asked).all():
             raise NotAllowed("times_s", ABSENT, "must be a time or a list of times [s]")
-        if np.array_equal(self.time_s, times_s):
+        if np.array_equal(self.time_s, asked):
             return self
-        if self.sampler is not None:
-            return self.sampler(times_s)
-        return self._interpolated(np.asarray(times_s, dtype=float))
+        return self._interpolated(asked) if self.sampler is None else self.sampler(asked)
 
     def _interpolated(self, times_s: np.ndarray) -> Run:
         before = np.clip(np.searchsorted(self.time_s, times_s, side="right") - 1, 0, len(self.time_s) - 1)

@@ -227,7 +227,7 @@ class UmbrellaCase(Case):
     def implausible(self) -> tuple[str, ...]:
         names, links, joint = ("AB", "BC"), (self.link_ab, self.link_bc), self.joint
         modulus = np.array([link.young_modulus_Pa for link in links])
-        change = max(map(abs, self.temperature_range_K))
+        change = max(abs(end) for end in self.temperature_range_K)
         strain = np.array([abs(link.thermal_expansion_per_K) for link in links]) * change
         return (*plausibility.clearances("joint", ["B"], np.array([joint.radial_clearance_m]),
                                          np.array([joint.journal_radius_m])),
