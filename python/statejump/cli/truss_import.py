@@ -51,6 +51,13 @@ def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) ->
     return {"thermal": {"shape": "table", "members_file": beside, **said}, "reduced": {"increments_per_branch": 1}}
 
 
+def _refuse_units(file: Path, given: dict[str, str | float | None]) -> None:
+    """Refuse options for the units of a file that names its own."""
+    for option, value in given.items():
+        if value not in (None, "SI"):
+            raise NotAllowed(option, value, "columns of tables name their units", file=file)
+
+
 def _units(system: str | None, length: float | None, force: float | None) -> Units:
     from statejump.kinds.truss.importing import SYSTEMS, Units
 
@@ -139,9 +146,7 @@ def import_command(
     deck = read(file, form, bars, Options(frozenset(name.lstrip("*").upper() for name in ignored), beams_as_bars, step,
                                           circ))
     if deck.named_units:
-        for option, value in (("--units", units), ("--length-unit", length_unit), ("--force-unit", force_unit)):
-            if value not in (None, "SI"):
-                raise NotAllowed(option, value, "columns of tables name their units", file=file)
+        _refuse_units(file, {"--units": units, "--length-unit": length_unit, "--force-unit": force_unit})
     document = case_document(
         deck, folder_name(output.stem), units=_units(units, length_unit, force_unit),
         temperature_change_K=temperature_change, density_kg_per_m3=density,

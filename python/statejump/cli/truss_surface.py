@@ -81,8 +81,8 @@ def surface_command(
                 if given is not None:
                     raise NotAllowed(option, beside="beside a case", cause="its section [reflector] says it")
             case = loaded(file, "reduced")
-            design, states, history = _of_case(case, measure, console)
             name, notes = case.name, list(case.thermal_notes)
+            design, states, history = _of_case(case, measure, console)
         tables = {state: [*told.state_rows(design, moved, measure, direction), *told.zernike_rows(design, moved, terms)]
                   for state, moved in states.items()}
         shown: list[Shown | str] = [_shown("drawn surface", told.design_rows(design))]
@@ -103,9 +103,8 @@ def surface_command(
         write_csv(path, ("state", *told.HEADER), [(state, *row) for state, rows in tables.items() for row in rows])
         written = [path]
         if history:
-            path = folder.staged / "surface_history.csv"
-            write_columns(history, path)
-            written.append(path)
+            written.append(folder.staged / "surface_history.csv")
+            write_columns(history, written[-1])
         written = folder.publish(written)
     print_shown(shown, console)
     console.print(f"results: {', '.join(str(path) for path in written)}")
