@@ -137,13 +137,14 @@ def identify(
 
 
 def sweep(
-    case: Case, values: Mapping[str, Sequence[float] | Mapping[str, Any]], *, model: str = "reduced",
+    case: Case, values: Mapping[str, float | Sequence[float] | Mapping[str, Any]], *, model: str = "reduced",
     workers: int | None = None, progress: Progress = False, outputs: Sequence[str] = (),
 ) -> Campaign:
     """Run a case on a grid of its parameters.
 
-    :param values: values by key: ``section.key``, ``section.item.key`` of an item of a list, ``section.*.key``; or of
-        a key what a ``[[vary]]`` table says, as ``{"start": 0.1, "stop": 1, "count": 10, "spacing": "log"}``
+    :param values: values by key, one or several: ``section.key``, ``section.item.key`` of an item of a list,
+        ``section.*.key`` or ``section.joint*.key`` of all that fit; or of a key what a ``[[vary]]`` table says, as
+        ``{"start": 0.1, "stop": 1, "count": 10, "spacing": "log"}``
     :param model: ``reduced`` or ``dem``
     :param workers: processes; None: one for each core, or none of their own where the grid is small
     :param outputs: more to record of every run, as ``jump:displacement_m[P].x``: end, jump, max, min or range of any

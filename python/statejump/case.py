@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from statejump.core.case import Case as Definition
+from statejump.schema.fields import fields_of
 
 if TYPE_CHECKING:
     from statejump.core.run import Run
@@ -46,6 +48,10 @@ class Case:
             raise AttributeError(name)
         return getattr(self.definition, name)
 
+    def __dir__(self) -> list[str]:
+        model = type(self.definition)
+        return sorted({*super().__dir__(), *fields_of(model)}.difference(model.NOT_IN_FILE))
+
     def __getitem__(self, path: str) -> Any:
         """Return the value of ``section.key``, or of ``section.item.key`` of an item of a list.
 
@@ -63,11 +69,31 @@ class Case:
         """Return sections and keys with all defaults, as a dict that :func:`statejump.load` takes."""
         return self.definition.as_file()
 
+    def to_toml(self) -> str:
+        """Return the case as the text of a case file, with the keys that were given and without defaults.
+
+        :raises NotAllowed: it holds the histories of members, which stand in a file of their own
+        """
+        from statejump.core.case_files import text_of
+
+        return text_of(self.definition)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the case as a case file, histories of members as a table beside it; return its path.
+
+        :raises NotWritten: it cannot be written
+        :raises NotAllowed: the name does not end with ``.toml``
+        """
+        from statejump.core.case_files import save
+
+        return save(self.definition, Path(path))
+
     def changed(self, changes: Mapping[str, Any]) -> Case:
         """Return the case with other values, checked as a whole.
 
         :param changes: value by key: ``section.key`` as in the case file, ``section.item.key`` of an item of a
-            list, ``section.*.key`` of all of them; None takes a key away, so that its default holds
+            list, ``section.*.key`` of all of them, ``section.joint*.key`` of those that fit; None takes a key away, so
+            that its default holds
         :raises StatejumpError: there is no such key, or the case is not allowed with these values
         """
         return Case(self.definition.changed(changes))
@@ -97,8 +123,16 @@ class Case:
         :raises StatejumpError: the kind has no DEM, YADE is missing or failed
         :raises Interrupted: Ctrl-C; its ``run`` has the samples so far
         """
-        self.definition.behaviour.ability("dem_input", self.definition)
+        self.check_dem()
         return self._run("dem", "DEM", progress)
+
+    def check_dem(self) -> None:
+        """Check what :meth:`dem` needs, as far as it is known before anything is solved.
+
+        :raises StatejumpError: the kind has no DEM, the DEM cannot represent a part, or YADE is missing
+        """
+        self.definition.behaviour.ability("dem_input", self.definition)
+        self.definition.behaviour.check_dem(self.definition)
 
     def _run(self, ability: str, label: str, progress: Progress) -> Run:
         from statejump.core.limits import check_memory

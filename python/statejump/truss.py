@@ -26,6 +26,7 @@ from statejump.core.progress import shown
 from statejump.kinds.loading import parse_case
 from statejump.kinds.truss import generate
 from statejump.kinds.truss.generate.document import Document
+from statejump.schema.paths import plain
 from statejump.schema.rules import WHOLE, Rule
 
 if TYPE_CHECKING:
@@ -51,8 +52,9 @@ def _making(document: Callable[Keys, Document]) -> Callable[Keys, Case]:
 
     @wraps(document)
     def make(*given: Keys.args, **keys: Keys.kwargs) -> Case:
-        number.check("n", inspect.signature(document).bind(*given, **keys).arguments["n"])
-        return Case(parse_case(document(*given, **keys)))
+        bound = inspect.signature(document).bind(*plain(given), **plain(keys))
+        number.check("n", bound.arguments["n"])
+        return Case(parse_case(document(*bound.args, **bound.kwargs)))
 
     make.__module__ = __name__
     make.__signature__ = inspect.signature(document).replace(return_annotation="Case")  # type: ignore[attr-defined]
@@ -148,3 +150,7 @@ def control(
     with shown(progress, "control") as tell:
         found: Study = ability(asked, jump_below=jump_below, tell=tell, places=Places(node, add_spring, scale))
     return found
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

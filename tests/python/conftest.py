@@ -30,6 +30,11 @@ class Outcome:
     errors: str
 
 
+def results_in(folder: Path) -> list[str]:
+    """Return the names of the results in a folder: without the file that says whose they are."""
+    return sorted(entry.name for entry in folder.iterdir() if entry.name != ".case.json")
+
+
 def sealed(path: Path) -> Path:
     """Give a changed HDF5 file the checksum of what it holds now: what comes behind the checksum is tested."""
     from statejump.core.hdf5 import HEAD_BYTES, head

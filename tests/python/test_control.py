@@ -11,6 +11,7 @@ import click
 import numpy as np
 import pytest
 
+from conftest import results_in
 from statejump.cli.control import control_command
 from statejump.control import plot as control_plot, study as control_study
 from statejump.control.study import Study
@@ -296,7 +297,7 @@ def test_bisect_narrows_from_both_sides() -> None:
 def test_files_hold_units_numbers_and_marks(table1, cases: Path, tmp_path: Path, capsys) -> None:
     command(cases / "table1.toml", "--jump-below", 5e-6, "--results", tmp_path)
     folder = tmp_path / "table1"
-    assert sorted(path.name for path in folder.iterdir()) == [
+    assert results_in(folder) == [
         "control.csv", "control.json", "control.png", "control.svg"]
     with (folder / "control.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))

@@ -91,7 +91,7 @@ def test_command(statejump: Callable[..., Outcome], cases: Path, tmp_path: Path)
     done = statejump("fclib", "write", case, "--number", 5)
     assert done.status == 0, done.errors
     assert "5 problems of 10 contacts at most" in done.output
-    files = sorted((tmp_path / "results" / "chain_10" / "fclib").iterdir())
+    files = sorted((tmp_path / "results" / "chain_10" / "fclib").glob("*.hdf5"))
     assert [file.name for file in files] == [f"step_{k}.hdf5" for k in range(1, 6)]
     solved = statejump("fclib", "solve", files[2])
     assert solved.status == 0 and "stored solution: merit" in solved.output, solved.errors

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from conftest import COMMAND
+from conftest import COMMAND, results_in
 from statejump.core import output, results_folder, scratch
 from statejump.core.errors import NotWritten
 from statejump.core.output import write_atomically, write_bytes
@@ -105,7 +105,7 @@ def test_nothing_appears_if_one_thing_fails(tmp_path: Path, monkeypatch: pytest.
                 write_bytes(folder.staged / name, b"")
             monkeypatch.setattr(os, call, failing)
             folder.publish()
-    assert names(tmp_path / "case") == []
+    assert not (tmp_path / "case").exists()
 
 
 def test_a_folder_in_the_place_of_a_file(tmp_path: Path) -> None:
@@ -190,7 +190,7 @@ def test_two_commands_at_once(cases: Path, tmp_path: Path) -> None:
     for run in runs:
         _, errors = run.communicate(timeout=120)
         assert (run.returncode, errors) == (0, "")
-    assert names(tmp_path / "results" / "table1") == ["reduced.h5", "reduced_history.csv"]
+    assert results_in(tmp_path / "results" / "table1") == ["reduced.h5", "reduced_history.csv"]
 
 
 def test_space_is_asked_for(tmp_path: Path) -> None:
@@ -261,3 +261,57 @@ def test_scratch_of_killed_runs_goes(tmp_path: Path, monkeypatch: pytest.MonkeyP
         with scratch.scratch() as other:
             assert names(tmp_path) == sorted([held.name, other.name, f"{scratch.PREFIX}young"])
     assert names(tmp_path) == [f"{scratch.PREFIX}young"]
+
+
+def copied(cases: Path, path: Path, *replacements: tuple[str, str]) -> Path:
+    text = (cases / "table1.toml").read_text()
+    for old, new in replacements:
+        assert old in text
+        text = text.replace(old, new)
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(text)
+    return path
+
+
+def test_a_copied_case_does_not_replace_results(statejump, cases: Path, tmp_path: Path) -> None:
+    changed = ("friction_coefficient = 0.3", "friction_coefficient = 0.2")
+    assert statejump("reduced", cases / "table1.toml").status == 0
+    file = tmp_path / "results" / "table1" / "reduced_history.csv"
+    before = file.read_bytes()
+    # a copy that says the same is the same case, also from another folder
+    assert statejump("reduced", copied(cases, tmp_path / "a" / "table1.toml")).status == 0
+    assert file.read_bytes() == before
+    # an edited file replaces its own results
+    mine = copied(cases, tmp_path / "a" / "table1.toml", changed)
+    assert statejump("reduced", mine).status == 0
+    assert file.read_bytes() != before
+    other = copied(cases, tmp_path / "b" / "table1.toml")
+    after = file.read_bytes()
+    for command in (("reduced",), ("dem",), ("compare",), ("fe",), ("control",), ("convergence",)):
+        refused = statejump(*command, other)
+        assert (refused.status, file.read_bytes()) == (2, after), command
+        assert refused.errors == (
+            "error: results folder results/table1: holds results of another case: a/table1.toml has the same case.name; "
+            "change case.name, choose another folder with --results, or replace them with --force\n")
+    assert statejump("reduced", other, "--force").status == 0 and file.read_bytes() == before
+    assert statejump("reduced", other).status == 0
+
+
+def test_a_folder_within_that_of_another_case_is_refused(statejump, cases: Path, tmp_path: Path) -> None:
+    assert statejump("truss", "draw", cases / "trusses" / "chain_10.toml").status == 0
+    copy = tmp_path / "copy.toml"
+    copy.write_text((cases / "trusses" / "chain_10.toml").read_text().replace("title = \"", "title = \"My "))
+    refused = statejump("fclib", "write", copy, "--number", 1)
+    assert refused.status == 2 and "results/chain_10: holds results of another case" in refused.errors
+    assert not (tmp_path / "results" / "chain_10" / "fclib").exists()
+
+
+def test_refused_commands_leave_no_folders(statejump, cases: Path, tmp_path: Path) -> None:
+    for words in (("truss", "answers", cases / "trusses" / "ring_12.toml", "--output", "node:none"),
+                  ("control", cases / "trusses" / "ring_12.toml", "--node", "none"),
+                  ("reduced", cases / "table1.toml", "--dynamic")):
+        assert statejump(*words, "--results", "new/one").status == 2
+        assert names(tmp_path) == [], words
+    (tmp_path / "old").mkdir()
+    assert statejump("control", cases / "trusses" / "ring_12.toml", "--node", "none", "--results", "old").status == 2
+    assert names(tmp_path) == ["old"] and names(tmp_path / "old") == []

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from conftest import REPOSITORY
+from conftest import REPOSITORY, results_in
 import statejump as sj
 from statejump import _engine
 from statejump.cli.statics import statics_command
@@ -180,7 +180,7 @@ def test_command(kind: str, tmp_path: Path) -> None:
     names = {"statics.json", f"statics_{kind}.png", f"statics_{kind}.svg"}
     if kind in ("ball", "cylinder"):
         names.add(f"statics_{kind}.vtp")
-    assert {path.name for path in folder.iterdir()} == names
+    assert set(results_in(folder)) == names
     assert "largest jump [m]" in output
     first = {path.name: path.read_bytes() for path in folder.iterdir()}
     run(CASES / f"statics_{kind}.toml", tmp_path / "again")

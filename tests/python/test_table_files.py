@@ -2,6 +2,7 @@
 """Tables as spreadsheets and test rigs write them: one content in many spellings, and what is ambiguous refused."""
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -14,7 +15,9 @@ import statejump as sj
 from statejump.core.column_units import conversion
 from statejump.core.errors import StatejumpError
 from statejump.core.table_files import open_table, read_columns, read_known
+from statejump.core.temperature_columns import read_columns as temperatures_of
 from statejump.identification.loop import COLUMNS, WORDS
+from statejump.kinds.loading import load_case
 from statejump.kinds.truss.importing.tables import read as read_deck
 from statejump.surface.told import read_nodes
 
@@ -123,9 +126,12 @@ def test_what_is_ambiguous_is_one_sentence(sentence: str, tmp_path: Path) -> Non
 
 
 def test_text_in_another_code_page_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "a.csv").write_bytes("Kraft [N],Länge [m]\n1,2\n".encode("cp1252"))
-    with pytest.raises(StatejumpError, match="not CSV: the file is not UTF-8 text"):
-        read_columns(tmp_path / "a.csv")
+    for page in ("cp437", "cp850", "mac_roman"):
+        (tmp_path / "a.csv").write_bytes("Kraft [N],Länge [m]\n1,2\n".encode(page))
+        with pytest.raises(StatejumpError, match="not CSV: the file is not UTF-8 text"):
+            read_columns(tmp_path / "a.csv")
+    (tmp_path / "a.csv").write_bytes("Kraft [N],Länge [m]\n1,2\n".encode("cp1252"))  # as Excel of western Europe writes it
+    assert list(read_columns(tmp_path / "a.csv")) == ["Kraft [N]", "Länge [m]"]
 
 
 def test_a_decimal_comma_may_come_late(tmp_path: Path) -> None:
@@ -164,3 +170,46 @@ def test_pint_is_not_loaded_without_need(tmp_path: Path) -> None:
          f"read_known(Path({str(tmp_path / 'own.csv')!r}), ('time_s', 'displacement_m', 'force_N'))\n"
          "print('pint' in sys.modules)"], capture_output=True, text=True, check=True)
     assert told.stdout == "False\n"
+
+
+@pytest.mark.parametrize("content", [
+    b"# time_s,A_K\n0.0,1.5\n10.0,2\n",  # numpy.savetxt
+    b"# made by a logger\n# time_s A_K\n0.0 1.5\n10.0 2\n", b"% run 7\ntime_s,A_K\n0,1.5\n10,2\n",
+    b"\xef\xbb\xbf# time_s;A_K\n0;1,5\n10;2\n",
+    b"Time,A\ns,K\n0,1.5\n10,2\n", b"Time;A\n[s];[K]\n0;1,5\n10;2\n", b"time_s,A\n,(K)\n0,1.5\n10,2\n",
+    b",time_s,A_K\n0,0,1.5\n1,10,2\n", b'"","time_s","A_K"\n"1",0,1.5\n"2",10,2\n',  # pandas, R
+    b"#,time_s,A_K\n1,0,1.5\n2,10,2\n",
+    b"A_K,time_s\n1.5,0\n2,10\n",  # the time in another column
+    b"time_s,A_K\n0.0D+00,1.5D0\n1.0d+01,2\n",  # Fortran
+])
+def test_tables_as_programs_write_them(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "a.csv").write_bytes(content)
+    found = temperatures_of(tmp_path / "a.csv", "thermal.table_file")
+    assert (found.names, found.time_s.tolist(), found.values.tolist()) == (("A",), [0, 10], [[1.5], [2]])
+
+
+@pytest.mark.parametrize("content, said", [
+    (b"time_s,A_K\nh,K\n0,1.5\n10,2\n", "line 2, column 'A_K': 'K' is not a finite number"),
+    (b"Time,A\ns,furlong-ish\n0,1\n1,2\n", "column 'A': it names no unit of temperature"),
+    (b",time_s,A_K\n0.5,0,1\n1.5,1,2\n", "line 2: column 1 has no name: and does not count the rows"),
+    (b",time_s,A_K\n0,0,1\n2,1,2\n", "line 3: column 1 has no name: and does not count the rows"),
+    (b"# c\n# time_s,A_K\n0,1\n1,x\n", "line 4, column 'A_K': 'x' is not a finite number"),
+    (b"Time,A\ns,K\n0,1\n1,x\n", "line 4, column 'A [K]': 'x' is not a finite number"),
+    (b"# time_s,A_K\n", "line 1: there is no column"),
+    ("time_s,Tr\xe4ger_K\n0,1\n1,2\u20ac\n".encode("cp1252"), "the file is not UTF-8 text"),
+])
+def test_tables_that_stay_refused(tmp_path: Path, content: bytes, said: str) -> None:
+    (tmp_path / "a.csv").write_bytes(content)
+    with pytest.raises(StatejumpError, match=re.escape(said)):
+        temperatures_of(tmp_path / "a.csv", "thermal.table_file")
+
+
+def test_names_in_the_code_page_of_excel(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_bytes("name,x_m\nTr\xe4ger \xd8,1\n".encode("cp1252"))
+    found = read_known(tmp_path / "a.csv", ("name", "x_m"), texts=("name",))
+    assert found["name"].tolist() == ["Tr\xe4ger \xd8"]
+
+
+def test_a_case_file_with_a_byte_order_mark(tmp_path: Path, cases: Path) -> None:
+    (tmp_path / "mine.toml").write_bytes(b"\xef\xbb\xbf" + (cases / "table1.toml").read_bytes().replace(b"\n", b"\r\n"))
+    assert load_case(tmp_path / "mine.toml") == load_case(cases / "table1.toml")

@@ -67,7 +67,7 @@ def test_sweep_of_all_items(campaign: Callable[..., Plan]) -> None:
     jumps = [dict(zip(trial.units, work.run_sample(trial, index).values)) for index in (0, 1)]
     # The strongest block does not return: its share of the jump is proportional to friction.
     assert jumps[1]["largest_node_jump_m"] > jumps[0]["largest_node_jump_m"] > 0
-    assert jumps[0]["slipping_joints"] == 10 and np.isnan(jumps[0]["reflector_rms_error_m"])
+    assert jumps[0]["slipping_joints"] == 10 and "reflector_rms_error_m" not in jumps[0]
 
 
 @pytest.mark.parametrize("text, sentence", [

@@ -14,6 +14,7 @@ from typing import Any, Callable
 import numpy as np
 import pytest
 
+from conftest import results_in
 import statejump as sj
 from statejump.core.errors import StatejumpError
 from statejump.core.figures import save
@@ -710,7 +711,7 @@ def test_draw(name: str, cases: Path, tmp_path: Path, statejump: Callable[..., A
     outcome = statejump("truss", "draw", cases / "trusses" / f"{name}.toml")
     assert (outcome.status, outcome.errors) == (0, "")
     folder = tmp_path / "results" / name
-    assert sorted(path.name for path in folder.iterdir()) == [f"{name}_truss.png", f"{name}_truss.svg"]
+    assert results_in(folder) == [f"{name}_truss.png", f"{name}_truss.svg"]
     assert (folder / f"{name}_truss.png").read_bytes().startswith(b"\x89PNG")
 
 

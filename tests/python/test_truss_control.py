@@ -168,9 +168,9 @@ def test_a_node_that_does_not_jump_has_nothing_to_control() -> None:
     ({"add_spring": [("N1", "N1")]}, "--add-spring = 'N1 N1' is not allowed: a spring needs two nodes at different places"),
     ({"add_spring": [("N1", "X")]}, "there is no node 'X'"),
     ({"add_spring": [("N0", "N1"), ("N0", "N1")]}, "--add-spring = 'N0 N1' is not allowed: it is there twice"),
-    ({"scale": ["slider.*.friction"]}, "--scale = 'slider.*.friction' is unknown: did you mean slider.*.friction_coefficient?"),
-    ({"scale": ["slider.S7.friction_coefficient"]}, "did you mean S1?"),
-    ({"scale": ["spring.*.preload_N"]}, "there is nothing to scale"),
+    ({"scale": ["slider.*.friction"]}, "--free = 'slider.*.friction' is unknown: did you mean slider.*.friction_coefficient?"),
+    ({"scale": ["slider.S7.friction_coefficient"]}, "did you mean slider.S1.friction_coefficient?"),
+    ({"scale": ["spring.*.preload_N"]}, "--free = 'spring.*.preload_N' is unknown: the case has no [[spring]]"),
     ({"jump_below": 0.0}, "--jump-below = 0.0 is not allowed: must be a finite number above 0 [m]"),
 ])
 def test_bad_input_is_one_sentence(given: dict[str, Any], said: str) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import COMMAND, REPOSITORY
+from conftest import COMMAND, REPOSITORY, results_in
 
 import statejump as sj
 from statejump.kinds.truss.generate.document import write
@@ -194,7 +194,7 @@ def test_interrupt_keeps_the_samples_so_far(tmp_path: Path) -> None:
     assert said.startswith("interrupted; the ") and said.endswith("reduced.interrupted.h5"), errors
     kept = sj.read(folder / "reduced.interrupted.h5").models["reduced"]
     assert 1 < len(kept.time_s) < 100_001 and f"the {len(kept)} samples" in said
-    assert sorted(entry.name for entry in folder.iterdir()) == [
+    assert results_in(folder) == [
         "reduced.interrupted.h5", "reduced_history.interrupted.csv"]
 
 

@@ -2,8 +2,13 @@
 """Campaigns: one case, many samples of its parameters, either model; the many on Dask's ``distributed``."""
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from statejump.core.errors import NotAllowed
+from statejump.schema.paths import plain
 
 if TYPE_CHECKING:
     from statejump.campaign.result import Campaign
@@ -14,14 +19,14 @@ __all__ = ["Campaign", "montecarlo", "sweep"]
 
 
 def sweep(
-    case: Case, values: Mapping[str, Sequence[float] | Mapping[str, Any]], *, model: str = "reduced",
+    case: Case, values: Mapping[str, float | Sequence[float] | Mapping[str, Any]], *, model: str = "reduced",
     workers: int | None = None, progress: Progress = False, outputs: Sequence[str] = (),
 ) -> Campaign:
     """Run a case on a grid of its parameters; see :func:`statejump.sweep`."""
     from statejump.campaign.plan import SWEEP
 
     tables: dict[str, dict[str, Any]] = {
-        key: {"key": key, **wanted} if isinstance(wanted, Mapping) else {"key": key, "values": _plain(wanted)}
+        key: {"key": key, **plain(wanted)} if isinstance(wanted, Mapping) else {"key": key, "values": _values(wanted)}
         for key, wanted in values.items()
     }
     return _run(case, SWEEP, tables, model, None, None, workers, progress, outputs)
@@ -34,13 +39,20 @@ def montecarlo(
     """Run a case whose parameters are random; see :func:`statejump.montecarlo`."""
     from statejump.campaign.plan import MONTECARLO
 
-    tables = {key: {"key": key, **wanted} for key, wanted in distributions.items()}
+    for key, wanted in distributions.items():
+        if not isinstance(wanted, Mapping):
+            raise NotAllowed(f"distributions[{key!r}]", wanted, 'must be a dict, as {"distribution": "normal", '
+                             '"relative": 0.1}; sweep takes values')
+    tables = {key: {"key": key, **plain(wanted)} for key, wanted in distributions.items()}
     return _run(case, MONTECARLO, tables, model, samples, seed, workers, progress, outputs)
 
 
-def _plain(values: Any) -> list[Any]:
-    """Return values as a list of Python's numbers, also of an array."""
-    return list(values.tolist() if hasattr(values, "tolist") else values)
+def _values(values: Any) -> Any:
+    """Return values as a list of Python's numbers, of an array too; a single one is a list of one."""
+    if isinstance(values, Iterable) and not isinstance(values, (str, np.ndarray)):
+        values = list(values)
+    found = plain(values)
+    return found if isinstance(found, list) else [found]
 
 
 def _run(
@@ -52,6 +64,8 @@ def _run(
     from statejump.core.progress import shown
 
     check_workers("workers", workers)
+    if isinstance(outputs, str):
+        outputs = [outputs]
     plan = plan_for(case, command, ((f"vary[{key!r}]", table) for key, table in tables.items()), model=model,
                     samples=samples, seed=seed, asked=outputs)
     with shown(progress, f"{plan.name}, {plan.samples:,} samples") as tell:

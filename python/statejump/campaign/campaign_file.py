@@ -200,7 +200,7 @@ def vary_of(given: Iterable[tuple[str, Mapping[str, Any]]], case: Case, command:
     for item, table in given:
         try:
             found.append(varied(table, case, command))
-            check_apart(found)
+            check_apart(found, case)
         except StatejumpError as failure:
             failure.item = item
             raise

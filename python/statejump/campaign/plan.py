@@ -122,6 +122,7 @@ def plan_of(
     at_end = () if case.ending is None else case.behaviour.AT_PROGRAM_END
     return Plan(
         command=command, model=model, case_data=case.origin.document, vary=vary, seed=seed,
-        outcomes=(*case.behaviour.OUTCOMES, *at_end, *asked), outputs=asked, kinds=tuple(registered()), name=name,
+        outcomes=(*case.behaviour.outcome_names(case), *at_end, *asked), outputs=asked,
+        kinds=tuple(registered()), name=name,
         title=title or name, case=case, samples=samples, file=file, text=text,
     )

@@ -19,16 +19,19 @@ QUANTILES = (0.05, 0.5, 0.95, 0.99)
 
 
 def statistics(values: np.ndarray) -> dict[str, float | None]:
-    """Mean, standard deviation, quantiles and extremes of the values that are there."""
-    there = values[np.isfinite(values)]
+    """Mean, standard deviation, quantiles and extremes of the values that are there; the samples of the extremes."""
+    is_there = np.isfinite(values)
+    there = values[is_there]
+    places = np.flatnonzero(is_there)
     names = ("mean", "standard_deviation", "minimum", "quantile_5", "median", "quantile_95", "quantile_99",
-             "maximum")
+             "maximum", "minimum_sample", "maximum_sample")
     if not len(there):
         return {"count": 0, **dict.fromkeys(names)}
     low, middle, high, highest = (float(value) for value in np.quantile(there, QUANTILES))
     numbers = (
         float(np.mean(there)), float(np.std(there, ddof=1)) if len(there) > 1 else None,
         float(np.min(there)), low, middle, high, highest, float(np.max(there)),
+        int(places[np.argmin(there)]), int(places[np.argmax(there)]),
     )
     return {"count": len(there), **dict(zip(names, numbers))}
 
@@ -85,12 +88,13 @@ def write_summary(campaign: Plan, found: Mapping[str, Any], folder: Path) -> lis
 
 def shown(value: float | None) -> str:
     """Return a number for a table."""
-    return "–" if value is None else f"{value:.6g}"
+    return "–" if value is None else f"{value:,}" if isinstance(value, int) else f"{value:.6g}"
 
 
 COLUMNS = {
     "count": "count", "mean": "mean", "standard_deviation": "standard deviation", "quantile_5": "5 %",
     "median": "50 %", "quantile_95": "95 %", "quantile_99": "99 %",
+    "minimum": "smallest", "minimum_sample": "in sample", "maximum": "largest", "maximum_sample": "in sample",
 }
 
 

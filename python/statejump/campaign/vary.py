@@ -21,11 +21,11 @@ from statejump.kinds import kind, kinds_that_can
 from statejump.schema.fields import (
     CHOICE, Section, choice, definition, fields_of, numbers, parameter, rule_of, text, texts, whole,
 )
-from statejump.schema.paths import EVERY, attribute_of, keys_of, pattern_of, split_path
+from statejump.schema.paths import attribute_of, keys_of, meant, pattern_of, split_path
 from statejump.schema.rules import NUMBER, WHOLE, check_name, is_finite_number, suggestion
 
 SPACINGS = ("linear", "log")
-OWN = "section.key as in the case file, of a list section.item.key, * for all items"
+OWN = "section.key as in the case file, of a list section.item.key, * for all items or as part of a name"
 LIKE = "must be section.key as in the case file"
 
 
@@ -101,44 +101,49 @@ def varied(table: Mapping[str, Any], case: Case, command: str) -> Varied:
     keys = (main, *(_checked_path(path, "also", case) for path in also))
     if command == SWEEP:
         return _values(table, keys, case)
-    if split_path(main)[1] != EVERY:
+    section, item, _ = split_path(main)
+    if not item or item in _items(case, main):
         return _distribution(table, keys, case)
     for path in keys[1:]:
-        if split_path(path)[:2] != split_path(main)[:2]:
+        if split_path(path)[:2] != (section, item):
             raise NotAllowed("also", path, f"items of {main!r} share their values with their own keys")
     return Independent(keys, tuple(
-        _distribution(table, tuple(path.replace(f".{EVERY}.", f".{item}.", 1) for path in keys), case)
-        for item in _items(case, main)
+        _distribution(table, tuple(f"{section}.{name}.{split_path(path)[2]}" for path in keys), case)
+        for name in meant(item, _items(case, main))
     ))
 
 
-def check_apart(found: list[Varied]) -> None:
+def check_apart(found: list[Varied], case: Case) -> None:
     """Raise NotAllowed if the last of the varied parameters has a key in common with itself or another."""
     taken = [key for parameter in found[:-1] for key in parameter.keys]
     for key in found[-1].keys:
-        if any(_overlap(key, other) for other in taken) or found[-1].keys.count(key) > 1:
+        if any(_overlap(key, other, case) for other in taken) or found[-1].keys.count(key) > 1:
             raise NotAllowed("key", key, "it varies already")
 
 
-def _overlap(one: str, other: str) -> bool:
+def _overlap(one: str, other: str, case: Case) -> bool:
     """Whether two paths have a number of the case in common."""
     if pattern_of(one) != pattern_of(other):
         return False
-    return one == other or EVERY in (split_path(one)[1], split_path(other)[1])
+    if one == other:
+        return True
+    names = _items(case, one)
+    return not set(meant(split_path(one)[1], names)).isdisjoint(meant(split_path(other)[1], names))
 
 
 def _items(case: Case, path: str) -> list[str]:
-    """Names of the items that a path with ``*`` stands for."""
+    """Names of the items of the list that a path begins with."""
     return [item.name for item in getattr(case, split_path(path)[0])]
 
 
 def _own_value(case: Case, path: str) -> float | None:
-    """What the case itself says, for ``*`` if its items agree; None: nothing."""
+    """What the case itself says, of a pattern if its items agree; None: nothing."""
     section, item, key = split_path(path)
     if not item:
         found: float | None = getattr(getattr(case, section), key)
         return found
-    values = {getattr(one, key) for one in getattr(case, section) if item in (EVERY, one.name)}
+    wanted = set(meant(item, _items(case, path)))
+    values = {getattr(one, key) for one in getattr(case, section) if one.name in wanted}
     return values.pop() if len(values) == 1 else None
 
 
@@ -151,7 +156,7 @@ def _checked_path(path: Any, name: str, case: Case) -> str:
         names = _items(case, path) if item else []
         if item and not names:
             raise NotAllowed(name, path, f"the case has no [[{section}]]")
-        if not item or item == EVERY or item in names:
+        if not item or meant(item, names):
             return path
         raise UnknownKey(name, value=path, cause=f"the case has no {section} {item!r}", remedy=_meant(item, names))
     if pattern_of(path) in keys_of(type(case)):

@@ -9,7 +9,7 @@ import click
 
 from statejump.campaign.campaign_file import check_workers, load_campaign, plan_for, vary_tables
 from statejump.campaign.plan import MONTECARLO, SWEEP, Plan
-from statejump.cli.terminal import QUIET, RESULTS, CaseFile, make_console, print_shown, progress
+from statejump.cli.terminal import QUIET, RESULTS, CaseFile, make_console, print_shown, progress, since_start_s
 from statejump.core.errors import FailedRun, MissingKey, NotAllowed
 from statejump.core.results_folder import Results
 from statejump.kinds.loading import load_case
@@ -86,6 +86,7 @@ def _command(name: str, text: str) -> click.Command:
             written = folder.publish(campaign.write(folder.staged))
         print_shown(campaign.told(), console)
         console.print(f"results: {', '.join(str(path) for path in written)}")
+        console.print(f"wall time: {since_start_s():.1f} s, start and figures included")
         if campaign.failed == plan.samples:
             raise FailedRun("every sample failed, the first one", file=file,
                             cause=campaign.summary()["failures"][0]["first_sentence"])

@@ -57,9 +57,10 @@ def _told(title: str, done: Study) -> Iterator[Shown | str]:
 @click.option("--node", metavar="NAME", help="Of a truss: the node that jumps.  [default: the most moved one]")
 @click.option("--add-spring", type=(str, str), multiple=True, metavar="A B",
               help="Of a truss: two nodes between which a spring may be added; may be given again.")
-@click.option("--scale", multiple=True, metavar="KEY",
-              help="Of a truss: section.item.key, or section.*.key of all items, whose value may be scaled; may be "
-                   "given again.  [default: all that a jump may follow, unless springs may be added]")
+@click.option("--free", "--scale", "free", multiple=True, metavar="KEY",
+              help="Of a truss: section.item.key, or section.*.key of all items, that the design may change; may be "
+                   "given again. The best of them is named. Without: all that a jump may follow are tried, unless "
+                   "springs may be added, and none is named best.")
 @click.option("--runs", type=int, metavar="N",
               help=f"Runs of each ensemble, where one is needed.  [default: {study.RUNS}]")
 @click.option("--dem", "with_dem", is_flag=True, help="Check the case and what is recommended in YADE too.")
@@ -67,24 +68,26 @@ def _told(title: str, done: Study) -> Iterator[Shown | str]:
 @QUIET
 def control_command(
     case_file: Path, jump_below: float | None, node: str | None, add_spring: tuple[tuple[str, str], ...],
-    scale: tuple[str, ...], runs: int | None, with_dem: bool, results: Results, quiet: bool,
+    free: tuple[str, ...], runs: int | None, with_dem: bool, results: Results, quiet: bool,
 ) -> None:
     """What governs the state jump of CASE, and the smallest spring that keeps it below a value.
 
     \b
     Examples:
       statejump control cases/table1.toml --jump-below 5e-6
-      statejump control ring_12 --node J1 --jump-below 1e-6 --add-spring J0 J2 --scale 'revolute.*.friction_coefficient'
+      statejump control ring_12 --node J1 --jump-below 1e-6 --add-spring J0 J2 --free 'revolute.*.friction_coefficient'
     """
     from statejump.control import plot
 
     console = make_console(quiet)
-    case = loaded(case_file, "control")
-    with results.folder(case.name) as folder:
+    case = loaded(case_file, "control", *(["dem_input"] if with_dem else []))
+    if with_dem:
+        case.behaviour.check_dem(case)
+    with results.folder(case.name, case) as folder:
         with undivided(console, "control") as tell:
             done: Study = case.behaviour.ability("control", case)(
                 case, jump_below=jump_below, runs=runs, with_dem=with_dem, tell=tell,
-                places=Places(node, add_spring, scale))
+                places=Places(node, add_spring, free))
         written = folder.publish(
             study.write(case.name, done, folder.staged) + plot.figure(case.title, done, folder.staged))
     print_shown(list(_told(case.title, done)), console)

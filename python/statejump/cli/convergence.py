@@ -26,7 +26,8 @@ def convergence_command(case_file: Path, decades: int, results: Results, quiet: 
     """
     console = make_console(quiet)
     case = loaded(case_file, "convergence")
-    with results.folder(case.name) as folder:
+    case.behaviour.check_dem(case)
+    with results.folder(case.name, case) as folder:
         with progress(console, "convergence") as tell:
             found = case.behaviour.ability("convergence", case)(case, tell, decades)
         _, text = folder.publish(found.write(folder.staged))

@@ -56,10 +56,11 @@ def solve_command(file: Path, output: Path | None, tolerance: float, method: str
       statejump fclib solve Capsules-i125-1213.hdf5 -o solved.hdf5
     """
     from statejump import fclib
-    from statejump.core.output import check_target
+    from statejump.core.output import check_suffix, check_target
 
     console = make_console(quiet)
     if output is not None:
+        check_suffix("--output", output, ".hdf5", ".h5")
         check_target(output)
     problem = fclib.read(file)
     console.print(f"{problem.title or file.name}: {problem.contacts} contacts in {problem.dimension}-D")
@@ -96,7 +97,7 @@ def write_command(case_file: Path, number: int, results: Results, quiet: bool) -
     console = make_console(quiet)
     case = loaded(case_file, "contact_problems")
     try:
-        with undivided(console, f"{case.name}, path") as tell, results.folder(f"{case.name}/fclib") as folder:
+        with undivided(console, f"{case.name}, path") as tell, results.folder(f"{case.name}/fclib", case) as folder:
             found = case.behaviour.ability("contact_problems", case)(case, number, tell)
             written = []
             for place, one in enumerate(found, start=1):

@@ -28,7 +28,7 @@ def fe_command(case_file: Path, results: Results, quiet: bool) -> None:
     """
     console = make_console(quiet)
     case = loaded(case_file, "fe")
-    with results.folder(case.name) as folder:
+    with results.folder(case.name, case) as folder:
         found = case.behaviour.ability("fe", case)(case)
         write_text(folder.staged / "fe.inp", found.deck.splitlines())
         write_rows(folder.staged / "fe.csv", [row.to_dict() for row in found.rows])

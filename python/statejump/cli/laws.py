@@ -14,6 +14,7 @@ from statejump import _engine
 from statejump.cli.suggesting import Suggesting
 from statejump.cli.terminal import QUIET, RESULTS, CaseFile, loaded, make_console
 from statejump.core.errors import StatejumpError
+from statejump.core.output import check_suffix
 from statejump.core.results_folder import Results
 from statejump.laws import build, curves
 from statejump.laws.drive import drive_file
@@ -134,6 +135,7 @@ def drive_command(
       statejump laws --drive history.csv --law mindlin --effective-young-modulus 38.5e9
           --effective-shear-modulus 7.9e9 --effective-radius 0.01 --friction-coefficient 0.3 -o out.csv
     """
+    check_suffix("--output", written, ".csv")
     drive_file(
         law, history, written, effective_young_modulus_Pa=effective_young_modulus,
         effective_shear_modulus_Pa=effective_shear_modulus, effective_radius_m=effective_radius,

@@ -151,10 +151,16 @@ def _ended(number: int, frame: Any) -> None:
 ENDING = (signal.SIGTERM, signal.SIGHUP)
 
 
+_WARNED: set[str] = set()  # what was told
+
+
 def _warned(message: Warning | str, category: type[Warning], filename: str, lineno: int, file: TextIO | None = None,
             line: str | None = None) -> None:
-    """Tell what a library warns of as the command tells its own warnings: without the line of code."""
-    print(f"warning: {printable(str(message))}", file=sys.stderr)
+    """Tell what a library warns of as the command tells its own warnings: without the line of code, once."""
+    text = printable(str(message))
+    if text not in _WARNED:  # a file may be read twice
+        _WARNED.add(text)
+        print(f"warning: {text}", file=sys.stderr)
 
 
 def main() -> None:

@@ -78,7 +78,7 @@ def reduced_command(case_file: Path, dynamic: bool, slow: bool, results: Results
         _quasi_static(Case(loaded(case_file, "quasi_static")), results, console)
         return
     case = Case(loaded(case_file, "dynamic" if dynamic else "reduced"))
-    with results.folder(_folder_name(case, dynamic)) as folder:
+    with results.folder(_folder_name(case, dynamic), case.definition) as folder:
         _check(case, folder, "reduced")
         try:
             with progress(console, "reduced model") as tell:
@@ -89,7 +89,7 @@ def reduced_command(case_file: Path, dynamic: bool, slow: bool, results: Results
 
 
 def _quasi_static(case: Case, results: Results, console: Console) -> None:
-    with results.folder(f"{case.name}_quasi_static") as folder:
+    with results.folder(f"{case.name}_quasi_static", case.definition) as folder:
         found = case.quasi_static()
         written = folder.publish(found.write(folder.staged))
     print_shown(found.told(), console)
@@ -131,7 +131,7 @@ def dem_command(case_file: Path, results: Results, quiet: bool) -> None:
     """
     console = make_console(quiet)
     case = Case(loaded(case_file, "dem_input"))
-    with results.folder(case.name) as folder:
+    with results.folder(case.name, case.definition) as folder:
         _check(case, folder, "dem")
         _finish("dem", case, _dem("dem", case, {}, folder, console), folder, console)
 
@@ -173,7 +173,8 @@ def _compare_case(case_file: Path, dynamic: bool, finite: bool, results: Results
 
     case = Case(loaded(case_file, "compare", "dem_input", *(["dynamic"] if dynamic else []),
                        *(["fe"] if finite else [])))
-    with results.folder(_folder_name(case, dynamic)) as folder:
+    case.check_dem()
+    with results.folder(_folder_name(case, dynamic), case.definition) as folder:
         _check(case, folder, "reduced", "dem")
         with progress(console, "reduced model") as tell:
             reduced = case.reduced(tell, dynamic=dynamic)

@@ -45,9 +45,10 @@ def orbit_command(file: Path, output: Path, period: float, shadow: tuple[str, ..
       statejump orbit members.csv --period 5400 --shadow 1800:3900 -o orbit.csv
     """
     from statejump import orbit
-    from statejump.core.output import check_target
+    from statejump.core.output import check_suffix, check_target
 
     console = make_console(quiet)
+    check_suffix("--output", output, ".csv")
     check_target(output)
     found = orbit.temperatures(
         orbit.read_members(file), period_s=period, shadow_s=[_interval(text) for text in shadow], orbits=orbits,

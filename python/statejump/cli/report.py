@@ -9,6 +9,7 @@ import click
 
 from statejump.cli.terminal import QUIET, loaded, make_console
 from statejump.core.errors import Unreadable
+from statejump.core.output import check_suffix
 from statejump.results.layout import SUFFIX
 
 PAGE = "report.html"
@@ -69,6 +70,8 @@ def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> 
     from statejump.report.unsolved import UnsolvedDocument, is_case
 
     console = make_console(quiet)
+    if output is not None and not os.path.isdir(output):
+        check_suffix("--output", output, ".html", ".htm")
     files = list(dict.fromkeys(path for run in runs for path in result_files(run)))
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused where it is drawn
         documents: list[Document | CampaignDocument | UnsolvedDocument] = [

@@ -23,7 +23,7 @@ from statejump.results.difference import RunDifference, case_differences, differ
 from statejump.results.read import read
 
 FILE = click.argument("file", metavar="FILE", type=click.Path(path_type=Path))
-FORMATS = ("csv", "vtu", "paraview", "all")
+FORMATS = ("csv", "xlsx", "vtu", "paraview", "all")
 MODEL_NAMES = {"reduced": "reduced", "dem": "DEM"}
 FRAMES = 200
 SHOWN_EVENTS = 12
@@ -136,7 +136,8 @@ def _extremes(column: Column) -> tuple[str, str]:
 @click.command("export")
 @FILE
 @click.option("--format", "form", type=click.Choice(FORMATS), default="all", show_default=True,
-              help="csv: tables; vtu: VTK series; paraview: VTK series and a script that opens them.")
+              help="csv: tables; xlsx: a workbook of them; vtu: VTK series; paraview: VTK series and a script that "
+                   "opens them; all: csv and paraview.")
 @click.option("--to", "folder", type=click.Path(path_type=Path), default=None,
               help="Folder that gets the files. [default: FILE without its suffix]")
 @click.option("--frames", type=click.IntRange(min=0), default=FRAMES, show_default=True,
@@ -146,7 +147,7 @@ def _extremes(column: Column) -> tuple[str, str]:
 def export_command(
     file: Path, form: str, folder: Path | None, frames: int, wait: bool, quiet: bool
 ) -> None:
-    """CSV tables and ParaView files of a result FILE.
+    """CSV tables, a workbook or ParaView files of a result FILE.
 
     \b
     Example:
@@ -161,7 +162,11 @@ def export_command(
         written: list[Path] = []
         if form in ("csv", "all"):
             written += export_csv.write_all(result, there.staged)
-        if form != "csv":
+        if form == "xlsx":
+            from statejump.results import export_xlsx  # takes a while to load
+
+            written.append(export_xlsx.write(result, there.staged / f"{file.stem}.xlsx"))
+        elif form != "csv":
             from statejump.results import export_vtk, paraview_script  # VTK takes half a second to load
 
             try:

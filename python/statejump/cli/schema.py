@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from statejump.core.output import write_atomically
+from statejump.core.output import check_suffix, write_atomically
 from statejump.schema.json_schema import ANY, schema, to_json, write_all
 
 
@@ -31,5 +31,6 @@ def schema_command(kind: str, output: Path | None, folder: Path | None) -> None:
     if output is None:
         click.echo(text, nl=False)
         return
+    check_suffix("--output", output, ".json")
     with write_atomically(output) as stream:
         stream.write(text)

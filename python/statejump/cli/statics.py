@@ -26,7 +26,7 @@ def statics_command(case_file: Path, results: Results, quiet: bool) -> None:
 
     console = make_console(quiet)
     case = Case(loaded(case_file, "statics"))
-    with results.folder(case.name) as folder:
+    with results.folder(case.name, case.definition) as folder:
         statics = api.statics(case)
         written = folder.publish(statics.write(folder.staged))
     print_shown(statics.told(), console)

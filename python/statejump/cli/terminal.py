@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
@@ -22,7 +23,7 @@ from statejump.core.tables import Shown
 from statejump.kinds.loading import found_case, load_case
 
 __all__ = ["CASE", "QUIET", "RESULTS", "WAIT", "CaseFile", "counted", "loaded", "make_console", "number",
-           "print_comparison", "print_shown", "print_table", "progress", "undivided"]
+           "print_comparison", "print_shown", "print_table", "progress", "since_start_s", "undivided"]
 
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -41,19 +42,20 @@ class CaseFile(click.Path):
 
 CASE = click.argument("case_file", metavar="CASE", type=CaseFile())
 WAIT = click.option("--wait", is_flag=True, help="Wait where another run is at work in the same folder.")
+FORCE = click.option("--force", is_flag=True, help="Replace results of another case that has the same name.")
 
 
 def RESULTS(command: Command) -> Command:
     """Give a command the options of its results folder, as one argument ``results``."""
 
     @wraps(command)
-    def called(results: Path, wait: bool, **values: Any) -> Any:
-        return command(results=Results(results, wait), **values)
+    def called(results: Path, wait: bool, force: bool, **values: Any) -> Any:
+        return command(results=Results(results, wait, force), **values)
 
     return cast(Command, click.option(
         "--results", default="results", show_default=True, type=click.Path(path_type=Path),
         help="Folder that gets one folder per case.",
-    )(WAIT(called)))
+    )(WAIT(FORCE(called))))
 
 
 QUIET = click.option("--quiet", is_flag=True, help="Print errors only.")
@@ -65,6 +67,13 @@ def make_console(quiet: bool) -> Console:
     if not made.is_terminal:  # a pipe or a log has no width: do not cut numbers short
         made.width = 160
     return made
+
+
+def since_start_s() -> float:
+    """Return the wall time since the process was started [s], the start of Python included."""
+    fields = Path("/proc/self/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    started_s = int(fields[19]) / os.sysconf("SC_CLK_TCK")  # field 22 of proc(5), in ticks since the system was started
+    return time.clock_gettime(time.CLOCK_BOOTTIME) - started_s
 
 
 def loaded(case_file: Path, *abilities: str) -> Case:

@@ -134,7 +134,7 @@ def draw_command(case_file: Path, names: bool, results: Results, quiet: bool) ->
 
     console = make_console(quiet)
     case = loaded(case_file, "draw")
-    with results.folder(case.name) as folder:
+    with results.folder(case.name, case) as folder:
         drawn = case.behaviour.ability("draw", case)(case, names=names)
         written = folder.publish(save(drawn, folder.staged, f"{case.name}_truss"))
     console.print(f"drawing: {', '.join(str(path) for path in written)}")
@@ -155,7 +155,7 @@ def creak_command(case_file: Path, node: str, results: Results, quiet: bool) -> 
     """
     console = make_console(quiet)
     case = loaded(case_file, "creak")
-    with results.folder(f"{case.name}_creak") as folder:
+    with results.folder(f"{case.name}_creak", case) as folder:
         with progress(console, "motion") as tell:
             found = case.behaviour.ability("creak", case)(case, node, tell)
         written = folder.publish(found.write(folder.staged))

@@ -56,7 +56,7 @@ def answers_command(
         return progress(console, f"{case.name}, {label}")
 
     try:
-        with results.folder(folder_of(case.name, output)) as folder:
+        with results.folder(folder_of(case.name, output), case) as folder:
             FRAMES.check("frames", frames)
             found = case.behaviour.ability("answers", case)(
                 case, output=output, cycles=cycles, each=each, step=step, sensitivity=not skip_sensitivity, phase=phase,

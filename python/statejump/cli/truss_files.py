@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from statejump.core.errors import StatejumpError
-from statejump.core.output import check_target
+from statejump.core.output import check_suffix, check_target
 
 # Of the option --tables.
 TABLES: dict[str, Any] = {
@@ -26,6 +26,7 @@ def new_files(output: Path, tables: bool, force: bool) -> tuple[str, ...]:
     from statejump.kinds.truss.case import sections_in_files
     from statejump.kinds.truss.generate.document import table_path
 
+    check_suffix("--output", output, ".toml")
     beside = sections_in_files() if tables else ()
     for path in (output, *(table_path(output, section) for section in beside)):
         if os.path.exists(path) and not force:

@@ -51,6 +51,13 @@ def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) ->
     return {"thermal": {"shape": "table", "members_file": beside, **said}, "reduced": {"increments_per_branch": 1}}
 
 
+def _refuse_units(file: Path, given: dict[str, str | float | None]) -> None:
+    """Refuse options for the units of a file that names its own."""
+    for option, value in given.items():
+        if value not in (None, "SI"):
+            raise NotAllowed(option, value, "columns of tables name their units", file=file)
+
+
 def _units(system: str | None, length: float | None, force: float | None) -> Units:
     from statejump.kinds.truss.importing import SYSTEMS, Units
 
@@ -138,6 +145,8 @@ def import_command(
     beside = new_files(output, tables, force)
     deck = read(file, form, bars, Options(frozenset(name.lstrip("*").upper() for name in ignored), beams_as_bars, step,
                                           circ))
+    if deck.named_units:
+        _refuse_units(file, {"--units": units, "--length-unit": length_unit, "--force-unit": force_unit})
     document = case_document(
         deck, folder_name(output.stem), units=_units(units, length_unit, force_unit),
         temperature_change_K=temperature_change, density_kg_per_m3=density,
@@ -159,7 +168,9 @@ def import_command(
     for table in deck.account():
         print_table(table, console)
     print_table(summary(document), console)
-    for hint in hints(document):
+    for choice in deck.choices:
+        console.print(f"chosen: {choice}")
+    for hint in (*hints(document), *case.implausible):
         console.print(f"hint: {hint}")
     console.print(f"{output}: nodes {len(document['node'])}, links {len(document['link'])}, joints "
                   f"{len(document.get('slider', ())) + len(document.get('revolute', ()))}, "

@@ -11,7 +11,7 @@ import numpy as np
 from statejump.cli.terminal import QUIET, RESULTS, CaseFile, loaded, make_console, print_shown, undivided
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError
 from statejump.core.results_folder import Results
-from statejump.core.table_files import read_columns
+from statejump.core.table_files import SUFFIXES, read_columns
 from statejump.core.tables import Shown, write_columns, write_csv
 from statejump.core.units import plain
 
@@ -70,8 +70,9 @@ def surface_command(
         raise MissingKey("--column" if column is None else "--samples", "--samples and --column go together")
     notes: list[str] = []
     history: dict[str, np.ndarray] = {}
+    case: Case | None = None
     try:
-        if file.suffix == ".csv":
+        if file.suffix.lower() in SUFFIXES:
             drawn, moved = told.read_nodes(file)
             design = surface.Design.of(drawn, (0, 0, 1) if axis is None else axis, focal_length)
             states, name = {"nodes": moved}, file.stem
@@ -80,8 +81,8 @@ def surface_command(
                 if given is not None:
                     raise NotAllowed(option, beside="beside a case", cause="its section [reflector] says it")
             case = loaded(file, "reduced")
-            design, states, history = _of_case(case, measure, console)
             name, notes = case.name, list(case.thermal_notes)
+            design, states, history = _of_case(case, measure, console)
         tables = {state: [*told.state_rows(design, moved, measure, direction), *told.zernike_rows(design, moved, terms)]
                   for state, moved in states.items()}
         shown: list[Shown | str] = [_shown("drawn surface", told.design_rows(design))]
@@ -97,14 +98,13 @@ def surface_command(
         if isinstance(refused, NotAllowed) and refused.key in OPTIONS:
             refused.key = OPTIONS[refused.key]
         raise
-    with results.folder(name) as folder:
+    with results.folder(name, case) as folder:
         path = folder.staged / "surface.csv"
         write_csv(path, ("state", *told.HEADER), [(state, *row) for state, rows in tables.items() for row in rows])
         written = [path]
         if history:
-            path = folder.staged / "surface_history.csv"
-            write_columns(history, path)
-            written.append(path)
+            written.append(folder.staged / "surface_history.csv")
+            write_columns(history, written[-1])
         written = folder.publish(written)
     print_shown(shown, console)
     console.print(f"results: {', '.join(str(path) for path in written)}")
@@ -143,5 +143,8 @@ def _repeatability(samples: Path, column: str, share: float, length_m: float) ->
         raise NotAllowed("--column", column, f"must be one of {', '.join(lengths)}" if lengths
                          else "no column of it is a length [m]", file=samples)
     found = repeatability(columns[column], length_m, share)
+    size = np.abs(columns[column])
+    worst = int(np.nanargmax(size))
     return (f"repeatability of {column}: {found.um_per_m:.4g} µm/m at {100 * share:g} % of {found.samples:,} samples, "
-            f"95 % interval {found.low:.4g} to {found.high:.4g} µm/m, over {length_m:.4g} m")
+            f"95 % interval {found.low:.4g} to {found.high:.4g} µm/m, over {length_m:.4g} m; "
+            f"largest {1e6 * size[worst] / length_m:.4g} µm/m, in sample {worst}")

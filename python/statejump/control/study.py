@@ -152,7 +152,7 @@ def refuse_runs(runs: int | None, case: Case) -> None:
 def refuse_places(places: Places, case: Case) -> None:
     """Raise NotAllowed for nodes and parameters to choose from where a case has one jump and a study of all it has."""
     asked = (("--node", [places.node] if places.node else []),
-             ("--add-spring", [" ".join(ends) for ends in places.add_spring]), ("--scale", places.scale))
+             ("--add-spring", [" ".join(ends) for ends in places.add_spring]), ("--free", places.scale))
     for option, values in asked:
         for value in values:
             raise NotAllowed(option, value,

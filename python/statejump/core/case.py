@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from statejump.core import thermal as programs
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.core.thermal import CaseThermal, Ending
-from statejump.schema.fields import CHOICE, Section, definition, evolved, section, text
+from statejump.schema.fields import CHOICE, Section, definition, evolved, fields_of, section, text
 from statejump.schema.item_tables import with_rows
 from statejump.schema.paths import set_value
 from statejump.schema.rules import FOLDER_NAME
@@ -86,6 +86,10 @@ class Case(Section):
         object.__setattr__(self, "thermal", evolved(thermal, period_s=lasts))
         object.__setattr__(self, "_ending", ending)
 
+    def __getstate__(self) -> dict[str, Any]:
+        kept = {*fields_of(type(self)), "_ending", "_origin"}  # what else is there was derived, partly by the engine
+        return {name: value for name, value in vars(self).items() if name in kept}
+
     def _given_programs(self) -> Sequence[Thermal | MemberProgram]:
         """Return the temperature programs as given, the common one first."""
         return [self.thermal]
@@ -111,6 +115,11 @@ class Case(Section):
     def thermal_notes(self) -> tuple[str, ...]:
         """What is to be known of the program: where it ends, if that is not at the reference temperature."""
         return () if self.ending is None else (self.ending.note,)
+
+    @property
+    def implausible(self) -> tuple[str, ...]:
+        """Values that are allowed and hardly meant, a sentence each."""
+        return ()
 
     def need_jump(self, what: str) -> None:
         """Raise StatejumpError for what needs a state jump where the program does not return."""
@@ -187,7 +196,7 @@ class Case(Section):
         """Return the case with other values, checked as a whole.
 
         :param changes: value by key: ``section.key`` as in the case file, ``section.item.key`` of an item of a
-            list, ``section.*.key`` of all of them
+            list, ``section.*.key`` of all of them, ``section.joint*.key`` of those whose name fits
         :raises StatejumpError: there is no such key, or the case is not allowed with these values
         """
         from statejump.kinds.loading import parse_case

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from statejump.core.errors import NotAllowed
 from statejump.core.run import Run
 from statejump.core.tables import write_json, write_rows
 
@@ -156,6 +157,19 @@ class Comparison:
         from statejump.core.figures import drawn
 
         return drawn(self.case, list(self.models.values()), axes)
+
+    def save(self, path: str | Path) -> Path:
+        """Write both models as a result file (HDF5), which :func:`statejump.read` reads; return its path.
+
+        :raises NotWritten: it cannot be written
+        :raises NotAllowed: its name does not end with ``.h5``, or these are two runs of one model
+        """
+        from statejump.results.record import save_as
+
+        if FIRST in self.models:
+            raise NotAllowed("path", str(path), "a result file holds one run of a model; save both runs",
+                             beside="for two runs of one model")
+        return save_as(Path(path), "compare", self.case, self.models, self)
 
     def write(self, folder: Path) -> list[Path]:
         """Write ``comparison.json`` and ``comparison.csv``."""

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from statejump import _paths
-from statejump.core.errors import NotWritten
+from statejump.core.errors import NotAllowed, NotWritten
 
 if TYPE_CHECKING:
     from statejump.core.case import Case
@@ -52,6 +52,16 @@ def check_target(path: Path) -> None:
         pass
     except OSError as error:
         raise not_written(path, error) from None
+
+
+def check_suffix(option: str, path: Path, *allowed: str) -> None:
+    """Raise NotAllowed for a file name that promises another format than is written; one without suffix does not.
+
+    :param option: the option that names the file
+    :param allowed: suffixes, as ``.html``
+    """
+    if path.suffix and path.suffix.lower() not in allowed:
+        raise NotAllowed(option, str(path), f"the file must end with {' or '.join(allowed)}")
 
 
 def _sweep(path: Path) -> None:

@@ -14,9 +14,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from statejump.core import results_owner
 from statejump.core.errors import NotWritten, size
 from statejump.core.output import PARTIAL, check_target, not_written, synced, unique
+
+if TYPE_CHECKING:
+    from statejump.core.case import Case
 
 READY = ".ready"
 SYNCED_AT_ONCE = 32
@@ -30,42 +35,70 @@ class Results:
 
     :param root: gets one folder per case
     :param wait: wait for another run in the same folder instead of being refused
+    :param force: replace results of another case
     """
 
     root: Path
     wait: bool = False
+    force: bool = False
 
     @contextmanager
-    def folder(self, name: str) -> Iterator[ResultsFolder]:
-        """Make (if needed), lock and yield ``root/name``. What is not published is dropped at the end.
+    def folder(self, name: str, case: Case | None = None) -> Iterator[ResultsFolder]:
+        """Make (if needed), lock and yield ``root/name``. What is not published is dropped at the end, and with
+        it folders that were made here and stay empty.
 
-        :raises NotWritten: it cannot be written to, or another run is at work in it
+        :param case: whose results these are; None: of a file that gives the folder its name
+        :raises NotWritten: it cannot be written to, another run is at work in it, or it holds results of another case
         """
         path = self.root / name
+        missing = [folder for folder in (path, *path.parents) if not os.path.exists(folder)]
         try:
-            path.mkdir(parents=True, exist_ok=True)
+            with self._held(path, case, path in missing) as found:
+                yield found
+        finally:
+            for folder in missing[1:]:
+                with suppress(OSError):  # it is not empty, or another run removed it
+                    os.rmdir(folder)
+
+    @contextmanager
+    def _held(self, path: Path, case: Case | None, made: bool) -> Iterator[ResultsFolder]:
+        """As :meth:`folder`.
+
+        :param made: the folder did not exist: it is removed if it stays empty
+        """
+        try:
             descriptor = self._locked(path)
         except OSError as error:
             raise _unusable(path, error.strerror or str(error), OTHER) from None
         try:
+            if case is not None and not self.force:
+                for folder in (path, *path.parents)[:len(path.relative_to(self.root).parts)]:
+                    results_owner.check(folder, case)
             try:
                 _recover(path)
                 own = path / f".{unique()}{PARTIAL}"
                 own.mkdir()
             except OSError as error:
                 raise _unusable(path, error.strerror or str(error), OTHER) from None
-            found = ResultsFolder(path, own)
+            found = ResultsFolder(path, own, case)
             try:
                 yield found
             finally:
                 _remove(found.staged, ignore_errors=True)
         finally:
+            if made:  # while the lock is held: another run may be about to write into it
+                with suppress(OSError):
+                    os.rmdir(path)
             os.close(descriptor)
 
     def _locked(self, path: Path) -> int:
         """Return an open descriptor of the folder that holds its lock; the kernel lets go of it with the process."""
         while True:
-            descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+            path.mkdir(parents=True, exist_ok=True)
+            try:
+                descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+            except FileNotFoundError:  # another run, which wrote nothing, removed it
+                continue
             try:
                 try:
                     fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if self.wait else fcntl.LOCK_NB))
@@ -79,7 +112,6 @@ class Results:
                 os.close(descriptor)
                 raise
             os.close(descriptor)  # the folder was deleted while we waited
-            path.mkdir(parents=True, exist_ok=True)
 
 
 @dataclass
@@ -88,10 +120,12 @@ class ResultsFolder:
 
     :param path: the folder, as readers know it
     :param staged: where files are written until they are published
+    :param case: whose results these are, None: of no case
     """
 
     path: Path
     staged: Path
+    case: Case | None = None
 
     def check_space(self, needed_bytes: float) -> None:
         """Raise NotWritten where the file system has no room for so many bytes."""
@@ -109,6 +143,8 @@ class ResultsFolder:
         :raises NotWritten: it could not be brought to disk, nothing appears; or a file could not be moved to its place
         """
         ready = self.path / f"{self.staged.name.removesuffix(PARTIAL)}{READY}"
+        if self.case is not None:
+            results_owner.write(self.staged, self.path, self.case)
         try:
             folders = [(Path(folder), files) for folder, _, files in os.walk(self.staged)]
             staged = [folder / name for folder, files in folders for name in files]

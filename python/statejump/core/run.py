@@ -6,15 +6,16 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from statejump.core.errors import MissingPart
+from statejump.core.errors import ABSENT, MissingPart, NotAllowed, StatejumpError, UnknownKey
 from statejump.core.tables import write_columns
 from statejump.core.units import unit_of
+from statejump.schema.rules import suggestion
 
 if TYPE_CHECKING:
     import pandas
@@ -49,6 +50,29 @@ class Parts(dict[str, Any]):
     def like(self, parts: Mapping[str, Any]) -> Parts:
         """Return other parts of the same place."""
         return Parts(parts, self.place, self.file)
+
+
+class Named(dict[str, Any]):
+    """Columns or numbers of a run by name: a name that is not there is an error that suggests one.
+
+    :param what: what a value is, as ``column``
+    """
+
+    def __init__(self, values: Mapping[str, Any], what: str) -> None:
+        super().__init__(values)
+        self.what = what
+
+    def __missing__(self, name: Any) -> Any:
+        raise MissingName(self.what, name, list(self))
+
+
+class MissingName(UnknownKey, KeyError):
+    """A run has no column or number of a name; a KeyError, as of any mapping."""
+
+    def __init__(self, what: str, name: Any, known: Sequence[str]) -> None:
+        ends = [path for path in known if path.rpartition("/")[2] == name]
+        super().__init__(f"{what} {name!r}", **(
+            {"remedy": f"did you mean {' or '.join(ends)}?"} if ends else suggestion(name, known)))
 
 
 @dataclass(frozen=True)
@@ -119,6 +143,9 @@ class Events(Sequence[Event]):
 
         return pandas.DataFrame([vars(event) for event in self._events], columns=list(Event.__dataclass_fields__))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Events, (self._events,)
+
     def __repr__(self) -> str:
         return f"Events({', '.join(event.kind for event in self._events)})"
 
@@ -126,9 +153,19 @@ class Events(Sequence[Event]):
         return str(self.frame().to_html(index=False))
 
 
+def _same(value: Any) -> Any:
+    return value
+
+
+def _raised(error: StatejumpError) -> Any:
+    raise error
+
+
 @dataclass(frozen=True)
 class Run:
     """A run of one model of a case. All columns have the length of its ``time_s``.
+
+    A run can be pickled and copied; the copy has no ``native`` and, between samples, is linear.
 
     :param model: ``reduced`` or ``dem``
     :param history: what the model gives over time
@@ -163,6 +200,21 @@ class Run:
     kind: str = ""
     sampler: Callable[[np.ndarray], Run] | None = field(default=None, repr=False, compare=False)
 
+    def __post_init__(self) -> None:
+        for name, what in (*((group, "column") for group in GROUPS), ("summary", "number")):
+            if type(getattr(self, name)) is dict:
+                object.__setattr__(self, name, Named(getattr(self, name), what))
+
+    def __getstate__(self) -> dict[str, Any]:
+        case_of: Callable[[], Definition] | None = None
+        if self.case_of is not None:
+            try:
+                case_of = partial(_same, self.definition)
+            except StatejumpError as error:  # of a file; whoever asks for the case gets the reason
+                case_of = partial(_raised, error)
+        state = {name: value for name, value in vars(self).items() if name != "definition"}
+        return {**state, "case_of": case_of, "native": None, "sampler": None}
+
     @cached_property
     def definition(self) -> Definition:
         """What the case says that ran. :raises StatejumpError: this version does not understand it any more"""
@@ -192,26 +244,30 @@ class Run:
         return isinstance(name, str) and self._found(name) is not None
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Return the values of a column of history or energy. :raises KeyError: there is none"""
+        """Return the values of a column of history or energy, or of any by its path. :raises KeyError: there is none"""
         found = self._found(name)
-        return (self.history[name] if found is None else found).shown
+        return (self.column(name) if found is None else found).shown
 
     def column(self, path: str) -> Column:
         """Return a column by its path, as ``history/time_s``. :raises KeyError: there is none"""
         group, _, name = path.partition("/")
-        if group not in GROUPS:
-            raise KeyError(path)
-        found: Column = getattr(self, group)[name]
+        found: Column | None = getattr(self, group).get(name) if group in GROUPS else None
+        if found is None:
+            raise MissingName("column", path, [f"{group}/{name}" for group in GROUPS for name in getattr(self, group)])
         return found
 
-    def at(self, times_s: np.ndarray) -> Run:
-        """Return the run at other times [s]: exact where the model can tell, else linear between samples,
-        labels those of the sample before."""
-        if np.array_equal(self.time_s, times_s):
+    def at(self, times_s: float | Sequence[float] | np.ndarray) -> Run:
+        """Return the run at other times [s], one or several: exact where the model can tell, else linear between
+        samples, labels those of the sample before. :raises NotAllowed: they are no finite numbers"""
+        try:
+            asked = np.atleast_1d(np.asarray(times_s, dtype=float))
+        except (TypeError, ValueError):
+            asked = np.array([np.nan])
+        if asked.ndim != 1 or not np.isfinite(asked).all():
+            raise NotAllowed("times_s", ABSENT, "must be a time or a list of times [s]")
+        if np.array_equal(self.time_s, asked):
             return self
-        if self.sampler is not None:
-            return self.sampler(times_s)
-        return self._interpolated(np.asarray(times_s, dtype=float))
+        return self._interpolated(asked) if self.sampler is None else self.sampler(asked)
 
     def _interpolated(self, times_s: np.ndarray) -> Run:
         before = np.clip(np.searchsorted(self.time_s, times_s, side="right") - 1, 0, len(self.time_s) - 1)
@@ -239,6 +295,9 @@ class Run:
     def flat(self, groups: Sequence[str] = ("history", "energy")) -> dict[str, np.ndarray]:
         """Return columns of one value a sample, in the order of the CSV files: ``name``, ``name[item]``,
         ``name[item].x``; those of links and contacts begin with ``links/`` and ``contacts/``."""
+        for group in groups:
+            if group not in GROUPS:
+                raise UnknownKey(f"group {group!r}", **suggestion(group, GROUPS))
         plain = {
             name: column.shown for group in ("history", "energy") if group in groups
             for name, column in getattr(self, group).items() if column.values.ndim == 1
@@ -280,6 +339,16 @@ class Run:
     def write_csv(self, path: Path) -> None:
         """Write history and energies as CSV, in full precision."""
         write_columns(self.flat(), path)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the run as a result file (HDF5), which :func:`statejump.read` reads; return its path.
+
+        :raises NotWritten: it cannot be written
+        :raises NotAllowed: its name does not end with ``.h5``
+        """
+        from statejump.results.record import save_as
+
+        return save_as(Path(path), self.model, self.definition, {self.model: self})
 
     def plot(self, axes: Axes | Sequence[Axes] | None = None) -> Figure:
         """Draw the run.

@@ -2,10 +2,13 @@
 """The reader of text tables, as spreadsheets and test rigs write them.
 
 Separator is ``,``, ``;``, a tab or blanks; the decimal mark a point or, where no cell has a point, a comma. The file is
-UTF-8 or UTF-16, with or without a byte order mark. Blank rows and blank columns at the end are left out.
+UTF-8 or UTF-16, with or without a byte order mark, or in Excel's code page 1252. Blank rows and blank columns at the
+end are left out, and comments (``#``, ``%``) at the head, the last of which may be the header. Units may stand in a
+row of their own below the header. A first column without a name that counts the rows, as pandas writes it, is left out.
 """
 from __future__ import annotations
 
+import codecs
 import csv
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -16,10 +19,11 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from statejump.core.column_units import Column, accepted, matched
+from statejump.core.column_units import NO_UNIT, Column, accepted, matched
 from statejump.core.errors import StatejumpError, Unreadable, printable
 from statejump.core.iso_times import is_iso, seconds
-from statejump.core.reading import check_size, finite_number, open_csv
+from statejump.core.reading import check_size, finite_number, is_file, open_csv
+from statejump.core.units import split_unit
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat")
 BLOCK = 4096  # rows that are converted at once
@@ -29,8 +33,12 @@ _WORD = re.compile(r'"((?:[^"]|"")*)"(?=\s|$)|(\S+)')
 _QUOTED = re.compile(r'"(?:[^"]|"")*"')
 _DECIMAL_COMMA = re.compile(r"[+-]?(\d+,\d*|,\d+)([eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
-# In Excel's older code page a header has only these beyond ASCII: ° ² ³ µ ·
-_UNIT_BYTES = b"\xb0\xb2\xb3\xb5\xb7"
+# What texts have in Excel's older code page beyond ASCII: ° ² ³ µ · and letters of western Europe. Those at 0x80 to
+# 0x9f are umlauts in the code pages of DOS and of old Macintoshes.
+_BYTES_1252 = b"\xb0\xb2\xb3\xb5\xb7" + bytes({*range(0xC0, 0x100)} - {0xD7, 0xF7})
+_COMMENT = ("#", "%")
+_FORTRAN = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))[dD]([+-]?\d+)")
+_NUMERIC = re.compile(r"^[+-]?[.,]?\d")
 Place = Callable[[int], tuple[int, str]]
 
 
@@ -61,21 +69,56 @@ class Table:
             cells.pop()
         if not cells:
             raise Unreadable("line 1: there is no column", file=path)
+        self._counts = len(cells) > 1 and not cells[0]
+        if self._counts:
+            del cells[0]
         for place, cell in enumerate(cells, start=1):
             if not cell:
-                raise Unreadable(f"line {self.line}: column {place} has no name", file=path)
-        self.header = tuple(cells)
+                raise Unreadable(f"line {self.line}: column {place + self._counts} has no name", file=path)
+        self._first = list(self._taken())
+        self.header = tuple(self._with_units(cells))
         self._decided = self.separator == ";"  # that a comma is a decimal mark: German Excel separates so
         self._comma: tuple[int, str, str] | None = None
         self._point: tuple[int, str, str] | None = None
 
+    def _taken(self) -> Iterator[list[str]]:
+        """Return the first row that is not empty."""
+        for row in self._reader:
+            if any(map(str.strip, row)):
+                yield row
+                return
+
+    def _with_units(self, names: Sequence[str]) -> Sequence[str]:
+        """Return the names of the columns with the units of a row of its own, which is then no row of the table."""
+        row = self._first[0][self._counts:] if self._first else []
+        units = [cell.strip().strip("[]()").strip() for cell in row[:len(names)]]
+        if len(units) < len(names) or any(_NUMERIC.search(unit) for unit in units) or not any(units):
+            return names
+        from statejump.core.unit_library import is_unit
+
+        if not all(unit in NO_UNIT or is_unit(unit) for unit in units):
+            return names
+        if any(unit not in NO_UNIT and split_unit(name)[1] not in ("-", unit) for name, unit in zip(names, units)):
+            return names  # a key that ends in another unit
+        self._first.clear()
+        return [name if unit in NO_UNIT or split_unit(name)[1] == unit else f"{name} [{unit}]"
+                for name, unit in zip(names, units)]
+
     def _begin(self, stream: TextIO) -> tuple[str, Iterator[str]]:
         """Return the separator, and the lines from the header on."""
+        comment = ""
         for line in stream:
+            if line.lstrip().startswith(_COMMENT):
+                comment = line.lstrip().lstrip("#%")
+                self._skipped += 1
+                continue
             said = line.strip().strip('"').lower()
             if said in ("sep=,", "sep=;") or line.strip("\r\n\"").lower() == "sep=\t":
                 return line.strip("\r\n\"")[4], self._counted(stream, 1)
             if line.strip() and line.strip(" \t,;\r\n"):
+                if comment.strip() and finite_number(_cells(line)[0].replace(",", ".")) is not None:
+                    self._skipped -= 1  # the comment is the header
+                    return _separator(comment), chain((comment, line), stream)
                 return _separator(line), chain((line,), stream)
             self._skipped += 1
         return ",", iter(())
@@ -94,8 +137,10 @@ class Table:
 
         :raises Unreadable: a row has not as many cells as the header
         """
-        width = len(self.header)
-        for row in self._reader:
+        width, counted = len(self.header), None
+        for row in chain(self._first, self._reader):
+            if self._counts and row:
+                counted = self._counted_on(counted, row.pop(0).strip())
             if len(row) > width and not any(map(str.strip, row[width:])):
                 del row[width:]
             if len(row) != width:
@@ -108,6 +153,15 @@ class Table:
             if not any(row) or not any(map(str.strip, row)):
                 continue
             yield self.line, row
+
+    def _counted_on(self, before: int | None, cell: str) -> int | None:
+        """Return the number in a first column without a name. :raises Unreadable: it does not count the rows"""
+        if not cell and before is None:
+            return None
+        if not cell.isdecimal() or (before is not None and int(cell) != before + 1):
+            raise Unreadable(f"line {self.line}: column 1 has no name", cause="and does not count the rows",
+                             file=self.path)
+        return int(cell)
 
     def blocks(self) -> Iterator[tuple[list[int], list[list[str]]]]:
         """Return rows with their lines, some at a time."""
@@ -147,7 +201,7 @@ class Table:
     def _number(self, cell: str, place: Place, index: int, empty: bool) -> float:
         if empty and not cell.strip():
             return float("nan")
-        value = finite_number(cell)
+        value = finite_number(_FORTRAN.sub(r"\1e\2", cell.strip()) if "d" in cell.lower() else cell)
         if value is None:
             line, column = place(index)
             what = f"{quoted(cell)} is not a finite number" if cell.strip() else "the cell is empty"
@@ -181,6 +235,12 @@ class Table:
             raise Unreadable(f"line {line}, column {quoted(column)}", cause=(
                 f"{quoted(cell.strip())} may be a decimal number or one of thousands"),
                 remedy="write decimal points", file=self.path)
+
+
+def _cells(line: str) -> list[str]:
+    """Return the cells of a line, whatever separates them."""
+    separator = _separator(line)
+    return line.split() if separator == BLANKS else [cell.strip() for cell in line.split(separator)] or [""]
 
 
 def _separator(header: str) -> str:
@@ -230,16 +290,18 @@ def _encoding(path: Path) -> str:
         content = stream.read(1 << 16)
         if content.startswith((b"\xff\xfe", b"\xfe\xff")):
             return "utf-16"
-        header = next((line for line in content.splitlines() if line.strip()), b"")
-        try:
-            header.decode("utf-8")
-        except UnicodeDecodeError:
-            allowed = bytes(range(128)) + _UNIT_BYTES
-            while content and not content.translate(None, allowed):
-                content = stream.read(1 << 20)
-            if not content:
-                return "cp1252"
-        return "utf-8-sig"
+        decoder = codecs.getincrementaldecoder("utf-8")()
+        allowed = bytes(range(128)) + _BYTES_1252
+        is_utf8, is_1252 = True, True
+        while content and (is_utf8 or is_1252):
+            if is_utf8:
+                try:
+                    decoder.decode(content)
+                except UnicodeDecodeError:
+                    is_utf8 = False
+            is_1252 = is_1252 and not content.translate(None, allowed)
+            content = stream.read(1 << 20) if is_file(path) else b""  # a device has no end
+        return "cp1252" if is_1252 and not is_utf8 else "utf-8-sig"
 
 
 @contextmanager

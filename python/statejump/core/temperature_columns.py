@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -113,18 +114,19 @@ def _check_names(path: Path, names: tuple[str, ...]) -> None:
 
 def _text(path: Path) -> Read:
     with open_table(path, LARGEST_BYTES) as table:
-        time = _time(table)
+        at, time = _time(table)
         if len(table.header) < 2:
             raise Unreadable("line 1: there is no column of temperatures", file=path)
-        columns = [_temperature(path, name) for name in table.header[1:]]
+        others = [place for place in range(len(table.header)) if place != at]
+        columns = [_temperature(path, table.header[place]) for place in others]
         times, rows = [], []
         for line, row in table.rows():
-            times.append((line, row[0]))
-            rows.append(_values(table, line, row))
+            times.append((line, row[at]))
+            rows.append(_values(table, line, row, others))
         lines, cells = zip(*times) if times else ((), ())
         time_s = numbers_of(table, time, cells, lines) if times else np.zeros(0)
     for place in np.flatnonzero(np.diff(time_s) <= 0):
-        raise Unreadable(f"line {times[place + 1][0]}: {table.header[0]} = {times[place + 1][1].strip()}", file=path,
+        raise Unreadable(f"line {times[place + 1][0]}: {table.header[at]} = {times[place + 1][1].strip()}", file=path,
                          cause=f"times must rise, and {times[place][1].strip()} is before it")
     values = np.array(rows).reshape(-1, len(columns))
     scale = np.array([found.factor / found.divisor for _, found in columns])
@@ -132,11 +134,17 @@ def _text(path: Path) -> Read:
                 values if (scale == 1).all() else values * scale)
 
 
-def _time(table: Table) -> Column:
-    """Return what the first column is."""
+def _time(table: Table) -> tuple[int, Column]:
+    """Return which column is the time: the first one, else the only one that is called so."""
     try:
-        return matched(table.header[:1], ("time_s",), {"time_s": ("t",)})[0]
+        return 0, matched(table.header[:1], ("time_s",), {"time_s": ("t",)})[0]
     except StatejumpError as refused:
+        found = []
+        for place, name in enumerate(table.header[1:], start=1):
+            with suppress(StatejumpError):
+                found.append((place, matched([name], ("time_s",))[0]))
+        if len(found) == 1:
+            return found[0]
         said = "it must be the time" if isinstance(refused, UnknownKey) else refused.cause
         raise Unreadable(f"line 1: the first column is {quoted(table.header[0])}", cause=said, file=table.path,
                          remedy="accepted are time_s, time [h], or time with ISO times") from None
@@ -156,8 +164,8 @@ def _temperature(path: Path, cell: str) -> tuple[str, Conversion]:
                      f"{quoted(ways[0][1])} is no unit of temperature", remedy=f"accepted are {ACCEPTED}", file=path)
 
 
-def _values(table: Table, line: int, row: Sequence[str]) -> Numbers:
-    return table.numbers(row[1:], lambda index: (line, table.header[index + 1]))
+def _values(table: Table, line: int, row: Sequence[str], places: Sequence[int]) -> Numbers:
+    return table.numbers([row[place] for place in places], lambda index: (line, table.header[places[index]]))
 
 
 def _hdf5(path: Path) -> Read:

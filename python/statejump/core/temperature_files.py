@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, Unreadable
+from statejump.core.plausibility import warn_of_reference
 from statejump.core.table_files import quoted
 from statejump.core.temperature_columns import Read, listed, of_means, read_columns, refuse
 from statejump.core.thermal import (
@@ -210,6 +211,7 @@ def _changes(read: Read, given: Mapping[str, Any], section: str) -> tuple[Number
     time_s = read.time_s - read.time_s[0]
     changes = read.values
     if reference is not None:
+        warn_of_reference(f"{section}reference_temperature_K", reference)
         changes = changes + (read.offset_K - reference)
         refuse(read, read.values + read.offset_K < 0, "is below absolute zero")
     elif read.offset_K.any():

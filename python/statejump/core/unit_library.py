@@ -48,6 +48,19 @@ def conversion(unit: str, wanted: str, change: bool) -> Conversion | None:
     return Conversion(one - zero, offset=zero)
 
 
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit."""
+    found = spelled(text)
+    if found is None:
+        return False
+    try:
+        REGISTRY.parse_units(found if found != "percent" else "1")
+    except (pint.errors.PintError, TokenError, AttributeError, TypeError, ValueError, KeyError, SyntaxError,
+            AssertionError):
+        return False
+    return True
+
+
 @lru_cache(maxsize=None)
 def spelled(unit: str) -> str | None:
     """Return a unit as pint reads it; None: it is none that is meant."""

@@ -18,3 +18,7 @@ from statejump.fclib.files import read, write
 from statejump.fclib.problem import METHODS, Merit, NotSolved, Problem, Solution, Stored, merit, solve
 
 __all__ = ["METHODS", "Merit", "NotSolved", "Problem", "Solution", "Stored", "merit", "read", "solve", "write"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -14,7 +14,7 @@ from statejump.core.item_files import with_tables
 from statejump.core.temperature_files import with_files
 from statejump.kinds import kind, names
 from statejump.schema.fields import Section, definition, fields_of, section, section_of, structure
-from statejump.schema.paths import with_keys_moved
+from statejump.schema.paths import plain, with_keys_moved
 from statejump.schema.rules import check_name
 from statejump.schema.toml import read_toml
 
@@ -83,7 +83,7 @@ def load_case(source: str | Path | Mapping[str, Any]) -> Case:
     :raises StatejumpError: there is no such file, or the case is not allowed: file, key, value, range
     """
     if isinstance(source, Mapping):
-        return parse_case(source, files_from=Path())
+        return parse_case(plain(source), files_from=Path())
     path = found_case(source)
     text, data = read_toml(path, "case")
     return parse_case(data, path, text, path.parent)

@@ -92,6 +92,14 @@ class Kind(Generic[CaseType]):
 
         return yade_process.run(case, self.dem_values(case), self.ability("dem_run", case), tell)
 
+    def check_dem(self, case: CaseType) -> None:
+        """Raise StatejumpError where the DEM cannot run a case, as far as that is known before anything is solved. A
+        kind whose scene needs a solution has its own."""
+        from statejump.core.yade_process import find_yade
+
+        self.dem_values(case)
+        find_yade()
+
     def dem_values(self, case: CaseType) -> dict[str, Any]:
         """Return what the script in YADE reads."""
         return {"scene": self.scene_module(), **self.ability("dem_input", case)(case)}
@@ -103,6 +111,10 @@ class Kind(Generic[CaseType]):
     def campaign_models(self) -> tuple[str, ...]:
         """Return the models that campaigns run."""
         return tuple(model for model in self.OUTCOMES_OF if self.has_model(model))
+
+    def outcome_names(self, case: CaseType) -> tuple[str, ...]:
+        """Return the names of ``OUTCOMES`` that a case can have."""
+        return self.OUTCOMES
 
     def recorded(self, case: CaseType, run: Run) -> dict[str, float]:
         """Return the outcomes of a run, and where its program ends if that is not at the reference temperature."""

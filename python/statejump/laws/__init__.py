@@ -6,3 +6,7 @@ from statejump.laws.drive import drive
 from statejump.laws.traits import KINDS, Law, Parameter, catalogue, law, names
 
 __all__ = ["KINDS", "Law", "Parameter", "catalogue", "drive", "law", "names"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -381,7 +381,7 @@ def make(case: UmbrellaCase, results: Results, tell: Tell) -> Accounts:
     :raises NotAllowed: the study does not fit the case
     """
     chosen = variants(case)
-    with results.folder(case.name) as folder:
+    with results.folder(case.name, case) as folder:
         found = study(chosen, tell)
         written = write(case, found, made_by("energy", case), folder.staged) + figure(case, found, folder.staged)
         return Accounts(found, folder.publish(written))

@@ -300,10 +300,10 @@ def make(case: UmbrellaCase, results: Results, tell: Tell) -> Held:
     :raises NotAllowed: nothing loads the joint of the case
     :raises FailedRun: the joint cannot be loaded as the case wants it
     """
-    command, case = made_by("hold", case), held(case)
+    command, original, case = made_by("hold", case), case, held(case)
     with engine("the joint cannot be loaded", case=case.name):
         creep = predict(case)
-    with results.folder(case.name) as folder:
+    with results.folder(case.name, original) as folder:
         wanted = [(law, rate) for law in LAWS for rate in STEPS_PER_SECOND]
         finished = counted(tell, 2 * len(wanted))
         runs = []

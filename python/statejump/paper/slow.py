@@ -322,7 +322,7 @@ def make(case: UmbrellaCase, results: Results, tell: Tell) -> Slow:
     :raises FailedRun: statics leaves the path open
     """
     chosen = blocks(case)
-    with results.folder(case.name) as folder:
+    with results.folder(case.name, case) as folder:
         rows = study(chosen, tell)
         staged = folder.staged
         written = write(case, chosen, rows, made_by("slow", case), staged) + figure(case, chosen, rows, staged)

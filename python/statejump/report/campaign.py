@@ -154,18 +154,20 @@ class CampaignDocument:
     def cards(self) -> list[dict[str, Any]]:
         """The numbers at the top: the first outcomes' middle and spread."""
         shown = {"median": "median", "quantile_5": "5 % are below", "quantile_95": "5 % are above",
-                 "quantile_99": "1 % are above"}
+                 "quantile_99": "1 % are above", "minimum": "smallest", "maximum": "largest"}
         if self.command == "sweep":  # a grid has no frequencies
             shown = {"minimum": "smallest", "maximum": "largest"}
         return [
-            {
-                "label": outcome.title,
-                "values": [
-                    (label, text(self.statistics[outcome.name][key], outcome.unit, 4)) for key, label in shown.items()
-                ],
-            }
+            {"label": outcome.title, "values": [(label, self._text(outcome, key)) for key, label in shown.items()]}
             for outcome in self.outcomes[:3]
         ]
+
+    def _text(self, outcome: Variable, key: str) -> str:
+        """Return a number of the statistics; an extreme with its sample."""
+        found = self.statistics[outcome.name]
+        said = text(found[key], outcome.unit, 4)
+        sample = found.get(f"{key}_sample")
+        return said if sample is None else f"{said} (sample {sample:g})"
 
     def table(self) -> list[dict[str, Any]]:
         """Rows of the table of outcomes."""
@@ -174,7 +176,7 @@ class CampaignDocument:
                 "name": outcome.title,
                 "count": self.statistics[outcome.name]["count"],
                 **{
-                    key: text(self.statistics[outcome.name][key], outcome.unit, 4)
+                    key: self._text(outcome, key)
                     for key in ("mean", "standard_deviation", "minimum", *QUANTILES, "quantile_99", "maximum")
                 },
             }

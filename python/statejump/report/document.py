@@ -209,7 +209,7 @@ class Document:
     def _event_row(self, event: Event) -> dict[str, Any]:
         return {
             "key": (event.kind, event.joint), "kind": words.EVENTS.get(event.kind, self._words.plain(event.kind)),
-            "joint": self._words.plain(event.joint) if event.joint else "", "time_s": event.time_s, "at": {},
+            "joint": self._words.named(event.joint) if event.joint else "", "time_s": event.time_s, "at": {},
         }
 
     def _reason(self, event: Event, having: set[str]) -> str:

@@ -141,7 +141,7 @@ class Drawing:
         return name
 
     def _part(self, part: dict[str, Any]) -> dict[str, Any]:
-        drawn: dict[str, Any] = {"name": part["name"], "label": self._words.plain(part["name"]), "type": part["type"]}
+        drawn: dict[str, Any] = {"name": part["name"], "label": self._words.named(part["name"]), "type": part["type"]}
         drawn["points"] = [self._points[json.dumps(point, sort_keys=True)] for point in _points_of(part)]
         for key in ("width_m", "radius_m", "half_width_m", "half_height_m", "axis"):
             if key in part:
@@ -173,7 +173,7 @@ class Drawing:
         names = self.result.names
         return {
             "name": contact["name"],
-            "label": self._words.plain(contact["name"]),
+            "label": self._words.named(contact["name"]),
             "on": list(self._parts).index(contact["on"]),
             "from": list(self._parts).index(contact["from"]),
             "state": self._column(
@@ -211,7 +211,7 @@ class Drawing:
     def _forces(self) -> list[dict[str, Any]]:
         drawn = [
             self._force(
-                place, f"{force['kind'].capitalize()} force on {self._words.plain(force['on']).lower()}", force["kind"],
+                place, f"{force['kind'].capitalize()} force on {self._words.named(force['on'], True)}", force["kind"],
                 force["on"], force["at"], partial(self._vector_N, force),
             )
             for place, force in enumerate(self.result.scene["forces"])
@@ -227,7 +227,7 @@ class Drawing:
         that of the link as drawn."""
         first, second = (self._points[json.dumps(end, sort_keys=True)] for end in link["ends"])
         return {
-            "label": f"Axial force of {self._words.plain(link['name'])}", "kind": "axial", "point": second,
+            "label": f"Axial force of {self._words.named(link['name'])}", "kind": "axial", "point": second,
             "arm": [0.0, 0.0, 0.0], "from": first,
             "vector": [self._column(f"force{place}", lambda run: resolve(axial, run, self.result.names))],
         }

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from statejump.core.case import Case
 from statejump.core.errors import StatejumpError
 from statejump.core.units import split_unit, text
+from statejump.schema.fields import fields_of, tables_of
 
 MODELS = {"reduced": "Reduced model", "dem": "DEM (YADE)"}
 SIDES = {"closed_form": "Closed form", "reduced": "Reduced", "dem": "DEM", "fe": "CalculiX",
@@ -39,10 +40,20 @@ class Words:
     """Words for the keys of one kind.
 
     :param own: the kind's own, by key, with or without its unit
+    :param given: users name the parts of such cases
     """
 
-    def __init__(self, own: Mapping[str, str] | None = None) -> None:
+    def __init__(self, own: Mapping[str, str] | None = None, given: bool = False) -> None:
         self._own = {**NAMES, **(own or {})}
+        self._given = given
+
+    def named(self, name: str, in_sentence: bool = False) -> str:
+        """Return what a part, link or contact is called: what a user has named keeps its name."""
+        known = self._own.get(name)
+        if known is None and self._given:
+            return name
+        found = self.plain(name)
+        return found.lower() if in_sentence else found
 
     def plain(self, name: str) -> str:
         """Return a key as words, with a capital; the unit that it ends in is left off."""
@@ -78,7 +89,8 @@ def of_kind(name: str) -> Words:
     from statejump.kinds import kind
 
     try:
-        return Words(kind(name).WORDS)
+        found = kind(name)
+        return Words(found.WORDS, any(tables_of(attribute) for attribute in fields_of(found.Case).values()))
     except StatejumpError:
         return Words()
 
@@ -98,4 +110,5 @@ def _temperature(case: Case) -> str:
     way = SHAPES.get(thermal.shape, "changes by up to {peak}").format(peak=text(peak, "K"))
     returned = ", the return to the reference temperature included" if case.ending is not None and (
         case.ending.returns) else ""
-    return f"The temperature {way}, {times}; a cycle lasts {text(case.period_s, 's')}{returned}."
+    what = "temperature" if getattr(thermal, "members", None) is None else "mean temperature of the members"
+    return f"The {what} {way}, {times}; a cycle lasts {text(case.period_s, 's')}{returned}."

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from statejump.core.case import Case
 from statejump.core.comparison import Comparison
+from statejump.core.output import check_suffix
 from statejump.core.run import Run, warnings_of
 from statejump.core.tables import write_json
 from statejump.results import export_csv
@@ -50,6 +51,19 @@ def result_of(
         answers=answers,
         members=getattr(case.thermal, "members", None),
     )
+
+
+def save_as(
+    path: Path, command: str, case: Case, runs: Mapping[str, Run], comparison: Comparison | None = None
+) -> Path:
+    """Write the result file of runs under a name; return its path.
+
+    :raises NotAllowed: its name ends with another suffix
+    """
+    check_suffix("path", path, SUFFIX)
+    path = path if path.suffix else path.with_suffix(SUFFIX)
+    write(result_of(command, case, runs, comparison), path)
+    return path
 
 
 def save(

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Keys by their path: ``section.key`` as in a case file, ``section.item.key`` of an item of a list of tables,
-``section.*.key`` of all its items. Names of items may hold dots: the key is what follows the last one."""
+``section.*.key`` of all its items, ``section.joint*.key`` of those that fit. Names of items may hold dots: the key
+follows the last one."""
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from fnmatch import fnmatchcase
 from typing import Any
 
 import attrs
+import numpy as np
 
 from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey
 from statejump.schema.fields import Section, SectionType, evolved, fields_of, rule_of, section_of, tables_of
@@ -21,6 +24,20 @@ def split_path(path: str) -> tuple[str, str, str]:
     section, _, rest = path.partition(".")
     item, _, key = rest.rpartition(".")
     return section, item, key
+
+
+def meant(item: str, names: Sequence[str]) -> list[str]:
+    """Return the names that an item of a path stands for: itself, or those that fit it as a pattern."""
+    return [item] if item in names else [name for name in names if fnmatchcase(name, item)]
+
+
+def plain(value: Any) -> Any:
+    """Return numbers and arrays of numpy, also those in lists and dicts, as numbers and lists of Python."""
+    if isinstance(value, Mapping):
+        return {key: plain(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(inner) for inner in value]
+    return value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value
 
 
 def keys_of(model: type[Section]) -> dict[str, attrs.Attribute[Any]]:
@@ -100,11 +117,12 @@ def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any)
         targets = [data.setdefault(section, {})]
     else:
         tables = data.get(section, [])
-        targets = [table for table in tables if item in (EVERY, table.get("name"))]
+        names = [str(table.get("name")) for table in tables]
+        wanted = set(meant(item, names))
+        targets = [table for table, name in zip(tables, names) if name in wanted]
         if not targets:
-            names = [str(table.get("name")) for table in tables]
-            known = suggestion(item, names) if names else {"cause": f"the case has no [[{section}]]"}
-            raise UnknownKey(path, **known)
+            raise UnknownKey(path, **_no_item(section, item, key, names))
+    value = plain(value)
     for target in targets:
         if value is None:
             target.pop(key, None)
@@ -112,8 +130,18 @@ def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any)
             target[key] = value
 
 
+def _no_item(section: str, item: str, key: str, names: Sequence[str]) -> dict[str, str]:
+    """Return the fields of the UnknownKey for an item that is not there."""
+    if not names:
+        return {"cause": f"the case has no [[{section}]]"}
+    if any(sign in item for sign in "*?["):
+        return {"cause": f"no {section} has a name that fits {item!r}; their names are {', '.join(names[:5])}"
+                + (", ..." if len(names) > 5 else "")}
+    return suggestion(item, names, f"{section}.", f".{key}")
+
+
 def filled(data: Mapping[str, Any], values: Iterable[tuple[str, Any]]) -> dict[str, Any]:
-    """Return a copy of a parsed case file with many values, those of ``*`` in every item.
+    """Return a copy of a parsed case file with many values, those of a pattern in every item that fits it.
 
     :param values: paths, of which the caller knows that the case has them, and values
     """
@@ -130,7 +158,13 @@ def filled(data: Mapping[str, Any], values: Iterable[tuple[str, Any]]) -> dict[s
         tables = changed[section]
         if section not in places:
             places[section] = {table["name"]: place for place, table in enumerate(tables)}
-        for table in tables if item == EVERY else [tables[places[section][item]]]:
+        if item == EVERY:
+            targets = tables
+        elif item in places[section]:
+            targets = [tables[places[section][item]]]
+        else:
+            targets = [tables[place] for name, place in places[section].items() if fnmatchcase(name, item)]
+        for table in targets:
             table[key] = value
     return changed
 
@@ -138,7 +172,7 @@ def filled(data: Mapping[str, Any], values: Iterable[tuple[str, Any]]) -> dict[s
 def value_of(case: Section, path: str) -> Any:
     """Return the value of a key of a case. :raises UnknownKey: there is no such key, or no such item
 
-    :raises StatejumpError: ``*`` stands for items with several values
+    :raises StatejumpError: a pattern stands for items with several values
     """
     path = current(type(case), path)
     attribute_of(type(case), path)
@@ -146,9 +180,11 @@ def value_of(case: Section, path: str) -> Any:
     if not item:
         return getattr(getattr(case, section), key)
     items = getattr(case, section)
-    found = [getattr(one, key) for one in items if item in (EVERY, one.name)]
+    names = [one.name for one in items]
+    wanted = set(meant(item, names))
+    found = [getattr(one, key) for one in items if one.name in wanted]
     if not found:
-        raise UnknownKey(path, **suggestion(item, [one.name for one in items]))
+        raise UnknownKey(path, **_no_item(section, item, key, names))
     if any(value != found[0] for value in found):
         raise StatejumpError(f"{path} has several values", key=path)
     return found[0]

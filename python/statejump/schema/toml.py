@@ -22,7 +22,7 @@ def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
             content = stream.read(LARGEST_BYTES + 1)  # a device has no end
         if len(content) > LARGEST_BYTES:
             raise Unreadable("cannot be read", cause=f"it is larger than {size(LARGEST_BYTES)}", file=path)
-        text = content.decode("utf-8")
+        text = content.decode("utf-8-sig")  # editors of Windows write a byte order mark
     except FileNotFoundError:
         raise Unreadable(f"no such {what} file", file=path) from None
     except UnicodeDecodeError:

@@ -21,3 +21,7 @@ from statejump.surface.zernike import noll, zernike
 
 __all__ = ["DEFINITIONS", "MEASURES", "Design", "Errors", "Repeatability", "history", "noll", "pointing_rad",
            "reflector_of", "repeatability", "rotation_rad", "zernike"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from statejump.core import expansion, yade_process
+from statejump.core import expansion, plausibility, yade_process
 from statejump.core.case import Case, no_length_left
 from statejump.core.errors import MissingKey, NotAllowed
 from statejump.core.expansion import Expansion, followed
@@ -124,6 +124,13 @@ class SpringSliderCase(Case):
         if self.expansion is None:
             return self.thermal_expansion_per_K * temperature_change_K
         return float(self.expansion.strain(np.array([temperature_change_K]))[0])
+
+    @property
+    def implausible(self) -> tuple[str, ...]:
+        bar, strain = ["bar"], max(abs(self.thermal_strain(change)) for change in self.turning_changes_K)
+        return (*plausibility.moduli("link", bar, np.array([self.link.young_modulus_Pa])),
+                *plausibility.moduli("joint", ["block"], np.array([self.joint.young_modulus_Pa])),
+                *plausibility.strains("link", bar, np.array([strain]), "thermal"))
 
     @property
     def friction_force_N(self) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from statejump import _engine
+from statejump.core import plausibility
 from statejump.core.run import (
     AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Columns, Event, Events, Run, columns_of, numbers_of,
 )
@@ -129,7 +130,9 @@ def _run(
     }
     if events is None:
         events = from_states(columns["time_s"], change, contacts["state"].values, CONTACTS)
-    warnings = (*case.thermal_notes, *warnings)
+    rigidity = np.array([case.link.young_modulus_Pa * case.link.cross_section_area_m2])
+    warnings = (*case.thermal_notes, *case.implausible,
+                *plausibility.axial_strains(["bar"], links["axial_force_N"].values, rigidity), *warnings)
     return Run(model, plain, energy, links, contacts, Events(events), summary, names(case), lambda: case,
                warnings=warnings, **more)
 

@@ -61,6 +61,9 @@ class Truss(Kind[TrussCase]):
     AT_PROGRAM_END = ("largest_displacement_at_program_end_m",)
     OUTCOMES_OF = ("reduced",)
 
+    def outcome_names(self, case: TrussCase) -> tuple[str, ...]:
+        return tuple(name for name in self.OUTCOMES if case.reflector is not None or not name.startswith("reflector_"))
+
     def reduced(self, case: TrussCase, tell: Tell) -> Run:
         from statejump.kinds.truss import result, solve
 
@@ -80,6 +83,13 @@ class Truss(Kind[TrussCase]):
         from statejump.kinds.truss import dem
 
         return dem.dem_input(case)
+
+    def check_dem(self, case: TrussCase) -> None:
+        from statejump.core.yade_process import find_yade
+        from statejump.kinds.truss import dem
+
+        dem.check(case)
+        find_yade()
 
     def dem(self, case: TrussCase, tell: Tell) -> Run:
         from statejump.kinds.truss import dem, result

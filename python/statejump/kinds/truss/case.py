@@ -26,6 +26,7 @@ from statejump.kinds.truss.joints.revolute import Revolute
 from statejump.kinds.truss.joints.slider import Slider
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER
 from statejump.kinds.truss.mechanism import Drive
+from statejump.kinds.truss.plausibility import implausible
 from statejump.kinds.truss.resolved import FIXITY, STICKING, ResolvedTruss, resolve
 from statejump.schema.fields import (
     CHOICE, Section, attached, choice, definition, evolved, fields_of, numbers, optional_section, parameter, section,
@@ -306,6 +307,10 @@ class TrussCase(Case):
         """Return the truss as arrays: names turned into indices, defaults filled in, axes of length 1. It is made
         once and not to be written to."""
         return self._resolved
+
+    @property
+    def implausible(self) -> tuple[str, ...]:
+        return implausible(self.resolve())
 
     def check(self) -> None:
         """Raise StatejumpError for what is wrong between several keys."""

@@ -90,7 +90,7 @@ def planar(truss: ResolvedTruss, most_named: int = MOST_NAMED) -> Figure:
         _draw(panels[1], truss, lines, colours, symbol_size(gap * closer * 72), closer, most_named)
         middle, reach = _first_joint(truss)[:2], window / closer / 2
         _frame(panels[1], np.maximum(np.minimum(middle, high - reach), low + reach), 2 * reach)
-        panels[1].set_title("detail", fontsize=9)
+        panels[1].set_title("Detail", fontsize=9)
     if colour_scale is not None:
         drawing.colorbar(colour_scale, ax=panels, label=FRACTION, fraction=0.05, pad=0.02)
     below = drawing.add_subplot(grid[-1, :])

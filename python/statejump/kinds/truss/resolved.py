@@ -72,6 +72,12 @@ class Links:
     yield_strength_Pa: np.ndarray  # inf: none is given
 
     @property
+    def rigidity_N(self) -> np.ndarray:
+        """E A of each [N]."""
+        found: np.ndarray = self.young_modulus_Pa * self.cross_section_area_m2
+        return found
+
+    @property
     def euler_load_N(self) -> np.ndarray:
         """Compression [N] at which each buckles by itself, inf of a guided one: fixity · π² E I/l0²."""
         fixity = np.array([FIXITY[ends] for ends in self.ends])

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from statejump.core import plausibility
 from statejump.core.run import (
     AT_STOP, CONTACT_STATES, SEPARATED, SLIP, STICK, Column, Columns, Event, Events, Run, columns_of, numbers_of,
 )
@@ -147,7 +148,8 @@ def _run(
 
     return Run(model, history, energy, links, contacts, Events(happened),
                {**_jumps(case, *(dense or (time, items["displacement_m"]))), **summary}, names(case), lambda: case,
-               warnings=(*case.thermal_notes, *warnings), **more)
+               warnings=(*case.thermal_notes, *case.implausible, *plausibility.axial_strains(
+                   truss.links.names, items["axial_force_N"], truss.links.rigidity_N), *warnings), **more)
 
 
 def _jumps(case: TrussCase, time_s: np.ndarray, displacement_m: np.ndarray) -> dict[str, float]:

@@ -45,8 +45,10 @@ def describe(case: TrussCase) -> list[str]:
     if set(shares) - {1.0}:
         sentences.append(f"Links are shaded: they take {spread(shares, digits=3)} of the temperature change.")
     if case.thermal.members is not None:
-        sentences.append(f"{len(case.thermal.members.names)} members have temperature histories of their own, of "
-                         f"{len(case.thermal.members.time_s)} times.")
+        members = case.thermal.members
+        sentences.append(f"{len(members.names)} members have temperature histories of their own, of "
+                         f"{len(members.time_s)} times; they change by {members.temperature_change_K.min():.4g} to "
+                         f"{members.temperature_change_K.max():.4g} K.")
     if case.program:
         sentences.append(f"{count(case.program, 'further temperature program')} for members that name one.")
     return sentences

@@ -10,8 +10,10 @@ from __future__ import annotations
 from math import atan, atan2, pi
 from typing import Any, ClassVar
 
+import numpy as np
+
 from statejump import _engine, laws
-from statejump.core import yade_process
+from statejump.core import plausibility, yade_process
 from statejump.core.case import Case, check_radii, no_length_left
 from statejump.core.errors import NotAllowed
 from statejump.core.physics import apex_m
@@ -220,6 +222,16 @@ class UmbrellaCase(Case):
     def free_flare_angle_rad(self) -> float:
         """Flare angle at which the torsion spring is free [rad]."""
         return self.flare_angle_rad + self.torsion_spring.bias_rad
+
+    @property
+    def implausible(self) -> tuple[str, ...]:
+        names, links, joint = ("AB", "BC"), (self.link_ab, self.link_bc), self.joint
+        modulus = np.array([link.young_modulus_Pa for link in links])
+        change = max(abs(end) for end in self.temperature_range_K)
+        strain = np.array([abs(link.thermal_expansion_per_K) for link in links]) * change
+        return (*plausibility.clearances("joint", ["B"], np.array([joint.radial_clearance_m]),
+                                         np.array([joint.journal_radius_m])),
+                *plausibility.moduli("link", names, modulus), *plausibility.strains("link", names, strain, "thermal"))
 
     @property
     def is_reproducible(self) -> bool:

@@ -127,7 +127,7 @@ def _run(
         jumps[f"{angle}_jump_rad"] = float(turned[-1]) if case.has_jump else nan
         if case.ending is not None:
             jumps[f"{angle}{AT_END}"] = float(np.interp(case.ending.time_s, columns["time_s"], turned))
-    warnings = (*case.thermal_notes, *(() if case.is_reproducible else (CHAOS,)))
+    warnings = (*case.thermal_notes, *case.implausible, *(() if case.is_reproducible else (CHAOS,)))
     start = carried(columns["tangential_force_N"][0], case.joint.friction_coefficient * columns["normal_force_N"][0])
     return Run(model, plain, energy, _links(case, columns), contacts, Events(events), {**jumps, **start, **summary},
                names(case), lambda: case, warnings=warnings, **more)

@@ -41,9 +41,9 @@ def make(case: UmbrellaCase, results: Results, part: Part) -> Figures:
     if case.start.mode == "loaded":
         raise refused(case, "start.mode", "loaded", "the figures vary what would load the joint")
     command = made_by("figures", case)
-    case = model.for_ensemble(case)
+    original, case = case, model.for_ensemble(case)
     written: list[Path] = []
-    with results.folder(case.name) as folder:
+    with results.folder(case.name, original) as folder:
         try:
             known: dict[str, Variant] = {}
             itself = Study("fig13", "joint.radial_clearance_m", (case.joint.radial_clearance_m,), "", "", "")

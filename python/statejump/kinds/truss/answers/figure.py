@@ -104,8 +104,8 @@ def jumps_figure(found: TrussPath, shares: Contributions | None, title: str) -> 
                          pad=0.02 if flat else 0.1)
         cycles = len(found.cycle_ends["time_s"]) - 1
         after = f"after {cycles} cycle{'s' if cycles > 1 else ''}"
-        text = (f"jumps {after}, {scale:g} times magnified; grey: as drawn" if size.any()
-                else f"no node jumps {after}")
+        text = (f"Jumps {after}, {scale:g} times magnified; grey: as drawn" if size.any()
+                else f"No node jumps {after}")
         if shares is not None and shares.jump != 0:
             text += "; numbers: rank of a joint"
         wrapped = fill(text, int(13 * drawing.get_figwidth()))
@@ -158,7 +158,7 @@ def ranking_figure(shares: Contributions, output: Output, title: str) -> Figure:
                            va="center", fontsize=8)
         panel.set_xlim(min(bars.min() * 1.05, 0), max(bars.max(), 0) + 0.16 * reach)
         panel.set_xlabel(f"Contribution to the jump [{unit}] (blue: with it, orange: against it)")
-        panel.set_title(f"{output.text}: jump {shares.jump * factor:.5g} {unit}, "
+        panel.set_title(f"{output.text[:1].upper()}{output.text[1:]}: jump {shares.jump * factor:.5g} {unit}, "
                         f"sum of joints {shares.contribution.sum() * factor:.5g} {unit}", fontsize=8)
         drawing.suptitle(f"{title}: joints that hold the jump", fontsize=10)
         return drawing

@@ -16,7 +16,7 @@ from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.references import known_name
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.fields import rule_of
-from statejump.schema.paths import EVERY, attribute_of, split_path
+from statejump.schema.paths import EVERY, attribute_of, meant, split_path
 from statejump.schema.rules import suggestion
 
 PER_DECADE = 3
@@ -69,8 +69,8 @@ def candidates(case: TrussCase, places: Places) -> list[Candidate]:
     told = [one.parameter for one in found + wanted]
     for one in found + wanted:
         if told.count(one.parameter) > 1:
-            option, _, value = one.parameter.partition(" ")
-            raise NotAllowed(f"--{option.replace('_', '-')}", value, "it is there twice")
+            change, _, value = one.parameter.partition(" ")
+            raise NotAllowed({"scale": "--free"}.get(change, "--add-spring"), value, "it is there twice")
     return found + wanted
 
 
@@ -115,15 +115,17 @@ def _scaled(case: TrussCase, path: str) -> Candidate:
     known = {(of, name): values for of, name, values in parameters(truss)}
     if (section, key) not in known:
         paths = [f"{of}.{EVERY}.{name}" for of, name in known]
-        raise UnknownKey("--scale", value=path, **suggestion(path, paths))
+        raise UnknownKey("--free", value=path, **suggestion(path, paths))
     names = [one.name for one in getattr(case, section)]
-    if item != EVERY and item not in names:
-        cause = None if names else f"the case has no [[{section}]]"
-        raise UnknownKey("--scale", value=path, **({"cause": cause} if cause else suggestion(item, names)))
+    wanted = set(meant(item, names))
+    if not wanted:
+        known_names = suggestion(item, names, f"{section}.", f".{key}")
+        raise UnknownKey("--free", value=path,
+                         **(known_names if names else {"cause": f"the case has no [[{section}]]"}))
     values = known[section, key]
-    which = _has_value(values) & (np.array([item in (EVERY, name) for name in names], dtype=bool))
+    which = _has_value(values) & (np.array([name in wanted for name in names], dtype=bool))
     if not which.any():
-        raise NotAllowed("--scale", path, "it has no value but 0 in this case: there is nothing to scale")
+        raise NotAllowed("--free", path, "it has no value but 0 in this case: there is nothing to scale")
     sizes, allowed = np.abs(values[which]), rule_of(attribute_of(TrussCase, f"{section}.{EVERY}.{key}")).allowed
     assert allowed is not None
     # Nothing but a number of its range is tried; the lower end only counts where it is above 0.

@@ -72,8 +72,12 @@ def control(
         result.recommendation["candidates"] = [
             search.found or {"parameter": search.sweep.parameter, "value": None, "monotone": not search.turns}
             for search in searches]
-        for name, kind in (("best_spring", True), ("best_scale", False)):
-            _best(result, name, [search for search in searches if search.candidate.is_spring == kind])
+        _best(result, "best_spring", [search for search in searches if search.candidate.is_spring])
+        if places.scale:
+            _best(result, "best_scale", [search for search in searches if not search.candidate.is_spring])
+        elif not places.add_spring:
+            result.sentences.append("No key is named best, for not all of them are free to a designer: --free KEY (in "
+                                    "Python scale=[KEY]) names those that are.")
     return result
 
 

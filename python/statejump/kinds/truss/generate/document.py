@@ -2,16 +2,14 @@
 """Case files of trusses as documents: what generators share, and writing them as TOML."""
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import tomli_w
-
 from statejump.core.item_files import write_items
 from statejump.core.output import write_atomically
 from statejump.schema.fields import TABLES_BESIDE
+from statejump.schema.toml_text import to_toml
 
 Document = dict[str, Any]
 
@@ -59,19 +57,6 @@ def node(name: str, position_m: Sequence[float], fixed: str = "", **more: Any) -
     if fixed:
         made["fixed"] = list(fixed)
     return made | more
-
-
-def to_toml(made: Mapping[str, Any]) -> str:
-    """Return a document as TOML, short lists on one line."""
-    text = tomli_w.dumps(dict(made))
-    # The writer puts every item of a list on a line of its own; texts have no line ends.
-    return re.sub(r"\[\n((?:    [^\n]*,\n)+)\]", _on_one_line, text)
-
-
-def _on_one_line(match: re.Match[str]) -> str:
-    items = [line.strip().rstrip(",") for line in match[1].splitlines()]
-    line = "[" + ", ".join(items) + "]"
-    return line if len(line) <= 100 else match[0]
 
 
 def table_path(path: Path, section: str) -> Path:

@@ -30,21 +30,23 @@ AXES = {"x": [1.0, 0.0, 0.0], "y": [0.0, 1.0, 0.0], "z": [0.0, 0.0, 1.0]}
 LINK, FROM = "link", "from"
 
 
-def put_in(made: Document, joints: Sequence[Mapping[str, str]], dimension: int) -> None:
-    """Put joints into a document of a case.
+def put_in(made: Document, joints: Sequence[Mapping[str, str]], dimension: int) -> list[str]:
+    """Put joints into a document of a case; return what was chosen for them, a sentence each.
 
     :raises StatejumpError: there is no such node, link, key or file
     """
+    chosen: list[str] = []
     for number, given in enumerate(joints, start=1):
         try:
-            _put_in(made, given, dimension)
+            chosen += _put_in(made, given, dimension)
         except StatejumpError as refused:
             if refused.file is None:
                 refused.item = f"--joint {number}"
             raise
+    return chosen
 
 
-def _put_in(made: Document, given: Mapping[str, str], dimension: int) -> None:
+def _put_in(made: Document, given: Mapping[str, str], dimension: int) -> list[str]:
     in_link = given.get("axis") == LINK
     revolute = LINK in given and not in_link
     section, known = ("revolute", REVOLUTE) if revolute else ("slider", SLIDER)
@@ -71,10 +73,12 @@ def _put_in(made: Document, given: Mapping[str, str], dimension: int) -> None:
         for name in matching(LINK, given[LINK], links):
             _slider_in_link(made, links[name], nodes, given.get("node"), values)
     elif revolute:
-        _revolute(made, nodes[_one("node", given.get("node", ""), nodes)], {LINK: given[LINK], **values}, dimension)
+        node = nodes[_one("node", given.get("node", ""), nodes)]
+        return _revolute(made, node, {LINK: given[LINK], **values}, dimension)
     else:
         for name in matching("node", given.get("node", ""), nodes):
             _slider(made, nodes[name], values, dimension)
+    return []
 
 
 def _section(path: Path, section: str, known: Sequence[str]) -> dict[str, Any]:
@@ -133,18 +137,31 @@ def _slider_in_link(made: Document, link: dict[str, Any], nodes: Mapping[str, An
                            "axis": [round(float(part), 12) for part in way / np.linalg.norm(way)], **values})
 
 
-def _revolute(made: Document, node: dict[str, Any], values: dict[str, Any], dimension: int) -> None:
+def _revolute(made: Document, node: dict[str, Any], values: dict[str, Any], dimension: int) -> list[str]:
     here = [link for link in made["link"] if node["name"] in link["nodes"]]
     names = {link["name"]: link for link in here}
     moved = names[_one(LINK, values.pop(LINK), names)]
     journal = {"name": f"{node['name']}_{moved['name']}", "position_m": list(node["position_m"])}
     others = [link["name"] for link in here if link is not moved]
-    bearing = values.pop("bearing_link", None) or (others[0] if others and not node.get("fixed") else None)
+    wanted = values.pop("bearing_link", None)
+    bearing = wanted or (others[0] if others and not node.get("fixed") else None)
     moved["nodes"] = [journal["name"] if end == node["name"] else end for end in moved["nodes"]]
     made["node"].append(journal)
     axis = values.pop("axis", None)
+    name = f"R_{journal['name']}"
     made["revolute"].append({
-        "name": f"R_{journal['name']}", "bearing_node": node["name"], "journal_node": journal["name"],
+        "name": name, "bearing_node": node["name"], "journal_node": journal["name"],
         **({"bearing_link": bearing} if bearing else {}), "journal_link": moved["name"],
         **({"axis": axis} if dimension == 3 and axis else {}), **values,
     })
+    return [] if wanted else [_bearing(name, bearing, others)]
+
+
+def _bearing(name: str, bearing: str | None, others: Sequence[str]) -> str:
+    """Return which link carries the bearing where nothing says it, and which could."""
+    if bearing is None:
+        return f"revolute {name!r}: no bearing_link, the bearing does not turn" + (
+            f"; {', '.join(map(repr, others))} could carry it" if others else "")
+    more = [other for other in others if other != bearing]
+    return f"revolute {name!r}: bearing_link = {bearing!r}" + (
+        f"; {', '.join(map(repr, more))} could be it as well, bearing_link=NAME in --joint chooses" if more else "")

@@ -90,6 +90,8 @@ class Deck:
     :param refused: first line, reason and count by card and the option that waives it
     :param taken: count by card and what became of it
     :param left: first line and count by card and why it was left out
+    :param named_units: the file names the units of its numbers
+    :param choices: what was chosen where the user says nothing, a sentence each
     """
 
     path: Path
@@ -112,6 +114,8 @@ class Deck:
     step: int = 0  # which static one is taken; 0: none
     refused: dict[tuple[str, str], tuple[int, str, int]] = field(default_factory=dict)
     waived: set[str] = field(default_factory=set)
+    named_units: bool = False
+    choices: list[str] = field(default_factory=list)
 
     def take(self, card: str, what: str, count: int = 1) -> None:
         """Note that something of a card became part of the truss."""
@@ -247,6 +251,7 @@ def read(path: Path, form: str | None = None, bars: Path | None = None, options:
         if bars is None:
             raise NotAllowed("FILE", path.name, "a table of nodes needs a table of bars", remedy="--bars names it")
         deck = tables.read(path, bars)
+        deck.named_units = True
     else:
         deck = mesh.read(path) if form == "mesh" else \
             {"abaqus": abaqus.read, "nastran": nastran.read}[form](path, options or Options())

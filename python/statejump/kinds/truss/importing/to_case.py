@@ -76,7 +76,7 @@ def case_document(
     if "thermal" in more and (deck.temperature or any(bar.temperature_change is not None for bar in deck.bars)):
         deck.leave("temperatures", "those of the members' histories are taken", 0)
     _hold(made, fixed, dimension)
-    put_in(made, joints, dimension)
+    deck.choices += put_in(made, joints, dimension)
     if reflector is not None:
         of_deck = [node_name(node) for node in deck.nodes if node in used]
         made["reflector"] = {"axis": [float(part) for part in reflector[1][:dimension]], "nodes": list(dict.fromkeys(

@@ -45,14 +45,14 @@ class RoundParts(JointType[ItemType, ArraysType]):
     def _nodes(self, joints: ArraysType) -> np.ndarray:
         return np.stack([getattr(joints, f"{part}_node") for part in self.parts], axis=1)
 
-    def _radius_m(self, joints: ArraysType, part: str) -> np.ndarray:
+    def radius_m(self, joints: ArraysType, part: str) -> np.ndarray:
         found: np.ndarray = getattr(joints, f"{part}_radius_m")
         return found
 
     def hertz_stiffness(self, joints: Any) -> np.ndarray:
         """Return K of F = K δ^1.5 [N/m^1.5] of every joint. Both parts are of one material and touch as a sphere of
         R = R1 R2/(R2 - R1) on a plane, as bodies of the DEM do; the formulas are not those of its contact law."""
-        inner, outer = (self._radius_m(joints, part) for part in (self.inner, self.outer))
+        inner, outer = (self.radius_m(joints, part) for part in (self.inner, self.outer))
         radius = physics.conforming_radius_m(inner, outer, joints.radial_clearance_m)
         modulus = physics.effective_young_modulus_Pa(joints.young_modulus_Pa, joints.poisson_ratio)
         return physics.hertz_stiffness_N_per_m15(modulus, radius)
@@ -63,7 +63,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
 
     def clearance_m(self, joints: Any, temperature_change_K: Any) -> np.ndarray:
         """Return the radial clearance [m] where the joints are at these ΔT [K] (fraction included)."""
-        grown = [getattr(joints, f"{part}_thermal_expansion_per_K") * self._radius_m(joints, part)
+        grown = [getattr(joints, f"{part}_thermal_expansion_per_K") * self.radius_m(joints, part)
                  for part in self.parts]
         found: np.ndarray = joints.radial_clearance_m + temperature_change_K * (grown[0] - grown[1])
         return found
@@ -128,7 +128,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
                     f"{changes[index]:g} K, it must stay above 0 [m] within the program",
                     temperature_change_K=float(changes[index]), **self.where(joints.names[index]),
                 )
-        inner, outer = (self._radius_m(joints, part) for part in (self.inner, self.outer))
+        inner, outer = (self.radius_m(joints, part) for part in (self.inner, self.outer))
         for index in np.flatnonzero(~(outer > inner))[:1]:
             raise NotAllowed(
                 "radial_clearance_m", float(joints.radial_clearance_m[index]),
@@ -162,7 +162,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
     def touching(self, run: Sampled, joints: Any, tangential_force_N: np.ndarray) -> Contacts:
         """Return what the contacts do, from the force of friction on the inner part (samples, joints, 3)."""
         normal = self.normals(run)
-        outer = self._radius_m(joints, self.outer)
+        outer = self.radius_m(joints, self.outer)
         return Contacts(
             gap_m=self.clearance_m(joints, run.temperature_change_K)
             - np.linalg.norm(run.columns[self.eccentricity], axis=2),
@@ -207,7 +207,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
         return [
             ContactPart(getattr(joints, f"{part}_node"), [
                 (part, *role) for role in zip(
-                    self._radius_m(joints, part), joints.friction_coefficient, joints.young_modulus_Pa,
+                    self.radius_m(joints, part), joints.friction_coefficient, joints.young_modulus_Pa,
                     getattr(joints, f"{part}_link"))])
             for part in self.parts
         ]
@@ -221,7 +221,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
         offset = state[self.eccentricity]
         # The radii meet in the middle of the depth; at the ends of cycles ΔT = 0.
         depth = np.maximum(np.linalg.norm(offset, axis=1) - joints.radial_clearance_m, 0.0)
-        arm = self._radius_m(joints, self.inner) - depth / 2
+        arm = self.radius_m(joints, self.inner) - depth / 2
         for index, friction in enumerate(self.friction_on_inner_N(joints, state)):
             loads.rub(index, self._nodes(joints)[index], links[index], friction, offset[index], arm[index])
 
@@ -245,4 +245,4 @@ class RoundParts(JointType[ItemType, ArraysType]):
         return self.pushed_nodes(joints), normal * (1 + physics.shear_over_normal_stiffness(joints.poisson_ratio))
 
     def scene(self, path: Course, joints: ArraysType) -> dict[str, Any]:
-        return {f"{self.outer}_radius_m": self._radius_m(joints, self.outer)}
+        return {f"{self.outer}_radius_m": self.radius_m(joints, self.outer)}

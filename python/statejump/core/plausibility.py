@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Values that are allowed and hardly meant: wrong units as a rule. Each is a warning of the run, one sentence per kind,
+of the worst item."""
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+LEAST_MODULUS_PA = 1e6  # of soft rubber; foams are no links
+LARGEST_STRAIN = 0.1  # the models are of linear elastic links
+# Colder than any structure in space is assembled; 20 degrees Celsius, written as kelvin, are colder.
+LEAST_REFERENCE_K = 100.0
+
+
+def _others(count: int) -> str:
+    return "" if not count else " and 1 other" if count == 1 else f" and {count:,} others"
+
+
+def clearances(what: str, names: Sequence[str], clearance_m: np.ndarray, radius_m: np.ndarray) -> Iterable[str]:
+    """Yield a sentence on joints whose clearance is above the radius of the part that plays in it.
+
+    :param what: which joints, as ``revolute``
+    """
+    found = np.flatnonzero(clearance_m > radius_m)
+    if len(found):
+        worst = found[np.argmax(clearance_m[found] / radius_m[found])]
+        yield (f"{what} {names[worst]!r}{_others(len(found) - 1)}: the radial clearance of {clearance_m[worst]:.4g} m "
+               f"is above the radius of {radius_m[worst]:.4g} m; check the units")
+
+
+def moduli(what: str, names: Sequence[str], young_modulus_Pa: np.ndarray) -> Iterable[str]:
+    """Yield a sentence on items that are softer than rubber."""
+    found = np.flatnonzero(young_modulus_Pa < LEAST_MODULUS_PA)
+    if len(found):
+        worst = found[np.argmin(young_modulus_Pa[found])]
+        yield (f"{what} {names[worst]!r}{_others(len(found) - 1)}: Young's modulus of {young_modulus_Pa[worst]:.4g} Pa "
+               "is below 1 MPa; check the units")
+
+
+def strains(what: str, names: Sequence[str], strain: np.ndarray, cause: str) -> Iterable[str]:
+    """Yield a sentence on items that are strained by more than a tenth.
+
+    :param strain: largest one of each item, without its sign
+    :param cause: as ``thermal``
+    """
+    found = np.flatnonzero(strain > LARGEST_STRAIN)
+    if len(found):
+        worst = found[np.argmax(strain[found])]
+        yield (f"{what} {names[worst]!r}{_others(len(found) - 1)}: {cause} strain of {strain[worst]:.3g} is above "
+               "10 %; the models are for small strains, check the units")
+
+
+def warn_of_reference(key: str, reference_temperature_K: float) -> None:
+    """Warn of a reference temperature that looks like degrees Celsius."""
+    if reference_temperature_K < LEAST_REFERENCE_K:
+        celsius, kelvin = reference_temperature_K - 273.15, reference_temperature_K + 273.15
+        warnings.warn(f"{key} = {reference_temperature_K:g} is taken as kelvin, {celsius:g} °C; for "
+                      f"{reference_temperature_K:g} °C write {kelvin:g}", stacklevel=2)
+
+
+def axial_strains(names: Sequence[str], axial_force_N: np.ndarray, rigidity_N: np.ndarray) -> Iterable[str]:
+    """Yield a sentence on links that forces strain by more than a tenth.
+
+    :param axial_force_N: (samples, links)
+    :param rigidity_N: E A of every link
+    """
+    if axial_force_N.size:
+        with np.errstate(invalid="ignore"):
+            yield from strains("link", names, np.abs(axial_force_N).max(axis=0) / rigidity_N, "axial")

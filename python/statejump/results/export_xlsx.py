@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A workbook of a result for Excel and LibreOffice: the tables of the CSV export as sheets. Numbers are numbers,
+whatever the decimal sign of the country, of 16 digits."""
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import astuple, fields
+from pathlib import Path
+from typing import Any
+
+from statejump.core.comparison import table
+from statejump.core.errors import NotWritten, StatejumpError
+from statejump.core.run import Event
+from statejump.core.units import unit_of
+from statejump.results.contents import Result
+
+MOST_ROWS, MOST_COLUMNS = 1_048_576, 16_384  # of a sheet, by ISO/IEC 29500 as Excel has it
+LONGEST_NAME = 31  # of a sheet
+
+Table = tuple[str, Sequence[str], int, Iterable[Sequence[Any]]]  # name, header, number of rows, rows
+
+
+def _of_dicts(name: str, rows: Sequence[dict[str, Any]]) -> Table:
+    header = list(rows[0]) if rows else []
+    return name, header, len(rows), ([row.get(key) for key in header] for row in rows)
+
+
+def _tables(result: Result) -> Iterator[Table]:
+    for model, run in result.models.items():
+        rows = [(name, unit_of(name), value) for name, value in run.summary.items()]
+        yield f"{model} summary", ("quantity", "unit", "value"), len(rows), rows
+    if result.rows:
+        yield _of_dicts("comparison", table(result.rows))
+    for model, run in result.models.items():
+        yield (f"{model} events", [entry.name for entry in fields(Event)], len(run.events), map(astuple, run.events))
+        columns = run.flat()
+        yield f"{model} history", list(columns), len(run), zip(*(values.tolist() for values in columns.values()))
+    for name, rows_of in result.answers.tables.items() if result.answers is not None else ():
+        yield _of_dicts(name, list(rows_of))
+
+
+def write(result: Result, path: Path) -> Path:
+    """Write all tables of a result as sheets of one workbook; return its path.
+
+    :raises StatejumpError: openpyxl is missing, or a table is too large for a sheet
+    """
+    try:
+        from openpyxl import Workbook
+        from openpyxl.cell import WriteOnlyCell
+    except ImportError:
+        raise StatejumpError("openpyxl is missing", remedy="install Debian's package 'python3-openpyxl', or take "
+                             "--format csv") from None
+    book = Workbook(write_only=True)
+    for name, header, rows, content in _tables(result):
+        if rows + 1 > MOST_ROWS or len(header) > MOST_COLUMNS:
+            raise NotWritten("is too large for a sheet", place=f"table {name!r}", cause=f"{rows:,} rows and "
+                             f"{len(header):,} columns, a sheet has {MOST_ROWS:,} and {MOST_COLUMNS:,}",
+                             remedy="take --format csv")
+        sheet = book.create_sheet(name[:LONGEST_NAME])
+        sheet.freeze_panes = "A2"
+
+        def cell(value: Any) -> Any:
+            if isinstance(value, float) and not math.isfinite(value):
+                return None if math.isnan(value) else str(value)  # a sheet has no such numbers
+            if isinstance(value, str) and value.startswith("="):  # a name, no formula
+                made = WriteOnlyCell(sheet, value)
+                made.data_type = "s"
+                return made
+            return value
+
+        sheet.append(list(map(cell, header)))
+        for row in content:
+            sheet.append(list(map(cell, row)))
+    try:
+        book.save(path)
+    except OSError as error:
+        raise NotWritten("cannot be written", file=path, cause=error.strerror or str(error)) from None
+    return path
