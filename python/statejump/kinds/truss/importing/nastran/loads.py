@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from statejump.kinds.truss.importing.model import quoted
+from statejump.kinds.truss.importing.model import Moment, quoted
 from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.control import Control
 from statejump.kinds.truss.importing.nastran.reader import Reader
@@ -68,24 +68,36 @@ def _expanded(reader: Reader, kind: str, chosen: str) -> dict[str, float]:
 
 def force(reader: Reader, card: Card) -> None:
     """FORCE, FORCE1 and FORCE2."""
-    factor = reader.factor(card, "load")
+    node, vector = _vector(reader, card)
+    reader.deck.load(node, [float(part) for part in vector], card.line, card.name)
+    reader.deck.take(card.name, "dead load")
+
+
+def moment(reader: Reader, card: Card) -> None:
+    """MOMENT, MOMENT1 and MOMENT2."""
+    node, vector = _vector(reader, card)
+    reader.deck.moments.append(Moment(card.line, card.name, node, vector))
+
+
+def _vector(reader: Reader, card: Card) -> tuple[str, np.ndarray]:
+    """Return the node and the force or moment of a card, times the factor of its set."""
+    factor = reader.factor(card, "load") or 0.0
     node = reader.node(card, 1)
-    if card.name == "FORCE":
+    if card.name in ("FORCE", "MOMENT"):
         size = reader.number(card, 3)
         given = np.array([reader.number(card, place, 0.0) for place in (4, 5, 6)])
         vector = given @ reader.frame(card, 2).directions(reader.deck.nodes[node]) * size
     else:
         corners = [np.array(reader.deck.nodes[reader.node(card, place)])
-                   for place in range(3, 5 if card.name == "FORCE1" else 7)]
+                   for place in range(3, 5 if card.name.endswith("1") else 7)]
         way = corners[1] - corners[0]
-        if card.name == "FORCE2":
+        if card.name.endswith("2"):
             way = np.cross(way, corners[3] - corners[2])
         length = np.linalg.norm(way)
         if length == 0:
             raise reader.fail(card, "its nodes give no direction")
         vector = way / length * reader.number(card, 2)
-    reader.deck.load(node, [float(part) * (factor or 0.0) for part in vector], card.line, card.name)
-    reader.deck.take(card.name, "dead load")
+    return node, vector * factor
 
 
 def gravity(reader: Reader, card: Card) -> None:
@@ -154,6 +166,8 @@ def temperatures(reader: Reader) -> None:
         if default is not None:
             for name in reader.deck.nodes:
                 found.setdefault(name, default)
+        if reader.sets[kind] and not found:
+            reader.deck.refuse("TEMPERATURE", f"set {next(iter(reader.sets[kind]))} is not in the deck", 0)
     _left(reader)
 
 

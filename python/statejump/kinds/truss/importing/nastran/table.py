@@ -16,7 +16,11 @@ OUTPUT = "output"
 THROUGH = "acts through elements that name it, which are not supported"
 SHELL, SOLID = "shells are no part of a truss", "solids are no part of a truss"
 RIGID = "rigid elements need rotations or equations between nodes"
+SUPORTED = "supports that inertia relief or a rigid body need, but of modes and responses, where they hold nothing"
 EXACT = "reduction, exact in statics"
+BODY = "one node of those at one place, where forces and masses of the others act; apart from that it is refused"
+EXPANDS = "thermal expansion of a rigid bar"
+TWIST = "nothing where it twists rods, or beams that are all along it; else it bends beams, which is refused"
 POINTS = "end A: C1 C2 D1 D2 E1 E2 F1 F2"
 
 CARDS: dict[str, Card] = table(
@@ -68,12 +72,23 @@ CARDS: dict[str, Card] = table(
     # Supports, loads and temperatures.
     used("SPC", "directions without motion", "SID G1 C1 D1 G2 C2 D2", sets="spc"),
     used("SPC1", "directions without motion", "SID C Gi", repeats=1, sets="spc"),
+    # Rigid bodies and equations.
+    used("RBAR", BODY, "EID GA GB CNA CNB CMA CMB ALPHA", refused={"ALPHA": EXPANDS}),
+    used("RBAR1", BODY, "EID GA GB CB ALPHA", refused={"ALPHA": EXPANDS}),
+    used("RBE2", BODY, "EID GN CM GMi ALPHA", refused={"ALPHA": EXPANDS}, own=True),
+    used("RBE3", "nothing where nothing acts on its node REFGRID; else it is refused",
+         "EID - REFGRID REFC WTi Ci Gi,j UM GMi CMi ALPHA", own=True,
+         idle={"REFC WTi Ci Gi,j UM GMi CMi ALPHA": "motion of a node that nothing acts on"}),
+    used("MPC", "support, one node of two at one place, or loads of a node at which no bar ends; else it is refused",
+         "SID G1 C1 A1 G2 C2 A2 - - G3 C3 A3 G4 C4 A4 - -", repeats=8, sets="mpc"),
     used("SPCADD", "several sets of supports", "SID Si", repeats=1),
     used("MPCADD", "several sets of equations", "SID Si", repeats=1),
     *(used(name, "several sets of loads with factors", "SID S Si Li", repeats=2) for name in ("LOAD", "LOADADD")),
     used("FORCE", "dead load", "SID G CID F N1 N2 N3", sets="load"),
     used("FORCE1", "dead load", "SID G F G1 G2", sets="load"),
     used("FORCE2", "dead load", "SID G F G1 G2 G3 G4", sets="load"),
+    *(used(name, TWIST, f"SID G {more}", sets="load") for name, more in (
+        ("MOMENT", "CID M N1 N2 N3"), ("MOMENT1", "M G1 G2"), ("MOMENT2", "M G1 G2 G3 G4"))),
     used("PLOAD1", "dead loads of both ends, of a load along the bar", "SID EID TYPE SCALE X1 P1 X2 P2", sets="load"),
     used("GRAV", "gravity", "SID CID A N1 N2 N3 MB", idle={"MB": "superelement: the structure is taken as one"},
          sets="load"),
@@ -81,12 +96,9 @@ CARDS: dict[str, Card] = table(
     used("TEMPD", "temperature of links", "SID1 T1 SID2 T2 SID3 T3 SID4 T4"),
     used("PARAM", "WTMASS: factor of all masses; AUTOSPC", "N V1 V2", own=True),
     # Not supported.
-    refused("MPC", "equations between nodes are not solved", sets="mpc"),
-    refused("RBAR RBAR1 RBE1 RBE2 RBE2GS RBE3 RROD RJOINT RTRPLT RTRPLT1 RSPLINE RSSCON", RIGID),
-    refused("SUPORT", "supports that inertia relief or a rigid body need"),
-    refused("SUPORT1", "supports that inertia relief or a rigid body need", sets="suport"),
+    refused("RBE1 RBE2GS RROD RJOINT RTRPLT RTRPLT1 RSPLINE RSSCON", RIGID),
+    refused("SUPORT", SUPORTED), refused("SUPORT1", SUPORTED, sets="suport"),
     refused("SPCD", "given displacement, but of SOL 108 to 112, which RLOAD or TLOAD multiplies", sets="load"),
-    refused("MOMENT MOMENT1 MOMENT2", TURNS, sets="load"),
     refused("PLOAD PLOAD2 PLOAD4 PLOADX PLOADX1 PLOADB3", "pressure on an element", sets="load"),
     refused("RFORCE RFORCE1 ACCEL ACCEL1", "loads of a field of accelerations", sets="load"),
     refused("SLOAD", "load on a scalar point", sets="load"),
@@ -134,6 +146,7 @@ PARAMS: dict[str, Card] = table(
     used("WTMASS", "factor of all masses"),
     used("AUTOSPC", "whether directions of nodes without stiffness are held; YES if not given"),
     refused("INREL", "inertia relief"),
+    refused("HEATSTAT", "temperatures that another subcase computes"),
     refused("CK1 CK2 CK3 CM1 CM2 CP1 CP2", "factor of matrices"),
     refused("PREMASS SUPAERO", "changes of the model"),
     idle("POST PRTMAXIM GRDPNT PRGPST PRTRESLT USETPRT AUTOSPCR EPZERO MAXRATIO BAILOUT TINY NOFISR OGEOM "
@@ -142,7 +155,7 @@ PARAMS: dict[str, Card] = table(
          "DBDICT DBALL DBEXT EXTOUT EXTDR MODACC NOCOMPS NOELOF NOELOP NOGPF NONLMETH NLAYERS NINTPTS NT RSPLICE "
          "SIGMA STRESS TABS SRCOMPS XYUNIT OPTEXIT DESPCH NASM DSZERO CDPRT IUNIT OPGEOM OPTION OSETELE PDRMSG PROUT "
          "PLTMSG S1 SESEF SEMAP START TABID ULTIMA VUGRAPH ASING BUCKLE TESTNEG MINRATIO EST ECHOON CHECKOUT CHKOUT "
-         "CONFAC RMSINT DYNSPCF INRLM PARTN FIXEDB GEOMU GPECT HEATSTAT IRES LOADU MESH NDAMP NUMOUT OG BIGER BIGER1 "
+         "CONFAC RMSINT DYNSPCF INRLM PARTN FIXEDB GEOMU GPECT IRES LOADU MESH NDAMP NUMOUT OG BIGER BIGER1 "
          "BIGER2 ADPCON ERROR CASPIV CASEM SKPAMP UNSYMF VMOPT WRBEAMB XFLAG ALTRED ALTSHAPE AESMETH AESRNDM AESTOL "
          "AUTOQSET RMXPANEL F56 RESLTOPT SOLADJC SDRPOPT SDRDENS SERST SECOMB SUBCASID MPCX EXTUNIT EXTDROUT OELMSET "
          "OGRDSET ISAVE NEWSET HDF5 CONM2 PEDGE MNLEMPRT FLUIDMP STRUCTMP FREQDEP OMACHPR GYROAVG WR3 WR4 ROTCSV "
@@ -155,10 +168,10 @@ PARAMS: dict[str, Card] = table(
 CONTROL: dict[str, Card] = table(
     used("AUTOSPC", "whether directions of nodes without stiffness are held"),
     used("SUBCASE", "the first one, or that of --step"),
-    used("SPC", "set of supports"), used("LOAD", "set of loads"), used("MPC", "set of MPC, which is not supported"),
+    used("SPC", "set of supports"), used("LOAD", "set of loads"), used("MPC", "set of MPC"),
     used("TEMPERATURE", "LOAD, BOTH: temperatures; INITIAL: those free of stress of materials without TREF"),
     used("DEFORM", "set of DEFORM, which is not supported"), used("NSM", "set of NSM, which is not supported"),
-    used("SUPORT1", "set of SUPORT1, which is not supported"),
+    used("SUPORT1", "set of SUPORT1, which is not supported in statics"),
     refused("K2GG M2GG P2G B2GG A2GG", "matrices that are added to the structure"),
     refused("ANALYSIS", "of HEAT: its supports are temperatures"),
     refused("TRIM", "loads of aerodynamics"),
