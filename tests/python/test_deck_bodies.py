@@ -88,6 +88,7 @@ def bent(text: str) -> str:
 
 @pytest.mark.parametrize("name, cards", [
     ("rigid bar", "RBAR,9,2,3,123456\n"), ("rigid bar of one list", "RBAR1,9,2,3,123456\n"),
+    ("hinge", "RBAR,9,2,3,123456,,,123\n"), ("hinge of the other end", "RBAR,9,2,3,,123456,1235\n"),
     ("halves", "RBAR,9,2,3,123,456,456,123\n"), ("body", "RBE2,9,2,123456,3\n"), ("pinned body", "RBE2,9,2,123,3,0.\n"),
     ("chain", "GRID,6,,1.,0.,0.\nRBAR,9,2,6,123456\nRBE2,10,6,123456,3\n"),
     ("components of a body", "RBE2,9,2,12,3\nRBE2,10,2,3,3\n"),
@@ -135,6 +136,7 @@ ARM = "RBE2,9,4,123456,5\n"
 REFUSED = {
     "apart": ("RBAR,9,1,2,123456\n", "RBAR is not supported: it holds nodes together at which bars end and that are apart"),
     "partly": ("RBAR,9,2,3,123\n", "RBAR is not supported: it couples some components only"),
+    "half dependent": ("RBAR,9,2,3,123,456,456\n", "RBAR is not supported: it couples some components only"),
     "partly dependent": ("RBAR,9,2,3,123456,,,1\n", "RBAR is not supported: it couples some components only"),
     "a component apart": ("RBE2,9,1,1,2\n", "RBE2 is not supported: it couples some components only"),
     "warm": ("RBE2,9,2,123456,3,1.-5\n", "RBE2.ALPHA is not supported: thermal expansion of a rigid body"),
@@ -142,6 +144,7 @@ REFUSED = {
     "supported arm": (ARM + "SPC1,1,2,5\n", "RBE2 is not supported: a support beside the place at which bars end"),
     "equation": ("MPC,7,1,1,1.,4,2,1.,,\n,,3,1,1.,2,1,1.\n", "MPC is not supported: an equation between nodes at which bars"),
     "one direction of three": ("MPC,7,2,1,1.,3,1,-1.\n", "MPC is not supported: an equation between nodes at which bars end"),
+    "equal apart": ("".join(f"MPC,7,2,{at},1.,4,{at},-1.\n" for at in (1, 2, 3)), "MPC is not supported"),
     "opposite": ("".join(f"MPC,7,2,{at},1.,3,{at},1.\n" for at in (1, 2, 3)), "MPC is not supported"),
     "mass in one direction": ("MPC,7,4,1,1.,5,1,-1.\nCONM2,9,5,,1.\n", "MPC is not supported"),
     "force aside": ("MPC,7,4,1,1.,5,1,-1.\nFORCE,5,5,,1.,1.,1.,0.\n", "MPC is not supported"),
@@ -213,6 +216,26 @@ def test_masses_may_have_the_numbers_of_bars(tmp_path: Path) -> None:
     document = made(tmp_path, HEAD + RODS + "RBAR,9,2,3,123456\nCONM2,1,4,,4.\n")
     assert document["node"][-1]["mass_kg"] == 4
     assert "element 1 is there twice" in refusal(tmp_path, HEAD + RODS + "CONM2,1,4,,4.\nCONM1,1,4,,4.\n")
+
+
+@pytest.mark.parametrize("name, cards", [
+    ("all directions", "PMASS,8,4.,9,5.\n" + "".join(f"CMASS1,1{at},8,4,{at}\n" for at in (1, 2, 3))),
+    ("what is held needs none", "CMASS2,1,3.,4,1\nCMASS2,11,1.,,,4,1\nCMASS2,12,7.,4,3\n"),
+    ("rotations", "CMASS2,1,4.,4,1\nCMASS2,2,9.,4,5\n"),
+])
+def test_masses_of_components_are_one_mass(name: str, cards: str, tmp_path: Path) -> None:
+    document = made(tmp_path, HEAD + RODS + "RBAR,9,2,3,123456\n" + cards)
+    assert document["node"][-1]["mass_kg"] == 4
+
+
+@pytest.mark.parametrize("cards, sentence", [
+    ("CMASS2,1,4.,2,1\nCMASS2,2,5.,2,2\n", "CMASS2 is not supported: the mass differs from one direction to another"),
+    ("CMASS2,1,4.,2,1,4,1\n", "CMASS2 is not supported: a mass between two components"),
+    ("CMASS2,1,4.,2\n", "CMASS2 is not supported: mass of a scalar point"),
+    ("CMASS1,1,4,2,1\n", "there is no PMASS 4"),
+])
+def test_other_masses_of_components_are_refused(cards: str, sentence: str, tmp_path: Path) -> None:
+    assert sentence in refusal(tmp_path, HEAD + RODS + "RBAR,9,2,3,123456\n" + cards)
 
 
 def test_temperatures_that_another_run_computes_are_refused(tmp_path: Path) -> None:

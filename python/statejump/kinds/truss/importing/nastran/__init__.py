@@ -9,7 +9,8 @@ from statejump.core.reading import finite_number
 from statejump.kinds.truss.importing.bodies import settle_bodies
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED
 from statejump.kinds.truss.importing.model import BENDING, Deck, Options
-from statejump.kinds.truss.importing.nastran import bodies, control, elements, loads, nodes, properties, singularities
+from statejump.kinds.truss.importing.nastran import (bodies, control, elements, loads, masses, nodes, properties,
+                                                     singularities)
 from statejump.kinds.truss.importing.nastran.cards import BARE_EXPONENT, Card, split
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.nastran.table import CARDS, PARAMS
@@ -20,10 +21,10 @@ READERS: dict[str, Callable[[Reader, Card], None]] = {
     "PBARL": properties.pbarl, "PBEAM": properties.pbeam, "PBEAML": properties.pbeaml, "PELAS": properties.pelas,
     "CROD": elements.bar, "CTUBE": elements.bar, "CBAR": elements.bar, "CBEAM": elements.bar, "CONROD": elements.conrod,
     "SPC": nodes.spc, "SPC1": nodes.spc1, "CELAS1": elements.celas, "CELAS2": elements.celas, "CBUSH": elements.cbush,
-    "CONM1": elements.conm1, "CONM2": elements.conm2, "FORCE": loads.force, "FORCE1": loads.force,
-    "FORCE2": loads.force, "MOMENT": loads.moment, "MOMENT1": loads.moment, "MOMENT2": loads.moment,
-    "PLOAD1": loads.pload1, "GRAV": loads.gravity, "RBAR": bodies.rbar, "RBAR1": bodies.rbar, "RBE2": bodies.rbe2,
-    "RBE3": bodies.rbe3, "MPC": bodies.mpc,
+    "PMASS": properties.pmass, "CMASS1": masses.cmass, "CMASS2": masses.cmass, "CONM1": elements.conm1,
+    "CONM2": elements.conm2, "FORCE": loads.force, "FORCE1": loads.force, "FORCE2": loads.force, "MOMENT": loads.moment,
+    "MOMENT1": loads.moment, "MOMENT2": loads.moment, "PLOAD1": loads.pload1, "GRAV": loads.gravity,
+    "RBAR": bodies.rbar, "RBAR1": bodies.rbar, "RBE2": bodies.rbe2, "RBE3": bodies.rbe3, "MPC": bodies.mpc,
 }
 # Cards that other functions read, all of a kind at once.
 TOGETHER = ("GRID", "GRDSET", "CORD1R", "CORD1C", "CORD1S", "CORD2R", "CORD2C", "CORD2S", "BAROR", "BEAMOR", "PBUSH",
@@ -58,6 +59,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
         for card in by_name.get(name, []):
             if name not in deck.options.ignored and _counts(reader, card):
                 read_card(reader, card)
+    masses.take_components(reader)
     _take_together(reader)
     loads.temperatures(reader)
     elements.finish_bars(reader)

@@ -18,11 +18,16 @@ def rbar(reader: Reader, card: Card) -> None:
             reader.deck.refuse(card.name, PARTLY, card.line)
             return
     else:
-        free = [set(card[place]) for place in (3, 4)]
-        coupled = [set(card[place]) for place in (5, 6)]
+        free = [frozenset(card[place]) for place in (3, 4)]
+        coupled = [frozenset(card[place]) for place in (5, 6)]
         if not any(free):
-            free[0] = set(ALL)
-        if len(free[0]) + len(free[1]) != 6 or any(coupled) and coupled != [ALL - one for one in free]:
+            free[0] = ALL
+        if not any(coupled):
+            coupled = [ALL - one for one in free]
+        # One end has all components and the other's translations follow, as of a hinge, or all that are not free do.
+        hinge = free in ([ALL, frozenset()], [frozenset(), ALL]) and MOVES <= coupled[free.index(frozenset())] and \
+            not coupled[free.index(ALL)]
+        if not hinge and (len(free[0]) + len(free[1]) != 6 or coupled != [ALL - one for one in free]):
             reader.deck.refuse(card.name, PARTLY, card.line)
             return
     reader.deck.rigid.append(RigidBody(card.line, card.name, [first, second]))

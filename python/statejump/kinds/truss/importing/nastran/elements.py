@@ -12,7 +12,7 @@ from statejump.kinds.truss.importing.springs import add_spring
 SAME = 1e-6  # of offsets, over their size: cards have seven digits
 
 
-def _element(reader: Reader, card: Card, kind: str = "") -> str:
+def element(reader: Reader, card: Card, kind: str = "") -> str:
     """Return the name of an element. Masses may have the numbers of bars, as in decks that Nastran's makers ship."""
     name = reader.whole(card, 0)
     if kind + name in reader.elements:
@@ -24,7 +24,7 @@ def _element(reader: Reader, card: Card, kind: str = "") -> str:
 
 def bar(reader: Reader, card: Card) -> None:
     """CROD, CTUBE, CBAR, CBEAM."""
-    name = _element(reader, card)
+    name = element(reader, card)
     beam = card.name in ("CBAR", "CBEAM")
     default = name
     for other in reader.cards.get({"CBAR": "BAROR", "CBEAM": "BEAMOR"}.get(card.name, ""), []):
@@ -57,7 +57,7 @@ def _check_offsets(reader: Reader, card: Card, ends: tuple[str, str]) -> None:
 
 def conrod(reader: Reader, card: Card) -> None:
     """A bar with its own section."""
-    name = _element(reader, card)
+    name = element(reader, card)
     made = Bar(name, (reader.node(card, 1), reader.node(card, 2)), card.name)
     made.area = reader.number(card, 4)
     made.more_mass = reader.number(card, 7, 0.0)
@@ -67,7 +67,7 @@ def conrod(reader: Reader, card: Card) -> None:
 
 def celas(reader: Reader, card: Card) -> None:
     """CELAS1 and CELAS2: a spring between two components, of which an empty one is the ground."""
-    name = _element(reader, card)
+    name = element(reader, card)
     if card.name == "CELAS2":
         stiffness = reader.number(card, 1, 0.0)
     else:
@@ -93,7 +93,7 @@ def celas(reader: Reader, card: Card) -> None:
 
 def cbush(reader: Reader, card: Card) -> None:
     """A spring in up to three directions, to the ground or, in the first one, along its line."""
-    name = _element(reader, card)
+    name = element(reader, card)
     number = reader.whole(card, 1, name)
     found = [one for one in reader.cards.get("PBUSH", []) if reader.whole(one, 0) == number]
     if not found:
@@ -136,24 +136,25 @@ def _bush(reader: Reader, card: Card) -> list[float]:
 
 def conm2(reader: Reader, card: Card) -> None:
     """A mass at a node. Its offset acts on rotations only."""
-    _element(reader, card, "mass ")
+    element(reader, card, "mass ")
     node = reader.node(card, 1)
     mass = reader.number(card, 3, 0.0)
-    _weigh(reader, card, node, mass)
+    weigh(reader, card, node, mass)
 
 
 def conm1(reader: Reader, card: Card) -> None:
     """A matrix of masses, which must be one mass for all directions."""
-    _element(reader, card, "mass ")
+    element(reader, card, "mass ")
     node = reader.node(card, 1)
     first, second, third = (reader.number(card, place, 0.0) for place in (3, 5, 8))
     if not first == second == third:
         reader.deck.refuse(card.name, "the mass differs from one direction to another", card.line)
         return
-    _weigh(reader, card, node, first)
+    weigh(reader, card, node, first)
 
 
-def _weigh(reader: Reader, card: Card, node: str, mass: float) -> None:
+def weigh(reader: Reader, card: Card, node: str, mass: float) -> None:
+    """Add a mass to a node."""
     if mass < 0:
         raise reader.fail(card, "a negative mass")
     if mass:

@@ -53,6 +53,9 @@ class Reader:
     materials: dict[str, Material] = field(default_factory=dict)
     properties: dict[str, Property] = field(default_factory=dict)
     springs: dict[str, float] = field(default_factory=dict)  # PELAS
+    masses: dict[str, float] = field(default_factory=dict)  # PMASS
+    component_masses: dict[str, list[float]] = field(default_factory=dict)  # CMASS1, CMASS2 by node: directions 1 to 3
+    component_cards: dict[str, Card] = field(default_factory=dict)  # the first of each node
     bars: dict[str, tuple[int, Bar, str]] = field(default_factory=dict)  # line, bar, property
     conrods: dict[str, tuple[int, Bar, str]] = field(default_factory=dict)  # line, bar, material
     elements: set[str] = field(default_factory=set)

@@ -69,6 +69,9 @@ CARDS: dict[str, Card] = table(
          refused={"M21 M31 M32 M41 M42 M43 M51 M52 M53 M61 M62 M63": "it couples directions"}),
     used("CONM2", "mass of a node", "EID G CID M X1 X2 X3 - I11 I21 I22 I31 I32 I33",
          idle={"CID X1 X2 X3 I11 I21 I22 I31 I32 I33": TURNS}),
+    used("CMASS1", "mass of a node, where it is one in all directions that are not held", "EID PID G1 C1 G2 C2"),
+    used("CMASS2", "mass of a node, where it is one in all directions that are not held", "EID M G1 C1 G2 C2"),
+    used("PMASS", "masses of CMASS1", "PID1 M1 PID2 M2 PID3 M3 PID4 M4"),
     # Supports, loads and temperatures.
     used("SPC", "directions without motion", "SID G1 C1 D1 G2 C2 D2", sets="spc"),
     used("SPC1", "directions without motion", "SID C Gi", repeats=1, sets="spc"),
@@ -107,7 +110,6 @@ CARDS: dict[str, Card] = table(
     refused("MATT1 MATT2 MATT3 MATT5 MATT8 MATT9", "properties that depend on temperature"),
     refused("MATS1 CREEP", "material that is not linear"),
     refused("CELAS3 CELAS4 CMASS3 CMASS4", "it joins scalar points"),
-    refused("CMASS1 CMASS2", "mass of one direction"),
     refused("CBUSH1D CBUSH2D CGAP CWELD CFAST CSEAM CINTC GENEL", "element that is no straight bar of two nodes"),
     refused("CBEND CBEAM3", "curved beam"),
     refused("PBCOMP PBRSECT PBMSECT", "section whose area is not known from one number"),
@@ -119,7 +121,7 @@ CARDS: dict[str, Card] = table(
     refused("BCONP BCTABLE BCTSET BSURFS BGSET BLSEG", "contact"),
     # No influence.
     idle("ENDDATA ECHOON ECHOOFF CBARAO PLOTEL PLOTEL3 PLOTEL4 SET1 SET2 SET3 GRIDG", OUTPUT),
-    idle("PSHELL PCOMP PCOMPG PSHEAR PSOLID PLSOLID PBEND PBEAM3 PGAP PBUSH1D PBUSHT PELAST PMASS PQUAD PPLANE PLPLANE "
+    idle("PSHELL PCOMP PCOMPG PSHEAR PSOLID PLSOLID PBEND PBEAM3 PGAP PBUSH1D PBUSHT PELAST PQUAD PPLANE PLPLANE "
          "PAABSF PACABS MAT2 MAT3 MAT4 MAT5 MAT8 MAT9 MAT10 MAT11 MATHP MATHE MATT4 TABLEM1 TABLEM2 TABLEM3 TABLEM4 "
          "TABLES1 SPOINT EPOINT PSEAM PWELD PFAST", THROUGH),
     idle("CDAMP1 CDAMP2 CDAMP3 CDAMP4 CDAMP5 PDAMP PDAMPT CVISC PVISC", MATERIAL_DAMPING),
@@ -149,7 +151,7 @@ PARAMS: dict[str, Card] = table(
     refused("HEATSTAT", "temperatures that another subcase computes"),
     refused("CK1 CK2 CK3 CM1 CM2 CP1 CP2", "factor of matrices"),
     refused("PREMASS SUPAERO", "changes of the model"),
-    idle("POST PRTMAXIM GRDPNT PRGPST PRTRESLT USETPRT AUTOSPCR EPZERO MAXRATIO BAILOUT TINY NOFISR OGEOM "
+    idle("POST PRTMAXIM GRDPNT PRGPST PRTRESLT USETPRT USETSEL AUTOSPCR EPZERO MAXRATIO BAILOUT TINY NOFISR OGEOM "
          "OUGCORD OUNIT1 OUNIT2 PATVER PRINT OMID OLDSEQ NEWSEQ SNORM SEP1XOVR K6ROT LGDISP LMODES G W3 W4 GFL W3FL "
          "W4FL COUPMASS RESVEC RESVINER DDRMM HFREQ LFREQ LMODESFL KDAMP VREF MACH Q AUNITS FACTOR NASPRT CURVPLOT "
          "DBDICT DBALL DBEXT EXTOUT EXTDR MODACC NOCOMPS NOELOF NOELOP NOGPF NONLMETH NLAYERS NINTPTS NT RSPLICE "
