@@ -15,6 +15,7 @@ import statejump as sj
 from statejump.kinds.truss.importing import Options, case_document, checked, read
 
 HEAD = "SOL 101\nCEND\nSPC = 1\nLOAD = 5\nMPC = 7\nBEGIN BULK\n"
+BARE = HEAD.replace("LOAD = 5\n", "")
 # Rods of 7e6 N/m along x, at the nodes 2 and 3, which are at one place; 7000 N stretch each by 1 mm.
 RODS = """GRID,1,,0.,0.,0.
 GRID,2,,1.,0.,0.
@@ -213,9 +214,9 @@ def test_supports_of_rigid_body_modes_hold_nothing(tmp_path: Path) -> None:
 
 
 def test_masses_may_have_the_numbers_of_bars(tmp_path: Path) -> None:
-    document = made(tmp_path, HEAD + RODS + "RBAR,9,2,3,123456\nCONM2,1,4,,4.\n")
+    document = made(tmp_path, BARE + RODS + "RBAR,9,2,3,123456\nCONM2,1,4,,4.\n")
     assert document["node"][-1]["mass_kg"] == 4
-    assert "element 1 is there twice" in refusal(tmp_path, HEAD + RODS + "CONM2,1,4,,4.\nCONM1,1,4,,4.\n")
+    assert "element 1 is there twice" in refusal(tmp_path, BARE + RODS + "CONM2,1,4,,4.\nCONM1,1,4,,4.\n")
 
 
 @pytest.mark.parametrize("name, cards", [
@@ -224,7 +225,7 @@ def test_masses_may_have_the_numbers_of_bars(tmp_path: Path) -> None:
     ("rotations", "CMASS2,1,4.,4,1\nCMASS2,2,9.,4,5\n"),
 ])
 def test_masses_of_components_are_one_mass(name: str, cards: str, tmp_path: Path) -> None:
-    document = made(tmp_path, HEAD + RODS + "RBAR,9,2,3,123456\n" + cards)
+    document = made(tmp_path, BARE + RODS + "RBAR,9,2,3,123456\n" + cards)
     assert document["node"][-1]["mass_kg"] == 4
 
 
@@ -235,18 +236,23 @@ def test_masses_of_components_are_one_mass(name: str, cards: str, tmp_path: Path
     ("CMASS1,1,4,2,1\n", "there is no PMASS 4"),
 ])
 def test_other_masses_of_components_are_refused(cards: str, sentence: str, tmp_path: Path) -> None:
-    assert sentence in refusal(tmp_path, HEAD + RODS + "RBAR,9,2,3,123456\n" + cards)
+    assert sentence in refusal(tmp_path, BARE + RODS + "RBAR,9,2,3,123456\n" + cards)
 
 
 def test_temperatures_that_another_run_computes_are_refused(tmp_path: Path) -> None:
-    head = HEAD.replace("BEGIN", "TEMP(LOAD) = 8\nBEGIN")
+    head = BARE.replace("BEGIN", "TEMP(LOAD) = 8\nBEGIN")
     assert "TEMPERATURE is not supported: set 8 is not in the deck" in refusal(tmp_path, head + RODS)
-    assert "PARAM.HEATSTAT is not supported" in refusal(tmp_path, HEAD + RODS + "PARAM,HEATSTAT,YES\n")
-    made(tmp_path, HEAD + RODS + "PARAM,HEATSTAT,NO\n")
+    assert "PARAM.HEATSTAT is not supported" in refusal(tmp_path, BARE + RODS + "PARAM,HEATSTAT,YES\n")
+    made(tmp_path, BARE + RODS + "PARAM,HEATSTAT,NO\n")
+
+
+def test_a_set_of_loads_that_the_deck_does_not_have_is_refused(tmp_path: Path) -> None:
+    assert "LOAD is not supported: set 5 is not in the deck" in refusal(tmp_path, HEAD + RODS)
+    assert made(tmp_path, HEAD.replace("101", "103") + RODS)["link"]  # modes need no loads
 
 
 def test_nodes_of_two_temperatures_do_not_become_one(tmp_path: Path) -> None:
-    head = HEAD.replace("BEGIN", "TEMP(LOAD) = 8\nBEGIN")
+    head = BARE.replace("BEGIN", "TEMP(LOAD) = 8\nBEGIN")
     text = head + RODS + "RBAR,9,2,3,123456\nTEMP,8,1,20.,2,20.,3,{at}\nTEMP,8,4,20.\n"
     made(tmp_path, text.format(at="20."))
     assert "its nodes at one place have different temperatures" in refusal(tmp_path, text.format(at="30."))
@@ -333,7 +339,7 @@ def test_a_deck_without_supports_is_imported_and_does_not_run(tmp_path: Path, st
 
 
 def test_a_part_without_support_is_named(tmp_path: Path) -> None:
-    document = made(tmp_path, HEAD + TRIANGLE.format(1) + TRIANGLE.format(2) + MATTER + "SPC1,1,123,11\n")
+    document = made(tmp_path, BARE + TRIANGLE.format(1) + TRIANGLE.format(2) + MATTER + "SPC1,1,123,11\n")
     _, hint = checked(document, sj.load)
     assert hint is not None and "that of node 'N21' has no support" in hint
     document["link"][0]["young_modulus_Pa"] = -1.0  # everything else is checked

@@ -30,10 +30,6 @@ READERS: dict[str, Callable[[Reader, Card], None]] = {
 TOGETHER = ("GRID", "GRDSET", "CORD1R", "CORD1C", "CORD1S", "CORD2R", "CORD2C", "CORD2S", "BAROR", "BEAMOR", "PBUSH",
             "SPCADD", "MPCADD", "LOAD", "LOADADD", "TEMP", "TEMPD", "PARAM")
 
-DYNAMIC_SOLUTIONS = ("108", "109", "111", "112", "118", "129", "DFREQ", "DTRAN", "MFREQ", "MTRAN")
-# In which SUPORT only says what moves as a rigid body and holds nothing: modes, responses, flutter.
-FREE_SOLUTIONS = (*DYNAMIC_SOLUTIONS, "103", "107", "110", "145", "146", "MODES", "DCEIG", "MCEIG", "FLUTTER")
-
 
 def read(path: Path, options: Options | None = None) -> Deck:
     """Return what bulk data say. :raises StatejumpError: one sentence with file and line"""
@@ -45,11 +41,10 @@ def read(path: Path, options: Options | None = None) -> Deck:
         by_name.setdefault(card.name, []).append(card)
     reader = Reader(deck, by_name)
     loads.select(reader, chosen)
-    solution = chosen.solution.removeprefix("SE")
     for card in cards:
-        if card.name == "SPCD" and solution in DYNAMIC_SOLUTIONS:
+        if card.name == "SPCD" and chosen.solves(control.DYNAMIC_SOLUTIONS):
             deck.leave(card.name, "given motion of a dynamic solution", card.line)
-        elif card.name in ("SUPORT", "SUPORT1") and solution in FREE_SOLUTIONS:
+        elif card.name in ("SUPORT", "SUPORT1") and chosen.solves(control.FREE_SOLUTIONS):
             deck.leave(card.name, "reference of rigid-body modes: it holds nothing in this solution", card.line)
         else:
             _check(reader, card, chosen)

@@ -6,9 +6,9 @@ import numpy as np
 
 from statejump.kinds.truss.importing.model import Moment, quoted
 from statejump.kinds.truss.importing.nastran.cards import Card
-from statejump.kinds.truss.importing.nastran.control import Control
+from statejump.kinds.truss.importing.nastran.control import FREE_SOLUTIONS, Control
 from statejump.kinds.truss.importing.nastran.reader import Reader
-from statejump.kinds.truss.importing.nastran.table import CARDS
+from statejump.kinds.truss.importing.nastran.table import CARDS, DYNAMIC, HEAT
 from statejump.kinds.truss.importing.springs import ALONG
 
 COMBINED = {"spc": "SPCADD", "mpc": "MPCADD"}
@@ -21,6 +21,19 @@ def select(reader: Reader, control: Control) -> None:
         if chosen is None and not control.given and kind != "initial":
             chosen = _only(reader, kind)
         reader.sets[kind] = {} if chosen is None else _expanded(reader, kind, chosen)
+    chosen = control.chosen.get("load")
+    if chosen is not None and not any(card[0] == chosen for name, cards in reader.cards.items() if _is_load(name)
+                                      for card in cards):
+        if control.solves(FREE_SOLUTIONS):
+            reader.deck.leave("LOAD", f"set {chosen} is not in the deck, and this solution has no static loads", 0)
+        else:
+            reader.deck.refuse("LOAD", f"set {chosen} is not in the deck", 0, "LOAD.SET")
+
+
+def _is_load(name: str) -> bool:
+    """Whether LOAD = may select a card, also one of heat transfer, or one that is unknown."""
+    known = CARDS.get(name)
+    return known is None or known.sets == "load" or known.what in (HEAT, DYNAMIC) or name in ("LOAD", "LOADADD")
 
 
 def _only(reader: Reader, kind: str) -> str | None:
