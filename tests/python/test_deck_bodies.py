@@ -94,6 +94,8 @@ def bent(text: str) -> str:
     ("chain", "GRID,6,,1.,0.,0.\nRBAR,9,2,6,123456\nRBE2,10,6,123456,3\n"),
     ("components of a body", "RBE2,9,2,12,3\nRBE2,10,2,3,3\n"),
     ("equations", "".join(f"MPC,7,2,{at},1.5,3,{at},-1.5\n" for at in (1, 2, 3))),
+    ("equations of three nodes", "GRID,6,,1.,0.,0.\n" + "".join(
+        f"MPC,7,{one},{at},1.,{other},{at},-1.\n" for at in (1, 2, 3) for one, other in ((2, 3), (3, 6)))),
     ("what is held on both sides needs none", "MPC,7,2,1,-2.,3,1,2.\nSPC1,1,23,2,THRU,3\n"),
 ])
 def test_nodes_at_one_place_become_one(name: str, cards: str, tmp_path: Path) -> None:

@@ -165,7 +165,8 @@ def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
         taken = _held_by(deck, waiting) or _made_one(deck, waiting, near) or _followed(deck, waiting)
         for one in taken or ():
             deck.take(one.card, "held, joined or loaded nodes")
-        waiting = [one for one in waiting if one not in (taken or ())]
+        gone = {id(one) for one in taken or ()}
+        waiting = [one for one in waiting if id(one) not in gone]
     for one in waiting:
         deck.refuse(one.card, UNSOLVED, one.line, one.card.lstrip("*"))
 
@@ -196,18 +197,23 @@ def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], 
         if pair := _equal(one):
             pairs.setdefault((min(pair), max(pair)), []).append(one)
     ends, found = carriers(deck), []
+    joined: dict[str, str] = {}
+    stays: set[str] = set()
     for pair, several in pairs.items():
         kept, gone = pair if pair[0] in ends else pair[::-1]
-        if kept not in ends or not near(kept, gone) or not {kept, gone} <= deck.nodes.keys() or \
+        # A node that goes is in no other pair of this round: nodes that stay do not go later.
+        if kept not in ends or not near(kept, gone) or joined.keys() & {kept, gone} or gone in stays or \
                 any(of.get(kept) != of.get(gone) for of in (deck.temperature, deck.initial)):
             continue
         rows = [one.terms[0][1] for one in several]
         rows += [axis for axis in np.eye(3) if is_held(deck, kept, axis) and is_held(deck, gone, axis)]
         if np.linalg.matrix_rank(np.array(rows), tol=SAME) == 3:
-            join(deck, {gone: kept})
+            joined[gone] = kept
+            stays.add(kept)
             found += several
-            for one in equations:
-                one.terms[:] = [(kept if node == gone else node, way, factor) for node, way, factor in one.terms]
+    join(deck, joined)
+    for one in equations:
+        one.terms[:] = [(joined.get(node, node), way, factor) for node, way, factor in one.terms]
     return found
 
 
@@ -219,10 +225,11 @@ def _followed(deck: Deck, equations: list[Equation]) -> list[Equation]:
         for node in dict.fromkeys(term[0] for term in one.terms):
             of_node.setdefault(node, []).append(one)
     found: list[Equation] = []
+    used: set[int] = set()
     for node, several in of_node.items():
         own = [[term for term in one.terms if term[0] == node] for one in several]
         if node in ends or len(held_directions(deck, node)) or deck.mass.get(node) or \
-                any(len(terms) != 1 for terms in own) or any(one in found for one in several):
+                any(len(terms) != 1 for terms in own) or any(id(one) in used for one in several):
             continue
         rows = np.array([terms[0][1] for terms in own])
         force = np.array(deck.force.get(node, [0.0] * 3))
@@ -240,4 +247,5 @@ def _followed(deck: Deck, equations: list[Equation]) -> list[Equation]:
         del deck.nodes[node]
         deck.leave(f"node {node}", "an equation gives its motion", 0)
         found += several
+        used.update(id(one) for one in several)
     return found
