@@ -31,7 +31,7 @@ HEADER = ("deck", "units", "imported", "ran", "why not", "largest displacement [
 # Strains of structures are below 1e-2: what is not linear is then below 1e-7 of the displacement, as ccx prints it.
 SMALL = 1e-5
 FAULT = "fault"
-UNITS = ("SI", "mm-N", "in-lbf")
+UNITS = ("SI", "mm-N", "in-lbf", "mm-kg-s")
 
 
 @dataclass
@@ -66,9 +66,12 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
         documents = {units: case_document(deck, "deck", units=SYSTEMS[units], check_ignored=False,
                                           temperature_change_K=options.temperature_change)
                      for units in ([options.units] if options.units else UNITS)}
-        beams = any("BEAM" in bar.kind or "CBAR" in bar.kind or "TYPE=B" in bar.kind for bar in deck.bars)
-        row.units, made, case = _plausible(documents)
+        beams = any(bar.bends for bar in deck.bars)
+        row.units, made, case, without_support = _plausible(documents)
         row.imported = True
+        if without_support:
+            row.cause = without_support
+            return row
         row.largest_m = float(np.abs(_displacements(case.reduced())).max())  # type: ignore[attr-defined]
         row.ran = True
         if path.suffix == ".inp" and decks_ccx.installed():
@@ -85,19 +88,21 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
     return row
 
 
-def _plausible(documents: dict[str, dict]) -> tuple[str, dict, object]:
-    """Return the units of a deck, which says nothing of them, its document and its case: of those that are a case the
-    units with the fewest implausible numbers."""
+def _plausible(documents: dict[str, dict]) -> tuple[str, dict, object, str | None]:
+    """Return the units of a deck, which says nothing of them, its document, its case and why it cannot run: of those
+    that are a case the units with the fewest implausible numbers."""
     import statejump as sj
     from statejump.core.errors import StatejumpError
-    from statejump.kinds.truss.importing import hints
+    from statejump.kinds.truss.importing import checked, hints
 
     first: StatejumpError | None = None
     for units in sorted(documents, key=lambda units: len(hints(documents[units]))):
         try:
-            return units, documents[units], sj.load(documents[units])
+            case, without_support = checked(documents[units], sj.load)
         except StatejumpError as refused:
             first = first or refused
+            continue
+        return units, documents[units], case, without_support
     assert first is not None
     raise first
 
@@ -162,7 +167,8 @@ def main() -> int:
     parser.add_argument("--temperature-change", type=float, default=0.0)
     parser.add_argument("--circ", choices=("radius", "diameter"))
     parser.add_argument("--step", type=int)
-    parser.add_argument("--units", choices=("SI", "mm-N", "mm-kN-t", "in-lbf"), help="none: the most plausible ones")
+    parser.add_argument("--units", choices=("SI", "mm-N", "mm-kN-t", "mm-kg-s", "in-lbf"),
+                        help="none: the most plausible ones")
     parser.add_argument("--ignore", action="append", default=[])
     parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()

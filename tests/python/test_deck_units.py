@@ -26,11 +26,13 @@ ENDDATA
 """
 MILLIMETRES = {"area": "100.", "modulus": "2.+5", "density": "7.85-9", "mass": "1.", "force": "1000."}
 KILONEWTONS = {**MILLIMETRES, "modulus": "200.", "force": "1."}
+KILOGRAMS = {"area": "100.", "modulus": "2.+8", "density": "7.85-6", "mass": "1000.", "force": "1.+6"}
 
 
 @pytest.mark.parametrize("numbers, options", [
     (MILLIMETRES, ["--units", "mm-N"]), (MILLIMETRES, ["--length-unit", "0.001"]), (KILONEWTONS, ["--units", "mm-kN-t"]),
-], ids=["mm-N", "length", "mm-kN-t"])
+    (KILOGRAMS, ["--units", "mm-kg-s"]),
+], ids=["mm-N", "length", "mm-kN-t", "mm-kg-s"])
 def test_a_deck_is_the_same_in_all_units(numbers: dict[str, str], options: list[str], tmp_path: Path,
                                          statejump: Callable[..., Outcome]) -> None:
     (tmp_path / "rod.bdf").write_text(DECK.format(**numbers))
@@ -75,6 +77,6 @@ def test_implausible_numbers_are_hinted_at(numbers: dict[str, str], sentence: st
 def test_numbers_out_of_range_name_the_option(tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
     (tmp_path / "rod.bdf").write_text(DECK.format(**{**MILLIMETRES, "area": "500."}))
     told = statejump("truss", "import", "rod.bdf", "-o", "rod.toml")
-    assert told.status == 2 and "--units mm-N, mm-kN-t or in-lbf names the units of the deck" in told.errors
+    assert told.status == 2 and "--units mm-N, mm-kN-t, mm-kg-s or in-lbf names the units of the deck" in told.errors
     told = statejump("truss", "import", "rod.bdf", "-o", "rod.toml", "--units", "mm-N", "--length-unit", "0.001")
     assert told.status == 2 and "--length-unit = 0.001 is not allowed: --units mm-N says it already" in told.errors

@@ -210,7 +210,6 @@ WRONG: dict[str, tuple[str, str, str, list[str], str]] = {
     "coordinate system": ("bdf", "GRID,1,,0.", "GRID,1,5,0.", [], "there is no coordinate system 5"),
     "no property": ("bdf", "PROD,7", "PROD,8", [], "CROD 1: there is no property '7' that is read"),
     "two sets": ("bdf", HEAD, "BEGIN BULK\n", [], "SPC1 of set 9 beside set 1"),
-    "not selected": ("bdf", "SPC = 1\n", "", [], "no node has a support"),
     "continuation": ("bdf", "GRID,1,,", ",7\nGRID,1,,", [], "a continuation of nothing"),
     "no bars": ("bdf", "CROD,", "PLOTEL,", [], ""),
     "joint": ("bdf", "", "", ["--joint", "node=N9"], "node = 'N9' is unknown: did you mean N"),

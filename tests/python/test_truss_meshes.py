@@ -70,7 +70,6 @@ WRONG: dict[str, tuple[tuple[Any, ...], str]] = {
     "negative": (("--young-modulus", -1, *ARGUMENTS[2:]), "link 'L1': young_modulus_Pa = -1.0 is not allowed"),
     "no such node": ((*ARGUMENTS, "--fixed", "M1=x"), "--fixed = 'M1' is unknown"),
     "no direction": ((*ARGUMENTS, "--fixed", "N1=w"), "--fixed = 'N1=w' is not allowed: must be NODE=DIRECTIONS"),
-    "no support": (ARGUMENTS[:8], "no node has a support"),
 }
 
 

@@ -306,7 +306,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     Statuses next = take();
     while (!seen.insert(fingerprint(next)).second) {
       if (pivoting == Pivoting::single) {
-        if (!slides(found)) return false;
+        // Over a step that is the question of the rate problem.
+        if (time != start.time || !slides(found)) return false;
         return begin_anew();
       }
       pivoting = Pivoting::single;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -76,8 +77,8 @@ def _units(system: str | None, length: float | None, force: float | None) -> Uni
 @click.option("--format", "form", type=click.Choice(["abaqus", "nastran", "tables", "mesh"]),
               help="What FILE is; by its suffix where nothing is said.")
 @click.option("--bars", metavar="FILE", type=click.Path(path_type=Path), help="Table of bars beside a table of nodes.")
-@click.option("--units", type=click.Choice(["SI", "mm-N", "mm-kN-t", "in-lbf"]),
-              help="Units of a deck; mm-kN-t has masses in tonnes. Without it: SI.")
+@click.option("--units", type=click.Choice(["SI", "mm-N", "mm-kN-t", "mm-kg-s", "in-lbf"]),
+              help="Units of a deck; mm-kN-t has masses in tonnes, mm-kg-s forces in millinewtons. Without it: SI.")
 @click.option("--length-unit", type=click.FloatRange(min=0, min_open=True), metavar="METRES",
               help="Length of one unit of a deck, in place of --units: 0.001 for millimetres.")
 @click.option("--force-unit", type=click.FloatRange(min=0, min_open=True), metavar="NEWTON",
@@ -137,7 +138,7 @@ def import_command(
     """
     from statejump.kinds.loading import parse_case
     from statejump.kinds.truss.generate.document import write
-    from statejump.kinds.truss.importing import Options, case_document, hints, read, summary
+    from statejump.kinds.truss.importing import Options, case_document, checked, hints, read, summary
     from statejump.schema.json_schema import head_line
     from statejump.schema.rules import folder_name
 
@@ -157,10 +158,10 @@ def import_command(
         reflector=None if reflector is None else (reflector.split(","), reflector_axis),
     )
     try:
-        case = parse_case(document, files_from=output.parent)
+        case, without_support = checked(document, partial(parse_case, files_from=output.parent))
     except StatejumpError as refused:
         if refused.key in UNIT_KEYS and not refused.remedy and not (units or length_unit or force_unit):
-            refused.remedy = "--units mm-N, mm-kN-t or in-lbf names the units of the deck"
+            refused.remedy = "--units mm-N, mm-kN-t, mm-kg-s or in-lbf names the units of the deck"
         raise refused.located(file=file) from None
     left = [f"# Left out: {printable(card)} ({count}): {why}" for card, count, _, why in deck.left_rows()]
     write(document, output, [head_line("truss", output), f"# Imported from {printable(file.name)}", *left,
@@ -170,7 +171,8 @@ def import_command(
     print_table(summary(document), console)
     for choice in deck.choices:
         console.print(f"chosen: {choice}")
-    for hint in (*hints(document), *case.implausible):
+    unsupported = [without_support] if without_support else []
+    for hint in (*unsupported, *hints(document), *case.implausible):
         console.print(f"hint: {hint}")
     console.print(f"{output}: nodes {len(document['node'])}, links {len(document['link'])}, joints "
                   f"{len(document.get('slider', ())) + len(document.get('revolute', ()))}, "

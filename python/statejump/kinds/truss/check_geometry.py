@@ -2,7 +2,7 @@
 """What is wrong with the shape of a truss: lengths, clearances over the temperatures, axes, supports."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -67,6 +67,17 @@ def _expansions(truss: ResolvedTruss, ranges_K: np.ndarray) -> None:
             )
 
 
+class NoSupport(StatejumpError):
+    """Parts of a truss that nothing holds.
+
+    :param loose: a node of each of them
+    """
+
+    def __init__(self, what: str, *, loose: tuple[str, ...], **fields: Any) -> None:
+        super().__init__(what, **fields)
+        self.loose = loose
+
+
 def supported(truss: ResolvedTruss) -> np.ndarray:
     """Return which nodes (n,) have a support."""
     nodes = truss.nodes
@@ -84,8 +95,6 @@ def _supports(truss: ResolvedTruss) -> None:
     for node in np.flatnonzero(~used)[:1]:
         raise StatejumpError(f"node {names[node]!r} is not allowed", cause="no link, spring, joint or support uses it",
                              nodes=(names[node],))
-    if not held.any():
-        raise StatejumpError("no node has a support (fixed or guide_normal)", cause="the truss moves as a whole")
     parts, part_of = len(names), np.arange(len(names), dtype=np.int32)
     for ends in pairs:  # one after the other, for a graph takes many times what they do
         first, second = part_of[ends].T
@@ -94,13 +103,16 @@ def _supports(truss: ResolvedTruss) -> None:
         part_of = joined[part_of]
     held_parts = np.zeros(parts, dtype=bool)
     held_parts[part_of[held]] = True
-    if held_parts.all():
+    if held.any() and held_parts.all():
         return
-    first = [names[int(np.flatnonzero(part_of == part)[0])] for part in range(parts)[: MOST_LISTED + 1]]
-    loose = int(np.flatnonzero(~held_parts)[0])
-    name = names[int(np.flatnonzero(part_of == loose)[0])]
-    raise StatejumpError(
+    _, firsts = np.unique(part_of, return_index=True)
+    loose = tuple(names[at] for at in firsts[~held_parts])
+    if not held.any():
+        raise NoSupport("no node has a support (fixed or guide_normal)", cause="the truss moves as a whole",
+                        loose=loose)
+    first = [names[at] for at in firsts[: MOST_LISTED + 1]]
+    raise NoSupport(
         f"the truss is in {parts} parts, with the nodes {listed(first)} in one each",
-        cause=f"that of node {name!r} has no support and no link, spring or joint to a part that has one",
-        nodes=(name,),
+        cause=f"that of node {loose[0]!r} has no support and no link, spring or joint to a part that has one",
+        nodes=loose[:1], loose=loose,
     )

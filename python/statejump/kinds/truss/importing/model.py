@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from statejump.core.errors import NotAllowed, StatejumpError, Unreadable, printable
 from statejump.core.tables import Shown
 from statejump.kinds.truss.importing.lines import LARGEST_BYTES, text_of
@@ -27,6 +29,7 @@ class Bar:
     :param expansion_zero: temperature at which the secants begin
     :param more_mass: per length, besides that of the density
     :param why_no_area: why the deck's section gives no area
+    :param bends: whether it is a beam whose bending is left out
     """
 
     name: str
@@ -43,6 +46,42 @@ class Bar:
     expansion_zero: float = 0.0
     more_mass: float = 0.0
     why_no_area: str = ""
+    bends: bool = False
+
+
+@dataclass
+class RigidBody:
+    """Nodes that move as one rigid body."""
+
+    line: int
+    card: str
+    nodes: list[str]
+
+
+@dataclass
+class Moment:
+    """A moment on a node.
+
+    :param waiver: what ``--ignore`` must name; None: the card
+    """
+
+    line: int
+    card: str
+    node: str
+    vector: np.ndarray
+    waiver: str | None = None
+
+
+@dataclass(eq=False)
+class Equation:
+    """A sum of displacements that is 0.
+
+    :param terms: node, direction (a unit vector), factor
+    """
+
+    line: int
+    card: str
+    terms: list[tuple[str, np.ndarray, float]]
 
 
 @dataclass
@@ -103,6 +142,10 @@ class Deck:
     force: dict[str, list[float]] = field(default_factory=dict)
     force_line: dict[str, tuple[int, str]] = field(default_factory=dict)  # where the first force of a node stands
     springs: list[Spring] = field(default_factory=list)
+    moments: list[Moment] = field(default_factory=list)
+    rigid: list[RigidBody] = field(default_factory=list)
+    equations: list[Equation] = field(default_factory=list)
+    followers: list[tuple[int, str, str]] = field(default_factory=list)  # line, card and node that follows others
     mass: dict[str, float] = field(default_factory=dict)
     mass_line: dict[str, tuple[int, str]] = field(default_factory=dict)
     mass_scale: float = 1.0

@@ -56,6 +56,22 @@ def taper(stations: Sequence[tuple[float, float]]) -> tuple[float, float]:
     return 1 / flexibility, mean
 
 
+def between(shape: str, first: tuple[float, float], last: tuple[float, float]) -> tuple[float, float] | None:
+    """Return the area of the bar that is as stiff as one whose two sizes are linear between its ends, and its mean
+    area; None: the shape has no two sizes.
+
+    :param shape: ``RECT`` or ``CIRC``, whose sizes are those of its two axes
+    """
+    if shape not in ("RECT", "CIRC") or min(*first, *last) <= 0:
+        return None
+    factor = pi / 4 if shape == "CIRC" else 1.0
+    (one, two), (wide, high) = first, last
+    ratio = one * high / (two * wide) - 1
+    # The integral of dx / A is ln(1 + ratio) / (two wide ratio).
+    area = factor * two * wide * (ratio / log1p(ratio) if ratio else 1.0)
+    return area, factor * (2 * one * two + one * high + wide * two + 2 * wide * high) / 6
+
+
 def calculix(shape: str, sizes: Sequence[float]) -> float | None:
     """Return the area of ``*SOLID SECTION`` (``AREA``) or of a shape of ``*BEAM SECTION``; None: it has none.
 

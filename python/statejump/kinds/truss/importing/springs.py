@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from statejump.kinds.truss.importing.model import Deck, Spring
+from statejump.kinds.truss.importing.supports import is_held
 
 # The sine of the angle between a spring and the line of its nodes that counts as none: decks have four digits at least.
 ALONG = 1e-4
@@ -16,7 +17,8 @@ def add_spring(deck: Deck, line: int, card: str, name: str, stiffness: float,
                ends: Sequence[tuple[str, np.ndarray]]) -> None:
     """Add a spring between nodes, each with its direction, or between one node and the ground.
 
-    What it does across the line between its nodes a truss cannot: it is refused.
+    What it does across the line between its nodes a truss cannot: it is refused, unless one end is held in its
+    direction, and the spring is one to the ground. Supports must be known.
     """
     if not ends or not stiffness:
         deck.leave(card, "it has no stiffness or no node", line)
@@ -24,6 +26,11 @@ def add_spring(deck: Deck, line: int, card: str, name: str, stiffness: float,
     if stiffness < 0:
         deck.refuse(card, "its stiffness is negative", line)
         return
+    if len(ends) == 2 and (len(free := [end for end in ends if not is_held(deck, *end)]) < 2) and _across(deck, ends):
+        if not free:
+            deck.leave(card, "both ends are held", line)
+            return
+        ends = free
     first, direction = ends[0]
     if len(ends) == 1:
         x, y, z = (float(part) for part in direction)
@@ -38,9 +45,17 @@ def add_spring(deck: Deck, line: int, card: str, name: str, stiffness: float,
         if length == 0:
             deck.refuse(card, "its nodes are at one place", line)
             return
-        if any(np.linalg.norm(np.cross(one, way)) > ALONG * length for one in (direction, other)) or \
-                (direction @ way) * (other @ way) < 0:
+        if _across(deck, ends):
             deck.refuse(card, "it acts across the line between its nodes", line)
             return
         deck.springs.append(Spring(name, first, second, stiffness, card, line))
     deck.take(card, "spring")
+
+
+def _across(deck: Deck, ends: Sequence[tuple[str, np.ndarray]]) -> bool:
+    """Whether a spring between two nodes does not act along the line between them."""
+    (first, direction), (second, other) = ends
+    way = np.subtract(deck.nodes[second], deck.nodes[first])
+    length = np.linalg.norm(way)
+    return bool(length == 0 or (direction @ way) * (other @ way) < 0
+                or any(np.linalg.norm(np.cross(one, way)) > ALONG * length for one in (direction, other)))

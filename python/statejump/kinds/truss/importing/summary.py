@@ -15,7 +15,7 @@ LEAST_MODULUS_PA, MOST_MODULUS_PA = 1e9, 1.3e12
 # deployable structure.
 LONGEST_M, SHORTEST_M, THICKEST_M2, THICKEST = 1e3, 1e-4, 1.0, 0.1
 DENSEST_KG_PER_M3, LIGHTEST_KG_PER_M3 = 2.3e4, 1.0  # of osmium; of what is lighter than any foam
-UNITS = "--units mm-N, mm-kN-t, in-lbf or --length-unit and --force-unit name the units of the deck"
+UNITS = "--units mm-N, mm-kN-t, mm-kg-s, in-lbf or --length-unit and --force-unit name the units of the deck"
 
 
 def summary(made: Mapping[str, Any]) -> Shown:

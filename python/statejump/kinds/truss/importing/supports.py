@@ -19,11 +19,10 @@ def supports(deck: Deck, node: str, dimension: int) -> dict[str, Any]:
         fixed = [axis for axis in "xyz"[:dimension] if axis in deck.fixed.get(node, ())]
         return {"fixed": fixed} if fixed else {}
     axes = np.eye(3)
-    held = [axes["xyz".index(axis)] for axis in sorted(deck.fixed.get(node, ()))] + [
-        np.array(direction) for direction in deck.held.get(node, ())]
+    held = held_directions(deck, node)
     if dimension == 2:  # the plane holds the third direction
-        held.append(axes[2])
-    _, sizes, spanned = np.linalg.svd(np.array(held))
+        held = np.vstack([held, axes[2]])
+    _, sizes, spanned = np.linalg.svd(held)
     basis = spanned[:int(np.sum(sizes > SAME))]
     along = [axis for axis in range(3) if np.linalg.norm(axes[axis] - basis.T @ (basis @ axes[axis])) <= SAME]
     rest = basis - basis[:, along] @ axes[along] if along else basis
@@ -38,3 +37,21 @@ def supports(deck: Deck, node: str, dimension: int) -> dict[str, Any]:
         normal = oblique[0] * np.sign(oblique[0][np.argmax(np.abs(oblique[0]))])
         made["guide_normal"] = [float(f"{part:.15g}") for part in normal[:dimension]]
     return made
+
+
+def held_directions(deck: Deck, node: str) -> np.ndarray:
+    """Return the directions in which a node is held, as rows; they may be dependent."""
+    axes = np.eye(3)
+    rows = [axes["xyz".index(axis)] for axis in sorted(deck.fixed.get(node, ()))]
+    return np.array(rows + [np.array(direction) for direction in deck.held.get(node, ())]).reshape(-1, 3)
+
+
+def is_held(deck: Deck, node: str, direction: np.ndarray) -> bool:
+    """Whether the supports of a node hold it in a direction."""
+    held = held_directions(deck, node)
+    if not len(held):
+        return False
+    _, sizes, spanned = np.linalg.svd(held)
+    basis = spanned[:int(np.sum(sizes > SAME))]
+    rest = direction - basis.T @ (basis @ direction)
+    return bool(np.linalg.norm(rest) <= SAME * np.linalg.norm(direction))

@@ -7,10 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from statejump.kinds.truss.importing.abaqus import assembly, generation, loads, mesh, sections
+from statejump.kinds.truss.importing import profiles
+from statejump.kinds.truss.importing.abaqus import assembly, equations, generation, loads, mesh, sections
 from statejump.kinds.truss.importing.abaqus.keywords import Block, blocks
-from statejump.kinds.truss.importing.abaqus.model import Element, Model, Reading, Scope
+from statejump.kinds.truss.importing.abaqus.model import Element, Model, Reading, Scope, Section
 from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, KEYWORDS
+from statejump.kinds.truss.importing.bodies import settle_bodies
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED, Card
 from statejump.kinds.truss.importing.model import Bar, Deck, Options
 
@@ -24,7 +26,10 @@ STAGES: tuple[dict[str, Reading], ...] = (
     {"MATERIAL": sections.material, "ELASTIC": sections.elastic, "EXPANSION": sections.expansion,
      "DENSITY": sections.density},
     {"SOLID SECTION": sections.section, "BEAM SECTION": sections.section, "BEAM GENERAL SECTION": sections.general,
-     "SPRING": sections.spring, "MASS": sections.mass, "INITIAL CONDITIONS": loads.initial},
+     "NODAL THICKNESS": sections.thickness,
+     "MASS": sections.mass, "INITIAL CONDITIONS": loads.initial},
+    # After the steps: what they do depends on supports.
+    {"SPRING": sections.spring, "EQUATION": equations.equation},
 )
 # What is read with the steps, or says where parts begin and end.
 TOGETHER = ("BOUNDARY", "CLOAD", "DLOAD", "TEMPERATURE", "AMPLITUDE", "STEP", "STATIC", "END STEP", "PART", "END PART",
@@ -49,14 +54,16 @@ def read(path: Path, options: Options | None = None) -> Deck:
     given = assembly.flat(model, taken)
     steps, own = _steps(given)
     for stage in STAGES:
+        if stage is STAGES[-1]:
+            loads.run(model, steps)
         for block, scope in own:
             later = block.name == "NSET" and "ELSET" in block.parameters
             if later and "ELSET" in stage:
                 mesh.node_set(model, block, scope)
             elif block.name in stage and not later:
                 stage[block.name](model, block, scope)
-    loads.run(model, steps)
     _bars(model)
+    settle_bodies(deck)
     deck.settle()
     return deck
 
@@ -115,6 +122,8 @@ def _steps(given: list[tuple[Block, Scope]]) -> tuple[list[loads.Step], list[tup
 def _bars(model: Model) -> None:
     """Make bars of elements, in two where something else happens at the middle node."""
     shared = Counter(end for one in model.elements.values() for end in set(one.nodes))
+    shared.update(term[0] for one in model.deck.equations for term in one.terms)
+    shared.update(moment.node for moment in model.deck.moments)
     for one in model.elements.values():
         if one.family not in (BAR, BEAM):
             continue
@@ -125,17 +134,28 @@ def _bars(model: Model) -> None:
             names = [f"{one.name}_1", f"{one.name}_2"]
         card = f"*ELEMENT, TYPE={one.kind}"
         for name, pair in zip(names, ends):
-            bar = Bar(name, pair, card)
+            bar = Bar(name, pair, card, bends=one.family == BEAM)
             if section := model.sections.get(one.name):
                 of = section.material
                 bar.area, bar.young_modulus, bar.expansion = section.area, of.young_modulus, of.expansion
                 bar.poisson_ratio, bar.density, bar.why_no_area = of.poisson_ratio, of.density, section.why
                 bar.expansion_table, bar.expansion_zero = of.expansion_table, of.expansion_zero
+                if section.shape:
+                    _taper(model, bar, section)
             else:
                 bar.why_no_area = "no section names it"
             model.deck.bars.append(bar)
         model.deck.take(card, "link" if one.family == BAR
                         else "link: it carries axial force only, its bending is left out")
+
+
+def _taper(model: Model, bar: Bar, section: Section) -> None:
+    """Give a bar the area and the density of one whose sizes are those of its nodes."""
+    sizes = [model.thickness.get(end, (0.0, 0.0)) for end in bar.nodes]
+    if found := profiles.between(section.shape, *sizes):
+        bar.area, mean = found
+        if bar.density is not None:
+            bar.density *= mean / bar.area
 
 
 def _splits(model: Model, one: Element, shared: Counter[str]) -> bool:

@@ -11,7 +11,7 @@ from statejump.kinds.truss.importing.abaqus.keywords import Block
 from statejump.kinds.truss.importing.abaqus.model import Model, Scope
 from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, MASS
 from statejump.kinds.truss.importing.coordinates import Frame, about_axis, by_axis
-from statejump.kinds.truss.importing.model import quoted
+from statejump.kinds.truss.importing.model import Moment, quoted
 
 HELD = {"ENCASTRE": (1, 6), "PINNED": (1, 3), "XSYMM": (1, 1), "YSYMM": (2, 2), "ZSYMM": (3, 3)}
 STATIC = ("STATIC", "COUPLED TEMPERATURE-DISPLACEMENT", "UNCOUPLED TEMPERATURE-DISPLACEMENT", "VISCO")
@@ -157,17 +157,19 @@ def _factor(model: Model, block: Block, amplitudes: dict[str, Block], period: fl
     if found is None:
         raise model.deck.fail(block.line, f"there is no amplitude {quoted(name)}")
     given = found.parameters
-    if period is None or given.get("TIME") or given.get("VALUE", "RELATIVE").upper() != "RELATIVE" or \
-            given.get("DEFINITION", "TABULAR").upper() != "TABULAR" or block.name == "TEMPERATURE":
+    pairs = [value for line, words in found.data for value in model.numbers(line, words)]
+    times, values = pairs[::2], pairs[1::2]
+    relative = given.get("VALUE", "RELATIVE").upper() == "RELATIVE" and \
+        given.get("DEFINITION", "TABULAR").upper() == "TABULAR" and block.name != "TEMPERATURE"
+    constant = len(set(values)) == 1 and len(values) == len(times)  # known at any time, whatever the step is
+    if not relative or not constant and (period is None or given.get("TIME")):
         model.deck.refuse(f"*{block.name}, AMPLITUDE", "its value at the end of the step is not known", block.line,
                           f"{block.name}.AMPLITUDE")
         return None
-    pairs = [value for line, words in found.data for value in model.numbers(line, words)]
-    times, values = pairs[::2], pairs[1::2]
     if len(times) != len(values) or not times or any(b <= a for a, b in zip(times, times[1:])):
         raise model.deck.fail(found.line, "*AMPLITUDE: not pairs of rising times and values")
     model.deck.take("*AMPLITUDE", "factor of loads")
-    return float(np.interp(period, times, values))
+    return float(np.interp(period or 0.0, times, values))
 
 
 def _boundary(model: Model, block: Block, scope: Scope, state: State) -> None:
@@ -201,9 +203,9 @@ def _cload(model: Model, block: Block, scope: Scope, forces: dict[tuple[str, int
             raise model.deck.fail(line, "*CLOAD needs node, direction and force")
         direction = model.whole(line, words[1])
         value = factor * model.number(line, words[2])
-        if not 1 <= direction <= 3:
+        if not 1 <= direction <= 6:
             if value:
-                model.deck.refuse("*CLOAD", "a moment: nodes of a truss do not rotate", line, "CLOAD.MOMENT")
+                model.deck.refuse("*CLOAD", "it is no force and no moment", line, "CLOAD.OTHER")
             continue
         for node in model.nodes_of(line, words[0], scope):
             before = forces.get((node, direction), (0.0, line))
@@ -253,8 +255,10 @@ def _finish(model: Model, state: State) -> None:
         else:
             deck.fix(node, "".join("xyz"[at - 1] for at in sorted(directions)))
     for (node, direction), (value, line) in state.force.items():
-        if value:
-            axis = model.frame(node).directions(deck.nodes[node])[direction - 1]
+        axis = model.frame(node).directions(deck.nodes[node])[(direction - 1) % 3]
+        if value and direction > 3:
+            deck.moments.append(Moment(line, "*CLOAD", node, axis * value, "CLOAD.MOMENT"))
+        elif value:
             deck.load(node, [float(part) * value for part in axis], line, "*CLOAD")
     if state.gravity:
         _gravity(model, state)

@@ -55,11 +55,15 @@ class Material:
 
 @dataclass
 class Section:
-    """Area and material of a bar."""
+    """Area and material of a bar.
+
+    :param shape: whose sizes are those of nodes; empty: the area is given
+    """
 
     area: float | None
     material: Material
     why: str = ""
+    shape: str = ""
 
 
 @dataclass
@@ -73,6 +77,7 @@ class Model:
     materials: dict[str, Material] = field(default_factory=dict)
     material: Material | None = None
     sections: dict[str, Section] = field(default_factory=dict)
+    thickness: dict[str, tuple[float, float]] = field(default_factory=dict)  # of *NODAL THICKNESS
     frames: dict[str, Frame] = field(default_factory=dict)  # directions of supports and loads of nodes
     system: Frame = BASIC  # of positions
     set_items: int = 0

@@ -90,9 +90,23 @@ def section(model: Model, block: Block, scope: Scope) -> None:
         raise model.deck.fail(block.line, f"there is no material {quoted(name)}")
     shape = "AREA" if block.name == "SOLID SECTION" else block.parameters.get("SECTION", "").upper()
     values = model.numbers(*block.data[0]) if block.data else []
-    made = Section(_area(model, block, shape, values), model.materials[name],
-                   f"*{block.name} {quoted(shape)[1:-1]} gives no area with its sizes")
+    why = f"*{block.name} {quoted(shape)[1:-1]} gives no area with its sizes"
+    if "NODAL THICKNESS" in block.parameters:
+        made = Section(None, model.materials[name], f"{why} of *NODAL THICKNESS", shape)
+    else:
+        made = Section(_area(model, block, shape, values), model.materials[name], why)
     _assign(model, block, scope, made)
+
+
+def thickness(model: Model, block: Block, scope: Scope) -> None:
+    """Two sizes of nodes; one counts for both."""
+    for line, words in block.data:
+        sizes = model.numbers(line, words[1:3])
+        if not sizes:
+            raise model.deck.fail(line, "*NODAL THICKNESS needs a node and its sizes")
+        for node in model.nodes_of(line, words[0], scope):
+            model.thickness[node] = (sizes[0], sizes[-1] or sizes[0])
+    model.deck.take("*NODAL THICKNESS", "cross-section area of links")
 
 
 def _assign(model: Model, block: Block, scope: Scope, made: Section) -> None:

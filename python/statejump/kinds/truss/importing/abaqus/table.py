@@ -45,8 +45,8 @@ KEYWORDS: dict[str, Card] = table(
          refused={"NODAL_THICKNESS": "areas of nodes", "COMPOSITE": "layers"}),
     used("BEAM_SECTION", "area of RECT, CIRC, PIPE, BOX, I, L, TRAPEZOID", "ELSET MATERIAL SECTION OFFSET1 OFFSET2 "
          "POISSON TEMPERATURE ROTARY_INERTIA LUMPED ORIENTATION NODAL_THICKNESS",
-         idle={"OFFSET1 OFFSET2 POISSON ROTARY_INERTIA ORIENTATION": TURNS, "TEMPERATURE LUMPED": SOLVE},
-         refused={"NODAL_THICKNESS": "sizes of nodes"}),
+         idle={"OFFSET1 OFFSET2 POISSON ROTARY_INERTIA ORIENTATION": TURNS, "TEMPERATURE LUMPED": SOLVE}),
+    used("NODAL_THICKNESS", "area of RECT and CIRC, between the sizes of two nodes"),
     used("BEAM_GENERAL_SECTION", "area of SECTION=GENERAL and its material", "ELSET SECTION DENSITY POISSON ZERO",
          idle={"POISSON": TURNS}),
     used("SPRING", "spring along its line or to the ground", "ELSET NONLINEAR ORIENTATION DEPENDENCIES "
@@ -55,12 +55,15 @@ KEYWORDS: dict[str, Card] = table(
                   "DEPENDENCIES": TABLE}),
     used("MASS", "mass of nodes", "ELSET ALPHA COMPOSITE TYPE", idle={"ALPHA COMPOSITE": DYNAMIC},
          refused={"TYPE": "a mass of one direction"}),
+    used("EQUATION", "support, one node of two at one place, or loads of a node at which no bar ends; else it is "
+         "refused", "INPUT REMOVE", refused={"INPUT": "a file of its own", "REMOVE": TIME}),
     used("BOUNDARY", "directions without motion", "OP AMPLITUDE FIXED USER SUBMODEL STEP DATASET LOAD_CASE MASS_FLOW "
          "TYPE REGION_TYPE",
          idle={"AMPLITUDE TYPE": "of motions that are not 0, which are not supported", "REGION_TYPE LOAD_CASE": SOLVE},
          refused={"FIXED SUBMODEL STEP DATASET": TIME, "USER": USER, "MASS_FLOW": "a fluid"}),
-    used("CLOAD", "dead load", "OP AMPLITUDE SUBMODEL STEP DATASET TIME_DELAY USER SECTOR LOAD_CASE OMEGA0 FOLLOWER "
-         "REGION_TYPE CYCLIC_MODE", idle={"REGION_TYPE CYCLIC_MODE": SOLVE},
+    used("CLOAD", "dead load; a moment is nothing where it twists beams that are all along it, else it is refused",
+         "OP AMPLITUDE SUBMODEL STEP DATASET TIME_DELAY USER SECTOR LOAD_CASE OMEGA0 FOLLOWER REGION_TYPE CYCLIC_MODE",
+         idle={"REGION_TYPE CYCLIC_MODE": SOLVE},
          refused={"SUBMODEL STEP DATASET TIME_DELAY": TIME, "USER": USER, "FOLLOWER": "a load that turns",
                   "SECTOR LOAD_CASE OMEGA0": "loads of cyclic symmetry"}),
     used("DLOAD", "gravity", "OP AMPLITUDE TIME_DELAY LOAD_CASE SECTOR SUBMODEL REGION_TYPE",
@@ -85,7 +88,7 @@ KEYWORDS: dict[str, Card] = table(
                                                 "CONTINUE ALLSDTOL FACTOR RIKS": SOLVE}),
     used("END_STEP", "end of a step"),
     # Not supported.
-    refused("EQUATION MPC TIE KINEMATIC COUPLING RIGID_BODY DISTRIBUTING DISTRIBUTING_COUPLING KINEMATIC_COUPLING "
+    refused("MPC TIE KINEMATIC COUPLING RIGID_BODY DISTRIBUTING DISTRIBUTING_COUPLING KINEMATIC_COUPLING "
             "EMBEDDED_ELEMENT MULTI_POINT_CONSTRAINTS NETWORK_MPC SHELL_TO_SOLID_COUPLING", TIES),
     refused("SURFACE_INTERACTION SURFACE_BEHAVIOR CONTACT_PAIR CONTACT FRICTION CLEARANCE GAP CONTACT_DAMPING "
             "CONTACT_CONTROLS CHANGE_CONTACT_TYPE MODEL_CHANGE", CONTACT),
@@ -93,7 +96,6 @@ KEYWORDS: dict[str, Card] = table(
     refused("SHELL_SECTION SHELL_GENERAL_SECTION MEMBRANE_SECTION FLUID_SECTION COHESIVE_SECTION CONNECTOR_SECTION "
             "RIGID_SURFACE SUBSTRUCTURE_PROPERTY MATRIX_ASSEMBLE USER_ELEMENT USER_SECTION FRAME_SECTION "
             "CONNECTOR_BEHAVIOR CONNECTOR_ELASTICITY JOINT", "elements that are no straight bars"),
-    refused("NODAL_THICKNESS", "sizes of nodes"),
     refused("ORIENTATION DISTRIBUTION", "directions of elements"),
     refused("PLASTIC CYCLIC_HARDENING CREEP HYPERELASTIC HYPERFOAM DEFORMATION_PLASTICITY USER_MATERIAL VISCOELASTIC "
             "VISCO NO_COMPRESSION MOHR_COULOMB DRUCKER_PRAGER CONCRETE RATE_DEPENDENT ANNEAL_TEMPERATURE FAIL_STRAIN "

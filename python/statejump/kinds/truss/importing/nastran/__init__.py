@@ -6,9 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from statejump.core.reading import finite_number
+from statejump.kinds.truss.importing.bodies import settle_bodies
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED
 from statejump.kinds.truss.importing.model import BENDING, Deck, Options
-from statejump.kinds.truss.importing.nastran import control, elements, loads, nodes, properties, singularities
+from statejump.kinds.truss.importing.nastran import (bodies, control, elements, loads, masses, nodes, properties,
+                                                     singularities)
 from statejump.kinds.truss.importing.nastran.cards import BARE_EXPONENT, Card, split
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.nastran.table import CARDS, PARAMS
@@ -18,15 +20,15 @@ READERS: dict[str, Callable[[Reader, Card], None]] = {
     "MAT1": properties.mat1, "PROD": properties.simple, "PBAR": properties.simple, "PTUBE": properties.ptube,
     "PBARL": properties.pbarl, "PBEAM": properties.pbeam, "PBEAML": properties.pbeaml, "PELAS": properties.pelas,
     "CROD": elements.bar, "CTUBE": elements.bar, "CBAR": elements.bar, "CBEAM": elements.bar, "CONROD": elements.conrod,
-    "CELAS1": elements.celas, "CELAS2": elements.celas, "CBUSH": elements.cbush, "CONM1": elements.conm1,
-    "CONM2": elements.conm2, "SPC": nodes.spc, "SPC1": nodes.spc1, "FORCE": loads.force, "FORCE1": loads.force,
-    "FORCE2": loads.force, "PLOAD1": loads.pload1, "GRAV": loads.gravity,
+    "SPC": nodes.spc, "SPC1": nodes.spc1, "CELAS1": elements.celas, "CELAS2": elements.celas, "CBUSH": elements.cbush,
+    "PMASS": properties.pmass, "CMASS1": masses.cmass, "CMASS2": masses.cmass, "CONM1": elements.conm1,
+    "CONM2": elements.conm2, "FORCE": loads.force, "FORCE1": loads.force, "FORCE2": loads.force, "MOMENT": loads.moment,
+    "MOMENT1": loads.moment, "MOMENT2": loads.moment, "PLOAD1": loads.pload1, "GRAV": loads.gravity,
+    "RBAR": bodies.rbar, "RBAR1": bodies.rbar, "RBE2": bodies.rbe2, "RBE3": bodies.rbe3, "MPC": bodies.mpc,
 }
 # Cards that other functions read, all of a kind at once.
 TOGETHER = ("GRID", "GRDSET", "CORD1R", "CORD1C", "CORD1S", "CORD2R", "CORD2C", "CORD2S", "BAROR", "BEAMOR", "PBUSH",
             "SPCADD", "MPCADD", "LOAD", "LOADADD", "TEMP", "TEMPD", "PARAM")
-
-DYNAMIC_SOLUTIONS = ("108", "109", "111", "112", "118", "129", "DFREQ", "DTRAN", "MFREQ", "MTRAN")
 
 
 def read(path: Path, options: Options | None = None) -> Deck:
@@ -39,10 +41,11 @@ def read(path: Path, options: Options | None = None) -> Deck:
         by_name.setdefault(card.name, []).append(card)
     reader = Reader(deck, by_name)
     loads.select(reader, chosen)
-    dynamic = chosen.solution.removeprefix("SE") in DYNAMIC_SOLUTIONS
     for card in cards:
-        if card.name == "SPCD" and dynamic:
+        if card.name == "SPCD" and chosen.solves(control.DYNAMIC_SOLUTIONS):
             deck.leave(card.name, "given motion of a dynamic solution", card.line)
+        elif card.name in ("SUPORT", "SUPORT1") and chosen.solves(control.FREE_SOLUTIONS):
+            deck.leave(card.name, "reference of rigid-body modes: it holds nothing in this solution", card.line)
         else:
             _check(reader, card, chosen)
     deck.settle()
@@ -51,9 +54,11 @@ def read(path: Path, options: Options | None = None) -> Deck:
         for card in by_name.get(name, []):
             if name not in deck.options.ignored and _counts(reader, card):
                 read_card(reader, card)
+    masses.take_components(reader)
     _take_together(reader)
     loads.temperatures(reader)
     elements.finish_bars(reader)
+    settle_bodies(deck)
     if chosen.autospc:
         singularities.hold_singular(reader)
     if chosen.solution.startswith("106"):  # there TREF is that of the coefficient of expansion only
@@ -116,7 +121,7 @@ def _param(reader: Reader, card: Card, given: control.Control) -> None:
         reader.deck.refuse(f"PARAM.{name}", "the parameter is unknown", card.line)
     elif known.use == REFUSED:
         value = finite_number(card[1].lower())
-        if value not in ({0.0} if name == "INREL" else {1.0}):
+        if card[1].upper() != "NO" and value not in ({0.0} if name in ("INREL", "HEATSTAT") else {1.0}):
             reader.deck.refuse(f"PARAM.{name}", known.what, card.line)
     else:
         reader.deck.leave(f"PARAM {name}", known.what, card.line)

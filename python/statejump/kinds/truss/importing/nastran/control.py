@@ -12,6 +12,9 @@ from statejump.kinds.truss.importing.nastran.table import CONTROL
 
 COMMAND = re.compile(r"([A-Z][A-Z0-9]*)\s*(?:\(([^)]*)\)?)?\s*=?\s*(.*)$")
 HEAT = ("153", "159", "NLSCSH", "NLTCSH")
+DYNAMIC_SOLUTIONS = ("108", "109", "111", "112", "118", "129", "DFREQ", "DTRAN", "MFREQ", "MTRAN")
+# In which SUPORT only says what moves as a rigid body and holds nothing: modes, responses, flutter.
+FREE_SOLUTIONS = (*DYNAMIC_SOLUTIONS, "103", "107", "110", "145", "146", "MODES", "DCEIG", "MCEIG", "FLUTTER")
 # Name and option of a command, and the kind of set that it selects.
 SELECTED = {
     "SPC": "spc", "LOAD": "load", "MPC": "mpc", "DEFORM": "deform", "SUPORT1": "suport", "NSM": "nsm",
@@ -35,6 +38,10 @@ class Control:
     chosen: dict[str, str] = field(default_factory=dict)
     solution: str = ""
     autospc: bool = True
+
+    def solves(self, solutions: tuple[str, ...]) -> bool:
+        """Whether the solution is one of these."""
+        return self.solution.removeprefix("SE") in solutions
 
 
 @dataclass

@@ -12,18 +12,19 @@ from statejump.kinds.truss.importing.springs import add_spring
 SAME = 1e-6  # of offsets, over their size: cards have seven digits
 
 
-def _element(reader: Reader, card: Card) -> str:
+def element(reader: Reader, card: Card, kind: str = "") -> str:
+    """Return the name of an element. Masses may have the numbers of bars, as in decks that Nastran's makers ship."""
     name = reader.whole(card, 0)
-    if name in reader.elements:
+    if kind + name in reader.elements:
         raise reader.deck.fail(card.line, f"element {name} is there twice")
-    reader.elements.add(name)
+    reader.elements.add(kind + name)
     reader.deck.room(card.line, len(reader.elements))
     return name
 
 
 def bar(reader: Reader, card: Card) -> None:
     """CROD, CTUBE, CBAR, CBEAM."""
-    name = _element(reader, card)
+    name = element(reader, card)
     beam = card.name in ("CBAR", "CBEAM")
     default = name
     for other in reader.cards.get({"CBAR": "BAROR", "CBEAM": "BEAMOR"}.get(card.name, ""), []):
@@ -37,7 +38,7 @@ def bar(reader: Reader, card: Card) -> None:
     if beam and any(card.fields[10:16]):
         _check_offsets(reader, card, ends)
     reader.deck.take(card.name, "link: it carries axial force only, its bending is left out" if beam else "link")
-    reader.bars[name] = (card.line, Bar(name, ends, card.name), reader.whole(card, 1, default))
+    reader.bars[name] = (card.line, Bar(name, ends, card.name, bends=beam), reader.whole(card, 1, default))
 
 
 def _check_offsets(reader: Reader, card: Card, ends: tuple[str, str]) -> None:
@@ -56,7 +57,7 @@ def _check_offsets(reader: Reader, card: Card, ends: tuple[str, str]) -> None:
 
 def conrod(reader: Reader, card: Card) -> None:
     """A bar with its own section."""
-    name = _element(reader, card)
+    name = element(reader, card)
     made = Bar(name, (reader.node(card, 1), reader.node(card, 2)), card.name)
     made.area = reader.number(card, 4)
     made.more_mass = reader.number(card, 7, 0.0)
@@ -66,37 +67,40 @@ def conrod(reader: Reader, card: Card) -> None:
 
 def celas(reader: Reader, card: Card) -> None:
     """CELAS1 and CELAS2: a spring between two components, of which an empty one is the ground."""
-    name = _element(reader, card)
+    name = element(reader, card)
     if card.name == "CELAS2":
         stiffness = reader.number(card, 1, 0.0)
     else:
         stiffness = reader.springs.get(reader.whole(card, 1, name), np.nan)
         if np.isnan(stiffness):
             raise reader.fail(card, f"there is no PELAS {reader.whole(card, 1, name)}")
+    components = [card[place + 1] or "0" for place in (2, 4) if card[place] and card[place] != "0"]
+    if components and set(components) <= set("456"):
+        reader.deck.leave(card.name, "a spring of rotations: ends of bars turn freely", card.line)
+        return
+    if not set(components) <= set("123"):
+        what = "a scalar point" if "0" in components else "a rotation"
+        reader.deck.refuse(card.name, f"it joins {what}", card.line)
+        return
     ends = []
     for place in (2, 4):
-        component = card[place + 1] or "0"
         if card[place] and card[place] != "0":
-            if component not in ("1", "2", "3"):
-                what = "a scalar point" if component == "0" else "a rotation"
-                reader.deck.refuse(card.name, f"it joins {what}", card.line)
-                return
             node = reader.node(card, place)
             frame = reader.frames[reader.displacement_frame[node]]
-            ends.append((node, frame.directions(reader.deck.nodes[node])[int(component) - 1]))
+            ends.append((node, frame.directions(reader.deck.nodes[node])[int(card[place + 1]) - 1]))
     add_spring(reader.deck, card.line, card.name, name, stiffness, ends)
 
 
 def cbush(reader: Reader, card: Card) -> None:
     """A spring in up to three directions, to the ground or, in the first one, along its line."""
-    name = _element(reader, card)
+    name = element(reader, card)
     number = reader.whole(card, 1, name)
     found = [one for one in reader.cards.get("PBUSH", []) if reader.whole(one, 0) == number]
     if not found:
         raise reader.fail(card, f"there is no PBUSH {number}")
     stiffness = _bush(reader, found[0])
     if any(stiffness[3:]):
-        reader.deck.refuse("PBUSH.K4-K6", "stiffness of rotations", found[0].line)
+        reader.deck.leave("PBUSH", "K4 to K6, stiffness of rotations: ends of bars turn freely", found[0].line)
     first = reader.node(card, 2)
     second = reader.node(card, 3) if card[3] and card[3] != "0" else None
     if second is None and not card[7] and any(card.fields[4:7]):
@@ -132,24 +136,25 @@ def _bush(reader: Reader, card: Card) -> list[float]:
 
 def conm2(reader: Reader, card: Card) -> None:
     """A mass at a node. Its offset acts on rotations only."""
-    _element(reader, card)
+    element(reader, card, "mass ")
     node = reader.node(card, 1)
     mass = reader.number(card, 3, 0.0)
-    _weigh(reader, card, node, mass)
+    weigh(reader, card, node, mass)
 
 
 def conm1(reader: Reader, card: Card) -> None:
     """A matrix of masses, which must be one mass for all directions."""
-    _element(reader, card)
+    element(reader, card, "mass ")
     node = reader.node(card, 1)
     first, second, third = (reader.number(card, place, 0.0) for place in (3, 5, 8))
     if not first == second == third:
         reader.deck.refuse(card.name, "the mass differs from one direction to another", card.line)
         return
-    _weigh(reader, card, node, first)
+    weigh(reader, card, node, first)
 
 
-def _weigh(reader: Reader, card: Card, node: str, mass: float) -> None:
+def weigh(reader: Reader, card: Card, node: str, mass: float) -> None:
+    """Add a mass to a node."""
     if mass < 0:
         raise reader.fail(card, "a negative mass")
     if mass:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from statejump.kinds.truss.importing.model import quoted
+from statejump.kinds.truss.importing.model import Moment, quoted
 from statejump.kinds.truss.importing.nastran.cards import Card
-from statejump.kinds.truss.importing.nastran.control import Control
+from statejump.kinds.truss.importing.nastran.control import FREE_SOLUTIONS, Control
 from statejump.kinds.truss.importing.nastran.reader import Reader
-from statejump.kinds.truss.importing.nastran.table import CARDS
+from statejump.kinds.truss.importing.nastran.table import CARDS, DYNAMIC, HEAT
 from statejump.kinds.truss.importing.springs import ALONG
 
 COMBINED = {"spc": "SPCADD", "mpc": "MPCADD"}
@@ -21,6 +21,19 @@ def select(reader: Reader, control: Control) -> None:
         if chosen is None and not control.given and kind != "initial":
             chosen = _only(reader, kind)
         reader.sets[kind] = {} if chosen is None else _expanded(reader, kind, chosen)
+    chosen = control.chosen.get("load")
+    if chosen is not None and not any(card[0] == chosen for name, cards in reader.cards.items() if _is_load(name)
+                                      for card in cards):
+        if control.solves(FREE_SOLUTIONS):
+            reader.deck.leave("LOAD", f"set {chosen} is not in the deck, and this solution has no static loads", 0)
+        else:
+            reader.deck.refuse("LOAD", f"set {chosen} is not in the deck", 0, "LOAD.SET")
+
+
+def _is_load(name: str) -> bool:
+    """Whether LOAD = may select a card, also one of heat transfer, or one that is unknown."""
+    known = CARDS.get(name)
+    return known is None or known.sets == "load" or known.what in (HEAT, DYNAMIC) or name in ("LOAD", "LOADADD")
 
 
 def _only(reader: Reader, kind: str) -> str | None:
@@ -68,24 +81,36 @@ def _expanded(reader: Reader, kind: str, chosen: str) -> dict[str, float]:
 
 def force(reader: Reader, card: Card) -> None:
     """FORCE, FORCE1 and FORCE2."""
-    factor = reader.factor(card, "load")
+    node, vector = _vector(reader, card)
+    reader.deck.load(node, [float(part) for part in vector], card.line, card.name)
+    reader.deck.take(card.name, "dead load")
+
+
+def moment(reader: Reader, card: Card) -> None:
+    """MOMENT, MOMENT1 and MOMENT2."""
+    node, vector = _vector(reader, card)
+    reader.deck.moments.append(Moment(card.line, card.name, node, vector))
+
+
+def _vector(reader: Reader, card: Card) -> tuple[str, np.ndarray]:
+    """Return the node and the force or moment of a card, times the factor of its set."""
+    factor = reader.factor(card, "load") or 0.0
     node = reader.node(card, 1)
-    if card.name == "FORCE":
+    if card.name in ("FORCE", "MOMENT"):
         size = reader.number(card, 3)
         given = np.array([reader.number(card, place, 0.0) for place in (4, 5, 6)])
         vector = given @ reader.frame(card, 2).directions(reader.deck.nodes[node]) * size
     else:
         corners = [np.array(reader.deck.nodes[reader.node(card, place)])
-                   for place in range(3, 5 if card.name == "FORCE1" else 7)]
+                   for place in range(3, 5 if card.name.endswith("1") else 7)]
         way = corners[1] - corners[0]
-        if card.name == "FORCE2":
+        if card.name.endswith("2"):
             way = np.cross(way, corners[3] - corners[2])
         length = np.linalg.norm(way)
         if length == 0:
             raise reader.fail(card, "its nodes give no direction")
         vector = way / length * reader.number(card, 2)
-    reader.deck.load(node, [float(part) * (factor or 0.0) for part in vector], card.line, card.name)
-    reader.deck.take(card.name, "dead load")
+    return node, vector * factor
 
 
 def gravity(reader: Reader, card: Card) -> None:
@@ -154,6 +179,8 @@ def temperatures(reader: Reader) -> None:
         if default is not None:
             for name in reader.deck.nodes:
                 found.setdefault(name, default)
+        if reader.sets[kind] and not found:
+            reader.deck.refuse("TEMPERATURE", f"set {next(iter(reader.sets[kind]))} is not in the deck", 0)
     _left(reader)
 
 

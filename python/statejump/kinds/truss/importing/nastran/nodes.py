@@ -2,8 +2,6 @@
 """GRID, coordinate systems and supports."""
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
-
 import numpy as np
 
 from statejump.kinds.truss.importing.coordinates import BASIC, by_points
@@ -132,23 +130,8 @@ def fix(reader: Reader, card: Card, components: str, nodes: list[str]) -> None:
 
 
 def spc1(reader: Reader, card: Card) -> None:
-    """Hold the nodes of a list, of which ``THRU`` may skip numbers that are not there."""
-    items = [text for text in card.fields[2:] if text]
-    nodes: list[str] = []
-    place = 0
-    while place < len(items):
-        if place + 2 < len(items) and items[place + 1].upper() == "THRU":
-            first, last = (int(reader.name(card.line, items[at])) for at in (place, place + 2))
-            start, end = bisect_left(reader.sorted_nodes, first), bisect_right(reader.sorted_nodes, last)
-            nodes += map(str, reader.sorted_nodes[start:end])
-            place += 3
-        else:
-            name = reader.name(card.line, items[place])
-            if name not in reader.deck.nodes:
-                raise reader.fail(card, f"there is no GRID {name}")
-            nodes.append(name)
-            place += 1
-    fix(reader, card, card[1], nodes)
+    """Hold the nodes of a list."""
+    fix(reader, card, card[1], reader.several(card, [text for text in card.fields[2:] if text]))
 
 
 def spc(reader: Reader, card: Card) -> None:

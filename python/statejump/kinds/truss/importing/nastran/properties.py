@@ -142,3 +142,11 @@ def pelas(reader: Reader, card: Card) -> None:
         if card[place]:
             reader.springs[reader.whole(card, place)] = reader.number(card, place + 1, 0.0)
             reader.deck.take(card.name, "stiffness of springs")
+
+
+def pmass(reader: Reader, card: Card) -> None:
+    """Masses, up to four on a card."""
+    for place in range(0, 8, 2):
+        if card[place]:
+            reader.masses[reader.whole(card, place)] = reader.number(card, place + 1)
+            reader.deck.take(card.name, "masses of CMASS1")

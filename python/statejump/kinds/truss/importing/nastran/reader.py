@@ -2,6 +2,7 @@
 """What the readers of cards share: numbers, nodes, sets, and what is known of the deck so far."""
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, field
 
 from statejump.core.reading import finite_number
@@ -52,6 +53,9 @@ class Reader:
     materials: dict[str, Material] = field(default_factory=dict)
     properties: dict[str, Property] = field(default_factory=dict)
     springs: dict[str, float] = field(default_factory=dict)  # PELAS
+    masses: dict[str, float] = field(default_factory=dict)  # PMASS
+    component_masses: dict[str, list[float]] = field(default_factory=dict)  # CMASS1, CMASS2 by node: directions 1 to 3
+    component_cards: dict[str, Card] = field(default_factory=dict)  # the first of each node
     bars: dict[str, tuple[int, Bar, str]] = field(default_factory=dict)  # line, bar, property
     conrods: dict[str, tuple[int, Bar, str]] = field(default_factory=dict)  # line, bar, material
     elements: set[str] = field(default_factory=set)
@@ -92,6 +96,24 @@ class Reader:
         if name not in self.deck.nodes:
             raise self.deck.fail(card.line, f"there is no GRID {name}")
         return name
+
+    def several(self, card: Card, items: list[str]) -> list[str]:
+        """Return the nodes of a list, of which ``THRU`` may skip numbers that are not there."""
+        nodes: list[str] = []
+        place = 0
+        while place < len(items):
+            if place + 2 < len(items) and items[place + 1].upper() == "THRU":
+                first, last = (int(self.name(card.line, items[at])) for at in (place, place + 2))
+                start, end = bisect_left(self.sorted_nodes, first), bisect_right(self.sorted_nodes, last)
+                nodes += map(str, self.sorted_nodes[start:end])
+                place += 3
+            else:
+                name = self.name(card.line, items[place])
+                if name not in self.deck.nodes:
+                    raise self.fail(card, f"there is no GRID {name}")
+                nodes.append(name)
+                place += 1
+        return nodes
 
     def factor(self, card: Card, kind: str) -> float | None:
         """Return the factor of the card's set; None: the set does not count."""

@@ -8,14 +8,13 @@ from statejump.kinds.truss.importing.nastran.reader import Reader
 
 # EPZERO of Nastran: a smaller share of the node's largest stiffness is none.
 EPZERO = 1e-8
-BEAMS = ("CBAR", "CBEAM")
 
 
 def hold_singular(reader: Reader) -> None:
     """Hold components of displacement systems without stiffness, but where beams end, which are stiff in Nastran."""
     deck = reader.deck
     stiffness: dict[str, np.ndarray] = {}
-    bent = {end for bar in deck.bars if bar.kind in BEAMS for end in bar.nodes}
+    bent = {end for bar in deck.bars if bar.bends for end in bar.nodes}
     pairs = [bar.nodes for bar in deck.bars]
     pairs += [(spring.first, spring.second) for spring in deck.springs if spring.second]
     for first, second in pairs:

@@ -16,7 +16,11 @@ OUTPUT = "output"
 THROUGH = "acts through elements that name it, which are not supported"
 SHELL, SOLID = "shells are no part of a truss", "solids are no part of a truss"
 RIGID = "rigid elements need rotations or equations between nodes"
+SUPORTED = "supports that inertia relief or a rigid body need, but of modes and responses, where they hold nothing"
 EXACT = "reduction, exact in statics"
+BODY = "one node of those at one place, where forces and masses of the others act; apart from that it is refused"
+EXPANDS = "thermal expansion of a rigid bar"
+TWIST = "nothing where it twists rods, or beams that are all along it; else it bends beams, which is refused"
 POINTS = "end A: C1 C2 D1 D2 E1 E2 F1 F2"
 
 CARDS: dict[str, Card] = table(
@@ -65,15 +69,29 @@ CARDS: dict[str, Card] = table(
          refused={"M21 M31 M32 M41 M42 M43 M51 M52 M53 M61 M62 M63": "it couples directions"}),
     used("CONM2", "mass of a node", "EID G CID M X1 X2 X3 - I11 I21 I22 I31 I32 I33",
          idle={"CID X1 X2 X3 I11 I21 I22 I31 I32 I33": TURNS}),
+    used("CMASS1", "mass of a node, where it is one in all directions that are not held", "EID PID G1 C1 G2 C2"),
+    used("CMASS2", "mass of a node, where it is one in all directions that are not held", "EID M G1 C1 G2 C2"),
+    used("PMASS", "masses of CMASS1", "PID1 M1 PID2 M2 PID3 M3 PID4 M4"),
     # Supports, loads and temperatures.
     used("SPC", "directions without motion", "SID G1 C1 D1 G2 C2 D2", sets="spc"),
     used("SPC1", "directions without motion", "SID C Gi", repeats=1, sets="spc"),
+    # Rigid bodies and equations.
+    used("RBAR", BODY, "EID GA GB CNA CNB CMA CMB ALPHA", refused={"ALPHA": EXPANDS}),
+    used("RBAR1", BODY, "EID GA GB CB ALPHA", refused={"ALPHA": EXPANDS}),
+    used("RBE2", BODY, "EID GN CM GMi ALPHA", refused={"ALPHA": EXPANDS}, own=True),
+    used("RBE3", "nothing where nothing acts on its node REFGRID; else it is refused",
+         "EID - REFGRID REFC WTi Ci Gi,j UM GMi CMi ALPHA", own=True,
+         idle={"REFC WTi Ci Gi,j UM GMi CMi ALPHA": "motion of a node that nothing acts on"}),
+    used("MPC", "support, one node of two at one place, or loads of a node at which no bar ends; else it is refused",
+         "SID G1 C1 A1 G2 C2 A2 - - G3 C3 A3 G4 C4 A4 - -", repeats=8, sets="mpc"),
     used("SPCADD", "several sets of supports", "SID Si", repeats=1),
     used("MPCADD", "several sets of equations", "SID Si", repeats=1),
     *(used(name, "several sets of loads with factors", "SID S Si Li", repeats=2) for name in ("LOAD", "LOADADD")),
     used("FORCE", "dead load", "SID G CID F N1 N2 N3", sets="load"),
     used("FORCE1", "dead load", "SID G F G1 G2", sets="load"),
     used("FORCE2", "dead load", "SID G F G1 G2 G3 G4", sets="load"),
+    *(used(name, TWIST, f"SID G {more}", sets="load") for name, more in (
+        ("MOMENT", "CID M N1 N2 N3"), ("MOMENT1", "M G1 G2"), ("MOMENT2", "M G1 G2 G3 G4"))),
     used("PLOAD1", "dead loads of both ends, of a load along the bar", "SID EID TYPE SCALE X1 P1 X2 P2", sets="load"),
     used("GRAV", "gravity", "SID CID A N1 N2 N3 MB", idle={"MB": "superelement: the structure is taken as one"},
          sets="load"),
@@ -81,12 +99,9 @@ CARDS: dict[str, Card] = table(
     used("TEMPD", "temperature of links", "SID1 T1 SID2 T2 SID3 T3 SID4 T4"),
     used("PARAM", "WTMASS: factor of all masses; AUTOSPC", "N V1 V2", own=True),
     # Not supported.
-    refused("MPC", "equations between nodes are not solved", sets="mpc"),
-    refused("RBAR RBAR1 RBE1 RBE2 RBE2GS RBE3 RROD RJOINT RTRPLT RTRPLT1 RSPLINE RSSCON", RIGID),
-    refused("SUPORT", "supports that inertia relief or a rigid body need"),
-    refused("SUPORT1", "supports that inertia relief or a rigid body need", sets="suport"),
+    refused("RBE1 RBE2GS RROD RJOINT RTRPLT RTRPLT1 RSPLINE RSSCON", RIGID),
+    refused("SUPORT", SUPORTED), refused("SUPORT1", SUPORTED, sets="suport"),
     refused("SPCD", "given displacement, but of SOL 108 to 112, which RLOAD or TLOAD multiplies", sets="load"),
-    refused("MOMENT MOMENT1 MOMENT2", TURNS, sets="load"),
     refused("PLOAD PLOAD2 PLOAD4 PLOADX PLOADX1 PLOADB3", "pressure on an element", sets="load"),
     refused("RFORCE RFORCE1 ACCEL ACCEL1", "loads of a field of accelerations", sets="load"),
     refused("SLOAD", "load on a scalar point", sets="load"),
@@ -95,7 +110,6 @@ CARDS: dict[str, Card] = table(
     refused("MATT1 MATT2 MATT3 MATT5 MATT8 MATT9", "properties that depend on temperature"),
     refused("MATS1 CREEP", "material that is not linear"),
     refused("CELAS3 CELAS4 CMASS3 CMASS4", "it joins scalar points"),
-    refused("CMASS1 CMASS2", "mass of one direction"),
     refused("CBUSH1D CBUSH2D CGAP CWELD CFAST CSEAM CINTC GENEL", "element that is no straight bar of two nodes"),
     refused("CBEND CBEAM3", "curved beam"),
     refused("PBCOMP PBRSECT PBMSECT", "section whose area is not known from one number"),
@@ -107,7 +121,7 @@ CARDS: dict[str, Card] = table(
     refused("BCONP BCTABLE BCTSET BSURFS BGSET BLSEG", "contact"),
     # No influence.
     idle("ENDDATA ECHOON ECHOOFF CBARAO PLOTEL PLOTEL3 PLOTEL4 SET1 SET2 SET3 GRIDG", OUTPUT),
-    idle("PSHELL PCOMP PCOMPG PSHEAR PSOLID PLSOLID PBEND PBEAM3 PGAP PBUSH1D PBUSHT PELAST PMASS PQUAD PPLANE PLPLANE "
+    idle("PSHELL PCOMP PCOMPG PSHEAR PSOLID PLSOLID PBEND PBEAM3 PGAP PBUSH1D PBUSHT PELAST PQUAD PPLANE PLPLANE "
          "PAABSF PACABS MAT2 MAT3 MAT4 MAT5 MAT8 MAT9 MAT10 MAT11 MATHP MATHE MATT4 TABLEM1 TABLEM2 TABLEM3 TABLEM4 "
          "TABLES1 SPOINT EPOINT PSEAM PWELD PFAST", THROUGH),
     idle("CDAMP1 CDAMP2 CDAMP3 CDAMP4 CDAMP5 PDAMP PDAMPT CVISC PVISC", MATERIAL_DAMPING),
@@ -134,15 +148,16 @@ PARAMS: dict[str, Card] = table(
     used("WTMASS", "factor of all masses"),
     used("AUTOSPC", "whether directions of nodes without stiffness are held; YES if not given"),
     refused("INREL", "inertia relief"),
+    refused("HEATSTAT", "temperatures that another subcase computes"),
     refused("CK1 CK2 CK3 CM1 CM2 CP1 CP2", "factor of matrices"),
     refused("PREMASS SUPAERO", "changes of the model"),
-    idle("POST PRTMAXIM GRDPNT PRGPST PRTRESLT USETPRT AUTOSPCR EPZERO MAXRATIO BAILOUT TINY NOFISR OGEOM "
+    idle("POST PRTMAXIM GRDPNT PRGPST PRTRESLT USETPRT USETSEL AUTOSPCR EPZERO MAXRATIO BAILOUT TINY NOFISR OGEOM "
          "OUGCORD OUNIT1 OUNIT2 PATVER PRINT OMID OLDSEQ NEWSEQ SNORM SEP1XOVR K6ROT LGDISP LMODES G W3 W4 GFL W3FL "
          "W4FL COUPMASS RESVEC RESVINER DDRMM HFREQ LFREQ LMODESFL KDAMP VREF MACH Q AUNITS FACTOR NASPRT CURVPLOT "
          "DBDICT DBALL DBEXT EXTOUT EXTDR MODACC NOCOMPS NOELOF NOELOP NOGPF NONLMETH NLAYERS NINTPTS NT RSPLICE "
          "SIGMA STRESS TABS SRCOMPS XYUNIT OPTEXIT DESPCH NASM DSZERO CDPRT IUNIT OPGEOM OPTION OSETELE PDRMSG PROUT "
          "PLTMSG S1 SESEF SEMAP START TABID ULTIMA VUGRAPH ASING BUCKLE TESTNEG MINRATIO EST ECHOON CHECKOUT CHKOUT "
-         "CONFAC RMSINT DYNSPCF INRLM PARTN FIXEDB GEOMU GPECT HEATSTAT IRES LOADU MESH NDAMP NUMOUT OG BIGER BIGER1 "
+         "CONFAC RMSINT DYNSPCF INRLM PARTN FIXEDB GEOMU GPECT IRES LOADU MESH NDAMP NUMOUT OG BIGER BIGER1 "
          "BIGER2 ADPCON ERROR CASPIV CASEM SKPAMP UNSYMF VMOPT WRBEAMB XFLAG ALTRED ALTSHAPE AESMETH AESRNDM AESTOL "
          "AUTOQSET RMXPANEL F56 RESLTOPT SOLADJC SDRPOPT SDRDENS SERST SECOMB SUBCASID MPCX EXTUNIT EXTDROUT OELMSET "
          "OGRDSET ISAVE NEWSET HDF5 CONM2 PEDGE MNLEMPRT FLUIDMP STRUCTMP FREQDEP OMACHPR GYROAVG WR3 WR4 ROTCSV "
@@ -155,10 +170,10 @@ PARAMS: dict[str, Card] = table(
 CONTROL: dict[str, Card] = table(
     used("AUTOSPC", "whether directions of nodes without stiffness are held"),
     used("SUBCASE", "the first one, or that of --step"),
-    used("SPC", "set of supports"), used("LOAD", "set of loads"), used("MPC", "set of MPC, which is not supported"),
+    used("SPC", "set of supports"), used("LOAD", "set of loads"), used("MPC", "set of MPC"),
     used("TEMPERATURE", "LOAD, BOTH: temperatures; INITIAL: those free of stress of materials without TREF"),
     used("DEFORM", "set of DEFORM, which is not supported"), used("NSM", "set of NSM, which is not supported"),
-    used("SUPORT1", "set of SUPORT1, which is not supported"),
+    used("SUPORT1", "set of SUPORT1, which is not supported in statics"),
     refused("K2GG M2GG P2G B2GG A2GG", "matrices that are added to the structure"),
     refused("ANALYSIS", "of HEAT: its supports are temperatures"),
     refused("TRIM", "loads of aerodynamics"),

@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rigid bodies and equations between displacements, where they make nodes one or only pass on loads.
+
+A truss has no rotations and no equations between nodes. A rigid body is taken if bars and springs end at one place of
+it: its nodes there become one node, and forces and masses of its other nodes act there. An equation is taken if it
+holds a node, makes two nodes at one place one, or says how a node moves where no bar ends, whose loads the others then
+carry. Everything else is refused.
+"""
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from statejump.kinds.truss.importing.model import Deck, Equation, RigidBody
+from statejump.kinds.truss.importing.moments import Turning
+from statejump.kinds.truss.importing.springs import ALONG
+from statejump.kinds.truss.importing.supports import SAME, held_directions, is_held
+
+# Nodes nearer than this share of the size of the truss are at one place: decks have eight digits.
+ONE_PLACE = 1e-9
+APART = "it holds nodes together at which bars end and that are apart, which needs rotations"
+UNSOLVED = "an equation between nodes at which bars end: only nodes at one place become one"
+
+
+def settle_bodies(deck: Deck) -> None:
+    """Take moments, rigid bodies and equations. Supports, loads, bars and springs must be known."""
+    turning = Turning(deck)
+    for moment in deck.moments:
+        turning.take(moment.line, moment.card, moment.node, moment.vector, moment.waiver)
+    if not (deck.rigid or deck.followers or deck.equations):
+        return
+    bodies = _Bodies(deck, turning)
+    bodies.take()
+    _take_followers(deck)
+    _take_equations(deck, bodies.near)
+
+
+def carriers(deck: Deck) -> set[str]:
+    """Return the nodes at which bars or springs end."""
+    found = {end for bar in deck.bars for end in bar.nodes}
+    return found | {end for spring in deck.springs for end in (spring.first, spring.second) if end}
+
+
+class _Bodies:
+    """Takes the rigid bodies of a deck; those that share nodes are one."""
+
+    def __init__(self, deck: Deck, turning: Turning) -> None:
+        self.deck, self.turning = deck, turning
+        self.places = dict(deck.nodes)
+        self.size = float(np.ptp(np.array(list(deck.nodes.values())), axis=0).max()) if deck.nodes else 0.0
+        self.one: dict[str, str] = {}  # nodes that become another one
+
+    def near(self, first: str, second: str) -> bool:
+        """Whether two nodes are at one place."""
+        way = np.subtract(self.places[first], self.places[second])
+        return bool(np.linalg.norm(way) <= ONE_PLACE * self.size)
+
+    def take(self) -> None:
+        """Take all bodies."""
+        ends = carriers(self.deck)
+        for body in self._united():
+            self._take(body, ends)
+        join(self.deck, self.one)
+
+    def _united(self) -> list[RigidBody]:
+        joined: dict[str, RigidBody] = {}
+        for body in self.deck.rigid:
+            whole = RigidBody(body.line, body.card, [])
+            for node in body.nodes:
+                whole.nodes += joined[node].nodes if node in joined else [node]
+            whole.nodes = list(dict.fromkeys(whole.nodes))
+            joined.update({node: whole for node in whole.nodes})
+        return list({id(body): body for body in joined.values()}.values())
+
+    def _take(self, body: RigidBody, ends: set[str]) -> None:
+        deck = self.deck
+        borne = [node for node in body.nodes if node in ends]
+        if not borne:
+            deck.leave(body.card, "no bar ends at its nodes", body.line)
+            return
+        kept = borne[0]
+        others = [node for node in body.nodes if node != kept]
+        far = [node for node in others if not self.near(kept, node)]
+        if set(far) & ends:
+            deck.refuse(body.card, APART, body.line)
+        elif any(len(held_directions(deck, node)) for node in far):
+            deck.refuse(body.card, "a support beside the place at which bars end", body.line)
+        elif any(of.get(kept) != of.get(node) for node in borne for of in (deck.temperature, deck.initial)):
+            deck.refuse(body.card, "its nodes at one place have different temperatures", body.line)
+        else:
+            for node in far:
+                self._move_by_lever(body, kept, node)
+            self.one.update({node: kept for node in others if node not in far})
+            deck.take(body.card, "nodes at one place made one; forces and masses of its other nodes act there")
+
+    def _move_by_lever(self, body: RigidBody, kept: str, gone: str) -> None:
+        """Move force and mass of a node to the place at which bars end. What turns the body there is a moment; the
+        mass as well, where gravity acts."""
+        deck = self.deck
+        lever = np.subtract(self.places[gone], self.places[kept])
+        for lines, force in ((deck.force_line, np.array(deck.force.get(gone, [0.0] * 3))),
+                             (deck.mass_line, deck.mass.get(gone, 0.0) * np.array(deck.gravity))):
+            moment = np.cross(lever, force)
+            if np.linalg.norm(moment) > ALONG * np.linalg.norm(lever) * np.linalg.norm(force):
+                line, card = lines.get(gone, (body.line, body.card))
+                self.turning.take(line, card, kept, moment, f"{card.lstrip('*')}.LEVER")
+        _move(deck, kept, gone)
+        del deck.nodes[gone]
+        deck.leave(f"node {gone}", f"a rigid arm of node {kept}", 0)
+
+
+def join(deck: Deck, one: Mapping[str, str]) -> None:
+    """Make nodes one that are at one place.
+
+    :param one: the node that stays by the name of each that goes
+    """
+    for bar in deck.bars:
+        first, second = (one.get(end, end) for end in bar.nodes)
+        bar.nodes = (first, second)
+    springs = []
+    for spring in deck.springs:
+        second_end = None if spring.second is None else one.get(spring.second, spring.second)
+        spring = replace(spring, first=one.get(spring.first, spring.first), second=second_end)
+        if spring.first == spring.second:
+            deck.leave(spring.kind, "its two nodes are one", spring.line)
+        else:
+            springs.append(spring)
+    deck.springs[:] = springs
+    for gone, kept in one.items():
+        deck.fix(kept, "".join(deck.fixed.pop(gone, ())))
+        for direction in deck.held.pop(gone, ()):
+            deck.hold(kept, direction)
+        _move(deck, kept, gone)
+        del deck.nodes[gone]
+        deck.leave(f"node {gone}", f"it is one with node {kept}", 0)
+
+
+def _move(deck: Deck, kept: str, gone: str) -> None:
+    """Move force and mass from one node to another."""
+    if force := deck.force.pop(gone, None):
+        deck.load(kept, force, *deck.force_line.pop(gone, (0, "force")))
+    if mass := deck.mass.pop(gone, None):
+        deck.weigh(kept, mass, *deck.mass_line.pop(gone, (0, "mass")))
+
+
+def _take_followers(deck: Deck) -> None:
+    """Leave out means of other nodes that nothing acts on."""
+    used = carriers(deck) | {term[0] for one in deck.equations for term in one.terms}
+    used |= {moment.node for moment in deck.moments}
+    for line, card, node in deck.followers:
+        if node in used or any(deck.force.get(node, ())) or deck.mass.get(node) or len(held_directions(deck, node)):
+            deck.refuse(card, "it distributes the loads of a node over others", line)
+        else:
+            deck.leave(card, "nothing acts on its node, which follows the others", line)
+
+
+def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
+    """Take equations as long as one of them can be taken."""
+    waiting = [replace(one, terms=[term for term in one.terms if not is_held(deck, *term[:2])])
+               for one in deck.equations]
+    taken: list[Equation] | None = waiting
+    while waiting and taken:
+        taken = _held_by(deck, waiting) or _made_one(deck, waiting, near) or _followed(deck, waiting)
+        for one in taken or ():
+            deck.take(one.card, "held, joined or loaded nodes")
+        gone = {id(one) for one in taken or ()}
+        waiting = [one for one in waiting if id(one) not in gone]
+    for one in waiting:
+        deck.refuse(one.card, UNSOLVED, one.line, one.card.lstrip("*"))
+
+
+def _held_by(deck: Deck, equations: list[Equation]) -> list[Equation]:
+    """Take equations of one term, a support, and of none."""
+    found = [one for one in equations if len(one.terms) < 2]
+    for one in found:
+        for node, direction, _ in one.terms:
+            deck.hold(node, [float(part) for part in direction])
+    return found
+
+
+def _equal(one: Equation) -> tuple[str, str] | None:
+    """Return the nodes of an equation that makes two displacements in one direction equal."""
+    if len(one.terms) != 2:
+        return None
+    (first, along, factor), (second, other, opposite) = one.terms
+    if first == second or np.linalg.norm(along * factor + other * opposite) > SAME * abs(factor):
+        return None
+    return first, second
+
+
+def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], bool]) -> list[Equation]:
+    """Make two nodes one whose displacements are equal in all directions that are not held."""
+    pairs: dict[tuple[str, str], list[Equation]] = {}
+    for one in equations:
+        if pair := _equal(one):
+            pairs.setdefault((min(pair), max(pair)), []).append(one)
+    ends, found = carriers(deck), []
+    joined: dict[str, str] = {}
+    stays: set[str] = set()
+    for pair, several in pairs.items():
+        kept, gone = pair if pair[0] in ends else pair[::-1]
+        # A node that goes is in no other pair of this round: nodes that stay do not go later.
+        if kept not in ends or not near(kept, gone) or joined.keys() & {kept, gone} or gone in stays or \
+                any(of.get(kept) != of.get(gone) for of in (deck.temperature, deck.initial)):
+            continue
+        rows = [one.terms[0][1] for one in several]
+        rows += [axis for axis in np.eye(3) if is_held(deck, kept, axis) and is_held(deck, gone, axis)]
+        if np.linalg.matrix_rank(np.array(rows), tol=SAME) == 3:
+            joined[gone] = kept
+            stays.add(kept)
+            found += several
+    join(deck, joined)
+    for one in equations:
+        one.terms[:] = [(joined.get(node, node), way, factor) for node, way, factor in one.terms]
+    return found
+
+
+def _followed(deck: Deck, equations: list[Equation]) -> list[Equation]:
+    """Let others carry the loads of nodes where no bar ends and whose motion equations give."""
+    ends = carriers(deck)
+    of_node: dict[str, list[Equation]] = {}
+    for one in equations:
+        for node in dict.fromkeys(term[0] for term in one.terms):
+            of_node.setdefault(node, []).append(one)
+    found: list[Equation] = []
+    used: set[int] = set()
+    for node, several in of_node.items():
+        own = [[term for term in one.terms if term[0] == node] for one in several]
+        if node in ends or len(held_directions(deck, node)) or deck.mass.get(node) or \
+                any(len(terms) != 1 for terms in own) or any(id(one) in used for one in several):
+            continue
+        rows = np.array([terms[0][1] for terms in own])
+        force = np.array(deck.force.get(node, [0.0] * 3))
+        rest = force - rows.T @ (rows @ force)
+        if np.linalg.norm(rows @ rows.T - np.eye(len(rows))) > SAME or \
+                np.linalg.norm(rest) > SAME * np.linalg.norm(force):
+            continue
+        line, card = deck.force_line.get(node, (several[0].line, several[0].card))
+        for one, (mine,) in zip(several, own):
+            for other, direction, factor in one.terms:
+                if other != node:
+                    share = -factor / mine[2] * float(force @ mine[1])
+                    deck.load(other, [float(part) for part in share * direction], line, card)
+        deck.force.pop(node, None)
+        del deck.nodes[node]
+        deck.leave(f"node {node}", "an equation gives its motion", 0)
+        found += several
+        used.update(id(one) for one in several)
+    return found

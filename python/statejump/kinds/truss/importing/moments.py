@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Moments on nodes. Rods and bars of a truss have no rotations, so that a moment counts only where it would bend."""
+from __future__ import annotations
+
+import numpy as np
+
+from statejump.kinds.truss.importing.model import Deck
+from statejump.kinds.truss.importing.springs import ALONG
+
+
+class Turning:
+    """What a rotation of a node turns: the beams that are joined with it, also by rigid bodies."""
+
+    def __init__(self, deck: Deck) -> None:
+        self.deck = deck
+        self.beams: dict[str, list[str]] = {}
+        self.bodies: dict[str, list[list[str]]] = {}
+        for first, second in (bar.nodes for bar in deck.bars if bar.bends):
+            self.beams.setdefault(first, []).append(second)
+            self.beams.setdefault(second, []).append(first)
+        for body in deck.rigid:
+            for node in body.nodes:
+                self.bodies.setdefault(node, []).append(body.nodes)
+        self.places = dict(deck.nodes)
+
+    def bends(self, node: str, moment: np.ndarray) -> bool:
+        """Whether a moment bends a beam.
+
+        Rods feel no moment but about their own axis, and torsion of straight bars does not move their ends. In beams
+        it stays torsion if all that are joined with the node are along the moment.
+        """
+        reached, waiting = {node}, [node]
+        while waiting:
+            here = waiting.pop()
+            turned = self.beams.get(here, [])
+            for other in turned:
+                way = np.subtract(self.places[other], self.places[here])
+                if np.linalg.norm(np.cross(way, moment)) > ALONG * np.linalg.norm(way) * np.linalg.norm(moment):
+                    return True
+            fresh = {*turned, *(one for body in self.bodies.get(here, ()) for one in body)} - reached
+            reached |= fresh
+            waiting += fresh
+        return False
+
+    def take(self, line: int, card: str, node: str, moment: np.ndarray, waiver: str | None = None) -> None:
+        """Leave out a moment that moves no node; refuse one that bends a beam."""
+        if not np.any(moment):
+            self.deck.leave(card, "it is 0", line)
+        elif self.bends(node, moment):
+            self.deck.refuse(card, "a moment that bends beams: nodes of a truss do not rotate", line, waiver)
+        else:
+            self.deck.leave(card, "a moment that only twists bars moves no node", line)

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rigid elements and equations between displacements."""
+from __future__ import annotations
+
+from statejump.kinds.truss.importing.model import Equation, RigidBody
+from statejump.kinds.truss.importing.nastran.cards import Card
+from statejump.kinds.truss.importing.nastran.reader import Reader
+
+ALL, MOVES = frozenset("123456"), frozenset("123")
+PARTLY = "it couples some components only"
+
+
+def rbar(reader: Reader, card: Card) -> None:
+    """RBAR and RBAR1: a rigid bar of two nodes, if it couples all components."""
+    first, second = (reader.node(card, place) for place in (1, 2))
+    if card.name == "RBAR1":
+        if not MOVES <= set(card[3] or "123456"):
+            reader.deck.refuse(card.name, PARTLY, card.line)
+            return
+    else:
+        free = [frozenset(card[place]) for place in (3, 4)]
+        coupled = [frozenset(card[place]) for place in (5, 6)]
+        if not any(free):
+            free[0] = ALL
+        if not any(coupled):
+            coupled = [ALL - one for one in free]
+        # One end has all components and the other's translations follow, as of a hinge, or all that are not free do.
+        hinge = free in ([ALL, frozenset()], [frozenset(), ALL]) and MOVES <= coupled[free.index(frozenset())] and \
+            not coupled[free.index(ALL)]
+        if not hinge and (len(free[0]) + len(free[1]) != 6 or coupled != [ALL - one for one in free]):
+            reader.deck.refuse(card.name, PARTLY, card.line)
+            return
+    reader.deck.rigid.append(RigidBody(card.line, card.name, [first, second]))
+
+
+def rbe2(reader: Reader, card: Card) -> None:
+    """A rigid body; components of nodes at one place are equations."""
+    first, components = reader.node(card, 1), set(card[2])
+    texts = [text for text in card.fields[3:] if text]
+    if texts and not texts[-1].isdecimal():  # its thermal expansion
+        if reader.number(Card(card.line, card.name, [texts.pop()]), 0) != 0:
+            reader.deck.refuse("RBE2.ALPHA", "thermal expansion of a rigid body", card.line)
+    others = reader.several(card, texts)
+    if not components <= ALL:
+        raise reader.fail(card, f"components {card[2]} are not of the digits 1 to 6")
+    if not components & MOVES:
+        reader.deck.leave(card.name, "it couples rotations only", card.line)
+    elif MOVES <= components:
+        reader.deck.rigid.append(RigidBody(card.line, card.name, [first, *others]))
+    elif any(reader.deck.nodes[other] != reader.deck.nodes[first] for other in others):
+        reader.deck.refuse(card.name, PARTLY, card.line)
+    else:
+        for other in others:
+            axes = reader.frames[reader.displacement_frame[other]].directions(reader.deck.nodes[other])
+            reader.deck.equations += [
+                Equation(card.line, card.name, [(other, axes[int(one) - 1], 1.0), (first, axes[int(one) - 1], -1.0)])
+                for one in sorted(components & MOVES)]
+
+
+def rbe3(reader: Reader, card: Card) -> None:
+    """A node that follows the mean of others."""
+    reader.deck.followers.append((card.line, card.name, reader.node(card, 2)))
+
+
+def mpc(reader: Reader, card: Card) -> None:
+    """An equation between displacements."""
+    terms = []
+    if {card[place + 1] for start in range(0, len(card.fields), 8) for place in (start + 1, start + 4)
+            if card[place]} <= set("456"):
+        reader.deck.leave(card.name, "an equation of rotations: ends of bars turn freely", card.line)
+        return
+    for start in range(0, len(card.fields), 8):
+        for place in (start + 1, start + 4):
+            if not card[place]:
+                continue
+            factor = reader.number(card, place + 2, 0.0)
+            component = card[place + 1] or "0"
+            if component not in MOVES:
+                what = "a scalar point" if component == "0" else "a rotation"
+                reader.deck.refuse(card.name, f"an equation of {what}", card.line)
+                return
+            node = reader.node(card, place)
+            axes = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])
+            if factor:
+                terms.append((node, axes[int(component) - 1], factor))
+    reader.deck.equations.append(Equation(card.line, card.name, terms))

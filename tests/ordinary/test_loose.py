@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Structures whose play is larger than what loads and temperatures strain them by: each stands for a kind of path that
+was not found."""
+from __future__ import annotations
+
+import pytest
+
+import structures
+import worker
+
+
+@pytest.mark.parametrize(("family", "seed"), [
+    pytest.param("bracket", 114, id="contacts_of_a_loose_redundant_start_give_way_as_they_open"),
+    pytest.param("cable_stayed", 506, id="a_contact_that_pulls_while_it_sticks_and_closes_while_it_is_open_slides"),
+    pytest.param("k_truss", 10, id="an_element_under_compression_hangs_slack_within_its_play"),
+    pytest.param("ring", 102, id="ways_on_that_rounding_does_not_tell_apart_are_one"),
+])
+def test_finishes(family: str, seed: int) -> None:
+    found = worker.run(structures.make(family, seed).document)
+    assert found["outcome"] == "finished", found["sentence"]

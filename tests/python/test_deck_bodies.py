@@ -1,0 +1,349 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rigid bodies, equations, moments and springs of decks, where they act on a truss, with their closed forms."""
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import log, pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import Outcome
+
+import statejump as sj
+from statejump.kinds.truss.importing import Options, case_document, checked, read
+
+HEAD = "SOL 101\nCEND\nSPC = 1\nLOAD = 5\nMPC = 7\nBEGIN BULK\n"
+BARE = HEAD.replace("LOAD = 5\n", "")
+# Rods of 7e6 N/m along x, at the nodes 2 and 3, which are at one place; 7000 N stretch each by 1 mm.
+RODS = """GRID,1,,0.,0.,0.
+GRID,2,,1.,0.,0.
+GRID,3,,1.,0.,0.
+GRID,4,,2.,0.,0.
+GRID,5,,2.,.5,0.
+CROD,1,1,1,2
+CROD,2,1,3,4
+PROD,1,1,1.-4
+MAT1,1,7.+10,,.3,2700.
+SPC1,1,123,1
+SPC1,1,23,4
+"""
+END = "FORCE,5,4,,7000.,1.,0.,0.\n"
+BARS = (("CROD,1,1,1,2", "CBAR,1,1,1,2,0.,1.,0."), ("CROD,2,1,3,4", "CBAR,2,1,3,4,0.,1.,0."), ("PROD", "PBAR"))
+INP = """*NODE, NSET=NALL
+1, 0., 0., 0.
+2, 1., 0., 0.
+3, 1., 0., 0.
+4, 2., 0., 0.
+5, 2., 1., 0.
+*ELEMENT, TYPE=T3D2, ELSET=BARS
+1, 1, 2
+2, 3, 4
+*MATERIAL, NAME=AL
+*ELASTIC
+7.E10, .3
+*SOLID SECTION, ELSET=BARS, MATERIAL=AL
+1.E-4
+*BOUNDARY
+1, 1, 3
+4, 2, 3
+"""
+TRIANGLE = """GRID,{0}1,,0.,{0}.,0.
+GRID,{0}2,,1.,{0}.,0.
+GRID,{0}3,,0.,{0}.5,0.
+CROD,{0}1,1,{0}1,{0}2
+CROD,{0}2,1,{0}2,{0}3
+CROD,{0}3,1,{0}3,{0}1
+"""
+MATTER = "PROD,1,1,1.-4\nMAT1,1,7.+10,,.3,2700.\n"
+STEP = "*STEP\n*STATIC\n*CLOAD\n4, 1, 7000.\n{more}*END STEP\n"
+
+
+def made(folder: Path, text: str, **options: Any) -> dict[str, Any]:
+    """Return the document of a deck."""
+    path = folder / ("deck.inp" if text.startswith("*") else "deck.bdf")
+    path.write_text(text if text.startswith("*") else f"{text}ENDDATA\n")
+    return case_document(read(path, options=Options(**options)), "deck", temperature_change_K=0.0)
+
+
+def moved(document: dict[str, Any], node: str) -> np.ndarray:
+    """Return the displacement of a node."""
+    at = [item["name"] for item in document["node"]].index(node)
+    return np.asarray(sj.load(document).reduced().history["displacement_m"].values[-1, at])
+
+
+def refusal(folder: Path, text: str, **options: Any) -> str:
+    """Return why a deck is refused."""
+    with pytest.raises(sj.StatejumpError) as refused:
+        made(folder, text, **options)
+    return str(refused.value)
+
+
+def bent(text: str) -> str:
+    """Return a deck with beams in place of its rods."""
+    for old, new in BARS:
+        text = text.replace(old, new)
+    return text
+
+
+@pytest.mark.parametrize("name, cards", [
+    ("rigid bar", "RBAR,9,2,3,123456\n"), ("rigid bar of one list", "RBAR1,9,2,3,123456\n"),
+    ("hinge", "RBAR,9,2,3,123456,,,123\n"), ("hinge of the other end", "RBAR,9,2,3,,123456,1235\n"),
+    ("halves", "RBAR,9,2,3,123,456,456,123\n"), ("body", "RBE2,9,2,123456,3\n"), ("pinned body", "RBE2,9,2,123,3,0.\n"),
+    ("chain", "GRID,6,,1.,0.,0.\nRBAR,9,2,6,123456\nRBE2,10,6,123456,3\n"),
+    ("components of a body", "RBE2,9,2,12,3\nRBE2,10,2,3,3\n"),
+    ("equations", "".join(f"MPC,7,2,{at},1.5,3,{at},-1.5\n" for at in (1, 2, 3))),
+    ("equations of three nodes", "GRID,6,,1.,0.,0.\n" + "".join(
+        f"MPC,7,{one},{at},1.,{other},{at},-1.\n" for at in (1, 2, 3) for one, other in ((2, 3), (3, 6)))),
+    ("what is held on both sides needs none", "MPC,7,2,1,-2.,3,1,2.\nSPC1,1,23,2,THRU,3\n"),
+])
+def test_nodes_at_one_place_become_one(name: str, cards: str, tmp_path: Path) -> None:
+    """The nodes 2 and 3 are one: both rods stretch by 1 mm."""
+    document = made(tmp_path, HEAD + RODS + END + cards)
+    assert {item["name"] for item in document["node"]} == {"N1", "N2", "N4"}
+    assert moved(document, "N4")[0] == pytest.approx(2e-3, rel=1e-12)
+
+
+def test_springs_masses_and_supports_move_with_their_node(tmp_path: Path) -> None:
+    """In y a spring of 1e6 N/m holds 1000 N, in x the node 3 is held: its rod alone stretches."""
+    cards = "SPC1,1,1,3\nCELAS2,8,1.+6,3,2\nFORCE,5,3,,1000.,0.,1.,0.\nCONM2,2,3,,4.\nCONM2,1,2,,3.\n"
+    document = made(tmp_path, HEAD + RODS + END + cards + "RBAR,9,2,3,123456\n")
+    joint = next(item for item in document["node"] if item["name"] == "N2")
+    assert joint["mass_kg"] == 7
+    # Rods of 1 m that turn by 1e-3 are 5e-7 m shorter along x, and pull back 7 N.
+    assert moved(document, "N4")[0] == pytest.approx(1e-3, rel=1e-3)
+    assert moved(document, "N2")[1] == pytest.approx(1e-3, rel=0.01)
+
+
+@pytest.mark.parametrize("name, cards", [
+    ("arm along the force", "GRID,6,,3.,0.,0.\nRBAR,9,4,6,123456\nFORCE,5,6,,7000.,1.,0.,0.\n"),
+    ("arm on rods, which feel no moment", "RBE2,9,4,123456,5\nFORCE,5,5,,7000.,1.,0.,0.\n"),
+    ("arm on an arm", "GRID,6,,3.,0.,0.\nRBAR,9,4,5,123456\nRBAR,10,5,6,123456\nFORCE,5,6,,7000.,1.,0.,0.\n"),
+    ("node without bars", "MPC,7,4,1,1.,5,1,-1.\nFORCE,5,5,,7000.,1.,0.,0.\n"),
+    ("lever", "MPC,7,4,1,2.,5,1,-1.\nFORCE,5,5,,3500.,1.,0.,0.\n"),  # node 5 moves twice as far
+    ("chain of equations", "GRID,6\nMPC,7,5,1,1.,6,1,-1.\nMPC,7,4,1,1.,5,1,-1.\nFORCE,5,6,,7000.,1.,0.,0.\n"),
+])
+def test_loads_of_nodes_without_bars_act_where_bars_end(name: str, cards: str, tmp_path: Path) -> None:
+    rest = RODS.replace("CROD,2,1,3,4", "CROD,2,1,2,4").replace("GRID,3,,1.,0.,0.\n", "")
+    document = made(tmp_path, HEAD + rest + cards)
+    assert moved(document, "N4")[0] == pytest.approx(2e-3, rel=1e-12)
+
+
+def test_an_equation_of_one_displacement_is_a_support(tmp_path: Path) -> None:
+    document = made(tmp_path, HEAD + RODS + END + "RBAR,9,2,3,123456\nMPC,7,2,1,3.,1,1,1.\n")
+    assert moved(document, "N4")[0] == pytest.approx(1e-3, rel=1e-9)
+
+
+ARM = "RBE2,9,4,123456,5\n"
+REFUSED = {
+    "apart": ("RBAR,9,1,2,123456\n", "RBAR is not supported: it holds nodes together at which bars end and that are apart"),
+    "partly": ("RBAR,9,2,3,123\n", "RBAR is not supported: it couples some components only"),
+    "half dependent": ("RBAR,9,2,3,123,456,456\n", "RBAR is not supported: it couples some components only"),
+    "partly dependent": ("RBAR,9,2,3,123456,,,1\n", "RBAR is not supported: it couples some components only"),
+    "a component apart": ("RBE2,9,1,1,2\n", "RBE2 is not supported: it couples some components only"),
+    "warm": ("RBE2,9,2,123456,3,1.-5\n", "RBE2.ALPHA is not supported: thermal expansion of a rigid body"),
+    "warm bar": ("RBAR,9,2,3,123456,,,,1.-5\n", "RBAR.ALPHA is not supported: thermal expansion of a rigid bar"),
+    "supported arm": (ARM + "SPC1,1,2,5\n", "RBE2 is not supported: a support beside the place at which bars end"),
+    "equation": ("MPC,7,1,1,1.,4,2,1.,,\n,,3,1,1.,2,1,1.\n", "MPC is not supported: an equation between nodes at which bars"),
+    "one direction of three": ("MPC,7,2,1,1.,3,1,-1.\n", "MPC is not supported: an equation between nodes at which bars end"),
+    "equal apart": ("".join(f"MPC,7,2,{at},1.,4,{at},-1.\n" for at in (1, 2, 3)), "MPC is not supported"),
+    "opposite": ("".join(f"MPC,7,2,{at},1.,3,{at},1.\n" for at in (1, 2, 3)), "MPC is not supported"),
+    "mass in one direction": ("MPC,7,4,1,1.,5,1,-1.\nCONM2,9,5,,1.\n", "MPC is not supported"),
+    "force aside": ("MPC,7,4,1,1.,5,1,-1.\nFORCE,5,5,,1.,1.,1.,0.\n", "MPC is not supported"),
+    "turning equation": ("MPC,7,4,1,1.,3,5,-1.\n", "MPC is not supported: an equation of a rotation"),
+    "loaded mean": ("RBE3,9,,5,123,1.,123,2,4\nFORCE,5,5,,1.,1.,0.,0.\n", "RBE3 is not supported: it distributes the loads"),
+    "turned mean": ("RBE3,9,,5,123,1.,123,2,4\nMOMENT,5,5,,1.,1.,0.,0.\n", "RBE3 is not supported: it distributes the loads"),
+    "support of a free body": ("SUPORT,2,1\n", "SUPORT is not supported"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_needs_rotations_or_equations_is_refused(name: str, tmp_path: Path) -> None:
+    cards, sentence = REFUSED[name]
+    assert sentence in refusal(tmp_path, HEAD + RODS + END + cards)
+
+
+TURNED = {
+    "moment": ("MOMENT,5,2,,1.,0.,0.,1.\n", "MOMENT is not supported: a moment that bends beams"),
+    "moment of two nodes": ("MOMENT1,5,2,1.,1,5\n", "MOMENT1 is not supported: a moment that bends beams"),
+    "moment through a body": ("MOMENT,5,5,,1.,0.,0.,1.\nRBAR,9,4,5,123456\n", "MOMENT is not supported: a moment that bends"),
+    "force on an arm": (ARM + "FORCE,5,5,,7.,1.,0.,0.\n", "FORCE is not supported: a moment that bends beams: nodes of a truss do "
+                        "not rotate; --ignore FORCE.LEVER leaves it out"),
+    "weight on an arm": (ARM + "CONM2,9,5,,2.\nGRAV,5,,9.81,1.,0.,0.\n", "--ignore CONM2.LEVER leaves it out"),
+}
+
+
+@pytest.mark.parametrize("name", TURNED)
+def test_moments_that_bend_beams_are_refused(name: str, tmp_path: Path) -> None:
+    cards, sentence = TURNED[name]
+    assert sentence in refusal(tmp_path, HEAD + bent(RODS) + END + cards, beams_as_bars=True)
+
+
+@pytest.mark.parametrize("name, text, cards", [
+    ("rods", RODS, "MOMENT,5,2,,1.,0.,0.,1.\n"),
+    ("torsion of beams in a line", bent(RODS), "RBAR,10,2,3,123456\nMOMENT,5,4,,1.,-1.,0.,0.\n"),
+    ("torsion by four nodes", bent(RODS), "GRID,6,,0.,0.,1.\nMOMENT2,5,4,1.,4,5,1,6\n"),
+    ("turning springs", bent(RODS), "CBUSH,10,3,2,,,,,0\nPBUSH,3,K,,,,1.,1.,1.\nCELAS2,9,5.,2,5\n"),
+    ("turning equations", bent(RODS), "MPC,7,2,5,1.,3,6,1.\nRBE2,10,2,456,3\n"),
+    ("mean that nothing loads", RODS, "RBE3,9,,5,123,1.,123,2,4\n"),
+    ("body at which no bar ends", RODS, "GRID,6\nGRID,7,,1.\nRBE2,9,6,123456,7\n"),
+])
+def test_what_moves_no_node_is_left_out_and_noted(name: str, text: str, cards: str, tmp_path: Path) -> None:
+    (tmp_path / "deck.bdf").write_text(HEAD + text + END + cards + "ENDDATA\n")
+    deck = read(tmp_path / "deck.bdf", options=Options(beams_as_bars=True))
+    assert deck.force == {"4": [7000.0, 0.0, 0.0]} and not deck.springs
+    card = cards.split("\n")[-2].split(",")[0]
+    assert any(left == card for left, _ in deck.left), deck.left
+
+
+@pytest.mark.parametrize("name, cards", [
+    ("across", "GRID,3,,1.,1.,0.\nSPC1,1,123,3\nCELAS2,2,7.+6,2,1,3,1\n"),
+    ("at one place", "GRID,3,,1.,0.,0.\nSPC1,1,1,3\nCELAS2,2,7.+6,3,1,2,1\n"),
+    ("bush at one place", "GRID,3,,1.,0.,0.\nSPC1,1,123456,3\nCBUSH,2,9,2,3,,,,0\nPBUSH,9,K,7.+6,,,1.\n"),
+])
+def test_a_spring_to_a_held_node_is_one_to_the_ground(name: str, cards: str, tmp_path: Path) -> None:
+    """Rod and spring of 7e6 N/m carry 14 kN in parallel."""
+    rod = "".join(line + "\n" for line in RODS.splitlines() if not line.startswith(("GRID,3", "GRID,4", "GRID,5", "CROD,2", "SPC1,1,23")))
+    document = made(tmp_path, HEAD + rod + cards + "SPC1,1,23,2\nFORCE,5,2,,14000.,1.,0.,0.\n")
+    assert moved(document, "N2")[0] == pytest.approx(1e-3, rel=1e-9)
+
+
+def test_supports_of_rigid_body_modes_hold_nothing(tmp_path: Path) -> None:
+    head = HEAD.replace("SOL 101", "SOL 103")
+    document = made(tmp_path, head + RODS.replace("SPC1,1,123,1", "SPC1,1,23,1") + "RBAR,9,2,3,123456\nSUPORT,1,1\n")
+    assert document["node"][0]["fixed"] == ["y"]
+
+
+def test_masses_may_have_the_numbers_of_bars(tmp_path: Path) -> None:
+    document = made(tmp_path, BARE + RODS + "RBAR,9,2,3,123456\nCONM2,1,4,,4.\n")
+    assert document["node"][-1]["mass_kg"] == 4
+    assert "element 1 is there twice" in refusal(tmp_path, BARE + RODS + "CONM2,1,4,,4.\nCONM1,1,4,,4.\n")
+
+
+@pytest.mark.parametrize("name, cards", [
+    ("all directions", "PMASS,8,4.,9,5.\n" + "".join(f"CMASS1,1{at},8,4,{at}\n" for at in (1, 2, 3))),
+    ("what is held needs none", "CMASS2,1,3.,4,1\nCMASS2,11,1.,,,4,1\nCMASS2,12,7.,4,3\n"),
+    ("rotations", "CMASS2,1,4.,4,1\nCMASS2,2,9.,4,5\n"),
+])
+def test_masses_of_components_are_one_mass(name: str, cards: str, tmp_path: Path) -> None:
+    document = made(tmp_path, BARE + RODS + "RBAR,9,2,3,123456\n" + cards)
+    assert document["node"][-1]["mass_kg"] == 4
+
+
+@pytest.mark.parametrize("cards, sentence", [
+    ("CMASS2,1,4.,2,1\nCMASS2,2,5.,2,2\n", "CMASS2 is not supported: the mass differs from one direction to another"),
+    ("CMASS2,1,4.,2,1,4,1\n", "CMASS2 is not supported: a mass between two components"),
+    ("CMASS2,1,4.,2\n", "CMASS2 is not supported: mass of a scalar point"),
+    ("CMASS1,1,4,2,1\n", "there is no PMASS 4"),
+])
+def test_other_masses_of_components_are_refused(cards: str, sentence: str, tmp_path: Path) -> None:
+    assert sentence in refusal(tmp_path, BARE + RODS + "RBAR,9,2,3,123456\n" + cards)
+
+
+def test_temperatures_that_another_run_computes_are_refused(tmp_path: Path) -> None:
+    head = BARE.replace("BEGIN", "TEMP(LOAD) = 8\nBEGIN")
+    assert "TEMPERATURE is not supported: set 8 is not in the deck" in refusal(tmp_path, head + RODS)
+    assert "PARAM.HEATSTAT is not supported" in refusal(tmp_path, BARE + RODS + "PARAM,HEATSTAT,YES\n")
+    made(tmp_path, BARE + RODS + "PARAM,HEATSTAT,NO\n")
+
+
+def test_a_set_of_loads_that_the_deck_does_not_have_is_refused(tmp_path: Path) -> None:
+    assert "LOAD is not supported: set 5 is not in the deck" in refusal(tmp_path, HEAD + RODS)
+    assert made(tmp_path, HEAD.replace("101", "103") + RODS)["link"]  # modes need no loads
+
+
+def test_nodes_of_two_temperatures_do_not_become_one(tmp_path: Path) -> None:
+    head = BARE.replace("BEGIN", "TEMP(LOAD) = 8\nBEGIN")
+    text = head + RODS + "RBAR,9,2,3,123456\nTEMP,8,1,20.,2,20.,3,{at}\nTEMP,8,4,20.\n"
+    made(tmp_path, text.format(at="20."))
+    assert "its nodes at one place have different temperatures" in refusal(tmp_path, text.format(at="30."))
+
+
+@pytest.mark.parametrize("name, equations, load", [
+    ("one node", "".join(f"*EQUATION\n2\n2, {at}, 1., 3, {at}, -1.\n" for at in (1, 2, 3)), ""),
+    ("several in a block, over lines", "*EQUATION\n2\n2, 1, 1., 3, 1, -1.\n2\n2, 2, 1.,\n3, 2, -1.\n2\n2, 3, 1., 3, 3, -1.\n", ""),
+])
+def test_equations_of_calculix_make_nodes_one(name: str, equations: str, load: str, tmp_path: Path) -> None:
+    document = made(tmp_path, INP + "2, 2, 3\n" + equations + STEP.format(more=load))
+    assert moved(document, "N4")[0] == pytest.approx(2e-3, rel=1e-12)
+
+
+def test_equations_of_calculix_pass_on_loads(tmp_path: Path) -> None:
+    one = INP.replace("2, 3, 4\n*MAT", "2, 2, 4\n*MAT").replace("3, 1., 0., 0.\n", "") + "2, 2, 3\n"
+    document = made(tmp_path, one + "*EQUATION\n2\n5, 1, 1., 4, 1, -3.\n" + STEP.format(more="5, 1, 7000.\n"))
+    assert moved(document, "N4")[0] == pytest.approx(8e-3, rel=1e-9)  # 7000 N and three times 7000 N
+
+
+@pytest.mark.parametrize("equation, sentence", [
+    ("2\n2, 1, 1., 3, 1, -1.\n", "line 19: *EQUATION is not supported: an equation between nodes at which bars end"),
+    ("2\n2, 5, 1., 3, 1, -1.\n", "*EQUATION is not supported: an equation of a rotation or a temperature"),
+    ("2\nNALL, 1, 1., 3, 1, -1.\n", "*EQUATION is not supported: an equation of sets of nodes"),
+    ("3\n2, 1, 1., 3, 1, -1.\n", "*EQUATION has not 3 terms"),
+])
+def test_other_equations_of_calculix_are_refused(equation: str, sentence: str, tmp_path: Path) -> None:
+    assert sentence in refusal(tmp_path, INP + "*EQUATION\n" + equation + STEP.format(more=""))
+
+
+@pytest.mark.parametrize("kind, loads, refused", [
+    ("T3D2", "4, 6, 5.\n", False), ("B31", "4, 4, 5.\n", False), ("B31", "4, 6, 5.\n", True), ("T3D2", "4, 7, 5.\n", True)])
+def test_moments_of_calculix_count_where_they_bend(kind: str, loads: str, refused: bool, tmp_path: Path) -> None:
+    text = INP.replace("2, 3, 4\n*MAT", "2, 2, 4\n*MAT").replace("T3D2", kind)
+    if kind == "B31":
+        text = text.replace("*SOLID SECTION, ELSET=BARS, MATERIAL=AL\n1.E-4", "*BEAM SECTION, ELSET=BARS, MATERIAL=AL, SECTION=RECT\n.01, .01")
+    text += STEP.format(more=loads)
+    if refused:
+        assert "*CLOAD is not supported" in refusal(tmp_path, text, beams_as_bars=True)
+    else:
+        assert made(tmp_path, text, beams_as_bars=True)["node"][-1]["force_N"] == [7000.0, 0.0]
+
+
+def test_the_middle_of_a_beam_with_a_moment_is_a_node(tmp_path: Path) -> None:
+    """The moment acts on both halves, and would bend them."""
+    text = INP.replace("TYPE=T3D2", "TYPE=B32").replace("1, 1, 2\n2, 3, 4", "1, 1, 2, 4").replace(
+        "*SOLID SECTION, ELSET=BARS, MATERIAL=AL\n1.E-4", "*BEAM SECTION, ELSET=BARS, MATERIAL=AL, SECTION=RECT\n.01, .01")
+    assert "*CLOAD is not supported: a moment that bends" in refusal(
+        tmp_path, text + STEP.format(more="2, 5, 1.\n"), beams_as_bars=True)
+
+
+def test_an_amplitude_of_one_value_is_known_in_every_step(tmp_path: Path) -> None:
+    one = INP.replace("2, 3, 4\n*MAT", "2, 2, 4\n*MAT")
+    text = one + "*AMPLITUDE, NAME=A\n0., {first}, 9., 2.\n*STEP\n*FREQUENCY\n4\n*CLOAD, AMPLITUDE=A\n4, 1, 3500.\n*END STEP\n"
+    assert made(tmp_path, text.format(first="2."))["node"][-1]["force_N"] == [7000.0, 0.0]
+    assert "*CLOAD, AMPLITUDE is not supported" in refusal(tmp_path, text.format(first="1."))
+
+
+@pytest.mark.parametrize("shape, factor", [("RECT", 1.0), ("CIRC", pi / 4)])
+def test_sizes_of_nodes_make_a_taper(shape: str, factor: float, tmp_path: Path) -> None:
+    """Sizes of 10 x 20 and 20 x 10 mm: the integral of dx / ((1 + x) (2 - x)) is 2 ln 2 / 3."""
+    text = INP.replace("2, 3, 4\n*MAT", "2, 2, 4\n*MAT").replace("TYPE=T3D2", "TYPE=B31").replace(
+        "*SOLID SECTION, ELSET=BARS, MATERIAL=AL\n1.E-4",
+        f"*DENSITY\n2700.\n*BEAM SECTION, ELSET=BARS, MATERIAL=AL, SECTION={shape}, NODAL THICKNESS\n1., 1.\n"
+        "*NODAL THICKNESS\n1, .01, .02\n2, .02, .01\n4, .01")
+    links = made(tmp_path, text + STEP.format(more=""), beams_as_bars=True)["link"]
+    assert links[0]["cross_section_area_m2"] == pytest.approx(factor * 1.5e-4 / log(2), rel=1e-12)
+    # Mean areas: of (1 + x) (2 - x) 13/6, of (2 - x) 1 3/2.
+    weight = links[0]["cross_section_area_m2"] * links[0]["density_kg_per_m3"] / 2700
+    assert weight == pytest.approx(factor * 13 / 6 * 1e-4, rel=1e-12)
+    assert links[1]["cross_section_area_m2"] == pytest.approx(factor * 1e-4 / log(2), rel=1e-12)
+    missing = text.replace("2, .02, .01\n", "")
+    assert "has no cross-section area" in refusal(tmp_path, missing + STEP.format(more=""), beams_as_bars=True)
+
+
+def test_a_deck_without_supports_is_imported_and_does_not_run(tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
+    (tmp_path / "deck.bdf").write_text(TRIANGLE.format(1) + MATTER)
+    told = statejump("truss", "import", "deck.bdf", "-o", "deck.toml", "--temperature-change", "1")
+    assert told.status == 0 and "hint: no node has a support" in told.output and "--fixed NODE=xyz" in told.output
+    ran = statejump("reduced", "deck.toml")
+    assert ran.status == 2 and "no node has a support" in ran.errors
+    held = statejump("truss", "import", "deck.bdf", "-o", "held.toml", "--temperature-change", "1", "--fixed", "N11=xyz")
+    assert held.status == 0 and "no node has a support" not in held.output
+
+
+def test_a_part_without_support_is_named(tmp_path: Path) -> None:
+    document = made(tmp_path, BARE + TRIANGLE.format(1) + TRIANGLE.format(2) + MATTER + "SPC1,1,123,11\n")
+    _, hint = checked(document, sj.load)
+    assert hint is not None and "that of node 'N21' has no support" in hint
+    document["link"][0]["young_modulus_Pa"] = -1.0  # everything else is checked
+    with pytest.raises(sj.StatejumpError, match="young_modulus_Pa"):
+        checked(document, sj.load)
