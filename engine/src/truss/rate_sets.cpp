@@ -181,6 +181,22 @@ Found try_all(const Branches& of, const Group& group, const Asking& asking) {
   return found;
 }
 
+/// A contact that pulls while it sticks and closes while it is open may slide: leads to such a
+/// choice, if there is one that is not known.
+void slide_instead(const Branches& of, std::size_t candidate, const std::set<Choice>& seen,
+                   Choice& choice) {
+  const std::vector<JointStatus>& branches = of.candidates[candidate].branches;
+  if (!of.candidates[candidate].has(JointStatus::open)) return;
+  for (std::size_t branch = 0; branch < branches.size(); ++branch) {
+    if (!is_slip(branches[branch])) continue;
+    Choice sliding = choice;
+    sliding[candidate] = branch;
+    if (seen.count(sliding) > 0) continue;
+    choice = std::move(sliding);
+    return;
+  }
+}
+
 /// One motion of a group of which not all sets can be tried, by block principal pivoting and, where
 /// a block does not help, single pivots of the lowest number (Murty). That there is another one is
 /// not excluded.
@@ -216,6 +232,7 @@ Found pivot(const Branches& of, const Group& group, const Asking& asking) {
       choice[i] = static_cast<std::size_t>(std::find(branches.begin(), branches.end(), wanted) -
                                            branches.begin());
     }
+    if (seen.count(choice) > 0) slide_instead(of, off.front().first, seen, choice);
   }
   return found;
 }
