@@ -84,7 +84,8 @@ def pack(build: Path, folder: Path) -> str:
     stem = f"{about['name']}-{about['version']}"
     name = f"{stem}-{_tag()}.whl"
     with tempfile.TemporaryDirectory() as staged, zipfile.ZipFile(folder / name, "w", zipfile.ZIP_DEFLATED) as wheel:
-        subprocess.run(["cmake", "--install", build, "--prefix", staged, "--strip"], stdout=subprocess.DEVNULL, check=True)
+        subprocess.run(["cmake", "--install", build, "--prefix", staged, "--strip"],
+                       stdout=subprocess.DEVNULL, check=True)
         information = Path(staged, f"{stem}.dist-info")
         information.mkdir()
         for title, text in _about().items():
