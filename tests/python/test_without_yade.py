@@ -77,6 +77,23 @@ def test_tools_that_are_there_are_not_fetched(monkeypatch: pytest.MonkeyPatch, t
     assert statejump_wheel.get_requires_for_build_wheel() == ["cmake>=3.25", "ninja", "pybind11>=2.13"]
 
 
+@pytest.mark.parametrize("python, sentence", [
+    ("/nowhere/python3", "STATEJUMP_PYTHON=/nowhere/python3 does not exist; set it to"),
+    ("{folder}/old", "{folder}/old is Python 3.10.9, needed is 3.11 or later; set -DSTATEJUMP_PYTHON=")])
+def test_an_unfit_python_is_refused_by_name(tmp_path: Path, python: str, sentence: str) -> None:
+    """The check of the build, in a project of its own that finds a Python which calls itself old."""
+    old = tmp_path / "old"
+    old.write_text("#!/bin/sh\n")
+    old.chmod(0o755)
+    (tmp_path / "FindPython3.cmake").write_text("set(Python3_VERSION 3.10.9)\n")
+    (tmp_path / "CMakeLists.txt").write_text(
+        f"cmake_minimum_required(VERSION 3.25)\nproject(check LANGUAGES NONE)\nset(CMAKE_MODULE_PATH {tmp_path})\n"
+        f"include({REPOSITORY}/cmake/Interpreter.cmake)\n")
+    done = subprocess.run(["cmake", "-S", tmp_path, "-B", tmp_path / "build",
+                           f"-DSTATEJUMP_PYTHON={python.format(folder=tmp_path)}"], capture_output=True, text=True)
+    assert done.returncode != 0 and sentence.format(folder=tmp_path) in " ".join(done.stderr.split()), done.stderr
+
+
 def test_the_back_end_is_that_of_the_project() -> None:
     system = tomllib.loads((REPOSITORY / "pyproject.toml").read_text())["build-system"]
     assert system == {"requires": [], "build-backend": statejump_wheel.__name__, "backend-path": ["cmake"]}
