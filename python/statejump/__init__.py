@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 if sys.version_info[:2] != _paths.PYTHON_VERSION:
     raise ImportError(
-        "statejump is for {} ({}.{}), for which YADE was built; this is {} ({}.{})".format(
+        "statejump was built for {} ({}.{}); this is {} ({}.{})".format(
             _paths.PYTHON, *_paths.PYTHON_VERSION, sys.executable, *sys.version_info[:2]))
 
 __version__ = "0.1.0"

@@ -6,6 +6,7 @@ YADE_SCRIPTS: Path
 SCHEMA: Path
 PYTHON: str
 GIT_COMMIT: str
+YADE: str
 KERNEL_INCLUDE: Path
 EIGEN_INCLUDE: Path
 PYTHON_VERSION: tuple[int, int]

@@ -19,6 +19,10 @@ BUILT = Path(os.environ["STATEJUMP_PYTHON_DIR"])
 COMMAND = os.environ["STATEJUMP_COMMAND"]
 REPOSITORY = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(BUILT))
+from statejump import _paths  # noqa: E402
+
+# Of the failure of whatever needs YADE, where statejump was built without it.
+WITHOUT_YADE = "this statejump was built without it"
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,15 @@ def sealed(path: Path) -> Path:
     return path
 
 
+@pytest.fixture(autouse=True)
+def skipped_without_yade(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Skip a test as soon as it needs YADE, where statejump was built without it."""
+    from statejump.core import yade_process
+
+    if not _paths.YADE:
+        monkeypatch.setattr(yade_process, "find_yade", lambda: pytest.skip("needs YADE"))
+
+
 # Commands that start processes of their own, which would import the test instead of the command.
 SPREADING = ("montecarlo", "sweep")
 
@@ -58,6 +71,8 @@ def statejump_process(tmp_path: Path) -> Callable[..., Outcome]:
             [COMMAND, *map(str, arguments)], cwd=tmp_path, env={**os.environ, **environment},
             capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL,
         )
+        if not _paths.YADE and WITHOUT_YADE in done.stderr:
+            pytest.skip("needs YADE")
         return Outcome(done.returncode, done.stdout, done.stderr)
 
     return run
@@ -127,8 +142,16 @@ def damaged(original: dict[str, Any], values: list[Any], count: int) -> Iterator
         yield data
 
 
+@pytest.fixture(scope="session")
+def yade() -> str:
+    """Return the command yade, for which the plugin was built."""
+    if not _paths.YADE:
+        pytest.skip("needs YADE")
+    return "yade"
+
+
 @pytest.fixture
-def fake_yade(tmp_path: Path) -> Callable[[str], str]:
+def fake_yade(yade: str, tmp_path: Path) -> Callable[[str], str]:
     """Return the path of a shell script that stands for yade."""
 
     def write(body: str) -> str:

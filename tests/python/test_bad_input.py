@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from conftest import COMMAND, results_in
-from statejump import kinds, read
+from statejump import _paths, kinds, read
 from statejump.core.samples import names_line, rows_of
 
 E_LINE, NU = "young_modulus_Pa = 70e9\nstress", "friction_coefficient = 0.3"
@@ -93,7 +93,7 @@ def test_unknown_option_and_command(statejump) -> None:
     assert outcome.status == 2 and "Traceback" not in outcome.errors
 
 
-def test_yade_missing(statejump, cases: Path) -> None:
+def test_yade_missing(yade, statejump, cases: Path) -> None:
     outcome = statejump("dem", cases / "table1.toml", STATEJUMP_YADE="no-such-yade")
     assert outcome.status == 2
     assert outcome.errors == (
@@ -151,9 +151,9 @@ def test_wrong_python_is_named() -> None:
     wrong = ["python3", "--version"]
     first_on_path = subprocess.run(wrong, capture_output=True, text=True).stdout
     launcher = Path(COMMAND).read_text()
-    assert launcher.splitlines()[0].endswith(" /usr/bin/python3")  # behind env, which blocks signals
+    assert launcher.splitlines()[0].endswith(f" {_paths.PYTHON}")  # behind env, which blocks signals
     # The launcher run with another version says which was found and which is needed.
     changed = launcher.replace("WANTED = (3, ", "WANTED = (2, ")
-    done = subprocess.run(["/usr/bin/python3", "-c", changed], capture_output=True, text=True)
+    done = subprocess.run([_paths.PYTHON, "-c", changed], capture_output=True, text=True)
     assert done.returncode != 0 and "error: wrong Python: found" in done.stderr, first_on_path
-    assert "needed is /usr/bin/python3" in done.stderr
+    assert f"needed is {_paths.PYTHON}" in done.stderr

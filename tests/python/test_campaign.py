@@ -624,7 +624,7 @@ def short(tmp_path: Path, cases: Path) -> str:
 
 
 def test_either_model_and_yade_batch(
-    tmp_path: Path, write: Callable[..., Path], short: str, command: Callable[..., Outcome]
+    yade: str, tmp_path: Path, write: Callable[..., Path], short: str, command: Callable[..., Outcome]
 ) -> None:
     path = write(case=short, model="dem", samples=2)
     outcome = command("montecarlo", path.name)
@@ -650,7 +650,7 @@ def test_either_model_and_yade_batch(
         "description", "campaign", "command", "sample", "joint__friction_coefficient", "joint__clearance_plus_m"
     ]
     done = subprocess.run(
-        ["yade", "-n", "-x", str(REPOSITORY / "yade_scripts" / "runner" / "batch_case.py")], cwd=tmp_path,
+        [yade, "-n", "-x", str(REPOSITORY / "yade_scripts" / "runner" / "batch_case.py")], cwd=tmp_path,
         env={**os.environ, "PYTHONPATH": str(BUILT), "YADE_BATCH": "samples.table:4"}, stdin=subprocess.DEVNULL,
         capture_output=True, text=True, timeout=120,
     )

@@ -116,9 +116,9 @@ def test_table_program_in_the_dem(statejump, edited, tmp_path: Path) -> None:
     assert outcome.status == 0, outcome.output + outcome.errors
 
 
-def test_tutorial_script_runs_by_itself() -> None:
+def test_tutorial_script_runs_by_itself(yade: str) -> None:
     environment = {**os.environ, "PYTHONPATH": os.environ["STATEJUMP_PYTHON_DIR"]}
-    done = subprocess.run(["yade", "-n", "-x", str(REPOSITORY / "yade_scripts" / "examples" / "table1.py")],
+    done = subprocess.run([yade, "-n", "-x", str(REPOSITORY / "yade_scripts" / "examples" / "table1.py")],
                           capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120, env=environment)
     line = next(line for line in done.stdout.splitlines() if line.startswith("state jump: "))
     assert float(line.split()[2]) == pytest.approx(23.80952, rel=0.005)

@@ -119,7 +119,7 @@ def test_failed_run_of_the_dem(statejump, cases: Path, fake_yade) -> None:
     assert failure["message"] == "case table1: the DEM run failed: the clearance is closed (floor, time 0.5 s)"
 
 
-def test_missing_yade_says_what_to_do(statejump, cases: Path) -> None:
+def test_missing_yade_says_what_to_do(yade, statejump, cases: Path) -> None:
     outcome = statejump("--json", "dem", cases / "table1.toml", STATEJUMP_YADE="no-such-yade")
     failure = json.loads(outcome.errors)
     assert failure["kind"] == "failed_run" and failure["remedy"].startswith("install Debian's package 'yade'")

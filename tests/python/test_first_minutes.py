@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from conftest import BUILT, COMMAND, REPOSITORY
+from statejump import _paths
 
 
 def test_help_names_every_command_once_by_task(statejump: Callable[..., Any]) -> None:
@@ -43,7 +44,7 @@ def test_another_python_is_told_which_one_it_takes() -> None:
             "try:\n    import statejump\nexcept ImportError as error:\n    print(error)")
     done = subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": str(BUILT)},
                           capture_output=True, text=True, timeout=60, check=True)
-    assert done.stdout.startswith("statejump is for /usr/bin/python3") and done.stdout.endswith("(3.99)\n")
+    assert done.stdout.startswith(f"statejump was built for {_paths.PYTHON}") and done.stdout.endswith("(3.99)\n")
 
 
 def test_manual_and_completion_are_of_the_commands(tmp_path: Path) -> None:

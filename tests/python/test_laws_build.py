@@ -112,10 +112,10 @@ def test_listed(folder: Path, tmp_path: Path) -> None:
         tmp_path / "laws" / "laws.svg").read_text()
 
 
-def test_same_number_in_yade(folder: Path) -> None:
+def test_same_number_in_yade(yade: str, folder: Path) -> None:
     """Force of the cubic law: kernel through the engine, kernel through the plugin, and by hand."""
     script = Path(__file__).resolve().parents[1] / "yade" / "scripts" / "user_law.py"
-    done = ended(["yade", "-n", "-x", script], STATEJUMP_LAWS=str(folder),
+    done = ended([yade, "-n", "-x", script], STATEJUMP_LAWS=str(folder),
                  PYTHONPATH=os.pathsep.join([str(BUILT), str(script.parent)]))
     match = re.search(r"RESULT (\{.*)", done.stdout)
     assert match, done.stdout + done.stderr
@@ -153,7 +153,7 @@ struct UserLaw {
     ("throws", "throw std::runtime_error(\"no idea\");", "no idea"),
     ("throws_a_number", "throw 42;", "an exception that is no std::exception"),
 ])
-def test_wrong_answers_name_law_joint_and_time(tmp_path: Path, name: str, body: str, complaint: str) -> None:
+def test_wrong_answers_name_law_joint_and_time(yade: str, tmp_path: Path, name: str, body: str, complaint: str) -> None:
     header = tmp_path / "wrong.hpp"
     header.write_text(NAN.replace("NAME", name).replace("BODY", body))
     written = build.build(header, tmp_path)
@@ -162,7 +162,7 @@ def test_wrong_answers_name_law_joint_and_time(tmp_path: Path, name: str, body: 
     assert done.returncode == 1 and f"{name} ({written}): {complaint}" in last
     assert re.search(r"t = [\d.e-]+ s", last), last
     script = Path(__file__).resolve().parents[1] / "yade" / "scripts" / "user_law.py"
-    done = ended(["yade", "-n", "-x", script, name], STATEJUMP_LAWS=str(tmp_path),
+    done = ended([yade, "-n", "-x", script, name], STATEJUMP_LAWS=str(tmp_path),
                  PYTHONPATH=os.pathsep.join([str(BUILT), str(script.parent)]))
     assert f"{name} ({written}): {complaint} (contact of bodies 0 and 1, time 0 s" in done.stdout, done.stderr
 

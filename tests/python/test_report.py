@@ -95,7 +95,7 @@ def decoded(column: Any, samples: int) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def results(yade: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Results of both models of two cases."""
     folder = tmp_path_factory.mktemp("report")
     for case in ("table1", "umbrella_damped"):

@@ -60,7 +60,7 @@ def run(folder: Path, *arguments: object) -> subprocess.CompletedProcess:
 
 
 @pytest.fixture(scope="module")
-def compared(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+def compared(yade: str, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     """Results folder of ``compare`` of a short case, made once."""
     made: dict[str, Path] = {}
 

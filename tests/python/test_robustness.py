@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from conftest import COMMAND, damaged
-from statejump import load
+from statejump import _paths, load
 from statejump.campaign.campaign_file import load_campaign
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import load_case, parse_case
@@ -183,7 +183,7 @@ def test_signal_ends_yade_and_its_children(
 
 def test_wrong_python_has_status_2() -> None:
     changed = Path(COMMAND).read_text().replace("WANTED = (3, ", "WANTED = (2, ")
-    done = subprocess.run(["/usr/bin/python3", "-c", changed], capture_output=True, text=True)
+    done = subprocess.run([_paths.PYTHON, "-c", changed], capture_output=True, text=True)
     assert done.returncode == 2 and done.stderr.count("\n") == 1 and done.stderr.startswith("error: wrong Python")
 
 

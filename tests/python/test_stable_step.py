@@ -81,12 +81,12 @@ def test_damped_spring_slider_by_hand(play_m: float, heated_K: float, stiffer: s
     assert steps.index(min(steps)) == ("across", "along").index(stiffer)
 
 
-def test_spring_slider_as_the_dem_reports(undamped) -> None:
+def test_spring_slider_as_the_dem_reports(yade: str, undamped) -> None:
     """The estimate is made of the stiffness that the DEM's contact has; the run's own is on the safe side of it."""
     script = REPOSITORY / "tests" / "yade" / "scripts" / "stable_step.py"
     paths = [str(BUILT), str(script.parent), str(REPOSITORY / "yade_scripts" / "runner")]
     done = subprocess.run(
-        ["yade", "-n", "-x", str(script), json.dumps(undamped.behaviour.dem_input(undamped))], capture_output=True, text=True,
+        [yade, "-n", "-x", str(script), json.dumps(undamped.behaviour.dem_input(undamped))], capture_output=True, text=True,
         timeout=120, env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)}, stdin=subprocess.DEVNULL, check=False,
     )
     match = re.search(r"RESULT (\{.*)", done.stdout)

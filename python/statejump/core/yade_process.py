@@ -59,6 +59,9 @@ def find_yade() -> str:
     """Return the yade command: STATEJUMP_YADE if set, otherwise from PATH."""
     from shutil import which  # as the others below: cases know this module, few of them start YADE
 
+    if not _paths.YADE:
+        raise FailedRun("YADE is missing", cause="this statejump was built without it",
+                        remedy="for 'dem' and 'compare' build with 'make demo' on Debian 12 or 13")
     wanted = os.environ.get("STATEJUMP_YADE", "yade")
     found = which(wanted)
     if found is None:
