@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <mutex>
+#include <type_traits>
 #include <vector>
 
 #include "joint_energies.hpp"

@@ -12,6 +12,7 @@
 #include "joint.hpp"
 #include "object_list.hpp"
 #include "prismatic.hpp"
+#include "registration.hpp"
 #include "shapes.hpp"
 #include "state_recorder.hpp"
 #include "statejump/kernel/elastic_pair.hpp"
@@ -115,8 +116,6 @@ double stable_time_step_of_scene() {
 }  // namespace
 }  // namespace statejump::dem
 
-// Names under which O.save writes the classes.
-#define STATEJUMP_EXPORT(Class) BOOST_CLASS_EXPORT_GUID(statejump::dem::Class, #Class)
 STATEJUMP_EXPORT(ThermalFrictMat)
 STATEJUMP_EXPORT(ThermalShape)
 STATEJUMP_EXPORT(Journal)
@@ -125,21 +124,21 @@ STATEJUMP_EXPORT(Ball)
 STATEJUMP_EXPORT(Socket)
 STATEJUMP_EXPORT(Slider)
 STATEJUMP_EXPORT(SlotFace)
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Journal>, "Bo1_Journal_Aabb")
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Bearing>, "Bo1_Bearing_Aabb")
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Ball>, "Bo1_Ball_Aabb")
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Socket>, "Bo1_Socket_Aabb")
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::MeshBore>, "Bo1_MeshBore_Aabb")
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::Slider>, "Bo1_Slider_Aabb")
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Bo1<statejump::dem::SlotFace>, "Bo1_SlotFace_Aabb")
+STATEJUMP_EXPORT_AS(statejump::dem::Bo1<statejump::dem::Journal>, "Bo1_Journal_Aabb")
+STATEJUMP_EXPORT_AS(statejump::dem::Bo1<statejump::dem::Bearing>, "Bo1_Bearing_Aabb")
+STATEJUMP_EXPORT_AS(statejump::dem::Bo1<statejump::dem::Ball>, "Bo1_Ball_Aabb")
+STATEJUMP_EXPORT_AS(statejump::dem::Bo1<statejump::dem::Socket>, "Bo1_Socket_Aabb")
+STATEJUMP_EXPORT_AS(statejump::dem::Bo1<statejump::dem::MeshBore>, "Bo1_MeshBore_Aabb")
+STATEJUMP_EXPORT_AS(statejump::dem::Bo1<statejump::dem::Slider>, "Bo1_Slider_Aabb")
+STATEJUMP_EXPORT_AS(statejump::dem::Bo1<statejump::dem::SlotFace>, "Bo1_SlotFace_Aabb")
 #ifdef STATEJUMP_HAS_VIEW
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Journal>, "Gl1_Journal")
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Bearing>, "Gl1_Bearing")
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Ball>, "Gl1_Ball")
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Socket>, "Gl1_Socket")
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::MeshBore>, "Gl1_MeshBore")
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::Slider>, "Gl1_Slider")
-BOOST_CLASS_EXPORT_GUID(statejump::dem::Gl1<statejump::dem::SlotFace>, "Gl1_SlotFace")
+STATEJUMP_EXPORT_AS(statejump::dem::Gl1<statejump::dem::Journal>, "Gl1_Journal")
+STATEJUMP_EXPORT_AS(statejump::dem::Gl1<statejump::dem::Bearing>, "Gl1_Bearing")
+STATEJUMP_EXPORT_AS(statejump::dem::Gl1<statejump::dem::Ball>, "Gl1_Ball")
+STATEJUMP_EXPORT_AS(statejump::dem::Gl1<statejump::dem::Socket>, "Gl1_Socket")
+STATEJUMP_EXPORT_AS(statejump::dem::Gl1<statejump::dem::MeshBore>, "Gl1_MeshBore")
+STATEJUMP_EXPORT_AS(statejump::dem::Gl1<statejump::dem::Slider>, "Gl1_Slider")
+STATEJUMP_EXPORT_AS(statejump::dem::Gl1<statejump::dem::SlotFace>, "Gl1_SlotFace")
 #endif
 STATEJUMP_EXPORT(JointGeom)
 STATEJUMP_EXPORT(MeshBore)
@@ -167,7 +166,6 @@ STATEJUMP_EXPORT(PrismaticJoints)
 STATEJUMP_EXPORT(GuidePlanes)
 STATEJUMP_EXPORT(StateRecorder)
 STATEJUMP_EXPORT(JointStepper)
-#undef STATEJUMP_EXPORT
 
 BOOST_PYTHON_MODULE(_native) {
   namespace py = boost::python;

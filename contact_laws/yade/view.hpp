@@ -2,6 +2,8 @@
 // Journals, bearings, balls, sockets, sliders and slots in YADE's 3-D view.
 #pragma once
 
+#include <type_traits>
+
 #include "bore.hpp"
 #include "registered.hpp"
 #include "shapes.hpp"

@@ -22,7 +22,6 @@
 #endif
 #else
 #include "statejump/yade_abi/dispatch.hpp"
-#include "statejump/yade_abi/serialization.hpp"
 #define STATEJUMP_HAS_VIEW  // Debian's YADE has its 3-D view
 #endif
 

@@ -105,11 +105,11 @@ class Compiled(Guards):
             shutil.copytree(root / name, folder / name, dirs_exist_ok=True)
 
     def _quiet(self, command: list[str]) -> list[str]:
-        """Return a command without a launcher, output, warnings, for the copy of the sources."""
+        """Return a command without a launcher, output, warnings, precompiled header, for the copy of the sources."""
         place = next(place for place, word in enumerate(command) if not word.endswith("ccache"))
         kept, words = [], iter(command[place:])
         for word in words:
-            if word in ("-o", "-c"):
+            if word in ("-o", "-c", "-include"):
                 next(words)
             elif not re.match(r"-(O\d|g|W)", word):
                 kept.append(word.replace(f"{self.root}/", f"{self.folder}/"))

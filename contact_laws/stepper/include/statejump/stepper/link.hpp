@@ -134,13 +134,21 @@ inline Vector3 force_on_tip(const LinkStep& step) {
 
 /// The smallest turn from one unit vector to another, as a quaternion of any length.
 inline Quaternion smallest_turn(const Vector3& from, const Vector3& to) {
-  // (1 + cos, sin axis) has half the angle. Opposite vectors have none of it, and what is left of
-  // it next to them is rounding.
-  const double scalar = 1 + from.dot(to);
-  if (!(scalar > Eigen::NumTraits<double>::dummy_precision())) {
-    return Quaternion::FromTwoVectors(from, to);
-  }
   Quaternion turn;
+  // (1 + cos, sin axis) has half the angle. Next to opposite vectors rounding, 1e-16, takes more
+  // than half of the digits of 1 + cos.
+  constexpr double opposite = 1e-8;
+  const double scalar = 1 + from.dot(to);
+  if (!(scalar > opposite)) {
+    // (2 cos(angle/2), 2 sin(angle/2) axis); of opposite vectors any axis across will do. Eigen's
+    // FromTwoVectors decomposes a matrix here, which every source would compile.
+    const Vector3 sum = from + to, difference = to - from;
+    Vector3 axis = sum.cross(difference);
+    if (!(axis.squaredNorm() > 0)) axis = difference.unitOrthogonal();
+    turn.w() = sum.norm();
+    turn.vec() = (difference.norm() / axis.norm()) * axis;
+    return turn;
+  }
   turn.w() = scalar;
   turn.vec() = from.cross(to);
   return turn;
