@@ -34,7 +34,7 @@ def test_models_agree(name: str) -> None:
         assert found.agrees, found
 
 
-# Steps of half a second beside periods of milliseconds: a bar that hangs slack in its pins has no stiffness but its mass.
+# Steps of half a second beside periods of milliseconds: a bar that hangs slack in its pins has nothing but its mass.
 @pytest.mark.parametrize(("family", "seed"), [("tensegrity", 500), ("ring", 505)])
 def test_motion_in_long_steps_ends_where_the_path_does(family: str, seed: int) -> None:
     case = sj.load(structures.make(family, seed).document)

@@ -220,6 +220,7 @@ void Run::make_equal_step(long number, int& level) {
       continue;
     }
     ++motion_.steps;
+    if (damps) ++motion_.inexact_steps;
     motion_.time_step = std::min(motion_.time_step, length);
     const int before = ladder.level();
     ladder.accept(++settled_ >= before_longer);
