@@ -35,7 +35,8 @@ from statejump.kinds.truss.scales import COMPARED, scales
 CHOSEN = [
     ("pratt", 3, 2), ("pratt", 5, 2), ("pratt", 10, 3), ("tower", 1, 2), ("tower", 3, 2), ("tower", 4, 3),
     ("bracket", 5, 3), ("bracket", 11, 3), ("bracket", 13, 3), ("ring", 1, 5), ("tripod", 1, 3), ("tripod", 7, 3),
-    ("tripod", 13, 3), ("boom", 1, 1), ("boom", 3, 1), ("boom", 4, 2), ("boom", 5, 2), ("mast", 1, 1), ("mast", 2, 2), ("grid", 4, 2),
+    ("tripod", 13, 3), ("boom", 1, 1),
+    ("boom", 3, 1), ("boom", 4, 2), ("boom", 5, 2), ("mast", 1, 1), ("mast", 2, 2), ("grid", 4, 2),
 ]
 PERIOD_S = 2.0
 MOST_PINNED = 2  # bars with play
