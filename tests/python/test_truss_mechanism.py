@@ -198,12 +198,12 @@ def test_interrupt_keeps_the_samples_so_far(tmp_path: Path) -> None:
         "reduced.interrupted.h5", "reduced_history.interrupted.csv"]
 
 
-def test_a_step_without_solution_is_told_with_its_time_and_what_helps(statejump, tmp_path: Path) -> None:
+def test_steps_without_solution_are_damped_and_reported(statejump, tmp_path: Path) -> None:
     made = without_play()
     made["motion"]["steps_per_cycle"] = 10  # the crank turns by 2.5 rad in a step
     made["output"] = {"samples_per_cycle": 10}
     write(made, tmp_path / "coarse.toml", [])
     outcome = statejump("reduced", "--dynamic", tmp_path / "coarse.toml")
-    assert outcome.status == 2 and "no step of the motion" in outcome.errors, outcome.errors
-    assert "not converged" in outcome.errors and "motion.steps_per_cycle" in outcome.errors
-    assert "t = " in outcome.errors and not list((tmp_path / "results").rglob("*.h5"))
+    assert outcome.status == 0, outcome.errors
+    said = outcome.errors + outcome.output
+    assert "steps had no solution as they were" in said and "set motion.steps_per_cycle to more" in said

@@ -111,7 +111,9 @@ def test_steps_whose_contacts_keep_their_branches_share_their_factors() -> None:
 def test_what_a_motion_leaves_open_is_told() -> None:
     found = motion.simulate(sj.load(chain()).definition)
     assert found.warnings == ()
-    open_ended = replace(found, jammed=(0.25, ["S1"]), undetermined=(0.5, ["S1", "S2"]), inexact_steps=3)
+    damped = replace(found, inexact_steps=3).warnings
+    assert len(damped) == 1 and damped[0].startswith(f"3 of {found.steps} steps") and "steps_per_cycle" in damped[0]
+    open_ended = replace(found, jammed=(0.25, ["S1"]), undetermined=(0.5, ["S1", "S2"]), inexact_steps=3, equal=False)
     inexact, jammed, undetermined = open_ended.warnings
     assert inexact.startswith(f"in 3 of {found.steps} steps") and "displacement_tolerance_m" in inexact
     assert jammed.startswith("at 0.25 s joint 'S1' could not slide on") and "Painlevé" in jammed

@@ -101,9 +101,11 @@ struct Motion {
   bool complete = true;               ///< False if MotionOptions::progress ended it.
   double time_step = 0.0;             ///< [s]; the shortest one.
   long steps = 0;
-  long rejected_steps = 0;  ///< Tried, and longer than the tolerance allows.
-  long inexact_steps = 0;   ///< Off by more than the tolerance at the shortest length there is.
-  long iterations = 0;      ///< Contact problems solved.
+  long rejected_steps = 0;  ///< Tried, and longer than the tolerance allows or without solution.
+  /// Off by more than the tolerance at the shortest length there is; of equal steps those, or their
+  /// parts, that were damped.
+  long inexact_steps = 0;
+  long iterations = 0;  ///< Contact problems solved.
   long factorizations = 0;
   int unknowns = 0;                    ///< Free displacements.
   double largest_contact_merit = 0.0;  ///< Of the contact problems, see complementarity::Merit.
@@ -149,6 +151,9 @@ struct Motion {
 /// Planar and spatial trusses; three-dimensional joints slide as the quasi-static ones do. Friction
 /// of a ball has the direction that it has at the end of the step: a step is solved again until it
 /// is found, `not_converged` names the joint where it is not.
+///
+/// An equal step without solution is taken by implicit Euler, and then by halves, with a matrix
+/// that leaves out what compression takes from the stiffness of links; `inexact_steps` counts them.
 ///
 /// Throws std::invalid_argument for a model or option out of range; Failure for a step without
 /// solution (`not_converged`, `singular`, with the joint whose law is violated most), and

@@ -179,6 +179,32 @@ std::vector<Eigen::Triplet<double>> Bodies::damping_entries(const VectorXd& q) c
   return entries;
 }
 
+std::vector<Eigen::Triplet<double>> Bodies::compression_entries(const VectorXd& q,
+                                                                double time) const {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&](int i, int j, double value) { entries.emplace_back(i, j, value); };
+  const Model& model = system_->model();
+  const Eigen::Matrix3Xd moved = of_nodes(q);
+  for (const Link& link : model.links) {
+    const Vector3d apart =
+        (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position) +
+        (moved.col(link.second) - moved.col(link.first));
+    const double change = model.temperature_change(link.program, link.temperature_fraction, time);
+    const double free = thermal::length(link.stress_free_length, link.thermal_expansion, change);
+    const double length = apart.norm();
+    const double compression = link.axial_stiffness * (1.0 - length / free);
+    if (!(compression > 0.0)) continue;
+    const Vector3d direction = apart / length;
+    const Matrix3d block =
+        compression / length * (Matrix3d::Identity() - direction * direction.transpose());
+    spread(link.first, link.first, block, add);
+    spread(link.second, link.second, block, add);
+    spread(link.first, link.second, -block, add);
+    spread(link.second, link.first, -block, add);
+  }
+  return entries;
+}
+
 Eigen::SparseMatrix<double> Bodies::damping(const VectorXd& q) const {
   const std::vector<Eigen::Triplet<double>> entries = damping_entries(q);
   Eigen::SparseMatrix<double> made(mass_.rows(), mass_.cols());

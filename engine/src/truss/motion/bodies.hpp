@@ -33,6 +33,9 @@ class Bodies {
   Eigen::SparseMatrix<double> damping(const VectorXd& q) const;
   /// The same entry by entry, always in one order; those at one place add up.
   std::vector<Eigen::Triplet<double>> damping_entries(const VectorXd& q) const;
+  /// What the compression of links takes from their stiffness at places and a time, with its sign
+  /// turned.
+  std::vector<Eigen::Triplet<double>> compression_entries(const VectorXd& q, double time) const;
   /// Heat of the dashpots over the step, and the temperature's work on them [J].
   struct Work {
     double heat = 0.0;

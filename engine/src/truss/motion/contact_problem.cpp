@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Steps whose branches are not found: the frictional contact problem of all contacts that may
 // touch.
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +10,19 @@
 namespace statejump::truss::detail {
 
 using complementarity::Problem;
+
+namespace {
+
+/// Whether a push would speed a contact up against it: the step is long beside how fast something
+/// gives way, and the contact problem need not have a solution.
+bool is_indefinite(const Eigen::MatrixXd& delassus) {
+  constexpr double rounding = 1e-8;  // of systems whose condition is that of stiff links
+  if (delassus.size() == 0) return false;
+  const VectorXd pivots = delassus.ldlt().vectorD();
+  return pivots.minCoeff() < -rounding * pivots.cwiseAbs().maxCoeff();
+}
+
+}  // namespace
 
 /// What impulses do to the velocities.
 void Stepper::complete(const Trial& step, Local& local) {
@@ -27,6 +41,7 @@ void Stepper::complete(const Trial& step, Local& local) {
     local.answers.col(k) = factor_.solve(right);
   }
   local.delassus = local.directions.transpose() * local.answers.topRows(n);
+  if (is_indefinite(local.delassus)) fail(FailureKind::not_converged, step.to, nullptr);
   // Rows that touch nothing else are of the size of the others.
   const auto real = (local.delassus.diagonal().array() > 0.0).count();
   const double size = real > 0 ? local.delassus.trace() / static_cast<double>(real) : 1.0;

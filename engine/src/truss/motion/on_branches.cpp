@@ -11,7 +11,8 @@ namespace {
 
 /// Newton's method converges in three or four iterations, or a contact is on another branch.
 constexpr int most_iterations = 8;
-/// The same where contacts slip in part, whose tangents are taken anew every time.
+/// The same where contacts slip in part, whose tangents are taken anew every time, and where the
+/// matrix leaves out compression.
 constexpr int most_tangents = 50;
 /// Share of an iteration that goes downhill, which is halved until what rows lack has fallen by
 /// this share of it, or it is short.
@@ -160,9 +161,10 @@ std::optional<int> Stepper::iterate(OnBranches& on, Trial& step, Local& local, T
   z.head(n) = step.q_middle;
   const double drift = system_->length_rounding(z) / step.h;
   step.held = VectorXd::Zero(held);
+  const int most = renews || step.is_definite ? most_tangents : most_iterations;
   double last = 0.0;
   Lack lack = lack_of(on, step, local, drift);
-  for (int k = 0; k <= (renews ? most_tangents : most_iterations); ++k) {
+  for (int k = 0; k <= most; ++k) {
     if (k > 0 && lack.on_laws && balanced(step, lack.balance, step.held, local, true)) return k;
     if (renews && k > 0 && !factorize(on, step, local)) break;
     const VectorXd found = on.factor.solve(lack.right);

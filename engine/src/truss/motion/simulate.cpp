@@ -27,6 +27,11 @@ constexpr double shortest = 1e6 * std::numeric_limits<double>::epsilon();
 /// thousandth of a step. Forces that hold each other have no branches to be found, however short.
 constexpr int most_unsettled = 10;
 
+/// Halvings of an equal step that has no solution, down to a thousandth of it.
+constexpr int most_halvings = 16;
+/// Parts of such a step of one length before a longer one is tried again.
+constexpr int before_longer = 8;
+
 /// Tries without going on after which a step of sought changes has none: every try is shorter, or a
 /// contact changes its branch.
 constexpr int most_tries = 1000;
@@ -74,6 +79,9 @@ class Run {
  private:
   bool begin();
   void make_equal_steps();
+  /// From one end of an equal step to the next, by halves where it has no solution.
+  /// @param level halvings for its first step; out: for the first of the next
+  void make_equal_step(long number, int& level);
   void make_steps_within_tolerance();
   /// From one sample to the next. @param level halvings of the span for its first step; out: for
   /// the first of the next
@@ -107,6 +115,7 @@ class Run {
   detail::Stepper stepper_;
   std::unique_ptr<detail::SmoothStepper> smooth_;  ///< Of a truss that can be stepped so.
   Motion motion_;
+  int settled_ = 0;  ///< Equal steps, or their parts, since the last one without solution.
 };
 
 bool Run::begin() {
@@ -170,14 +179,54 @@ void Run::note(const Stepper& stepper, double length, const Take& take) {
 void Run::make_equal_steps() {
   if (options_.watched_node >= 0) motion_.watched_velocity.resize(3, options_.steps + 1);
   watch(0);
+  int level = 0;
   for (long k = 1; k <= options_.steps && motion_.complete; ++k) {
-    const double to = time_of(static_cast<double>(k));
-    note(stepper_, motion_.time_step, [&] { stepper_.advance(to); });
-    ++motion_.steps;
+    make_equal_step(k, level);
     watch(k);
     if (k == options_.steps || k % options_.sample_every == 0) sample(stepper_);
-    go_on(to);
+    go_on(time_of(static_cast<double>(k)));
   }
+}
+
+void Run::make_equal_step(long number, int& level) {
+  const double whole = time_of(1.0);
+  const int most =
+      std::clamp(static_cast<int>(std::log2(whole / (shortest * duration_))), 0, most_halvings);
+  detail::Ladder ladder(level, most);
+  // Without damping, what rings in a step that is long beside its period rings on and may have left
+  // no solution: implicit Euler, which takes it away.
+  bool damps = level > 0;
+  int unsettled = 0;
+  while (!ladder.done()) {
+    const double to = time_of(static_cast<double>(number - 1) + ladder.to());
+    const double length = whole * ladder.length();
+    bool made = false;
+    try {
+      note(stepper_, length, [&] {
+        const bool give_up = unsettled < most_unsettled && !ladder.is_shortest();
+        made = !damps || stepper_.advance_damped(to, give_up);
+        if (!damps) stepper_.advance(to);
+      });
+    } catch (const Failure&) {
+      if (damps && ladder.is_shortest()) throw;
+      made = false;
+    }
+    if (!made) {
+      ++motion_.rejected_steps;
+      ++unsettled;
+      settled_ = 0;
+      if (damps) ladder.shorten(1);
+      damps = true;
+      continue;
+    }
+    ++motion_.steps;
+    if (damps) ++motion_.inexact_steps;
+    motion_.time_step = std::min(motion_.time_step, length);
+    const int before = ladder.level();
+    ladder.accept(++settled_ >= before_longer);
+    if (ladder.level() < before) settled_ = 0;
+  }
+  level = ladder.level();
 }
 
 void Run::make_steps_within_tolerance() {

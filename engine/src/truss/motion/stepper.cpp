@@ -96,6 +96,11 @@ void Stepper::fill_bodies(const Trial& step, RefilledMatrix& to) {
   system_->evaluate_bars(middle, step.to, bars_);
   add_block(bodies_->mass(), 1.0);
   add_block(bars_.jacobian(), by_place);
+  if (step.is_definite) {
+    for (const auto& one : bodies_->compression_entries(step.q_middle, step.to)) {
+      add(one.row(), one.col(), by_place * one.value());
+    }
+  }
   if (contacts_.have_springs()) {
     evaluate_springs(step.q_middle, step.to);
     add_block(springs_.jacobian(), by_place);
@@ -286,6 +291,16 @@ void Stepper::advance(double to) {
   Trial step = trial(to);
   const std::optional<Local> local = find(step, false);
   book(step, *local);
+}
+
+bool Stepper::advance_damped(double to, bool give_up) {
+  Trial step = trial(to);
+  step.theta = 1.0;
+  step.is_definite = true;
+  const std::optional<Local> local = find(step, give_up);
+  if (!local) return false;
+  book(step, *local);
+  return true;
 }
 
 /// Takes the step: memories, energies, statuses.

@@ -45,8 +45,12 @@ class Stepper {
 
   /// Sets places and velocities, at rest in their contacts where a quasi-static state is given.
   void begin(const VectorXd& q, const VectorXd& v, const State* equilibrium);
-  /// One step to this time. @throws Failure if it has no solution that is found
+  /// One step to this time; only a step that is made changes the stepper.
+  /// @throws Failure if it has no solution that is found
   void advance(double to);
+  /// The same by implicit Euler with a matrix that is positive definite, for a step that was not
+  /// found otherwise. False where its branches are not found and `give_up`.
+  bool advance_damped(double to, bool give_up);
   /// The same by backward differentiation, not yet taken: what displacements are off by [m]. Of
   /// second order where the step before was one of these. Without a number where its branches were
   /// not found and `give_up`, which saves the contact problem. @throws Failure as advance()
@@ -88,6 +92,10 @@ class Stepper {
     double length = 0.0;  ///< [s]
     double theta = 1.0;
     bool differentiates = false;  ///< From the last two steps.
+    /// Whether its matrix leaves out what compression takes from the stiffness. Where a step begins
+    /// a slack element is as compressed as its temperature makes it; where it ends it carries
+    /// nothing, and only its mass resists a turn.
+    bool is_definite = false;
     Bodies::Step span = {};
     VectorXd q_from;
     VectorXd v_from;

@@ -44,6 +44,7 @@ class TrussMotion:
     undetermined: tuple[float, list[str]] | None  # first step [s] whose reactions are not unique, and the joints
     jammed: tuple[float, list[str]] | None  # first step [s] that ends a slide which could not go on, and the joint
     regularised: bool = False
+    equal: bool = False  # steps, rather than as long as a tolerance allows
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -52,6 +53,10 @@ class TrussMotion:
         if self.inexact_steps and self.regularised:
             found.append(f"in {self.inexact_steps} of {self.steps} steps a contact was stiffer than explicit steps of "
                          f"{self.time_step_s:.4g} s are stable with: set motion.steps_per_cycle to more")
+        elif self.inexact_steps and self.equal:
+            found.append(f"{self.inexact_steps} of {self.steps} steps had no solution as they were: they were damped "
+                         f"and taken in parts down to {self.time_step_s:.4g} s; set motion.steps_per_cycle to more to "
+                         "follow what swings")
         elif self.inexact_steps:
             found.append(f"in {self.inexact_steps} of {self.steps} steps, as short as steps can be, displacements are "
                          "off by more than motion.displacement_tolerance_m")
@@ -158,7 +163,8 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
     events = TrussEvents(truss, **found.pop("events"))
     if not found["complete"] and len(found["states"].get("time_s", ())) < 2:
         raise Interrupted("interrupted before a whole sample; nothing was written")
-    made = TrussMotion(truss=truss, events=events, regularised=regularised, **found)
+    made = TrussMotion(truss=truss, events=events, regularised=regularised,
+                       equal=case.motion.displacement_tolerance_m is None, **found)
     if not made.complete:
         raise Interrupted(run=made)
     return made
