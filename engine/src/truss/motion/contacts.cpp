@@ -147,8 +147,14 @@ void Contacts::add(int joint, int first_column, const IwanJoint& iwan) {
 }
 
 void Contacts::add(int joint, int first_column, const Slider& slider) {
+  if (slider.play > 0.0) {
+    throw std::invalid_argument("slider '" + slider.name +
+                                "' has a play: it is a joint of quasi-static paths and of the DEM");
+  }
   add_rubbing(joint, first_column, slider.friction_force, slider.tangential_stiffness)
       .slips_in_part = slider.partial_slip != 0;
+  springs_ = springs_ || slider.has_soft_stops();
+  if (slider.has_soft_stops()) return;
   const auto stop = [&](JointStatus which, double sign, double clearance) {
     if (std::isinf(clearance)) return;
     Contact end;
