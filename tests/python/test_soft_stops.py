@@ -147,27 +147,25 @@ def test_energies_balance(keys: dict[str, float]) -> None:
 
 
 @pytest.mark.parametrize("keys", [
-    {"clearance_minus_m": MINUS, "clearance_plus_m": PLUS, "stop_stiffness_N_per_m": STOP},
+    {"clearance_minus_m": MINUS, "clearance_plus_m": PLUS, "stop_stiffness_N_per_m": STOP}, {"play_m": 4e-4},
 ])
 def test_slow_motion_is_the_quasi_static_path(keys: dict[str, float]) -> None:
     """The bar and its end have a period of 1 ms, the program bends over seconds. Samples of the path are interpolated over
-    what happens between two of its states, 1/50 s apart: by an eighth of the force that the bar takes up in one."""
+    what happens between two of its states: by half of the free expansion between them, and half of the friction."""
     case = truss({"sticking": "elastic"}, **keys)
     path, motion = case.reduced(), case.reduced(dynamic=True)
-    np.testing.assert_allclose(motion["slide_m"], path["slide_m"], atol=5e-6, rtol=0)
-    np.testing.assert_allclose(motion["slider_force_N"], path["slider_force_N"], atol=10.0, rtol=0)
-    assert np.median(np.abs(motion["slider_force_N"] - path["slider_force_N"])) < 1e-3 * FRICTION
+    between = EXPANSION * LENGTH * 115.0 / 50
+    off = np.abs(motion["slide_m"] - path["slide_m"])
+    assert off.max() < between / 2 and np.median(off) < 1e-3 * between
+    off = np.abs(motion["slider_force_N"] - path["slider_force_N"])
+    assert off.max() < 0.51 * FRICTION and np.median(off) < 1e-3 * FRICTION
     assert motion["friction_dissipation_J"][-1] == pytest.approx(path["friction_dissipation_J"][-1], rel=2e-3)
 
 
-@pytest.mark.parametrize(("keys", "reduced", "sentence"), [
-    ({"stop_stiffness_N_per_m": STOP}, {}, "needs a stop: give clearance_minus_m or clearance_plus_m"),
-    ({"play_m": 1e-4, "friction_coefficient": 0.0}, {}, "needs friction"),
-    ({"play_m": 1e-4}, {"sticking": "partial_slip"}, 'must be 0 with reduced.sticking = "partial_slip"'),
-])
-def test_keys_without_influence_are_refused(keys: dict[str, float], reduced: dict[str, Any], sentence: str) -> None:
-    with pytest.raises(StatejumpError, match=sentence):
-        truss(reduced, **keys).reduced()
+def test_motion_refuses_a_play_beside_soft_stops() -> None:
+    case = truss(play_m=1e-4, clearance_plus_m=PLUS, stop_stiffness_N_per_m=STOP)
+    with pytest.raises(StatejumpError, match="must be 0 in motion, beside soft stops or latch hinges"):
+        case.reduced(dynamic=True)
 
 
 @pytest.mark.parametrize("model", ["coulomb_soft_stops", "coulomb_play"])
@@ -175,7 +173,7 @@ def test_identified_joint_goes_into_a_case(model: str) -> None:
     """The section of the loop of a slider is that slider, within the interval of noise."""
     true = {"coulomb_soft_stops": {"clearance_minus_m": MINUS, "clearance_plus_m": PLUS, "stop_stiffness_N_per_m": STOP},
             "coulomb_play": {"play_m": 4e-4}}[model]
-    own = {key.removesuffix("_m").removesuffix("_N_per_m"): value for key, value in true.items()}
+    own = {key.removesuffix("_N_per_m").removesuffix("_m"): value for key, value in true.items()}
     path = 1e-3 * np.sin(np.linspace(0, 4 * np.pi, 401))
     values = {"stiffness": RIGIDITY / LENGTH, "friction": FRICTION, "preload": 0.0, **own}
     force = MODELS[model].answer(values, path, remembered(path, fresh=True))
