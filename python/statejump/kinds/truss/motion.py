@@ -126,7 +126,8 @@ def _check_plays(truss: ResolvedTruss) -> None:
         return
     for index in np.flatnonzero(sliders.play_m > 0)[:1]:
         raise NotAllowed("play_m", float(sliders.play_m[index]),
-                         "must be 0 in motion, beside soft stops or latch hinges", item=f"slider {sliders.names[index]!r}", joint=sliders.names[index], case=truss.name)
+                         "must be 0 in motion, beside soft stops or latch hinges",
+                         item=f"slider {sliders.names[index]!r}", joint=sliders.names[index], case=truss.name)
 
 
 def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int = -1) -> TrussMotion:
