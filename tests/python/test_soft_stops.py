@@ -55,23 +55,25 @@ def spring_slider(**joint: Any) -> sj.Case:
     })
 
 
+def load_N(there: float, change_K: float, joint: Any) -> float:
+    """Return what friction has to hold of the block, towards the stop on the plus side."""
+    strain = EXPANSION * change_K
+    bar = RIGIDITY / (LENGTH * (1 + strain)) * (LENGTH * strain - there)
+    stop = joint.stop_stiffness_N_per_m * (there - np.clip(there, -MINUS, PLUS))
+    return float(bar - joint.preload_force_N - joint.preload_stiffness_N_per_m * there - stop)
+
+
 def moved(change_K: np.ndarray, joint: Any) -> np.ndarray:
     """Return where the block is: at every temperature it moves, by halving, until friction holds it."""
     x, found = 0.0, []
-
-    def load(there: float, change: float) -> float:
-        strain = EXPANSION * change
-        bar = RIGIDITY / (LENGTH * (1 + strain)) * (LENGTH * strain - there)
-        stop = joint.stop_stiffness_N_per_m * (there - np.clip(there, -MINUS, PLUS))
-        return float(bar - joint.preload_force_N - joint.preload_stiffness_N_per_m * there - stop)
-
     for change in change_K:
         for sign in (1.0, -1.0):
-            if sign * load(x, change) > FRICTION:
+            if sign * load_N(x, change, joint) > FRICTION:
                 inside, outside = x, x + sign
                 for _ in range(60):
                     middle = (inside + outside) / 2
-                    inside, outside = (middle, outside) if sign * load(middle, change) > FRICTION else (inside, middle)
+                    moves = sign * load_N(middle, change, joint) > FRICTION
+                    inside, outside = (middle, outside) if moves else (inside, middle)
                 x = (inside + outside) / 2
         found.append(x)
     return np.array(found)
@@ -93,6 +95,16 @@ def test_closed_form_is_that_of_small_steps(preload: dict[str, float]) -> None:
     stored = run["elastic_energy_J"] + run["preload_energy_J"]
     left = run["thermal_work_J"] - (stored - stored[0]) - run["friction_dissipation_J"]
     assert np.abs(left).max() < 1e-13 * np.abs(run["thermal_work_J"]).max() + 1e-14 * stored.max()
+
+
+def test_rest_sets_end_where_friction_does() -> None:
+    case = spring_slider(stop_stiffness_N_per_m=STOP, preload_stiffness_N_per_m=2e5, preload_force_N=80.0)
+    segments = sj.statics(case).segments
+    assert min(part.from_m for part in segments) < -MINUS and max(part.to_m for part in segments) > PLUS
+    for part in segments:
+        for place, held in ((part.from_m, FRICTION), (part.to_m, -FRICTION)):
+            # Forces of 2000 N are rounded.
+            assert load_N(place, part.temperature_change_K, case.joint) == pytest.approx(held, abs=1e-11)
 
 
 def test_stiff_stop_is_the_rigid_one() -> None:

@@ -121,8 +121,7 @@ def inertia(case: TrussCase) -> dict[str, Any]:
 def _check_plays(truss: ResolvedTruss) -> None:
     """Raise NotAllowed for a slider with a play beside joints whose springs the motion evaluates with it."""
     sliders = truss.sliders
-    soft = np.isfinite(sliders.stop_stiffness_N_per_m).any()
-    if not soft and not truss.joints["latch_hinge"].names:
+    if not any(joint.pushes_beside_contacts(truss.joints[joint.section]) for joint in JOINTS):
         return
     for index in np.flatnonzero(sliders.play_m > 0)[:1]:
         raise NotAllowed("play_m", float(sliders.play_m[index]),
