@@ -17,9 +17,10 @@ struct PrismaticJoint : Registered<PrismaticJoint, yade::Serializable>, stepper:
   static constexpr const char* doc =
       "Slider between two bodies: body 1 slides against body 2 along an axis fixed in space and is "
       "held across it. With the slide s = (x1 - x2 - offset) . axis the force on body 1 against "
-      "the axis is dry friction, a spring F = k_t (s - s_f) that slips at |F| = f, and where s is "
-      "beyond a clearance by d a stop, Hertz's K d^1.5; across the axis a spring k_n. Forces act "
-      "at the centres and do not turn the bodies.";
+      "the axis is dry friction, a spring F = k_t (s - s_f) that slips at |F| = f and is slack in "
+      "a play about s_f, and where s is beyond a clearance by d a stop, Hertz's K d^1.5 and a "
+      "spring k_s d; across the axis a spring k_n. Forces act at the centres and do not turn the "
+      "bodies.";
 
   void check() const;
   static auto attributes() {
@@ -29,8 +30,9 @@ struct PrismaticJoint : Registered<PrismaticJoint, yade::Serializable>, stepper:
         attribute("axis", &PrismaticJoint::axis, "Axis, fixed in space, unit vector [-]"),
         attribute("offset", &PrismaticJoint::offset,
                   "Position of body 1 less that of body 2 where the slide is 0 [m]"),
-        attribute("stiffnessAcross", &PrismaticJoint::stiffnessAcross,
-                  "Stiffness k_n that holds the bodies together across the axis, above 0 [N/m]"),
+        attribute(
+            "stiffnessAcross", &PrismaticJoint::stiffnessAcross,
+            "Stiffness k_n that holds the bodies together across the axis; 0: they are not [N/m]"),
         attribute("frictionLimit", &PrismaticJoint::frictionLimit,
                   "Force f at which friction slips; 0: no friction [N]"),
         attribute("frictionStiffness", &PrismaticJoint::frictionStiffness,
@@ -41,7 +43,12 @@ struct PrismaticJoint : Registered<PrismaticJoint, yade::Serializable>, stepper:
         attribute("clearancePlus", &PrismaticJoint::clearancePlus,
                   "Slide along the axis up to a stop; infinity: no stop [m]"),
         attribute("stopStiffness", &PrismaticJoint::stopStiffness,
-                  "K of Hertz's contact at the stops, above 0 where there are any [N/m^1.5]"),
+                  "K of Hertz's contact at the stops; this or stopSpring is above 0 where there "
+                  "are any [N/m^1.5]"),
+        attribute("stopSpring", &PrismaticJoint::stopSpring,
+                  "Stiffness k_s of linear stops, beside Hertz's contact [N/m]"),
+        attribute("play", &PrismaticJoint::play,
+                  "Width of the play in series with friction; it moves where friction slips [m]"),
         attribute("dampingRatio", &PrismaticJoint::dampingRatio,
                   "Ratio of the viscous damping of each spring to the critical one [-]"),
         attribute("slipPosition", &PrismaticJoint::slipPosition,

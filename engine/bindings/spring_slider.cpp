@@ -32,13 +32,14 @@ void bind_model(py::module_& module) {
       .def(py::init([](double young_modulus, double cross_section_area, double stress_free_length,
                        double thermal_expansion, double friction_force, double clearance_minus,
                        double clearance_plus, double preload_stiffness, double preload_force,
-                       const std::string& start_friction) {
+                       const std::string& start_friction, double stop_stiffness) {
              const spring_slider::SpringSlider model{
                  young_modulus,      cross_section_area,
                  stress_free_length, thermal_expansion,
                  friction_force,     clearance_minus,
                  clearance_plus,     preload_stiffness,
-                 preload_force,      start_friction_of(start_friction)};
+                 preload_force,      start_friction_of(start_friction),
+                 stop_stiffness};
              model.validate();
              return model;
            }),
@@ -46,7 +47,8 @@ void bind_model(py::module_& module) {
            py::arg("stress_free_length_m"), py::arg("thermal_expansion_per_K"),
            py::arg("friction_force_N"), py::arg("clearance_minus_m") = no_stop,
            py::arg("clearance_plus_m") = no_stop, py::arg("preload_stiffness_N_per_m") = 0.0,
-           py::arg("preload_force_N") = 0.0, py::arg("start_friction") = "stuck")
+           py::arg("preload_force_N") = 0.0, py::arg("start_friction") = "stuck",
+           py::arg("stop_stiffness_N_per_m") = no_stop)
       .def_readonly("young_modulus_Pa", &spring_slider::SpringSlider::young_modulus)
       .def_readonly("cross_section_area_m2", &spring_slider::SpringSlider::cross_section_area)
       .def_readonly("stress_free_length_m", &spring_slider::SpringSlider::stress_free_length)
@@ -57,6 +59,7 @@ void bind_model(py::module_& module) {
       .def_readonly("preload_stiffness_N_per_m", &spring_slider::SpringSlider::preload_stiffness)
       .def_readonly("preload_force_N", &spring_slider::SpringSlider::preload_force,
                     "Tension of the preload spring at x = 0, towards -x when positive.")
+      .def_readonly("stop_stiffness_N_per_m", &spring_slider::SpringSlider::stop_stiffness)
       .def_property_readonly(
           "start_displacement_m",
           [](const spring_slider::SpringSlider& self) { return start_displacement(self); },

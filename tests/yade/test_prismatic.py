@@ -56,6 +56,39 @@ def test_energy_closes_with_dashpots(seen):
     assert run["worst"] < 2e-2 * run["first"]
 
 
+def test_law_of_soft_stops_and_play(seen):
+    run = seen["bolt"]
+    limit, soft, half = run["frictionLimit"], run["frictionStiffness"], run["play"] / 2
+    place_m, slipped, heat = 4 * 0.3 * EPS, 0.0, 0.0
+    for place, (slide, _, friction, stop, along, _, _, elastic, lost) in enumerate(run["rows"]):
+        width, before = half + limit / soft, slipped
+        slipped = min(max(slipped, slide - width), slide + width)
+        heat += limit * abs(slipped - before)
+        bend = slide - slipped
+        expected = soft * (bend - min(max(bend, -half), half))
+        depth = max(slide - run["clearancePlus"], -slide - run["clearanceMinus"], 0.0)
+        pushes = run["stopSpring"] * depth * (1 if slide > 0 else -1)
+        # A sum of slides has up to one rounding a row.
+        assert friction == pytest.approx(expected, abs=1000 * soft * place_m), place
+        assert stop == pytest.approx(pushes, abs=run["stopSpring"] * place_m), place
+        assert along == pytest.approx(expected + pushes, abs=1000 * (soft + run["stopSpring"]) * place_m)
+        stored = (expected**2 / (2 * soft) + 0.5 * run["stopSpring"] * depth**2
+                  + 0.5 * run["stiffnessAcross"] * run["aside"] ** 2)
+        assert elastic == pytest.approx(stored, abs=3000 * place_m), place
+    # The step in which it begins to slip has the mean force of two rows; it begins three times.
+    assert run["rows"][-1][-1] == pytest.approx(heat, abs=3 * limit * run["amplitude"] / 200)
+    assert sum(row[2] == 0 for row in run["rows"]) > 3 * 0.9 * run["play"] / (run["amplitude"] / 200)
+
+
+def test_energy_of_a_swing_with_soft_stops_and_play(seen):
+    coarse, fine = seen["bolt_swing"]
+    for run in (coarse, fine):
+        assert run["stops"] > 10 and run["slips"] > 10 and run["damping"] == 0
+        assert run["worst"] < 1e-3 * run["first"]
+    # Forces have corners where a play closes and a stop begins: second order.
+    assert fine["worst"] < 0.4 * coarse["worst"]
+
+
 def test_stable_step(seen):
     inside, beyond = seen["limit"]["0.95"], seen["limit"]["1.05"]
     assert inside["error"][0] == "none"

@@ -28,17 +28,23 @@ class SpringSliderScene:
     program: sj.ThermalProgram
     slider: int
     floor: int
-    stop_minus: int
-    stop_plus: int
+    stop_minus: int | None
+    stop_plus: int | None
     link: sj.ThermalLink
     preload_link: sj.ThermalLink | None
+    soft_stops: sj.PrismaticJoint | None  # in place of the faces stop_minus and stop_plus
     start_height_m: float  # y of the slider at the start, where the floor carries the normal force
     start_energy_J: float  # of bar and preload at the start
 
     @property
     def pairs(self) -> list[Pair]:
-        """The slider with its floor and with its stops."""
-        return [(self.slider, face) for face in (self.floor, self.stop_minus, self.stop_plus)]
+        """The slider with its floor and with its rigid stops."""
+        return [(self.slider, face) for face in (self.floor, self.stop_minus, self.stop_plus) if face is not None]
+
+    @property
+    def prismatic_joints(self) -> list[sj.PrismaticJoint]:
+        """What stands for soft stops."""
+        return [self.soft_stops] if self.soft_stops is not None else []
 
 
 def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSliderScene:
@@ -79,14 +85,23 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
     body.state.blockedDOFs = "zXYZ"
     slider = O.bodies.append(body)
     O.forces.setPermF(slider, (-joint["preload_force_N"], -joint["normal_force_N"], 0))
-    floor, stop_minus, stop_plus = O.bodies.append(
+    soft = joint["stop_stiffness_N_per_m"]
+    floor, *stops = O.bodies.append(
         sj.slot(
             (0, 0, 0),
-            stopMinus=radius + joint["clearance_minus_m"],
-            stopPlus=radius + joint["clearance_plus_m"],
+            stopMinus=radius + joint["clearance_minus_m"] if soft is None else None,
+            stopPlus=radius + joint["clearance_plus_m"] if soft is None else None,
             halfHeight=radius,
             material=materials["slot"],
+            # As far as with stops.
+            halfSize=max(radius, radius + joint["clearance_minus_m"], radius + joint["clearance_plus_m"]),
         )
+    )
+    stop_minus, stop_plus = stops or (None, None)
+    soft_stops = None if soft is None else sj.PrismaticJoint(
+        id1=slider, id2=fixed_point((0, 0, 0)), axis=(1, 0, 0), offset=(0, -depth, 0),
+        clearanceMinus=joint["clearance_minus_m"], clearancePlus=joint["clearance_plus_m"], stopSpring=soft,
+        dampingRatio=dem["contact_damping_ratio"],
     )
     bar = sj.ThermalLink(
         id1=root,
@@ -118,13 +133,14 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
         dem["contact_damping_ratio"],
         verletDist=0.1 * radius,
         recorders=recorders,
+        prismatic_joints=() if soft_stops is None else (soft_stops,),
     )
     O.trackEnergy = True
     O.dt = dem["time_step_s"]
     start_sticking({slider: (dem["start_slide_m"], 0, 0)} if dem["start_slide_m"] else {})
     stiffness = link["young_modulus_Pa"] * link["cross_section_area_m2"] / link["stress_free_length_m"]
     return SpringSliderScene(
-        program, slider, floor, stop_minus, stop_plus, bar, preload, start_height_m=-depth,
+        program, slider, floor, stop_minus, stop_plus, bar, preload, soft_stops, start_height_m=-depth,
         start_energy_J=0.5 * stiffness * start**2 + stored_by_preload(joint, start),
     )
 
@@ -136,7 +152,7 @@ def stored_by_preload(joint: dict[str, Any], displacement: Any) -> Any:
 
 def watched(built: SpringSliderScene) -> Watched:
     """Return what has to be recorded."""
-    return Watched([built.slider], built.pairs, [built.link])
+    return Watched([built.slider], built.pairs, [built.link], [], built.prismatic_joints)
 
 
 def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> list[np.ndarray]:
@@ -149,6 +165,10 @@ def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> li
         raise SceneFailure("the slider has left the floor of its slot: the contact is lost", "floor",
                            time_s=states.times[lost.argmax()])
     at_stop = sum(stop["real"] for stop in stops) > 0
+    pushed = -sum(stop["normalForce"][:, 0] for stop in stops)
+    if built.soft_stops is not None:
+        pushed = -states.joints(built.prismatic_joints)["stopForce"][:, 0]
+        at_stop = pushed != 0
     x, velocity = slider["position"][:, 0], slider["velocity"]
     bar = built.link
     stiffness = bar.youngModulus * bar.crossSectionArea / link["stressFreeLength"]
@@ -158,14 +178,14 @@ def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> li
         x,
         link["axialForce"],
         -floor["shearForce"][:, 0],
-        np.where(at_stop, -sum(stop["normalForce"][:, 0] for stop in stops), 0.0),
+        np.where(at_stop, pushed, 0.0),
         0.5 * stiffness * link["extension"] ** 2,
         states.energy("jointFriction"),
-        states.energy("jointDamping", "linkDamping"),
+        states.energy("jointDamping", "linkDamping", "prismaticDamping"),
         0.5 * case["dem"]["tip_mass_kg"] * (velocity[:, 0] ** 2 + velocity[:, 1] ** 2),
         states.energy("linkThermalWork", "jointThermalWork"),
         -case["joint"]["normal_force_N"] * (slider["position"][:, 1] - built.start_height_m),
-        states.energy("jointElastic"),
+        states.energy("jointElastic", "prismaticElastic"),
         stored_by_preload(case["joint"], x) - built.start_energy_J,
         floor["slipping"],
         at_stop,
@@ -176,9 +196,12 @@ def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> li
 def names(case: dict[str, Any], built: SpringSliderScene) -> Names:
     """Return what the case calls contacts and links; contacts as in result files."""
     found = Names()
-    for contact in ("floor", "stop_minus", "stop_plus"):
+    faces = ("floor", "stop_minus", "stop_plus") if built.soft_stops is None else ("floor",)
+    for contact in faces:
         found.joints[pair(built.slider, getattr(built, contact))] = (contact, contact)
         found.bodies[getattr(built, contact)] = contact
+    for joint in built.prismatic_joints:
+        found.add_prismatic_joint(joint, "the stops", "stop_plus")
     found.bodies[built.slider] = "the slider"
     found.add_link(built.link, "the bar")
     if built.preload_link is not None:

@@ -51,8 +51,14 @@ History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times)
   history.stage.reserve(static_cast<std::size_t>(n));
   std::size_t hint = 0;
   const double start = start_displacement(path.model);
-  const auto stored = [&model](double x) {
-    return (0.5 * model.preload_stiffness * x + model.preload_force) * x;
+  const auto beyond = [&model](double x) {
+    return model.has_soft_stops() ? x - std::clamp(x, -model.clearance_minus, model.clearance_plus)
+                                  : 0.0;
+  };
+  const auto stored = [&](double x) {
+    const double preload = (0.5 * model.preload_stiffness * x + model.preload_force) * x;
+    const double depth = beyond(x);
+    return depth == 0.0 ? preload : preload + 0.5 * model.stop_stiffness * depth * depth;
   };
   const double start_energy = 0.5 * link_stiffness(model, 0.0) * start * start + stored(start);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -61,7 +67,9 @@ History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times)
     const Segment& segment = segment_at(path.segments, time, hint);
     const auto [change, x, force] = place_at(model, path.program, segment, time);
     const double preload_force = -model.preload_force - model.preload_stiffness * x;
-    const double load = force + preload_force;
+    const double depth = beyond(x);
+    const double soft_stop = depth == 0.0 ? 0.0 : -model.stop_stiffness * depth;
+    const double load = force + preload_force + soft_stop;
     const double friction =
         segment.motion == Motion::stick ? -load : -segment.direction * model.friction_force;
     const double slid = std::abs(x - segment.start_displacement);
@@ -70,7 +78,7 @@ History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times)
     history.displacement[i] = x;
     history.axial_force[i] = force;
     history.friction_force[i] = friction;
-    history.stop_force[i] = segment.motion == Motion::stop ? -(load + friction) : 0.0;
+    history.stop_force[i] = segment.motion == Motion::stop ? -(load + friction) : soft_stop;
     history.elastic_energy[i] = 0.5 * force * force / link_stiffness(model, change);
     history.preload_energy[i] = stored(x) - start_energy;
     history.friction_dissipation[i] = segment.friction_dissipation + model.friction_force * slid;

@@ -29,6 +29,7 @@ void SpringSlider::validate() const {
           preload_stiffness, "finite, >= 0 N/m");
   require(std::abs(preload_force) + friction_force < axial_rigidity(), "preload_force",
           preload_force, "of a size below young_modulus * cross_section_area - friction_force [N]");
+  require(stop_stiffness > 0.0, "stop_stiffness", stop_stiffness, "> 0 N/m, or infinity");
 }
 
 double free_length(const SpringSlider& model, double temperature_change) {
@@ -57,7 +58,24 @@ double start_displacement(const SpringSlider& model) {
   const double stiffness = link_stiffness(model, 0.0) + model.preload_stiffness;
   const double excess = -model.preload_force - start_load(model);
   const double slid = excess == 0.0 ? 0.0 : excess / stiffness;  // not −0
-  return std::clamp(slid, -model.clearance_minus, model.clearance_plus);
+  const int region = region_of(model, slid);
+  if (region == 0) return std::clamp(slid, -model.clearance_minus, model.clearance_plus);
+  const double clearance = region * model.clearance(region);
+  return clearance + (excess - stiffness * clearance) / (stiffness + model.stop_stiffness);
+}
+
+SpringSlider in_region(const SpringSlider& model, int region) {
+  if (region == 0) return model;
+  SpringSlider made = model;
+  made.preload_force -= model.stop_stiffness * region * model.clearance(region);
+  made.preload_stiffness += model.stop_stiffness;
+  made.clearance_minus = made.clearance_plus = std::numeric_limits<double>::infinity();
+  return made;
+}
+
+int region_of(const SpringSlider& model, double displacement) {
+  if (!model.has_soft_stops()) return 0;
+  return displacement > model.clearance_plus ? 1 : displacement < -model.clearance_minus ? -1 : 0;
 }
 
 double sliding_displacement(const SpringSlider& model, double temperature_change, int direction) {

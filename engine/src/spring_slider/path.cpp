@@ -32,7 +32,8 @@ class Follower {
         -model_.preload_force -
         (link_stiffness(model_, 0.0) + model_.preload_stiffness) * open_.end_displacement;
     const int side = sign(load);
-    if (open_.end_displacement == side * model_.clearance(side) &&
+    open_.region = region_of(model_, open_.end_displacement);
+    if (!model_.has_soft_stops() && open_.end_displacement == side * model_.clearance(side) &&
         side * load > model_.friction_force) {
       open_.stage = stage_at_stop(side);
       open_.motion = Motion::stop;
@@ -133,7 +134,7 @@ class Follower {
     if (first_slide_ == 0) {
       kind = EventKind::first_slip;
       first_slide_ = drive_;
-    } else if (x == -drive_ * model_.clearance(-drive_)) {
+    } else if (!model_.has_soft_stops() && x == -drive_ * model_.clearance(-drive_)) {
       kind = EventKind::stop_left;
     }
     last_slide_ = drive_;
@@ -144,6 +145,19 @@ class Follower {
     // Snapped, so that x is the clearance itself and leaving the stop can be told by equality.
     open_.end_displacement = drive_ * model_.clearance(drive_);
     enter(EventKind::stop_reached, stage_at_stop(drive_), Motion::stop, drive_);
+  }
+
+  /// Comes to touch a soft stop, or loses touch of it, and slides on.
+  void pass_soft_stop(int side) {
+    open_.end_displacement = side * model_.clearance(side);
+    enter(open_.region == 0 ? EventKind::stop_reached : EventKind::stop_left, open_.stage,
+          Motion::slide, drive_);
+    open_.region = open_.region == 0 ? side : 0;
+  }
+
+  /// ΔT at which the block starts to slide from x, or to press less than that on a stop.
+  double onset_from(double x, int direction) const {
+    return sliding_temperature(in_region(model_, open_.region), x, direction);
   }
 
   void turn_back() { enter(EventKind::reversal, stage_of_stick(), Motion::stick, 0); }
@@ -179,24 +193,30 @@ class Follower {
     const double x = open_.end_displacement;
     if (open_.motion == Motion::stop) {
       if (open_.direction == drive_) return false;
-      const double unload = sliding_temperature(model_, x, open_.direction);
+      const double unload = onset_from(x, open_.direction);
       if (!is_due(unload)) return false;
       move_to_event(unload);
       enter(EventKind::stop_unloaded, stage_of_stick(), Motion::stick, 0);
       return true;
     }
     if (open_.motion == Motion::slide) {
-      const double clearance = model_.clearance(drive_);
+      if (open_.region == drive_) return false;
+      const int side = open_.region == 0 ? drive_ : open_.region;
+      const double clearance = model_.clearance(side);
       if (std::isinf(clearance)) return false;
-      const double arrival = sliding_temperature(model_, drive_ * clearance, drive_);
+      const double arrival = sliding_temperature(model_, side * clearance, drive_);
       if (!is_due(arrival)) return false;
       move_to_event(arrival);
-      load_stop();
+      if (model_.has_soft_stops()) {
+        pass_soft_stop(side);
+      } else {
+        load_stop();
+      }
       return true;
     }
     // Without friction every force moves the block: no rounded onset, no sliver of stick.
-    const double onset = model_.friction_force == 0.0 ? open_.end_temperature_change
-                                                      : sliding_temperature(model_, x, drive_);
+    const double onset =
+        model_.friction_force == 0.0 ? open_.end_temperature_change : onset_from(x, drive_);
     const double zero = force_zero();
     if (is_due(zero) && !(heating_ * (onset - zero) <= 0.0)) {
       move_to_event(zero);
@@ -206,7 +226,7 @@ class Follower {
     }
     if (!is_due(onset)) return false;
     move_to_event(onset);
-    if (x == drive_ * model_.clearance(drive_)) {
+    if (!model_.has_soft_stops() && x == drive_ * model_.clearance(drive_)) {
       load_stop();
     } else {
       start_slide();
@@ -227,7 +247,7 @@ class Follower {
   const std::vector<int>& kept_;
   std::size_t next_kept_ = 0;
   const thermal::Branch* branch_ = nullptr;
-  Segment open_{Stage::S1, Motion::stick, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  Segment open_{Stage::S1, Motion::stick, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0};
   int heating_ = 0;
   int drive_ = 0;
   int first_slide_ = 0;
@@ -347,16 +367,20 @@ Place place_at(const SpringSlider& model, const thermal::Program& program, const
   const double x = displacement(model, segment, change);
   // Sliding, the block carries exactly the friction limit; a difference of x and x_T would not.
   if (segment.motion == Motion::slide) {
+    const SpringSlider pressed = in_region(model, segment.region);
     return {change, x,
-            segment.direction * model.friction_force + model.preload_force +
-                model.preload_stiffness * x};
+            segment.direction * model.friction_force + pressed.preload_force +
+                pressed.preload_stiffness * x};
   }
   return {change, x, axial_force(model, change, x)};
 }
 
 double displacement(const SpringSlider& model, const Segment& segment, double temperature_change) {
   if (segment.motion != Motion::slide) return segment.start_displacement;
-  const double x = sliding_displacement(model, temperature_change, segment.direction);
+  const SpringSlider pressed = in_region(model, segment.region);
+  const double x = sliding_displacement(pressed, temperature_change, segment.direction);
+  if (segment.region > 0) return std::max(x, model.clearance_plus);
+  if (segment.region < 0) return std::min(x, -model.clearance_minus);
   return std::clamp(x, -model.clearance_minus, model.clearance_plus);
 }
 
@@ -369,6 +393,7 @@ double thermal_work(const SpringSlider& model, const Segment& segment, double te
   const double start = segment.start_temperature_change;
   const double half_span = 0.5 * (temperature_change - start);
   const double middle = 0.5 * (temperature_change + start);
+  const SpringSlider pressed = in_region(model, segment.region);
   double mean = 0.0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const double at = middle + half_span * nodes[i];
@@ -376,9 +401,9 @@ double thermal_work(const SpringSlider& model, const Segment& segment, double te
     double strain = 0.0;  // (x − x_T)/l_T
     if (segment.motion == Motion::slide) {
       // Written out: the difference of x and x_T would lose the digits that the balance is about.
-      strain = -(segment.direction * model.friction_force + model.preload_force +
-                 model.preload_stiffness * thermal_displacement(model, at)) /
-               (model.axial_rigidity() + model.preload_stiffness * length);
+      strain = -(segment.direction * model.friction_force + pressed.preload_force +
+                 pressed.preload_stiffness * thermal_displacement(model, at)) /
+               (model.axial_rigidity() + pressed.preload_stiffness * length);
     } else {
       strain = (segment.start_displacement - thermal_displacement(model, at)) / length;
     }

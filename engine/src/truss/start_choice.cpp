@@ -21,6 +21,7 @@ Joint without_friction(const Slider& joint) {
   loose.friction_force = 0.0;
   loose.tangential_stiffness = rigid;
   loose.partial_slip = 0;
+  loose.play = 0.0;
   return loose;
 }
 

@@ -96,6 +96,11 @@ def entries(
         stops = [known(f"{name}_m", name, "the loop meets no stop") for name in ("clearance_minus", "clearance_plus")]
         spring = [known("preload_stiffness_N_per_m", "preload_stiffness", "the loop shows no spring beside the slide"),
                   known("preload_force_N", "preload", "the loop shows no force of its own")]
+        if "stop_stiffness" in values:
+            stops.append(known("stop_stiffness_N_per_m", "stop_stiffness", ""))
+        if "play" in values:
+            stops.append(known("play_m", "play", "") if target == "slider" else
+                         Entry("play_m", None, why="[[slider]] has it: --for slider"))
         return friction() + stops + (spring if target == "spring_slider" else [])
     if target == "iwan_joint":
         none = "the loop is not of an Iwan joint: --model iwan fits one"

@@ -121,9 +121,10 @@ class Identification:
         return told
 
     def _laws(self) -> list[str]:
-        """What cases have no key for."""
-        return [f"{name} has no key in a case: the section leaves it out" for name in ("play", "stop_stiffness")
-                if name in self.fit.values]
+        """What the section has no key for."""
+        has = {"play": ("slider",), "stop_stiffness": ("slider", "spring_slider")}
+        return [f"{name} has no key in {paste.TARGETS[self.target][0]}: the section leaves it out"
+                for name, targets in has.items() if name in self.fit.values and self.target not in targets]
 
     def _absent(self) -> list[str]:
         told = []

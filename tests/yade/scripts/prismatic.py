@@ -13,6 +13,7 @@ OFFSET = Vector3(0.1, -0.2, 0.05)
 MASSES = 0.02, 0.03
 LAW = dict(stiffnessAcross=3e5, frictionLimit=2.0, frictionStiffness=1e5, clearanceMinus=3e-4, clearancePlus=2e-4,
            stopStiffness=1e8)
+BOLT = dict(stopStiffness=0.0, stopSpring=2e6, play=1.5e-4)
 
 
 def pair(blocked="XYZ", dt=1e-9, reader=None, **keywords):
@@ -25,10 +26,10 @@ def pair(blocked="XYZ", dt=1e-9, reader=None, **keywords):
     return ids, joint
 
 
-def loop(steps, amplitude):
+def loop(steps, amplitude, **keywords):
     """Law of a joint that is led along its axis to the amplitude, its opposite and back, aside all the time."""
     aside = 1e-6
-    ids, joint = pair(blocked="xyzXYZ")
+    ids, joint = pair(blocked="xyzXYZ", **keywords)
     rows = []
     for k in [*range(steps + 1), *range(steps - 1, -steps, -1), *range(-steps, steps + 1)]:
         slide = k * amplitude / steps
@@ -38,12 +39,12 @@ def loop(steps, amplitude):
         rows.append([slide, joint.slide, joint.frictionForce, joint.stopForce, -force.dot(AXIS), -force.dot(ACROSS),
                      (force + O.forces.f(ids[1], True)).norm(), O.energy["prismaticElastic"],
                      O.energy["prismaticFriction"]])
-    return {"rows": rows, "amplitude": amplitude, "aside": aside, **LAW}
+    return {"rows": rows, "amplitude": amplitude, "aside": aside, **LAW, **keywords}
 
 
-def swing(dt, time, ratio):
+def swing(dt, time, ratio, **keywords):
     """Both bodies free, thrown against each other along the axis and across it, until friction holds them."""
-    ids, joint = pair(dt=dt, reader="read()", dampingRatio=ratio)
+    ids, joint = pair(dt=dt, reader="read()", dampingRatio=ratio, **keywords)
     start = O.bodies[ids[0]].state
     start.vel = 0.3 * AXIS + 0.02 * ACROSS
     account, seen = Balance(ids), {"stops": 0, "slips": 0}
@@ -98,5 +99,6 @@ def wrong():
 
 finish({
     "loop": loop(200, 4e-4), "swing": [swing(dt, 0.02, 0.0) for dt in (4e-6, 2e-6)], "damped": swing(2e-6, 0.02, 0.1),
+    "bolt": loop(200, 4e-4, **BOLT), "bolt_swing": [swing(dt, 0.02, 0.0, **BOLT) for dt in (4e-6, 2e-6)],
     "limit": {str(factor): limit(factor) for factor in (0.95, 1.05)}, "wrong": wrong(),
 })

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sliders of a truss in YADE: on ground a pad at a node, its floor and its stops, which do not move; between two nodes
-a prismatic joint of the plugin.
+"""Sliders of a truss in YADE: on ground a pad at a node, its floor and its stops, which do not move; between two nodes,
+with soft stops or with a play a prismatic joint of the plugin, on ground against a body that does not move.
 
 A pad is held at the depth at which its floor carries the normal force.
 """
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import statejump_yade as sj
 from failures import Names, SceneFailure, pair
-from scene import O
+from scene import O, fixed_point
 from states import States, dot
 from truss_joints.parts import AT_STOP, GROUND, SLIP, STICK, Joints, Row, give, material
 from yade import wrapper
@@ -30,14 +30,14 @@ class Sliders(Joints):
         super().__init__(case)
         self._damping_ratio: float = case["dem"]["contact_damping_ratio"]
         self._slips_in_part: bool = case["dem"]["friction_law"] == "mindlin_deresiewicz"
-        self._slots: list[list[wrapper.Body]] = []  # none between two nodes
+        self._slots: list[list[wrapper.Body]] = []  # none of prismatic joints
         self._numbers: list[list[int]] = []  # of floor and stops
         self._between: dict[int, sj.PrismaticJoint] = {}  # by place
 
     def furnish(self, bodies: list[wrapper.Body], turn: Callable[[int, int], None],
                 expand: Callable[[int, Row], None]) -> None:
         for slider in self.rows:
-            if slider["nodes"][1] != GROUND:
+            if not slider["touches"]:
                 self._slots.append([])
                 continue
             node, radius = slider["nodes"][0], slider["pad_radius_m"]
@@ -74,14 +74,17 @@ class Sliders(Joints):
     def _joint(self, slider: Row) -> sj.PrismaticJoint:
         one, other = slider["nodes"]
         minus, plus = (inf if slider[key] is None else slider[key] for key in ("clearance_minus_m", "clearance_plus_m"))
-        friction, sticks = slider["start_friction_N"], slider["friction_stiffness_N_per_m"]
+        own = slider["own_stop_stiffness_N_per_m"]
+        place = Vector3(self.nodes[one]["position_m"])
+        second, offset = ((fixed_point(place), Vector3.Zero) if other == GROUND else
+                          (self.ids[other], place - Vector3(self.nodes[other]["position_m"])))
         return sj.PrismaticJoint(
-            id1=self.ids[one], id2=self.ids[other], axis=Vector3(slider["axis"]),
-            offset=Vector3(self.nodes[one]["position_m"]) - Vector3(self.nodes[other]["position_m"]),
+            id1=self.ids[one], id2=second, axis=Vector3(slider["axis"]), offset=offset,
             stiffnessAcross=slider["stiffness_across_N_per_m"], frictionLimit=slider["friction_limit_N"],
-            frictionStiffness=sticks, clearanceMinus=minus, clearancePlus=plus,
-            stopStiffness=slider["stop_stiffness_N_per_m15"], dampingRatio=self._damping_ratio,
-            frictionForce=friction, slipPosition=slider["start_slide_m"] - friction / sticks,
+            frictionStiffness=slider["friction_stiffness_N_per_m"], clearanceMinus=minus, clearancePlus=plus,
+            stopStiffness=slider["stop_stiffness_N_per_m15"] if own is None else 0.0, stopSpring=own or 0.0,
+            play=slider["play_m"], dampingRatio=self._damping_ratio, frictionForce=slider["start_friction_N"],
+            slipPosition=slider["start_slip_m"],
         )
 
     def start_slides(self) -> dict[int, tuple[float, float, float]]:
@@ -103,7 +106,7 @@ class Sliders(Joints):
         return list(self._between.values())
 
     def radii(self) -> list[float]:
-        return [slider["pad_radius_m"] for slider in self.rows if slider["nodes"][1] == GROUND]
+        return [slider["pad_radius_m"] for slider in self.rows if slider["touches"]]
 
     def states(self, states: States) -> list[np.ndarray]:
         slide, force = np.empty((2, len(states), len(self.rows)))
@@ -113,7 +116,9 @@ class Sliders(Joints):
         slide[:, between], force[:, between] = joints["slide"], joints["frictionForce"] + joints["stopForce"]
         limits = np.array([joint.frictionLimit for joint in self._between.values()])
         slips = np.abs(joints["frictionForce"]) >= limits
-        state[:, between] = np.where(joints["stopForce"] != 0, AT_STOP, np.where(slips, SLIP, STICK))
+        # Of soft stops friction says what the slider does, as in the reduced model.
+        rigid = [self.rows[place]["own_stop_stiffness_N_per_m"] is None for place in between]
+        state[:, between] = np.where((joints["stopForce"] != 0) & rigid, AT_STOP, np.where(slips, SLIP, STICK))
 
         axes, origins = np.empty((2, len(self.rows), 3))
         for place, slider in enumerate(self.rows):

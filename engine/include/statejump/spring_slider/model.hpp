@@ -33,10 +33,16 @@ namespace statejump::spring_slider {
 ///
 /// Against a rigid stop equilibrium leaves R and W undetermined within −f <= R <= f. Assumed here
 /// is the smallest stop force, |W| = max(0, |D| − f): friction keeps the value that it had
-/// when the block arrived, the stop takes the remainder. With an elastic stop the split depends on
-/// its stiffness; x, F and every energy do not, because the block does not move.
+/// when the block arrived, the stop takes the remainder.
 ///
-/// Limits: no inertia, no buckling (see euler_load), constant f, rigid stops, E and α independent
+/// A stop of a stiffness k_s gives way, W = −k_s (x − s c) beyond the clearance of side s. There
+/// the block slides and sticks as between the stops, with a spring more:
+///
+///     P + k_p x − W = (P − k_s s c) + (k_p + k_s) x,
+///
+/// so that every formula above holds with these two in place of P and k_p, see in_region().
+///
+/// Limits: no inertia, no buckling (see euler_load), constant f, E and α independent
 /// of temperature (of an α that is not, see tell_temperatures_of). A plain value: validate() once;
 /// the functions below do not check.
 struct SpringSlider {
@@ -60,6 +66,8 @@ struct SpringSlider {
   double preload_force = 0.0;
   /// How the block gets to its start.
   StartFriction start_friction = StartFriction::stuck;
+  /// Stiffness k_s of both stops [N/m], > 0; infinity: rigid.
+  double stop_stiffness = std::numeric_limits<double>::infinity();
 
   /// Throws std::invalid_argument that names the first field out of range, its value and the range.
   void validate() const;
@@ -69,6 +77,8 @@ struct SpringSlider {
 
   /// Distance to the stop on side `side` (+1 or −1) [m], infinity if there is none.
   double clearance(int side) const { return side > 0 ? clearance_plus : clearance_minus; }
+
+  bool has_soft_stops() const { return stop_stiffness < std::numeric_limits<double>::infinity(); }
 };
 
 /// Unloaded length l_T [m] at ΔT [K], eq. (2).
@@ -83,11 +93,18 @@ double link_stiffness(const SpringSlider& model, double temperature_change);
 /// Axial force F = k_T (x_T − x) [N] of the link, positive in compression, with the block at x [m].
 double axial_force(const SpringSlider& model, double temperature_change, double displacement);
 
+/// The model with the spring of the soft stop on side `region` (+1 or −1) beside that of the
+/// preload, and without its stops; 0: the model itself.
+SpringSlider in_region(const SpringSlider& model, int region);
+
+/// Side of the soft stop that a block at x [m] presses; 0: none.
+int region_of(const SpringSlider& model, double displacement);
+
 /// D0 [N] that friction balances at the start, ΔT = 0, stops left aside.
 double start_load(const SpringSlider& model);
 
 /// Position x [m] of the block at the start, ΔT = 0: where D = start_load(), or at the stop that is
-/// in its way.
+/// in its way, beyond its clearance if it is soft.
 double start_displacement(const SpringSlider& model);
 
 /// Position x [m] of the block that slides in sense `direction` (+1 or −1), stops left aside.

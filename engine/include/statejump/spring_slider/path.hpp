@@ -35,7 +35,7 @@ enum class EventKind : unsigned char {
   slip,           ///< It starts to slide again, away from the stops.
   stop_reached,   ///< A stop begins to carry force: the block arrives, or is loaded there again.
   stop_unloaded,  ///< The stop's force falls to zero; the block stays, held by friction.
-  stop_left,      ///< The block starts to slide away from a stop.
+  stop_left,      ///< The block starts to slide away from a stop, or loses touch of a soft one.
   reversal,       ///< The temperature turns while the block slides; it sticks.
   force_sign_change,  ///< The axial force passes zero during a stick after a slide.
   cycle_end           ///< A cycle of the thermal program ends.
@@ -76,6 +76,7 @@ struct Segment {
   double end_displacement;          ///< x [m]
   double friction_dissipation;      ///< Heat of friction from the program's start to start_time [J]
   double thermal_work;              ///< Work of the temperature over the same time [J]
+  int region = 0;                   ///< Side of the soft stop that the block presses; 0: none.
 };
 
 /// Exact quasi-static path of a spring-slider under a thermal program: what solve() returns.

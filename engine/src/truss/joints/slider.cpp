@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "statejump/kernel/require.hpp"
@@ -20,7 +21,9 @@ struct Sense {
   JointStatus stop;
   JointStatus other_slip;
   JointStatus other_stop;
+  /// To a rigid stop [m].
   double clearance(const Slider& slider) const {
+    if (slider.has_soft_stops()) return std::numeric_limits<double>::infinity();
     return sign > 0.0 ? slider.clearance_plus : slider.clearance_minus;
   }
 };
@@ -55,8 +58,60 @@ kernel::PartialSlipResponse rub(const Slider& slider, const double* history, dou
 /// Friction where the slide is s [N]; only if the contact is not rigid.
 double friction_at(const Slider& slider, const double* history, double s) {
   if (slider.partial_slip) return rubbing(slider, history, s).force;
-  const double f = slider.friction_force;
+  const double f = slider.friction_limit();
   return std::clamp(slider.tangential_stiffness * (s - history[0]), -f, f);
+}
+
+/// Slide beyond soft stops [m].
+double beyond_stops(const Slider& slider, double s) {
+  if (!slider.has_soft_stops()) return 0.0;
+  return s - std::clamp(s, -slider.clearance_minus, slider.clearance_plus);
+}
+
+/// Bend of the contact that its play takes [m].
+double played(const Slider& slider, double bend) {
+  return std::clamp(bend, -0.5 * slider.play, 0.5 * slider.play);
+}
+
+/// Soft stops and play: what pushes beside the unknown, against the axis.
+struct Springs {
+  double force = 0.0;      ///< [N]
+  double stiffness = 0.0;  ///< [N/m]
+  std::size_t piece = 0;
+};
+
+/// @param slipped where friction carries nothing [m]
+Springs springs_at(const Slider& slider, double s, double slipped) {
+  Springs found;
+  if (slider.has_soft_stops()) {
+    const double beyond = beyond_stops(slider, s);
+    found.force += slider.soft_stop_force(s);
+    if (beyond != 0.0) found.stiffness += slider.stop_stiffness;
+    found.piece += beyond > 0.0 ? 1 : beyond < 0.0 ? 2 : 0;
+  }
+  if (slider.play > 0.0) {
+    const double bend = s - slipped;
+    const double inside = played(slider, bend);
+    found.force -= slider.tangential_stiffness * inside;
+    if (inside == bend) found.stiffness -= slider.tangential_stiffness;
+    found.piece += inside == bend ? 0 : bend > 0.0 ? 3 : 6;
+  }
+  return found;
+}
+
+/// Between the slider's nodes, whatever its status.
+void push_springs(const Slider& slider, const Trial& trial, JointWriter& writer) {
+  const Springs found = springs_at(slider, slide_of(slider, trial), trial.history[0]);
+  const Eigen::Vector3d force = found.force * slider.axis;
+  const Eigen::Matrix3d block = found.stiffness * slider.axis * slider.axis.transpose();
+  writer.carries(found.force);
+  writer.piece(found.piece);
+  writer.force(0, force);
+  writer.force(1, -force);
+  writer.block(0, 0, block);
+  writer.block(1, 1, block);
+  writer.block(0, 1, -block);
+  writer.block(1, 0, -block);
 }
 
 /// Slide of a state [m]: at a stop the clearance itself, rounding must not add up.
@@ -116,7 +171,7 @@ JointStatus after_stick(const Slider& slider, const Trial& trial, JointStatus st
     const double s = way.sign * slide_of(slider, trial);
     if (elastic && s > way.clearance(slider) + trial.length_rounding) return way.stop;
     if (slider.partial_slip) continue;  // one row for stick and slip
-    if (way.sign * trial.force[0] > slider.friction_force + trial.force_rounding) return way.slip;
+    if (way.sign * trial.force[0] > slider.friction_limit() + trial.force_rounding) return way.slip;
   }
   return status;
 }
@@ -138,6 +193,9 @@ std::span<const Parameter<Slider>> Slider::parameters() {
       {"tangential_stiffness_N_per_m", "tangential_stiffness", "N/m", Allowed::positive_or_infinite,
        "Mindlin, of the pad under its normal force", &Slider::tangential_stiffness},
       {"partial_slip", "partial_slip", "-", Allowed::flag, "the case", &Slider::partial_slip},
+      {"stop_stiffness_N_per_m", "stop_stiffness", "N/m", Allowed::positive_or_infinite, "the case",
+       &Slider::stop_stiffness},
+      {"play_m", "play", "m", Allowed::not_negative, "the case", &Slider::play},
   };
   return table;
 }
@@ -157,6 +215,13 @@ void Slider::validate(const Model&) const {
     throw kernel::OutOfRange("slider '" + name + "'", "partial_slip", partial_slip,
                              "0 without friction or with a rigid contact");
   }
+  if (play > 0.0 && !(friction_force > 0.0 && std::isfinite(tangential_stiffness))) {
+    throw kernel::OutOfRange("slider '" + name + "'", "play", play,
+                             "0 without friction or with a rigid contact");
+  }
+  if (play > 0.0 && partial_slip) {
+    throw kernel::OutOfRange("slider '" + name + "'", "play", play, "0 with partial slip");
+  }
 }
 
 int Slider::slip_memory_begin() const {
@@ -175,6 +240,7 @@ void Slider::evaluate(const Trial& trial, JointStatus status, JointWriter& write
   const double s = slide_of(*this, trial);
   const double force = trial.force[0];
   detail::push_along(trial, axis, writer);
+  if (has_springs()) push_springs(*this, trial, writer);
   if (partial_slip && status != JointStatus::stop_plus && status != JointStatus::stop_minus) {
     // In metres: the slide of a spring with the stiffness of a contact that sticks.
     const kernel::PartialSlipLine law = rubbing(*this, trial.history, s);
@@ -196,11 +262,11 @@ void Slider::evaluate(const Trial& trial, JointStatus status, JointWriter& write
       writer.closure(0, s + clearance_minus);
       break;
     case JointStatus::slip_plus:
-      writer.balance(0, force - friction_force);
+      writer.balance(0, force - friction_limit());
       corner = 1.0;
       break;
     case JointStatus::slip_minus:
-      writer.balance(0, force + friction_force);
+      writer.balance(0, force + friction_limit());
       corner = 1.0;
       break;
     default:
@@ -271,15 +337,50 @@ double Slider::dissipation(const Trial& trial, const double* after, double slip)
 }
 
 double Slider::elastic_energy(const Trial& trial, const double* now) const {
-  if (partial_slip) return kernel::elastic_energy(memory_of(now));
-  if (std::isinf(tangential_stiffness)) return 0.0;
-  const double bend = slide_of(*this, trial) - now[0];
-  return 0.5 * tangential_stiffness * bend * bend;
+  const double s = slide_of(*this, trial);
+  double stored = 0.0;
+  if (has_soft_stops()) {
+    const double beyond = beyond_stops(*this, s);
+    stored = 0.5 * stop_stiffness * beyond * beyond;
+  }
+  if (partial_slip) return stored + kernel::elastic_energy(memory_of(now));
+  if (std::isinf(tangential_stiffness)) return stored;
+  double bend = s - now[0];
+  if (play > 0.0) bend -= played(*this, bend);
+  return stored + 0.5 * tangential_stiffness * bend * bend;
+}
+
+std::array<double, 4> Slider::beyond_edges(const Trial& trial) const {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  std::array<double, 4> found{none, none, none, none};
+  const double s = slide_of(*this, trial);
+  if (has_soft_stops()) {
+    found[0] = s - clearance_plus;
+    found[1] = s + clearance_minus;
+  }
+  if (play > 0.0) {
+    const double bend = s - trial.history[0];
+    found[2] = bend - 0.5 * play;
+    found[3] = bend + 0.5 * play;
+  }
+  return found;
 }
 
 void Slider::describe(const Trial& trial, double* outputs) const {
-  outputs[0] = slide_of(*this, trial);
+  const double s = slide_of(*this, trial);
+  outputs[0] = s;
   outputs[1] = trial.force[0];
+  if (play > 0.0) {
+    // In the open play nothing, not the difference of two forces.
+    const double bend = s - trial.history[0];
+    const double inside = played(*this, bend);
+    outputs[1] = inside == bend ? 0.0 : trial.force[0] - tangential_stiffness * inside;
+  }
+  outputs[1] += soft_stop_force(s);
+}
+
+double Slider::soft_stop_force(double s) const {
+  return has_soft_stops() ? stop_stiffness * beyond_stops(*this, s) : 0.0;
 }
 
 double Slider::slide_rounding(const Trial&, double length, double force) const {
@@ -301,7 +402,7 @@ std::optional<LocalContact> Slider::contact(const Trial&, JointStatus status) co
   if (partial_slip) return {};  // its friction is no cone: as a contact it is held
   // Wall and friction share a force that is not told apart: at a stop it is held.
   if (status == JointStatus::stop_plus || status == JointStatus::stop_minus) return {};
-  return LocalContact{0, -1, 1.0, friction_force};
+  return LocalContact{0, -1, 1.0, friction_limit()};
 }
 
 Seat Slider::seat(const Trial&, double, double, double) const {

@@ -103,6 +103,7 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
     std::visit([&](const auto& one) { add(i, column, one); }, model.joints[index(i)]);
     column += frame.forces;
   }
+  refuse_play_beside_springs();
   slip_in_part_ = std::any_of(all_.begin(), all_.end(),
                               [](const Contact& contact) { return contact.slips_in_part; });
   // Across its friction a ball holds as it does along it.
@@ -111,9 +112,20 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   });
   if (damping.size() == 0) return;
   for (Contact& contact : all_) {
+    if (contact.rings.play > 0.0) continue;  // an open play has no dashpot
     contact.damping = damping[contact.joint];
     damped_ = damped_ || contact.damping > 0.0;
   }
+}
+
+/// Their forces are evaluated with those of plays, which the contacts have here.
+void Contacts::refuse_play_beside_springs() const {
+  const auto played = std::find_if(all_.begin(), all_.end(),
+                                   [](const Contact& contact) { return contact.rings.play > 0.0; });
+  if (!springs_ || played == all_.end()) return;
+  throw std::invalid_argument(
+      "slider '" + name_of(system_->model().joints[index(played->joint)]) +
+      "' has a play: in motion there are no soft stops and no latch hinges beside it");
 }
 
 Contact& Contacts::add_rubbing(int joint, int column, double bound, double stiffness) {
@@ -147,8 +159,12 @@ void Contacts::add(int joint, int first_column, const IwanJoint& iwan) {
 }
 
 void Contacts::add(int joint, int first_column, const Slider& slider) {
-  add_rubbing(joint, first_column, slider.friction_force, slider.tangential_stiffness)
-      .slips_in_part = slider.partial_slip != 0;
+  Contact& rubbing =
+      add_rubbing(joint, first_column, slider.friction_force, slider.tangential_stiffness);
+  rubbing.slips_in_part = slider.partial_slip != 0 || slider.play > 0.0;
+  rubbing.rings.play = slider.play;
+  springs_ = springs_ || slider.has_soft_stops();
+  if (slider.has_soft_stops()) return;
   const auto stop = [&](JointStatus which, double sign, double clearance) {
     if (std::isinf(clearance)) return;
     Contact end;
@@ -220,16 +236,31 @@ double Contacts::friction_at_rest(const Contact& contact, const State& state) co
     const double elastic = hinge->elastic_moment(told("hinge_rotation_rad"));
     const double radius = hinge->friction_moment / contact.given_force;
     force = (told("hinge_moment_N_m") - elastic) / radius;
+  } else if (contact.rings.play > 0.0) {
+    force = told("slider_force_N");
   }
   return std::clamp(force, -contact.given_force, contact.given_force);
 }
 
-void Contacts::begin(const State& state) {
+double Contacts::bend_at_rest(const Contact& contact, const State& state,
+                              StartFriction start) const {
+  // Stuck it bends from the middle of its play; slipped it carries the bound.
+  const double carried = contact.friction_force;
+  if (std::abs(carried) >= at_bound * contact.given_force) {
+    const double reach = 0.5 * contact.rings.play + std::abs(carried) * contact.compliance;
+    return std::copysign(reach, carried);
+  }
+  if (start == StartFriction::frictionless) return 0.0;
+  return output(system_->model(), state, contact.joint, "slide_m")[0];
+}
+
+void Contacts::begin(const State& state, StartFriction start) {
   for (Contact& contact : all_) {
     if (contact.beside) continue;
     if (contact.normal_column < 0) {
       contact.friction_force = contact.elastic_friction = friction_at_rest(contact, state);
       contact.compliance = contact.tangential_compliance(contact.given_force);
+      if (contact.rings.play > 0.0) contact.rings.bend = bend_at_rest(contact, state, start);
     }
     if (contact.normal_column < 0 || contact.stop != JointStatus::open) continue;
     const char* key = contact.ball < 0 ? "normal_force_N" : "ball_normal_force_N";
@@ -245,7 +276,7 @@ void Contacts::begin(const State& state) {
 
 void Contacts::tell_rings(StepStart& to) const {
   for (const Contact& contact : all_) {
-    if (!contact.slips_in_part || contact.beside) continue;
+    if (!contact.slips_in_part || contact.beside || contact.rings.play > 0.0) continue;
     double* const history = system_->history(contact.joint, to);
     const auto tell = [&](const auto& joint) {
       if constexpr (requires { joint.slip_memory_begin(); }) {
@@ -310,6 +341,10 @@ void Contacts::write(VectorXd& z, Statuses& statuses) const {
     JointStatus& status = statuses[index(contact.joint)];
     if (contact.normal_column < 0) {
       z[contact.tangential_column] += contact.elastic_friction;
+      if (contact.rings.play > 0.0) {
+        // The joint's unknown is the friction without the play, see Slider.
+        z[contact.tangential_column] += contact.tangential_stiffness * contact.rings.played();
+      }
       // The contacts of a joint follow each other; it slips where any of them does.
       const JointStatus now = rubs(contact, contact.given_force);
       if (contact.joint != last || now != JointStatus::stick) status = now;

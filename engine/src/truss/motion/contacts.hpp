@@ -131,8 +131,8 @@ class Contacts {
   /// Statuses in which every joint has its closures and directions; open only where a journal is in
   /// the very middle of its bearing, where no normal is defined.
   Statuses closed(const VectorXd& z, double time, const StepStart& start) const;
-  /// Forces of contacts as a quasi-static state has them.
-  void begin(const State& state);
+  /// Forces of contacts as a quasi-static state has them. @param start how it was found
+  void begin(const State& state, StartFriction start);
   /// Gaps at q, where the closures are those of an evaluation at the same q and time with all
   /// joints closed and free of force; chooses the active contacts of a step.
   void measure(const VectorXd& z, double time, const StepStart& start, const VectorXd& closures,
@@ -176,6 +176,9 @@ class Contacts {
   void add(int joint, int first_column, const IwanJoint& iwan);
   /// Friction that holds a joint of given normal force in a quasi-static state [N].
   double friction_at_rest(const Contact& contact, const State& state) const;
+  void refuse_play_beside_springs() const;
+  /// Bend of a slider with a play in a quasi-static state [m].
+  double bend_at_rest(const Contact& contact, const State& state, StartFriction start) const;
   /// Dry friction of a given bound [N] behind a spring [N/m].
   Contact& add_rubbing(int joint, int column, double bound, double stiffness);
   /// Friction of a ball as its contacts have it, with their dashpots or without [N].

@@ -81,8 +81,9 @@ void KernelContacts::refuse(const char* kind, const std::string& name, const cha
 void KernelContacts::add(int joint, int first_column, const Slider& slider, double damping) {
   if (slider.second >= 0) refuse(Slider::kind, slider.name, "is between two nodes");
   if (std::isfinite(slider.clearance_minus) || std::isfinite(slider.clearance_plus)) {
-    refuse(Slider::kind, slider.name, "has stops, which are rigid");
+    refuse(Slider::kind, slider.name, "has stops");
   }
+  if (slider.play > 0.0) refuse(Slider::kind, slider.name, "has a play");
   if (slider.friction_force == 0.0) return;
   if (std::isinf(slider.tangential_stiffness)) {
     refuse(Slider::kind, slider.name, "sticks rigidly");

@@ -106,6 +106,7 @@ std::optional<double> end_of_branch(const Rubbing& rubbing, const RubbingWay& wa
 
 std::optional<std::vector<Rubbing>> rubbings(const System& system, const Contacts& contacts) {
   std::vector<Rubbing> found;
+  if (contacts.have_springs()) return {};
   for (const Contact& contact : contacts.all()) {
     const Joint& joint = system.model().joints[index(contact.joint)];
     // The direction of a latch hinge turns with its links.

@@ -2,6 +2,7 @@
 #include "slipping_rings.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace statejump::truss::detail {
 
@@ -22,6 +23,7 @@ double bound_of(const SlippingRings::Pressed& by) {
 
 SlippingRings::Law SlippingRings::law(const Pressed& by, const Vector2d& slide,
                                       const Vector2d& speed, double h) const {
+  if (play > 0.0) return law_of_play(by, slide[0]);
   Law law;
   const double bound = bound_of(by);
   if (!(bound > 0.0)) return law;
@@ -45,7 +47,7 @@ SlippingRings::Law SlippingRings::law(const Pressed& by, const Vector2d& slide,
 
 Vector2d SlippingRings::kink(const Pressed& by) const {
   const double bound = bound_of(by);
-  if (!(bound > 0.0)) return Vector2d::Zero();
+  if (!(bound > 0.0) || play > 0.0) return Vector2d::Zero();
   const kernel::PartialSlipPlane rings =
       kernel::partial_slip_plane(by.stiffness, bound, {0.0, 0.0}, memory);
   const double size = rings.centre.norm();
@@ -62,7 +64,32 @@ void SlippingRings::see(bool begins, const Pressed& by, const Vector2d& speed, c
   seen_speed = beyond ? Vector2d((from - slid) / h) : speed;
 }
 
+double SlippingRings::played() const {
+  return std::clamp(bend, -0.5 * play, 0.5 * play);
+}
+
+SlippingRings::Law SlippingRings::law_of_play(const Pressed& by, double slide) const {
+  SlippingRings there = *this;
+  there.bend += slide;
+  const double pulls = by.stiffness * (there.bend - there.played());
+  const double bound = bound_of(by);
+  Law law;
+  law.friction[0] = std::clamp(pulls, -bound, bound);
+  if (pulls != 0.0 && std::abs(pulls) <= bound) law.by_slide(0, 0) = by.stiffness;
+  return law;
+}
+
+Vector2d SlippingRings::take_play(const Pressed& by, double slide) {
+  const double friction = law_of_play(by, slide).friction[0];
+  const double reach = 0.5 * play + bound_of(by) / by.stiffness;
+  slip_all = std::abs(bend + slide) >= reach;
+  bend = std::clamp(bend + slide, -reach, reach);
+  energy = 0.5 * friction * friction / by.stiffness;
+  return {friction, 0.0};
+}
+
 Vector2d SlippingRings::take(const Pressed& by, const Vector2d& slide) {
+  if (play > 0.0) return take_play(by, slide[0]);
   const double bound = bound_of(by);
   const kernel::PartialSlipResponse now = kernel::partial_slip_step(
       bound > 0.0 ? by.stiffness : 0.0, bound, {slide[0], slide[1]}, memory);

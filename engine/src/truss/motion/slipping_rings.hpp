@@ -10,10 +10,15 @@ namespace statejump::truss::detail {
 /// Friction of a contact that slides at its rim first, as a row of rings each under its own bound.
 /// No branch of the contact tells which of them slip: the law is one function of the slide of a
 /// step, whose slope falls from k_t to 0, and its tangent is what a step is solved with.
+///
+/// So is the friction of a contact with a play in series: k_t times what the bend has beyond half
+/// of the play, up to Coulomb's bound. It has one ring, one direction and no dashpot.
 struct SlippingRings {
   kernel::PartialSlipMemory memory;  ///< At the end of the last step.
   double energy = 0.0;               ///< That it holds [J].
   bool slip_all = false;             ///< None of them stuck there.
+  double play = 0.0;                 ///< Width of the play in series [m].
+  double bend = 0.0;                 ///< Of a contact with a play, at the end of the last step [m].
 
   /// Where in a step the tangent of the law is taken: slide [m] and speed [m/s].
   Eigen::Vector2d seen_slide = Eigen::Vector2d::Zero();
@@ -51,6 +56,13 @@ struct SlippingRings {
            const Eigen::Vector2d& slid, double h);
   /// Takes a step over. @return friction without the dashpot [N]
   Eigen::Vector2d take(const Pressed& by, const Eigen::Vector2d& slide);
+
+  /// Part of the bend that the play takes [m].
+  double played() const;
+
+ private:
+  Law law_of_play(const Pressed& by, double slide) const;
+  Eigen::Vector2d take_play(const Pressed& by, double slide);
 };
 
 }  // namespace statejump::truss::detail

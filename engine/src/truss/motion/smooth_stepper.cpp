@@ -78,7 +78,7 @@ void SmoothStepper::begin(const VectorXd& q, const VectorXd& v, const State* equ
   z_.head(n) = q;
   statuses_ = system_->all_stick();
   origin_ = system_->begin(z_, 0.0, statuses_, 1.0);
-  if (equilibrium != nullptr) contacts_.begin(*equilibrium);
+  if (equilibrium != nullptr) contacts_.begin(*equilibrium, options_->start_friction);
   // Directions of the contacts, which stay as they are.
   Assembly joints = system_->assembly(System::Parts::joints);
   system_->evaluate_joints(z_, 0.0, origin_, statuses_, joints);

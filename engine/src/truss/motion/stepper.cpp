@@ -36,7 +36,7 @@ void Stepper::begin(const VectorXd& q, const VectorXd& v, const State* equilibri
   z_.head(q.size()) = q;
   Statuses statuses = system_->all_stick();
   origin_ = system_->begin(z_, 0.0, statuses, 1.0);
-  if (equilibrium != nullptr) contacts_.begin(*equilibrium);
+  if (equilibrium != nullptr) contacts_.begin(*equilibrium, options_->start_friction);
   contacts_.write(z_, statuses);
   evaluate_contacts(q_, 0.0);
   contacts_.measure(z_, 0.0, origin_, joints_.residual, 0.0);

@@ -41,6 +41,9 @@ class Joint(Section):
     friction_coefficient: float = parameter(..., "-", 0, 10, PAPER)
     clearance_minus_m: float = parameter(..., "m", 0, 1e2, PAPER, above=True)
     clearance_plus_m: float = parameter(..., "m", 0, 1e2, PAPER, above=True)
+    stop_stiffness_N_per_m: float | None = parameter(
+        None, "N/m", 0, 1e15, "of a stop itself, as the bearing of a bolt; rigid, in the DEM as stiff as the pad",
+        above=True)
     preload_stiffness_N_per_m: float = parameter(0.0, "N/m", 0, 1e15, "none in the paper's case")
     preload_force_N: float = parameter(
         0.0, "N", -1e9, 1e9, "tension of that spring at displacement 0, towards the root of the bar; none in the "
@@ -146,6 +149,14 @@ class SpringSliderCase(Case):
         pad = joint.pad_thermal_expansion_per_K * joint.pad_radius_m
         return start + (stop - pad) * temperature_change_K
 
+    def held_m(self, place_m: float, stiffness_N_per_m: float) -> float:
+        """Return where the block comes to, which without stops would be at a place, held by a spring [m]."""
+        joint = self.joint
+        inside = min(max(place_m, -joint.clearance_minus_m), joint.clearance_plus_m)
+        if joint.stop_stiffness_N_per_m is None:
+            return inside
+        return inside + (place_m - inside) * stiffness_N_per_m / (stiffness_N_per_m + joint.stop_stiffness_N_per_m)
+
     def _check_expansion(self) -> None:
         key, constant = "link.thermal_expansion_per_K", self.link.thermal_expansion_per_K
         if self.expansion is None:
@@ -193,6 +204,11 @@ class SpringSliderCase(Case):
                 "joint.preload_force_N", joint.preload_force_N,
                 f"its size and the friction force {self.friction_force_N:g} N must stay below E A = {rigidity:g} N",
             )
+        if joint.stop_stiffness_N_per_m is not None:
+            for key in ("pad_thermal_expansion_per_K", "slot_thermal_expansion_per_K"):
+                if getattr(joint, key):
+                    raise NotAllowed(f"joint.{key}", getattr(joint, key),
+                                     "must be 0 with joint.stop_stiffness_N_per_m: soft stops do not expand")
         if self.dem.time_step_s is not None:
             stable = stable_step.stable_time_step(self)
             if self.dem.time_step_s > stable:

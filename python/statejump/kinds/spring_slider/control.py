@@ -53,7 +53,8 @@ def jump_of(case: SpringSliderCase) -> Jump:
     slips = any(segment.motion == "slide" for segment in path.segments)
     last = path.segments[-1]
     start = path.segments[0].start_displacement_m
-    free = -case.joint.clearance_minus_m < start < case.joint.clearance_plus_m
+    free = all(-case.joint.clearance_minus_m < place < case.joint.clearance_plus_m
+               for place in (start, last.end_displacement_m))
     closed = free and last.motion == "slide" and last.end_temperature_change_K == 0
     # A block that has not moved keeps the place that it started from.
     return Jump(abs(path.state_jump_m), closed_form_m(path) if closed else None, slips)

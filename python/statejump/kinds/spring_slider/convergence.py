@@ -222,7 +222,8 @@ def _what_stays(found: Convergence) -> list[str]:
             f"{plain(slide, 'm', 2)}, {plain(slide / rate, 'K', 2)} of thermal displacement"
             f"{'' if math.isnan(late) else seen};")
     push = stable_step.largest_stop_force(case)
-    if push > 0 and not math.isnan(slowest.stop_reached_error_K):
+    soft = joint.stop_stiffness_N_per_m is not None
+    if push > 0 and not soft and not math.isnan(slowest.stop_reached_error_K):
         lines.append(f"- the Hertz stiffness of the stop lets the slider sink in, by up to "
                      f"{plain(physics.hertz_depth_m(push, hertz), 'm', 2)}; the RMS difference of the slowest cycle is "
                      f"{slowest.displacement_rms_over_largest:.2g} of the largest displacement;")

@@ -42,6 +42,8 @@ def start_displacement(case: SpringSliderCase) -> float:
     """Return where the block starts [m]: as in the reduced model; a stop in its way gives by Hertz."""
     joint = case.joint
     model = reduced.spring_slider(case)
+    if joint.stop_stiffness_N_per_m is not None:
+        return model.start_displacement_m
     for side in (1, -1):
         clearance = case.clearance_m(side, 0.0)
         stiffness = stable_step.link_stiffness(case) + joint.preload_stiffness_N_per_m

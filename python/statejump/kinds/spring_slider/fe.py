@@ -38,6 +38,9 @@ def answer(case: SpringSliderCase) -> ccx.Answer:
     joint = case.joint
     if case.expansion is not None:
         raise NotAllowed("expansion", cause="'statejump fe' takes one coefficient of expansion")
+    if joint.stop_stiffness_N_per_m is not None:
+        raise NotAllowed("joint.stop_stiffness_N_per_m", joint.stop_stiffness_N_per_m,
+                         "'statejump fe' takes rigid stops only")
     for key in ("preload_stiffness_N_per_m", "preload_force_N", "pad_thermal_expansion_per_K",
                 "slot_thermal_expansion_per_K"):
         if getattr(joint, key):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 
@@ -28,6 +29,7 @@ def spring_slider(case: SpringSliderCase) -> _engine.SpringSlider:
         preload_stiffness_N_per_m=case.joint.preload_stiffness_N_per_m,
         preload_force_N=case.joint.preload_force_N,
         start_friction=case.start.friction,
+        stop_stiffness_N_per_m=inf if case.joint.stop_stiffness_N_per_m is None else case.joint.stop_stiffness_N_per_m,
     )
 
 

@@ -9,7 +9,8 @@ along two axes:
 
 Contacts are Hertz-Mindlin at the largest force they can see: the floor at twice the normal force (a load
 applied at once overshoots to twice its value), a stop at the force that would hold the whole thermal
-overlap and the preload rigidly, doubled for impact. Dashpots of all contacts of an axis are added.
+overlap and the preload rigidly, doubled for impact. A stop of a stiffness of its own has that one. Dashpots
+of all contacts of an axis are added.
 """
 from __future__ import annotations
 
@@ -63,6 +64,8 @@ def stable_time_step(case: SpringSliderCase) -> float:
     """Largest stable time step [s] of the DEM run of a case."""
     floor_normal, floor_tangential = contact_stiffness(case, 2 * case.joint.normal_force_N)
     stop_normal, stop_tangential = contact_stiffness(case, 2 * largest_stop_force(case))
+    if case.joint.stop_stiffness_N_per_m is not None:
+        stop_normal, stop_tangential = case.joint.stop_stiffness_N_per_m, 0.0
     link = link_stiffness(case) + case.joint.preload_stiffness_N_per_m
     mass = tip_mass(case)
     axes = (

@@ -123,7 +123,7 @@ def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_
     stroke = link.stress_free_length_m * strain
     zero = (bar * stroke - joint.preload_force_N) / total
     half = friction_force_N / total
-    ends = [min(max(place, -joint.clearance_minus_m), joint.clearance_plus_m) for place in (zero - half, zero + half)]
+    ends = [case.held_m(place, total) for place in (zero - half, zero + half)]
     return Segment(float(temperature_change_K), ends[0], ends[1], zero)
 
 

@@ -31,6 +31,8 @@ def describe(case: SpringSliderCase) -> list[str]:
     minus, plus = joint.clearance_minus_m, joint.clearance_plus_m
     both = f"{text(minus, 'm')} and {text(plus, 'm')} away"
     stops = f"{text(plus, 'm')} away on either side" if minus == plus else both
+    if joint.stop_stiffness_N_per_m is not None:
+        stops += f" and give way by {text(joint.stop_stiffness_N_per_m, 'N/m')}"
     sentences = [
         f"A bar, {text(link.stress_free_length_m, 'm')} long and {text(link.cross_section_area_m2, 'm2')} in "
         f"section, is held at one end and pushes a block at the other.",

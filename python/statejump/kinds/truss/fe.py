@@ -81,6 +81,9 @@ def _sliding(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Qu
     """
     if truss.number_of_joints() > len(truss.sliders.names) or truss.sticking == "partial_slip":
         raise NotAllowed("joints", cause="beside them there are other joints, or partial slip")
+    for index in np.flatnonzero(truss.sliders.have_springs)[:1]:
+        raise NotAllowed("slider", cause="the deck's sliders have rigid stops and no play",
+                         item=f"slider {truss.sliders.names[index]!r}")
     if truss.start_friction == FRICTIONLESS:
         raise NotAllowed("start.friction", truss.start_friction, "the deck's sliders stick where they are drawn")
     return fe_sliding.rows(case, truss)
@@ -131,7 +134,9 @@ def _pinned(truss: ResolvedTruss) -> ResolvedTruss:
     kept = np.unique(place)
     number_of = {int(node): index for index, node in enumerate(kept)}
     at = np.array([number_of[int(node)] for node in place])
-    nodes, links, sliders = truss.nodes, truss.links, truss.sliders
+    nodes, links = truss.nodes, truss.links
+    # What is locked has no play.
+    sliders = replace(truss.sliders, play_m=0 * truss.sliders.play_m)
     fixed, force = np.zeros((len(kept), 3), dtype=bool), np.zeros((len(kept), 3))
     np.logical_or.at(fixed, at, nodes.fixed)
     np.add.at(force, at, nodes.force_N)

@@ -44,6 +44,23 @@ TEST(Slider, GradientsAreThoseOfItsForces) {
                      JointStatus::stop_plus, JointStatus::stop_minus},
                     1e-8, 1e-4);
   }
+  // z presses the soft stop on the plus side; its bend is in the play, and beyond it.
+  slider.partial_slip = 0;
+  slider.tangential_stiffness = 1e7;
+  slider.clearance_minus = slider.clearance_plus = 1e-6;
+  slider.stop_stiffness = 3e6;
+  for (const double play : {0.0, 1e-4, 1e-6}) {
+    slider.play = play;
+    model.joints = {slider};
+    const detail::System system(model);
+    Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(system.unknowns(), 1e-5, 6e-5);
+    z[6] = 12.0;
+    Eigen::VectorXd before = z;
+    before[1] += 1e-5;
+    check_gradients(model, z, before,
+                    {JointStatus::stick, JointStatus::slip_plus, JointStatus::slip_minus}, 1e-8,
+                    1e-4);
+  }
 }
 
 }  // namespace

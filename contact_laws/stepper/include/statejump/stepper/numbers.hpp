@@ -83,11 +83,13 @@ inline bool has_friction_without_stiffness(const Torsion& spring) {
 
 /// Of a slider between two bodies; where friction has a limit or there are stops, their stiffness
 /// has to be above 0. Clearances are 0 or above, infinity where there is no stop.
-constexpr Quantities<Prismatic, 7> prismatic_quantities = {
-    {{"stiffnessAcross", &Prismatic::stiffnessAcross, Allowed::positive, "N/m"},
+constexpr Quantities<Prismatic, 9> prismatic_quantities = {
+    {{"stiffnessAcross", &Prismatic::stiffnessAcross, Allowed::not_negative, "N/m"},
      {"frictionLimit", &Prismatic::frictionLimit, Allowed::not_negative, "N"},
      {"frictionStiffness", &Prismatic::frictionStiffness, Allowed::not_negative, "N/m"},
      {"stopStiffness", &Prismatic::stopStiffness, Allowed::not_negative, "N/m^1.5"},
+     {"stopSpring", &Prismatic::stopSpring, Allowed::not_negative, "N/m"},
+     {"play", &Prismatic::play, Allowed::not_negative, "m"},
      {"dampingRatio", &Prismatic::dampingRatio, Allowed::not_negative, "-"},
      {"slipPosition", &Prismatic::slipPosition, Allowed::finite, "m"},
      {"frictionForce", &Prismatic::frictionForce, Allowed::finite, "N"}}};
@@ -98,7 +100,7 @@ inline bool has_friction_without_stiffness(const Prismatic& joint) {
 
 inline bool has_stop_without_stiffness(const Prismatic& joint) {
   return std::isfinite(std::min(joint.clearanceMinus, joint.clearancePlus)) &&
-         !(joint.stopStiffness > 0);
+         !(joint.stopStiffness + joint.stopSpring > 0);
 }
 
 /// Of a contact that touches: ContactPhysics or JointPhys.

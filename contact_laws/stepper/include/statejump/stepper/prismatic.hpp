@@ -19,12 +19,15 @@ using kernel::Vector3;
 /// along an axis fixed in space. With the slide s = (x1 - x2 - offset) . axis the force on body 1
 /// against the axis is friction and stop,
 ///
-///     F_f = clamp(k_t (s - s_f); -f, f),   s_f follows where it slips: a spring behind a slider;
-///     stop: Hertz's K d^1.5 of the depth d by which s is beyond a clearance.
+///     F_f = clamp(k_t b; -f, f),   s_f follows where it slips: a spring behind a slider;
+///     stop: Hertz's K d^1.5 and a spring k_s d of the depth d by which s is beyond a clearance.
+///
+/// The bend b of the spring is what s - s_f has beyond half of the play w: b = (s - s_f) -
+/// clamp(s - s_f; -w/2, w/2). Within the play nothing but stops resists.
 ///
 /// Across the axis a spring k_n holds both bodies together. Forces act at the bodies' centres and
 /// do not turn them. Each spring has the dashpot of a damping ratio: that of friction while it
-/// sticks, within its limit, that of a stop as long as it does not pull.
+/// sticks, within its limit, that of a stop or of a closed play as long as it does not pull.
 struct Prismatic {
   int id1 = -1;
   int id2 = -1;
@@ -36,6 +39,8 @@ struct Prismatic {
   double clearanceMinus = std::numeric_limits<double>::infinity();  ///< [m]
   double clearancePlus = std::numeric_limits<double>::infinity();   ///< [m]
   double stopStiffness = 0;                                         ///< K [N/m^1.5]
+  double stopSpring = 0;                                            ///< k_s [N/m]
+  double play = 0;                                                  ///< w [m]
   double dampingRatio = 0;                                          ///< [-]
   double slide = 0;                                                 ///< s [m]
   double slipPosition = 0;                                          ///< s_f [m]
@@ -66,7 +71,9 @@ inline double stop_depth(const Prismatic& joint) {
 
 /// Largest stiffness that the joint has at its present slide [N/m].
 inline double largest_stiffness(const Prismatic& joint) {
-  const double stop = 1.5 * joint.stopStiffness * std::sqrt(std::max(0.0, stop_depth(joint)));
+  const double depth = stop_depth(joint);
+  double stop = 1.5 * joint.stopStiffness * std::sqrt(std::max(0.0, depth));
+  if (depth > 0) stop += joint.stopSpring;
   const double sticks = joint.frictionLimit > 0 ? joint.frictionStiffness : 0;
   return std::max(joint.stiffnessAcross, sticks + stop);
 }
@@ -74,6 +81,12 @@ inline double largest_stiffness(const Prismatic& joint) {
 /// Of the dashpot of that spring [N s/m]. @param mass 1/(1/m1 + 1/m2) [kg]
 inline double largest_damping(const Prismatic& joint, double mass) {
   return kernel::viscous_damping(joint.dampingRatio, mass, largest_stiffness(joint));
+}
+
+/// What s - s_f has beyond the play [m].
+inline double friction_bend(const Prismatic& joint) {
+  const double bend = joint.slide - joint.slipPosition;
+  return bend - std::clamp(bend, -0.5 * joint.play, 0.5 * joint.play);
 }
 
 /// @param time_step [s]
@@ -97,19 +110,22 @@ inline PrismaticStep prismatic_step(Prismatic& joint, const PrismaticMotion& mot
   double along = 0;  // against the axis
   if (joint.frictionLimit > 0) {
     const double limit = joint.frictionLimit;
-    double friction = joint.frictionStiffness * (slide - joint.slipPosition);
+    double friction = joint.frictionStiffness * friction_bend(joint);
     if (std::abs(friction) > limit) {
       friction = std::copysign(limit, friction);
-      const double slid_to = slide - friction / joint.frictionStiffness;
+      const double slid_to =
+          slide - friction / joint.frictionStiffness - std::copysign(0.5 * joint.play, friction);
       // Leapfrog does its work with the mean of the forces of two steps.
       step.friction = 0.5 * (friction + joint.frictionForce) * (slid_to - joint.slipPosition);
       joint.slipPosition = slid_to;
       along = friction;
-    } else {
-      along = std::clamp(friction + dashpot(joint.frictionStiffness) * speed, -limit, limit);
+    } else if (joint.play == 0 || friction != 0) {
+      const double most = joint.play > 0 && friction < 0 ? 0 : limit;
+      const double least = joint.play > 0 && friction > 0 ? 0 : -limit;
+      along = std::clamp(friction + dashpot(joint.frictionStiffness) * speed, least, most);
       step.damping += (along - friction) * speed * time_step;
     }
-    step.elastic += 0.5 * friction * (slide - joint.slipPosition);
+    step.elastic += 0.5 * friction * friction_bend(joint);
     joint.frictionForce = friction;
   }
 
@@ -118,11 +134,12 @@ inline PrismaticStep prismatic_step(Prismatic& joint, const PrismaticMotion& mot
   if (depth > 0) {
     const double sign = slide > 0 ? 1.0 : -1.0;
     const double root = std::sqrt(depth);
-    const double pushes = joint.stopStiffness * depth * root;
-    const double pressed = kernel::damped_normal_force(
-        pushes, dashpot(1.5 * joint.stopStiffness * root), sign * speed);
+    const double hertz = joint.stopStiffness * depth * root;
+    const double pushes = hertz + joint.stopSpring * depth;
+    const double stiffness = 1.5 * joint.stopStiffness * root + joint.stopSpring;
+    const double pressed = kernel::damped_normal_force(pushes, dashpot(stiffness), sign * speed);
     joint.stopForce = sign * pressed;
-    step.elastic += 0.4 * pushes * depth;
+    step.elastic += 0.4 * hertz * depth + 0.5 * joint.stopSpring * depth * depth;
     step.damping += (pressed - pushes) * sign * speed * time_step;
   }
   step.force -= (along + joint.stopForce) * joint.axis;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <limits>
 
 #include "statejump/truss/joints/interface.hpp"
@@ -25,6 +26,21 @@ namespace statejump::truss {
 /// With partial slip λ_f is the force of kernel::partial_slip_step() under the constant limit f,
 /// one step of it from state to state: one row for stick and slip. `slip±` then says that the whole
 /// contact slides.
+///
+/// **Soft stops.** Stops of a stiffness k_s push by W(s) = k_s (s − clamp(s; −c−, c+)), beside
+/// friction. W has a potential and no memory, so that friction alone has branches: λ is friction,
+/// and W is a spring between the nodes. Friction and stop are then both determined.
+///
+/// **Play.** A play of width w in series with the contact k_t moves with the slip. With the bend
+/// e = s − p the contact carries k_t dz(e), dz(e) = e − clamp(e; ±w/2), and slips at ±f, where
+/// |e| = w/2 + f/k_t. Since
+///
+///     k_t dz(e) = k_t e − k_t clamp(e; ±w/2),
+///
+/// it is a friction λ = k_t e of the limit f + k_t w/2 beside a spring −k_t clamp(e; ±w/2):
+/// branches, rows and memory are those without play. Slip turns f into heat, not the limit of λ. At
+/// the start the joint is in the middle of its play. Needs friction, a finite k_t, and no partial
+/// slip.
 struct Slider {
   std::string name;
   int first = 0;
@@ -37,6 +53,9 @@ struct Slider {
   double tangential_stiffness = std::numeric_limits<double>::infinity();
   /// 1: slides at the rim of its contact first. Needs friction and a finite k_t.
   int partial_slip = 0;
+  /// k_s of the stops [N/m], > 0; infinity: rigid.
+  double stop_stiffness = std::numeric_limits<double>::infinity();
+  double play = 0.0;  ///< w [m], >= 0.
 
   static constexpr const char* kind = "slider";
   int history() const;
@@ -54,6 +73,20 @@ struct Slider {
   double dissipation(const Trial& trial, const double* after, double slip) const;
   double elastic_energy(const Trial& trial, const double* now) const;
   void describe(const Trial& trial, double* outputs) const;
+  /// Whether stops or a play push beside the friction, as springs.
+  bool has_springs() const { return has_soft_stops() || play > 0.0; }
+  bool has_soft_stops() const {
+    return stop_stiffness < std::numeric_limits<double>::infinity() &&
+           (clearance_minus < std::numeric_limits<double>::infinity() ||
+            clearance_plus < std::numeric_limits<double>::infinity());
+  }
+  /// Bound of the unknown λ [N]: f, and what closes half of the play.
+  double friction_limit() const {
+    return play > 0.0 ? friction_force + 0.5 * play * tangential_stiffness : friction_force;
+  }
+  /// W of soft stops against the axis where the slide is s [N]; 0 of rigid ones.
+  double soft_stop_force(double s) const;
+  std::array<double, 4> beyond_edges(const Trial& trial) const;
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
   JointStatus settled(const Trial& trial, JointStatus status) const;

@@ -23,7 +23,8 @@ from statejump.kinds.truss.generate.document import Document
 from statejump.schema.rules import suggestion
 from statejump.schema.toml import read_toml
 
-SLIDER = ("axis", "friction_coefficient", "normal_force_N", "clearance_minus_m", "clearance_plus_m", "pad_radius_m")
+SLIDER = ("axis", "friction_coefficient", "normal_force_N", "clearance_minus_m", "clearance_plus_m",
+          "stop_stiffness_N_per_m", "play_m", "pad_radius_m")
 REVOLUTE = ("link", "bearing_link", "axis", "journal_radius_m", "radial_clearance_m", "friction_coefficient",
             "journal_thermal_expansion_per_K", "bearing_thermal_expansion_per_K", "contact")
 AXES = {"x": [1.0, 0.0, 0.0], "y": [0.0, 1.0, 0.0], "z": [0.0, 0.0, 1.0]}

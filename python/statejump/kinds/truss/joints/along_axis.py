@@ -92,11 +92,11 @@ class AlongAxis(JointType[ItemType, ArraysType]):
 
     def add_friction(self, loads: Loads, joints: ArraysType, state: Mapping[str, np.ndarray]) -> None:
         for index, (friction, (first, second), axis) in enumerate(
-                zip(self.friction_N(state), joints.nodes, joints.axis)):
+                zip(self.friction_N(joints, state), joints.nodes, joints.axis)):
             loads.push(index, first, -friction * axis)
             loads.push(index, second, friction * axis)
 
-    def friction_N(self, state: Mapping[str, np.ndarray]) -> np.ndarray:
+    def friction_N(self, joints: ArraysType, state: Mapping[str, np.ndarray]) -> np.ndarray:
         """Return the friction on the first node against the axis (joints,) in one state of the solver."""
         raise NotImplementedError
 

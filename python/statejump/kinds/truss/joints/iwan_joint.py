@@ -114,7 +114,7 @@ class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
             f"{spread((100 * share for share in slack), '-', 2)} % of the slip force above that of the model."
         )
 
-    def friction_N(self, state: Mapping[str, np.ndarray]) -> np.ndarray:
+    def friction_N(self, joints: IwanJoints, state: Mapping[str, np.ndarray]) -> np.ndarray:
         return state["iwan_force_N"]  # all of its springs end in friction: without it the joint carries nothing
 
     def carried_friction(self, joints: IwanJoints, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

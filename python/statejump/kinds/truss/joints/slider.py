@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from statejump.core import physics
+from statejump.core.errors import NotAllowed
 from statejump.core.start import FRICTIONLESS
 from statejump.core.units import text
 from statejump.kinds.truss.arrays import GROUND, References, columns, names, pairs, unit, vectors
@@ -44,6 +45,10 @@ class Slider(Item):
     normal_force_N: float = parameter(..., "N", 0, 1e9, USER)
     clearance_minus_m: float | None = parameter(None, "m", 0, 1e2, "against the axis; no stop", above=True)
     clearance_plus_m: float | None = parameter(None, "m", 0, 1e2, "along the axis; no stop", above=True)
+    stop_stiffness_N_per_m: float | None = parameter(
+        None, "N/m", 0, 1e15, "of a stop itself, as the bearing of a bolt; rigid, in the DEM as stiff as the pad",
+        above=True)
+    play_m: float = parameter(0.0, "m", 0, 1e2, "lost motion at each reversal, which moves with the slide; none")
     pad_radius_m: float = parameter(0.05, "m", 0, 1e2, CHOICE + "; if not rigid, and in the DEM", above=True)
     young_modulus_Pa: float = parameter(70e9, "Pa", 0, 1e13, ALUMINIUM + "; if not rigid, and in the DEM", above=True)
     poisson_ratio: float = parameter(0.3, "-", -0.99, 0.49, ALUMINIUM + "; if not rigid, and in the DEM")
@@ -61,9 +66,32 @@ class Sliders:
     normal_force_N: np.ndarray
     clearance_minus_m: np.ndarray  # inf: no stop
     clearance_plus_m: np.ndarray  # inf: no stop
+    stop_stiffness_N_per_m: np.ndarray  # inf: rigid
+    play_m: np.ndarray
     pad_radius_m: np.ndarray
     young_modulus_Pa: np.ndarray
     poisson_ratio: np.ndarray
+
+    @property
+    def friction_limit_N(self) -> np.ndarray:
+        """Coulomb's limit."""
+        return np.asarray(self.friction_coefficient * self.normal_force_N)
+
+    @property
+    def have_stops(self) -> np.ndarray:
+        """Whether there is a stop on either side."""
+        return np.isfinite(self.clearance_minus_m) | np.isfinite(self.clearance_plus_m)
+
+    @property
+    def have_springs(self) -> np.ndarray:
+        """Whether stops are soft or there is a play: in the DEM a prismatic joint, on ground too."""
+        return np.isfinite(self.stop_stiffness_N_per_m) | (self.play_m > 0)
+
+    def soft_stop_N(self, slide_m: np.ndarray) -> np.ndarray:
+        """Return the force of soft stops on the sliders against their axes [N]; 0 of rigid ones."""
+        soft = np.isfinite(self.stop_stiffness_N_per_m)
+        beyond = slide_m - np.clip(slide_m, -self.clearance_minus_m, self.clearance_plus_m)
+        return np.asarray(np.where(soft, self.stop_stiffness_N_per_m, 0.0) * beyond)
 
 
 @dataclass(frozen=True)
@@ -111,7 +139,8 @@ def with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
     sliders, count = truss.sliders, len(joints.names)
     nothing, no_stop = np.zeros(count), np.full(count, np.inf)
     more = {**dict.fromkeys(vars(sliders), nothing), "nodes": joints.nodes, "axis": joints.axis,
-            "clearance_minus_m": no_stop, "clearance_plus_m": no_stop, "pad_radius_m": np.ones(count),
+            "clearance_minus_m": no_stop, "clearance_plus_m": no_stop, "stop_stiffness_N_per_m": no_stop,
+            "pad_radius_m": np.ones(count),
             "young_modulus_Pa": np.ones(count)}
     both: dict[str, Any] = {key: np.concatenate([value, more[key]]) for key, value in vars(sliders).items()
                             if key != "names"}
@@ -146,28 +175,48 @@ class SliderType(AlongAxis[Slider, Sliders]):
         JointColumn("slide_m"),
         JointColumn("slider_force_N", "friction and stop on the slider, against its axis"),
     )
-    varied = ("friction_coefficient", "normal_force_N", "clearance_minus_m", "clearance_plus_m")
+    varied = ("friction_coefficient", "normal_force_N", "clearance_minus_m", "clearance_plus_m",
+              "stop_stiffness_N_per_m", "play_m")
     has_contacts = True
 
     def resolve(self, items: Sequence[Slider], known: References) -> Sliders:
-        stops = columns(items, "clearance_minus_m", "clearance_plus_m")
+        stops = columns(items, "clearance_minus_m", "clearance_plus_m", "stop_stiffness_N_per_m")
         return Sliders(
             names=names(items), nodes=pairs(items, "nodes", known.node),
             axis=unit(vectors(items, "axis", known.dimension)),
-            **columns(items, "friction_coefficient", "normal_force_N", "pad_radius_m", "young_modulus_Pa",
+            **columns(items, "friction_coefficient", "normal_force_N", "play_m", "pad_radius_m", "young_modulus_Pa",
                       "poisson_ratio"),
             **{key: np.where(np.isnan(values), inf, values) for key, values in stops.items()},
         )
 
+    def check_geometry(self, truss: ResolvedTruss, joints: Sliders, ranges_K: np.ndarray) -> None:
+        super().check_geometry(truss, joints, ranges_K)
+        soft, played = np.isfinite(joints.stop_stiffness_N_per_m), joints.play_m > 0
+        for index in np.flatnonzero(soft & ~joints.have_stops)[:1]:
+            raise NotAllowed("stop_stiffness_N_per_m", float(joints.stop_stiffness_N_per_m[index]),
+                             "needs a stop: give clearance_minus_m or clearance_plus_m",
+                             **self.where(joints.names[index]))
+        for index in np.flatnonzero(played & (joints.friction_limit_N == 0))[:1]:
+            raise NotAllowed("play_m", float(joints.play_m[index]),
+                             "needs friction, in series with which it is: give friction_coefficient and normal_force_N",
+                             **self.where(joints.names[index]))
+        for index in np.flatnonzero(played & (truss.sticking == "partial_slip"))[:1]:
+            raise NotAllowed("play_m", float(joints.play_m[index]),
+                             'must be 0 with reduced.sticking = "partial_slip": no contact with both is known',
+                             **self.where(joints.names[index]))
+
     def engine_arrays(self, truss: ResolvedTruss, joints: Sliders) -> dict[str, Any]:
-        loaded = (truss.sticking != "rigid") & (joints.normal_force_N > 0)
-        friction_force_N = joints.friction_coefficient * joints.normal_force_N
+        # What closes a play gives way, whatever else sticks rigidly.
+        loaded = ((truss.sticking != "rigid") | (joints.play_m > 0)) & (joints.normal_force_N > 0)
         return {
             **super().engine_arrays(truss, joints),
-            "friction_force_N": friction_force_N,
+            "friction_force_N": joints.friction_limit_N,
             "tangential_stiffness_N_per_m": np.where(loaded, pads(joints).tangential_N_per_m, inf),
-            "partial_slip": (truss.sticking == "partial_slip") & (friction_force_N > 0),
+            "partial_slip": (truss.sticking == "partial_slip") & (joints.friction_limit_N > 0),
         }
+
+    def pushes_beside_contacts(self, joints: Sliders) -> bool:
+        return bool(np.isfinite(joints.stop_stiffness_N_per_m).any())
 
     def contacts(self, run: Sampled, joints: Sliders) -> Contacts:
         slide = run.columns["slide_m"]
@@ -207,24 +256,37 @@ class SliderType(AlongAxis[Slider, Sliders]):
         stops = np.concatenate((joints.clearance_minus_m, joints.clearance_plus_m))
         if np.isfinite(stops).any():
             said += f", stops at {scaled(stops[np.isfinite(stops)], 1e3, 'mm')}"
+        soft = np.isfinite(joints.stop_stiffness_N_per_m)
+        if soft.any():
+            said += f" of {scaled(joints.stop_stiffness_N_per_m[soft], 1e-6, 'N/µm')}"
+        if (joints.play_m > 0).any():
+            said += f", play {scaled(joints.play_m[joints.play_m > 0], 1e3, 'mm')}"
         return said
 
     def describe(self, items: Sequence[Slider]) -> str:
         stops = sum(side is not None for joint in items for side in (joint.clearance_minus_m, joint.clearance_plus_m))
         limits = (joint.friction_coefficient * joint.normal_force_N for joint in items)
-        return (f"{count(items, 'sliding joint')} held by friction up to {spread(limits, 'N')}, "
-                f"{f'with {stops} stops' if stops else 'without stops'}.")
+        said = f"with {stops} stops" if stops else "without stops"
+        soft = [joint.stop_stiffness_N_per_m for joint in items if joint.stop_stiffness_N_per_m is not None]
+        if soft:
+            said += f" that give way by {spread(soft, 'N/m')}"
+        plays = [joint.play_m for joint in items if joint.play_m]
+        if plays:
+            said += f", with a play of {spread(plays, 'm')}"
+        return f"{count(items, 'sliding joint')} held by friction up to {spread(limits, 'N')}, {said}."
 
-    def friction_N(self, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        return np.where(self._stopped(state), 0.0, state["slider_force_N"])
+    def friction_N(self, joints: Sliders, state: Mapping[str, np.ndarray]) -> np.ndarray:
+        friction = state["slider_force_N"] - joints.soft_stop_N(state["slide_m"])
+        return np.where(self._stopped(state), 0.0, friction)
 
     def carried_friction(self, joints: Sliders, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        limit = joints.friction_coefficient * joints.normal_force_N
-        return np.minimum(np.abs(at["slider_force_N"]), limit), limit
+        friction, limit = at["slider_force_N"] - joints.soft_stop_N(at["slide_m"]), joints.friction_limit_N
+        return np.minimum(np.abs(friction), limit), limit
 
     def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
         sliders = truss.sliders
-        return truss.with_joints(slider=replace(sliders, friction_coefficient=0 * sliders.friction_coefficient))
+        return truss.with_joints(slider=replace(sliders, friction_coefficient=0 * sliders.friction_coefficient,
+                                                play_m=0 * sliders.play_m))
 
     def unknown_friction(self, joints: Sliders, state: Mapping[str, np.ndarray]) -> Iterable[int]:
         return map(int, np.flatnonzero(self._stopped(state)))
@@ -235,16 +297,18 @@ class SliderType(AlongAxis[Slider, Sliders]):
 
     def regularised_refuses(self, joints: Sliders) -> tuple[str, str] | None:
         between = joints.nodes[:, 1] != GROUND
-        stops = np.isfinite(joints.clearance_minus_m) | np.isfinite(joints.clearance_plus_m)
-        for index in np.flatnonzero(between | stops)[:1]:
-            return joints.names[index], "is between two nodes" if between[index] else "has stops"
+        for why, which in (("is between two nodes", between), ("has stops", joints.have_stops),
+                           ("has a play", joints.play_m > 0)):
+            for index in np.flatnonzero(which)[:1]:
+                return joints.names[index], why
         return None
 
     def dem_refuses(self, joints: Sliders) -> tuple[str, str] | None:
         loose = ~self.bodies_touch(joints) & (joints.normal_force_N == 0)
         for index in np.flatnonzero(loose)[:1]:
-            return joints.names[index], ("is between two nodes and has no normal_force_N, from which the DEM takes how "
-                                         "stiffly it holds them together across its axis")
+            of = "is between two nodes" if joints.nodes[index, 1] != GROUND else "has stops of their own stiffness"
+            return joints.names[index], (f"{of} and has no normal_force_N, from which the DEM takes how stiffly it "
+                                         "holds its parts together across its axis")
         return None
 
     def contact_parts(self, joints: Sliders) -> list[ContactPart]:
@@ -253,7 +317,7 @@ class SliderType(AlongAxis[Slider, Sliders]):
         return [ContactPart(nodes, [("pad", *role) for role in roles], shared=False)]
 
     def bodies_touch(self, joints: Sliders) -> np.ndarray:
-        return joints.nodes[:, 1] == GROUND
+        return np.asarray((joints.nodes[:, 1] == GROUND) & ~joints.have_springs)
 
     def contact_nodes(self, joints: Sliders) -> np.ndarray:
         return joints.nodes[:, :1]
@@ -266,9 +330,10 @@ class SliderType(AlongAxis[Slider, Sliders]):
         return joints.pad_radius_m + 2 * np.abs(path.states["slide_m"]).max(axis=0)
 
     def contact_stiffness(self, path: Course, joints: Sliders) -> tuple[np.ndarray, np.ndarray]:
-        at_stop = np.isfinite(joints.clearance_minus_m) | np.isfinite(joints.clearance_plus_m)
         force = IMPACT**3 * np.abs(path.states["slider_force_N"]).max(axis=0)
-        stop = np.where(at_stop, physics.hertz_tangent_N_per_m(force, pad_hertz_stiffness(joints)), 0.0)
+        hertz = physics.hertz_tangent_N_per_m(force, pad_hertz_stiffness(joints))
+        own = np.where(np.isfinite(joints.stop_stiffness_N_per_m), joints.stop_stiffness_N_per_m, hertz)
+        stop = np.where(joints.have_stops, own, 0.0)
         pad = pads(joints)
         across = np.where(self.bodies_touch(joints), 0.0, pad.normal_N_per_m)
         return self.pushed_nodes(joints), np.maximum(pad.tangential_N_per_m + stop, across)
@@ -285,18 +350,30 @@ class SliderType(AlongAxis[Slider, Sliders]):
                 f"its pad bends there by up to {text(float(give[most]), 'm', 2)}: raise pad_radius_m or "
                 "young_modulus_Pa of the sliders between two nodes"]
 
+    def _start_slip_m(self, truss: ResolvedTruss, joints: Sliders, slide_m: np.ndarray, friction_N: np.ndarray
+                      ) -> np.ndarray:
+        """Return the slides at which friction carries nothing, in the middle of a play."""
+        bend = np.divide(friction_N, pads(joints).tangential_N_per_m, out=np.zeros_like(slide_m), where=friction_N != 0)
+        closed = slide_m - bend - np.sign(friction_N) * joints.play_m / 2
+        if truss.start_friction == FRICTIONLESS:
+            return closed
+        # An open play is where it was drawn.
+        return np.where((joints.play_m > 0) & (friction_N == 0), 0.0, closed)
+
     def scene(self, path: Course, joints: Sliders) -> dict[str, Any]:
         def finite(values: np.ndarray) -> list[float | None]:
             return [float(value) if np.isfinite(value) else None for value in values]
 
-        pad, limit = pads(joints), joints.friction_coefficient * joints.normal_force_N
-        friction = np.clip(path.states["slider_force_N"][0], -limit, limit)
+        pad, limit, slide = pads(joints), joints.friction_limit_N, path.states["slide_m"][0]
+        friction = np.clip(path.states["slider_force_N"][0] - joints.soft_stop_N(slide), -limit, limit)
         if path.truss.start_friction == FRICTIONLESS:
             friction = 0 * limit  # what presses on a stop is the stop's
         return {
             "friction_limit_N": limit, "friction_stiffness_N_per_m": pad.tangential_N_per_m,
             "stiffness_across_N_per_m": pad.normal_N_per_m, "stop_stiffness_N_per_m15": pad_hertz_stiffness(joints),
-            "start_slide_m": path.states["slide_m"][0],
+            "own_stop_stiffness_N_per_m": finite(joints.stop_stiffness_N_per_m), "play_m": joints.play_m,
+            "touches": self.bodies_touch(joints),
+            "start_slide_m": slide, "start_slip_m": self._start_slip_m(path.truss, joints, slide, friction),
             "start_friction_N": friction,
             "depth_m": pad.depth_m, "reach_m": self.reach_m(path, joints),
             "floor_normal": pressing_directions(path.truss, joints),
