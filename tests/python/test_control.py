@@ -262,7 +262,8 @@ def test_recommended_spring_passes_on_both_ensembles_and_a_smaller_one_does_not(
         assert runs == (20 if other else 4)
         quantile, bound = 0.05 if other else 0.02, 0.2 if other else 0.02
         values = {"mean": 0.0, "quantile": float(spring < quantile), "bound": float(spring < bound)}
-        return {f"{what}_{name}_rad": value for what in ("jump", "deflection") for name, value in values.items()}
+        made = {f"{what}_{name}_rad": value for what in ("jump", "deflection") for name, value in values.items()}
+        return {**made, "jump_largest_rad": values["bound"], "jump_largest_run": 1.0}
 
     monkeypatch.setattr(control_ensemble, "ensemble_measure", measure)
     study = study_of(free, 0.5, runs=4)

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from conftest import results_in
 from statejump import _engine
 from statejump.cli.paper import figures_command
 from statejump.core.errors import Interrupted, StatejumpError
@@ -300,7 +301,7 @@ def test_command(tiny: Path, tmp_path: Path) -> None:
     folder = tmp_path / "out" / "umbrella"
     drawn = {f"fig{number}.{suffix}" for number in (13, 14, 15, 16) for suffix in ("png", "svg")}
     tables = {"README.md", "ensembles.csv", "ensembles.json", "curves.csv"}
-    assert {path.name for path in folder.iterdir()} == drawn | tables
+    assert set(results_in(folder)) == drawn | tables
     assert "fig14, reduced: 20 runs" in outcome.output  # the case itself is not run again
 
     with (folder / "ensembles.csv").open() as stream:
@@ -347,7 +348,7 @@ def test_interruption_leaves_what_is_finished(
     folder = tmp_path / "out" / "umbrella"
     assert isinstance(outcome.exception, Interrupted)
     assert str(outcome.exception) == f"interrupted; finished in {folder}: fig13.png, fig14.png"
-    assert {path.name for path in folder.iterdir()} == {
+    assert set(results_in(folder)) == {
         "fig13.png", "fig13.svg", "fig14.png", "fig14.svg", "curves.csv", "ensembles.csv"
     }
 

@@ -77,7 +77,8 @@ def test_law_of_soft_stops_and_play(seen):
         assert elastic == pytest.approx(stored, abs=3000 * place_m), place
     # The step in which it begins to slip has the mean force of two rows; it begins three times.
     assert run["rows"][-1][-1] == pytest.approx(heat, abs=3 * limit * run["amplitude"] / 200)
-    assert sum(row[2] == 0 for row in run["rows"]) > 3 * 0.9 * run["play"] / (run["amplitude"] / 200)
+    # It crosses half of the play at first and the whole of it behind each of two turns.
+    assert sum(row[2] == 0 for row in run["rows"]) > 2.5 * 0.9 * run["play"] / (run["amplitude"] / 200)
 
 
 def test_energy_of_a_swing_with_soft_stops_and_play(seen):

@@ -237,7 +237,11 @@ SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel co
     begin.slack_stiffness = system.slack_stiffness(slack_level);
     SolveReport report =
         newton.solve(0.0, begin, contact, next, options.most_iterations, trial, statuses);
-    note(report);
+    if (next < 1.0) {
+      ++path.solves;  // none of the path's states
+    } else {
+      note(report);
+    }
     if (report.end == SolveEnd::stopped) return report;
     if (report.end == SolveEnd::converged) {
       z = std::move(trial);

@@ -117,7 +117,7 @@ class Sliders(Joints):
         limits = np.array([joint.frictionLimit for joint in self._between.values()])
         slips = np.abs(joints["frictionForce"]) >= limits
         # Of soft stops friction says what the slider does, as in the reduced model.
-        rigid = [self.rows[place]["own_stop_stiffness_N_per_m"] is None for place in between]
+        rigid = np.array([self.rows[place]["own_stop_stiffness_N_per_m"] is None for place in between], dtype=bool)
         state[:, between] = np.where((joints["stopForce"] != 0) & rigid, AT_STOP, np.where(slips, SLIP, STICK))
 
         axes, origins = np.empty((2, len(self.rows), 3))
