@@ -67,9 +67,7 @@ umbrella = _making(generate.umbrella)
 ring = _making(generate.ring)
 mast = _making(generate.mast)
 # What the commands of ``statejump truss`` are made of.
-MAKERS: dict[str, Callable[..., Case]] = {
-    "chain": chain, "iwan": iwan, "umbrella": umbrella, "ring": ring, "mast": mast,
-}
+MAKERS = dict[str, Callable[..., Case]](chain=chain, iwan=iwan, umbrella=umbrella, ring=ring, mast=mast)
 
 
 def draw(case: Case, axes: Axes | None = None, names: bool = False) -> Figure:
