@@ -146,12 +146,8 @@ FoundModes mechanism(const System& system, const VectorXd& z, double time, const
 FoundModes buckling(const System& system, const VectorXd& z, double time, const Statuses& statuses,
                     double slack) {
   if (system.displacements() == 0) return {};
-  Statuses held = system.all_stick();
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    if (statuses[i] == JointStatus::open) held[i] = JointStatus::open;
-  }
-  const Eigen::SparseMatrix<double> shifted =
-      shifted_stiffness(system, z, time, held, JointModel::pins, stiff_joint, slack, free_share);
+  const Eigen::SparseMatrix<double> shifted = shifted_stiffness(
+      system, z, time, held_but_open(statuses), JointModel::pins, stiff_joint, slack, free_share);
   const Factors factors(shifted);
   // Sylvester: as many negative pivots as negative eigenvalues.
   const Eigen::Index unstable =

@@ -226,8 +226,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const bool is_foreseen = ahead && !ahead->stop;
   // The tension of elements that are not yet as long as their temperature makes them would turn
   // slack ones.
-  const bool hangs =
-      ahead && std::find(statuses.begin(), statuses.end(), JointStatus::open) != statuses.end();
+  const bool hangs = ahead && any_open(statuses);
   const VectorXd& begun_at = is_foreseen || hangs ? ahead->foreseen : first_z;
   if (is_foreseen || hangs || (ahead && kept && keeps(statuses, joints))) z = ahead->foreseen;
   bool condensed = false;

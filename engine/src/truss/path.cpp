@@ -137,9 +137,7 @@ Path solve(const Model& model, const Options& options) {
   walker.path.unknowns = system.unknowns();
   walker.state.joint_dissipation = VectorXd::Zero(joints);
   detail::start_as_chosen(walker);
-  walker.slack_stiffness = walker.note_slack(0.0, walker.z, walker.origin.statuses)
-                               ? system.slack_stiffness(walker.slack_level)
-                               : 0.0;
+  walker.is_slack = walker.note_slack(0.0, walker.z, walker.origin.statuses);
   system.describe(walker.z, 0.0, walker.origin, walker.state);
   if (!options.cycle_ends_only) walker.path.states.push_back(walker.state);
   walker.path.cycle_ends.push_back(walker.state);
@@ -155,9 +153,7 @@ Path solve(const Model& model, const Options& options) {
     const double tolerance = options.event_tolerance * length;
     walker.shortest_balanced =
         length / (Walker::most_parts * static_cast<double>(options.increments_per_branch));
-    if (std::exchange(walker.slack_level, 0) > 0) {
-      walker.slack_stiffness = std::min(walker.slack_stiffness, system.slack_stiffness(0));
-    }
+    walker.slack_level = 0;
     double convergent = length;  // longest step that Newton is trusted with
     for (int k = 0; k <= options.increments_per_branch; ++k) {
       // k = 0: the short first step, within which slips turn into sticks after the corner.

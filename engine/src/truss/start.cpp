@@ -97,11 +97,7 @@ void Walker::refuse_mechanism(double when, const Statuses& statuses, JointModel 
   if (!modes) return;
   FailureFields fields = failure_at(FailureKind::mechanism, model, when);
   // With its joints held it is none: their friction is at its bound everywhere.
-  Statuses held = system.all_stick();
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    if (statuses[i] == JointStatus::open) held[i] = JointStatus::open;
-  }
-  if (!mechanism(system, z, when, held, JointModel::pins)) {
+  if (!mechanism(system, z, when, held_but_open(statuses), JointModel::pins)) {
     fields.kind = FailureKind::friction_exhausted;
     fields.joints = slipping(statuses);
   }
@@ -153,9 +149,9 @@ bool Walker::note_slack(double when, const VectorXd& at, const Statuses& statuse
 
 /// Makes the dashpots of slack joints stiffer; false: there are none, or none stiffer.
 bool Walker::stiffen_slack(const Statuses& statuses) {
-  const auto open = std::find(statuses.begin(), statuses.end(), JointStatus::open);
-  if (open == statuses.end() || slack_level == System::most_slack_level) return false;
-  slack_stiffness = system.slack_stiffness(++slack_level);
+  if (!any_open(statuses) || slack_level == System::most_slack_level) return false;
+  ++slack_level;
+  is_slack = true;
   return true;
 }
 
@@ -220,6 +216,7 @@ void Walker::seat(const std::vector<int>& with_play, JointModel contact) {
 /// turn as they open; farther where that goes well.
 /// @returns how that ended: `z` and the statuses are those of the whole clearances if it converged
 SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel contact) {
+  SolveReport report;
   double opened = 0.0;
   double share = 0.125;
   while (opened < 1.0) {
@@ -235,8 +232,7 @@ SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel co
     }
     StepStart begin = system.begin(trial, 0.0, statuses, next);
     begin.slack_stiffness = system.slack_stiffness(slack_level);
-    SolveReport report =
-        newton.solve(0.0, begin, contact, next, options.most_iterations, trial, statuses);
+    report = newton.solve(0.0, begin, contact, next, options.most_iterations, trial, statuses);
     if (next < 1.0) {
       ++path.solves;  // none of the path's states
     } else {
@@ -259,9 +255,7 @@ SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel co
     }
     share = 0.125;
   }
-  SolveReport whole;
-  whole.end = SolveEnd::converged;
-  return whole;
+  return report;
 }
 
 }  // namespace statejump::truss::detail

@@ -103,7 +103,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
   // The sum time + tolerance is rounded.
   const bool is_short = target - time <= 1.5 * tolerance;
   // A joint that opens may leave a mechanism, which only a short step finds.
-  origin.slack_stiffness = is_short ? system.slack_stiffness(slack_level) : slack_stiffness;
+  origin.slack_stiffness = is_short || is_slack ? system.slack_stiffness(slack_level) : 0.0;
   VectorXd trial = z;
   Statuses trial_statuses =
       is_short && !changed_at_start.empty() ? changed_at_start : origin.statuses;
@@ -145,11 +145,9 @@ StepEnd Walker::step_to(double target, double tolerance) {
     ++path.solves;
     if (!is_short) {
       // Without dashpots the step says nothing of elements that become slack.
-      const bool opens = std::find(trial_statuses.begin(), trial_statuses.end(),
-                                   JointStatus::open) != trial_statuses.end();
-      const bool is_free = opens || report.end == SolveEnd::singular;
-      if (!is_free || slack_stiffness > 0.0) return StepEnd::not_converged;
-      slack_stiffness = system.slack_stiffness(slack_level);
+      const bool is_free = any_open(trial_statuses) || report.end == SolveEnd::singular;
+      if (!is_free || is_slack) return StepEnd::not_converged;
+      is_slack = true;
       return step_to(target, tolerance);
     }
     system.settle(trial, target, begin, trial_statuses);
@@ -281,10 +279,9 @@ StepEnd Walker::step_to(double target, double tolerance) {
     return StepEnd::imprecise;
   }
   note(report);
-  if (opened || slack_stiffness > 0.0) {
-    const bool slack =
+  if (opened || is_slack) {
+    is_slack =
         (!opened && trial_statuses == origin.statuses) || note_slack(target, trial, trial_statuses);
-    slack_stiffness = slack ? system.slack_stiffness(slack_level) : 0.0;
   }
   note_not_unique(target);
   const std::vector<double>& asked = options.problem_times;

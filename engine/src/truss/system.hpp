@@ -29,6 +29,18 @@ inline std::size_t fingerprint(const Statuses& statuses) {
   return hash;
 }
 
+inline bool any_open(const Statuses& statuses) {
+  return std::find(statuses.begin(), statuses.end(), JointStatus::open) != statuses.end();
+}
+
+/// The same joints open, all others held.
+inline Statuses held_but_open(Statuses statuses) {
+  for (JointStatus& status : statuses) {
+    if (status != JointStatus::open) status = JointStatus::stick;
+  }
+  return statuses;
+}
+
 /// State at the start of a step, from which slides are counted.
 struct StepStart {
   Statuses statuses;

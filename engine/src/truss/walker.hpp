@@ -68,17 +68,16 @@ struct Walker {
   double time = 0.0;
   /// Share of the last step that was tried after which its first event comes; 1: unknown.
   double event_share = 1.0;
-  /// Of joints that are open [N/m]: 0 where something else determines their positions.
-  double slack_stiffness = 0.0;
-  /// Of the dashpots of slack joints, see System::slack_stiffness().
-  int slack_level = 0;
+  /// Whether long steps hold open joints by dashpots: nothing else determines their positions.
+  bool is_slack = false;
+  int slack_level = 0;  ///< Of these dashpots, see System::slack_stiffness().
   /// Statuses that a longer step found from the present state on; empty: none.
   Statuses changed_at_start = {};
-  /// Whether steps end at changes, see Path; else they pass them.
-  bool locates = true;
   /// Whether such are looked for; not again where a short step did not confirm them, until the next
   /// event.
   bool looks_at_start = true;
+  /// Whether steps end at foreseen changes; else they pass them, see most_unconfirmed.
+  bool locates = true;
   /// Steps at most into which an increment is cut for its energies.
   static constexpr double most_parts = 64.0;
   /// Longest step that energies are likely to balance over [s]; none known: as long as may be.

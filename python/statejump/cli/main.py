@@ -156,7 +156,7 @@ _WARNED: set[str] = set()  # what was told
 
 def _warned(message: Warning | str, category: type[Warning], filename: str, lineno: int, file: TextIO | None = None,
             line: str | None = None) -> None:
-    """Tell what a library warns of as the command tells its own warnings: without the line of code, once."""
+    """Report a warning of a library like one of the command: without the line of code, once."""
     text = printable(str(message))
     if text not in _WARNED:  # a file may be read twice
         _WARNED.add(text)

@@ -5,7 +5,7 @@ follows the last one."""
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
 from typing import Any
 
@@ -26,7 +26,7 @@ def split_path(path: str) -> tuple[str, str, str]:
     return section, item, key
 
 
-def meant(item: str, names: Sequence[str]) -> list[str]:
+def meant(item: str, names: Collection[str]) -> list[str]:
     """Return the names that an item of a path stands for: itself, or those that fit it as a pattern."""
     return [item] if item in names else [name for name in names if fnmatchcase(name, item)]
 
@@ -158,12 +158,7 @@ def filled(data: Mapping[str, Any], values: Iterable[tuple[str, Any]]) -> dict[s
         tables = changed[section]
         if section not in places:
             places[section] = {table["name"]: place for place, table in enumerate(tables)}
-        if item == EVERY:
-            targets = tables
-        elif item in places[section]:
-            targets = [tables[places[section][item]]]
-        else:
-            targets = [tables[place] for name, place in places[section].items() if fnmatchcase(name, item)]
+        targets = tables if item == EVERY else [tables[places[section][name]] for name in meant(item, places[section])]
         for table in targets:
             table[key] = value
     return changed

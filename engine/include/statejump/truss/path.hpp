@@ -143,9 +143,10 @@ struct Path {
 ///
 /// **Start.** The drawn shape need not be in equilibrium: it is first relaxed at ΔT = 0 with
 /// bilateral pins in place of clearance revolutes; their pin forces say where each journal touches;
-/// then the clearances open with frictionless contacts. There friction begins, without force. A
-/// journal that no pin force pushes, or whose contact force vanishes on the way, starts open:
-/// springs, loads and bars determine its position, or it is slack.
+/// then the clearances open with frictionless contacts, where friction begins without force; where
+/// that leads nowhere, with contacts that hold by friction. A journal that no pin force pushes, or
+/// whose contact force vanishes on the way, starts open: springs, loads and bars determine its
+/// position, or it is slack.
 ///
 /// Where the whole load leads nowhere near in one step, or to an unstable equilibrium, it is
 /// followed from none in steps that stay near (truss/loading.cpp). A start that moves the truss by

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "statejump/kernel/require.hpp"
+#include "truss/parts.hpp"
 
 namespace statejump::truss::detail {
 
@@ -108,6 +109,14 @@ void Bodies::spread(int row_node, int column_node, const Matrix3d& value, Add&& 
   }
 }
 
+template <class Add>
+void Bodies::spread_between(int first, int second, const Matrix3d& value, Add&& add) const {
+  spread(first, first, value, add);
+  spread(second, second, value, add);
+  spread(first, second, -value, add);
+  spread(second, first, -value, add);
+}
+
 Bodies::Step Bodies::step(double from, double to) const {
   Step made{from, to, std::vector<double>(struts_.size(), 0.0)};
   std::vector<double> rates;  // of the programs [K/s]
@@ -171,10 +180,7 @@ std::vector<Eigen::Triplet<double>> Bodies::damping_entries(const VectorXd& q) c
     const Matrix3d along = now.direction * now.direction.transpose();
     const Matrix3d block = strut.axial * along + strut.turning / (now.length * now.length) *
                                                      (Matrix3d::Identity() - along);
-    spread(strut.first, strut.first, block, add);
-    spread(strut.second, strut.second, block, add);
-    spread(strut.first, strut.second, -block, add);
-    spread(strut.second, strut.first, -block, add);
+    spread_between(strut.first, strut.second, block, add);
   }
   return entries;
 }
@@ -186,21 +192,16 @@ std::vector<Eigen::Triplet<double>> Bodies::compression_entries(const VectorXd& 
   const Model& model = system_->model();
   const Eigen::Matrix3Xd moved = of_nodes(q);
   for (const Link& link : model.links) {
-    const Vector3d apart =
-        (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position) +
-        (moved.col(link.second) - moved.col(link.first));
+    const Lengths length =
+        lengths(model.nodes[index(link.second)].position - model.nodes[index(link.first)].position,
+                moved.col(link.second) - moved.col(link.first));
     const double change = model.temperature_change(link.program, link.temperature_fraction, time);
-    const double free = thermal::length(link.stress_free_length, link.thermal_expansion, change);
-    const double length = apart.norm();
-    const double compression = link.axial_stiffness * (1.0 - length / free);
-    if (!(compression > 0.0)) continue;
-    const Vector3d direction = apart / length;
+    const double tension = link_axial(link, length.growth, length.drawn, change).tension;
+    if (!(tension < 0.0)) continue;
+    const Vector3d direction = length.along / length.now;
     const Matrix3d block =
-        compression / length * (Matrix3d::Identity() - direction * direction.transpose());
-    spread(link.first, link.first, block, add);
-    spread(link.second, link.second, block, add);
-    spread(link.first, link.second, -block, add);
-    spread(link.second, link.first, -block, add);
+        -tension / length.now * (Matrix3d::Identity() - direction * direction.transpose());
+    spread_between(link.first, link.second, block, add);
   }
   return entries;
 }

@@ -67,6 +67,9 @@ class Bodies {
             double growth_rate) const;
   template <class Add>
   void spread(int row_node, int column_node, const Matrix3d& value, Add&& add) const;
+  /// Of a part that resists a difference of two nodes' motions.
+  template <class Add>
+  void spread_between(int first, int second, const Matrix3d& value, Add&& add) const;
 
   const System* system_;
   std::vector<int> row_;  // first free displacement of each node

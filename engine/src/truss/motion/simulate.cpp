@@ -27,7 +27,7 @@ constexpr double shortest = 1e6 * std::numeric_limits<double>::epsilon();
 /// thousandth of a step. Forces that hold each other have no branches to be found, however short.
 constexpr int most_unsettled = 10;
 
-/// Halvings of an equal step that has no solution, down to a thousandth of it.
+/// Halvings of an equal step that has no solution.
 constexpr int most_halvings = 16;
 /// Parts of such a step of one length before a longer one is tried again.
 constexpr int before_longer = 8;

@@ -135,7 +135,7 @@ def _pinned(truss: ResolvedTruss) -> ResolvedTruss:
     number_of = {int(node): index for index, node in enumerate(kept)}
     at = np.array([number_of[int(node)] for node in place])
     nodes, links = truss.nodes, truss.links
-    # What is locked has no play.
+    # A locked joint has no play.
     sliders = replace(truss.sliders, play_m=0 * truss.sliders.play_m)
     fixed, force = np.zeros((len(kept), 3), dtype=bool), np.zeros((len(kept), 3))
     np.logical_or.at(fixed, at, nodes.fixed)

@@ -93,6 +93,10 @@ class Sliders:
         beyond = slide_m - np.clip(slide_m, -self.clearance_minus_m, self.clearance_plus_m)
         return np.asarray(np.where(soft, self.stop_stiffness_N_per_m, 0.0) * beyond)
 
+    def beside_soft_stops_N(self, state: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Return the force on the sliders without that of soft stops [N]."""
+        return np.asarray(state["slider_force_N"] - self.soft_stop_N(state["slide_m"]))
+
 
 @dataclass(frozen=True)
 class Pad:
@@ -276,12 +280,11 @@ class SliderType(AlongAxis[Slider, Sliders]):
         return f"{count(items, 'sliding joint')} held by friction up to {spread(limits, 'N')}, {said}."
 
     def friction_N(self, joints: Sliders, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        friction = state["slider_force_N"] - joints.soft_stop_N(state["slide_m"])
-        return np.where(self._stopped(state), 0.0, friction)
+        return np.where(self._stopped(state), 0.0, joints.beside_soft_stops_N(state))
 
     def carried_friction(self, joints: Sliders, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        friction, limit = at["slider_force_N"] - joints.soft_stop_N(at["slide_m"]), joints.friction_limit_N
-        return np.minimum(np.abs(friction), limit), limit
+        limit = joints.friction_limit_N
+        return np.minimum(np.abs(joints.beside_soft_stops_N(at)), limit), limit
 
     def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
         sliders = truss.sliders
@@ -365,7 +368,8 @@ class SliderType(AlongAxis[Slider, Sliders]):
             return [float(value) if np.isfinite(value) else None for value in values]
 
         pad, limit, slide = pads(joints), joints.friction_limit_N, path.states["slide_m"][0]
-        friction = np.clip(path.states["slider_force_N"][0] - joints.soft_stop_N(slide), -limit, limit)
+        start = {key: path.states[key][0] for key in ("slide_m", "slider_force_N")}
+        friction = np.clip(joints.beside_soft_stops_N(start), -limit, limit)
         if path.truss.start_friction == FRICTIONLESS:
             friction = 0 * limit  # what presses on a stop is the stop's
         return {

@@ -64,23 +64,21 @@ def rbe3(reader: Reader, card: Card) -> None:
 
 def mpc(reader: Reader, card: Card) -> None:
     """An equation between displacements."""
-    terms = []
-    if {card[place + 1] for start in range(0, len(card.fields), 8) for place in (start + 1, start + 4)
-            if card[place]} <= set("456"):
+    # Two terms a line: a node, a component, a factor.
+    places = [place for start in range(0, len(card.fields), 8) for place in (start + 1, start + 4) if card[place]]
+    if {card[place + 1] for place in places} <= set("456"):
         reader.deck.leave(card.name, "an equation of rotations: ends of bars turn freely", card.line)
         return
-    for start in range(0, len(card.fields), 8):
-        for place in (start + 1, start + 4):
-            if not card[place]:
-                continue
-            factor = reader.number(card, place + 2, 0.0)
-            component = card[place + 1] or "0"
-            if component not in MOVES:
-                what = "a scalar point" if component == "0" else "a rotation"
-                reader.deck.refuse(card.name, f"an equation of {what}", card.line)
-                return
-            node = reader.node(card, place)
-            axes = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])
-            if factor:
-                terms.append((node, axes[int(component) - 1], factor))
+    terms = []
+    for place in places:
+        factor = reader.number(card, place + 2, 0.0)
+        component = card[place + 1] or "0"
+        if component not in MOVES:
+            what = "a scalar point" if component == "0" else "a rotation"
+            reader.deck.refuse(card.name, f"an equation of {what}", card.line)
+            return
+        node = reader.node(card, place)
+        axes = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])
+        if factor:
+            terms.append((node, axes[int(component) - 1], factor))
     reader.deck.equations.append(Equation(card.line, card.name, terms))
