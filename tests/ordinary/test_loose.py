@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import pytest
 
+import statejump as sj
 import structures
 import worker
 
@@ -13,8 +14,15 @@ import worker
     pytest.param("bracket", 114, id="contacts_of_a_loose_redundant_start_give_way_as_they_open"),
     pytest.param("cable_stayed", 506, id="a_contact_that_pulls_while_it_sticks_and_closes_while_it_is_open_slides"),
     pytest.param("k_truss", 10, id="an_element_under_compression_hangs_slack_within_its_play"),
+    pytest.param("k_truss", 9007, id="a_journal_that_finds_no_place_at_the_start_comes_to_rest_against_dashpots"),
+    pytest.param("mast", 3021, id="steps_along_directions_that_hardly_anything_holds_may_grow"),
     pytest.param("ring", 102, id="ways_on_that_rounding_does_not_tell_apart_are_one"),
 ])
 def test_finishes(family: str, seed: int) -> None:
     found = worker.run(structures.make(family, seed).document)
     assert found["outcome"] == "finished", found["sentence"]
+
+
+def test_a_snap_within_the_play_is_noted() -> None:
+    found = sj.load(structures.make("k_truss", 9007).document).reduced().warnings
+    assert any("slip runs away within the play" in warning for warning in found), found

@@ -75,9 +75,15 @@ SolveReport Walker::continue_from_event(double target, VectorXd& to, Statuses& s
     refuse_mechanism(target, answer.singular, JointModel::friction);
   }
   // Constraints that depend on each other spoil the signs of all sets, not a solution that is near.
-  const bool near =
-      converged && length_of(to - z, system.displacements()) <= jump_share * system.size();
-  if (answer.count == Continuation::none && near && newton.stability_index() >= 0) return first;
+  const double moved = converged ? length_of(to - z, system.displacements())
+                                 : std::numeric_limits<double>::infinity();
+  const bool near = moved <= jump_share * system.size();
+  // Where a program turns smoothly nothing moves by more than two solutions are undecided by, and
+  // no way parts from others.
+  const bool rests = moved <= 2.0 * system.rounding(z).length;
+  const bool is_solution =
+      answer.count == Continuation::several ? rests : answer.count == Continuation::none && near;
+  if (is_solution && newton.stability_index() >= 0) return first;
   if (answer.count == Continuation::none) {
     fail_continuation(FailureKind::no_continuation, target, answer.joints);
   }

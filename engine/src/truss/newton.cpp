@@ -212,6 +212,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   VectorXd from;
   VectorXd step;
   int halvings = 0;
+  double merit_before = 0.0;  // what was left of the equations at `from` [N]
   int iterations = 0;
   std::size_t pieces = 0;
   double first_largest = 0.0;  // force where the solve begins [N]
@@ -230,6 +231,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const VectorXd& begun_at = is_foreseen || hangs ? ahead->foreseen : first_z;
   if (is_foreseen || hangs || (ahead && kept && keeps(statuses, joints))) z = ahead->foreseen;
   bool condensed = false;
+  bool patient = false;  // whether joints change only where the equations of their branches hold
   /// Takes the step from the start that pivots on its factors lead to; false: there is none. What
   /// wanders is as it was at the start, everything else on the branches that were found.
   const auto condense = [&] {
@@ -280,7 +282,12 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const bool wanders = at_.pieces == 0 && pivoting == Pivoting::block && stepped && idle > 0 &&
                          paid >= static_cast<double>(wandering.size());
     if (wanders && !condensed && condense()) return begin_anew();
-    if (wanders && ahead) return false;
+    if (wanders && ahead) {
+      // Steps that have not converged may ask for branches that the solution does not.
+      if (std::exchange(patient, true)) return false;
+      statuses = found.corrected;
+      return begin_anew();
+    }
     const auto take = [&] {
       if (pivoting != Pivoting::single) return found.corrected;
       Statuses one = statuses;
@@ -368,6 +375,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       halvings = 0;
     }
     const double largest = at_.largest_force;
+    const double merit = left.balance + left.force + system_->stiffness_scale() * left.closure;
     if (!std::isfinite(left.balance + left.closure + left.force)) {
       if (!stale || total == 0) return report;
       start_anew();
@@ -463,7 +471,10 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         next_length = most;
       }
     }
-    const bool too_long = !lengths.empty() && next_length > closure_tolerance * reach &&
+    // Steps may grow along directions that hardly anything holds, if equations are met the better.
+    const bool improves = merit <= 0.5 * merit_before;
+    const bool too_long = !improves && !lengths.empty() &&
+                          next_length > closure_tolerance * reach &&
                           next_length > *std::max_element(lengths.begin(), lengths.end());
     if (too_long) {
       if (++halvings > most_halvings) return report;
@@ -474,6 +485,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const bool damped = halvings > 0;
     halvings = 0;
     from = z;
+    merit_before = merit;
     step = next;
     z += next;
     settled = false;
@@ -483,7 +495,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     // that slip stand at their bound at the start of a step, where their tangent is that of
     // sticking.
     const bool on_piece = at_.pieces == 0 || lengths.size() > 1;
-    if (!damped && on_piece && pivoting != Pivoting::single) {
+    if (!damped && on_piece && !patient && pivoting != Pivoting::single) {
       const Violations found = violations();
       settled = found.joints.empty();
       if (stale && !settled) {

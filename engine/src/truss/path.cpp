@@ -49,6 +49,8 @@ const char* to_string(NoteKind kind) {
       return "slack";
     case NoteKind::not_unique:
       return "not_unique";
+    case NoteKind::snap:
+      return "snap";
   }
   return "unknown";
 }
@@ -68,6 +70,11 @@ namespace {
 
 /// Steps in a row that ended before a foreseen change and came no nearer to it.
 constexpr int most_unconfirmed = 16;
+/// Steps from one place that end before a foreseen change.
+constexpr int most_foreseen = 4;
+/// Changes of one joint in an increment that are located: of more the energies tell how long steps
+/// may be.
+constexpr int most_located = 32;
 /// Steps of an eighth of one that passes a change come nearer to it by an eighth or more.
 constexpr double nearer = 0.95;
 
@@ -154,6 +161,7 @@ Path solve(const Model& model, const Options& options) {
     walker.shortest_balanced =
         length / (Walker::most_parts * static_cast<double>(options.increments_per_branch));
     walker.slack_level = 0;
+    walker.snap_stride = 0.0;
     double convergent = length;  // longest step that Newton is trusted with
     for (int k = 0; k <= options.increments_per_branch; ++k) {
       // k = 0: the short first step, within which slips turn into sticks after the corner.
@@ -170,57 +178,74 @@ Path solve(const Model& model, const Options& options) {
       };
       double stride = std::min(balanced(), convergent);
       bool locating = false;
-      // How far before a foreseen change a step ends: half of what it is located to. One that is
-      // foreseen at the end of whatever step is tried stands nowhere; twice as far from it each
-      // time, the steps leave it.
-      double margin = 0.5 * tolerance;
+      // Steps in a row from one place that end before a foreseen change.
+      int foreseen_from_here = 0;
       int steps = 0;  // since the last change
-      // How far ahead the next change was foreseen, now and before the last step [s].
-      double ahead = length, ahead_before = length;
+      // How far ahead the next change is foreseen, and was at least since the last one [s].
+      double ahead = length, least_ahead = length;
       bool foresaw = false;
       int unconfirmed = 0;
+      int swinging = 0;  // steps that did not converge while elements were slack
       walker.locates = true;
+      bool flickers = false;
+      int unstable = 0;  // steps since the last change whose slip would be unstable
       while (walker.time < target && walker.path.complete) {
         const double goal =
             std::max(std::nextafter(walker.time, target), std::min(target, walker.time + stride));
         const double from = walker.time;
         const double shortest = std::nextafter(from, target) - from;
-        const StepEnd end = walker.step_with_slack(goal, std::max(tolerance, shortest));
+        const StepEnd end =
+            walker.step_with_slack(goal, times[b + 1], std::max(tolerance, shortest));
         if (end == StepEnd::done) {
           convergent = std::max(2.0 * convergent, tolerance);
-          margin = 0.5 * tolerance;
+          foreseen_from_here = 0;
           // While a change is being located, the next one may be near, and to pass it costs a pivot
           // for every joint that it moves. Where the one that was foreseen did not come, the
           // tangent of a long step does not tell what is near: steps grow little by little.
           const bool unchanged = counted == walker.path.events.size();
           const bool creeps = locating && (!options.locate_events || unchanged);
           stride = std::min(balanced(), creeps ? 8.0 * stride : convergent);
-          if (foresaw) unconfirmed = ahead > nearer * ahead_before ? unconfirmed + 1 : 0;
-          if (foresaw) ahead_before = ahead;
+          if (foresaw) unconfirmed = ahead >= nearer * least_ahead ? unconfirmed + 1 : 0;
+          if (foresaw) least_ahead = std::min(least_ahead, ahead);
           foresaw = false;
           if (!unchanged) steps = unconfirmed = 0;
-          // One that recedes before the steps is passed.
-          walker.locates = unconfirmed < most_unconfirmed;
+          if (!unchanged) least_ahead = length;
+          if (!unchanged) unstable = swinging = 0;
           for (; counted < walker.path.events.size(); ++counted) {
             const Event& event = walker.path.events[counted];
+            flickers = flickers || changes[index(event.joint)] >= most_located;
             if (++changes[index(event.joint)] <= most_changes) continue;
             FailureFields fields = failure_at(FailureKind::unsettled_joint, model, walker.time);
             fields.before = to_string(event.before);
             fields.after = to_string(event.after);
             fail_joint(std::move(fields), named(model, event.joint));
           }
+          // A change that recedes before the steps is passed, and those of a joint that flickers.
+          walker.locates = !flickers && unconfirmed < most_unconfirmed;
         } else if (end == StepEnd::stopped) {
           walker.path.complete = false;
         } else if (end == StepEnd::imprecise) {
           stride = std::max(balanced(), tolerance);
         } else {
-          // Up to the margin before where the change is foreseen; where nothing is, to an eighth.
+          // To where the change is foreseen, half of what it is located to before it; where nothing
+          // is, or a change comes before the end of whatever step is tried, to an eighth.
           const bool foreseen = end == StepEnd::event_inside && walker.event_share < 1.0;
           const double tried = goal - from;
-          stride =
-              std::max(foreseen ? walker.event_share * tried - margin : 0.125 * tried, tolerance);
-          if (foreseen) margin *= 2.0;
+          const bool moves = foreseen && ++foreseen_from_here > most_foreseen;
+          stride = std::max(
+              foreseen && !moves ? walker.event_share * tried - 0.5 * tolerance : 0.125 * tried,
+              tolerance);
           if (end == StepEnd::not_converged) convergent = stride;
+          if (walker.slip_is_unstable && ++unstable >= most_unconfirmed) {
+            unstable = 0;
+            walker.follow_snap(times[b + 1], std::max(tolerance, shortest));
+          }
+          // Elements that hang on soft dashpots swing: stiffer ones carry them over longer steps.
+          const bool swings = end == StepEnd::not_converged && walker.is_slack;
+          if (swings && ++swinging >= most_unconfirmed &&
+              walker.stiffen_slack(walker.origin.statuses)) {
+            swinging = 0;
+          }
           locating = end == StepEnd::event_inside;
           ahead = walker.event_share * tried;
           foresaw = foresaw || locating;

@@ -223,13 +223,7 @@ SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel co
     const double next = std::min(1.0, opened + share);
     VectorXd trial = z;
     Statuses statuses = origin.statuses;
-    for (const int i : with_play) {
-      if (statuses[index(i)] == JointStatus::open) continue;
-      const Trial at = system.trial(i, z, 0.0, origin, JointModel::pins, opened);
-      const Seat seat =
-          joint(i, [&](const auto& one) { return one.seat(at, opened, next, seat_rounding()); });
-      system.apply(i, seat, trial);
-    }
+    seat_at(opened, next, with_play, trial);
     StepStart begin = system.begin(trial, 0.0, statuses, next);
     begin.slack_stiffness = system.slack_stiffness(slack_level);
     report = newton.solve(0.0, begin, contact, next, options.most_iterations, trial, statuses);
@@ -248,6 +242,12 @@ SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel co
     }
     share *= 0.5;
     if (share >= least_opening) continue;
+    if (come_to_rest_at(std::min(1.0, opened + 0.125), contact, with_play, opened)) {
+      opened = std::min(1.0, opened + 0.125);
+      share = 0.125;
+      report.end = SolveEnd::converged;
+      continue;
+    }
     const bool stiffer = contact == JointModel::friction && stiffen_slack(statuses);
     if (!stiffer) {
       origin.statuses = std::move(statuses);
@@ -256,6 +256,52 @@ SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel co
     share = 0.125;
   }
   return report;
+}
+
+/// Lets journals that find no place by themselves move to one, held by dashpots, with clearances
+/// that are partly open.
+/// @returns false: they do not come to rest; nothing has happened then
+bool Walker::come_to_rest_at(double opening, JointModel contact, const std::vector<int>& with_play,
+                             double opened) {
+  const VectorXd before = z;
+  const Statuses statuses_before = origin.statuses;
+  VectorXd seated = z;
+  seat_at(opened, opening, with_play, seated);
+  z = std::move(seated);
+  const Damped found = come_to_rest(
+      [&](double level) -> std::optional<double> {
+        StepStart begin = system.begin(z, 0.0, origin.statuses, opening);
+        begin.slack_stiffness = system.slack_stiffness(level);
+        begin.damps_slip = true;
+        VectorXd trial = z;
+        Statuses statuses = origin.statuses;
+        const SolveReport report =
+            newton.solve(0.0, begin, contact, opening, options.most_iterations, trial, statuses);
+        ++path.solves;
+        if (report.end == SolveEnd::stopped) path.complete = false;
+        if (report.end != SolveEnd::converged) return std::nullopt;
+        const double moved = length_of(trial - z, system.displacements());
+        z = std::move(trial);
+        origin.statuses = std::move(statuses);
+        return moved;
+      },
+      0.0);
+  if (found == Damped::rests) return true;
+  z = before;
+  origin.statuses = statuses_before;
+  return false;
+}
+
+/// Moves journals that touch to where their force pushes them with clearances that are more open.
+void Walker::seat_at(double opened, double opening, const std::vector<int>& with_play,
+                     VectorXd& there) const {
+  for (const int i : with_play) {
+    if (origin.statuses[index(i)] == JointStatus::open) continue;
+    const Trial at = system.trial(i, z, 0.0, origin, JointModel::pins, opened);
+    const Seat seat =
+        joint(i, [&](const auto& one) { return one.seat(at, opened, opening, seat_rounding()); });
+    system.apply(i, seat, there);
+  }
 }
 
 }  // namespace statejump::truss::detail

@@ -155,7 +155,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
     fail(report, JointModel::friction, target, "no equilibrium");
   }
   const Rounding rounding = system.rounding(z);
-  if (!is_short && passes_instability(trial_statuses)) {
+  slip_is_unstable = !is_short && passes_instability(trial_statuses);
+  if (slip_is_unstable) {
     ++path.solves;
     // Elements that hang slack under compression are bounded by their play.
     if (stiffen_slack(trial_statuses)) return step_to(target, tolerance);
@@ -283,6 +284,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
     is_slack =
         (!opened && trial_statuses == origin.statuses) || note_slack(target, trial, trial_statuses);
   }
+  if (!is_slack && !origin.damps_slip) slack_level = 0;
   note_not_unique(target);
   const std::vector<double>& asked = options.problem_times;
   if (path.problems.size() < asked.size() && target >= asked[path.problems.size()]) {
@@ -303,15 +305,19 @@ StepEnd Walker::step_to(double target, double tolerance) {
   return StepEnd::done;
 }
 
-/// A step; where there is none, with stiffer dashpots in the joints that are slack, or become so.
-StepEnd Walker::step_with_slack(double target, double tolerance) {
+/// A step; where there is none, with stiffer dashpots in the joints that are slack, or become so;
+/// at last through a snap.
+/// @param until corner of the programs that no snap passes [s]
+StepEnd Walker::step_with_slack(double target, double until, double tolerance) {
   const Statuses before = origin.statuses;
   for (;;) {
     try {
       return step_to(target, tolerance);
     } catch (const Failure&) {
       const Statuses reached = std::exchange(origin.statuses, before);
-      if (!stiffen_slack(before) && !stiffen_slack(reached)) throw;
+      if (stiffen_slack(before) || stiffen_slack(reached)) continue;
+      if (follow_snap(until, tolerance)) return StepEnd::done;
+      throw;
     }
   }
 }

@@ -151,6 +151,7 @@ Trial asked(const std::vector<Vector3d>& drawn, const JointFrame& frame, const d
     trial.owed_rate = start.foreseen_rate(joint, time);
   }
   trial.slack_stiffness = start.slack_stiffness;
+  trial.damps_slip = start.damps_slip;
   for (std::size_t k = 0; k < most_joint_nodes; ++k) {
     const int node = frame.nodes[k];
     if (node < 0) {
@@ -221,7 +222,8 @@ StepStart System::begin(const VectorXd& z, double time, const Statuses& statuses
 
 StepStart System::commit(const VectorXd& z, double time, const Statuses& statuses,
                          const StepStart& last) const {
-  StepStart made{statuses, VectorXd(history_), time, {}, {}, 0.0, last.slack_stiffness};
+  StepStart made{statuses, VectorXd(history_),   time,           {}, {},
+                 0.0,      last.slack_stiffness, last.damps_slip};
   const Eigen::Matrix3Xd moved = displacements(z);
   each_joint([&](int i) {
     const Trial at = trial(i, z, moved, time, last, JointModel::friction, 1.0);
@@ -289,7 +291,8 @@ double System::slack_work(const VectorXd& z, double time, const StepStart& start
                           const Statuses& statuses) const {
   double work = 0.0;
   for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
-    if (statuses[index(i)] != JointStatus::open) continue;
+    const JointStatus status = statuses[index(i)];
+    if (status != JointStatus::open && !(start.damps_slip && is_slip(status))) continue;
     const Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
     std::visit(
         [&](const auto& one) {

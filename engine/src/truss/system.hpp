@@ -52,6 +52,8 @@ struct StepStart {
   double last_step = 0.0;  ///< Its duration [s].
   /// Of joints that are open [N/m], see System::slack_stiffness(); kept from step to step.
   double slack_stiffness = 0.0;
+  /// Whether joints with play are held so as well while they slip, see Walker::follow_snap().
+  bool damps_slip = false;
 
   /// What the rule is going to leave in a step to a time [m]: it grows with the third power of the
   /// step, but of no longer step than the last one is it known.
@@ -274,10 +276,11 @@ class System {
   /// Each level above is a hundred times as stiff, up to a hundredth of the stiffest element: for
   /// elements that compression pushes away from where they hang, or so many behind each other that
   /// rounding decides. What its dashpots take is counted as work.
-  double slack_stiffness(int level) const {
+  double slack_stiffness(double level) const {
     return 1e-8 * std::pow(100.0, level) * stiffness_scale_;
   }
   static constexpr int most_slack_level = 3;
+  static constexpr int snap_level = 4;  ///< As stiff as the stiffest element.
   /// What rounding at z leaves of the forces at a node [N]: some 64 terms are added up there, each
   /// of a stiffness times a displacement.
   double force_rounding(const VectorXd& z) const;

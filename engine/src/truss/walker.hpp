@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -52,6 +53,9 @@ struct Stall {
   VectorXd z;
 };
 
+/// What journals do that dashpots hold.
+enum class Damped : unsigned char { rests, moves, fails };
+
 /// Equilibrium being followed.
 struct Walker {
   const Model& model;
@@ -70,12 +74,16 @@ struct Walker {
   double event_share = 1.0;
   /// Whether long steps hold open joints by dashpots: nothing else determines their positions.
   bool is_slack = false;
-  int slack_level = 0;  ///< Of these dashpots, see System::slack_stiffness().
+  double slack_level = 0.0;  ///< Of these dashpots, see System::slack_stiffness().
+  /// Steps of a path whose slip stays unstable; 0: as short as they get [s].
+  double snap_stride = 0.0;
   /// Statuses that a longer step found from the present state on; empty: none.
   Statuses changed_at_start = {};
   /// Whether such are looked for; not again where a short step did not confirm them, until the next
   /// event.
   bool looks_at_start = true;
+  /// Whether the last step was refused because what slips at its end is unstable.
+  bool slip_is_unstable = false;
   /// Whether steps end at foreseen changes; else they pass them, see most_unconfirmed.
   bool locates = true;
   /// Steps at most into which an increment is cut for its energies.
@@ -94,6 +102,17 @@ struct Walker {
   /// How fast every joint that slips slides at `time` [m/s].
   VectorXd slide_rate = {};
 
+  /// Where the walk is.
+  struct Position {
+    VectorXd z;
+    StepStart origin;
+    State state;
+    double time;
+    VectorXd rate, slide_rate;
+  };
+  Position position() const;
+  void return_to(const Position& to);
+
   [[noreturn]] void fail(const SolveReport& report, JointModel joints, double when,
                          const char* sought);
   void note(const SolveReport& report);
@@ -105,6 +124,10 @@ struct Walker {
   std::vector<FailureJoint> slipping(const Statuses& statuses) const;
   void open_clearances();
   void seat(const std::vector<int>& with_play, JointModel contact);
+  bool come_to_rest_at(double opening, JointModel contact, const std::vector<int>& with_play,
+                       double opened);
+  void seat_at(double opened, double opening, const std::vector<int>& with_play,
+               VectorXd& there) const;
   SolveReport open_seated(const std::vector<int>& with_play, JointModel contact);
   /// Below this a pin force is rounding of what the stiffest part would carry [N].
   double seat_rounding() const { return 1e-14 * system.stiffness_scale() * system.size(); }
@@ -115,7 +138,9 @@ struct Walker {
   void refuse_buckled(double when);
   bool stiffen_slack(const Statuses& statuses);
   StepEnd step_to(double target, double tolerance);
-  StepEnd step_with_slack(double target, double tolerance);
+  StepEnd step_with_slack(double target, double until, double tolerance);
+  Damped come_to_rest(const std::function<std::optional<double>(double level)>& step, double drift);
+  bool follow_snap(double until, double tolerance);
   SolveReport continue_from_event(double target, VectorXd& to, Statuses& statuses,
                                   SolveReport first);
   SolveReport slide_on(double target, bool is_short, VectorXd& to, Statuses& statuses,

@@ -70,8 +70,10 @@ struct State {
 /// What a path found that a user has to know and that is no failure.
 enum class NoteKind : unsigned char {
   large_start,  ///< The first equilibrium is far from the reference configuration: `value` [m].
-  slack,      ///< Joints without contact: where their elements hang in the play is not determined.
-  not_unique  ///< Joints that stick constrain a displacement more than once: one of many reactions.
+  slack,       ///< Joints without contact: where their elements hang in the play is not determined.
+  not_unique,  ///< Joints that stick constrain a displacement more than once: one of many
+               ///< reactions.
+  snap  ///< Slip ran away within the play of joints, and the truss moved by `value` [m] at once.
 };
 
 /// "large_start", …: the enumerator's name.

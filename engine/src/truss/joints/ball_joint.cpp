@@ -205,23 +205,28 @@ void BallJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& wr
   for (int k = 0; k < 3; ++k) writer.carries(trial.force[index(k)]);
   // A contact that carries nothing holds nothing across its normal.
   const bool sticks = status == JointStatus::stick && trial.model == JointModel::friction;
-  const bool holds =
-      trial.model == JointModel::pins || sticks ||
-      state_of(*this, trial).normal_force >= trial.slack_stiffness * radial_clearance;
-  const double slack = status == JointStatus::open || !holds ? trial.slack_stiffness : 0.0;
-  if (slack > 0.0) {
+  const bool is_open = status == JointStatus::open;
+  double slack = 0.0;
+  Vector3d slack_by_normal = Vector3d::Zero(), normal = Vector3d::Zero();
+  if (trial.slack_stiffness > 0.0 && (is_open || (trial.model != JointModel::pins && !sticks))) {
+    const BallState<double> now = state_of(*this, trial);
+    slack = is_open ? trial.slack_stiffness : trial.slack_held(now.normal_force, radial_clearance);
     const Vector3d moved = trial.between(socket, ball) - BallMemory::of(trial.history).offset;
     writer.force(ball, slack * moved);
     writer.force(socket, -slack * moved);
+    normal = now.normal;
+    if (slack > 0.0 && slack < trial.slack_stiffness) slack_by_normal = -moved / radial_clearance;
   }
   for (std::size_t a = 0; a < most_joint_nodes; ++a) {
     const Vector<Dual>& force = made.force[a];
     writer.force(a, {force[0].value(), force[1].value(), force[2].value()});
+    const double sense = a == ball ? 1.0 : a == socket ? -1.0 : 0.0;
     for (int k = 0; k < 3; ++k) {
-      writer.column(
-          a, k,
-          {force[0].derivatives()[first_force + k], force[1].derivatives()[first_force + k],
-           force[2].derivatives()[first_force + k]});
+      const Vector3d by_force(force[0].derivatives()[first_force + k],
+                              force[1].derivatives()[first_force + k],
+                              force[2].derivatives()[first_force + k]);
+      const double by_normal = sense * normal.dot(trial.frame.axes.col(k));
+      writer.column(a, k, by_force + by_normal * slack_by_normal);
     }
     for (std::size_t b = 0; b < most_joint_nodes; ++b) {
       Matrix3d block;

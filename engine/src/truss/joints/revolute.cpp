@@ -235,15 +235,17 @@ void pinned(Gradients& of) {
 }
 
 /// Holds journal and bearing together where nothing else does, see System::slack_stiffness().
+/// @param stiffness against motion since the start of the step [N/m]
 /// @returns the force on the journal [N]
-Vector2d hold_slack(const Trial& trial, const Vector2d& eccentricity, Gradients& of) {
-  if (trial.slack_stiffness == 0.0) return Vector2d::Zero();
+Vector2d hold_slack(const Trial& trial, double stiffness, const Vector2d& eccentricity,
+                    Gradients& of) {
+  if (stiffness == 0.0) return Vector2d::Zero();
   for (const std::size_t at : {journal, bearing}) {
     for (const std::size_t by : {journal, bearing}) {
-      of.bend(at, by, (at == by ? 1.0 : -1.0) * trial.slack_stiffness * Matrix2d::Identity());
+      of.bend(at, by, (at == by ? 1.0 : -1.0) * stiffness * Matrix2d::Identity());
     }
   }
-  return trial.slack_stiffness * (eccentricity - Memory::of(trial.history).eccentricity);
+  return stiffness * (eccentricity - Memory::of(trial.history).eccentricity);
 }
 
 /// @param motion that of the step if the slide's derivative is asked, else nothing
@@ -403,10 +405,10 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
   double slides = 0.0;  // derivative of the second row by the slide
   const bool bends = !writer.residual_only();
   Gradients of;
-  Vector2d slack = Vector2d::Zero();
+  Vector2d slack = Vector2d::Zero(), slack_by_normal = Vector2d::Zero();
   if (status == JointStatus::open) {
     // Without contact forces; the journal may be in the middle, where no normal is defined.
-    slack = hold_slack(trial, g.eccentricity, of);
+    slack = hold_slack(trial, trial.slack_stiffness, g.eccentricity, of);
     writer.balance(0, normal);
     writer.balance(1, friction);
     corner[0][0] = corner[1][1] = 1.0;
@@ -452,8 +454,10 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
       corner[1][0] = -sense * mu;
       corner[1][1] = 1.0;
       // A contact that carries nothing holds nothing across its normal.
-      if (normal < trial.slack_stiffness * g.clearance) {
-        slack = hold_slack(trial, g.eccentricity, of);
+      const double holds = trial.slack_held(normal, g.clearance);
+      slack = hold_slack(trial, holds, g.eccentricity, of);
+      if (holds > 0.0 && holds < trial.slack_stiffness) {
+        slack_by_normal = -(g.eccentricity - Memory::of(trial.history).eccentricity) / g.clearance;
       }
     }
   }
@@ -464,7 +468,8 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
   planar.force(journal, slack);
   planar.force(bearing, -slack);
   for (std::size_t a = 0; a < 4 && bends; ++a) {
-    planar.column(a, 0, of.normal[a]);
+    const double sense = a == journal ? 1.0 : a == bearing ? -1.0 : 0.0;
+    planar.column(a, 0, of.normal[a] + sense * slack_by_normal);
     planar.column(a, 1, of.friction[a]);
     planar.row(0, a, (holds_normal ? 1.0 : 0.0) * of.normal[a]);
     planar.row(1, a, slides * of.slide[a]);

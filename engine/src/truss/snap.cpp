@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "rate_sets.hpp"
+#include "walker.hpp"
+
+namespace statejump::truss::detail {
+
+namespace {
+
+/// Steps in which a snap comes to rest, or is none.
+constexpr int most_snap_steps = 200;
+/// Levels by which dashpots become softer after a step, and stiffer where there is none: the steps
+/// become as long as those of a path along which the stiffness is negative can be.
+constexpr double softer = 0.25;
+constexpr double stiffer = 0.5;
+/// Level at which hardly anything moves any more.
+constexpr double stiffest = 6.0;
+/// A snap is at rest where a step moves by this share of it.
+constexpr double at_rest = 1e-6;
+/// Steps with the softest dashpots, each shorter than the last, after which a motion counts as
+/// slow.
+constexpr int most_slower = 16;
+/// What dashpots may carry of the largest force where slip stays unstable.
+constexpr double most_damping = 1e-3;
+/// Joints that a note of a snap names.
+constexpr std::size_t most_named = 3;
+
+/// How far every joint with play has moved within its play since the start of a step [m]; 0: one
+/// without.
+std::vector<double> motions_in_play(const System& system, const VectorXd& z, double time,
+                                    const StepStart& since) {
+  std::vector<double> moved;
+  for (int i = 0; i < static_cast<int>(since.statuses.size()); ++i) {
+    const Trial at = system.trial(i, z, time, since, JointModel::friction, 1.0);
+    moved.push_back(std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.slack_motion(at); }) return one.slack_motion(at).norm();
+          return 0.0;
+        },
+        system.model().joints[index(i)]));
+  }
+  return moved;
+}
+
+}  // namespace
+
+/// Lets journals move within their play, held by dashpots while they slip, until they are at rest.
+///
+/// Every step is a proximal point step of the potential on the present cones of friction. Dashpots
+/// are as stiff as the stiffest element at first, then softer as long as steps converge, stiffer
+/// where they do not, and in the end carry nothing. What is unstable beyond the play they do not
+/// hold.
+/// @param step takes one with dashpots of a level; it returns how far that moved [m], or nothing if
+/// there is no step, and then has changed nothing
+/// @param drift what a step moves by without any unstable motion [m]
+Damped Walker::come_to_rest(const std::function<std::optional<double>(double level)>& step,
+                            double drift) {
+  double level = System::snap_level;
+  double whole = 0.0, last = 0.0;
+  int slower = 0;
+  for (int k = 0; k < most_snap_steps; ++k) {
+    const std::optional<double> moved = step(level);
+    if (!path.complete) return Damped::rests;
+    if (!moved) {
+      if (level >= stiffest) return Damped::fails;
+      level = std::min(stiffest, level + stiffer);
+      continue;
+    }
+    whole += *moved;
+    // What rounding of the forces moves by against dashpots that hardly hold.
+    const double rounding = 8.0 * system.force_rounding(z) / system.slack_stiffness(0.0);
+    if (level == 0.0 && *moved <= at_rest * whole + rounding + drift) return Damped::rests;
+    // Elements that are slack swing on against dashpots that hardly hold, ever slower.
+    slower = level == 0.0 && *moved <= last ? slower + 1 : 0;
+    if (slower >= most_slower) return Damped::rests;
+    last = *moved;
+    level = std::max(0.0, level - softer);
+  }
+  return Damped::moves;
+}
+
+/// Follows slip that runs away within the play of the joints, to where it comes to rest.
+///
+/// A journal that slips out of an unstable position snaps to a stable one within its play. Statics
+/// does not describe how; dashpots in the joints with play do, as for slack elements, at a
+/// temperature that hardly changes. What is unstable beyond the play remains a failure. Where slip
+/// stays unstable, the path goes on with dashpots that carry little, over steps as long as that.
+/// @param until time that is not passed [s]
+/// @returns false: dashpots do not hold it, or no joint has play; nothing has happened then
+bool Walker::follow_snap(double until, double tolerance) {
+  const bool has_play = std::any_of(model.joints.begin(), model.joints.end(), [](const Joint& of) {
+    return std::visit([](const auto& one) { return one.has_play(); }, of);
+  });
+  if (!has_play || !options.locate_events) return false;
+  const Position before = position();
+  const auto events = static_cast<std::ptrdiff_t>(path.events.size());
+  const std::size_t states = path.states.size();
+  const double level_before = slack_level;
+  const double stride =
+      std::min(std::max(tolerance, snap_stride), (until - time) / (most_snap_steps + 1));
+  const int moving = before.rate.size() == 0 ? 0 : system.displacements();
+  const double drift = 2.0 * length_of(before.rate, moving) * stride;
+  double force = 0.0;  // of the dashpots at last [N]
+  const Damped found = come_to_rest(
+      [&](double level) -> std::optional<double> {
+        const VectorXd from = z;
+        const Statuses statuses = origin.statuses;
+        slack_level = level;
+        origin.damps_slip = true;
+        changed_at_start.clear();
+        try {
+          const StepEnd end = step_to(time + stride, std::max(tolerance, stride));
+          if (end == StepEnd::stopped) path.complete = false;
+          const double moved = length_of(z - from, system.displacements());
+          force = moved * system.slack_stiffness(level);
+          if (end == StepEnd::done) return moved;
+        } catch (const Failure&) {
+          origin.statuses = statuses;
+        }
+        return std::nullopt;
+      },
+      drift);
+  slack_level = level_before;
+  origin.damps_slip = false;
+  if (!path.complete) return true;
+  if (found == Damped::fails) {
+    return_to(before);
+    path.events.erase(path.events.begin() + events, path.events.end());
+    path.states.resize(states, State{});
+    return false;
+  }
+  if (found == Damped::moves) {
+    const bool is_light = force <= most_damping * newton.largest_force();
+    snap_stride = is_light ? 2.0 * stride : 0.5 * stride;
+  }
+  const double whole = length_of(z - before.z, system.displacements());
+  const double ordinary = drift * (time - before.time) / stride +
+                          8.0 * system.force_rounding(z) / system.slack_stiffness(0.0);
+  if (whole <= ordinary) return true;
+  const std::vector<double> by = motions_in_play(system, z, time, before.origin);
+  std::vector<int> joints(by.size());
+  std::iota(joints.begin(), joints.end(), 0);
+  std::stable_sort(joints.begin(), joints.end(),
+                   [&](int a, int b) { return by[index(a)] > by[index(b)]; });
+  joints.resize(std::min(joints.size(), most_named));
+  note(NoteKind::snap, time, joints, whole);
+  return true;
+}
+
+Walker::Position Walker::position() const {
+  return {z, origin, state, time, rate, slide_rate};
+}
+
+void Walker::return_to(const Position& to) {
+  z = to.z;
+  origin = to.origin;
+  state = to.state;
+  time = to.time;
+  rate = to.rate;
+  slide_rate = to.slide_rate;
+}
+
+}  // namespace statejump::truss::detail
