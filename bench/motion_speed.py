@@ -122,7 +122,7 @@ DEM at {fractions} of the stable step.
 |---|---|--:|--:|--:|--:|--:|--:|--:|
 {table}
 
-What limits the ratio: [docs/motion.md](../../docs/motion.md#cost).
+What limits the ratio: [docs/theory/motion.md](../../docs/theory/motion.md#cost).
 
 ## Growth with the number of joints
 

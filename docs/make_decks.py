@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes docs/decks.md: what becomes of every card of a deck and of every field, from the tables of the import.
+"""Writes docs/reference/decks.md: what becomes of every card of a deck and of every field, from the tables of the import.
 
     PYTHONPATH=build/python /usr/bin/python3 docs/make_decks.py
 
@@ -14,10 +14,10 @@ from statejump.kinds.truss.importing.abaqus.table import ELEMENTS, KEYWORDS
 from statejump.kinds.truss.importing.contract import markdown
 from statejump.kinds.truss.importing.nastran.table import CARDS, CONTROL, PARAMS
 
-PAGE = Path(__file__).resolve().parent / "decks.md"
+PAGE = Path(__file__).resolve().parent / "reference" / "decks.md"
 HEAD = """# Cards of decks
 
-This page lists what [`statejump truss import`](howto_trusses.md) does with every card of a Nastran deck and with every
+This page lists what [`statejump truss import`](../howto/trusses.md) does with every card of a Nastran deck and with every
 keyword of a CalculiX or Abaqus deck. It is generated from the tables by which the import decides.
 
 Every card, field and parameter is in one class:

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes each kind of mistake, runs the command on it and writes what it said to docs/mistakes.md.
+"""Makes each kind of mistake, runs the command on it and writes what it said to docs/reference/mistakes.md.
 
     PYTHONPATH=build/python /usr/bin/python3 docs/make_mistakes.py
 
@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
-PAGE = REPOSITORY / "docs" / "mistakes.md"
+PAGE = REPOSITORY / "docs" / "reference" / "mistakes.md"
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Layout of a result file, as data: the writer is checked against it, the reader checks by it, the
-table in docs/result_file.md is made from it."""
+table in docs/reference/result_file.md is made from it."""
 from __future__ import annotations
 
 import re
@@ -215,7 +215,7 @@ def entry_of(path: str) -> Entry | None:
 
 
 def markdown() -> str:
-    """Return the layout as the tables of docs/result_file.md."""
+    """Return the layout as the tables of docs/reference/result_file.md."""
     lines = ["| place | type [shape] | meaning |", "|---|---|---|"]
     for entry in ENTRIES:
         always = "" if entry.required else " (not always there)"
