@@ -167,7 +167,7 @@ expected to.
 
 ![Distributions](ensembles.png)
 
-What differs, and why: [docs/theory/motion.md](../../docs/theory/motion.md#undamped-ensembles).
+Explanation: [Motion beside the DEM](../../docs/validation/motion.md#undamped-ensembles).
 
 ## Again
 
