@@ -92,7 +92,7 @@ ENTRIES = (
     Entry("/names", GROUP, "names of the items along the second axis of columns"),
     Entry("/names/{name}", _array("text", "items"), "a list of names; columns refer to it with their attribute items",
           required=False),
-    Entry("/scene", TEXT, "parts, forces and how columns move them, JSON; see below"),
+    Entry("/scene", TEXT, "JSON: parts, forces, and the columns that move them"),
     Entry("/meshes", GROUP, "surfaces that parts of type mesh refer to", required=False),
     Entry("/meshes/{name}", GROUP, "one surface", required=False),
     Entry("/meshes/{name}/vertices_m", _array("float64", "vertices", "3"), "in the part's own frame", required=False),
@@ -117,7 +117,7 @@ ENTRIES = (
     Entry("/models/{model}/links/{name}", COLUMN, "a further column", required=False),
     Entry("/models/{model}/contacts", GROUP, "columns of every contact"),
     Entry("/models/{model}/contacts/state", _array("uint8", "samples", "contacts"),
-          "0 separated, 1 stick, 2 slip, 3 at_stop, as its attribute labels says", required=False),
+          "0 separated, 1 stick, 2 slip, 3 at_stop (attribute labels)", required=False),
     Entry("/models/{model}/contacts/gap_m", _array("float64", "samples", "contacts"),
           "negative: penetration", required=False),
     Entry("/models/{model}/contacts/point_m", _array("float64", "samples", "contacts", "3"), "where the force acts",
@@ -167,7 +167,7 @@ ENTRIES = (
     Entry("/answers/summary", GROUP, "numbers that sum up the answers: jump, sum_of_contributions, ...",
           required=False),
     Entry("/answers/summary/{name}", NUMBER, "one number", required=False),
-    Entry("/answers/{name}", GROUP, "a table, see below", required=False),
+    Entry("/answers/{name}", GROUP, "a table", required=False),
     Entry("/answers/{name}/{name}", _array("text int64 float64", "rows"),
           "a column of it; NaN: there is no such number",
           required=False),
@@ -198,7 +198,7 @@ ATTRIBUTES = {
     "unit": "unit of the values, - for none; all data sets of numbers have it",
     "items": "name of the list below /names that names the second axis",
     "labels": "the values are indices into this list of texts",
-    "note": "how the values were found, where the name does not say it",
+    "note": "method of the values, if the name does not state it",
 }
 
 
