@@ -85,7 +85,7 @@ A slide so slow that it stops and begins again between two steps counts as many 
 
 ![Peak acceleration and largest speed over the rate of heating](heating_rate.png)
 
-What it says: [docs/motion.md](../../docs/motion.md#creak-and-snap).
+Explanation: [Run a truss in motion](../../docs/howto/motion.md#creak-and-snap).
 
 ## Again
 

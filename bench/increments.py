@@ -73,7 +73,7 @@ Of the node that is farthest from where {FINEST} increments put it, over the lar
 {head}
 {table("displacement")}
 
-What it says: [docs/physics.md](../../docs/physics.md#trusses-the-quasi-static-solver).
+Explanation: [Quasi-static solver of trusses](../../docs/theory/quasi_static.md).
 
 ## Again
 

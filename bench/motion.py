@@ -143,7 +143,7 @@ quasi-static path are its systems. The CPU time is of one shared core; the DEM's
 |---|---|--:|--:|--:|--:|--:|--:|--:|--:|
 {table}
 
-What differs, and why: [docs/motion.md](../../docs/motion.md#beside-the-dem).
+Explanation: [Motion beside the DEM](../../docs/validation/motion.md#fifteen-cases).
 
 ## Again
 

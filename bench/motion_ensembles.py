@@ -167,7 +167,7 @@ expected to.
 
 ![Distributions](ensembles.png)
 
-What differs, and why: [docs/motion.md](../../docs/motion.md#undamped-ensembles).
+Explanation: [Motion beside the DEM](../../docs/validation/motion.md#undamped-ensembles).
 
 ## Again
 

@@ -77,7 +77,7 @@ samples, the largest of all nodes, over the largest displacement, from the first
 |---|---|--:|--:|--:|
 {table}
 
-What it says: [docs/motion.md](../../docs/motion.md#the-dems-contacts-in-explicit-steps).
+Explanation: [Trusses in motion](../../docs/theory/motion.md#penalty-contact).
 
 ## Again
 

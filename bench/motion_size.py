@@ -97,7 +97,7 @@ power: of the number of joints with which the cost of a step goes, from 100 to t
 |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|
 {table}
 
-What it says: [docs/motion.md](../../docs/motion.md#cost).
+Explanation: [Cost of motion](../../docs/validation/motion_cost.md).
 
 ## Again
 

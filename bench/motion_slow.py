@@ -118,7 +118,7 @@ shared core. Times cheaper: than the DEM at 0.9 of its stable step.
 |---|---|--:|--:|--:|--:|--:|--:|
 {table}
 
-What it says: [docs/motion.md](../../docs/motion.md#cost).
+Explanation: [Cost of motion](../../docs/validation/motion_cost.md).
 
 ## Again
 

@@ -122,7 +122,7 @@ DEM at {fractions} of the stable step.
 |---|---|--:|--:|--:|--:|--:|--:|--:|
 {table}
 
-What limits the ratio: [docs/motion.md](../../docs/motion.md#cost).
+Explanation: [Cost of motion](../../docs/validation/motion_cost.md).
 
 ## Growth with the number of joints
 

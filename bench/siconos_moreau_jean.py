@@ -167,7 +167,7 @@ Difference: the largest of the five displacements before the second impact. Toge
 |--:|--:|--:|--:|--:|--:|--:|
 {lines}
 
-What they part by: [docs/motion.md](../../docs/motion.md#beside-siconos).
+Explanation: [Motion beside the DEM](../../docs/validation/motion.md#beside-siconos).
 
 ## Again
 

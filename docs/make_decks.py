@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes docs/decks.md: what becomes of every card of a deck and of every field, from the tables of the import.
+"""Writes docs/reference/decks.md: the use of every card and field of a deck, from the tables of the import.
 
     PYTHONPATH=build/python /usr/bin/python3 docs/make_decks.py
 
@@ -14,23 +14,26 @@ from statejump.kinds.truss.importing.abaqus.table import ELEMENTS, KEYWORDS
 from statejump.kinds.truss.importing.contract import markdown
 from statejump.kinds.truss.importing.nastran.table import CARDS, CONTROL, PARAMS
 
-PAGE = Path(__file__).resolve().parent / "decks.md"
+PAGE = Path(__file__).resolve().parent / "reference" / "decks.md"
 HEAD = """# Cards of decks
 
-This page lists what [`statejump truss import`](howto_trusses.md) does with every card of a Nastran deck and with every
-keyword of a CalculiX or Abaqus deck. It is generated from the tables by which the import decides.
+After this page you know what [`statejump truss import`](../howto/import.md) does with every card of a Nastran deck and
+every keyword of a CalculiX or Abaqus deck. The tables of the import generate this page.
+
+```
+statejump truss import mast.bdf -o mast.toml --ignore CARD.FIELD
+```
 
 Every card, field and parameter is in one class:
 
 | class | what the import does |
 |---|---|
 | used | it becomes part of the truss |
-| no influence | it is left out; the import prints it with the reason |
-| not supported | the import ends with exit status 2, names the card and its first line; `--ignore CARD` leaves it out |
+| no influence | the import omits it and prints the reason |
+| not supported | the import ends with exit status 2 and names the card and its first line; `--ignore CARD` omits it |
 
-A card that is in no table is not supported. `--ignore CARD.FIELD` leaves out a field alone, as the message says. A
-field that is not supported is refused unless it is empty or 0.
-"""
+A card that is in no table is not supported. `--ignore CARD.FIELD` omits one field. An unsupported field is refused
+unless it is empty or 0."""
 
 
 def page() -> str:
@@ -39,7 +42,7 @@ def page() -> str:
     lines = [HEAD.rstrip(), "", "## Nastran: bulk data", "", *markdown(CARDS, ("card",)),
              "", "## Nastran: PARAM", "", *markdown(PARAMS, ("parameter",)),
              "", "## Nastran: case control", "",
-             "What is not listed selects nothing that acts on a truss in statics.", "",
+             "Other commands select nothing that acts on a truss in statics.", "",
              *markdown(CONTROL, ("command",)),
              "", "## CalculiX and Abaqus: keywords", "", *markdown(KEYWORDS, ("keyword",)),
              "", "## CalculiX and Abaqus: types of elements", "",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables and pictures of docs/identification.md: loops of known joints from the other models, with noise, identified.
+"""Tables and pictures of docs/validation/identification.md: noisy loops of known joints from other models, identified.
 
     PYTHONPATH=build/python /usr/bin/python3 docs/make_identification.py [--repetitions N] [--choices N]
     PYTHONPATH=build/python /usr/bin/python3 docs/make_identification.py --random N

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes each kind of mistake, runs the command on it and writes what it said to docs/mistakes.md.
+"""Makes each kind of mistake, runs the command on it and writes the message to docs/reference/mistakes.md.
 
     PYTHONPATH=build/python /usr/bin/python3 docs/make_mistakes.py
 
@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
-PAGE = REPOSITORY / "docs" / "mistakes.md"
+PAGE = REPOSITORY / "docs" / "reference" / "mistakes.md"
 
 
 @dataclass(frozen=True)
@@ -96,30 +96,40 @@ RUNS: tuple[Mistake, ...] = (
     Mistake("stop that holds the slider above its floor", "table1", "[joint]",
             "[joint]\nslot_thermal_expansion_per_K = -1.5e-4", "dem"),
 )
-HEAD = """# Mistakes and what is said about them
+HEAD = """# Mistakes and their messages
 
-Every message is one sentence on standard error: file, key, value and what is allowed; a misspelt name gets
-the nearest known one. Nothing is run and nothing is written. A run that cannot go on names joint, time,
-temperature and, where it is known, what helps; its samples are dropped. This page is made by running each mistake:
-`PYTHONPATH=build/python /usr/bin/python3 docs/make_mistakes.py`.
+After this page you know the message of each mistake, and the exit status of every command. This program makes each
+mistake and generates the page:
+
+```
+PYTHONPATH=build/python /usr/bin/python3 docs/make_mistakes.py
+```
+
+A message is one sentence on standard error with file, key, value and allowed values. For a misspelt name it suggests
+the nearest known one. A command with bad input runs nothing and writes nothing. A run that cannot continue reports
+joint, time, temperature and, if known, a remedy; its samples are dropped.
 
 | exit status | meaning |
 |---|---|
 | 0 | done |
-| 1 | done, and a tolerance of the case file is missed, or a contact problem is not solved to its tolerance |
-| 2 | bad input, a run that could not be finished, or results that could not be written |
+| 1 | done, but a tolerance of the case file is missed, or a contact problem is not solved to its tolerance |
+| 2 | bad input, a run that cannot finish, or results that cannot be written |
 | 70 | a fault of the program itself, with a traceback; please report it |
-| 129 | ended by the terminal that was closed, as 143 |
-| 130 | interrupted by Ctrl-C; the message says what was kept |
-| 143 | ended by SIGTERM: nothing half-written is left, nothing is said |
+| 129 | ended because its terminal was closed, as 143 |
+| 130 | interrupted by Ctrl-C; the message states what was kept |
+| 143 | ended by SIGTERM, without incomplete files and without a message |
 
-With `--json` before the command (`statejump --json compare CASE`) a failure is one line of JSON on standard
-error instead; standard output stays as it is. Fields, present where known: `kind` (`usage`, `bad_input`,
-`output`: a file cannot be written, `failed_run`, `tolerance_missed`, `not_solved`, `interrupted`, `internal`: a fault
-of the program), `message`, `file`, `case`, `item` (of a list of tables), `key`, `value` (as text where JSON has no such
-number), `allowed` (a range with its unit, or the names),
-`time_s`, `temperature_change_K`, `joint`, `nodes`, `cause`, `remedy`, `exit_status`. In Python they are
-`StatejumpError.fields()`.
+With `--json` before the command (`statejump --json compare CASE`), a failure is one line of JSON on standard error.
+Standard output does not change. In Python the fields are `StatejumpError.fields()`. Fields without a value are absent:
+
+| field | content |
+|---|---|
+| `kind` | `usage`, `bad_input`, `output` (a file cannot be written), `failed_run`, `tolerance_missed`, \
+`not_solved`, `interrupted`, `internal` (a fault of the program) |
+| `message`, `cause`, `remedy`, `exit_status` | the sentence and its parts |
+| `file`, `case`, `item` (of a list of tables), `key` | position of the mistake |
+| `value`, `allowed` | the value (as text if JSON has no such number); range with unit, or names |
+| `time_s`, `temperature_change_K`, `joint`, `nodes` | state of the run |
 """
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures and table of docs/partial_slip.md: the eleven cases, each against closed forms and many punches.
+"""Pictures and table of docs/validation/partial_slip.md: the eleven cases, each against closed forms and many punches.
 
     PYTHONPATH=build/python /usr/bin/python3 docs/make_partial_slip.py
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picture and tables of docs/partial_slip.md on structures: state jumps from microslip to gross slip.
+"""Picture and tables of docs/validation/partial_slip_structures.md: state jumps from microslip to gross slip.
 
     PYTHONPATH=build/python /usr/bin/python3 docs/make_partial_slip_structures.py [--dem]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Table of docs/surface.md: how well an umbrella of eight ribs repeats, by days it has been through.
+"""Table of docs/howto/surface.md: how well an umbrella of eight ribs repeats, by days it has been through.
 
     PYTHONPATH=build/python /usr/bin/python3 docs/make_repeatability.py [--samples N]
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Page of the commands' own help texts, and the check that docs/commands.md has every command."""
+"""Page of the commands' own help texts, and the check that docs/reference/commands.md has every command."""
 from __future__ import annotations
 
 import re
@@ -14,7 +14,7 @@ from statejump.cli.suggesting import commands
 def unlisted(text: str) -> list[str]:
     """Return what the page of commands lacks, one sentence each."""
     named = set(re.findall(r"[a-z]+", text))
-    return [f"docs/commands.md: '{name}' is missing" for name, _ in commands(cli, "statejump")
+    return [f"docs/reference/commands.md: '{name}' is missing" for name, _ in commands(cli, "statejump")
             if name.split()[-1] not in named]
 
 

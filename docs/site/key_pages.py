@@ -98,7 +98,7 @@ def yade_targets(page: str) -> dict[str, list[str]]:
 
 
 def _rows(text: str) -> Iterator[list[list[str]]]:
-    """Yield the rows of the tables of docs/symbols.md: cells."""
+    """Yield the rows of the tables of docs/reference/symbols.md: cells."""
     table: list[list[str]] = []
     for line in [*text.splitlines(), ""]:
         if line.startswith("|"):
@@ -111,7 +111,7 @@ def _rows(text: str) -> Iterator[list[list[str]]]:
 
 
 def symbols_page(document: str, members: Path, yade_page: str) -> str:
-    """Return the tables of docs/symbols.md with every name linked to where it is documented.
+    """Return the tables of docs/reference/symbols.md with every name linked to where it is documented.
 
     :raises SystemExit: a name is documented nowhere
     """
@@ -139,7 +139,7 @@ def symbols_page(document: str, members: Path, yade_page: str) -> str:
     # Names of histories and of the engine's Python module, which no table of keys holds.
     columns = history_columns()
     lines = [heading("Where each name is documented", "="),
-             "The names of the :doc:`table of symbols </docs/symbols>`.\n"]
+             "The names of the :doc:`table of symbols </docs/reference/symbols>`.\n"]
     for table in _rows(document):
         for cells in table[1:]:
             title = re.sub(r"\\\|", "|", cells[0])
@@ -154,7 +154,7 @@ def symbols_page(document: str, members: Path, yade_page: str) -> str:
                     lines.append(f"- ``{name}``: {target or 'of YADE itself'}")
             lines.append("")
     if lost:
-        raise SystemExit("docs/symbols.md has names that are documented nowhere: " + ", ".join(lost))
+        raise SystemExit("docs/reference/symbols.md has names that are documented nowhere: " + ", ".join(lost))
     return "\n".join(lines)
 
 
@@ -164,7 +164,7 @@ def columns_page() -> str:
              "The columns of ``*_history.csv`` and of ``Run.frame()``, in their order; the unit ends the name. What "
              "belongs to several items has the item's name in brackets, a vector its axis behind them: "
              "``displacement_m[J].x``. "
-             "All places of a result file: :doc:`/docs/result_file`.\n"]
+             "All places of a result file: :doc:`/docs/reference/result_file`.\n"]
     for name in kinds.names():
         columns = kinds.kind(name).COLUMNS
         if columns:

@@ -136,7 +136,7 @@ def main() -> None:
     shutil.copy(HERE / "conf.py", source)
     static_files(source / "_static")
     wrong = documents.stage(REPOSITORY, source)
-    wrong += command_pages.unlisted((REPOSITORY / "docs" / "commands.md").read_text(encoding="utf-8"))
+    wrong += command_pages.unlisted((REPOSITORY / "docs" / "reference" / "commands.md").read_text(encoding="utf-8"))
     if wrong:
         sys.exit("\n".join(wrong))
     tutorial_pages(source, build)
@@ -156,7 +156,7 @@ def main() -> None:
         ("keys", key_pages.keys_page()),
         ("columns", key_pages.columns_page()),
         ("help", command_pages.help_page()),
-        ("names", key_pages.symbols_page((REPOSITORY / "docs" / "symbols.md").read_text(encoding="utf-8"), members,
+        ("names", key_pages.symbols_page((REPOSITORY / REFERENCE / "symbols.md").read_text(encoding="utf-8"), members,
                                          (reference / "yade.rst").read_text(encoding="utf-8"))),
     ):
         (reference / f"{name}.rst").write_text(text, encoding="utf-8")

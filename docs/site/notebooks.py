@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tutorials as Jupyter notebooks: the Markdown page is the source, the notebook is made from it.
 
-    /usr/bin/python3 docs/site/notebooks.py       writes docs/tutorials/NAME.ipynb, without outputs
+    /usr/bin/python3 docs/site/notebooks.py                      writes docs/tutorials/NAME.ipynb, without outputs
+    /usr/bin/python3 docs/site/notebooks.py --run build NAME...  with outputs, and the last figure as NAME.png
 
-Blocks of a tutorial:
+A notebook whose cells did not change keeps its outputs. Blocks of a tutorial:
 
 ```python     a cell; all of them share one process
 ```bash       a cell that bash runs, with statejump on PATH and the repository in $REPOSITORY
@@ -15,7 +16,9 @@ Blocks of a tutorial:
 """
 from __future__ import annotations
 
+import argparse
 import base64
+import copy
 import hashlib
 import itertools
 import os
@@ -31,9 +34,10 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 REPOSITORY = Path(__file__).resolve().parents[2]
 TUTORIALS = REPOSITORY / "docs" / "tutorials"
 BLOCK = re.compile(r"^```([a-z+]*)(?: file=(\S+))?\n(.*?)^```$\n?", re.MULTILINE | re.DOTALL)
-# What every YADE says at its start, with ports and cookies that differ from run to run.
+# The start message of YADE, with ports and cookies that differ from run to run.
 YADES_GREETING = re.compile(
     "Welcome to Yade|Using python version|TCP python prompt|XMLRPC info provider|Running script")
+RUN_FOLDER = re.compile(r"/\S*/statejump-notebook-\w+/(run|jupyter)/")
 TIMEOUT_S = 1200  # of a cell; the longest, a thousand masts, takes two minutes on two idle cores
 
 
@@ -202,18 +206,71 @@ def _joined(outputs: list[NotebookNode]) -> list[NotebookNode]:
     return found
 
 
-def _text(text: str) -> str:
+def _plain(text: str) -> list[str]:
     lines = re.sub("\x1b\\[[0-9;]*m", "", text).splitlines()  # without colours
-    plain = "\n".join(line for line in lines if not YADES_GREETING.match(line))
+    return [line for line in lines if not YADES_GREETING.match(line)]
+
+
+def _text(text: str) -> str:
+    plain = "\n".join(_plain(text))
     return f"````{{code-block}} text\n:class: output\n\n{plain}\n````" if plain.strip() else ""
+
+
+def without_outputs(made: NotebookNode) -> NotebookNode:
+    """Return a copy of a notebook without outputs."""
+    bare = copy.deepcopy(made)
+    for cell in bare.cells:
+        if cell.cell_type == "code":
+            cell.outputs, cell.execution_count = [], None
+    return bare
+
+
+def shared(made: NotebookNode) -> NotebookNode:
+    """Return an executed notebook for the repository: without times, versions, folders and YADE's start message."""
+    made.metadata["language_info"] = {"name": "python"}
+    for cell in made.cells:
+        cell.metadata.pop("execution", None)
+        if cell.cell_type == "code":
+            cell.outputs = _joined(cell.outputs)
+            for output in cell.outputs:
+                if output.output_type == "stream":
+                    output.text = "".join(RUN_FOLDER.sub("", line) + "\n" for line in _plain(output.text))
+    return made
+
+
+def last_figure(made: NotebookNode) -> bytes | None:
+    """Return the last figure of an executed notebook as PNG."""
+    figures = [output.data["image/png"] for cell in made.cells if cell.cell_type == "code" for output in cell.outputs
+               if "image/png" in output.get("data", {})]
+    return base64.b64decode(figures[-1]) if figures else None
+
+
+def write(source: Path, build: Path | None) -> None:
+    """Write the notebook of a page; with a build tree, execute it and write its last figure too."""
+    target = source.with_suffix(".ipynb")
+    made = notebook(source.read_text(encoding="utf-8"))
+    if build is not None:
+        made = shared(executed(made, build))
+        picture = last_figure(made)
+        if picture is not None:
+            source.with_suffix(".png").write_bytes(picture)
+    elif target.exists():
+        before = nbformat.read(target, as_version=4)
+        if stored(without_outputs(before)) == stored(made):
+            return
+    target.write_text(stored(made), encoding="utf-8")
+    print(target.relative_to(REPOSITORY), file=sys.stderr)
 
 
 def main() -> None:
     """Write the notebooks beside their pages."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--run", type=Path, metavar="BUILD", help="build tree whose package executes the notebooks")
+    parser.add_argument("names", nargs="*", help="tutorials; all if none is given")
+    given = parser.parse_args()
     for source in tutorials():
-        target = source.with_suffix(".ipynb")
-        target.write_text(stored(notebook(source.read_text(encoding="utf-8"))), encoding="utf-8")
-        print(target.relative_to(REPOSITORY), file=sys.stderr)
+        if not given.names or source.stem in given.names:
+            write(source, given.run)
 
 
 if __name__ == "__main__":

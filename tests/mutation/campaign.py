@@ -62,7 +62,7 @@ class Score:
         return max(0.0, middle - half), min(1.0, middle + half)
 
     def row(self) -> str:
-        """Return a row of the table of docs/reliability.md."""
+        """Return a row of the table of docs/validation/reliability_methods.md."""
         low, high = self.interval()
         share = self.killed / self.tried if self.tried else 0.0
         return (f"| {self.module.name} | {self.population} | {self.tried + len(self.equivalent)} | {self.killed} | "

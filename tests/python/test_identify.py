@@ -144,7 +144,7 @@ def test_every_joint_is_known_again(model: str) -> None:
 
 def test_intervals_cover() -> None:
     """60 repetitions of six parameters at 95 %: 342 of 360 are expected, sd 4 (more, as parameters of one loop go
-    together); 500 repetitions of each joint are in docs/identification.md."""
+    together); 500 repetitions of each joint are in docs/validation/identification.md."""
     inside = 0
     for seed in range(60):
         found = sj.identify(measured("coulomb_clearance_spring", JOINT, seed=seed), start="cycled",

@@ -188,7 +188,7 @@ def test_paper_joint_is_that_of_the_case(cases: Path) -> None:
 
 
 def test_document_lists_every_law() -> None:
-    text = (REPOSITORY / "docs" / "laws.md").read_text()
+    text = (REPOSITORY / "docs" / "reference" / "laws.md").read_text()
     listed = text.split("| key | law |", 1)[1].split("\n\n", 1)[0].splitlines()[2:]
     names = [row.split("|")[2].strip(" `") for row in listed]
     assert names == [name for kind in laws.KINDS for name in _engine.law_names(kind)]

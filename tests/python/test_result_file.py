@@ -125,7 +125,7 @@ def test_every_place_is_in_the_layout_and_the_other_way_round(compared, name: st
 
 
 def test_documentation_has_the_layout() -> None:
-    text = (REPOSITORY / "docs" / "result_file.md").read_text()
+    text = (REPOSITORY / "docs" / "reference" / "result_file.md").read_text()
     assert layout.markdown() in text, "make the tables again: statejump.results.layout.markdown()"
     assert f"Version {layout.VERSION}." in text
     for kind in (*scene.PART_TYPES, *scene.FORCE_KINDS):

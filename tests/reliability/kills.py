@@ -9,7 +9,7 @@ Every command runs over results of an older run. It is killed at random instants
 write, sync, rename, make or remove something below the results; and each of these calls fails once with ENOSPC and once
 with EIO. Then the next run opens the folder, as it does by itself, and what is there must be the files of the old run
 or those of the new one, byte by byte, and nothing besides; the journal of a campaign must hold whole samples. The
-status must be one of those in docs/mistakes.md, without a traceback.
+status must be one of those in docs/reference/mistakes.md, without a traceback.
 
 Starting Python takes most of a short run: nine of ten are forks of a server that has loaded what the command loads
 (forkserver.py), every tenth starts the command itself.

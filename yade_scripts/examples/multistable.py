@@ -12,7 +12,7 @@ Here many joints, far from each other, are let go at once, each at rest at anoth
 and as deep in it as its part of F along the normal presses it. Those that the cone holds stay; all
 others leave. The journals cannot turn, like pins fixed to a link; a free one would roll.
 
-A convex wall has each normal once, so its stable states are one piece (docs/physics.md). The case
+A convex wall has each normal once, so its stable states are one piece (docs/theory/rest_sets.md). The case
 three_hollows has a wall that is not convex, but nowhere as hollow as the journal is round, and a force
 towards a bump: three pieces, on the bump's top and beside it in the two hollows.
 """

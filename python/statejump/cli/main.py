@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The ``statejump`` command: its commands, and how their failures are told. A command's module is loaded when the
-command is called. Exit statuses: docs/mistakes.md."""
+command is called. Exit statuses: docs/reference/mistakes.md."""
 from __future__ import annotations
 
 import os

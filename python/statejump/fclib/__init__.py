@@ -10,7 +10,7 @@
     solution.merit.largest, solution.reactions
     sj.fclib.write("mine.hdf5", problem, solution)
 
-u = W r + q with Coulomb's law at every contact; docs/complementarity.md says more.
+u = W r + q with Coulomb's law at every contact; docs/theory/complementarity.md says more.
 """
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Layout of a result file, as data: the writer is checked against it, the reader checks by it, the
-table in docs/result_file.md is made from it."""
+table in docs/reference/result_file.md is made from it."""
 from __future__ import annotations
 
 import re
@@ -63,22 +63,22 @@ COLUMN = Form(("float64", "uint8"), (("samples",), ("samples", "items"), ("sampl
 ENTRIES = (
     Entry("/@format", TEXT, f'"{FORMAT}"'),
     Entry("/@layout_version", WHOLE, f"{VERSION}; a reader refuses a newer one"),
-    Entry("/@complete", BOOL, "false: the run was interrupted, the file holds what there was"),
-    Entry("/@command", TEXT, "which command wrote the file: reduced, dem, compare or truss answers"),
-    Entry("/case", GROUP, "what was asked"),
+    Entry("/@complete", BOOL, "false: the run was interrupted"),
+    Entry("/@command", TEXT, "command that wrote the file: reduced, dem, compare or truss answers"),
+    Entry("/case", GROUP, "the case"),
     Entry("/case@name", TEXT, "name of the case"),
     Entry("/case@kind", TEXT, "kind of the case"),
     Entry("/case@title", TEXT, "one line for figures and tables"),
     Entry("/case@source", TEXT, "where its numbers come from"),
     Entry("/case/text", TEXT, "the case file as given, TOML; empty if there was none"),
     Entry("/case/resolved", TEXT, "the case with all defaults, JSON; sections and keys as in the case file"),
-    Entry("/case/members", GROUP, "temperature histories of the members of a truss, straight between the times",
+    Entry("/case/members", GROUP, "temperature histories of the members of a truss, linear between the times",
           required=False),
     Entry("/case/members/names", _array("text", "members"), "links and revolutes", required=False),
     Entry("/case/members/time_s", _array("float64", "times"), "from 0", required=False),
     Entry("/case/members/temperature_change_K", _array("float64", "times", "members"),
           "from the reference temperature", required=False),
-    Entry("/provenance", GROUP, "what computed it: nothing of the machine, nothing of the day"),
+    Entry("/provenance", GROUP, "versions that computed it, without machine and date"),
     Entry("/provenance@statejump_version", TEXT, "version of this project"),
     Entry("/provenance@git_commit", TEXT, "commit it was built from, -dirty if changed; empty if not known"),
     Entry("/provenance@python_version", TEXT, "version of Python"),
@@ -92,15 +92,15 @@ ENTRIES = (
     Entry("/names", GROUP, "names of the items along the second axis of columns"),
     Entry("/names/{name}", _array("text", "items"), "a list of names; columns refer to it with their attribute items",
           required=False),
-    Entry("/scene", TEXT, "parts, forces and how columns move them, JSON; see below"),
+    Entry("/scene", TEXT, "JSON: parts, forces, and the columns that move them"),
     Entry("/meshes", GROUP, "surfaces that parts of type mesh refer to", required=False),
     Entry("/meshes/{name}", GROUP, "one surface", required=False),
     Entry("/meshes/{name}/vertices_m", _array("float64", "vertices", "3"), "in the part's own frame", required=False),
-    Entry("/meshes/{name}/triangles", _array("int64", "triangles", "3"), "places in vertices_m", required=False),
-    Entry("/warnings", _array("text", "sentences"), "limits of the models that the run met"),
+    Entry("/meshes/{name}/triangles", _array("int64", "triangles", "3"), "indices into vertices_m", required=False),
+    Entry("/warnings", _array("text", "sentences"), "limits of the models that the run reached"),
     Entry("/models", GROUP, "one group per model that was run"),
     Entry("/models/{model}", GROUP, "a run", required=False),
-    Entry("/models/{model}/history", GROUP, "what the model gives over time"),
+    Entry("/models/{model}/history", GROUP, "columns over time"),
     Entry("/models/{model}/history/time_s", _array("float64", "samples"), "times of all columns of this model"),
     Entry("/models/{model}/history/temperature_change_K", _array("float64", "samples"),
           "program of the temperature change",
@@ -108,16 +108,16 @@ ENTRIES = (
     Entry("/models/{model}/history/{name}", COLUMN, "a column; the same names as in the CSV files", required=False),
     Entry("/models/{model}/energy", GROUP, "energies, dissipated and supplied energies"),
     Entry("/models/{model}/energy/{name}", COLUMN, "a column [J]", required=False),
-    Entry("/models/{model}/links", GROUP, "what is known of every link"),
+    Entry("/models/{model}/links", GROUP, "columns of every link"),
     Entry("/models/{model}/links/axial_force_N", _array("float64", "samples", "links"),
           "compression positive", required=False),
     Entry("/models/{model}/links/thermal_strain", _array("float64", "samples", "links"),
           "alpha times temperature change",
           required=False),
     Entry("/models/{model}/links/{name}", COLUMN, "a further column", required=False),
-    Entry("/models/{model}/contacts", GROUP, "what is known of every contact"),
+    Entry("/models/{model}/contacts", GROUP, "columns of every contact"),
     Entry("/models/{model}/contacts/state", _array("uint8", "samples", "contacts"),
-          "0 separated, 1 stick, 2 slip, 3 at_stop, as its attribute labels says", required=False),
+          "0 separated, 1 stick, 2 slip, 3 at_stop (attribute labels)", required=False),
     Entry("/models/{model}/contacts/gap_m", _array("float64", "samples", "contacts"),
           "negative: penetration", required=False),
     Entry("/models/{model}/contacts/point_m", _array("float64", "samples", "contacts", "3"), "where the force acts",
@@ -128,7 +128,7 @@ ENTRIES = (
           "on the same part",
           required=False),
     Entry("/models/{model}/contacts/{name}", COLUMN, "a further column", required=False),
-    Entry("/models/{model}/events", GROUP, "what happened, in order of time; five data sets of one length"),
+    Entry("/models/{model}/events", GROUP, "events in order of time; five data sets of one length"),
     Entry("/models/{model}/events/kind", _array("text", "events"), "first_contact, first_slip, stop_reached, ..."),
     Entry("/models/{model}/events/time_s", _array("float64", "events"), "when"),
     Entry("/models/{model}/events/temperature_change_K", _array("float64", "events"), "at which temperature change"),
@@ -138,8 +138,8 @@ ENTRIES = (
     Entry("/models/{model}/summary", GROUP, "numbers that sum up the run"),
     Entry("/models/{model}/summary/{name}", NUMBER, "one number; NaN: it did not happen", required=False),
     Entry("/comparison", GROUP, "the two models beside each other; only in files of compare", required=False),
-    Entry("/comparison@passed", BOOL, "whether all rows passed", required=False),
-    Entry("/comparison/quantity", _array("text", "rows"), "what was compared", required=False),
+    Entry("/comparison@passed", BOOL, "true if all rows passed", required=False),
+    Entry("/comparison/quantity", _array("text", "rows"), "compared quantity", required=False),
     Entry("/comparison/unit", _array("text", "rows"), "unit of the row", required=False),
     Entry("/comparison/closed_form", _array("float64", "rows"),
           "value of a closed form; NaN: the row has none", required=False),
@@ -153,21 +153,21 @@ ENTRIES = (
           "value of finite elements; NaN: the row has none", required=False),
     Entry("/comparison/difference", _array("float64", "rows"), "DEM less reduced; NaN: one is missing", required=False),
     Entry("/comparison/tolerance", _array("float64", "rows"), "allowed size of the difference", required=False),
-    Entry("/comparison/passed", _array("bool", "rows"), "whether it is kept", required=False),
+    Entry("/comparison/passed", _array("bool", "rows"), "whether the difference is within it", required=False),
     Entry("/comparison/reasons", _array("text", "sentences"), "why a tolerance may have been missed, and what to set",
           required=False),
-    Entry("/answers", GROUP, "what a designer asks of a truss; only in files of truss answers", required=False),
-    Entry("/answers@output", TEXT, "what is traced to the joints: node:NAME, rms or tilt", required=False),
-    Entry("/answers@text", TEXT, "the same in words", required=False),
+    Entry("/answers", GROUP, "design questions of a truss; only in files of truss answers", required=False),
+    Entry("/answers@output", TEXT, "output whose jump the joints share: node:NAME, rms or tilt", required=False),
+    Entry("/answers@text", TEXT, "the same as text", required=False),
     Entry("/answers@unit", TEXT, "its unit", required=False),
     Entry("/answers@verdict", TEXT, "no jump, one cycle, shakedown, ratcheting, not settled or not resolved",
           required=False),
-    Entry("/answers@verdict_text", TEXT, "the same in words", required=False),
-    Entry("/answers/notes", _array("text", "sentences"), "what was not found, or only so", required=False),
+    Entry("/answers@verdict_text", TEXT, "the same as text", required=False),
+    Entry("/answers/notes", _array("text", "sentences"), "results that are missing or limited", required=False),
     Entry("/answers/summary", GROUP, "numbers that sum up the answers: jump, sum_of_contributions, ...",
           required=False),
     Entry("/answers/summary/{name}", NUMBER, "one number", required=False),
-    Entry("/answers/{name}", GROUP, "a table, see below", required=False),
+    Entry("/answers/{name}", GROUP, "a table", required=False),
     Entry("/answers/{name}/{name}", _array("text int64 float64", "rows"),
           "a column of it; NaN: there is no such number",
           required=False),
@@ -186,7 +186,7 @@ TABLES: dict[str, tuple[str, tuple[str, ...]]] = {
     "surface": ("the reflecting surface in a state against its best fit; changes since the start",
                 ("state", "temperature_change_K", "rms_error_m", "rms_of_change_m", "tilt_change_rad", "focal_length_m",
                  "focal_shift_m", "depth_change_m")),
-    "contributions": ("a joint, the first holds most of the output's jump",
+    "contributions": ("a joint, the one with the largest contribution first",
                       ("rank", "joint", "kind", "contribution", "share")),
     "sensitivities": ("a parameter; elasticity: relative change of the jump per relative change of it",
                       ("parameter", "items", "value", "elasticity", "elasticity_half_step", "jump_change_per_unit",
@@ -197,8 +197,8 @@ TABLES: dict[str, tuple[str, tuple[str, ...]]] = {
 ATTRIBUTES = {
     "unit": "unit of the values, - for none; all data sets of numbers have it",
     "items": "name of the list below /names that names the second axis",
-    "labels": "the values are places in this list of texts",
-    "note": "how the values were found, where the name does not say it",
+    "labels": "the values are indices into this list of texts",
+    "note": "method of the values, if the name does not state it",
 }
 
 
@@ -215,10 +215,10 @@ def entry_of(path: str) -> Entry | None:
 
 
 def markdown() -> str:
-    """Return the layout as the tables of docs/result_file.md."""
+    """Return the layout as the tables of docs/reference/result_file.md."""
     lines = ["| place | type [shape] | meaning |", "|---|---|---|"]
     for entry in ENTRIES:
-        always = "" if entry.required else " (not always there)"
+        always = "" if entry.required else " (optional)"
         lines.append(f"| `{entry.path}` | {entry.form} | {entry.meaning}{always} |")
     lines += ["", "| attribute | meaning |", "|---|---|"]
     lines += [f"| `{name}` | {meaning} |" for name, meaning in ATTRIBUTES.items()]

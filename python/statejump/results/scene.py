@@ -8,7 +8,7 @@ A description is plain JSON data, one for both models. A *value* is a number or 
     {"data": "history/temperature_change_K", "scale": 2e-5, "offset": 0.0}    offset + scale * value
 
 A *point* or *vector* is a list [x, y, z] of values, or one reference to data with three components.
-All numbers are SI units, angles anticlockwise from x. docs/result_file.md has the types of parts.
+All numbers are SI units, angles anticlockwise from x. docs/reference/result_file.md has the types of parts.
 """
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random contacts of every law against the formulas of docs/laws.md in 50 digits, written apart
+// Random contacts of every law against the formulas of docs/reference/laws.md in 50 digits, written apart
 // from the kernel: both sides of every branch, extreme ratios. And what no unit, no axes and no
 // order of the bodies may change.
 #include <gtest/gtest.h>
@@ -239,7 +239,7 @@ struct Reference {
   bool is_at_a_step = false;  ///< within rounding of where the viscous force ends
 };
 
-/// The contact step as docs/laws.md and the class comments state it.
+/// The contact step as docs/reference/laws.md and the class comments state it.
 Reference reference(const Configuration& c, const NormalState& kernel) {
   Reference r;
   r.normal = normal_reference(c.names.normal, c, kernel);

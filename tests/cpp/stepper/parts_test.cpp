@@ -2,7 +2,7 @@
 // Parts of a scene in several threads: the same bits as the whole in one.
 //
 // The thread sanitizer says nothing of a race whose first access it no longer remembers. A test for
-// it makes few steps, and two races have to be noticed (docs/reliability.md has the trials).
+// it makes few steps, and two races have to be noticed (docs/validation/reliability_methods.md has the trials).
 #include "statejump/stepper/parts.hpp"
 
 #include <gtest/gtest.h>
