@@ -31,7 +31,6 @@ HEADER = ("deck", "units", "imported", "ran", "why not", "largest displacement [
 # Strains of structures are below 1e-2: what is not linear is then below 1e-7 of the displacement, as ccx prints it.
 SMALL = 1e-5
 FAULT = "fault"
-UNITS = ("SI", "mm-N", "in-lbf", "mm-kg-s")
 
 
 @dataclass
@@ -65,7 +64,7 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
                                               options.beams_as_bars, options.step, options.circ))
         documents = {units: case_document(deck, "deck", units=SYSTEMS[units], check_ignored=False,
                                           temperature_change_K=options.temperature_change)
-                     for units in ([options.units] if options.units else UNITS)}
+                     for units in ([options.units] if options.units else SYSTEMS)}
         beams = any(bar.bends for bar in deck.bars)
         row.units, made, case, without_support = _plausible(documents)
         row.imported = True
