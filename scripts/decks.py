@@ -157,6 +157,8 @@ def arguments_of(options: argparse.Namespace) -> list[str]:
 
 def main() -> int:
     """Run the command."""
+    from statejump.kinds.truss.importing import SYSTEMS
+
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("-o", "--output", type=Path, help="Markdown table; none: standard output")
@@ -166,8 +168,7 @@ def main() -> int:
     parser.add_argument("--temperature-change", type=float, default=0.0)
     parser.add_argument("--circ", choices=("radius", "diameter"))
     parser.add_argument("--step", type=int)
-    parser.add_argument("--units", choices=("SI", "mm-N", "mm-kN-t", "mm-kg-s", "in-lbf"),
-                        help="none: the most plausible ones")
+    parser.add_argument("--units", choices=tuple(SYSTEMS), help="none: the most plausible ones")
     parser.add_argument("--ignore", action="append", default=[])
     parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()
