@@ -79,7 +79,7 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
             row.difference = decks_ccx.difference(path, deck.step, ours, names)
     except StatejumpError as refused:
         row.cause = str(refused).replace(str(path), path.name)
-        if row.imported and beams and "mechanism" in row.cause:
+        if row.imported and beams and any(said in row.cause for said in ("mechanism", "stiffness is singular")):
             row.cause = f"needs bending: {row.cause}"
     except Exception as fault:  # what the table is made to find
         row.fault = True
