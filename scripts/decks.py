@@ -31,7 +31,6 @@ HEADER = ("deck", "units", "imported", "ran", "why not", "largest displacement [
 # Strains of structures are below 1e-2: what is not linear is then below 1e-7 of the displacement, as ccx prints it.
 SMALL = 1e-5
 FAULT = "fault"
-UNITS = ("SI", "mm-N", "in-lbf", "mm-kg-s")
 
 
 @dataclass
@@ -65,7 +64,7 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
                                               options.beams_as_bars, options.step, options.circ))
         documents = {units: case_document(deck, "deck", units=SYSTEMS[units], check_ignored=False,
                                           temperature_change_K=options.temperature_change)
-                     for units in ([options.units] if options.units else UNITS)}
+                     for units in ([options.units] if options.units else SYSTEMS)}
         beams = any(bar.bends for bar in deck.bars)
         row.units, made, case, without_support = _plausible(documents)
         row.imported = True
@@ -80,7 +79,7 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
             row.difference = decks_ccx.difference(path, deck.step, ours, names)
     except StatejumpError as refused:
         row.cause = str(refused).replace(str(path), path.name)
-        if row.imported and beams and "mechanism" in row.cause:
+        if row.imported and beams and any(said in row.cause for said in ("mechanism", "stiffness is singular")):
             row.cause = f"needs bending: {row.cause}"
     except Exception as fault:  # what the table is made to find
         row.fault = True
@@ -158,6 +157,8 @@ def arguments_of(options: argparse.Namespace) -> list[str]:
 
 def main() -> int:
     """Run the command."""
+    from statejump.kinds.truss.importing import SYSTEMS
+
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("-o", "--output", type=Path, help="Markdown table; none: standard output")
@@ -167,8 +168,7 @@ def main() -> int:
     parser.add_argument("--temperature-change", type=float, default=0.0)
     parser.add_argument("--circ", choices=("radius", "diameter"))
     parser.add_argument("--step", type=int)
-    parser.add_argument("--units", choices=("SI", "mm-N", "mm-kN-t", "mm-kg-s", "in-lbf"),
-                        help="none: the most plausible ones")
+    parser.add_argument("--units", choices=tuple(SYSTEMS), help="none: the most plausible ones")
     parser.add_argument("--ignore", action="append", default=[])
     parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()

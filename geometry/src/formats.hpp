@@ -24,9 +24,10 @@ std::optional<MeshFormat> format_of(const std::string& file);
 /// Polygons are cut into fans; equal vertices become one, numbered by first appearance; vertices of
 /// STL, and of PLY with float coordinates, also where they differ by rounding of floats.
 /// OFF: text, also with normals, colours and texture (N, C, ST), which are skipped. STL: text or
-/// binary. PLY: text and both binary orders, any elements beside vertex (x, y, z) and face
-/// (vertex_indices or vertex_index). OBJ: v and f, indices from 1 or back from the last vertex; a
-/// line goes on behind a backslash at its end; all else is skipped.
+/// binary, also with attributes behind its facets. PLY: text and both binary orders, any elements
+/// beside vertex (x, y, z) and face or tristrips (vertex_indices or vertex_index). OBJ: v and f,
+/// indices from 1 or back from the last vertex; a line goes on behind a backslash at its end; all
+/// else is skipped.
 /// @param name said first in errors
 /// @throws MeshFailure `unreadable` for what is not of the format, `bad_faces` for corners that do
 ///         not exist, vertices that are not finite and a mesh without faces

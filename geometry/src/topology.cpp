@@ -49,15 +49,33 @@ void check_faces(const Triangles& mesh, const std::string& name) {
       if (corner < 0 || corner >= count)
         refuse(name, "face " + std::to_string(f) + " has corner " + std::to_string(corner) +
                          ", but there are only " + std::to_string(count) + " vertices");
-    const auto& corner = mesh.faces[f];
-    double longest = 0;
-    for (int k = 0; k < 3; ++k)
-      longest = std::max(
-          longest, (mesh.vertices[corner[k]] - mesh.vertices[corner[(k + 1) % 3]]).squaredNorm());
-    // Height below a millionth of a millionth of the longest side: rounding of the corners.
-    if (!(area_vector(mesh, f).norm() > 1e-12 * longest))
-      refuse(name, face_name(mesh, f) + " at " + place(face_centre(mesh, f)) + " has no area");
   }
+}
+
+struct LongestSide {
+  int opposite;  ///< corner that it does not touch, 0 to 2
+  double squared;
+};
+
+LongestSide longest_side(const Triangles& mesh, const std::array<int, 3>& face) {
+  LongestSide longest{0, -1};
+  for (int k = 0; k < 3; ++k) {
+    const double squared =
+        (mesh.vertices[face[(k + 1) % 3]] - mesh.vertices[face[(k + 2) % 3]]).squaredNorm();
+    if (squared > longest.squared) longest = {k, squared};
+  }
+  return longest;
+}
+
+bool has_area(const Triangles& mesh, const std::array<int, 3>& face) {
+  // Height below a millionth of a millionth of the longest side: rounding of the corners.
+  return area_vector(mesh, face).norm() > 1e-12 * longest_side(mesh, face).squared;
+}
+
+void check_areas(const Triangles& mesh, const std::string& name) {
+  for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f)
+    if (!has_area(mesh, mesh.faces[f]))
+      refuse(name, face_name(mesh, f) + " at " + place(face_centre(mesh, f)) + " has no area");
 }
 
 struct Edge {
@@ -95,6 +113,84 @@ Edges edges_of(const Triangles& mesh, const std::string& name) {
   return edges;
 }
 
+/// Two faces at each edge; edges of more are refused later.
+class FacesAtEdges {
+ public:
+  explicit FacesAtEdges(const Triangles& mesh) {
+    for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f)
+      for (int k = 0; k < 3; ++k) replace(mesh.faces[f][k], mesh.faces[f][(k + 1) % 3], nobody, f);
+  }
+  /// The face that shares an edge with this one; nobody: none.
+  int beside(int a, int b, int face) const {
+    const auto found = faces_.find(edge_key(a, b));
+    if (found == faces_.end()) return nobody;
+    return found->second[found->second[0] == face ? 1 : 0];
+  }
+  bool known(int a, int b) const { return faces_.count(edge_key(a, b)) > 0; }
+  void replace(int a, int b, int old_face, int face) {
+    auto& at = faces_.try_emplace(edge_key(a, b), std::array<int, 2>{nobody, nobody}).first->second;
+    at[at[0] == old_face ? 0 : 1] = face;
+  }
+  void erase(int a, int b) { faces_.erase(edge_key(a, b)); }
+  static constexpr int nobody = -1;
+
+ private:
+  std::unordered_map<std::uint64_t, std::array<int, 2>> faces_;
+};
+
+/// Takes out faces whose corners lie in line, which exporters leave where an edge is divided on one
+/// side only. The neighbour across the longest side is divided instead: the surface stays the same.
+/// Faces for which this makes others without area stay, and are refused later.
+void divide_at_flat_faces(Triangles& mesh) {
+  std::vector<int> flat;
+  for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f)
+    if (!has_area(mesh, mesh.faces[f])) flat.push_back(f);
+  if (flat.empty()) return;
+  // Of several on one line the longest has a neighbour with an area.
+  std::stable_sort(flat.begin(), flat.end(), [&](int a, int b) {
+    return longest_side(mesh, mesh.faces[a]).squared > longest_side(mesh, mesh.faces[b]).squared;
+  });
+  FacesAtEdges edges(mesh);
+  std::vector<bool> gone(mesh.faces.size(), false);
+  for (const int f : flat) {
+    const std::array<int, 3> face = mesh.faces[f];
+    const int k = longest_side(mesh, face).opposite;
+    const int middle = face[k];
+    const int a = face[(k + 1) % 3];
+    const int b = face[(k + 2) % 3];
+    const int other = edges.beside(a, b, f);
+    if (other == FacesAtEdges::nobody) {
+      edges.erase(a, b);
+      edges.replace(b, middle, f, FacesAtEdges::nobody);
+      edges.replace(middle, a, f, FacesAtEdges::nobody);
+    } else {
+      const auto& [c, d, e] = mesh.faces[other];
+      const int turn = (c == a || c == b) && (d == a || d == b) ? 0 : (d == a || d == b) ? 1 : 2;
+      const int from = mesh.faces[other][turn];
+      const int to = mesh.faces[other][(turn + 1) % 3];
+      const int top = mesh.faces[other][(turn + 2) % 3];
+      const std::array<int, 3> first{from, middle, top};
+      const std::array<int, 3> second{middle, to, top};
+      if (top == middle || edges.known(middle, top) || !has_area(mesh, first) ||
+          !has_area(mesh, second))
+        continue;
+      edges.erase(a, b);
+      edges.replace(from, middle, f, other);
+      edges.replace(to, top, other, f);
+      edges.replace(middle, top, FacesAtEdges::nobody, other);
+      edges.replace(middle, top, FacesAtEdges::nobody, f);
+      mesh.faces[other] = first;
+      mesh.faces[f] = second;
+    }
+    gone[f] = other == FacesAtEdges::nobody;
+    ++mesh.removed;
+  }
+  std::size_t kept = 0;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    if (!gone[f]) mesh.faces[kept++] = mesh.faces[f];
+  mesh.faces.resize(kept);
+}
+
 /// Makes neighbours agree with CGAL, which turns polygons over until they do.
 void orient(Triangles& mesh, const std::string& name) {
   std::vector<Kernel::Point_3> points;
@@ -130,6 +226,8 @@ std::string place(const Vector3& point) {
 
 Neighbours check_topology(Triangles& mesh, const std::string& name) {
   check_faces(mesh, name);
+  divide_at_flat_faces(mesh);
+  check_areas(mesh, name);
   const int face_count = static_cast<int>(mesh.faces.size());
   Edges edges = edges_of(mesh, name);
   const auto disagrees = [](const Edge& edge) {

@@ -21,8 +21,9 @@ using Neighbours = std::vector<std::array<int, 3>>;
 /// A loop of border edges: vertices in order.
 using Loop = std::vector<int>;
 
-/// Refuses faces that do not exist, are not finite or have no area, edges of three faces,
+/// Refuses faces that do not exist or are not finite, edges of three faces,
 /// inconsistent orientation that CGAL cannot mend, sheets meeting in a vertex and several parts.
+/// Faces whose corners lie in line are taken out; those that cannot be are refused.
 /// Turns faces over where neighbours disagree, so that they agree with the first face.
 /// @return neighbours of every face
 Neighbours check_topology(Triangles& mesh, const std::string& name);
@@ -42,10 +43,13 @@ inline Vector3 cross(const Vector3& a, const Vector3& b) {
 }
 
 /// Normal times twice the area.
-inline Vector3 area_vector(const Triangles& mesh, int face) {
-  const auto& corner = mesh.faces[face];
+inline Vector3 area_vector(const Triangles& mesh, const std::array<int, 3>& corner) {
   const Vector3& a = mesh.vertices[corner[0]];
   return cross(mesh.vertices[corner[1]] - a, mesh.vertices[corner[2]] - a);
+}
+
+inline Vector3 area_vector(const Triangles& mesh, int face) {
+  return area_vector(mesh, mesh.faces[face]);
 }
 
 inline Vector3 face_centre(const Triangles& mesh, int face) {

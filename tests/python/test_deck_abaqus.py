@@ -80,6 +80,15 @@ def test_what_says_the_same_is_the_same(name: str, tmp_path: Path) -> None:
     assert moved(made(tmp_path, text.replace(old, new))) == pytest.approx(1e-3, rel=1e-12)
 
 
+def test_parameters_have_their_numbers(tmp_path: Path) -> None:
+    text = MODEL.replace("7.e10", "<E>").replace("*NODE", "*PARAMETER\nE = 7.e10  # of aluminium\nload=7000.\n*NODE", 1)
+    same = made(tmp_path, text + LOAD.replace("7000.", "< load >"))
+    assert same == made(tmp_path, MODEL + LOAD)
+    assert refusal(tmp_path, text.replace("7.e10  #", "7 * 10  #") + LOAD) == (
+        "line 2: *PARAMETER: '7 * 10' is not a finite number; write numbers in place of expressions")
+    assert "'<mass>' is not a finite number" in refusal(tmp_path, text.replace("2700.", "<mass>") + LOAD)
+
+
 def test_included_files_stay_in_the_folder(tmp_path: Path) -> None:
     (tmp_path / "nodes.msh").write_text(NODES)
     text = (MODEL + LOAD).replace(NODES, "*INCLUDE, INPUT=nodes.msh\n")

@@ -54,6 +54,15 @@ def test_the_rod_is_as_long_as_by_hand(tmp_path: Path) -> None:
     assert moved(made(tmp_path, ROD)) == pytest.approx(1e-3, rel=1e-12)
 
 
+def test_blanks_between_components_change_nothing(tmp_path: Path) -> None:
+    assert "SPC1,1,23,2" in ROD
+    assert made(tmp_path, ROD.replace("SPC1,1,23,2", "SPC1    1        2  3   2")) == made(tmp_path, ROD)
+
+
+def test_parameters_and_the_card_of_mystran_change_nothing(tmp_path: Path) -> None:
+    assert made(tmp_path, ROD + "PARAM,SOLLIB,BANDED\nPARAM   PRTDOF  1\nDEBUG   192     2\n") == made(tmp_path, ROD)
+
+
 @pytest.mark.parametrize("name, old, new", [
     ("small", "GRID,2,,1.,0.,0.", "GRID           2              1.      0.      0."),
     ("large", "GRID,2,,1.,0.,0.", "GRID*                  2                              1.              0.\n*                     0."),
@@ -290,6 +299,7 @@ REFUSED = {  # cards beside the rod and what the refusal says
     "support of a free body": ("SUPORT,2,1\n", "SUPORT is not supported"),
     "load elsewhere": ("GRID,3,,5.,5.,5.\nFORCE,5,3,,1.,1.,0.,0.\n", "FORCE is not supported: a force on node 3, where no bar ends"),
     "parameter": ("PARAM,NEWONE,1\n", "PARAM.NEWONE is not supported: the parameter is unknown"),
+    "artificial masses": ("PARAM,ART_MASS,Y,1.E-6\n", "PARAM.ART_MASS is not supported: mass or stiffness that is added"),
     "inertia relief": ("PARAM,INREL,-2\n", "PARAM.INREL is not supported"),
     "temperature-dependent": ("MATT1,1,7\n", "MATT1 is not supported"),
     "field": ("CONM1,3,2,,4.,1.,4.\n,4.\n", "CONM1.M21 is not supported: it couples directions"),

@@ -215,7 +215,7 @@ def test_command(statejump, cases: Path, tmp_path: Path) -> None:
     outcome = statejump("laws")
     assert outcome.status == 0, outcome.errors
     for kind in laws.KINDS:
-        assert f"{kind} laws" in outcome.output
+        assert f"{kind.replace('_', ' ').capitalize()} laws" in outcome.output
         for name in _engine.law_names(kind):
             assert f"│ {name} " in outcome.output
     outcome = statejump("laws", cases / "umbrella_bias.toml", "--quiet")

@@ -94,8 +94,9 @@ def test_the_drawing_gets_the_jumps_of_each_cycle(results: Path) -> None:
 def test_a_loop_that_looks_like_a_line_is_shown_without_it(results: Path) -> None:
     document = Document(read(results / "ring_12" / "reduced.h5"), "x.h5", "run1", 1e6)
     shown = {chart["title"]: chart for chart in document.payload()["charts"]}
-    thin = next(chart for title, chart in shown.items() if title.endswith(", less its straight part"))
+    thin = next(chart for title, chart in shown.items() if ", less its straight part of " in title)
     whole = shown[thin["title"].partition(",")[0]]
+    assert thin["title"].endswith("/K") and thin["y"]["label"].partition(" [")[0] == whole["y"]["label"].partition(" [")[0]
     change = document.result.models["reduced"]["temperature_change_K"]
     loop, left = (document._columns["reduced"][chart["y"]["column"]] for chart in (whole, thin))
     # A straight line less: the same jump, on a scale on which it is seen.

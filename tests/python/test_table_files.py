@@ -181,6 +181,11 @@ def test_pint_is_not_loaded_without_need(tmp_path: Path) -> None:
     b"#,time_s,A_K\n1,0,1.5\n2,10,2\n",
     b"A_K,time_s\n1.5,0\n2,10\n",  # the time in another column
     b"time_s,A_K\n0.0D+00,1.5D0\n1.0d+01,2\n",  # Fortran
+    b"timestamp,A_K\n2024-05-01T10:00:00Z,1.5\n2024-05-01T10:00:10Z,2\n", b"Zeit [s];A_K\n0;1,5\n10;2\n",
+    b"Time,A_K\n0 sec,1.5\n10 sec,2\n", b"Time,A_K\n0 min,1.5\n0.16666666666666666 min,2\n",  # timetables of MATLAB
+    b"LabVIEW Measurement\t\r\nWriter_Version\t2\r\nSeparator\tTab\r\nDecimal_Separator\t,\r\n***End_of_Header***\t\r\n\t\r\n"
+    b"Channels\t1\t\r\nY_Unit_Label\tK\t\r\nX_Dimension\tTime\t\r\n***End_of_Header***\t\t\r\nX_Value\tA\tComment\r\n"
+    b"0,0\t1,5\t\r\n10,0\t2\t\r\n",
 ])
 def test_tables_as_programs_write_them(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "a.csv").write_bytes(content)
@@ -196,12 +201,26 @@ def test_tables_as_programs_write_them(tmp_path: Path, content: bytes) -> None:
     (b"# c\n# time_s,A_K\n0,1\n1,x\n", "line 4, column 'A_K': 'x' is not a finite number"),
     (b"Time,A\ns,K\n0,1\n1,x\n", "line 4, column 'A [K]': 'x' is not a finite number"),
     (b"# time_s,A_K\n", "line 1: there is no column"),
+    (b"\n   0.0e+00   1.5e+00\n   1.0e+01   2.0e+00\n", "line 2 names no columns: it holds numbers only"),
+    (b"Time,A_K\n0 sec,1\n1 min,2\n", "column 'Time': it names no unit and has no ISO times"),
+    (b'time_s,A_K\n"1,000.5",1\n"2,5",2\n', "'2,5' has a decimal comma, '1,000.5' in line 2 a point"),
     ("time_s,Tr\xe4ger_K\n0,1\n1,2\u20ac\n".encode("cp1252"), "the file is not UTF-8 text"),
 ])
 def test_tables_that_stay_refused(tmp_path: Path, content: bytes, said: str) -> None:
     (tmp_path / "a.csv").write_bytes(content)
     with pytest.raises(StatejumpError, match=re.escape(said)):
         temperatures_of(tmp_path / "a.csv", "thermal.table_file")
+
+
+@pytest.mark.parametrize("content", [
+    b'"Kraft [kN]";"Weg [mm]"\n-1.000,5;0\n2;0,5\n', b'F [N],x [\xc2\xb5m]\n"-1,000,500.0",0\n"2,000.",500\n',
+    b"Load,Extension\n(kN),(mm)\n-1000.5,0\n2,0.5\n",
+])
+def test_loops_as_programs_write_them(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "a.csv").write_bytes(content)
+    found = read_known(tmp_path / "a.csv", COLUMNS, WORDS)
+    assert {key: values.tolist() for key, values in found.items()} == {
+        "force_N": [-1000500, 2000], "displacement_m": [0, 5e-4]}
 
 
 def test_names_in_the_code_page_of_excel(tmp_path: Path) -> None:

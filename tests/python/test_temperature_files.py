@@ -261,7 +261,7 @@ def test_what_is_wrong_with_a_file_is_one_sentence(
 
 KEYS = {
     "no such file": ('members_file = "none.csv"', "none.csv: no such file of temperatures"),
-    "not a table": ('members_file = "/etc/passwd"', "is not allowed: must end with .csv, .txt, .tsv, .dat, .h5, .hdf5"),
+    "not a table": ('members_file = "/etc/passwd"', "is not allowed: must end with .csv, .txt, .tsv, .dat, .lvm, .h5, .hdf5"),
     "both": ('members_file = "members.csv"\ntable_time_s = [0.0, 1.0]',
              "thermal.table_time_s is not allowed with thermal.members_file"),
     "reference alone": ("table_time_s = [0.0, 1.0]\ntable_temperature_change_K = [0.0, 1.0]",

@@ -226,7 +226,7 @@ def test_wrong_tables(expected: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("given, expected", [
     ({"node": "no.csv"}, "no.csv: no such file of tables"),
-    ({"node": "a.xlsx"}, "case.toml: tables.node = 'a.xlsx' is not allowed: must end with .csv, .txt, .tsv, .dat, .h5, "
+    ({"node": "a.xlsx"}, "case.toml: tables.node = 'a.xlsx' is not allowed: must end with .csv, .txt, .tsv, .dat, .lvm, .h5, "
      ".hdf5"),
     ({"nodes": "a.csv"}, "case.toml: tables.nodes is unknown: did you mean tables.node?"),
     ({"link": "a.csv"}, "case.toml: tables.link = 'a.csv' is not allowed: the case has [[link]] as well; leave one of "

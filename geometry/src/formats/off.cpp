@@ -13,11 +13,20 @@ void read_off(std::string_view content, Reading& reading) {
   std::string_view kind = word;
   for (const char* part : {"ST", "C", "N"})
     if (kind.substr(0, std::strlen(part)) == part) kind.remove_prefix(std::strlen(part));
-  if (kind != "OFF") reading.refuse_line(words.line(), "does not begin with OFF");
   std::array<std::uint64_t, 2> counts{};
-  for (std::uint64_t& count : counts)
-    if (!words.next(word) || !to_number(word, count))
+  // Geomview needs no word OFF, and collections of models have it without a space: OFF8 6 12.
+  bool has_count = to_number(kind, counts[0]);
+  if (!has_count && kind.substr(0, 3) != "OFF")
+    reading.refuse_line(words.line(), "does not begin with OFF");
+  if (!has_count) kind.remove_prefix(3);
+  has_count = has_count || to_number(kind, counts[0]);
+  if (!has_count && !kind.empty()) reading.refuse_line(words.line(), "does not begin with OFF");
+  for (std::size_t k = has_count ? 1 : 0; k < counts.size(); ++k) {
+    if (!words.next(word)) word = {};
+    if (word == "BINARY") reading.refuse("it is binary: only OFF as text is read");
+    if (!to_number(word, counts[k]))
       reading.refuse_line(words.line(), "should hold the numbers of vertices and faces");
+  }
   words.skip_line();  // the number of edges
   // No vertex is shorter than "0 0 0", no face than "3 0 1 2", each with the end of its line.
   const std::uint64_t length = content.size() + 1;

@@ -179,35 +179,55 @@ class PlyBody {
   std::size_t at_ = 0;
 };
 
-}  // namespace
-
-void read_ply(std::string_view content, Reading& reading) {
-  const PlyHeader header = ply_header(content, reading);
-  const std::string_view body = content.substr(header.length);
+/// Refuses counts that do not fit into the file, and files without vertices or faces.
+void check_elements(const PlyHeader& header, std::string_view content, const Reading& reading) {
   bool has_points = false, has_faces = false;
-  std::uint64_t left = body.size() + 1;  // the last line may lack its end
+  std::uint64_t left = content.size() - header.length + 1;  // the last line may lack its end
   for (const PlyElement& element : header.elements) {
     // As text a property takes a digit and a space.
     std::uint64_t least = 0;
     for (const PlyProperty& property : element.properties)
       least += header.ascii ? 2 : bytes_of(property.is_list ? property.count_type : property.type);
-    if (least == 0)
+    if (least == 0 && element.count > 0)
       reading.refuse("its element " + std::to_string(&element - header.elements.data()) +
                      " has no properties");
-    if (element.count > left / least)
+    if (least > 0 && element.count > left / least)
       reading.refuse("it declares " + std::to_string(element.count) +
                      " items of an element, which do not fit into its " +
                      std::to_string(content.size()) + " bytes");
     left -= element.count * least;
     has_points = has_points || element.name == "vertex";
-    has_faces = has_faces || element.name == "face";
+    has_faces = has_faces || element.name == "face" || element.name == "tristrips";
   }
   if (!has_points || !has_faces) reading.refuse("it lacks the element vertex or face");
+}
+
+/// Triangles of strips one behind the other: -1 ends a strip, every second triangle is turned
+/// round.
+void add_strips(const std::vector<std::int64_t>& corners, Reading& reading) {
+  std::size_t start = 0;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    if (corners[k] == -1) start = k + 1;
+    if (k < start + 2) continue;
+    const bool turned = (k - start) % 2 == 1;
+    reading.add_polygon(
+        {corners[turned ? k - 1 : k - 2], corners[turned ? k - 2 : k - 1], corners[k]});
+  }
+}
+
+}  // namespace
+
+void read_ply(std::string_view content, Reading& reading) {
+  const PlyHeader header = ply_header(content, reading);
+  const std::string_view body = content.substr(header.length);
+  check_elements(header, content, reading);
 
   PlyBody data(body, header, reading);
   std::vector<std::int64_t> corners;
   for (const PlyElement& element : header.elements) {
     const bool is_point = element.name == "vertex";
+    const bool is_strips = element.name == "tristrips";
+    const bool is_face = element.name == "face" || is_strips;
     std::vector<int> coordinate(element.properties.size(), -1);
     int found = 0;
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
@@ -215,7 +235,7 @@ void read_ply(std::string_view content, Reading& reading) {
       int place = -1;
       if (is_point && !property.is_list && property.name.size() == 1)
         place = static_cast<int>(std::string_view("xyz").find(property.name));
-      if (element.name == "face" && property.is_list && is_integer(property.type) &&
+      if (is_face && property.is_list && is_integer(property.type) &&
           (property.name == "vertex_indices" || property.name == "vertex_index"))
         place = 3;
       coordinate[p] = place;
@@ -225,7 +245,7 @@ void read_ply(std::string_view content, Reading& reading) {
     for (std::size_t p = 0; is_point && p < coordinate.size(); ++p)
       if (coordinate[p] >= 0 && element.properties[p].type == PlyType::float32)
         reading.has_floats();
-    if (element.name == "face" && found != 8) reading.refuse("its faces lack vertex_indices");
+    if (is_face && found != 8 && element.count > 0) reading.refuse("its faces lack vertex_indices");
     for (std::uint64_t i = 0; i < element.count; ++i) {
       Eigen::Vector3d point = Eigen::Vector3d::Zero();
       for (std::size_t p = 0; p < element.properties.size(); ++p) {
@@ -245,7 +265,8 @@ void read_ply(std::string_view content, Reading& reading) {
           else
             data.number(property.type);
         }
-        if (is_polygon) reading.add_polygon(corners);
+        if (is_polygon && is_strips) add_strips(corners, reading);
+        if (is_polygon && !is_strips) reading.add_polygon(corners);
       }
       if (is_point) reading.add_point(point);
     }

@@ -32,10 +32,10 @@ class Reading {
   void add_point(const Eigen::Vector3d& point) { points_.push_back(point); }
   /// Coordinates are floats of 32 bits: one vertex may differ by rounding from face to face.
   void has_floats() { floats_ = true; }
-  /// @param corners from 0; any integer is taken here and checked in the end
+  /// @param corners from 0; any integer is taken here and checked in the end. Programs write edges
+  ///                and points as faces of fewer than three corners; these are left out.
   void add_polygon(const std::vector<std::int64_t>& corners) {
-    if (corners.size() < 3)
-      refuse_faces("face " + std::to_string(polygons_) + " has fewer than 3 corners");
+    if (corners.size() < 3) ++short_polygons_;
     for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
       fans_.push_back({corners[0], corners[k], corners[k + 1]});
       polygon_of_.push_back(polygons_);
@@ -45,8 +45,9 @@ class Reading {
   std::size_t points() const { return points_.size(); }
 
   Triangles triangles() const {
-    if (fans_.empty()) refuse_faces("the mesh has no faces");
+    if (fans_.empty()) refuse_faces(short_polygons_ > 0 ? no_triangle : "the mesh has no faces");
     Triangles result;
+    result.removed = short_polygons_;
     const std::vector<int> number = weld(result.vertices);
     const auto count = static_cast<std::int64_t>(points_.size());
     for (std::size_t f = 0; f < fans_.size(); ++f) {
@@ -63,11 +64,12 @@ class Reading {
       else
         result.faces.push_back(face);
     }
-    if (result.faces.empty()) refuse_faces("the mesh has no faces with three vertices");
+    if (result.faces.empty()) refuse_faces(no_triangle);
     return result;
   }
 
  private:
+  static constexpr const char* no_triangle = "the mesh has no faces with three vertices";
   using Cells = std::multimap<std::array<double, 3>, int>;  ///< vertices by cell
 
   /// Equal vertices become one, and of floats those nearer than rounding.
@@ -121,6 +123,7 @@ class Reading {
   std::vector<std::array<std::int64_t, 3>> fans_;
   std::vector<std::size_t> polygon_of_;  ///< of each triangle
   std::size_t polygons_ = 0;
+  int short_polygons_ = 0;
   bool floats_ = false;
 };
 

@@ -49,6 +49,21 @@ void read_stl_text(std::string_view content, Reading& reading) {
 constexpr std::size_t stl_header = 84;  // bytes: 80 of text and the number of facets
 constexpr std::size_t stl_facet = 50;
 
+/// Where each facet begins. Its last two bytes are the number of bytes of attributes behind it,
+/// which many programs misuse for a colour: they count only where the file is as much longer.
+std::vector<std::size_t> facets_of(std::string_view content, std::uint64_t count, bool swapped) {
+  const bool has_attributes = content.size() > stl_header + stl_facet * count;
+  std::vector<std::size_t> starts;
+  std::size_t at = stl_header;
+  for (std::uint64_t f = 0; f < count && at + stl_facet <= content.size(); ++f) {
+    starts.push_back(at);
+    at += stl_facet;
+    if (has_attributes) at += from_bytes<std::uint16_t>(content.data() + at - 2, swapped);
+  }
+  if (starts.size() == count && at == content.size()) return starts;
+  return {};
+}
+
 }  // namespace
 
 void read_stl(std::string_view content, Reading& reading) {
@@ -58,7 +73,9 @@ void read_stl(std::string_view content, Reading& reading) {
   const std::uint64_t count =
       long_enough ? from_bytes<std::uint32_t>(content.data() + 80, swapped) : 0;
   const std::uint64_t expected = stl_header + stl_facet * count;
-  if (!long_enough || content.size() != expected) {
+  const std::vector<std::size_t> facets =
+      long_enough ? facets_of(content, count, swapped) : std::vector<std::size_t>{};
+  if (!long_enough || facets.size() != count) {
     // Binary files may begin with "solid", too, but then their length is right.
     std::string_view word;
     if (Words(content, '\0').next(word) && same_word(word, "solid"))
@@ -68,8 +85,8 @@ void read_stl(std::string_view content, Reading& reading) {
                    std::to_string(expected) + " bytes, but it has " +
                    std::to_string(content.size()));
   }
-  for (std::uint64_t f = 0; f < count; ++f) {
-    const char* facet = content.data() + stl_header + stl_facet * f;
+  for (const std::size_t start : facets) {
+    const char* facet = content.data() + start;
     for (int k = 1; k <= 3; ++k) {  // the normal comes first
       Eigen::Vector3d point;
       for (int i = 0; i < 3; ++i)

@@ -44,7 +44,8 @@ class Words {
     }
     if (at_ >= text_.size() || text_[at_] == '\n') return false;
     if (comment_ != '\0' && text_[at_] == comment_) {
-      skip_line();
+      // A comment ends with its line: names of folders end with a backslash.
+      at_ = std::min(text_.find('\n', at_), text_.size());
       return false;
     }
     const std::size_t start = at_;

@@ -54,7 +54,7 @@ def _sections(panel: Axes, bore: Bore) -> None:
         wave = radius + times * 1e3 * np.append(each.deviation_m, each.deviation_m[0])
         panel.plot(*(wave * direction), color=colour, linestyle=line, linewidth=width,
                    label=f"z = {each.z_m * 1e3:.3g} mm")
-    panel.set_title(f"radius {radius:.6g} mm, deviations × {times:g}", fontsize=9)
+    panel.set_title(f"Radius {radius:.6g} mm, deviations × {times:g}", fontsize=9)
     panel.legend(loc="center", fontsize=8, framealpha=1)
 
 

@@ -36,7 +36,7 @@ def rows(bore: Bore) -> list[tuple[str, str, str]]:
         ("lobes that dominate", "none" if dominating is None else f"{dominating}", "per turn"),
     ]
     if mesh.removed_face_count:
-        table.insert(1, ("faces left out, of fewer than three vertices", f"{mesh.removed_face_count}", ""))
+        table.insert(1, ("faces left out, which have no area", f"{mesh.removed_face_count}", ""))
     for each in bore.sections:
         table.append((f"roundness at z = {each.z_m:.4g} m, peak to valley", f"{each.roundness_error_m:.6g}", "m"))
     for order, amplitude, phase in zip(HARMONICS, middle.amplitude_m, middle.phase_rad):

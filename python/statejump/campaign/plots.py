@@ -74,7 +74,7 @@ def _distributions(campaign: Plan, table: Table) -> Figure:
         panel.set_xlabel(_wrapped(_label(name, campaign.units[name]), 40), fontsize=8)
         _small(panel)
         lost = len(values) - int(np.count_nonzero(table.failed)) - len(there)
-        panel.set_title(f"in {len(there):,} of {len(there) + lost:,} samples", fontsize=8)
+        panel.set_title(f"In {len(there):,} of {len(there) + lost:,} samples", fontsize=8)
         if not len(there):
             continue
         panel.hist(there, bins=_bins(there), color=BLUE, alpha=0.55)
@@ -165,7 +165,7 @@ def _sweep(campaign: Plan, table: Table) -> Figure:
         if isinstance(first, Values) and first.spacing == "log":
             panel.set_xscale("log")
         if not np.any(np.isfinite(values)):
-            panel.set_title("in no sample", fontsize=8)
+            panel.set_title("In no sample", fontsize=8)
     title = campaign.title
     if others and few:
         panels[0, 0].legend(loc="best", fontsize=7, framealpha=1)

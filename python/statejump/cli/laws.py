@@ -60,7 +60,7 @@ def show_command(case_file: Path | None, results: Results, quiet: bool) -> None:
     console = make_console(quiet)
     case = loaded(case_file, "laws") if case_file is not None else None
     for kind in KINDS:
-        table = Table(title=f"{kind} laws", show_lines=True)
+        table = Table(title=f"{kind.replace('_', ' ').capitalize()} laws", show_lines=True)
         for heading in ("name", "formula", "range", "source", "holds a static load"):
             table.add_column(heading, overflow="fold")
         for law in catalogue(kind):

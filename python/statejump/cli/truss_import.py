@@ -126,7 +126,7 @@ def import_command(
     **links: float | None,
 ) -> None:
     """A truss of another program as a case file: decks of CalculiX and Abaqus, Nastran bulk data, CSV tables,
-    meshes (.vtk, .vtu, .msh, .med, .mesh; by meshio).
+    meshes (.vtk, .vtu, .vtp, .msh, .med, .mesh).
 
     Prints what was taken, what was left out and why, and sizes to check. What has influence and is not supported is
     refused; --ignore leaves it out.

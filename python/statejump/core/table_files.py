@@ -4,7 +4,8 @@
 Separator is ``,``, ``;``, a tab or blanks; the decimal mark a point or, where no cell has a point, a comma. The file is
 UTF-8 or UTF-16, with or without a byte order mark, or in Excel's code page 1252. Blank rows and blank columns at the
 end are left out, and comments (``#``, ``%``) at the head, the last of which may be the header. Units may stand in a
-row of their own below the header. A first column without a name that counts the rows, as pandas writes it, is left out.
+row of their own below the header. A first column without a name that counts the rows, as pandas has it, is left out.
+Groups of thousands are read where a cell has both marks, durations of MATLAB (``0.05 sec``), LabVIEW's measurements.
 """
 from __future__ import annotations
 
@@ -25,7 +26,7 @@ from statejump.core.iso_times import is_iso, seconds
 from statejump.core.reading import check_size, finite_number, is_file, open_csv
 from statejump.core.units import split_unit
 
-SUFFIXES = (".csv", ".txt", ".tsv", ".dat")
+SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".lvm")
 BLOCK = 4096  # rows that are converted at once
 SEPARATORS = ("\t", ";", ",")  # where a header has several, the first one
 BLANKS = " "
@@ -36,6 +37,10 @@ _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 # What texts have in Excel's older code page beyond ASCII: ° ² ³ µ · and letters of western Europe. Those at 0x80 to
 # 0x9f are umlauts in the code pages of DOS and of old Macintoshes.
 _BYTES_1252 = b"\xb0\xb2\xb3\xb5\xb7" + bytes({*range(0xC0, 0x100)} - {0xD7, 0xF7})
+_GROUPS = (re.compile(r"[+-]?\d{1,3}(?:,\d{3})+\.\d*"), re.compile(r"[+-]?\d{1,3}(?:\.\d{3})+,\d*"))
+_DURATION = re.compile(r"\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?)\s+(sec|min|hr|s|h)\s*")
+_SECONDS = {"sec": 1.0, "s": 1.0, "min": 60.0, "hr": 3600.0, "h": 3600.0}
+_LABVIEW = "LabVIEW Measurement"
 _COMMENT = ("#", "%")
 _FORTRAN = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))[dD]([+-]?\d+)")
 _NUMERIC = re.compile(r"^[+-]?[.,]?\d")
@@ -72,6 +77,9 @@ class Table:
         self._counts = len(cells) > 1 and not cells[0]
         if self._counts:
             del cells[0]
+        if all(finite_number(cell.replace(",", ".")) is not None for cell in cells):
+            raise Unreadable(f"line {self.line} names no columns", cause="it holds numbers only", file=path,
+                             remedy="write a line of names with units above it")
         for place, cell in enumerate(cells, start=1):
             if not cell:
                 raise Unreadable(f"line {self.line}: column {place + self._counts} has no name", file=path)
@@ -115,6 +123,8 @@ class Table:
             said = line.strip().strip('"').lower()
             if said in ("sep=,", "sep=;") or line.strip("\r\n\"").lower() == "sep=\t":
                 return line.strip("\r\n\"")[4], self._counted(stream, 1)
+            if line.startswith(_LABVIEW):
+                return self._labview(stream)
             if line.strip() and line.strip(" \t,;\r\n"):
                 if comment.strip() and finite_number(_cells(line)[0].replace(",", ".")) is not None:
                     self._skipped -= 1  # the comment is the header
@@ -122,6 +132,26 @@ class Table:
                 return _separator(line), chain((line,), stream)
             self._skipped += 1
         return ",", iter(())
+
+    def _labview(self, stream: TextIO) -> tuple[str, Iterator[str]]:
+        """Return the separator of a measurement of LabVIEW, and its lines from the names of the columns on. What a
+        column counts in is in the lines above; comments behind the last column are left out."""
+        separator = "\t"
+        labels: dict[str, list[str]] = {}
+        self._skipped += 1
+        for line in stream:
+            cells = [cell.strip() for cell in line.rstrip("\r\n").split(separator)]
+            if cells[0].startswith("Separator"):
+                separator = "," if "Comma" in line else "\t"
+            if cells[0] == "X_Value":
+                names = cells[1:-1] if cells[-1] == "Comment" else cells[1:]
+                units = [*labels.get("Y_Unit_Label", ()), *[""] * len(names)]
+                names = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, units)]
+                first = "time [s]" if labels.get("X_Dimension", ["Time"])[0] == "Time" else cells[0]
+                return separator, chain((separator.join((first, *names)) + "\n",), stream)
+            labels[cells[0]] = cells[1:]
+            self._skipped += 1
+        return separator, iter(())
 
     def _counted(self, stream: TextIO, skipped: int) -> Iterator[str]:
         self._skipped += skipped
@@ -184,6 +214,9 @@ class Table:
         :raises Unreadable: one of them is none, with line and column
         """
         joined = "".join(cells)
+        if "," in joined and "." in joined:
+            cells = self._without_groups(cells, place)
+            joined = "".join(cells)
         if "," in joined:
             cells = self._with_points(cells, place)
         if "." in joined and self._point is None:
@@ -207,6 +240,19 @@ class Table:
             what = f"{quoted(cell)} is not a finite number" if cell.strip() else "the cell is empty"
             raise Unreadable(f"line {line}, column {quoted(column)}", cause=what, file=self.path)
         return value
+
+    def _without_groups(self, cells: Sequence[str], place: Place) -> list[str]:
+        """Return cells without the marks between thousands, of those that have a decimal mark as well."""
+        found = []
+        for index, cell in enumerate(cells):
+            if _GROUPS[0].fullmatch(cell.strip()):
+                self._point = self._point or (*place(index), cell)
+                cell = cell.replace(",", "")
+            elif _GROUPS[1].fullmatch(cell.strip()):
+                self._comma, self._decided = self._comma or (*place(index), cell), True
+                cell = cell.replace(".", "")
+            found.append(cell)
+        return found
 
     def _with_points(self, cells: Sequence[str], place: Place) -> list[str]:
         """Return cells with points in place of decimal commas."""
@@ -381,6 +427,10 @@ def numbers_of(table: Table, column: Column, cells: Sequence[str], lines: Sequen
         return lines[index], column.name
 
     if column.iso:
+        durations = [_DURATION.fullmatch(cell) for cell in cells]
+        units = {found[2] for found in durations if found}
+        if len(units) == 1 and all(durations):
+            return table.numbers([found[1] for found in durations if found], place) * _SECONDS[units.pop()]
         if not is_iso(cells[0]):
             raise Unreadable(f"column {quoted(column.name)}", cause="it names no unit and has no ISO times",
                              remedy=accepted(column.name, column.key, "s"), file=table.path)

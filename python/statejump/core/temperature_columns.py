@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 ZERO_CELSIUS_K = 273.15
 ENDINGS = {"_K": 0.0, "_degC": ZERO_CELSIUS_K}
 SUFFIXES = (*TEXT_SUFFIXES, ".h5", ".hdf5")
+TIMES = ("t", "timestamp", "datetime", "date", "date/time", "Zeit", "Datum/Zeit")  # what a first column may be called
 ACCEPTED = "NAME_K, NAME_degC, NAME [K] or NAME [°C]"
 HDF5_TEMPERATURES = {"temperature_K": 0.0, "temperature_degC": ZERO_CELSIUS_K}
 ENDS = ("@a", "@b")  # of the names of columns: first and second node of a link
@@ -137,7 +138,7 @@ def _text(path: Path) -> Read:
 def _time(table: Table) -> tuple[int, Column]:
     """Return which column is the time: the first one, else the only one that is called so."""
     try:
-        return 0, matched(table.header[:1], ("time_s",), {"time_s": ("t",)})[0]
+        return 0, matched(table.header[:1], ("time_s",), {"time_s": TIMES})[0]
     except StatejumpError as refused:
         found = []
         for place, name in enumerate(table.header[1:], start=1):

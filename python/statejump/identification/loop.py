@@ -20,10 +20,12 @@ PAIRS = (("displacement_m", "force_N"), ("rotation_rad", "moment_N_m"))
 COLUMNS = ("time_s", *(name for pair in PAIRS for name in pair))
 # What test rigs call these quantities.
 WORDS = {
-    "time_s": ("t",),
-    "displacement_m": ("disp", "displ", "position", "travel", "stroke", "deflection", "slip", "u", "x"),
-    "force_N": ("load", "friction", "friction force", "axial force", "F"), "rotation_rad": ("angle", "rot", "theta"),
-    "moment_N_m": ("torque", "M"),
+    "time_s": ("t", "Zeit"),
+    "displacement_m": ("disp", "displ", "position", "travel", "stroke", "deflection", "slip", "extension",
+                       "elongation", "Weg", "Verschiebung", "u", "x"),
+    "force_N": ("load", "friction", "friction force", "axial force", "Kraft", "F"),
+    "rotation_rad": ("angle", "rot", "theta", "Winkel"),
+    "moment_N_m": ("torque", "Drehmoment", "M"),
 }
 STARTS = ("unknown", "fresh", "cycled")
 UNITS = {"displacement": ("m", "rad"), "force": ("N", "N m"), "stiffness": ("N/m", "N m/rad"), "-": ("-", "-")}

@@ -151,7 +151,7 @@ def _draw_normal(panel: Axes, joint: Joint) -> None:
     panel.set_yscale("log")
     panel.set_xlabel("Penetration depth [mm]")
     panel.set_ylabel("Normal force [N]")
-    panel.set_title(f"normal laws, line contacts {joint.contact_length_m * 1e3:g} mm long", fontsize=9)
+    panel.set_title(f"Normal laws, line contacts {joint.contact_length_m * 1e3:g} mm long", fontsize=9)
     lines, labels = panel.get_legend_handles_labels()
     for refuses, text in ((True, "range ends: error beyond"), (False, "contact as wide as the journal")):
         if any(refuses == own for _, own in ends.values()):
@@ -173,5 +173,5 @@ def _draw_impacts(panel: Axes, joint: Joint) -> None:
         f"{joint.reduced_mass_kg:.3g} kg at {IMPACT_SPEED_m_per_s:g} m/s on {IMPACT_LAW}, "
         f"e = {RESTITUTION:g} asked for", fontsize=9,
     )
-    panel.legend(loc="upper left", framealpha=1, fontsize=8, handlelength=3.2, title="what comes out",
+    panel.legend(loc="upper left", framealpha=1, fontsize=8, handlelength=3.2, title="Restitution",
                  title_fontsize=8)

@@ -63,9 +63,10 @@ def with_thin_loops(
             values[y + LEFT] = line.taken_off(values[x], values[y])
         units_of[y + LEFT] = unit = units_of.get(y, "-")
         scale, written = units.scale_of(unit, abs(line.slope))
-        label = chart.y.label or words.plain(y)
-        found.append(replace(chart, y=Axis(y + LEFT, f"{label}, less {line.slope * scale:.5g} {written}/K".strip()),
-                             title=f"{chart.title},{LEFT}"))
+        slope = f"{line.slope * scale:.5g} {written}/K".replace("-", "−", 1)
+        # The label of the axis is short: it is as long as the chart is high.
+        found.append(replace(chart, y=Axis(y + LEFT, chart.y.label or words.plain(y)),
+                             title=f"{chart.title},{LEFT} of {slope}"))
     return found
 
 

@@ -100,6 +100,61 @@ TEST(BoreChecks, FaceWithoutArea) {
             "mesh: face 1 (vertices 0, 13, 12) at (0.00487224, 0.00085, 0.00333333) m has no area");
 }
 
+/// Divides the edge of a face along the bore in halves, on its own side only, and its first half
+/// once more if `twice`: facets without an area fill the gaps.
+void divide_on_one_side(Triangles& mesh, std::size_t face, bool twice) {
+  auto corners = mesh.faces[face];
+  const auto vertex = [&](int k) { return mesh.vertices[static_cast<std::size_t>(k)]; };
+  while ((vertex(corners[0]) - vertex(corners[1])).head<2>().norm() > 1e-9)
+    std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+  const auto [a, b, c] = corners;
+  const int half = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.emplace_back(0.5 * (vertex(a) + vertex(b)));
+  mesh.faces[face] = {half, b, c};
+  mesh.faces.push_back({a, b, half});
+  if (!twice) {
+    mesh.faces.push_back({a, half, c});
+    return;
+  }
+  mesh.vertices.emplace_back(0.5 * (vertex(a) + vertex(half)));
+  mesh.faces.push_back({a, half, half + 1});
+  mesh.faces.push_back({half + 1, half, c});
+  mesh.faces.push_back({a, half + 1, c});
+}
+
+TEST(BoreChecks, FlatFacesAreTakenOut) {
+  const Triangles whole = bore_triangles(round_bore(), 48, 3);
+  for (const bool twice : {false, true}) {
+    Triangles mesh = whole;
+    for (std::size_t f = 10; f < 100; f += 9) divide_on_one_side(mesh, f, twice);
+    const BoreMesh bore(mesh);
+    const std::size_t vertices = twice ? 20 : 10;
+    EXPECT_EQ(bore.triangles().removed, static_cast<int>(vertices));
+    // A vertex within an edge makes two faces more.
+    EXPECT_EQ(bore.triangles().faces.size(), whole.faces.size() + 2 * vertices);
+    EXPECT_NEAR(bore.mean_radius(), BoreMesh(whole).mean_radius(), 1e-15);  // rounding of 5 mm
+  }
+}
+
+TEST(BoreChecks, FlatFacesAtTheRimAreTakenOut) {
+  Triangles mesh = bore_triangles(round_bore(), 48, 2);
+  const int middle = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.emplace_back(0.5 * (mesh.vertices[0] + mesh.vertices[1]));
+  const std::size_t faces = mesh.faces.size();
+  for (std::size_t f = 0; f < faces; ++f)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b, c] = std::array<int, 3>{mesh.faces[f][k], mesh.faces[f][(k + 1) % 3],
+                                                mesh.faces[f][(k + 2) % 3]};
+      if (a + b != 1) continue;
+      mesh.faces[f] = {a, middle, c};
+      mesh.faces.push_back({middle, b, c});
+      mesh.faces.push_back({a, b, middle});
+    }
+  const BoreMesh bore(mesh);
+  EXPECT_EQ(bore.triangles().removed, 1);
+  EXPECT_EQ(bore.triangles().faces.size(), faces + 1);
+}
+
 TEST(BoreChecks, EdgeOfThreeFaces) {
   Triangles mesh = tube();
   mesh.vertices.emplace_back(0, 0, 0);

@@ -80,12 +80,37 @@ TEST(MeshFormats, FacesOfTwoVerticesAreLeftOutAndCounted) {
 TEST(MeshFormats, LinesOfObjGoOnBehindABackslash) {
   const Triangles mesh = parse_triangles(
       MeshFormat::obj,
-      "# a comment \\\n v 9 9 9\nv 0 0 0\nv 1 \\\n 0 0\nv 0 1\\\r\n 0\nvn 0 \\\n0 1\nf 1\\\n 2 3\n",
-      "mesh");
+      "# a comment\nv 0 0 0\nv 1 \\\n 0 0\nv 0 1\\\r\n 0\nvn 0 \\\n0 1\nf 1\\\n 2 3\n", "mesh");
   EXPECT_EQ(mesh.vertices.size(), 3U);
   EXPECT_EQ(mesh.faces.size(), 1U);
   EXPECT_EQ(refusal(MeshFormat::obj, "v 0 0 0\nv 1 \\\n 0\n"),
             "not readable as OBJ: line 3 has no three coordinates");
+}
+
+TEST(MeshFormats, FacesOfTwoCornersAreLeftOutAndCounted) {
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const Triangles mesh = parse_triangles(MeshFormat::obj, points + "f 1// 2//\nf 1 2 3\n", "mesh");
+  EXPECT_EQ(mesh.faces.size(), 1U);
+  EXPECT_EQ(mesh.removed, 1);
+}
+
+TEST(MeshFormats, TextsMayBeginWithAByteOrderMark) {
+  const std::string mark = "\xEF\xBB\xBF";
+  EXPECT_EQ(parse_triangles(MeshFormat::obj, mark + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mesh")
+                .faces.size(),
+            1U);
+  EXPECT_EQ(parse_triangles(MeshFormat::stl,
+                            mark + "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
+                                   "vertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n",
+                            "mesh")
+                .faces.size(),
+            1U);
+}
+
+TEST(MeshFormats, CommentsEndWithTheirLine) {
+  const Triangles mesh = parse_triangles(
+      MeshFormat::obj, "# from C:\\parts\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mesh");
+  EXPECT_EQ(mesh.vertices.size(), 3U);
 }
 
 TEST(MeshFormats, Off) {
@@ -97,14 +122,18 @@ TEST(MeshFormats, Off) {
   EXPECT_EQ(mesh.vertices.size(), 4u);  // the last is the first
   const std::vector<std::array<int, 3>> faces{{0, 1, 2}, {0, 2, 3}, {0, 2, 3}};
   EXPECT_EQ(mesh.faces, faces);
+  const std::string body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  for (const char* start : {"OFF3 1 0\n", "3 1 0\n", "OFF\n3 1\n"})
+    EXPECT_EQ(parse_triangles(MeshFormat::off, start + body, "mesh").faces.size(), 1U) << start;
   expect_refused(
       MeshFormat::off, "not readable as OFF: ",
       {{"", "it holds nothing"},
        {" \n# OFF", "it holds nothing"},
        {"OF", "line 1 does not begin with OFF"},
        {"4OFF\n1 1 0", "line 1 does not begin with OFF"},
+       {"OFFx\n1 1 0", "line 1 does not begin with OFF"},
        {"OFF", "line 1 should hold the numbers of vertices and faces"},
-       {"OFF BINARY\n", "line 1 should hold the numbers of vertices and faces"},
+       {"OFF BINARY\n", "it is binary: only OFF as text is read"},
        {"OFF\n-3 1 0\n", "line 2 should hold the numbers of vertices and faces"},
        {"OFF\n3 1e9 0\n", "line 2 should hold the numbers of vertices and faces"},
        {"OFF\n99999999999999999999 1 0\n", "line 2 should hold the numbers of vertices and faces"},
@@ -125,7 +154,7 @@ TEST(MeshFormats, Off) {
        {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n", "line 6 has no number of corners"},
        {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n",
         "line 7 follows the last of the faces that it declares"},
-       {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1 2\n", "face 0 has fewer than 3 corners"},
+       {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1 2\n", "the mesh has no faces with three vertices"},
        {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n",
         "face 0 has corner 7, but there are only 3 vertices"},
        {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n",
@@ -183,6 +212,18 @@ TEST(MeshFormats, Stl) {
        {start + vertices + end + "facet normal 0 0 1", "line 10 is outside of a solid"}});
 }
 
+TEST(MeshFormats, FacetsOfStlMayHaveAttributes) {
+  std::string content = binary_stl(2, 2);
+  const std::size_t first_ends = 84 + 50;
+  content[first_ends - 2] = 3;  // a colour: the file is no longer for it
+  EXPECT_EQ(parse_triangles(MeshFormat::stl, content, "mesh").faces.size(), 2U);
+  content.insert(first_ends, "abc");
+  EXPECT_EQ(parse_triangles(MeshFormat::stl, content, "mesh").faces.size(), 2U);
+  content[first_ends - 2] = 2;
+  EXPECT_EQ(refusal(MeshFormat::stl, content),
+            "not readable as STL: it declares 2 facets, which take 184 bytes, but it has 187");
+}
+
 TEST(MeshFormats, Obj) {
   const Triangles mesh =
       parse_triangles(MeshFormat::obj,
@@ -207,8 +248,8 @@ TEST(MeshFormats, Obj) {
                    "line 4 has a corner that is no index of a vertex"},
                   {points + "f 1 2 4\n", "face 0 has corner 3, but there are only 3 vertices"},
                   {points + "f 1 2 -4\n", "face 0 has corner -1, but there are only 3 vertices"},
-                  {points + "f 1 2\n", "face 0 has fewer than 3 corners"},
-                  {points + "f\n", "face 0 has fewer than 3 corners"},
+                  {points + "f 1 2\n", "the mesh has no faces with three vertices"},
+                  {points + "f\n", "the mesh has no faces with three vertices"},
                   {"v 0 0 0\nv inf 0 0\nv 0 1 0\nf 1 2 3", "vertex 1 is not finite"}});
 }
 
@@ -262,6 +303,15 @@ TEST(MeshFormats, Ply) {
     EXPECT_EQ(refusal(MeshFormat::ply, file + "x"),
               "not readable as PLY: it holds more than it declares");
   }
+  // Strips of triangles; every second one is turned round.
+  const std::string strips = "element vertex 5\n" + std::string(xyz) +
+                             "element tristrips 1\nproperty list int int vertex_indices\n"
+                             "element nothing 0\n";
+  const Triangles stripped = parse_triangles(
+      MeshFormat::ply,
+      ply("ascii", strips, "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 2 1\n8 0 1 2 3 -1 2 1 4\n"), "");
+  const std::vector<std::array<int, 3>> of_strips{{0, 1, 2}, {2, 1, 3}, {2, 1, 4}};
+  EXPECT_EQ(stripped.faces, of_strips);
   std::string endless =
       ply("binary_little_endian", elements("3", "1", "list uint int vertex_indices"),
           std::string(36, '\0'));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "statejump/kernel/require.hpp"
 #include "truss/joints/partial_slip.hpp"
 
 namespace statejump::truss::detail {
@@ -123,9 +124,9 @@ void Contacts::refuse_play_beside_springs() const {
   const auto played = std::find_if(all_.begin(), all_.end(),
                                    [](const Contact& contact) { return contact.rings.play > 0.0; });
   if (!springs_ || played == all_.end()) return;
-  throw std::invalid_argument(
-      "slider '" + name_of(system_->model().joints[index(played->joint)]) +
-      "' has a play: in motion there are no soft stops and no latch hinges beside it");
+  throw kernel::OutOfRange(
+      "slider '" + name_of(system_->model().joints[index(played->joint)]) + "'", "play_m",
+      played->rings.play, "0 in motion, beside soft stops or latch hinges");
 }
 
 Contact& Contacts::add_rubbing(int joint, int column, double bound, double stiffness) {

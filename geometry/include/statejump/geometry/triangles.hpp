@@ -13,7 +13,7 @@ struct Triangles {
   std::vector<Eigen::Vector3d> vertices;  ///< [m], or the file's unit before scaling
   std::vector<std::array<int, 3>> faces;  ///< indices of vertices, anticlockwise seen from where
                                           ///< the normal points to
-  int removed = 0;                        ///< faces of the file with fewer than three vertices
+  int removed = 0;                        ///< faces of the file without an area, left out
 };
 
 /// Reads OFF, STL (text or binary), PLY or OBJ; the name's ending says which.

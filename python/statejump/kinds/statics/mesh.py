@@ -95,12 +95,15 @@ def read_mesh(case: StaticsCase) -> _engine.RestMesh:
     surface = triangulate.GetOutput()
     if surface.GetNumberOfPolys() == 0:
         raise MeshUnusable(f"{path} holds no triangles", **about)
-    points = vtk_to_numpy(surface.GetPoints().GetData()).astype(float) * joint.mesh_unit_m
+    stored = vtk_to_numpy(surface.GetPoints().GetData())
+    points = stored.astype(float) * joint.mesh_unit_m
     triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     if joint.mesh_free_side == "left_hand":
         triangles = triangles[:, ::-1]
     extent = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
-    return _engine.welded(_engine.RestMesh(points, triangles.tolist()), 1e-9 * extent)
+    # Two units in the last place of the largest coordinate, one for each of two roundings of one vertex.
+    rounding = 2 * float(np.finfo(stored.dtype).eps) * float(np.abs(points).max())
+    return _engine.welded(_engine.RestMesh(points, triangles.tolist()), max(1e-9 * extent, rounding))
 
 
 def vertex_normals(mesh: _engine.RestMesh) -> np.ndarray:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes and bars of a mesh, in any of the formats below, by meshio.
+"""Nodes and bars of a mesh, in any of the formats below: those of VTK by VTK, the others by meshio.
 
 Meshes know no sections and no supports: what a bar is comes from its data, where they have the names of our keys, or
 from options; a mesh in SI units is taken as it is.
@@ -8,8 +8,12 @@ from __future__ import annotations
 
 import contextlib
 import io
+import subprocess
+import sys
 import warnings
+import zipfile
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -18,8 +22,9 @@ from statejump.core.errors import StatejumpError, Unreadable
 from statejump.core.reading import check_size, is_file
 from statejump.kinds.truss.importing.model import LARGEST_BYTES, Bar, Deck, quoted
 
-FORMATS = {".vtk": "vtk", ".vtu": "vtu", ".msh": "gmsh", ".med": "med", ".mesh": "medit"}
-LINES = ("line", "line3")  # of two nodes, or with one between them that is left out
+FORMATS = {".vtk": "vtk", ".vtu": "vtu", ".vtp": "vtp", ".msh": "gmsh", ".med": "med", ".mesh": "medit"}
+BY_VTK = (".vtk", ".vtu", ".vtp")
+LINES = ("line", "polyline", "line3")  # of two nodes, in straight parts, or with a node between that is left out
 # Data of cells that are taken, and the number of a bar that they are.
 DATA = {"young_modulus_Pa": "young_modulus", "cross_section_area_m2": "area", "thermal_expansion_per_K": "expansion",
         "density_kg_per_m3": "density", "poisson_ratio": "poisson_ratio", "temperature_change_K": "temperature_change"}
@@ -28,7 +33,7 @@ DATA = {"young_modulus_Pa": "young_modulus", "cross_section_area_m2": "area", "t
 def read(path: Path) -> Deck:
     """Return what a mesh says; its nodes and bars are called by their numbers from 1.
 
-    :raises StatejumpError: one sentence with the file; there is no meshio
+    :raises StatejumpError: one sentence with the file; there is no VTK or no meshio
     """
     mesh = _read(path)
     deck = Deck(path)
@@ -74,14 +79,47 @@ def _add(deck: Deck, mesh: Any, block: int, kind: str, ends: np.ndarray) -> None
 
 
 def _read(path: Path) -> Any:
+    if not is_file(path):
+        raise Unreadable("no such file", file=path)
+    check_size(path, LARGEST_BYTES)
+    return _by_vtk(path) if path.suffix.lower() in BY_VTK else _by_meshio(path)
+
+
+def _by_vtk(path: Path) -> Any:
+    """Return points, cells and data as meshio has them."""
+    program = Path(__file__).with_name("vtk_lines.py")
+    done = subprocess.run([sys.executable, str(program), str(path.resolve())], stdin=subprocess.DEVNULL,
+                          capture_output=True, check=False)
+    said = done.stderr.decode("utf-8", "replace")
+    if "No module named 'vtkmodules" in said:
+        raise StatejumpError("files of VTK are read by VTK, which is not installed", file=path,
+                             remedy="install the Debian package python3-vtk9")
+    try:
+        with np.load(io.BytesIO(done.stdout), allow_pickle=False) as archive:
+            found = dict(archive)
+        points = found["points"]
+    except (ValueError, EOFError, OSError, KeyError, zipfile.BadZipFile):
+        cause = said.rsplit("): ", 1)[-1] or f"VTK ends with status {done.returncode}"
+        raise Unreadable("not a mesh that VTK reads", cause=" ".join(cause.split())[:200], file=path) from None
+    named: dict[str, dict[str, np.ndarray]] = {"cells": {}, "ends": {}, "point data": {}, "cell data": {}}
+    for key, values in found.items():
+        group, _, name = key.partition("/")
+        if name:
+            named[group][name] = values
+    blocks = [(kind, places) for kind, places in named["cells"].items()]
+    return SimpleNamespace(
+        points=points, point_data=named["point data"],
+        cells=[SimpleNamespace(type=kind, data=named["ends"].get(kind, places)) for kind, places in blocks],
+        cell_data={name: [values[places] if len(values) else values for _, places in blocks]
+                   for name, values in named["cell data"].items()})
+
+
+def _by_meshio(path: Path) -> Any:
     try:
         import meshio
     except ImportError:
         raise StatejumpError("meshes are read by meshio, which is not installed", file=path,
                              remedy="install the Debian package python3-meshio") from None
-    if not is_file(path):
-        raise Unreadable("no such file", file=path)
-    check_size(path, LARGEST_BYTES)
     form = FORMATS[path.suffix.lower()]
     try:
         # meshio prints what it thinks of a file, and for some faults it wants to end the program.

@@ -18,7 +18,7 @@ BENDING = "--beams-as-bars"
 MOST_SHOWN = 5  # further items of a refusal
 MOST_ITEMS = 1_000_000  # of a deck: nodes, bars, members of sets
 SUFFIXES = {".inp": "abaqus", ".bdf": "nastran", ".dat": "nastran", ".nas": "nastran", ".csv": "tables",
-            ".vtk": "mesh", ".vtu": "mesh", ".msh": "mesh", ".med": "mesh", ".mesh": "mesh"}
+            ".vtk": "mesh", ".vtu": "mesh", ".vtp": "mesh", ".msh": "mesh", ".med": "mesh", ".mesh": "mesh"}
 
 
 @dataclass

@@ -31,9 +31,10 @@ class Units:
 
 POUND_FORCE_N = 4.4482216152605  # exact
 INCH_M = 0.0254  # exact
+# Usual ones first: a program that has to choose takes the first of those that are as plausible.
 SYSTEMS = {
-    "SI": Units(), "mm-N": Units(1e-3), "mm-kN-t": Units(1e-3, 1e3, 1e3), "mm-kg-s": Units(1e-3, 1e-3),
-    "in-lbf": Units(INCH_M, POUND_FORCE_N),
+    "SI": Units(), "mm-N": Units(1e-3), "in-lbf": Units(INCH_M, POUND_FORCE_N), "mm-kg-s": Units(1e-3, 1e-3),
+    "mm-kN-t": Units(1e-3, 1e3, 1e3),
 }
 
 

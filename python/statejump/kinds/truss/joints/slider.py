@@ -219,9 +219,6 @@ class SliderType(AlongAxis[Slider, Sliders]):
             "partial_slip": (truss.sticking == "partial_slip") & (joints.friction_limit_N > 0),
         }
 
-    def pushes_beside_contacts(self, joints: Sliders) -> bool:
-        return bool(np.isfinite(joints.stop_stiffness_N_per_m).any())
-
     def contacts(self, run: Sampled, joints: Sliders) -> Contacts:
         slide = run.columns["slide_m"]
         stops = np.minimum(slide + joints.clearance_minus_m, joints.clearance_plus_m - slide)

@@ -33,7 +33,7 @@ STAGES: tuple[dict[str, Reading], ...] = (
 )
 # What is read with the steps, or says where parts begin and end.
 TOGETHER = ("BOUNDARY", "CLOAD", "DLOAD", "TEMPERATURE", "AMPLITUDE", "STEP", "STATIC", "END STEP", "PART", "END PART",
-            "ASSEMBLY", "END ASSEMBLY", "INSTANCE", "END INSTANCE")
+            "ASSEMBLY", "END ASSEMBLY", "INSTANCE", "END INSTANCE", "PARAMETER")
 # The middle of a bar of three nodes: decks have eight digits, meshers put it there to six.
 MIDDLE = 1e-6
 # CalculiX takes keywords and parameters without their blanks.

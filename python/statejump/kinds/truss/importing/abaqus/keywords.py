@@ -2,14 +2,17 @@
 """Keywords of a deck of CalculiX or Abaqus with their parameters and data lines, and ``*INCLUDE``."""
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from statejump.core.reading import finite_number
 from statejump.kinds.truss.importing.lines import Source
-from statejump.kinds.truss.importing.model import Deck
+from statejump.kinds.truss.importing.model import Deck, quoted
 
 Data = tuple[int, list[str]]
+_NAME = re.compile(r"<\s*(\w+)\s*>")
 
 
 @dataclass
@@ -52,6 +55,15 @@ def _keyword(text: str) -> tuple[str, dict[str, str]]:
     return " ".join(first.upper().split()), parameters
 
 
+def _parameter(deck: Deck, number: int, text: str) -> dict[str, str]:
+    """Return the name and the value of a line of ``*PARAMETER``."""
+    name, _, value = (part.strip() for part in text.partition("#")[0].partition("="))
+    if name and finite_number(value) is None:
+        raise deck.fail(number, f"*PARAMETER: {quoted(value)} is not a finite number; write numbers in place of "
+                                "expressions")
+    return {name: value} if name else {}
+
+
 def included(lines: list[str], place: int) -> tuple[str, int] | None:
     """Return the file that ``*INCLUDE`` names and the number of its lines."""
     text = lines[place].strip()
@@ -66,13 +78,17 @@ def included(lines: list[str], place: int) -> tuple[str, int] | None:
 
 
 def blocks(deck: Deck, path: Path) -> Iterator[Block]:
-    """Yield every keyword with its data lines, of which those without any word are left out."""
+    """Yield every keyword with its data lines, of which those without any word are left out. Names of ``*PARAMETER`` in
+    angle brackets have their values."""
     current: Block | None = None
     joined, begun = "", 0
+    values: dict[str, str] = {}
     for number, raw in Source(path, included):
         text = raw.strip()
         if not text or text.startswith("**"):
             continue
+        if values and "<" in text:
+            text = _NAME.sub(lambda found: values.get(found[1], found[0]), text)
         if joined or text.startswith("*"):
             begun = begun or number
             joined += text
@@ -85,6 +101,9 @@ def blocks(deck: Deck, path: Path) -> Iterator[Block]:
             continue
         if current is None:
             raise deck.fail(number, "data before the first keyword")
+        if current.name == "PARAMETER":
+            values.update(_parameter(deck, number, text))
+            continue
         line = words(text)
         if line[-1] == "" and len(line) > 1:
             line.pop()

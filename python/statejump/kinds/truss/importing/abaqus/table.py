@@ -29,6 +29,7 @@ KEYWORDS: dict[str, Card] = table(
     used("ELEMENT", "link, spring or mass by its TYPE", "TYPE ELSET INPUT", refused={"INPUT": "a file of its own"}),
     used("NSET", "names", "NSET GENERATE ELSET INSTANCE UNSORTED INTERNAL", idle={"UNSORTED INTERNAL": "names only"}),
     used("ELSET", "names", "ELSET GENERATE INSTANCE UNSORTED INTERNAL", idle={"UNSORTED INTERNAL": "names only"}),
+    used("PARAMETER", "numbers for names in angle brackets; expressions are refused"),
     used("PART", "nodes and links of every instance", "NAME"),
     used("END_PART", "end of a part"), used("END_INSTANCE", "end of an instance"),
     used("END_ASSEMBLY", "end of the assembly"), used("ASSEMBLY", "names", "NAME"),

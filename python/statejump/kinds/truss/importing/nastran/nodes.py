@@ -112,7 +112,8 @@ class _Places:
 
 
 def fix(reader: Reader, card: Card, components: str, nodes: list[str]) -> None:
-    """Hold nodes in components of their displacement systems."""
+    """Hold nodes in components of their displacement systems; blanks may stand between the components."""
+    components = "".join(components.split())
     if not set(components) <= set("0123456"):
         raise reader.fail(card, f"components {quoted(components)} are not of the digits 1 to 6")
     moves = [int(one) - 1 for one in dict.fromkeys(components) if one in "123"]

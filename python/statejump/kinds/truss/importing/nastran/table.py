@@ -140,7 +140,7 @@ CARDS: dict[str, Card] = table(
          "SECSET1 SESET CSUPEXT SEELT RELEASE DYNRED CYJOIN", EXACT),
     idle("DMI DMIG DMIJ DMIJI DMIK DTI", "matrix: acts through K2GG, M2GG or P2G, which are not supported"),
     idle("CLOAD", "acts through the command CLOAD, which is not supported"),
-    idle("MDLPRM ITER INTS FLOATS SEQGP", "how a program solves"),
+    idle("MDLPRM ITER INTS FLOATS SEQGP DEBUG", "how a program solves"),
 )
 
 # Names of PARAM. Of what is not listed the influence is not known.
@@ -151,6 +151,7 @@ PARAMS: dict[str, Card] = table(
     refused("HEATSTAT", "temperatures that another subcase computes"),
     refused("CK1 CK2 CK3 CM1 CM2 CP1 CP2", "factor of matrices"),
     refused("PREMASS SUPAERO", "changes of the model"),
+    refused("ART_MASS ART_KED", "mass or stiffness that is added at every node"),
     idle("POST PRTMAXIM GRDPNT PRGPST PRTRESLT USETPRT USETSEL AUTOSPCR EPZERO MAXRATIO BAILOUT TINY NOFISR OGEOM "
          "OUGCORD OUNIT1 OUNIT2 PATVER PRINT OMID OLDSEQ NEWSEQ SNORM SEP1XOVR K6ROT LGDISP LMODES G W3 W4 GFL W3FL "
          "W4FL COUPMASS RESVEC RESVINER DDRMM HFREQ LFREQ LMODESFL KDAMP VREF MACH Q AUNITS FACTOR NASPRT CURVPLOT "
@@ -164,6 +165,10 @@ PARAMS: dict[str, Card] = table(
          "ROTGPF ENFMETH ENFMOTN NQMAX CYCIO CYCSEQ OIBULK POSTEXT UNITSYS DBCDIAG DMIGNRG LSTRN COMPARE PNCHDB EPSHT "
          "MAXIT SUPER TINY2 OMSGLVL",
          "output, damping, or how a program solves"),
+    idle("ARP_TOL CBMIN3 CBMIN4 CBMIN4T CHKGRDS CRS_CCS CUSERIN DARPACK DELBAN EIGESTL EIGNORM2 ELFORCEN EPSERR EPSIL "
+         "EQCHECK GRIDSEQ LANCMETH MXITERI PRTBASIC PRTCGLTM PRTCORD PRTCSTM PRTDLR PRTDOF PRTFOR PRTGMN PRTGOA "
+         "PRTGPDT PRTHMN PRTIFLTM PRTKXX PRTMASS PRTMGG PRTMXX PRTPG PRTPHIXA PRTPHIZL PRTQSYS PRTRMG PRTSCP PRTSTIFD "
+         "PRTSTIFF PRTTSET PRTUO0 PRTYS RCONDK SOLLIB SORT_MAX SPARSTOR", "output of MYSTRAN, or how it solves"),
 )
 
 # Commands of the case control. Of what is not listed nothing is selected that acts on a truss in statics.
