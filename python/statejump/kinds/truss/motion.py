@@ -123,17 +123,6 @@ def inertia(case: TrussCase) -> dict[str, Any]:
     }
 
 
-def _check_plays(truss: ResolvedTruss) -> None:
-    """Raise NotAllowed for a slider with a play beside joints whose springs the motion evaluates with it."""
-    sliders = truss.sliders
-    if not any(joint.pushes_beside_contacts(truss.joints[joint.section]) for joint in JOINTS):
-        return
-    for index in np.flatnonzero(sliders.play_m > 0)[:1]:
-        raise NotAllowed("play_m", float(sliders.play_m[index]),
-                         "must be 0 in motion, beside soft stops or latch hinges",
-                         item=f"slider {sliders.names[index]!r}", joint=sliders.names[index], case=truss.name)
-
-
 def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int = -1) -> TrussMotion:
     """Return the motion of a case through its program.
 
@@ -154,7 +143,6 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
     if case.motion.start == "drawn" and case.start.friction == FRICTIONLESS:
         raise NotAllowed("start.friction", case.start.friction, "must be 'stuck', there is no equilibrium before the "
                          "motion", beside="with motion.start = 'drawn'", case=case.name)
-    _check_plays(truss)
     regularised = case.motion.scheme == "regularised"
     if regularised:
         from statejump.kinds.truss import stable_steps

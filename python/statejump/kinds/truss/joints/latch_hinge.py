@@ -103,9 +103,6 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
                 np.full(len(joints.names), inf)),
         }
 
-    def pushes_beside_contacts(self, joints: LatchHinges) -> bool:
-        return bool(joints.names)
-
     def place_nodes(self, truss: ResolvedTruss, joints: LatchHinges) -> np.ndarray:
         return truss.turning_nodes(joints.links)
 

@@ -172,10 +172,6 @@ class JointType(Generic[ItemType, ArraysType]):
         """Return the engine's parameters that are not arrays of the same name."""
         return {}
 
-    def pushes_beside_contacts(self, joints: ArraysType) -> bool:
-        """Return whether in motion joints have forces that no contact of theirs has."""
-        return False
-
     # ---------------------------------------------------------------- result
 
     def contacts(self, run: Sampled, joints: ArraysType) -> Contacts:

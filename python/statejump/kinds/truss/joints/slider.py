@@ -219,9 +219,6 @@ class SliderType(AlongAxis[Slider, Sliders]):
             "partial_slip": (truss.sticking == "partial_slip") & (joints.friction_limit_N > 0),
         }
 
-    def pushes_beside_contacts(self, joints: Sliders) -> bool:
-        return bool(np.isfinite(joints.stop_stiffness_N_per_m).any())
-
     def contacts(self, run: Sampled, joints: Sliders) -> Contacts:
         slide = run.columns["slide_m"]
         stops = np.minimum(slide + joints.clearance_minus_m, joints.clearance_plus_m - slide)
@@ -300,8 +297,8 @@ class SliderType(AlongAxis[Slider, Sliders]):
 
     def regularised_refuses(self, joints: Sliders) -> tuple[str, str] | None:
         between = joints.nodes[:, 1] != GROUND
-        for why, which in (("is between two nodes", between), ("has stops", joints.have_stops),
-                           ("has a play", joints.play_m > 0)):
+        rigid_stops = joints.have_stops & np.isinf(joints.stop_stiffness_N_per_m)
+        for why, which in (("is between two nodes", between), ("has rigid stops", rigid_stops)):
             for index in np.flatnonzero(which)[:1]:
                 return joints.names[index], why
         return None
