@@ -327,6 +327,15 @@ void Contacts::measure(const VectorXd& z, double time, const StepStart& start,
   }
 }
 
+double Contacts::gap_at(const Contact& contact, const VectorXd& z, double time,
+                        const StepStart& start) const {
+  const Trial at = system_->trial(contact.joint, z, time, start, JointModel::friction, 1.0);
+  if (contact.ball < 0) return contact.clearance_after - eccentricity(at).norm();
+  BallFriction cone = balls_[index(contact.ball)];
+  cone.measure(at);
+  return contact.clearance_after - cone.now.distance;
+}
+
 void Contacts::remember_clearances() {
   for (Contact& contact : all_) contact.clearance = contact.clearance_after;
   for (BallFriction& cone : balls_) cone.remember(friction(cone, false));

@@ -137,6 +137,9 @@ class Contacts {
   /// joints closed and free of force; chooses the active contacts of a step.
   void measure(const VectorXd& z, double time, const StepStart& start, const VectorXd& closures,
                double rounding);
+  /// Gap of a round contact at z, the clearance being that of the end of a step [m].
+  double gap_at(const Contact& contact, const VectorXd& z, double time,
+                const StepStart& start) const;
   /// Takes what was measured as the end of a step.
   void remember_clearances();
   /// Writes what contacts that slip in part remember to where their joints do.
