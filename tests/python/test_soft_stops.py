@@ -319,8 +319,11 @@ def test_identified_joint_goes_into_a_case(model: str) -> None:
     values = {"stiffness": RIGIDITY / LENGTH, "friction": FRICTION, "preload": 0.0, **own}
     force = MODELS[model].answer(values, path, remembered(path, fresh=True))
     noise = np.random.default_rng(2).normal(0, 0.3, len(path))
-    found = sj.identify({"displacement_m": path, "force_N": force + noise}, start="fresh", model=model, target="slider",
-                        normal_force_N=FRICTION / 0.3)
+    found, other = (sj.identify({"displacement_m": path, "force_N": force + noise}, start="fresh", model=model,
+                                target=target, normal_force_N=FRICTION / 0.3) for target in ("slider", "spring_slider"))
+    joint = tomllib.loads(other.joint())["joint"]
+    own_key = list(true)[-1]
+    assert getattr(spring_slider(**joint).joint, own_key) == pytest.approx(true[own_key], rel=0.05)
     section = tomllib.loads(found.joint())["slider"][0]
     case = truss(**section)
     for key, value in true.items():
