@@ -32,14 +32,14 @@ void bind_model(py::module_& module) {
       .def(py::init([](double young_modulus, double cross_section_area, double stress_free_length,
                        double thermal_expansion, double friction_force, double clearance_minus,
                        double clearance_plus, double preload_stiffness, double preload_force,
-                       const std::string& start_friction, double stop_stiffness) {
+                       const std::string& start_friction, double stop_stiffness, double play) {
              const spring_slider::SpringSlider model{
                  young_modulus,      cross_section_area,
                  stress_free_length, thermal_expansion,
                  friction_force,     clearance_minus,
                  clearance_plus,     preload_stiffness,
                  preload_force,      start_friction_of(start_friction),
-                 stop_stiffness};
+                 stop_stiffness,     play};
              model.validate();
              return model;
            }),
@@ -48,7 +48,7 @@ void bind_model(py::module_& module) {
            py::arg("friction_force_N"), py::arg("clearance_minus_m") = no_stop,
            py::arg("clearance_plus_m") = no_stop, py::arg("preload_stiffness_N_per_m") = 0.0,
            py::arg("preload_force_N") = 0.0, py::arg("start_friction") = "stuck",
-           py::arg("stop_stiffness_N_per_m") = no_stop)
+           py::arg("stop_stiffness_N_per_m") = no_stop, py::arg("play_m") = 0.0)
       .def_readonly("young_modulus_Pa", &spring_slider::SpringSlider::young_modulus)
       .def_readonly("cross_section_area_m2", &spring_slider::SpringSlider::cross_section_area)
       .def_readonly("stress_free_length_m", &spring_slider::SpringSlider::stress_free_length)
@@ -60,6 +60,7 @@ void bind_model(py::module_& module) {
       .def_readonly("preload_force_N", &spring_slider::SpringSlider::preload_force,
                     "Tension of the preload spring at x = 0, towards -x when positive.")
       .def_readonly("stop_stiffness_N_per_m", &spring_slider::SpringSlider::stop_stiffness)
+      .def_readonly("play_m", &spring_slider::SpringSlider::play)
       .def_property_readonly(
           "start_displacement_m",
           [](const spring_slider::SpringSlider& self) { return start_displacement(self); },
@@ -67,6 +68,10 @@ void bind_model(py::module_& module) {
       .def_property_readonly(
           "start_load_N", [](const spring_slider::SpringSlider& self) { return start_load(self); },
           "What friction balances at the start [N], stops left aside.")
+      .def_property_readonly(
+          "start_middle_m",
+          [](const spring_slider::SpringSlider& self) { return start_of(self).middle; },
+          "Middle of the play at the start [m].")
       .def(
           "link_stiffness_N_per_m",
           [](const spring_slider::SpringSlider& self, double change) {
@@ -109,7 +114,7 @@ void bind_path_parts(py::module_& module) {
       module, "SpringSliderEvent",
       "An instant at which the stage changes or a cycle ends.\n\n"
       "kind: 'first_slip', 'slip', 'stop_reached', 'stop_unloaded', 'stop_left',\n"
-      "'reversal', 'force_sign_change' or 'cycle_end'.")
+      "'reversal', 'force_sign_change', 'cycle_end', 'play_opened' or 'play_closed'.")
       .def_property_readonly("kind",
                              [](const spring_slider::Event& self) { return to_string(self.kind); })
       .def_property_readonly(
@@ -131,8 +136,8 @@ void bind_path_parts(py::module_& module) {
       module, "SpringSliderSegment",
       "Part of a path without an event inside; the temperature rises, falls or\n"
       "holds over it.\n\n"
-      "stage: 'S1' to 'S5', 'at_stop_plus', 'at_stop_minus'; motion: 'stick',\n"
-      "'slide', 'stop'; direction: sense of a slide or side of a stop, +1 or -1,\n"
+      "stage: 'S1' to 'S5', 'at_stop_plus', 'at_stop_minus', 'in_play'; motion: 'stick',\n"
+      "'slide', 'stop', 'play'; direction: sense of a slide or side of a stop, +1 or -1,\n"
       "0 for a stick; cycle: 0, 1, ...")
       .def_property_readonly(
           "stage", [](const spring_slider::Segment& self) { return to_string(self.stage); })

@@ -161,7 +161,8 @@ std::string cause(const FailureFields& fields) {
              " again and again";
     case FailureKind::too_many_steps:
       return number_named(fields, "steps") +
-             " steps since the last change of a joint, the last of " +
+             (fields.sought.empty() ? " steps since the last change of a joint, the last of "
+                                    : " parts of steps so far, the last of ") +
              number_named(fields, "last_step_s") + " s";
     case FailureKind::law_left_range:
       return fields.cause;
@@ -217,7 +218,8 @@ std::string sentence(const FailureFields& fields) {
     case FailureKind::unsettled_joint:
       return joint(fields) + " does not settle" + where + ": " + why;
     case FailureKind::too_many_steps:
-      return "no equilibrium by longer steps" + where + ": " + why;
+      return (fields.sought.empty() ? "no equilibrium by longer steps" : fields.sought) + where +
+             ": " + why;
     case FailureKind::law_left_range:
       return why + where;
     case FailureKind::not_finite:

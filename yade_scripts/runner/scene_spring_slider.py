@@ -32,7 +32,7 @@ class SpringSliderScene:
     stop_plus: int | None
     link: sj.ThermalLink
     preload_link: sj.ThermalLink | None
-    soft_stops: sj.PrismaticJoint | None  # in place of the faces stop_minus and stop_plus
+    prismatic: sj.PrismaticJoint | None  # soft stops in place of the faces, and friction with a play
     start_height_m: float  # y of the slider at the start, where the floor carries the normal force
     start_energy_J: float  # of bar and preload at the start
 
@@ -43,8 +43,18 @@ class SpringSliderScene:
 
     @property
     def prismatic_joints(self) -> list[sj.PrismaticJoint]:
-        """What stands for soft stops."""
-        return [self.soft_stops] if self.soft_stops is not None else []
+        """What stands for soft stops and for friction with a play."""
+        return [self.prismatic] if self.prismatic is not None else []
+
+    @property
+    def has_play(self) -> bool:
+        """Whether the prismatic joint rubs, and not the floor."""
+        return self.prismatic is not None and bool(self.prismatic.play > 0)
+
+    @property
+    def has_soft_stops(self) -> bool:
+        """Whether stops are those of the prismatic joint."""
+        return self.stop_plus is None
 
 
 def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSliderScene:
@@ -64,7 +74,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
         part: sj.ThermalFrictMat(
             young=joint["young_modulus_Pa"],
             poisson=joint["poisson_ratio"],
-            frictionAngle=atan(joint["friction_coefficient"]),
+            frictionAngle=0 if joint["play_m"] else atan(joint["friction_coefficient"]),
             thermalExpansion=expansion,
             label=part,
         )
@@ -98,11 +108,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
         )
     )
     stop_minus, stop_plus = stops or (None, None)
-    soft_stops = None if soft is None else sj.PrismaticJoint(
-        id1=slider, id2=fixed_point((0, 0, 0)), axis=(1, 0, 0), offset=(0, -depth, 0),
-        clearanceMinus=joint["clearance_minus_m"], clearancePlus=joint["clearance_plus_m"], stopSpring=soft,
-        dampingRatio=dem["contact_damping_ratio"],
-    )
+    prismatic = prismatic_joint(case, slider, depth)
     bar = sj.ThermalLink(
         id1=root,
         id2=slider,
@@ -133,15 +139,35 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
         dem["contact_damping_ratio"],
         verletDist=0.1 * radius,
         recorders=recorders,
-        prismatic_joints=() if soft_stops is None else (soft_stops,),
+        prismatic_joints=() if prismatic is None else (prismatic,),
     )
     O.trackEnergy = True
     O.dt = dem["time_step_s"]
     start_sticking({slider: (dem["start_slide_m"], 0, 0)} if dem["start_slide_m"] else {})
     stiffness = link["young_modulus_Pa"] * link["cross_section_area_m2"] / link["stress_free_length_m"]
     return SpringSliderScene(
-        program, slider, floor, stop_minus, stop_plus, bar, preload, soft_stops, start_height_m=-depth,
+        program, slider, floor, stop_minus, stop_plus, bar, preload, prismatic, start_height_m=-depth,
         start_energy_J=0.5 * stiffness * start**2 + stored_by_preload(joint, start),
+    )
+
+
+def prismatic_joint(case: dict[str, Any], slider: int, depth_m: float) -> sj.PrismaticJoint | None:
+    """Return the joint of soft stops and of friction with a play, None of a case that has neither."""
+    joint, dem = case["joint"], case["dem"]
+    stops: dict[str, float] = {}
+    friction: dict[str, float] = {}
+    if joint["stop_stiffness_N_per_m"] is not None:
+        stops = dict(clearanceMinus=joint["clearance_minus_m"], clearancePlus=joint["clearance_plus_m"],
+                     stopSpring=joint["stop_stiffness_N_per_m"])
+    if joint["play_m"]:
+        friction = dict(play=joint["play_m"], frictionLimit=dem["friction_limit_N"],
+                        frictionStiffness=dem["friction_stiffness_N_per_m"], frictionForce=dem["start_friction_N"],
+                        slipPosition=dem["start_slip_m"])
+    if not stops and not friction:
+        return None
+    return sj.PrismaticJoint(
+        id1=slider, id2=fixed_point((0, 0, 0)), axis=(1, 0, 0), offset=(0, -depth_m, 0), **stops, **friction,
+        dampingRatio=dem["contact_damping_ratio"],
     )
 
 
@@ -166,9 +192,17 @@ def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> li
                            time_s=states.times[lost.argmax()])
     at_stop = sum(stop["real"] for stop in stops) > 0
     pushed = -sum(stop["normalForce"][:, 0] for stop in stops)
-    if built.soft_stops is not None:
-        pushed = -states.joints(built.prismatic_joints)["stopForce"][:, 0]
-        at_stop = pushed != 0
+    friction, slipping = -floor["shearForce"][:, 0], floor["slipping"]
+    if built.prismatic is not None:
+        between = states.joints(built.prismatic_joints)
+        if built.has_soft_stops:
+            pushed = -between["stopForce"][:, 0]
+            at_stop = pushed != 0
+        if built.has_play:
+            friction = -between["frictionForce"][:, 0]
+            # The start is at rest, also where friction is at its limit.
+            slips = (np.abs(friction) >= built.prismatic.frictionLimit) & (states.times > 0)
+            slipping = np.where(slips, 1.0, 0.0)
     x, velocity = slider["position"][:, 0], slider["velocity"]
     bar = built.link
     stiffness = bar.youngModulus * bar.crossSectionArea / link["stressFreeLength"]
@@ -177,17 +211,17 @@ def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> li
         each(built.program.temperatureChange, states.times),
         x,
         link["axialForce"],
-        -floor["shearForce"][:, 0],
+        friction,
         np.where(at_stop, pushed, 0.0),
         0.5 * stiffness * link["extension"] ** 2,
-        states.energy("jointFriction"),
+        states.energy("jointFriction", "prismaticFriction"),
         states.energy("jointDamping", "linkDamping", "prismaticDamping"),
         0.5 * case["dem"]["tip_mass_kg"] * (velocity[:, 0] ** 2 + velocity[:, 1] ** 2),
         states.energy("linkThermalWork", "jointThermalWork"),
         -case["joint"]["normal_force_N"] * (slider["position"][:, 1] - built.start_height_m),
         states.energy("jointElastic", "prismaticElastic"),
         stored_by_preload(case["joint"], x) - built.start_energy_J,
-        floor["slipping"],
+        slipping,
         at_stop,
         norm(floor["normalForce"]),
     ]
@@ -196,12 +230,13 @@ def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> li
 def names(case: dict[str, Any], built: SpringSliderScene) -> Names:
     """Return what the case calls contacts and links; contacts as in result files."""
     found = Names()
-    faces = ("floor", "stop_minus", "stop_plus") if built.soft_stops is None else ("floor",)
+    faces = ("floor",) if built.has_soft_stops else ("floor", "stop_minus", "stop_plus")
     for contact in faces:
         found.joints[pair(built.slider, getattr(built, contact))] = (contact, contact)
         found.bodies[getattr(built, contact)] = contact
     for joint in built.prismatic_joints:
-        found.add_prismatic_joint(joint, "the stops", "stop_plus")
+        what = ("the stops", "stop_plus") if built.has_soft_stops else ("the play", "floor")
+        found.add_prismatic_joint(joint, *what)
     found.bodies[built.slider] = "the slider"
     found.add_link(built.link, "the bar")
     if built.preload_link is not None:

@@ -57,7 +57,8 @@ struct FailureFields {
   bool more_modes = false;                        ///< There may be more than `mode_count`.
   std::optional<double> time = {};                ///< [s]
   std::optional<double> temperature_change = {};  ///< ΔT [K]; of a truss that of its first program
-  /// What was sought, as "no equilibrium of the drawn shape"; for kinds singular and not_converged.
+  /// What was sought, as "no equilibrium of the drawn shape"; for kinds singular and not_converged,
+  /// and of a motion too_many_steps.
   std::string sought = {};
   /// Why, where a part of the program says so itself: the law's own sentence.
   std::string cause = {};

@@ -71,8 +71,9 @@ History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times)
     const double soft_stop = depth == 0.0 ? 0.0 : -model.stop_stiffness * depth;
     const double load = force + preload_force + soft_stop;
     const double friction =
-        segment.motion == Motion::stick ? -load : -segment.direction * model.friction_force;
-    const double slid = std::abs(x - segment.start_displacement);
+        segment.motion == Motion::stick ? -load : -segment.rubs * model.friction_force;
+    const double slid =
+        segment.motion == Motion::slide ? std::abs(x - segment.start_displacement) : 0.0;
     history.time[i] = time;
     history.temperature_change[i] = path.told ? path.told->temperature_change(time) : change;
     history.displacement[i] = x;

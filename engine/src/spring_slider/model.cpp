@@ -30,6 +30,53 @@ void SpringSlider::validate() const {
   require(std::abs(preload_force) + friction_force < axial_rigidity(), "preload_force",
           preload_force, "of a size below young_modulus * cross_section_area - friction_force [N]");
   require(stop_stiffness > 0.0, "stop_stiffness", stop_stiffness, "> 0 N/m, or infinity");
+  require(std::isfinite(play) && play >= 0.0, "play", play, "finite, >= 0 m");
+  require(play == 0.0 || friction_force > 0.0, "play", play, "0 m without friction_force");
+}
+
+namespace {
+
+/// Position [m] at ΔT = 0 where friction balances a load [N], or at the stop in the way there.
+double rest_under(const SpringSlider& model, double load) {
+  const double stiffness = link_stiffness(model, 0.0) + model.preload_stiffness;
+  const double excess = -model.preload_force - load;
+  const double slid = excess == 0.0 ? 0.0 : excess / stiffness;  // not −0
+  const int region = region_of(model, slid);
+  if (region == 0) return std::clamp(slid, -model.clearance_minus, model.clearance_plus);
+  const double clearance = region * model.clearance(region);
+  return clearance + (excess - stiffness * clearance) / (stiffness + model.stop_stiffness);
+}
+
+/// What friction has to hold at ΔT = 0 [N], rigid stops left aside.
+double load_at(const SpringSlider& model, double x) {
+  const SpringSlider pressed = in_region(model, region_of(model, x));
+  return -pressed.preload_force - (link_stiffness(model, 0.0) + pressed.preload_stiffness) * x;
+}
+
+/// From the middle of the play the block moves until friction holds it.
+Start start_in_play(const SpringSlider& model) {
+  const double half = 0.5 * model.play;
+  const double free = rest_under(model, 0.0);
+  if (std::abs(free) <= half) return {free, 0.0, 0.0};
+  const double end = std::copysign(half, free);
+  const double held = load_at(model, end);
+  if (std::abs(held) <= model.friction_force) return {end, held, 0.0};
+  const double load = std::copysign(model.friction_force, free);
+  const double slid = rest_under(model, load);
+  return {slid, load, slid - end};
+}
+
+}  // namespace
+
+Start start_of(const SpringSlider& model) {
+  if (model.start_friction == StartFriction::frictionless) {
+    const double x = rest_under(model, 0.0);
+    return {x, 0.0, x};
+  }
+  if (model.play > 0.0) return start_in_play(model);
+  const double load = std::clamp(-model.preload_force, -model.friction_force, model.friction_force);
+  const double x = rest_under(model, load);
+  return {x, load, x};
 }
 
 double free_length(const SpringSlider& model, double temperature_change) {
@@ -50,18 +97,11 @@ double axial_force(const SpringSlider& model, double temperature_change, double 
 }
 
 double start_load(const SpringSlider& model) {
-  if (model.start_friction == StartFriction::frictionless) return 0.0;
-  return std::clamp(-model.preload_force, -model.friction_force, model.friction_force);
+  return start_of(model).load;
 }
 
 double start_displacement(const SpringSlider& model) {
-  const double stiffness = link_stiffness(model, 0.0) + model.preload_stiffness;
-  const double excess = -model.preload_force - start_load(model);
-  const double slid = excess == 0.0 ? 0.0 : excess / stiffness;  // not −0
-  const int region = region_of(model, slid);
-  if (region == 0) return std::clamp(slid, -model.clearance_minus, model.clearance_plus);
-  const double clearance = region * model.clearance(region);
-  return clearance + (excess - stiffness * clearance) / (stiffness + model.stop_stiffness);
+  return start_of(model).displacement;
 }
 
 SpringSlider in_region(const SpringSlider& model, int region) {

@@ -27,17 +27,24 @@ class Follower {
   /// `kept`: the cycles to keep, ascending.
   Follower(Path& path, const std::vector<int>& kept)
       : path_(path), model_(path.model), kept_(kept) {
-    open_.start_displacement = open_.end_displacement = start_displacement(model_);
+    const Start start = start_of(model_);
+    open_.start_displacement = open_.end_displacement = start.displacement;
+    open_.middle = start.middle;
     const double load =
         -model_.preload_force -
         (link_stiffness(model_, 0.0) + model_.preload_stiffness) * open_.end_displacement;
     const int side = sign(load);
     open_.region = region_of(model_, open_.end_displacement);
-    if (!model_.has_soft_stops() && open_.end_displacement == side * model_.clearance(side) &&
-        side * load > model_.friction_force) {
+    held_ = has_play() ? sign(start.load) : 0;
+    const double friction = has_play() ? std::abs(start.load) : model_.friction_force;
+    if (is_at_stop(open_.end_displacement, side) && side * load > friction) {
       open_.stage = stage_at_stop(side);
       open_.motion = Motion::stop;
       open_.direction = side;
+      open_.rubs = has_play() ? held_ : side;
+    } else if (has_play() && held_ == 0) {
+      open_.stage = Stage::in_play;
+      open_.motion = Motion::play;
     }
   }
 
@@ -50,6 +57,7 @@ class Follower {
     branch_ = &branch;
     if (drive_ != 0) {
       if (open_.motion == Motion::slide && open_.direction != drive_) turn_back();
+      if (open_.motion == Motion::play) open_.direction = drive_;
       while (pass_next_event()) {
       }
     }
@@ -82,7 +90,9 @@ class Follower {
   void close() {
     const double end = open_.end_temperature_change;
     const double work = thermal_work(model_, open_, end);
-    const double slid = std::abs(open_.end_displacement - open_.start_displacement);
+    const double slid = open_.motion == Motion::slide
+                            ? std::abs(open_.end_displacement - open_.start_displacement)
+                            : 0.0;
     if (open_.end_time > open_.start_time) {
       note_force(open_, open_.start_time);
       note_compression();
@@ -93,6 +103,9 @@ class Follower {
     open_.start_time = open_.end_time;
     open_.start_temperature_change = end;
     open_.start_displacement = open_.end_displacement;
+    if (open_.motion == Motion::slide) {
+      open_.middle = open_.end_displacement - open_.direction * 0.5 * model_.play;
+    }
   }
 
   /// Is the present cycle kept?
@@ -126,6 +139,13 @@ class Follower {
     open_.stage = stage;
     open_.motion = motion;
     open_.direction = direction;
+    open_.rubs = motion == Motion::slide ? direction : 0;
+  }
+
+  bool has_play() const { return model_.play > 0.0; }
+
+  bool is_at_stop(double x, int side) const {
+    return !model_.has_soft_stops() && x == side * model_.clearance(side);
   }
 
   void start_slide() {
@@ -134,24 +154,45 @@ class Follower {
     if (first_slide_ == 0) {
       kind = EventKind::first_slip;
       first_slide_ = drive_;
-    } else if (!model_.has_soft_stops() && x == -drive_ * model_.clearance(-drive_)) {
+    } else if (is_at_stop(x, -drive_)) {
       kind = EventKind::stop_left;
     }
     last_slide_ = drive_;
     enter(kind, drive_ == first_slide_ ? Stage::S2 : Stage::S5, Motion::slide, drive_);
   }
 
-  void load_stop() {
+  /// @param rubs sense in which friction is at its limit there; 0: the play is open
+  void load_stop(int rubs) {
     // Snapped, so that x is the clearance itself and leaving the stop can be told by equality.
     open_.end_displacement = drive_ * model_.clearance(drive_);
     enter(EventKind::stop_reached, stage_at_stop(drive_), Motion::stop, drive_);
+    open_.rubs = rubs;
   }
 
-  /// Comes to touch a soft stop, or loses touch of it, and slides on.
+  /// Where the play of a block that moves in it ends [m].
+  double end_of_play() const { return open_.middle + drive_ * 0.5 * model_.play; }
+
+  void open_play(EventKind kind) {
+    enter(is_at_stop(open_.end_displacement, -drive_) ? EventKind::stop_left : kind, Stage::in_play,
+          Motion::play, drive_);
+  }
+
+  void close_play() {
+    open_.end_displacement = end_of_play();
+    held_ = drive_;
+    // There D = 0: the link balances the springs alone.
+    const SpringSlider pressed = in_region(model_, open_.region);
+    const double force = pressed.preload_force + pressed.preload_stiffness * open_.end_displacement;
+    const int side = force == 0.0 ? drive_ : sign(force);
+    const Stage stage = last_slide_ == 0 ? Stage::S1 : last_slide_ == side ? Stage::S3 : Stage::S4;
+    enter(EventKind::play_closed, stage, Motion::stick, 0);
+  }
+
+  /// Comes to touch a soft stop, or loses touch of it, and moves on.
   void pass_soft_stop(int side) {
     open_.end_displacement = side * model_.clearance(side);
     enter(open_.region == 0 ? EventKind::stop_reached : EventKind::stop_left, open_.stage,
-          Motion::slide, drive_);
+          open_.motion, drive_);
     open_.region = open_.region == 0 ? side : 0;
   }
 
@@ -160,7 +201,10 @@ class Follower {
     return sliding_temperature(in_region(model_, open_.region), x, direction);
   }
 
-  void turn_back() { enter(EventKind::reversal, stage_of_stick(), Motion::stick, 0); }
+  void turn_back() {
+    held_ = open_.direction;
+    enter(EventKind::reversal, stage_of_stick(), Motion::stick, 0);
+  }
 
   static Stage stage_at_stop(int side) {
     return side > 0 ? Stage::at_stop_plus : Stage::at_stop_minus;
@@ -188,35 +232,61 @@ class Follower {
   }
 
   /// Passes the next event of the branch. False if there is none left. Under one drive the motion
-  /// only ever goes loaded stop → stick → slide → stop, so this ends.
+  /// only ever goes loaded stop → stick → play → stick → slide → stop, so this ends.
   bool pass_next_event() {
+    if (open_.motion == Motion::stop) return pass_end_of_stop();
+    return open_.moves() ? pass_end_of_motion() : pass_end_of_stick();
+  }
+
+  bool pass_end_of_stop() {
+    if (open_.direction == drive_) return false;
+    const double unload = onset_from(open_.end_displacement, open_.rubs);
+    if (!is_due(unload)) return false;
+    move_to_event(unload);
+    if (has_play() && open_.rubs != open_.direction) {
+      held_ = open_.rubs;
+      enter(EventKind::stop_unloaded, Stage::in_play, Motion::play, drive_);
+      open_play(EventKind::play_opened);
+      return true;
+    }
+    held_ = open_.rubs;
+    enter(EventKind::stop_unloaded, stage_of_stick(), Motion::stick, 0);
+    return true;
+  }
+
+  /// ΔT at which a block that moves comes to the next stop, or loses touch of a soft one.
+  double arrival_at(int side) const {
+    const double clearance = model_.clearance(side);
+    if (open_.region == drive_ || std::isinf(clearance)) return never;
+    return sliding_temperature(model_, side * clearance, open_.rubs);
+  }
+
+  bool pass_end_of_motion() {
+    const int side = open_.region == 0 ? drive_ : open_.region;
+    const double arrival = arrival_at(side);
+    const double closed = open_.motion == Motion::play ? onset_from(end_of_play(), 0) : never;
+    if (is_due(closed) && !(heating_ * (arrival - closed) < 0.0)) {
+      move_to_event(closed);
+      close_play();
+      return true;
+    }
+    if (!is_due(arrival)) return false;
+    move_to_event(arrival);
+    if (model_.has_soft_stops()) {
+      pass_soft_stop(side);
+    } else {
+      load_stop(open_.rubs);
+    }
+    return true;
+  }
+
+  bool pass_end_of_stick() {
     const double x = open_.end_displacement;
-    if (open_.motion == Motion::stop) {
-      if (open_.direction == drive_) return false;
-      const double unload = onset_from(x, open_.direction);
-      if (!is_due(unload)) return false;
-      move_to_event(unload);
-      enter(EventKind::stop_unloaded, stage_of_stick(), Motion::stick, 0);
-      return true;
-    }
-    if (open_.motion == Motion::slide) {
-      if (open_.region == drive_) return false;
-      const int side = open_.region == 0 ? drive_ : open_.region;
-      const double clearance = model_.clearance(side);
-      if (std::isinf(clearance)) return false;
-      const double arrival = sliding_temperature(model_, side * clearance, drive_);
-      if (!is_due(arrival)) return false;
-      move_to_event(arrival);
-      if (model_.has_soft_stops()) {
-        pass_soft_stop(side);
-      } else {
-        load_stop();
-      }
-      return true;
-    }
+    // A play opens where friction has fallen to zero.
+    const int limit = has_play() && held_ != drive_ ? 0 : drive_;
     // Without friction every force moves the block: no rounded onset, no sliver of stick.
     const double onset =
-        model_.friction_force == 0.0 ? open_.end_temperature_change : onset_from(x, drive_);
+        model_.friction_force == 0.0 ? open_.end_temperature_change : onset_from(x, limit);
     const double zero = force_zero();
     if (is_due(zero) && !(heating_ * (onset - zero) <= 0.0)) {
       move_to_event(zero);
@@ -226,8 +296,10 @@ class Follower {
     }
     if (!is_due(onset)) return false;
     move_to_event(onset);
-    if (!model_.has_soft_stops() && x == drive_ * model_.clearance(drive_)) {
-      load_stop();
+    if (is_at_stop(x, drive_)) {
+      load_stop(limit);
+    } else if (limit == 0) {
+      open_play(EventKind::play_opened);
     } else {
       start_slide();
     }
@@ -252,6 +324,7 @@ class Follower {
   int drive_ = 0;
   int first_slide_ = 0;
   int last_slide_ = 0;
+  int held_ = 0;  ///< Side of the play at which friction holds the block; 0: without play.
 };
 
 /// Throws unless l_T stays positive over the program.
@@ -265,18 +338,20 @@ void require_positive_length(const SpringSlider& model, const thermal::Program& 
 }  // namespace
 
 const char* to_string(Stage stage) {
-  constexpr std::array names{"S1", "S2", "S3", "S4", "S5", "at_stop_plus", "at_stop_minus"};
+  constexpr std::array names{"S1",     "S2", "S3", "S4", "S5", "at_stop_plus", "at_stop_minus",
+                             "in_play"};
   return names[static_cast<std::size_t>(stage)];
 }
 
 const char* to_string(Motion motion) {
-  constexpr std::array names{"stick", "slide", "stop"};
+  constexpr std::array names{"stick", "slide", "stop", "play"};
   return names[static_cast<std::size_t>(motion)];
 }
 
 const char* to_string(EventKind kind) {
-  constexpr std::array names{"first_slip", "slip",     "stop_reached",      "stop_unloaded",
-                             "stop_left",  "reversal", "force_sign_change", "cycle_end"};
+  constexpr std::array names{"first_slip",  "slip",       "stop_reached",      "stop_unloaded",
+                             "stop_left",   "reversal",   "force_sign_change", "cycle_end",
+                             "play_opened", "play_closed"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -300,9 +375,10 @@ void follow(const SpringSlider& model, const thermal::Program& program,
   path.largest_compression = path.largest_compression_temperature_change = 0.0;
   path.largest_axial_force = path.largest_compression_time = 0.0;
   path.told.reset();
-  // A cycle that touches both stops has 12 events; more only in a table with many turns.
-  path.segments.reserve(12 * kept.size());
-  path.events.reserve(12 * kept.size());
+  // A cycle that touches both stops has 12 events, with a play 16; more only in a table with many
+  // turns.
+  path.segments.reserve(16 * kept.size());
+  path.events.reserve(16 * kept.size());
   path.cycle_end_displacements.reserve(static_cast<std::size_t>(program.cycles));
   Follower follower(path, kept);
   for (int cycle = 0; cycle < program.cycles; ++cycle) {
@@ -366,19 +442,22 @@ Place place_at(const SpringSlider& model, const thermal::Program& program, const
   const double change = std::clamp(program.temperature_change(time), lowest, highest);
   const double x = displacement(model, segment, change);
   // Sliding, the block carries exactly the friction limit; a difference of x and x_T would not.
-  if (segment.motion == Motion::slide) {
+  if (segment.moves()) {
     const SpringSlider pressed = in_region(model, segment.region);
     return {change, x,
-            segment.direction * model.friction_force + pressed.preload_force +
+            segment.rubs * model.friction_force + pressed.preload_force +
                 pressed.preload_stiffness * x};
   }
   return {change, x, axial_force(model, change, x)};
 }
 
 double displacement(const SpringSlider& model, const Segment& segment, double temperature_change) {
-  if (segment.motion != Motion::slide) return segment.start_displacement;
+  if (!segment.moves()) return segment.start_displacement;
   const SpringSlider pressed = in_region(model, segment.region);
-  const double x = sliding_displacement(pressed, temperature_change, segment.direction);
+  double x = sliding_displacement(pressed, temperature_change, segment.rubs);
+  if (segment.motion == Motion::play) {
+    x = std::clamp(x, segment.middle - 0.5 * model.play, segment.middle + 0.5 * model.play);
+  }
   if (segment.region > 0) return std::max(x, model.clearance_plus);
   if (segment.region < 0) return std::min(x, -model.clearance_minus);
   return std::clamp(x, -model.clearance_minus, model.clearance_plus);
@@ -399,9 +478,9 @@ double thermal_work(const SpringSlider& model, const Segment& segment, double te
     const double at = middle + half_span * nodes[i];
     const double length = free_length(model, at);
     double strain = 0.0;  // (x − x_T)/l_T
-    if (segment.motion == Motion::slide) {
+    if (segment.moves()) {
       // Written out: the difference of x and x_T would lose the digits that the balance is about.
-      strain = -(segment.direction * model.friction_force + pressed.preload_force +
+      strain = -(segment.rubs * model.friction_force + pressed.preload_force +
                  pressed.preload_stiffness * thermal_displacement(model, at)) /
                (model.axial_rigidity() + pressed.preload_stiffness * length);
     } else {

@@ -253,7 +253,8 @@ void System::assemble(Parts parts, const VectorXd& z, double time, const StepSta
     if (parts == Parts::bars) return;
     for (const int i : region.joints) {
       JointWriter to_joint = writer(i, strand);
-      const Trial at = trial(i, z, to.moved, time, start, joints, opening);
+      Trial at = trial(i, z, to.moved, time, start, joints, opening);
+      at.in_motion = parts == Parts::joints;
       const JointStatus status = statuses[index(i)];
       std::visit([&](const auto& one) { one.evaluate(at, status, to_joint); },
                  model_->joints[index(i)]);

@@ -127,7 +127,7 @@ class System {
                 JointModel joints, double opening, Assembly& to) const;
   /// The same of links, springs, torsion springs and loads alone.
   void evaluate_bars(const VectorXd& z, double time, Assembly& to) const;
-  /// The same of the joints alone, as they are with friction.
+  /// The same of the joints alone, as they are with friction in motion.
   void evaluate_joints(const VectorXd& z, double time, const StepStart& start,
                        const Statuses& statuses, Assembly& to) const;
 

@@ -99,8 +99,7 @@ def entries(
         if "stop_stiffness" in values:
             stops.append(known("stop_stiffness_N_per_m", "stop_stiffness", ""))
         if "play" in values:
-            stops.append(known("play_m", "play", "") if target == "slider" else
-                         Entry("play_m", None, why="[[slider]] has it: --for slider"))
+            stops.append(known("play_m", "play", ""))
         return friction() + stops + (spring if target == "spring_slider" else [])
     if target == "iwan_joint":
         none = "the loop is not of an Iwan joint: --model iwan fits one"

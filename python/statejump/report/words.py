@@ -19,7 +19,8 @@ EVENTS = {
     "first_contact": "first contact", "contact": "contact", "separation": "separation", "first_slip": "first slip",
     "slip": "slip", "stick": "stick", "stop_reached": "stop reached", "stop_unloaded": "stop unloaded",
     "stop_left": "stop left", "reversal": "temperature turns, sticks", "force_sign_change": "axial force changes sign",
-    "cycle_end": "end of a cycle", "slack": "goes slack", "taut": "becomes taut",
+    "cycle_end": "end of a cycle", "play_opened": "play opens", "play_closed": "play closes",
+    "slack": "goes slack", "taut": "becomes taut",
 }
 SHAPES = {
     "triangle": "changes by {peak} and back in straight lines",

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <random>
 #include <tuple>
 
@@ -422,6 +423,129 @@ TEST(SpringSliderPath, EqualsSmallStepsForRandomModels) {
             << "run " << run << " time " << time;
       }
     }
+  }
+}
+
+TEST(SpringSliderPath, PlayOpensAtEveryReversal) {
+  SpringSlider model = table1();
+  const double w = 2e-4;
+  model.play = w;
+  const Path path = solve(model, cycle());
+  // Where nothing rubs the link is unloaded, x = α l0 ΔT.
+  const auto free = [](double x) { return x / (alpha * l0); };
+  expect_events(path, {{EventKind::play_closed, Stage::in_play, Stage::S1, free(0.5 * w)},
+                       {EventKind::first_slip, Stage::S1, Stage::S2, root(0.5 * w, 1)},
+                       {EventKind::stop_reached, Stage::S2, Stage::at_stop_plus, root(c, 1)},
+                       {EventKind::stop_unloaded, Stage::at_stop_plus, Stage::S3, root(c, 1)},
+                       {EventKind::stop_left, Stage::S3, Stage::in_play, free(c)},
+                       {EventKind::play_closed, Stage::in_play, Stage::S4, free(c - w)},
+                       {EventKind::slip, Stage::S4, Stage::S5, root(c - w, -1)},
+                       {EventKind::cycle_end, Stage::S5, Stage::S5, 0.0}});
+  EXPECT_NEAR(path.state_jump(), f * l0 / EA, close(f * l0 / EA));
+  EXPECT_EQ(path.segments.front().motion, Motion::play);
+}
+
+TEST(SpringSliderPath, PlayWiderThanTheClearanceLeavesTheStopsFree) {
+  SpringSlider model = table1();
+  model.play = 3.0 * c;
+  const Path path = solve(model, cycle());
+  expect_events(path,
+                {{EventKind::stop_reached, Stage::in_play, Stage::at_stop_plus, c / (alpha * l0)},
+                 {EventKind::stop_unloaded, Stage::at_stop_plus, Stage::in_play, c / (alpha * l0)},
+                 {EventKind::stop_left, Stage::in_play, Stage::in_play, c / (alpha * l0)},
+                 {EventKind::cycle_end, Stage::in_play, Stage::in_play, 0.0}});
+  EXPECT_NEAR(path.state_jump(), 0.0, 1e-18);
+}
+
+namespace {
+
+/// Block in its play, moved by one step: its place depends on the middle p of the play alone, for
+/// where D = 0 is within it, or at an end that friction holds or not.
+struct Played {
+  double x;
+  double middle;
+};
+
+Played moved_in_play(const SpringSlider& model, double change, double middle) {
+  const double k = EA / (l0 * (1.0 + model.thermal_expansion * change));
+  const double grown = model.thermal_expansion * l0 * change;
+  const double soft = std::isinf(model.stop_stiffness) ? 0.0 : model.stop_stiffness;
+  // Where the load that friction has to hold is `level`; it falls with x, piece by piece.
+  const auto at_load = [&](double level) {
+    const double stiffness = k + model.preload_stiffness;
+    const double x = (k * grown - model.preload_force - level) / stiffness;
+    if (soft == 0.0) return std::clamp(x, -model.clearance_minus, model.clearance_plus);
+    const double inside = std::clamp(x, -model.clearance_minus, model.clearance_plus);
+    return inside + (x - inside) * stiffness / (stiffness + soft);
+  };
+  for (const int side : {1, -1}) {
+    const double end = middle + 0.5 * side * model.play;
+    if (side * (at_load(0.0) - end) <= 0.0) continue;
+    const double slid = at_load(side * model.friction_force);
+    if (side * (slid - end) <= 0.0) return {end, middle};
+    return {slid, slid - 0.5 * side * model.play};
+  }
+  return {at_load(0.0), middle};
+}
+
+}  // namespace
+
+TEST(SpringSliderPath, PlayEqualsSmallStepsForRandomModels) {
+  std::mt19937_64 random(20261127);
+  const auto uniform = [&random](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  for (int run = 0; run < 200; ++run) {
+    SpringSlider model = table1();
+    model.thermal_expansion = uniform(-3e-5, 3e-5);
+    model.friction_force = uniform(1.0, 200.0);
+    model.play = std::exp(uniform(std::log(1e-6), std::log(4e-3)));
+    model.clearance_plus = uniform(1e-4, 2e-3);
+    model.clearance_minus = uniform(1e-4, 2e-3);
+    model.preload_stiffness = run % 2 == 0 ? 0.0 : uniform(0.0, 2e6);
+    model.preload_force = run % 3 == 0 ? 0.0 : uniform(-3e3, 3e3);
+    if (run % 5 < 2) model.stop_stiffness = uniform(1e4, 1e7);
+    if (run % 4 < 2) model.start_friction = StartFriction::frictionless;
+    std::vector<double> times{0.0};
+    std::vector<double> changes{0.0};
+    for (int i = 1; i < 8; ++i) {
+      times.push_back(i);
+      changes.push_back(i % 4 == 3 ? changes.back() : uniform(-150.0, 150.0));
+    }
+    const Path path = solve(model, table(times, changes));
+    // As without play; a place within the play is that of p, which adds up as x does.
+    const int steps = 400;
+    const double tolerance = 2 * 7 * steps * 2e-16;
+    Played at = moved_in_play(model, 0.0, 0.0);
+    if (model.start_friction == StartFriction::frictionless) {
+      SpringSlider loose = model;
+      loose.play = 100.0;
+      at.x = at.middle = moved_in_play(loose, 0.0, 0.0).x;
+    }
+    EXPECT_NEAR(start_displacement(model), at.x, tolerance) << run;
+    std::size_t segment = 0;
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      for (int step = 1; step <= steps; ++step) {
+        const double part = static_cast<double>(step) / steps;
+        const double change = changes[i - 1] + part * (changes[i] - changes[i - 1]);
+        at = moved_in_play(model, change, at.middle);
+        const double time = times[i - 1] + part;
+        while (segment + 1 < path.segments.size() && path.segments[segment].end_time < time) {
+          ++segment;
+        }
+        ASSERT_NEAR(displacement(model, path.segments[segment], change), at.x, tolerance)
+            << "run " << run << " time " << time;
+      }
+    }
+    // The balance of energies; works are known to 1e-15 of themselves.
+    const Eigen::VectorXd all = Eigen::VectorXd::LinSpaced(701, 0.0, 7.0);
+    const History history = sample(path, all);
+    const Eigen::ArrayXd stored = history.elastic_energy + history.preload_energy;
+    const Eigen::ArrayXd left =
+        history.thermal_work.array() - (stored - stored[0]) - history.friction_dissipation.array();
+    const double largest = stored.abs().maxCoeff() + history.thermal_work.cwiseAbs().maxCoeff() +
+                           history.friction_dissipation.maxCoeff();
+    EXPECT_LE(left.abs().maxCoeff(), 1e-12 * largest) << run;
   }
 }
 

@@ -18,7 +18,7 @@ def case(friction, period, steps):
             "pad_radius_m": 0.05, "pad_thermal_expansion_per_K": 0.0,
             "slot_thermal_expansion_per_K": 0.0, "young_modulus_Pa": 70e9, "poisson_ratio": 0.3,
             "friction_coefficient": friction, "normal_force_N": 100.0, "clearance_minus_m": 1e-3,
-            "clearance_plus_m": 1e-3, "stop_stiffness_N_per_m": None,
+            "clearance_plus_m": 1e-3, "stop_stiffness_N_per_m": None, "play_m": 0.0,
             "preload_stiffness_N_per_m": 0.0, "preload_force_N": 0.0,
         },
         "period_s": period,

@@ -42,6 +42,16 @@ namespace statejump::spring_slider {
 ///
 /// so that every formula above holds with these two in place of P and k_p, see in_region().
 ///
+/// A play of width w in series with friction moves with the slide. With its middle p and e = x − p:
+///
+///   play    |e| < w/2, nothing rubs: D = 0, hence x = (E A x_T − P l_T)/(E A + k_p l_T)
+///   stick   e = s w/2 and 0 <= s D <= f: friction pushes away from this end of the play only
+///   slide   e = s w/2 and D = s f, p moves
+///
+/// At a rigid stop friction keeps the value of the arrival here too, f or 0. The start is in the
+/// middle of the play, p = 0, from where a preload may take the block to an end of it and on; where
+/// it starts frictionless p = x.
+///
 /// Limits: no inertia, no buckling (see euler_load), constant f, E and α independent
 /// of temperature (of an α that is not, see tell_temperatures_of). A plain value: validate() once;
 /// the functions below do not check.
@@ -68,6 +78,8 @@ struct SpringSlider {
   StartFriction start_friction = StartFriction::stuck;
   /// Stiffness k_s of both stops [N/m], > 0; infinity: rigid.
   double stop_stiffness = std::numeric_limits<double>::infinity();
+  /// Width w of the play in series with friction [m], >= 0; needs friction.
+  double play = 0.0;
 
   /// Throws std::invalid_argument that names the first field out of range, its value and the range.
   void validate() const;
@@ -100,6 +112,14 @@ SpringSlider in_region(const SpringSlider& model, int region);
 /// Side of the soft stop that a block at x [m] presses; 0: none.
 int region_of(const SpringSlider& model, double displacement);
 
+/// Where the block starts, ΔT = 0.
+struct Start {
+  double displacement = 0.0;  ///< x [m], where D = load, or at the stop that is in its way
+  double load = 0.0;          ///< D0 [N] that friction balances, stops left aside
+  double middle = 0.0;        ///< p [m] of the play
+};
+Start start_of(const SpringSlider& model);
+
 /// D0 [N] that friction balances at the start, ΔT = 0, stops left aside.
 double start_load(const SpringSlider& model);
 
@@ -107,10 +127,11 @@ double start_load(const SpringSlider& model);
 /// in its way, beyond its clearance if it is soft.
 double start_displacement(const SpringSlider& model);
 
-/// Position x [m] of the block that slides in sense `direction` (+1 or −1), stops left aside.
+/// Position x [m] of the block that slides in sense `direction` (+1 or −1), or moves in its play
+/// (0), stops left aside.
 double sliding_displacement(const SpringSlider& model, double temperature_change, int direction);
 
-/// ΔT [K] at which D = direction·f with the block at x [m], the inverse of
+/// ΔT [K] at which D = direction·f (0: D = 0) with the block at x [m], the inverse of
 /// sliding_displacement: onset of sliding from x, and arrival at x while sliding.
 /// NaN if no temperature does it (α = 0, or P + k_p x + direction·f >= E A).
 double sliding_temperature(const SpringSlider& model, double displacement, int direction);

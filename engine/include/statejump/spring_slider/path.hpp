@@ -23,11 +23,12 @@ namespace statejump::spring_slider {
 ///
 /// A second cycle therefore runs S3, S4, S2, S3, S4, S5. With a preload spring F may change sign
 /// during a slide; S3 or S4 may then be missing. One that presses the block on a stop lets a path
-/// begin there.
-enum class Stage : unsigned char { S1, S2, S3, S4, S5, at_stop_plus, at_stop_minus };
+/// begin there. Between stages the block may move in its play, `in_play`.
+enum class Stage : unsigned char { S1, S2, S3, S4, S5, at_stop_plus, at_stop_minus, in_play };
 
 /// What the block does, whatever the stage is called. `stop`: it rests against a loaded stop.
-enum class Motion : unsigned char { stick, slide, stop };
+/// `play`: it moves in its play.
+enum class Motion : unsigned char { stick, slide, stop, play };
 
 /// Instants at which the stage changes or ends.
 enum class EventKind : unsigned char {
@@ -38,12 +39,14 @@ enum class EventKind : unsigned char {
   stop_left,      ///< The block starts to slide away from a stop, or loses touch of a soft one.
   reversal,       ///< The temperature turns while the block slides; it sticks.
   force_sign_change,  ///< The axial force passes zero during a stick after a slide.
-  cycle_end           ///< A cycle of the thermal program ends.
+  cycle_end,          ///< A cycle of the thermal program ends.
+  play_opened,        ///< Friction falls to zero; the block moves in its play.
+  play_closed         ///< The play is used up; friction holds the block.
 };
 
-/// "S1", …, "S5", "at_stop_plus", "at_stop_minus".
+/// "S1", …, "S5", "at_stop_plus", "at_stop_minus", "in_play".
 const char* to_string(Stage stage);
-/// "stick", "slide", "stop".
+/// "stick", "slide", "stop", "play".
 const char* to_string(Motion motion);
 /// "first_slip", "slip", "stop_reached", …: the enumerator's name.
 const char* to_string(EventKind kind);
@@ -64,7 +67,7 @@ struct Event {
 struct Segment {
   Stage stage;
   Motion motion;
-  /// Sense of a slide, side of a stop (+1 or −1); 0 for a stick.
+  /// Sense of a slide or in the play, side of a stop (+1 or −1); 0 for a stick.
   int direction;
   /// Cycle that the segment belongs to, 0, 1, …
   int cycle;
@@ -77,6 +80,12 @@ struct Segment {
   double friction_dissipation;      ///< Heat of friction from the program's start to start_time [J]
   double thermal_work;              ///< Work of the temperature over the same time [J]
   int region = 0;                   ///< Side of the soft stop that the block presses; 0: none.
+  /// Sense in which friction is at its limit, or the wall beyond it; 0: it is not.
+  int rubs = 0;
+  double middle = 0.0;  ///< Of the play at start_time [m].
+
+  /// Whether x follows the temperature.
+  bool moves() const { return motion == Motion::slide || motion == Motion::play; }
 };
 
 /// Exact quasi-static path of a spring-slider under a thermal program: what solve() returns.

@@ -80,8 +80,8 @@ struct Springs {
   std::size_t piece = 0;
 };
 
-/// @param slipped where friction carries nothing [m]
-Springs springs_at(const Slider& slider, double s, double slipped) {
+Springs springs_at(const Slider& slider, const Trial& trial) {
+  const double s = slide_of(slider, trial);
   Springs found;
   if (slider.has_soft_stops()) {
     const double beyond = beyond_stops(slider, s);
@@ -89,8 +89,8 @@ Springs springs_at(const Slider& slider, double s, double slipped) {
     if (beyond != 0.0) found.stiffness += slider.stop_stiffness;
     found.piece += beyond > 0.0 ? 1 : beyond < 0.0 ? 2 : 0;
   }
-  if (slider.play > 0.0) {
-    const double bend = s - slipped;
+  if (slider.play > 0.0 && !trial.in_motion) {
+    const double bend = s - trial.history[0];
     const double inside = played(slider, bend);
     found.force -= slider.tangential_stiffness * inside;
     if (inside == bend) found.stiffness -= slider.tangential_stiffness;
@@ -101,7 +101,7 @@ Springs springs_at(const Slider& slider, double s, double slipped) {
 
 /// Between the slider's nodes, whatever its status.
 void push_springs(const Slider& slider, const Trial& trial, JointWriter& writer) {
-  const Springs found = springs_at(slider, slide_of(slider, trial), trial.history[0]);
+  const Springs found = springs_at(slider, trial);
   const Eigen::Vector3d force = found.force * slider.axis;
   const Eigen::Matrix3d block = found.stiffness * slider.axis * slider.axis.transpose();
   writer.carries(found.force);

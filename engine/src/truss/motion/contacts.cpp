@@ -104,7 +104,6 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
     std::visit([&](const auto& one) { add(i, column, one); }, model.joints[index(i)]);
     column += frame.forces;
   }
-  refuse_play_beside_springs();
   slip_in_part_ = std::any_of(all_.begin(), all_.end(),
                               [](const Contact& contact) { return contact.slips_in_part; });
   // Across its friction a ball holds as it does along it.
@@ -117,16 +116,6 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
     contact.damping = damping[contact.joint];
     damped_ = damped_ || contact.damping > 0.0;
   }
-}
-
-/// Their forces are evaluated with those of plays, which the contacts have here.
-void Contacts::refuse_play_beside_springs() const {
-  const auto played = std::find_if(all_.begin(), all_.end(),
-                                   [](const Contact& contact) { return contact.rings.play > 0.0; });
-  if (!springs_ || played == all_.end()) return;
-  throw kernel::OutOfRange(
-      "slider '" + name_of(system_->model().joints[index(played->joint)]) + "'", "play_m",
-      played->rings.play, "0 in motion, beside soft stops or latch hinges");
 }
 
 Contact& Contacts::add_rubbing(int joint, int column, double bound, double stiffness) {
@@ -226,52 +215,72 @@ Statuses Contacts::closed(const VectorXd& z, double time, const StepStart& start
   return statuses;
 }
 
-double Contacts::friction_at_rest(const Contact& contact, const State& state) const {
+double Contacts::slide_at_rest(const Contact& contact, const State& state,
+                               StartFriction start) const {
+  const Model& model = system_->model();
+  const Joint& joint = model.joints[index(contact.joint)];
+  const bool slides =
+      std::holds_alternative<Slider>(joint) || std::holds_alternative<IwanJoint>(joint);
+  if (!slides || start == StartFriction::frictionless) return 0.0;
+  const char* key = std::holds_alternative<Slider>(joint) ? "slide_m" : "iwan_slide_m";
+  return output(model, state, contact.joint, key)[0];
+}
+
+double Contacts::friction_at_rest(const Contact& contact, const State& state,
+                                  StartFriction start) const {
+  if (start == StartFriction::frictionless) return 0.0;
   const Model& model = system_->model();
   const Joint& joint = model.joints[index(contact.joint)];
   const auto told = [&](const char* key) { return output(model, state, contact.joint, key)[0]; };
   double force = 0.0;
-  if (std::holds_alternative<IwanJoint>(joint)) {
-    force = contact.tangential_stiffness * told("iwan_slide_m");
-  } else if (const auto* hinge = std::get_if<LatchHinge>(&joint)) {
+  if (const auto* hinge = std::get_if<LatchHinge>(&joint)) {
     const double elastic = hinge->elastic_moment(told("hinge_rotation_rad"));
     const double radius = hinge->friction_moment / contact.given_force;
     force = (told("hinge_moment_N_m") - elastic) / radius;
-  } else if (contact.rings.play > 0.0) {
-    force = told("slider_force_N");
+  } else if (const auto* slider = std::get_if<Slider>(&joint);
+             slider != nullptr && contact.sticks_rigidly()) {
+    // A rigid stop takes what is beyond the bound.
+    force = told("slider_force_N") - slider->soft_stop_force(told("slide_m"));
+  } else {
+    force = contact.tangential_stiffness * slide_at_rest(contact, state, start);
   }
   return std::clamp(force, -contact.given_force, contact.given_force);
 }
 
-double Contacts::bend_at_rest(const Contact& contact, const State& state,
-                              StartFriction start) const {
-  // Stuck it bends from the middle of its play; slipped it carries the bound.
-  const double carried = contact.friction_force;
-  if (std::abs(carried) >= at_bound * contact.given_force) {
-    const double reach = 0.5 * contact.rings.play + std::abs(carried) * contact.compliance;
-    return std::copysign(reach, carried);
-  }
-  if (start == StartFriction::frictionless) return 0.0;
-  return output(system_->model(), state, contact.joint, "slide_m")[0];
-}
-
 void Contacts::begin(const State& state, StartFriction start) {
   for (Contact& contact : all_) {
-    if (contact.beside) continue;
-    if (contact.normal_column < 0) {
-      contact.friction_force = contact.elastic_friction = friction_at_rest(contact, state);
-      contact.compliance = contact.tangential_compliance(contact.given_force);
-      if (contact.rings.play > 0.0) contact.rings.bend = bend_at_rest(contact, state, start);
+    if (contact.beside || contact.normal_column >= 0) continue;
+    contact.compliance = contact.tangential_compliance(contact.given_force);
+    if (contact.slips_in_part) {
+      const SlippingRings::Pressed by =
+          contact.pressed(contact.given_force, contact.given_force, 1.0);
+      // Pressed first, then rubbed: partial slip depends on the order.
+      contact.rings.take(by, Eigen::Vector2d::Zero());
+      contact.friction_force =
+          contact.rings.take(by, {slide_at_rest(contact, state, start), 0.0})[0];
+    } else {
+      contact.friction_force = friction_at_rest(contact, state, start);
     }
-    if (contact.normal_column < 0 || contact.stop != JointStatus::open) continue;
-    const char* key = contact.ball < 0 ? "normal_force_N" : "ball_normal_force_N";
-    contact.normal_force = output(system_->model(), state, contact.joint, key)[0];
-    contact.elastic_normal = contact.normal_force;
+    contact.elastic_friction = contact.friction_force;
   }
+  double friction = 0.0;  // of a slider, before its stops
   for (Contact& contact : all_) {
-    if (!contact.slips_in_part || contact.beside) continue;
-    const double normal = contact.normal_column < 0 ? contact.given_force : contact.normal_force;
-    contact.rings.take(contact.pressed(normal, normal, 1.0), Eigen::Vector2d::Zero());
+    if (contact.normal_column < 0) friction = contact.friction_force;
+    if (contact.beside || contact.normal_column < 0) continue;
+    const auto told = [&](const char* key) {
+      return output(system_->model(), state, contact.joint, key)[0];
+    };
+    if (contact.stop == JointStatus::open) {
+      contact.normal_force = told(contact.ball < 0 ? "normal_force_N" : "ball_normal_force_N");
+      contact.elastic_normal = contact.normal_force;
+      if (!contact.slips_in_part) continue;
+      const SlippingRings::Pressed by =
+          contact.pressed(contact.normal_force, contact.normal_force, 1.0);
+      contact.rings.take(by, Eigen::Vector2d::Zero());
+    } else if (state.joint_status[index(contact.joint)] == contact.stop) {
+      contact.normal_force =
+          std::max(contact.normal_sign * (friction - told("slider_force_N")), 0.0);
+    }
   }
 }
 
@@ -317,6 +326,15 @@ void Contacts::measure(const VectorXd& z, double time, const StepStart& start,
     all_[cone.place + 1].active = all_[cone.place].active;
     direct(cone);
   }
+}
+
+double Contacts::gap_at(const Contact& contact, const VectorXd& z, double time,
+                        const StepStart& start) const {
+  const Trial at = system_->trial(contact.joint, z, time, start, JointModel::friction, 1.0);
+  if (contact.ball < 0) return contact.clearance_after - eccentricity(at).norm();
+  BallFriction cone = balls_[index(contact.ball)];
+  cone.measure(at);
+  return contact.clearance_after - cone.now.distance;
 }
 
 void Contacts::remember_clearances() {

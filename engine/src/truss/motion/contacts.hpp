@@ -137,6 +137,9 @@ class Contacts {
   /// joints closed and free of force; chooses the active contacts of a step.
   void measure(const VectorXd& z, double time, const StepStart& start, const VectorXd& closures,
                double rounding);
+  /// Gap of a round contact at z, the clearance being that of the end of a step [m].
+  double gap_at(const Contact& contact, const VectorXd& z, double time,
+                const StepStart& start) const;
   /// Takes what was measured as the end of a step.
   void remember_clearances();
   /// Writes what contacts that slip in part remember to where their joints do.
@@ -175,10 +178,9 @@ class Contacts {
   /// One contact for every element, all along one direction.
   void add(int joint, int first_column, const IwanJoint& iwan);
   /// Friction that holds a joint of given normal force in a quasi-static state [N].
-  double friction_at_rest(const Contact& contact, const State& state) const;
-  void refuse_play_beside_springs() const;
-  /// Bend of a slider with a play in a quasi-static state [m].
-  double bend_at_rest(const Contact& contact, const State& state, StartFriction start) const;
+  double friction_at_rest(const Contact& contact, const State& state, StartFriction start) const;
+  /// Slide of a slider since its friction carried nothing, in a quasi-static state [m].
+  double slide_at_rest(const Contact& contact, const State& state, StartFriction start) const;
   /// Dry friction of a given bound [N] behind a spring [N/m].
   Contact& add_rubbing(int joint, int column, double bound, double stiffness);
   /// Friction of a ball as its contacts have it, with their dashpots or without [N].

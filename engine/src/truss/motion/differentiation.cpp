@@ -58,19 +58,23 @@ bool Stepper::closes(const Local& local) {
 double Stepper::deepest(const Trial& step) const {
   double most = 0.0;
   const VectorXd way = step.q - step.q_middle;
-  const linear::SparseView jacobian = joints_.jacobian();
   for (const Contact& contact : contacts_.all()) {
     if (contact.active || contact.normal_column < 0 || contact.gap == Contact::infinite) continue;
-    double gap = contact.gap;
-    for (const auto& [column, share] : contact.normal_columns()) {
-      if (column < 0) continue;
-      for (linear::SparseView::InnerIterator it(jacobian, column); it; ++it) {
-        if (it.row() < way.size()) gap += share * contact.normal_sign * it.value() * way[it.row()];
-      }
-    }
-    most = std::max(most, -gap);
+    most = std::max(most, -gap_after(contact, way));
   }
   return most;
+}
+
+double Stepper::gap_after(const Contact& contact, const VectorXd& way) const {
+  const linear::SparseView jacobian = joints_.jacobian();
+  double gap = contact.gap;
+  for (const auto& [column, share] : contact.normal_columns()) {
+    if (column < 0) continue;
+    for (linear::SparseView::InnerIterator it(jacobian, column); it; ++it) {
+      if (it.row() < way.size()) gap += share * contact.normal_sign * it.value() * way[it.row()];
+    }
+  }
+  return gap;
 }
 
 }  // namespace statejump::truss::detail

@@ -80,10 +80,11 @@ void KernelContacts::refuse(const char* kind, const std::string& name, const cha
 
 void KernelContacts::add(int joint, int first_column, const Slider& slider, double damping) {
   if (slider.second >= 0) refuse(Slider::kind, slider.name, "is between two nodes");
-  if (std::isfinite(slider.clearance_minus) || std::isfinite(slider.clearance_plus)) {
-    refuse(Slider::kind, slider.name, "has stops");
+  if (slider.has_soft_stops()) {
+    soft_stops_.push_back(&slider);
+  } else if (std::isfinite(slider.clearance_minus) || std::isfinite(slider.clearance_plus)) {
+    refuse(Slider::kind, slider.name, "has rigid stops");
   }
-  if (slider.play > 0.0) refuse(Slider::kind, slider.name, "has a play");
   if (slider.friction_force == 0.0) return;
   if (std::isinf(slider.tangential_stiffness)) {
     refuse(Slider::kind, slider.name, "sticks rigidly");
@@ -100,6 +101,7 @@ void KernelContacts::add(int joint, int first_column, const Slider& slider, doub
   made.parameters.effective_mass = 1.0;
   made.pressed = slider.friction_force;
   made.held = slider.tangential_stiffness;
+  made.rings.play = slider.play;
   all_.push_back(made);
 }
 
@@ -196,9 +198,42 @@ kernel::BodyMotion KernelContacts::motion(int node, int far, const Stage& stage)
   return found;
 }
 
+void KernelContacts::push_soft_stops(const VectorXd& q, VectorXd& force) const {
+  for (const Slider* slider : soft_stops_) {
+    const double slide = slider->axis.dot(at(slider->first, q));
+    push(slider->first, -slider->soft_stop_force(slide) * slider->axis, force);
+  }
+}
+
+kernel::ContactResponse KernelContacts::answer_with_play(const KernelContact& contact,
+                                                         const Stage& stage, double slide,
+                                                         VectorXd& force, double* rates) const {
+  rates[0] = contact.axis.dot(at(contact.first, stage.v));
+  rates[1] = rates[2] = 0.0;
+  const Vector2d none = Vector2d::Zero();
+  const SlippingRings::Law law =
+      contact.rings.law(contact.presses_rings(), {slide, 0.0}, none, stage.since);
+  const double friction = law.friction[0];
+  kernel::ContactResponse found{};
+  found.normal_force = contact.pressed;
+  found.tangential_stiffness = law.by_slide(0, 0);
+  found.tangential_force = found.force_on_1 = -friction * contact.axis;
+  found.tangential_elastic_energy = 0.5 * friction * friction / contact.held;
+  push(contact.first, found.tangential_force, force);
+  return found;
+}
+
+double KernelContacts::take_play(KernelContact& contact, double slide) {
+  const double before = contact.rings.bend;
+  contact.rings.take(contact.presses_rings(), {slide, 0.0});
+  contact.history.slipping = contact.rings.slip_all;
+  return contact.pressed * std::abs(slide - (contact.rings.bend - before));
+}
+
 kernel::ContactResponse KernelContacts::answer(const KernelContact& contact, const Stage& stage,
                                                const double* way, kernel::ContactHistory& history,
                                                VectorXd& force, double* rates, Place& place) const {
+  if (contact.has_play()) return answer_with_play(contact, stage, way[0], force, rates);
   const Model& model = system_->model();
   StageLaws response{law_,
                      {contact.parameters.friction_coefficient, 0.0, 1e-3},
@@ -262,19 +297,26 @@ kernel::ContactResponse KernelContacts::answer(const KernelContact& contact, con
   return found;
 }
 
-VectorXd KernelContacts::start_way(const State& start) const {
+VectorXd KernelContacts::start_way(const State& start, StartFriction friction) const {
   VectorXd way = VectorXd::Zero(numbers());
-  if (!remembers_) return way;
+  if (friction == StartFriction::frictionless) return way;
   const bool rim_slips = laws::has(law_.friction, laws::Trait::needs_point_contact);
   for (std::size_t i = 0; i < all_.size(); ++i) {
     const KernelContact& contact = all_[i];
-    if (!contact.is_pad()) continue;
-    const double rubs = output(system_->model(), start, contact.joint, "slider_force_N")[0];
+    if (!contact.is_pad() || (!remembers_ && !contact.has_play())) continue;
+    double& slide = way[static_cast<Eigen::Index>(3 * i)];
+    const Model& model = system_->model();
+    const double there = output(model, start, contact.joint, "slide_m")[0];
+    if (contact.has_play()) {
+      slide = there;  // from the drawn shape, where nothing had slipped
+      continue;
+    }
+    const double rubs = output(model, start, contact.joint, "slider_force_N")[0] -
+                        std::get<Slider>(model.joints[index(contact.joint)]).soft_stop_force(there);
     const double share = std::min(std::abs(rubs) / contact.pressed, 1.0);
     // Cattaneo's contact under a constant normal force, or a spring.
     const double gives = rim_slips ? 1.5 * (1.0 - std::cbrt((1.0 - share) * (1.0 - share))) : share;
-    way[static_cast<Eigen::Index>(3 * i)] =
-        std::copysign(gives * contact.pressed / contact.held, rubs);
+    slide = std::copysign(gives * contact.pressed / contact.held, rubs);
   }
   return way;
 }
@@ -286,16 +328,19 @@ void KernelContacts::respond(const Stage& stage, VectorXd& force, VectorXd& rate
     Place place;
     answer(all_[i], stage, stage.way.data() + first, history, force, rates.data() + first, place);
   }
+  push_soft_stops(stage.q, force);
 }
 
 void KernelContacts::commit(const Stage& stage, VectorXd& force, VectorXd& rates,
                             KernelHeat& heat) {
+  push_soft_stops(stage.q, force);
   for (std::size_t i = 0; i < all_.size(); ++i) {
     const auto first = static_cast<Eigen::Index>(3 * i);
     KernelContact& contact = all_[i];
     Place place;
     kernel::ContactResponse found = answer(contact, stage, stage.way.data() + first,
                                            contact.history, force, rates.data() + first, place);
+    if (contact.has_play()) found.friction_dissipation = take_play(contact, stage.way[first]);
     heat.friction[contact.joint] += found.friction_dissipation;
     heat.damping += found.damping_dissipation;
     if (!contact.is_pad() && contact.radius > 0.0) {
@@ -323,7 +368,9 @@ void KernelContacts::write(VectorXd& z, Statuses& statuses) const {
     const bool slips = contact.history.slipping || (!remembers_ && !rubs.isZero(0.0));
     if (contact.is_pad()) {
       const double against = -contact.axis.dot(found.tangential_force);
-      z[contact.first_column] = against;
+      // The joint's unknown is the friction without the play, see Slider.
+      z[contact.first_column] =
+          contact.has_play() ? against + contact.held * contact.rings.played() : against;
       status = !slips          ? JointStatus::stick
                : against > 0.0 ? JointStatus::slip_plus
                                : JointStatus::slip_minus;
@@ -357,8 +404,14 @@ double KernelContacts::stored() const {
   return sum;
 }
 
-double KernelContacts::stiffest(const VectorXd& inverse_mass) const {
+double KernelContacts::stiffest(const VectorXd& q, const VectorXd& inverse_mass) const {
   double found = 0.0;
+  for (const Slider* slider : soft_stops_) {
+    const double slide = slider->axis.dot(at(slider->first, q));
+    if (slider->soft_stop_force(slide) == 0.0) continue;
+    found = std::max(
+        found, slider->stop_stiffness * inverse_mass[system_->first_displacement(slider->first)]);
+  }
   for (const KernelContact& contact : all_) {
     double inverse = 0.0;
     for (const int node : {contact.first, contact.second}) {

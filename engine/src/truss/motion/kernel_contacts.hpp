@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "slipping_rings.hpp"
 #include "statejump/kernel/contact_law.hpp"
 #include "statejump/kernel/laws/joint_law.hpp"
 #include "statejump/truss/path.hpp"
@@ -32,6 +33,10 @@ struct KernelContact {
   double held = 0.0;     ///< … and its k_t [N/m]; 0: it is not a pad.
 
   bool is_pad() const { return held > 0.0; }
+  /// Of a pad with a play in series: a spring behind Coulomb's bound, whatever law others have.
+  SlippingRings rings;
+  bool has_play() const { return rings.play > 0.0; }
+  SlippingRings::Pressed presses_rings() const { return {held, 0.0, 1.0, pressed, 0.0}; }
 
   // Where the last step ended.
   kernel::ContactHistory history;
@@ -71,7 +76,7 @@ class KernelContacts {
   Eigen::Index numbers() const { return 3 * static_cast<Eigen::Index>(all_.size()); }
   /// `Stage::way` that loads pads by the friction of a state at rest; contacts of round parts start
   /// without friction.
-  VectorXd start_way(const State& start) const;
+  VectorXd start_way(const State& start, StartFriction friction) const;
   /// Adds forces of all contacts [N]; leaves nothing behind. @param rates of `Stage::way`
   void respond(const Stage& stage, VectorXd& force, VectorXd& rates) const;
   /// The same at the end of a step, which the contacts take over. @param heat is added to
@@ -82,7 +87,7 @@ class KernelContacts {
   /// Energy that all contacts store [J].
   double stored() const;
   /// Largest square of an angular frequency that a contact alone has on its nodes now [1/s²].
-  double stiffest(const VectorXd& inverse_mass) const;
+  double stiffest(const VectorXd& q, const VectorXd& inverse_mass) const;
 
  private:
   void add(int joint, int first_column, const Slider& slider, double damping);
@@ -101,6 +106,11 @@ class KernelContacts {
   kernel::ContactResponse answer(const KernelContact& contact, const Stage& stage,
                                  const double* way, kernel::ContactHistory& history,
                                  VectorXd& force, double* rates, Place& place) const;
+  kernel::ContactResponse answer_with_play(const KernelContact& contact, const Stage& stage,
+                                           double slide, VectorXd& force, double* rates) const;
+  /// Takes a step over. @return heat of friction [J]
+  static double take_play(KernelContact& contact, double slide);
+  void push_soft_stops(const VectorXd& q, VectorXd& force) const;
   Vector3d at(int node, const VectorXd& free) const;
   void push(int node, const Vector3d& by, VectorXd& force) const;
   /// Pushes a part, and turns the link that carries it.
@@ -112,6 +122,7 @@ class KernelContacts {
   kernel::laws::JointLaw law_;
   bool remembers_ = true;  ///< The law of friction is given slides, not velocities.
   std::vector<KernelContact> all_;
+  std::vector<const Slider*> soft_stops_;  ///< Only their forces; the joint has their energy.
 };
 
 }  // namespace statejump::truss::detail

@@ -171,7 +171,7 @@ void Run::advance(double to) {
   q_ = q;
   v_ = v;
   time_ = to;
-  if (contacts_.stiffest(inverse_mass_) * h * h > largest_turn_squared) ++motion_.inexact_steps;
+  if (contacts_.stiffest(q_, inverse_mass_) * h * h > largest_turn_squared) ++motion_.inexact_steps;
 }
 
 void Run::fail(FailureKind kind, double when, const std::string& cause) const {
@@ -223,7 +223,7 @@ bool Run::begin() {
     if (!start) return false;
     q_ = bodies_.free_part(start->displacement);
     v_ = VectorXd::Zero(q_.size());
-    way = contacts_.start_way(*start);
+    way = contacts_.start_way(*start, options_.start_friction);
   }
   const double h = duration_ / static_cast<double>(options_.steps);
   // Pressed first, then rubbed: partial slip depends on the order.

@@ -32,6 +32,10 @@ constexpr int most_halvings = 16;
 /// Parts of such a step of one length before a longer one is tried again.
 constexpr int before_longer = 8;
 
+/// Parts of equal steps, tried or taken, after which a motion is given up: so many times as many as
+/// steps were asked for, and no fewer than one step has at most. Shorter equal steps cost less.
+constexpr long most_parts = 10;
+
 /// Tries without going on after which a step of sought changes has none: every try is shorter, or a
 /// contact changes its branch.
 constexpr int most_tries = 1000;
@@ -93,6 +97,8 @@ class Run {
   /// Steps of a truss whose branches change at times that are sought.
   void make_smooth_steps();
   [[noreturn]] void fail() const;
+  /// @throws Failure after too many parts. @param length of the last one [s]
+  void check_parts(double length) const;
 
   /// Changes of joints and their heat in a step that is taken. @param length of it [s]
   template <class Stepper, class Take>
@@ -204,8 +210,7 @@ void Run::make_equal_step(long number, int& level) {
     try {
       note(stepper_, length, [&] {
         const bool give_up = unsettled < most_unsettled && !ladder.is_shortest();
-        made = !damps || stepper_.advance_damped(to, give_up);
-        if (!damps) stepper_.advance(to);
+        made = damps ? stepper_.advance_damped(to, give_up) : stepper_.advance(to);
       });
     } catch (const Failure&) {
       if (damps && ladder.is_shortest()) throw;
@@ -220,6 +225,7 @@ void Run::make_equal_step(long number, int& level) {
       continue;
     }
     ++motion_.steps;
+    check_parts(length);
     if (damps) ++motion_.inexact_steps;
     motion_.time_step = std::min(motion_.time_step, length);
     const int before = ladder.level();
@@ -354,6 +360,17 @@ void Run::fail() const {
   fields.sought = "no step of the motion";
   const Joint& joint = model_.joints[index(smooth_->turning_joint())];
   fields.joints.push_back({kind_of(joint), name_of(joint)});
+  throw Failure(std::move(fields));
+}
+
+void Run::check_parts(double length) const {
+  const long parts = motion_.steps + motion_.rejected_steps;
+  if (parts <= std::max(most_parts * options_.steps, 1L << most_halvings)) return;
+  FailureFields fields{FailureKind::too_many_steps};
+  fields.time = stepper_.time();
+  fields.temperature_change = model_.temperature_change(0, 1.0, stepper_.time());
+  fields.sought = "no step of the motion";
+  fields.numbers = {{"steps", static_cast<double>(parts)}, {"last_step_s", length}};
   throw Failure(std::move(fields));
 }
 

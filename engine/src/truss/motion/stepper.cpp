@@ -12,6 +12,9 @@ namespace {
 
 /// Momentum and forces balance to this share of the largest of either.
 constexpr double balance = 1e-10;
+/// Share of its clearance by which a contact may end beside where its directions, those of the
+/// middle of the step, lead.
+constexpr double off_course = 0.1;
 }  // namespace
 
 Stepper::Stepper(const System& system, const Bodies& bodies, const MotionOptions& options)
@@ -287,10 +290,27 @@ std::optional<Stepper::Local> Stepper::find(Trial& step, bool give_up) {
   return local;
 }
 
-void Stepper::advance(double to) {
+bool Stepper::keeps_directions(const Trial& step) const {
+  VectorXd z = z_;
+  z.head(step.q.size()) = step.q;
+  const VectorXd way = step.q - step.q_middle;
+  for (const Contact& contact : contacts_.all()) {
+    const bool is_round =
+        contact.normal_column >= 0 && contact.stop == JointStatus::open && !contact.beside;
+    if (!is_round || contact.gap == Contact::infinite) continue;
+    const double gap = contacts_.gap_at(contact, z, step.to, origin_);
+    if (std::abs(gap - gap_after(contact, way)) > off_course * contact.clearance_after)
+      return false;
+  }
+  return true;
+}
+
+bool Stepper::advance(double to) {
   Trial step = trial(to);
   const std::optional<Local> local = find(step, false);
+  if (!keeps_directions(step)) return false;
   book(step, *local);
+  return true;
 }
 
 bool Stepper::advance_damped(double to, bool give_up) {
@@ -298,7 +318,7 @@ bool Stepper::advance_damped(double to, bool give_up) {
   step.theta = 1.0;
   step.is_definite = true;
   const std::optional<Local> local = find(step, give_up);
-  if (!local) return false;
+  if (!local || !keeps_directions(step)) return false;
   book(step, *local);
   return true;
 }

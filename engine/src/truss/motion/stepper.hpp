@@ -45,11 +45,12 @@ class Stepper {
 
   /// Sets places and velocities, at rest in their contacts where a quasi-static state is given.
   void begin(const VectorXd& q, const VectorXd& v, const State* equilibrium);
-  /// One step to this time; only a step that is made changes the stepper.
-  /// @throws Failure if it has no solution that is found
-  void advance(double to);
+  /// One step to this time; only a step that is made changes the stepper. False where a contact
+  /// ends elsewhere than the directions of the step lead. @throws Failure if it has no solution
+  /// that is found
+  bool advance(double to);
   /// The same by implicit Euler with a matrix that is positive definite, for a step that was not
-  /// found otherwise. False where its branches are not found and `give_up`.
+  /// found otherwise. False also where its branches are not found and `give_up`.
   bool advance_damped(double to, bool give_up);
   /// The same by backward differentiation, not yet taken: what displacements are off by [m]. Of
   /// second order where the step before was one of these. Without a number where its branches were
@@ -141,6 +142,11 @@ class Stepper {
   static bool closes(const Local& local);
   /// Depth at the end of a step of rigid contacts that its middle did not know closed [m].
   double deepest(const Trial& step) const;
+  /// Gap of a contact as the directions of the step tell it [m]. @param way from its middle [m]
+  double gap_after(const Contact& contact, const VectorXd& way) const;
+  /// Whether round contacts end where the directions of the step lead: of a step that is long
+  /// beside their motion they do not, and its forces make energy.
+  bool keeps_directions(const Trial& step) const;
   /// M + h θ C + (h θ)² K at the middle of the step, bordered by what holds or drives; also sets
   /// the directions of these.
   void fill_bodies(const Trial& step, RefilledMatrix& to);

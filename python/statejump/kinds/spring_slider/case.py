@@ -44,6 +44,7 @@ class Joint(Section):
     stop_stiffness_N_per_m: float | None = parameter(
         None, "N/m", 0, 1e15, "of a stop itself, as the bearing of a bolt; rigid, in the DEM as stiff as the pad",
         above=True)
+    play_m: float = parameter(0.0, "m", 0, 1e2, "lost motion at each reversal, which moves with the slide; none")
     preload_stiffness_N_per_m: float = parameter(0.0, "N/m", 0, 1e15, "none in the paper's case")
     preload_force_N: float = parameter(
         0.0, "N", -1e9, 1e9, "tension of that spring at displacement 0, towards the root of the bar; none in the "
@@ -204,6 +205,9 @@ class SpringSliderCase(Case):
                 "joint.preload_force_N", joint.preload_force_N,
                 f"its size and the friction force {self.friction_force_N:g} N must stay below E A = {rigidity:g} N",
             )
+        if joint.play_m and not self.friction_force_N:
+            raise NotAllowed("joint.play_m", joint.play_m,
+                             "needs friction, in series with which it is: give joint.friction_coefficient above 0")
         if joint.stop_stiffness_N_per_m is not None:
             for key in ("pad_thermal_expansion_per_K", "slot_thermal_expansion_per_K"):
                 if getattr(joint, key):

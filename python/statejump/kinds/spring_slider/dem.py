@@ -35,6 +35,12 @@ def dem_input(case: SpringSliderCase) -> dict[str, Any]:
     values["bar_program"] = parameters(case.bar_program, case.period_s)
     values["dem"].update(tip_mass_kg=stable_step.tip_mass(case), start_displacement_m=start_displacement(case),
                          start_slide_m=start_slide(case))
+    if case.joint.play_m:
+        model = reduced.spring_slider(case)
+        stiffness = stable_step.contact_stiffness(case, case.joint.normal_force_N)[1]
+        values["dem"].update(friction_limit_N=case.friction_force_N, friction_stiffness_N_per_m=stiffness,
+                             start_friction_N=model.start_load_N,
+                             start_slip_m=model.start_middle_m - model.start_load_N / stiffness)
     return values
 
 
@@ -59,6 +65,9 @@ def start_displacement(case: SpringSliderCase) -> float:
 
 
 def start_slide(case: SpringSliderCase) -> float:
-    """Return the slide [m] by which the floor's contact carries the friction of the start."""
+    """Return the slide [m] by which the floor's contact carries the friction of the start; none with a play, whose
+    friction is not the floor's."""
+    if case.joint.play_m:
+        return 0.0
     load_N = reduced.spring_slider(case).start_load_N
     return load_N / stable_step.contact_stiffness(case, case.joint.normal_force_N)[1] if load_N else 0.0

@@ -42,7 +42,7 @@ def answer(case: SpringSliderCase) -> ccx.Answer:
         raise NotAllowed("joint.stop_stiffness_N_per_m", joint.stop_stiffness_N_per_m,
                          "'statejump fe' takes rigid stops only")
     for key in ("preload_stiffness_N_per_m", "preload_force_N", "pad_thermal_expansion_per_K",
-                "slot_thermal_expansion_per_K"):
+                "slot_thermal_expansion_per_K", "play_m"):
         if getattr(joint, key):
             raise NotAllowed(f"joint.{key}", getattr(joint, key), "'statejump fe' takes 0 only")
     if not joint.friction_coefficient:

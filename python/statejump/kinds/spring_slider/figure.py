@@ -14,8 +14,8 @@ from statejump.core.run import Run
 from statejump.kinds.spring_slider import reduced
 from statejump.kinds.spring_slider.case import SpringSliderCase
 
-STAGE_NAMES = {"at_stop_plus": "stop", "at_stop_minus": "stop"}
-STAGE_SHADES = {"S1": "0.94", "S2": "1.0", "S3": "0.94", "S4": "0.90", "S5": "1.0"}
+STAGE_NAMES = {"at_stop_plus": "stop", "at_stop_minus": "stop", "in_play": "play"}
+STAGE_SHADES = {"S1": "0.94", "S2": "1.0", "S3": "0.94", "S4": "0.90", "S5": "1.0", "play": "0.97"}
 STOP_SHADE = "0.82"
 MOST_NAMED_CYCLES = 3  # beyond it names of stages would cover each other
 

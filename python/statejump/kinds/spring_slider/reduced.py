@@ -30,6 +30,7 @@ def spring_slider(case: SpringSliderCase) -> _engine.SpringSlider:
         preload_force_N=case.joint.preload_force_N,
         start_friction=case.start.friction,
         stop_stiffness_N_per_m=inf if case.joint.stop_stiffness_N_per_m is None else case.joint.stop_stiffness_N_per_m,
+        play_m=case.joint.play_m,
     )
 
 

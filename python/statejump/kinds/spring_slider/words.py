@@ -15,13 +15,13 @@ from statejump.kinds.spring_slider.result import AT_END
 
 WORDS = {
     "floor": "Floor", "stop_plus": "Stop +", "stop_minus": "Stop −", "bar": "Bar", "at_stop_plus": "stop +",
-    "at_stop_minus": "stop −", "displacement_m": "Displacement of the slider",
+    "at_stop_minus": "stop −", "in_play": "play", "displacement_m": "Displacement of the slider",
     "axial_force_N": "Axial force, compression positive", AT_END: "Displacement at the end of the program",
     # What the stages of the reduced model mean.
     "stage S1": "stick, never slid yet", "stage S2": "slip in the sense of the first slide",
     "stage S3": "stick, the link unloads", "stage S4": "stick, the link loads the other way",
     "stage S5": "slip against the first slide", "stage at_stop_plus": "at the stop, + side",
-    "stage at_stop_minus": "at the stop, − side",
+    "stage at_stop_minus": "at the stop, − side", "stage in_play": "in the play, without friction",
 }
 
 
@@ -39,6 +39,8 @@ def describe(case: SpringSliderCase) -> list[str]:
         f"The block is pressed on its floor with {text(joint.normal_force_N, 'N')}; friction with "
         f"μ = {joint.friction_coefficient:g} holds it up to {text(case.friction_force_N, 'N')}. Two stops are {stops}.",
     ]
+    if joint.play_m:
+        sentences.append(f"Friction has a play of {text(joint.play_m, 'm')} in series: lost motion at each reversal.")
     if case.expansion is not None:
         low, high = (end(case.expansion.thermal_expansion_per_K) for end in (min, max))
         sentences.append(f"The bar's coefficient of expansion follows the temperature, from {text(low, '1/K')} to "
@@ -86,7 +88,8 @@ def told(case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown | str]:
 
 def event_reason(event: Event, model: str, runs: Mapping[str, Run]) -> str:
     """Return why only one of both models has an event; "" where it is not known."""
-    if event.kind in ("stop_unloaded", "force_sign_change", "cycle_end") and model == "reduced":
+    if event.kind in ("stop_unloaded", "force_sign_change", "cycle_end", "play_opened", "play_closed") and (
+            model == "reduced"):
         return "a stage of the reduced model; no contact of the DEM changes its state"
     if model != "dem" or event.kind not in ("stick", "slip") or event.joint != "floor":
         return ""

@@ -184,5 +184,6 @@ def _remedy(case: TrussCase, failure: _engine.EngineFailure) -> str | None:
     if str(failure.kind).endswith("mechanism"):
         return "a mechanism moves from where it is drawn with motion.start = 'drawn'"
     equal = case.motion.displacement_tolerance_m is None  # others have been made as short as they can be
-    stepped = equal and failure.kind in ("not_converged", "singular") and "no step" in str(failure.message)
+    unfound = failure.kind in ("not_converged", "singular", "too_many_steps")
+    stepped = equal and unfound and "no step" in str(failure.message)
     return "set motion.steps_per_cycle to more" if stepped else None

@@ -114,6 +114,8 @@ struct Trial {
   double opening = 1.0;  ///< Share of the clearances that is open (start).
   /// Asked how fast it slides: the row of the slide is that of a contact of which nothing slips.
   bool unslipped = false;
+  /// In motion contacts have the whole law of a play; the joint leaves out the springs of it.
+  bool in_motion = false;
   /// What the slide of a joint that rolls lacks of the steps before and of this one [m], and its
   /// rate [m/s]: along its way, or a vector in the tangent plane.
   Eigen::Vector3d owed = Eigen::Vector3d::Zero();

@@ -297,8 +297,8 @@ class SliderType(AlongAxis[Slider, Sliders]):
 
     def regularised_refuses(self, joints: Sliders) -> tuple[str, str] | None:
         between = joints.nodes[:, 1] != GROUND
-        for why, which in (("is between two nodes", between), ("has stops", joints.have_stops),
-                           ("has a play", joints.play_m > 0)):
+        rigid_stops = joints.have_stops & np.isinf(joints.stop_stiffness_N_per_m)
+        for why, which in (("is between two nodes", between), ("has rigid stops", rigid_stops)):
             for index in np.flatnonzero(which)[:1]:
                 return joints.names[index], why
         return None
