@@ -31,7 +31,7 @@ test:
 quick:
 	./scripts/setup.sh run build test
 	$(call configure,TESTS)
-	$(compile) --target demo
+	$(compile) --target models
 	ctest --test-dir $(BUILD) -L quick -LE lint --output-on-failure --parallel $(JOBS) --no-tests=error
 
 bench:
@@ -48,7 +48,7 @@ package: build
 docs:
 	./scripts/setup.sh run build docs
 	$(call configure)
-	$(compile) --target demo
+	$(compile) --target models
 	$(PYTHON) docs/site/make.py --build $(BUILD)
 
 sanitize:

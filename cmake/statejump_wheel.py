@@ -106,7 +106,8 @@ def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata
     build = ROOT / f"build-wheel-{_tag()}"
     configure(build)
     jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL") or str(os.cpu_count() or 1)
-    subprocess.run(["cmake", "--build", build, "--target", "statejump_engine_python", "--parallel", jobs], check=True)
+    subprocess.run(["cmake", "--build", build, "--target", "statejump_engine_python",
+                    "statejump_engine_more", "--parallel", jobs], check=True)
     return pack(build, Path(wheel_directory))
 
 

@@ -15,7 +15,8 @@ namespace statejump::dem {
 namespace {
 
 // Numbers of a row of each.
-constexpr std::size_t of_body = 9, of_contact = 12, of_link = 4, of_spring = 3, of_joint = 3;
+constexpr std::size_t body_width = 9, contact_width = 12, link_width = 4, spring_width = 3,
+                      joint_width = 3;
 
 std::uint64_t key_of(int one, int other) {
   const auto [low, high] = std::minmax(one, other);
@@ -60,8 +61,9 @@ void StateRecorder::check() {
 }
 
 std::size_t StateRecorder::width() const {
-  return 1 + energy_names().size() + 3 + of_body * bodies.size() + of_contact * places_.size() +
-         of_link * links.size() + of_spring * springs.size() + of_joint * joints.size();
+  return 1 + energy_names().size() + 3 + body_width * bodies.size() +
+         contact_width * places_.size() + link_width * links.size() +
+         spring_width * springs.size() + joint_width * joints.size();
 }
 
 boost::python::list StateRecorder::scalars() const {
@@ -83,8 +85,8 @@ void StateRecorder::sample(const yade::Scene& of, const Sums& sums) {
     for (int k = 0; k < 3; ++k) {
       if (state.blockedDOFs & (1U << k)) force[k] = 0;
     }
-    rows_.resize(rows_.size() + of_body);
-    put(rows_.data() + rows_.size() - of_body, {state.se3.position, state.vel, force});
+    rows_.resize(rows_.size() + body_width);
+    put(rows_.data() + rows_.size() - body_width, {state.se3.position, state.vel, force});
   }
   add_contacts(of, strangers);
   for (const auto& link : links) {
@@ -101,7 +103,7 @@ void StateRecorder::sample(const yade::Scene& of, const Sums& sums) {
 
 void StateRecorder::add_contacts(const yade::Scene& of, std::size_t strangers) {
   const std::size_t first = rows_.size();
-  rows_.resize(first + of_contact * places_.size());
+  rows_.resize(first + contact_width * places_.size());
   for (std::size_t i = 0; i < number_of_interactions(of); ++i) {
     const yade::Interaction& contact = interaction_at(of, i);
     if (!contact.isReal()) continue;
@@ -121,7 +123,7 @@ void StateRecorder::add_contacts(const yade::Scene& of, std::size_t strangers) {
                                   std::to_string(contact.id1) + " and " +
                                   std::to_string(contact.id2) + " has no JointGeom and JointPhys");
     }
-    Real* row = rows_.data() + first + of_contact * place->second;
+    Real* row = rows_.data() + first + contact_width * place->second;
     *row++ = 1;
     *row++ = geometry->penetrationDepth;
     *row++ = physics->slipping ? 1 : 0;

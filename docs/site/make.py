@@ -4,9 +4,12 @@
 
     /usr/bin/python3 docs/site/make.py --build build
 
-writes build/docs/html. References: C++ headers by Doxygen, YADE classes by importing the plugin, Python by autodoc,
-keys of case files from the schemas, commands from themselves. A warning is an error; so are a link that leads nowhere,
-a page that the way through the site does not reach, and a name in the table of symbols that is documented nowhere.
+writes build/docs/html. The test adds ``--samples 40 --to FOLDER``: each campaign of a tutorial then
+has 40 samples, and the site of users stays as it is.
+
+References: C++ headers by Doxygen, YADE classes by importing the plugin, Python by autodoc, keys of case files from the
+schemas, commands from themselves. A warning is an error; so are a link that leads nowhere, a page that the way through
+the site does not reach, and a name in the table of symbols that is documented nowhere.
 """
 from __future__ import annotations
 
@@ -92,12 +95,18 @@ def python_pages(build: Path) -> dict[str, str]:
     return made
 
 
-def tutorial_pages(source: Path, build: Path) -> None:
-    """Replace the tutorials among the staged documents by their executed notebooks."""
+def tutorial_pages(source: Path, build: Path, samples: int | None) -> None:
+    """Replace the tutorials among the staged documents by their executed notebooks.
+
+    :param samples: of each campaign; None: as many as the page says
+    """
     for path in notebooks.tutorials():
         target = source / path.relative_to(REPOSITORY)
         # The staged text, not the repository's: its links are those of the site.
-        made = notebooks.executed(notebooks.notebook(target.read_text(encoding="utf-8")), build)
+        text = target.read_text(encoding="utf-8")
+        if samples is not None:
+            text = re.sub(r"(statejump montecarlo .* --samples) \d+", rf"\g<1> {samples}", text)
+        made = notebooks.executed(notebooks.notebook(text), build)
         target.with_suffix(".ipynb").write_text(notebooks.stored(made), encoding="utf-8")
         first, _, rest = notebooks.page(made, path.stem, target.parent).partition("\n")
         note = f"Download this page as an executed {{download}}`Jupyter notebook <{path.stem}.ipynb>`."
@@ -117,18 +126,32 @@ def static_files(folder: Path) -> None:
             shutil.copy(MATHJAX / part, target)
 
 
+def check_references(site: Path) -> None:
+    """End the program if a reference of the table of symbols leads nowhere: Sphinx shows it as text without a word."""
+    names = (site / REFERENCE / "names.html").read_text(encoding="utf-8")
+    for domain, page in (("cpp", r"cpp/\w+"), ("py", "yade")):
+        wanted = len(re.findall(f'class="xref {domain} ', names))
+        link = f'<a class="reference internal" href="{page}\\.html#[^>]*><code class="xref {domain} '
+        found = len(re.findall(link, names))
+        if not 0 < found == wanted:
+            sys.exit(f"names: {found} of {wanted} references to {domain} lead somewhere")
+
+
 def main() -> None:
     """Build the site."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=Path, default=REPOSITORY / "build")
-    build = parser.parse_args().build.resolve()
+    parser.add_argument("--to", type=Path, help="folder of the site; default: docs in the build tree")
+    parser.add_argument("--samples", type=int, help="of each campaign of a tutorial; default: as its page says")
+    arguments = parser.parse_args()
+    build = arguments.build.resolve()
     os.environ["PYTHONPATH"] = str(build / "python")
     os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
     sys.path.insert(0, str(build / "python"))
     import command_pages  # these need the package
     import key_pages
 
-    folder = build / "docs"
+    folder = (arguments.to or build / "docs").resolve()
     shutil.rmtree(folder, ignore_errors=True)
     source = folder / "source"
     reference = source / REFERENCE
@@ -139,7 +162,7 @@ def main() -> None:
     wrong += command_pages.unlisted((REPOSITORY / "docs" / "reference" / "commands.md").read_text(encoding="utf-8"))
     if wrong:
         sys.exit("\n".join(wrong))
-    tutorial_pages(source, build)
+    tutorial_pages(source, build, arguments.samples)
 
     members = doxygen(folder)
     subprocess.run(
@@ -173,14 +196,7 @@ def main() -> None:
     )
     if done.returncode:
         sys.exit("the documentation has warnings")
-    # A reference that leads nowhere is shown as text without a word.
-    names = (folder / "html" / REFERENCE / "names.html").read_text(encoding="utf-8")
-    for domain, page in (("cpp", r"cpp/\w+"), ("py", "yade")):
-        wanted = len(re.findall(f'class="xref {domain} ', names))
-        link = f'<a class="reference internal" href="{page}\\.html#[^>]*><code class="xref {domain} '
-        found = len(re.findall(link, names))
-        if not 0 < found == wanted:
-            sys.exit(f"names: {found} of {wanted} references to {domain} lead somewhere")
+    check_references(folder / "html")
     (folder / "html" / "index.html").write_text(
         '<!DOCTYPE html><meta charset="utf-8"><title>statejump</title>'
         '<meta http-equiv="refresh" content="0; url=docs/index.html"><a href="docs/index.html">statejump</a>\n',

@@ -4,16 +4,25 @@
 #include <pybind11/pybind11.h>
 
 #include <string>
+#include <string_view>
 
-#include "statejump/start_friction.hpp"
+#include "start_friction.hpp"
 
 namespace statejump::bindings {
 
-/// "stuck" or "frictionless". Throws std::invalid_argument for another name.
-StartFriction start_friction_of(const std::string& name);
+/// What the name of the second module has beside that of the first.
+inline constexpr std::string_view more_suffix = "_more";
+
+/// Name of the second module, beside the first.
+inline std::string more_name(const std::string& engine) {
+  return engine + std::string(more_suffix);
+}
 
 /// Adds EngineFailure, the one exception that all failures of the engine become. Call first.
 void bind_failure(pybind11::module_& module);
+
+/// The same exception for what the second module throws.
+void use_failure(const pybind11::module_& engine);
 
 /// Adds ThermalProgram to the module.
 void bind_thermal_program(pybind11::module_& module);
@@ -23,6 +32,9 @@ void bind_spring_slider(pybind11::module_& module);
 
 /// Adds the catalogue of contact laws to the module.
 void bind_laws(pybind11::module_& module);
+
+/// Adds drive_contact.
+void bind_driven_contact(pybind11::module_& module);
 
 /// Adds linkage::Linkage, its runs and the quasi-static loop. Call after bind_thermal_program.
 void bind_linkage(pybind11::module_& module);

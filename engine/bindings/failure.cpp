@@ -133,4 +133,9 @@ void bind_failure(py::module_& module) {
   py::register_exception_translator(&translate);
 }
 
+void use_failure(const py::module_& engine) {
+  failure_class = engine.attr("EngineFailure").cast<py::object>().release().ptr();
+  py::register_exception_translator(&translate);
+}
+
 }  // namespace statejump::bindings

@@ -3,17 +3,13 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <optional>
-#include <stdexcept>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
 #include "bindings.hpp"
 #include "statejump/kernel/elastic_pair.hpp"
 #include "statejump/kernel/hertz.hpp"
-#include "statejump/kernel/laws/driven_contact.hpp"
 #include "statejump/kernel/laws/registry.hpp"
 #include "statejump/kernel/mindlin.hpp"
 #include "statejump/kernel/stable_step.hpp"
@@ -148,89 +144,6 @@ double damping_ratio(const std::string& name, double restitution, double impact_
   return laws::damping_ratio(law, impact);
 }
 
-/// A contact with the law of that kind and name; the others are Hertz's contact without dissipation
-/// under Mindlin's friction.
-laws::JointLaw law_among_defaults(const std::string& kind, const std::string& name) {
-  laws::JointLaw law;
-  law.friction = laws::MindlinFriction{};
-  if (kind == "normal") {
-    law.normal = laws::normal_law(name);
-  } else if (kind == "dissipation") {
-    law.dissipation = laws::dissipation_law(name);
-  } else if (kind == "friction") {
-    law.friction = laws::friction_law(name);
-  } else {
-    throw py::value_error("kind = '" + kind + "', allowed is one of normal, dissipation, friction");
-  }
-  return law;
-}
-
-/// A column of a path, or nothing.
-using Column = std::optional<Eigen::VectorXd>;
-
-py::dict drive_contact(const std::string& kind, const std::string& name,
-                       double effective_young_modulus, double effective_shear_modulus,
-                       double effective_radius, double radial_clearance, double contact_length,
-                       const laws::FrictionParameters& friction, double restitution,
-                       double smallest_impact_speed, const Eigen::VectorXd& normal,
-                       bool normal_is_force, const Eigen::VectorXd& along, bool along_is_force,
-                       const Column& across, const Column& time) {
-  laws::DrivenContact contact{
-      law_among_defaults(kind, name),
-      {effective_young_modulus, effective_shear_modulus},
-      laws::driven_geometry(effective_radius, radial_clearance, contact_length)};
-  contact.law.friction_parameters = friction;
-  contact.law.restitution = restitution;
-  contact.law.smallest_impact_speed = smallest_impact_speed;
-  contact.law.contact_length = contact_length;
-  laws::validate(contact);
-  prepare(contact.law.dissipation, restitution);
-
-  const Eigen::Index count = normal.size();
-  laws::DrivenState state;
-  std::string problem;
-  std::vector<laws::DrivenState> states;
-  if (count > 0 && !along_is_force) state.slide_x = along[0];
-  if (count > 0 && across) state.slide_y = (*across)[0];
-  for (Eigen::Index i = 0; i < count && problem.empty(); ++i) {
-    laws::DrivenTarget target;
-    (normal_is_force ? target.normal_force.emplace() : target.depth) = normal[i];
-    (along_is_force ? target.tangential_force.emplace() : target.slide_x) = along[i];
-    if (across) target.slide_y = (*across)[i];
-    if (time && i > 0) target.duration = (*time)[i] - (*time)[i - 1];
-    try {
-      state = laws::drive(contact, state, target);
-      states.push_back(state);
-    } catch (const std::domain_error& error) {
-      problem = error.what();
-    }
-  }
-  py::dict result;
-  result["problem"] = problem;
-  const auto add = [&](const char* column, auto&& value) {
-    Eigen::VectorXd values(static_cast<Eigen::Index>(states.size()));
-    for (std::size_t i = 0; i < states.size(); ++i) {
-      values[static_cast<Eigen::Index>(i)] = static_cast<double>(value(states[i]));
-    }
-    result[column] = values;
-  };
-  using State = laws::DrivenState;
-  add("penetration_depth_m", [](const State& s) { return s.depth; });
-  add("slide_x_m", [](const State& s) { return s.slide_x; });
-  add("slide_y_m", [](const State& s) { return s.slide_y; });
-  add("normal_force_N", [](const State& s) { return s.normal_force; });
-  add("tangential_force_x_N", [](const State& s) { return s.tangential_force_x; });
-  add("tangential_force_y_N", [](const State& s) { return s.tangential_force_y; });
-  add("normal_elastic_energy_J", [](const State& s) { return s.normal_elastic_energy; });
-  add("tangential_elastic_energy_J", [](const State& s) { return s.tangential_elastic_energy; });
-  add("friction_dissipation_J", [](const State& s) { return s.friction_dissipation; });
-  add("damping_dissipation_J", [](const State& s) { return s.damping_dissipation; });
-  add("slipping", [](const State& s) { return s.history.slipping; });
-  add("memory_points", [](const State& s) { return s.history.memory.size(); });
-  add("merged_force_N", [](const State& s) { return s.history.memory.merged(); });
-  return result;
-}
-
 py::dict hertz_contact(double force, double effective_radius, double young_modulus_1,
                        double poisson_ratio_1, double young_modulus_2, double poisson_ratio_2) {
   kernel::require(force >= 0.0, "force", force, "[0, inf) N");
@@ -248,6 +161,16 @@ py::dict hertz_contact(double force, double effective_radius, double young_modul
   return result;
 }
 
+/// Each module has its own table of loaded laws; the other one loads what is there when it is
+/// imported.
+void load_user_laws(const std::string& engine) {
+  law_loader::load_user_laws();
+  const py::dict modules = py::module_::import("sys").attr("modules");
+  if (const py::str name(more_name(engine)); modules.contains(name)) {
+    modules[name].attr("_load_user_laws")();
+  }
+}
+
 }  // namespace
 
 void bind_laws(py::module_& module) {
@@ -255,9 +178,11 @@ void bind_laws(py::module_& module) {
   module.def("law_names", &names, py::arg("kind"),
              "Names of the laws of a kind ('normal', 'dissipation', 'friction' or\n"
              "'tangential_velocity'), in the order of the catalogue, loaded ones after them.");
-  module.def("load_user_laws", &law_loader::load_user_laws,
-             "Loads laws of one's own that are not loaded yet, from the folders of\n"
-             "$STATEJUMP_LAWS and ${XDG_DATA_HOME:-~/.local/share}/statejump/laws.");
+  const auto engine = module.attr("__name__").cast<std::string>();
+  module.def(
+      "load_user_laws", [engine] { load_user_laws(engine); },
+      "Loads laws of one's own that are not loaded yet, from the folders of\n"
+      "$STATEJUMP_LAWS and ${XDG_DATA_HOME:-~/.local/share}/statejump/laws.");
   module.def("user_law_folders", &law_loader::folders, "Folders that are searched for them.");
   module.def("user_law_problems", &law_loader::problems,
              "A sentence for each shared object there that cannot be used.");
@@ -305,31 +230,6 @@ void bind_laws(py::module_& module) {
              py::arg("young_modulus_2_Pa"), py::arg("poisson_ratio_2"),
              "Hertz's point contact at a force, as a dict depth_m, normal_stiffness_N_per_m and\n"
              "tangential_stiffness_N_per_m (of full stick).");
-  module.def(
-      "drive_contact",
-      [](const std::string& kind, const std::string& name, double young, double shear,
-         double radius, double clearance, double length, double friction_coefficient, double v0,
-         double v1, double restitution, double smallest_impact_speed, const Eigen::VectorXd& normal,
-         bool normal_is_force, const Eigen::VectorXd& along, bool along_is_force,
-         const Column& across, const Column& time) {
-        return drive_contact(kind, name, young, shear, radius, clearance, length,
-                             {friction_coefficient, v0, v1}, restitution, smallest_impact_speed,
-                             normal, normal_is_force, along, along_is_force, across, time);
-      },
-      py::kw_only(), py::arg("kind"), py::arg("name"), py::arg("effective_young_modulus_Pa"),
-      py::arg("effective_shear_modulus_Pa"), py::arg("effective_radius_m"),
-      py::arg("radial_clearance_m"), py::arg("contact_length_m"), py::arg("friction_coefficient"),
-      py::arg("v0_m_per_s"), py::arg("v1_m_per_s"), py::arg("restitution"),
-      py::arg("smallest_impact_speed_m_per_s"), py::arg("normal"), py::arg("normal_is_force"),
-      py::arg("along"), py::arg("along_is_force"), py::arg("across_m") = std::nullopt,
-      py::arg("time_s") = std::nullopt,
-      "Leads one contact along straight steps with one law of the catalogue (kind normal,\n"
-      "dissipation or friction); the others are hertz_internal, no dissipation and mindlin. The\n"
-      "contact is made at the first point. normal: penetration depths [m], or forces [N];\n"
-      "along: slides [m] of body 1 against 2, or forces [N], positive along the slide that\n"
-      "causes them; across_m: slides across. Returns a dict of arrays, a value for each point,\n"
-      "and 'problem': '', or why the point after the last value cannot be reached. Raises\n"
-      "ValueError for a parameter outside its range.");
   module.def(
       "critical_time_step_s", py::vectorize(&kernel::critical_time_step), py::arg("mass_kg"),
       py::arg("stiffness_sum_N_per_m"), py::arg("damping_sum_N_s_per_m") = 0.0,

@@ -1,13 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The module that every import of the package loads: what a bar on a slider needs. The other models
+// are in _engine_more, which the first use of one of its names loads.
+#include <string>
+
 #include "bindings.hpp"
 
-#include "statejump/kernel/require.hpp"
+namespace py = pybind11;
 
-statejump::StartFriction statejump::bindings::start_friction_of(const std::string& name) {
-  if (name == "stuck") return StartFriction::stuck;
-  if (name == "frictionless") return StartFriction::frictionless;
-  throw kernel::OutOfRange("start_friction", name, "stuck or frictionless");
+namespace statejump::bindings {
+namespace {
+
+py::object attribute_of_more(const std::string& engine, const std::string& name) {
+  // Python itself looks for names such as __path__.
+  if (name.rfind("__", 0) != 0) {
+    const std::string more = more_name(engine);
+    try {
+      const py::module_ module = py::module_::import(more.c_str());
+      if (py::hasattr(module, name.c_str())) return module.attr(name.c_str());
+    } catch (py::error_already_set& failed) {
+      if (!failed.matches(PyExc_ModuleNotFoundError)) throw;
+      const py::object error = py::module_::import("statejump.core.errors").attr("StatejumpError");
+      const py::object missing = error("engine", py::arg("cause") = name + " is not in this build",
+                                       py::arg("remedy") = "run make build");
+      PyErr_SetObject(error.ptr(), missing.ptr());
+      throw py::error_already_set();
+    }
+  }
+  throw py::attribute_error("module '" + engine + "' has no attribute '" + name + "'");
 }
+
+}  // namespace
+}  // namespace statejump::bindings
 
 PYBIND11_MODULE(_engine, module) {
   module.doc() =
@@ -20,9 +43,8 @@ PYBIND11_MODULE(_engine, module) {
   statejump::bindings::bind_thermal_program(module);
   statejump::bindings::bind_spring_slider(module);
   statejump::bindings::bind_laws(module);
-  statejump::bindings::bind_linkage(module);
-  statejump::bindings::bind_rest_set(module);
-  statejump::bindings::bind_truss(module);
-  statejump::bindings::bind_complementarity(module);
-  statejump::bindings::bind_geometry(module);
+  const auto engine = module.attr("__name__").cast<std::string>();
+  module.def("__getattr__", [engine](const std::string& name) {
+    return statejump::bindings::attribute_of_more(engine, name);
+  });
 }

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Holds the stub of the engine's module against the module, both by themselves: as a part of the package mypy would
-read the whole package first, which takes five times as long and finds nothing more.
+read the whole package first, which takes five times as long and finds nothing more. The stub has the names of both
+modules: _engine offers those of _engine_more as its own.
 
-    engine_stub.py FOLDER      the folder of _engine.pyi and of the built module
+    engine_stub.py FOLDER      the folder of _engine.pyi and of the built modules
 """
 from __future__ import annotations
 
@@ -13,17 +14,29 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+# stubtest compares the names that a module lists, and _engine does not list those of the other.
+UNLISTED = """
+import ast, sys
+from pathlib import Path
+import _engine_more
+stub = ast.parse(Path("_engine.pyi").read_text(encoding="utf-8"))
+known = {node.name for node in stub.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+known |= {node.target.id for node in stub.body if isinstance(node, ast.AnnAssign)}
+unlisted = [name for name in dir(_engine_more) if name[0] != "_" and name not in known]
+sys.exit(f"_engine.pyi: no {', '.join(unlisted)}; add them" if unlisted else 0)
+"""
 
 
 def main(folder: Path) -> int:
     """Return the exit status of stubtest."""
     with tempfile.TemporaryDirectory() as alone:
-        for path in folder.glob("_engine.*"):
+        for path in folder.glob("_engine*"):
             Path(alone, path.name).symlink_to(path.resolve())
         command = [sys.executable, "-m", "mypy.stubtest", "_engine", "--mypy-config-file", str(HERE / "stubtest.ini"),
                    "--allowlist", str(HERE / "stubtest_allowed.txt")]
         environment = {**os.environ, "PYTHONPATH": alone, "MYPYPATH": alone}
-        return subprocess.run(command, cwd=alone, env=environment, check=False).returncode
+        listed = subprocess.run([sys.executable, "-c", UNLISTED], cwd=alone, env=environment, check=False)
+        return listed.returncode or subprocess.run(command, cwd=alone, env=environment, check=False).returncode
 
 
 if __name__ == "__main__":

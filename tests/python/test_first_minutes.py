@@ -61,3 +61,20 @@ def test_manual_and_completion_are_of_the_commands(tmp_path: Path) -> None:
     done = subprocess.run([COMMAND], capture_output=True, text=True, timeout=60, env={
         **os.environ, "_STATEJUMP_COMPLETE": "bash_complete", "COMP_WORDS": "statejump truss an", "COMP_CWORD": "2"})
     assert done.stdout == "plain,answers\n" and not done.stderr
+
+
+def test_demo_refuses_other_models_in_one_sentence(statejump: Callable[..., Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    """``make demo`` builds the first of two modules of the engine; here the second one is hidden."""
+    monkeypatch.setitem(sys.modules, "statejump._engine_more", None)
+    assert statejump("reduced", "table1").status == 0
+    refused = statejump("reduced", "umbrella_damped")
+    assert refused.status == 2 and refused.errors.count("\n") == 1
+    assert "is not in this build; run make build" in refused.errors
+
+
+def test_engine_has_the_names_of_both_modules() -> None:
+    from statejump import _engine
+
+    assert _engine.truss_joints() and _engine.BoreMesh.read
+    with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
+        _engine.nothing

@@ -56,13 +56,13 @@ std::string build_id(const dl_phdr_info& info) {
   return "none";
 }
 
-struct Search {
+struct LibrarySearch {
   const char* file_name;
   std::string build_id;
 };
 
 int find_library(dl_phdr_info* info, std::size_t, void* data) {
-  auto& search = *static_cast<Search*>(data);
+  auto& search = *static_cast<LibrarySearch*>(data);
   const std::string path = info->dlpi_name ? info->dlpi_name : "";
   if (path.substr(path.rfind('/') + 1) != search.file_name) return 0;
   search.build_id = build_id(*info);
@@ -73,7 +73,7 @@ std::string build_id_difference() {
   if (built_for_row < 0) return "";
   const KnownBinary& expected = known_binaries[static_cast<std::size_t>(built_for_row)];
   for (std::size_t i = 0; i < checked_libraries.size(); ++i) {
-    Search search{checked_libraries[i], ""};
+    LibrarySearch search{checked_libraries[i], ""};
     dl_iterate_phdr(find_library, &search);
     if (search.build_id.empty()) {
       return std::string(checked_libraries[i]) + " is not loaded: this is not a running YADE";

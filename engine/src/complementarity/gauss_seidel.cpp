@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gauss_seidel.hpp"
 
+#include <utility>
+
 #include "one_contact.hpp"
 
 namespace statejump::complementarity {

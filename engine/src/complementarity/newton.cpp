@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <deque>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "block_system.hpp"
 

@@ -2,7 +2,9 @@
 #include "mesh.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <map>
+#include <vector>
 
 #include "detail.hpp"
 #include "numerics/change_between.hpp"

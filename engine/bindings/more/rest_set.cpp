@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "bindings.hpp"
+#include "../bindings.hpp"
 #include "statejump/rest_set/curve.hpp"
 #include "statejump/rest_set/surface.hpp"
 

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "bindings.hpp"
+#include "../bindings.hpp"
 #include "statejump/geometry/bore_mesh.hpp"
 #include "statejump/kernel/require.hpp"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "bindings.hpp"
+#include "../bindings.hpp"
 #include "statejump/joint_loop/elastic_loop.hpp"
 #include "statejump/joint_loop/rigid_loop.hpp"
 #include "statejump/linkage/run.hpp"

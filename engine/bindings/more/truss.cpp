@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-#include "bindings.hpp"
+#include "../bindings.hpp"
 #include "statejump/truss/motion.hpp"
 #include "statejump/truss/path.hpp"
 

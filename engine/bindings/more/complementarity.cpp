@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "bindings.hpp"
+#include "../bindings.hpp"
 #include "statejump/complementarity/solve.hpp"
 #include "statejump/kernel/require.hpp"
 
