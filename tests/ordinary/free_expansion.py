@@ -35,6 +35,9 @@ EPSILON = float(np.finfo(float).eps)
 # Roundings of one length: of coordinates, displacements and direction, of a few bars at a node.
 ROUNDINGS = 64
 MOST = 500  # members
+# A determinate truss whose bars expand differently changes its shape. Beyond this rotation of a bar [rad] it may come
+# to a shape that is a mechanism, where it has no way on.
+ROTATION = 0.05
 STANDING = ("warren", "pratt", "k_truss", "tower", "ring", "boom", "mast", "grid", "ring_truss")
 
 
@@ -152,7 +155,7 @@ def heated(made: Sketch, rng: Random, uniform: bool) -> tuple[Document, list[Doc
 
 
 def truss(seed: int) -> Truss | None:
-    """Return the truss of a seed; None where its shape is a mechanism or nearly one."""
+    """Return the truss of a seed; None where its shape is a mechanism or nearly one, or changes much."""
     rng = structures.random_of("free_expansion", seed)
     shape = str(rng.choice(["grown", "meshed", *STANDING], p=[0.35, 0.35, *[0.3 / len(STANDING)] * len(STANDING)]))
     members = int(round(10 ** rng.uniform(0, np.log10(MOST))))
@@ -171,8 +174,18 @@ def truss(seed: int) -> Truss | None:
     basis = frame.motions(True)
     if not basis.shape[1] or softest(frame.elastic(np.ones(len(bars), dtype=bool)), basis) < FREE:
         return None
-    return Truss(seed, shape, document, redundant,
-                 float(np.linalg.svd(frame.rows @ basis, compute_uv=False)[basis.shape[1] - 1]))
+    rows = frame.rows @ basis
+    if redundant == 0 and _rotation(frame, basis, rows) > ROTATION:
+        return None
+    return Truss(seed, shape, document, redundant, float(np.linalg.svd(rows, compute_uv=False)[basis.shape[1] - 1]))
+
+
+def _rotation(frame: Frame, basis: np.ndarray, rows: np.ndarray) -> float:
+    """Return the largest rotation of a bar of a determinate truss at the extremes of the programs [rad]."""
+    stretched = -np.array(frame.thermal_tensions()) / frame.stiffness
+    moved = (basis @ np.linalg.lstsq(rows, stretched.T, rcond=None)[0]).T.reshape(len(stretched), *frame.x.shape)
+    ends = np.array([ends for ends, _ in frame.directions])
+    return float((np.linalg.norm(np.diff(moved[:, ends], axis=2)[:, :, 0], axis=2) / frame.lengths).max())
 
 
 def trusses(count: int, seed: int) -> Iterator[Truss]:
