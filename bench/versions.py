@@ -57,7 +57,8 @@ class Version:
     def __init__(self, package: Path, limit_s: float) -> None:
         self.process = subprocess.Popen(
             [sys.executable, "-c", WORKER, str(limit_s)], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL, text=True, env={**os.environ, "PYTHONPATH": str(package), "OMP_NUM_THREADS": "1"})
+            stderr=subprocess.DEVNULL, text=True,
+            env={**os.environ, "PYTHONPATH": str(package), "OMP_NUM_THREADS": "1"})
 
     def solve(self, file: Path) -> dict[str, Any]:
         """Return seconds and sizes, or why it failed."""
