@@ -163,10 +163,19 @@ class Joiner:
         self.made.add(kind, self.name("fit"), nodes=[new, old], axis=axis, **self.along(kind))
 
     def _may_detach(self, bar: str, side: int) -> bool:
-        """Return whether another bar stays at the end; nodes of joints keep theirs."""
+        """Return whether another bar stays at the end; nodes of joints keep theirs, and of two bars with an angle
+        between them one keeps their node."""
         node = self.made.bars[bar].ends[side]
         stays = len(self.made.at(node)) > 1 or node in self.made.fixed
-        return stays and "_of_" not in node and (bar, node) not in self.carriers
+        return (stays and "_of_" not in node and (bar, node) not in self.carriers
+                and all(node in self.made.bars[other].ends for other in self._turned_by(bar, node)))
+
+    def _turned_by(self, bar: str, node: str) -> list[str]:
+        """Return the bars that springs and latches turn a bar against about a node, wherever they end by now."""
+        pairs = [item["links"] for section in ("torsion_spring", "latch_hinge")
+                 for item in self.made.items.get(section, ()) if bar in item["links"]]
+        others = [other for pair in pairs for other in pair if other != bar]
+        return [other for other in others if node in self.made.bars[other].drawn]
 
     def pin(self, bar: str, side: int) -> None:
         """Put a pin with clearance at an end of a bar."""

@@ -6,7 +6,7 @@ A structure is a case document with defaults throughout and what is known of it:
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan, cos, sin
+from math import atan
 from typing import Any
 from zlib import crc32
 
@@ -17,6 +17,7 @@ import planar
 import programs
 import spatial
 from sketch import CLEARANCE, Document, Sketch
+from walking import Walker
 
 Random = np.random.Generator
 SHAPES = {**planar.SHAPES, **spatial.SHAPES}
@@ -105,8 +106,7 @@ def free(family: str, seed: int) -> Structure:
 
 
 def walking(family: str, seed: int) -> Structure:
-    """Return a sheet or pipe that walks down an incline: blocks in a row, each with its friction, a dead load along the
-    slope. A cycle moves it by (L tan β/μ)(α ΔT - (μ cos β - sin β) w L/EA), but for the length of a block."""
+    """Return a sheet or pipe that walks down an incline."""
     rng = random_of(family, seed)
     blocks = int(np.round(10 ** rng.uniform(np.log10(4), np.log10(120))))
     friction = float(np.round(rng.uniform(0.2, 0.6), 3))
@@ -114,23 +114,9 @@ def walking(family: str, seed: int) -> Structure:
     length, area = float(rng.uniform(2, 100)), float(10 ** rng.uniform(-4, -2))
     material = dress.MATERIALS[str(rng.choice(["aluminium", "steel", "titanium"]))]
     largest = float(np.round(rng.uniform(10, 60), 1))
-    weight = material.density * area * dress.GRAVITY  # per length
-    made = Sketch(2)
-    per_block = weight * length / blocks
-    for k in range(blocks):
-        made.node(f"N{k}", (k + 0.5) * length / blocks, 0, fixed="y")
-        made.forces[f"N{k}"] = np.array([per_block * sin(slope), 0.0])
-        made.add("slider", f"S{k}", nodes=[f"N{k}"], axis=[1.0, 0.0], friction_coefficient=friction,
-                 normal_force_N=per_block * cos(slope))
-        if k:
-            made.bar(f"N{k - 1}", f"N{k}", "sheet", young_modulus_Pa=material.young_Pa, cross_section_area_m2=area,
-                     thermal_expansion_per_K=material.expansion_per_K, density_kg_per_m3=material.density)
-    thermal = {"shape": "triangle", "temperature_change_max_K": largest, "cycles": 3, "period_s": 1.0}
-    strain = material.expansion_per_K * largest
-    lost = (friction * cos(slope) - sin(slope)) * weight * length / (material.young_Pa * area)
-    walk = length * np.tan(slope) / friction * max(strain - lost, 0.0)
-    document = made.document(f"{family}_{seed}", f"sheet of {blocks} blocks that walks", thermal, [])
-    return Structure(family, seed, document, "feet", "slope", float(walk))
+    one = Walker(f"{family}_{seed}", blocks, friction, slope, length, material.density * area * dress.GRAVITY,
+                 material.young_Pa, area, material.expansion_per_K, largest, material.density)
+    return Structure(family, seed, one.document(), "feet", "slope", one.walk_m)
 
 
 FAMILIES: dict[str, Any] = {**dict.fromkeys(SHAPES, shaped), "free": free, "walking": walking}

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import evolution
+import statejump as sj
 import structures
 from oracle import judge
 from planar import bracket
@@ -146,3 +147,16 @@ def test_walking_sheets_have_one_block_of_tolerance() -> None:
     one: Any = structures.make("walking", 3)
     assert one.walk_m is not None and one.walk_m > 0
     assert judge(one.document).kind == "path"
+
+
+@pytest.mark.parametrize("seed", [1016, 1022, 1059])
+def test_bars_that_bend_at_a_hinge_keep_it_between_them(seed: int) -> None:
+    """Of both bars at a scissor's hinge a fitting takes one off at most, for a torsion spring needs a common node."""
+    made = structures.make("scissor", seed).document
+    ends = {link["name"]: set(link["nodes"]) for link in made["link"]}
+    joined = [set(slider["nodes"]) for slider in made.get("slider", made.get("iwan_joint", []))]
+    assert joined
+    for spring in made["torsion_spring"]:
+        one, two = (ends[name] for name in spring["links"])
+        assert one & two or any(pair & one and pair & two for pair in joined)
+    sj.load(made).definition.resolve()

@@ -12,6 +12,7 @@ from statejump.core.comparison import Comparison, Quantity, models, share
 from statejump.core.run import Column, Run, change, energy_residue_J
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.scales import COMPARED, NO_JUMP, Scales, scales
+from statejump.kinds.truss.slack import hanging, sentence
 from statejump.kinds.truss.why_missed import why_missed
 
 
@@ -29,12 +30,14 @@ def jumps_m(run: Run) -> np.ndarray:
     return displacement[-1] - displacement[0]
 
 
-def loop_width_m(case: TrussCase, run: Run) -> float:
+def loop_width_m(case: TrussCase, run: Run, hung: np.ndarray | None = None) -> float:
     """Width of the first cycle's loop [m]: largest motion of a node between heating and cooling at one
-    temperature. 0 where these are not one branch each, as in a sine."""
+    temperature. 0 where these are not one branch each, as in a sine. Nodes that hang at a sample are left out."""
     end = case.samples_per_cycle + 1
     change = run["temperature_change_K"][:end]
     displacement = run["displacement_m"][:end]
+    if hung is not None:
+        displacement = displacement[:, ~hung[:end].any(axis=0)]
     peak = int(np.argmax(np.abs(change)))
     size = np.abs(change)
     if not 0 < peak < len(change) - 1 or np.any(np.diff(size[: peak + 1]) < 0) or np.any(np.diff(size[peak:]) > 0):
@@ -53,12 +56,15 @@ def scales_of(case: TrussCase, run: Run) -> Scales:
     return scales(case.resolve(), run["displacement_m"])
 
 
-def jump_scale_m(case: TrussCase, run: Run) -> float:
+def jump_scale_m(case: TrussCase, run: Run, hung: np.ndarray) -> float:
     """What differences of jumps are measured by [m]: the largest jump or the loop's width, the larger. Where both are
-    NO_JUMP of the difference of displacements that the case allows, or less, it is COMPARED of the motion."""
-    jumps, tolerance = np.linalg.norm(jumps_m(run), axis=1), case.tolerance
-    allowed = tolerance.displacement_relative * scales_of(case, run).motion_m
-    largest = max(float(jumps.max()), loop_width_m(case, run))
+    NO_JUMP of the difference of displacements that the case allows, or less, it is COMPARED of the motion.
+
+    :param hung: at which samples nodes hang (samples, nodes), see :func:`hanging`
+    """
+    jumps, tolerance = np.linalg.norm(_jumps_m(run, hung), axis=1), case.tolerance
+    allowed = tolerance.displacement_relative * scales(case.resolve(), _displacement_m(run, hung)).motion_m
+    largest = max(float(jumps.max()), loop_width_m(case, run, hung))
     least = COMPARED if largest <= NO_JUMP * allowed else NO_JUMP
     return max(largest, least * allowed / tolerance.jump_relative)
 
@@ -68,11 +74,26 @@ def _relative(name: str, difference: float, scale: float, tolerance: float) -> Q
     return models(name, "-", 0.0, share(difference, scale), tolerance)
 
 
+def _displacement_m(run: Run, hung: np.ndarray) -> np.ndarray:
+    """Displacements [m] (samples, nodes, 3), zero where nodes hang."""
+    return np.where(hung[:, :, None], 0.0, run["displacement_m"])
+
+
+def _jumps_m(run: Run, hung: np.ndarray) -> np.ndarray:
+    """State jump of every node [m] (nodes, 3), zero of those that hang at the start or at the end."""
+    return np.where(hung[[0, -1]].any(axis=0)[:, None], 0.0, jumps_m(run))
+
+
+def hung_nodes(case: TrussCase, run: Run) -> np.ndarray:
+    """Return at which samples nodes hang slack (samples, nodes)."""
+    return hanging(case, run, COMPARED * scales_of(case, run).force_N)
+
+
 def difference(case: TrussCase, first: Run, second: Run) -> list[Quantity]:
-    """Compare two runs at the same times; the first gives the scales."""
-    tolerance = case.tolerance
-    ours, other = (run["displacement_m"] for run in (first, second))
-    of = scales_of(case, first)
+    """Compare two runs at the same times; the first gives the scales. Nodes that hang slack in it are left out."""
+    tolerance, hung = case.tolerance, hung_nodes(case, first)
+    ours, other = (_displacement_m(run, hung) for run in (first, second))
+    of = scales(case.resolve(), ours)
     largest = max(float(np.linalg.norm(ours, axis=2).max()), COMPARED * of.motion_m)
     peak = int(np.argmax(np.abs(first["temperature_change_K"])))
     apart = np.linalg.norm(other - ours, axis=2)
@@ -82,9 +103,9 @@ def difference(case: TrussCase, first: Run, second: Run) -> list[Quantity]:
         _relative("displacement_largest_rms_over_largest", float(np.sqrt((apart**2).mean(axis=0)).max()), largest,
                   tolerance.displacement_relative),
     ]
-    jumps = [jumps_m(run) for run in (first, second)]
+    jumps = [_jumps_m(run, hung) for run in (first, second)]
     node = int(np.argmax(np.linalg.norm(jumps[0], axis=1)))
-    scale = jump_scale_m(case, first)
+    scale = jump_scale_m(case, first, hung)
     ours_m, other_m = (float(np.linalg.norm(jump[node])) for jump in jumps)
     what = "jump" if case.has_jump else "displacement_at_program_end"
     rows.append(models(f"{what}_of_node_{case.node[node].name}", "m", ours_m, other_m, tolerance.jump_relative * scale))
@@ -104,11 +125,14 @@ def reduced_name(run: Run) -> str:
     return "reduced model in motion" if "velocity_m_per_s" in run.history else "quasi-static solver"
 
 
-def loop_drift_m(case: TrussCase, run: Run) -> float:
-    """Largest distance of a node in any later cycle from where it was in the second at the same phase [m]."""
+def loop_drift_m(case: TrussCase, run: Run, hung: np.ndarray | None = None) -> float:
+    """Largest distance of a node in any later cycle from where it was in the second at the same phase [m]. Nodes that
+    hang at a sample are left out."""
     samples, displacement = case.samples_per_cycle, run["displacement_m"]
+    if hung is not None:
+        displacement = displacement[:, ~hung.any(axis=0)]
     loops = [displacement[k * samples : (k + 1) * samples + 1] for k in range(1, case.thermal.cycles)]
-    return float(np.linalg.norm(np.stack(loops) - loops[0], axis=3).max())
+    return float(np.linalg.norm(np.stack(loops) - loops[0], axis=3).max(initial=0.0))
 
 
 def _energy_row(case: TrussCase, dem: Run) -> Quantity:
@@ -126,15 +150,17 @@ def _energy_row(case: TrussCase, dem: Run) -> Quantity:
 def compare(case: TrussCase, reduced: Run, dem: Run) -> Comparison:
     """Compare a DEM run with the quasi-static path at the same times."""
     exact = reduced.at(dem.time_s)
+    hung = hung_nodes(case, exact)
     rows = [*difference(case, exact, dem), _energy_row(case, dem)]
     if case.thermal.cycles > 2:
-        rows.append(_relative("loop_drift_over_largest_displacement", loop_drift_m(case, dem),
-                              max(float(np.linalg.norm(exact["displacement_m"], axis=2).max()),
+        rows.append(_relative("loop_drift_over_largest_displacement", loop_drift_m(case, dem, hung),
+                              max(float(np.linalg.norm(_displacement_m(exact, hung), axis=2).max()),
                                   COMPARED * scales_of(case, exact).motion_m),
                               case.tolerance.displacement_relative))
-    found = Comparison(case, {"reduced": exact, "dem": dem}, tuple(rows), warnings=reduced.warnings)
+    found = Comparison(case, {"reduced": exact, "dem": dem}, tuple(rows),
+                       warnings=(*reduced.warnings, *sentence(case, hung)))
     return found if found.passed else replace(
-        found, reasons=tuple(why_missed(case, exact, dem, jump_scale_m(case, exact))))
+        found, reasons=tuple(why_missed(case, exact, dem, jump_scale_m(case, exact, hung))))
 
 
 def jump_table(case: TrussCase, run: Run, most: int = 8) -> list[tuple[Any, ...]]:

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Elements that hang slack in the play of their joints: which nodes have no position that a model could compute."""
+from __future__ import annotations
+
+import numpy as np
+
+from statejump.core.run import Run
+from statejump.kinds.truss.arrays import GROUND
+from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.round_parts import RoundParts
+from statejump.kinds.truss.notes import MOST_NAMED
+from statejump.kinds.truss.resolved import ResolvedTruss
+
+# Of the largest force. The solver leaves 1e-9 of it in an element without contact: the rounding of coordinates times
+# the stiffness. Comparisons distinguish 1e-4 of it.
+NO_FORCE = 1e-6
+
+
+def sentence(case: TrussCase, hung: np.ndarray) -> tuple[str, ...]:
+    """Return which nodes hang slack at some sample (samples, nodes)."""
+    names = [repr(case.node[node].name) for node in np.flatnonzero(hung.any(axis=0))]
+    if not names:
+        return ()
+    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+    return (f"node{'s' if len(names) > 1 else ''} {', '.join(names[:MOST_NAMED])}{more}: hanging slack in the play of "
+            "joints, where no model determines a position; compared only where forces act on them",)
+
+
+def hanging(case: TrussCase, run: Run, least_force_N: float) -> np.ndarray:
+    """Return at which samples nodes hang slack (samples, nodes).
+
+    A node hangs if its links carry nothing and fewer parts hold it than it has directions. A link whose other end hangs
+    holds nothing, nor does a joint with clearance whose contact carries nothing. Parts of several links that hang
+    together are not recognised where each of their nodes has as many links as directions.
+
+    :param least_force_N: the largest force counts as this at least
+    """
+    truss = case.resolve()
+    ends, force = truss.links.nodes, np.abs(run.links["axial_force_N"].values)
+    none = NO_FORCE * max(float(force.max(initial=0.0)), least_force_N)
+    holding = np.zeros((len(force), len(truss.nodes.names)), dtype=int)
+    if not _pins_hold(truss, run, none, holding):
+        return np.zeros(holding.shape, dtype=bool)
+    holding += _others_hold(truss)
+    idle, found = np.ones(holding.shape, dtype=bool), np.zeros(holding.shape, dtype=bool)
+    for side in (0, 1):
+        np.logical_and.at(idle.T, ends[:, side], force.T <= none)
+    while True:
+        links = np.zeros(holding.shape, dtype=int)
+        for side in (0, 1):
+            np.add.at(links.T, ends[:, side], ~found[:, ends[:, 1 - side]].T)
+        more = idle & (holding + links < truss.dimension)
+        if (more == found).all():
+            return found
+        found = more
+
+
+def _pins_hold(truss: ResolvedTruss, run: Run, none_N: float, holding: np.ndarray) -> bool:
+    """Add the directions that joints with clearance hold at nodes (samples, nodes); return whether one carries nothing
+    at some sample."""
+    place, idle = 0, False
+    for joint in JOINTS:
+        if not joint.has_contacts:
+            continue
+        joints = truss.joints[joint.section]
+        columns = slice(place, place + len(joints.names))
+        place += len(joints.names)
+        if isinstance(joint, RoundParts) and len(joints.names):
+            carries = np.linalg.norm(run.contacts["normal_force_N"].values[:, columns], axis=2) > none_N
+            for nodes in joint.joined(joints).T:
+                np.add.at(holding.T, nodes, truss.dimension * carries.T)
+            idle = idle or not carries.all()
+    return idle
+
+
+def _others_hold(truss: ResolvedTruss) -> np.ndarray:
+    """Return how many directions of nodes supports, springs, what turns links and joints without clearance hold, which
+    count as all directions."""
+    d = truss.dimension
+    found = truss.nodes.fixed[:, :d].sum(axis=1) + truss.nodes.guide_normal.any(axis=1)
+    turned = [truss.torsion_springs.links, truss.joints["latch_hinge"].links]
+    links = np.concatenate([one.ravel() for one in turned]).astype(int)
+    np.add.at(found, truss.links.nodes[links[links != GROUND]].ravel(), d)
+    np.add.at(found, truss.springs.nodes.ravel(), d)
+    for joint in JOINTS:
+        if not isinstance(joint, RoundParts):
+            joints = truss.joints[joint.section]
+            np.add.at(found, joint.place_nodes(truss, joints).astype(int), d)
+            np.add.at(found, joint.joined(joints).ravel().astype(int), d)
+    return np.asarray(found)
