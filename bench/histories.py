@@ -29,7 +29,7 @@ from statejump.core.output import write_atomically
 from statejump.core.temperature_files import with_files
 from statejump.kinds.loading import parse_case
 from statejump.kinds.truss import generate, solve
-from statejump.kinds.truss.case import TrussThermal
+from statejump.kinds.truss.sections import TrussThermal
 
 ORBITS, PERIOD_S, SHADOW_S = 10, 5400.0, (1800.0, 3900.0)
 # Of the mast: bays across, length of one, bays from fold to fold and from support to support.

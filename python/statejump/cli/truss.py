@@ -23,7 +23,7 @@ from statejump.core.errors import NotWritten, StatejumpError
 from statejump.core.results_folder import Results
 from statejump.core.thermal import SHAPES
 from statejump.core.units import split_unit
-from statejump.kinds.truss.case import Revolute, TrussReduced
+from statejump.kinds.truss.sections import Revolute, TrussReduced
 from statejump.kinds.truss.generate.document import write
 from statejump.schema.fields import fields_of, rule_of
 from statejump.schema.rules import folder_name

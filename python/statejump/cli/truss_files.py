@@ -23,7 +23,7 @@ def new_files(output: Path, tables: bool, force: bool) -> tuple[str, ...]:
     :param force: whether files may be overwritten
     :raises StatejumpError: one of the files is there already, or cannot be written
     """
-    from statejump.kinds.truss.case import sections_in_files
+    from statejump.kinds.truss.sections import sections_in_files
     from statejump.kinds.truss.generate.document import table_path
 
     check_suffix("--output", output, ".toml")

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
 from statejump.schema.fields import (
-    CHOICE, Section, choice, definition, fields_of, numbers, parameter, rule_of, switch, text, whole,
+    CHOICE, Section, choice, definition, evolved, fields_of, numbers, parameter, rule_of, switch, text, whole,
 )
 
 if TYPE_CHECKING:
@@ -65,6 +65,10 @@ class Thermal(Section):
     lead_out_s: float | None = parameter(
         None, "s", 0, LONGEST_TABLE_S, "straight way back from the file's last row; none", above=True
     )
+
+    def repeated(self, cycles: int) -> Self:
+        """Return the program with another number of cycles."""
+        return evolved(self, cycles=cycles)
 
 
 @definition

@@ -22,13 +22,13 @@ from statejump.core.progress import Tell
 from statejump.core.run import Run
 from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.check_mechanism import refused_at_rest
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import Torsion
 from statejump.kinds.truss.masses import lumped_mass_kg
-from statejump.kinds.truss.mechanism import refused_at_rest
 from statejump.kinds.truss.motion import simulate
-from statejump.kinds.truss.resolved import ResolvedTruss
-from statejump.kinds.truss.solve import Course, TrussPath, solve
+from statejump.kinds.truss.resolved import Course, ResolvedTruss
+from statejump.kinds.truss.solve import TrussPath, solve
 from statejump.schema.paths import with_values
 
 CONTACT_GROUPS = 30  # bits of a body's mask in YADE that are free to use

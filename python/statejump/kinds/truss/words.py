@@ -10,12 +10,13 @@ from statejump.core.run import Run
 from statejump.core.start import FRICTIONLESS
 from statejump.core.tables import Shown
 from statejump.kinds.truss import compare
-from statejump.kinds.truss.case import Node, TrussCase
+from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.joints.words import count, spread
 from statejump.kinds.truss.motion import TrussMotion
 from statejump.kinds.truss.result import AT_END
+from statejump.kinds.truss.sections import Node
 
 
 def is_held(case: TrussCase, node: Node) -> bool:

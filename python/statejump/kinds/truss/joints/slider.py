@@ -23,8 +23,7 @@ from statejump.schema.fields import CHOICE, definition, numbers, parameter, text
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.solve import Course
+    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 BLOCK: Strokes = (
     ((-0.75, -0.45), (0.75, -0.45), (0.75, 0.45), (-0.75, 0.45), (-0.75, -0.45)), ((-1.0, -0.55), (1.0, -0.55)),
