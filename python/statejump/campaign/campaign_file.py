@@ -18,9 +18,10 @@ from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, Unknow
 from statejump.core.run import MODELS
 from statejump.kinds.loading import load_case
 from statejump.schema.fields import (
-    CHOICE, Section, choice, definition, fields_of, rule_of, section, structure, tables, text, texts, whole,
+    CHOICE, Section, choice, definition, fields_of, rule_of, section, tables, text, texts, whole,
 )
 from statejump.schema.rules import FOLDER_NAME
+from statejump.schema.structure import structure
 from statejump.schema.toml import read_toml
 
 MODEL_NAMES = tuple(MODELS)

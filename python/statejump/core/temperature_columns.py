@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from statejump.core.column_units import Column, Conversion, conversion, matched, splits
+from statejump.core.column_units import Column, conversion, matched, splits
+from statejump.core.conversion import Conversion
 from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey, Unreadable
 from statejump.core.reading import is_file
 from statejump.core.table_files import SUFFIXES as TEXT_SUFFIXES, Table, numbers_of, open_table, quoted

@@ -132,7 +132,7 @@ class Kind(Generic[CaseType]):
     def case_from(self, data: Mapping[str, Any]) -> Definition:
         """Return the case of a parsed document. :raises StatejumpError: one failure, without the file's name"""
         from statejump.core import thermal
-        from statejump.schema.fields import structure
+        from statejump.schema.structure import structure
 
         for section in self.Case.NOT_IN_FILE:
             if section in data:

@@ -7,7 +7,7 @@ A section is an attrs class; its keys are declared by the functions of this modu
     class Link(Section):
         length_m: float = parameter(..., "m", 0, 1e3, "Table 1", above=True)
 
-A key is checked where its section is made, from a file (:func:`structure`) or in Python. Only this package
+A key is checked where its section is made, from a file (:func:`.structure.structure`) or in Python. Only this package
 knows attrs.
 """
 from __future__ import annotations
@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
 
 import attrs
 
-from statejump.core.errors import MissingKey, NotAllowed, Range, UnknownKey
-from statejump.schema.rules import ATTACHED, NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, suggestion
+from statejump.core.errors import Range
+from statejump.schema.rules import ATTACHED, NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Attached, Rule
 
 CHOICE = "choice, the paper is silent"
 RULE, SECTION, TABLES, READ = "rule", "section", "tables", "read"
@@ -111,15 +111,6 @@ def numbers(default: Any, unit: str, low: float, high: float, source: str, *, le
     """
     rule = Rule(NUMBERS, source, Range(low, high, unit), optional=default is None, length=length)
     return _key(default, rule, _as_floats)
-
-
-class Attached:
-    """What a key holds that a file cannot say: arrays that were read from another file. Immutable and hashable; a copy
-    of a case has the same."""
-
-    def to_json(self) -> dict[str, Any]:
-        """Return what tells it from others, as JSON takes it: the arrays are no part of a text."""
-        raise NotImplementedError
 
 
 def attached_to_json(value: Any) -> dict[str, Any]:
@@ -244,69 +235,3 @@ def default_of(attribute: attrs.Attribute[Any]) -> Any:
     """Return the default of a key that is not required."""
     made: Any = attribute.default
     return made.factory() if isinstance(made, attrs.Factory) else made  # type: ignore[arg-type]  # it is a class
-
-
-def structure(model: type[SectionType], data: Mapping[str, Any]) -> SectionType:
-    """Return what a parsed TOML document holds.
-
-    An unknown key is reported first: a misspelt key is missing as well.
-
-    :param model: the file: its fields are sections and lists of tables
-    :raises StatejumpError: one failure, without the file's name
-    """
-    from statejump.schema.items import read_tables
-
-    wanted = fields_of(model)
-    for name in data:
-        if name not in wanted:
-            raise UnknownKey(name, section=f"section [{name}]", **suggestion(name, list(wanted), "[", "]"))
-        keys = section_of(wanted[name])
-        if keys is not None and isinstance(data[name], Mapping):
-            _refuse_unknown(name, keys, data[name])
-    for name, attribute in wanted.items():
-        if name not in data:
-            if is_required(attribute):
-                brackets = "[[{}]]" if tables_of(attribute) else "[{}]"
-                raise MissingKey(name, section=f"section {brackets.format(name)}")
-            continue
-        keys = section_of(attribute)
-        if keys is not None and isinstance(data[name], Mapping):
-            _refuse_missing(name, keys, data[name])
-    made: dict[str, Any] = {}
-    for name, attribute in wanted.items():
-        if name not in data:
-            continue
-        item, keys = tables_of(attribute), section_of(attribute)
-        if item is not None:
-            read = attribute.metadata[READ]
-            made[name] = read(name, data[name]) if read else read_tables(item, name, data[name])
-        elif keys is not None:
-            if data[name] is None and attribute.default is None:
-                continue  # as to_dict() has it
-            if not isinstance(data[name], Mapping):
-                raise NotAllowed(name, data[name], f"must be a section [{name}]")
-            made[name] = _section(keys, name, data[name])
-    return model(**made)
-
-
-def _refuse_unknown(name: str, keys: type[Section], given: Mapping[str, Any]) -> None:
-    known = fields_of(keys)
-    for key in given:
-        if key not in known:
-            raise UnknownKey(f"{name}.{key}", **suggestion(key, list(known), f"{name}.", ""))
-
-
-def _refuse_missing(name: str, keys: type[Section], given: Mapping[str, Any]) -> None:
-    for key, attribute in fields_of(keys).items():
-        if key not in given and is_required(attribute):
-            raise MissingKey(f"{name}.{key}", rule_of(attribute).needs(), allowed=rule_of(attribute).allowed)
-
-
-def _section(keys: type[SectionType], name: str, given: Mapping[str, Any]) -> SectionType:
-    try:
-        return keys(**given)
-    except NotAllowed as refused:
-        assert refused.key is not None
-        refused.value = given.get(refused.key, refused.value)  # 1, not 1.0, if the file says so
-        refused.key = f"{name}.{refused.key}"
-        raise
